@@ -1,5 +1,4 @@
-//! `whiskmap`: where does a tapered, curved whisker pushed against a pole stay in contact, where does it
-//! slip off, and where is it pulled off?
+//! Regime maps of a tapered, curved whisker pushed against a pole: where it stays in contact, slips off, or is pulled off.
 //!
 //! The mechanics are those of Hires, Pammer, Svoboda and Golomb (2013), "Tapered whiskers are required for
 //! active tactile sensation", eLife 2:e01350. `ARCHITECTURE.md` names the modules and the order in which data
@@ -18,7 +17,8 @@
 //!
 //! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) compute in memory; the modules below are the
 //! topics around them. All features are on by default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders,
-//! `render` the pictures. `ndarray`, which is off by default, adds views of channels as arrays.
+//! `render` the pictures, `zarr` the stores that many processes fill. `ndarray`, which is off by default, adds views of channels as
+//! arrays.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -9,25 +9,26 @@ use crate::shooting::batch::{Batch, InitialCondition, Method, OutputSet};
 use crate::shooting::{FirstVariation, FullState, SecondVariation};
 use glam::DVec2;
 
-/// What follows from the trajectory at an iterate.
+/// Step of a Newton iteration: what follows from the trajectory at an iterate.
 #[derive(Clone, Copy, Debug)]
 pub enum NewtonStep {
-    /// The state at the iterate solves the problem.
+    /// The state at the iterate solves the Newton problem.
     Accept,
-    /// The state after this step in `(tau, load)` solves the problem. The step is so short that its end is extrapolated, not integrated.
+    /// The state after this step in `(tau, load)` solves the Newton problem. The step is so short that its end is extrapolated, not
+    /// integrated.
     Extrapolate(DVec2),
-    /// The next trajectory starts at this `(tau, load)`.
+    /// The next trajectory of the Newton problem starts at this `(tau, load)`.
     Shoot(DVec2),
-    /// No step leads to a solution.
+    /// No step leads to a solution of the Newton problem.
     Fail,
 }
 
-/// Root-finding problem in the plane of contact and load.
+/// Newton problem: root-finding in the plane of contact and load.
 pub trait NewtonProblem<'a> {
-    /// Output of a trajectory.
+    /// Output of the trajectories that the Newton problem needs.
     type Output: Extrapolate;
 
-    /// Returns the rod whose trajectories are computed.
+    /// Returns the rod whose trajectories the Newton problem needs.
     fn rod(&self) -> &'a Rod;
 
     /// Decides what follows from the trajectory `here`, which starts at `at = (tau, load)`.
@@ -36,7 +37,7 @@ pub trait NewtonProblem<'a> {
 
 /// Output of a trajectory from which nearby states can be extrapolated.
 pub trait Extrapolate: OutputSet {
-    /// State stored in an iterate.
+    /// State that is stored in an iterate of the Newton loop.
     type State: Copy + Default;
 
     /// Returns the state at the trajectory's initial condition.
@@ -70,58 +71,58 @@ impl Extrapolate for SecondVariation {
     }
 }
 
-/// Outcome of an iteration.
+/// Outcome of a Newton iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NewtonOutcome {
     /// The state of the last trajectory, or its extrapolation, solves the problem.
     Converged,
-    /// The iteration reached the limit on trajectories.
+    /// The Newton iteration reached the limit on trajectories.
     OutOfTrajectories,
-    /// A step led to a number that is not finite, or to `tau <= 0`.
+    /// A Newton step led to a number that is not finite, or to `tau <= 0`.
     OutsideDomain,
-    /// The problem returned [`NewtonStep::Fail`].
+    /// The Newton iteration failed: the problem returned [`NewtonStep::Fail`].
     Failed,
 }
 
-/// Last iterate of a problem.
+/// Last iterate of a Newton problem.
 #[derive(Clone, Copy, Debug)]
 pub struct NewtonIterate<S> {
-    /// Contact coordinate and signed load, `(tau, load)`.
+    /// Contact coordinate and signed load of the iterate, `(tau, load)`, dimensionless.
     pub point: DVec2,
-    /// State of the trajectory at `point`.
+    /// State of the last iterate: of the trajectory at `point`, or extrapolated from it.
     pub state: S,
-    /// Number of Newton steps, including the extrapolated one.
+    /// Number of Newton steps to the iterate, including the extrapolated one.
     pub steps: u32,
-    /// Outcome of the iteration.
+    /// Outcome of the Newton iteration.
     pub outcome: NewtonOutcome,
 }
 
-/// Rule for which trajectories share a block of SIMD lanes.
+/// Rule of the Newton loop for which trajectories share a block of SIMD lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaneSharing {
     /// Only trajectories with the same number of steps share a block. Results do not depend on the other problems.
     EqualSteps,
-    /// All open problems share padded blocks ([`Batch::padded`]).
+    /// All open Newton problems share padded blocks ([`Batch::padded`]).
     Open,
-    /// All problems share padded blocks, including solved ones, so that blocks take the same number of steps in every round.
+    /// All Newton problems share padded blocks, including solved ones, so that blocks take the same number of steps in every round.
     All,
 }
 
 /// Newton loop over a batch of problems: method, sharing of lanes and limits.
 #[derive(Clone, Copy, Debug)]
 pub struct BatchNewton {
-    /// Integration method of the trajectories.
+    /// Integration method of the loop's trajectories.
     pub method: Method,
-    /// Rule for sharing blocks of lanes.
+    /// Rule for the sharing of lanes in the loop.
     pub sharing: LaneSharing,
-    /// Number of initial rounds at the coarse resolution, in which no state is accepted.
+    /// Number of initial rounds of the loop at the coarse resolution, in which no state is accepted.
     pub coarse_rounds: u32,
-    /// Maximum number of trajectories for each problem.
+    /// Maximum number of trajectories for each Newton problem.
     pub most_trajectories: u32,
 }
 
 impl BatchNewton {
-    /// Creates a loop with at most `most_trajectories` for each problem by `method`. Results do not depend on the other problems.
+    /// Creates a Newton loop with at most `most_trajectories` for each problem by `method`. Results do not depend on the other problems.
     pub const fn new(method: Method, most_trajectories: u32) -> Self {
         Self {
             method,
@@ -132,7 +133,7 @@ impl BatchNewton {
     }
 
     /// Iterates each of the `problems` from its start in `(tau, load)`, on the calling thread unless blocks are padded. Returns one
-    /// iterate for each problem, in the same order.
+    /// iterate for each problem, `[problem]`, in the same order.
     pub fn solve<'a, P: NewtonProblem<'a>>(
         &self,
         problems: &mut [P],

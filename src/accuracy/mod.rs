@@ -1,4 +1,4 @@
-//! Error of a resolution, measured by doubling its steps on a sample of the scene, and the cheapest sufficient resolution.
+//! Accuracy of a resolution, measured by doubling its steps on a sample of the scene, and the cheapest sufficient resolution.
 //!
 //! Newton's method adds its largest residual, whose angle is largest at the nearest pole.
 
@@ -10,18 +10,18 @@ use crate::scene::Scene;
 use crate::shooting::Resolution;
 use sample::SceneSample;
 
-/// A resolution and its estimated error.
+/// Accuracy of a resolution: its estimated error for a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Steps of trajectories.
+    /// Resolution whose error is estimated.
     pub resolution: Resolution,
     /// Estimated error of the quantities in [`BOUNDED`] over the whole scene, in degrees.
     pub error_deg: f64,
 }
 
-/// Quantities that a tolerance bounds, and those that it does not. The error of a state is the one of its pole as seen from the base: of
-/// its direction, and of the logarithm of its distance as radians. At a fold all other quantities change with the square root of the push
-/// angle.
+/// Text about the quantities that a tolerance bounds, and those that it does not. The error of a state is the one of its pole as seen
+/// from the base: of its direction, and of the logarithm of its distance as radians. At a fold all other quantities change with the
+/// square root of the push angle.
 pub const BOUNDED: &str = "push angles: where states stand and where they detach; not contact angles, arclengths, \
                            forces and moments, which next to a fold change faster";
 

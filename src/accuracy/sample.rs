@@ -15,7 +15,7 @@ const PUSHES: usize = 12;
 const DISTANCES: usize = 64;
 const WHISKERS: usize = 4;
 
-/// States to integrate at several resolutions.
+/// Sample of a scene: states to integrate at several resolutions.
 pub struct SceneSample {
     effects: Effects,
     /// Rods with points of their sheets.
@@ -68,7 +68,7 @@ impl SceneSample {
         Self { effects, rods }
     }
 
-    /// Returns the largest error at `resolution` against twice as many steps, in radians.
+    /// Returns the largest push-angle error of the sample at `resolution` against twice as many steps, in radians.
     pub fn error(&self, resolution: Resolution) -> f64 {
         let points: Vec<(&Rod, &Point)> = self
             .rods

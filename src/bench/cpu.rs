@@ -15,7 +15,7 @@ use std::time::Instant;
 /// Residual, in whisker lengths, below which one more Newton step reaches rounding.
 const TOLERANCE: f64 = 1e-7;
 
-/// Adds the rows of the CPU engine to `report`.
+/// Adds the measurements of the CPU engine to `report`.
 pub fn measure(
     task: &Task,
     runs: usize,

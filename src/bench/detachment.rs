@@ -1,4 +1,4 @@
-//! Detachment curves, from coarse to fine steps.
+//! Measurements of detachment curves, from coarse to fine steps.
 
 use super::task::{EXACT, Spread, whisker_sides};
 use super::timing::{Timing, timed};
@@ -9,22 +9,22 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::convert::Infallible;
 
-/// The detachments of a scene at one resolution, on all threads.
+/// Measurement of the detachments of a scene at one resolution, on all threads.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Detachments {
-    /// Steps per trajectory at the fold of a cylinder.
+    /// Number of steps of a trajectory at the fold of a cylinder.
     pub steps: u32,
-    /// Number of points of the curves.
+    /// Number of points of the detachment curves.
     pub points: usize,
-    /// Seconds for all points.
+    /// Times for all points of the curves, in seconds.
     pub seconds: Timing,
-    /// Microseconds per point.
+    /// Time for one point of the curves, in microseconds.
     pub us_per_point: f64,
-    /// Error of the push angle, in degrees.
+    /// Error of the push angle at detachment, in degrees.
     pub angle_deg: Spread,
 }
 
-/// Measures every rung of the ladder.
+/// Measures the detachments of a scene at every resolution of the ladder, `[rung]`.
 pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
     let sides = whisker_sides(scene);
     let curves = |resolution: Resolution| -> Vec<Detachment> {

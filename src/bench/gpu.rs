@@ -15,14 +15,14 @@ use std::time::{Duration, Instant};
 
 /// A GPU engine that can be measured.
 pub struct Candidate {
-    /// Name in the rows.
+    /// Name of the GPU engine in the measurements.
     pub name: String,
-    /// Index among the [`adapters`].
+    /// Index of the GPU engine's adapter among the [`adapters`].
     pub adapter: usize,
     pub precision: Precision,
 }
 
-/// Returns every adapter in `f32` and, if supported, in `f64`.
+/// Returns the GPU engines to measure, `[engine]`: every adapter in `f32` and, if supported, in `f64`.
 pub fn candidates() -> Vec<Candidate> {
     let all = adapters();
     let mut candidates = Vec::new();
@@ -43,7 +43,7 @@ pub fn candidates() -> Vec<Candidate> {
     candidates
 }
 
-/// Adds the rows of every adapter to `report`; one that fails is named with its reason.
+/// Adds the measurements of every adapter to `report`; one that fails is named with its reason.
 pub fn measure(
     scene: &Scene,
     task: &Task,

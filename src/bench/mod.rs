@@ -27,36 +27,37 @@ use std::fmt;
 use task::{Task, Work};
 use timing::median;
 
-/// Milliseconds by the name of a stage.
+/// Wall times of stages, in milliseconds, by the name of the stage.
 pub type StageTimes = BTreeMap<String, f64>;
 
-/// One engine at one accuracy.
+/// Measurement of one engine at one accuracy.
 #[derive(Clone, Debug, Serialize)]
 pub struct Measurement {
-    /// Name of the engine.
+    /// Name of the measured engine.
     pub engine: String,
-    /// Threads of the CPU engine.
+    /// Number of threads of the CPU engine; `None` for other engines.
     pub threads: Option<usize>,
-    /// Integrator and steps.
+    /// Integrator and number of steps of the measurement.
     pub rung: Rung,
-    /// Seconds for all states.
+    /// Times for all states, in seconds.
     pub seconds: Timing,
-    /// Milliseconds of the stages, medians of the runs; 0 where the engine has no such stage. `upload`: trajectories of base points, packing
-    /// and submitting; `dispatch`: solving, by the device's clock on a GPU that has one; `waiting`: for the device; `readback`: unpacking.
+    /// Wall milliseconds of the engine's stages, medians of the runs; 0 where the engine has no such stage. `upload`: trajectories of
+    /// base points, packing and submitting; `dispatch`: solving, by the device's clock on a GPU that has one; `waiting`: for the device;
+    /// `readback`: unpacking.
     pub stages_ms: StageTimes,
-    /// Microseconds per state.
+    /// Time for one state, in microseconds.
     pub us_per_state: f64,
-    /// States per second.
+    /// Rate of the engine in states per second.
     pub states_per_s: f64,
-    /// Trajectories per second.
+    /// Rate of the engine in trajectories per second.
     pub trajectories_per_s: f64,
-    /// Billions of floating-point operations per second in the integration, counted on the CPU only.
+    /// Rate of the integration in billions of floating-point operations per second, counted on the CPU only; `None` for other engines.
     pub gflops: Option<f64>,
-    /// Floating-point rate as a part of the engine's peak.
+    /// Rate of floating-point operations over the engine's peak rate, dimensionless; `None` if it is not counted.
     pub of_peak: Option<f64>,
-    /// Errors of the states.
+    /// Errors of the states that the engine found.
     pub errors: Errors,
-    /// Whether no other row is both faster and more accurate.
+    /// True if no other measurement is both faster and more accurate.
     pub pareto: bool,
 }
 
@@ -96,12 +97,12 @@ impl Measurement {
 /// Stages of a row, in the order of the work.
 const STAGES: [&str; 4] = ["upload", "dispatch", "waiting", "readback"];
 
-/// Integrator and steps of a row.
+/// Integrator of a measurement, and its number of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rung {
-    /// The integrator of the engine.
+    /// Name of the engine's integrator.
     pub integrator: &'static str,
-    /// Steps of a trajectory at the fold of a cylinder; fewer under less load.
+    /// Number of steps of a trajectory at the fold of a cylinder; fewer under less load.
     pub steps: u32,
 }
 
@@ -120,66 +121,66 @@ fn medians(runs: &[StageTimes]) -> StageTimes {
         .collect()
 }
 
-/// An engine and its peak rate.
+/// Measured engine and its peak rate.
 #[derive(Clone, Debug, Serialize)]
 pub struct BenchEngine {
     /// Name of the engine, as in [`Measurement::engine`].
     pub name: String,
-    /// Threads of the CPU engine.
+    /// Number of threads of the CPU engine; `None` for other engines.
     pub threads: Option<usize>,
-    /// Processor or adapter, with driver.
+    /// Hardware of the engine: processor or adapter, with driver.
     pub adapter: String,
-    /// Billions of multiplications and additions per second: the largest rate measured.
+    /// Peak rate of the engine in billions of multiplications and additions per second: the largest one measured.
     pub peak_gflops: f64,
-    /// Seconds from the start to the first result: opening, compiling, one cell.
+    /// Time from the start of the engine to its first result, in seconds: opening, compiling, one cell.
     pub first_result_s: f64,
 }
 
-/// All measurements of a scene.
+/// Report of all measurements of a scene.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Title of the scene.
+    /// Title of the measured scene.
     pub scene: String,
-    /// Number of states that every engine solved.
+    /// Number of states of the scene that every engine solved.
     pub states: usize,
-    /// Timed runs of each row.
+    /// Number of timed runs of each measurement.
     pub runs: usize,
-    /// The engines that were measured.
+    /// Engines that were measured, `[engine]`.
     pub engines: Vec<BenchEngine>,
-    /// Measurements, engine by engine.
+    /// Measurements of the report, engine by engine, `[measurement]`.
     pub rows: Vec<Measurement>,
-    /// Detachment curves, from coarse to fine steps.
+    /// Measurements of detachment curves, from coarse to fine steps, `[rung]`.
     pub detachments: Vec<Detachments>,
     /// Number of cells of each whole map.
     pub map_cells: usize,
-    /// Whole maps: of the CPU engine on all threads, then of each GPU engine.
+    /// Measurements of whole maps: of the CPU engine on all threads, then of each GPU engine.
     pub maps: Vec<WholeMap>,
-    /// Comparison of the CPU engine with the fastest GPU engine, if there is one.
+    /// Comparison of the CPU engine with the fastest GPU engine; `None` without a GPU.
     pub verdict: Option<Verdict>,
-    /// Engines that could not be measured, and why.
+    /// Engines that could not be measured, with the reason of each.
     pub failures: Vec<String>,
 }
 
-/// Size of the sample, and number of runs.
+/// Effort of a measurement: size of the sample, and number of runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Push angles, and distances, of the sample.
+    /// Number of push angles, and of distances, of the sample.
     pub lines: usize,
     /// Maximum number of push angles, and of distances, of whole maps.
     pub map_lines: usize,
-    /// Timed runs of each row.
+    /// Number of timed runs of each measurement.
     pub runs: usize,
 }
 
 impl Effort {
-    /// Effort for numbers to be quoted.
+    /// Effort of measurements whose numbers are quoted.
     pub const FULL: Self = Self {
         lines: 128,
         map_lines: 1024,
         runs: 7,
     };
 
-    /// Effort for a first look.
+    /// Effort of quick measurements.
     pub const QUICK: Self = Self {
         lines: 48,
         map_lines: 256,
@@ -219,7 +220,7 @@ pub fn run(
     Ok(Some(report))
 }
 
-/// Returns the name of an engine with its threads.
+/// Returns the name of an engine with its number of threads.
 #[must_use]
 pub fn named(engine: &str, threads: Option<usize>) -> String {
     match threads {

@@ -11,7 +11,7 @@ const ROUNDS: u32 = 1 << 20;
 /// registers of the unit and on the latency of an addition.
 const ACCUMULATORS: [usize; 8] = [4, 6, 7, 8, 10, 12, 14, 16];
 
-/// Billions of operations per second of all threads of the pool together, with the best number of accumulators.
+/// Returns the peak rate of all threads of the pool together, in billions of operations per second, with the best number of accumulators.
 pub fn peak(unit: Unit) -> f64 {
     let rate = |accumulators| {
         let start = Instant::now();

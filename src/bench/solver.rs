@@ -1,4 +1,4 @@
-//! Newton's method alone, in `f64` on the CPU: on any SIMD unit, at any resolution.
+//! Solver of the benchmarks: Newton's method alone, in `f64` on the CPU, on any SIMD unit, at any resolution.
 
 use crate::numerics::Unit;
 use crate::refine::CellTarget;
@@ -13,27 +13,27 @@ const BATCH: usize = 1024;
 /// Maximum number of Newton steps of a target.
 const MOST_STEPS: u32 = 4;
 
-/// Last state computed for a target.
+/// Last state that the solver computed for a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the state, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`, dimensionless.
+    /// Signed load `f/rho^2` of the state, dimensionless.
     pub load: f64,
-    /// Distance of the pole from the wanted place at the last trajectory, in whisker lengths.
+    /// Residual of the last trajectory: distance of the pole from its target, in whisker lengths.
     pub residual: f64,
-    /// Newton steps taken.
+    /// Number of Newton steps taken for the target.
     pub steps: u32,
 }
 
-/// How the CPU solves targets.
+/// Settings with which the CPU solves targets.
 #[derive(Clone, Copy, Debug)]
 pub struct Solver {
-    /// Unit that integrates.
+    /// SIMD unit that integrates the solver's trajectories.
     pub unit: Unit,
-    /// Steps of trajectories.
+    /// Resolution of the solver's trajectories.
     pub resolution: Resolution,
-    /// Residual, in whisker lengths, below which the next step is the last.
+    /// Residual, in whisker lengths, below which the solver's next step is the last.
     pub tolerance: f64,
 }
 

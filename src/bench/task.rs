@@ -1,4 +1,4 @@
-//! The states of a scene, with exact solutions.
+//! Tasks of the benchmarks: the states of a scene, with exact solutions.
 
 use super::solver::{Hit, Solver};
 use crate::numerics::Unit;
@@ -17,7 +17,7 @@ use std::collections::HashMap;
 /// Resolution of exact states: four times the steps of [`Resolution::FINE`], so that errors of order 8 are 65,536 times smaller.
 pub const EXACT: Resolution = Resolution::FINE.doubled().doubled();
 
-/// The cells of a scene that have a state.
+/// Task of a benchmark: the cells of a scene that have a state.
 pub struct Task {
     pub effects: Effects,
     pub rods: Vec<Rod>,
@@ -31,15 +31,15 @@ fn key(rod: u32, pole: DVec2) -> (u32, [u64; 2]) {
     (rod, pole.to_array().map(f64::to_bits))
 }
 
-/// Work of a row.
+/// Work of an engine in one measurement.
 pub struct Work {
     /// Number of trajectories that the engine integrated.
     pub trajectories: f64,
-    /// Number of floating-point operations.
+    /// Number of floating-point operations of the engine's trajectories.
     pub operations: f64,
 }
 
-/// Returns `(tau, load)` of every hit.
+/// Returns `(tau, load)` of every hit: `[hit]`.
 pub fn places(hits: &[Hit]) -> Vec<(f64, f64)> {
     hits.iter().map(|hit| (hit.tau, hit.load)).collect()
 }
@@ -61,7 +61,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Returns the spread of `values`; NaN counts as the worst.
+    /// Returns the distribution of the errors `values`; NaN counts as the largest.
     pub fn of(mut values: Vec<f64>) -> Self {
         for value in &mut values {
             if value.is_nan() {
@@ -80,21 +80,21 @@ impl Spread {
     }
 }
 
-/// Errors of states.
+/// Errors of the states that an engine found.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Errors {
-    /// Number of states.
+    /// Number of states with errors.
     pub states: usize,
-    /// Distance of the state's pole from the wanted one, as seen from the base, in degrees.
+    /// Angular distance of the state's pole from its target, as seen from the base, in degrees.
     pub angle_deg: Spread,
     /// Error of the contact's arclength, in whisker lengths. Near the fold it is the square root of the angle's.
     pub arc_length: Spread,
-    /// Error of the force, relative to the force plus the one of `q = 1`.
+    /// Error of the force, dimensionless: over the sum of the force and the force of a load with `q = 1`.
     pub force: Spread,
 }
 
 impl Task {
-    /// The states of every cell of `scene` that has one.
+    /// Creates the task of a scene: the states of every cell that has one.
     pub fn new(scene: &Scene) -> Self {
         let sides = whisker_sides(scene);
         let rod = |(own, side): &(SweptWhisker, Side)| own.rod(*side);
@@ -142,12 +142,12 @@ impl Task {
         }
     }
 
-    /// Index of the target of a rod with this pole.
+    /// Returns the index of the target of a rod with this pole; `None` without one.
     pub fn target(&self, rod: u32, pole: DVec2) -> Option<usize> {
         self.by_pole.get(&key(rod, pole)).copied()
     }
 
-    /// The task with some of the targets alone.
+    /// Returns the task with some of the targets alone.
     pub fn only(&self, targets: &[usize]) -> Self {
         Self {
             effects: self.effects,
@@ -158,7 +158,7 @@ impl Task {
         }
     }
 
-    /// Returns the `points`, `(tau, load)` of every target, as initial conditions.
+    /// Returns the `points`, `(tau, load)` of every target, as initial conditions: `[target]`.
     pub fn conditions(&self, points: &[(f64, f64)]) -> Vec<InitialCondition<'_>> {
         let pairs = self.targets.iter().zip(points);
         pairs

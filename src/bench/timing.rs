@@ -1,4 +1,4 @@
-//! Times of repeated runs.
+//! Timings: wall times of repeated runs.
 
 use serde::Serialize;
 use std::time::Instant;
@@ -6,7 +6,7 @@ use std::time::Instant;
 /// Largest [`Timing::spread`] of a timing that is not noisy.
 pub const NOISY: f64 = 0.2;
 
-/// Times of several runs, in seconds.
+/// Timing: wall times of several runs, in seconds.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Timing {
     /// Median time of the runs, in seconds.
@@ -15,9 +15,9 @@ pub struct Timing {
     pub fastest: f64,
     /// Time of the slowest run, in seconds.
     pub slowest: f64,
-    /// Difference of the slowest and the fastest run, over the median.
+    /// Spread of the timing, dimensionless: difference of the slowest and the fastest run, over the median.
     pub spread: f64,
-    /// Whether the spread is above [`NOISY`].
+    /// True if the spread of the timing is above [`NOISY`].
     pub is_noisy: bool,
 }
 

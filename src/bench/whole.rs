@@ -1,4 +1,4 @@
-//! Times of whole maps by engine and stage, and a verdict on the faster engine.
+//! Measurements of whole maps by engine and stage, and a verdict on the faster engine.
 
 use super::gpu::{Candidate, candidates};
 use super::timing::{Timing, median};
@@ -16,21 +16,22 @@ use std::fmt;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
-/// A whole map by one engine, packed but not written.
+/// Measurement of a whole map by one engine, packed but not written.
 #[derive(Clone, Debug, Serialize)]
 pub struct WholeMap {
-    /// Name of the engine, with its threads for the CPU engine.
+    /// Name of the map's engine, with the number of threads for the CPU engine.
     pub engine: String,
-    /// Seconds from the plan to the last panel packed.
+    /// Times from the plan to the last panel packed, in seconds.
     pub seconds: Timing,
-    /// Wall milliseconds by stage, medians of the runs: `sheets`, `base_points`, `expansions`, `guesses`, `refinement` and `classification`
-    /// in sequence; beside them `packing`, `device` (the busy engine) and `waiting` for it.
+    /// Wall milliseconds of the map by stage, medians of the runs: `sheets`, `base_points`, `expansions`, `guesses`, `refinement` and
+    /// `classification` in sequence. Beside them are `packing`, `device` (the busy engine) and `waiting` for it.
     pub stages_ms: StageTimes,
-    /// CPU microseconds of the process per cell; 0 where the system has no such clock. A software adapter's threads are included.
+    /// CPU time of the process for one cell, in microseconds; 0 where the system has no such clock. A software adapter's threads are
+    /// included.
     pub host_us_per_cell: f64,
-    /// Stage times of guesses and refinement over the sum of all stage times, from 0 to 1: the part that an engine can take over.
+    /// Part of the run that an engine can take over, from 0 to 1: stage times of guesses and refinement over the sum of all stage times.
     pub device_can_take: f64,
-    /// Cells that fell back to the CPU.
+    /// Number of cells of the map that fell back to the CPU.
     pub fallback: u64,
 }
 
@@ -39,13 +40,13 @@ pub struct WholeMap {
 pub struct Verdict {
     /// Name of the faster one of the CPU engine and the fastest GPU engine.
     pub faster: String,
-    /// Name of the slower one of the two.
+    /// Name of the slower one of the CPU engine and the fastest GPU engine.
     pub slower: String,
-    /// The medians' ratio, at least 1.
+    /// Ratio of the median times of the slower and the faster engine, at least 1.
     pub times: f64,
-    /// Whether a run of the slower one was as fast as a run of the faster one.
+    /// True if a run of the slower engine was as fast as a run of the faster one.
     pub within_spread: bool,
-    /// Whether the timing of either is noisy.
+    /// True if the timing of either engine is noisy.
     pub is_noisy: bool,
 }
 
@@ -73,7 +74,7 @@ impl fmt::Display for Verdict {
 }
 
 impl Verdict {
-    /// Compares the CPU engine, which is first, with the fastest of the others.
+    /// Returns the verdict on whole maps: compares the CPU engine, which is first, with the fastest of the others; `None` without others.
     pub fn of(maps: &[WholeMap]) -> Option<Self> {
         let (cpu, gpus) = maps.split_first()?;
         let by_time = |a: &&WholeMap, b: &&WholeMap| a.seconds.median.total_cmp(&b.seconds.median);
@@ -100,7 +101,8 @@ struct MapRun {
     fallback: u64,
 }
 
-/// Adds maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is one for all.
+/// Adds measurements of maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is
+/// one for all.
 pub fn measure(
     scene: &Scene,
     runs: usize,

@@ -20,8 +20,8 @@ pub struct ContactHistory {
 }
 
 impl ContactHistory {
-    /// Sliding histories of rows that begin at first touch, one per row; `None` where the continuation fails. All rows have one method,
-    /// and their trajectories share batches.
+    /// Computes the sliding histories of rows that begin at first touch, `[row]`; `None` where the continuation fails. All rows have one
+    /// method, and their trajectories share batches.
     #[must_use]
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
         let tips = SlidingLimit::of(levels);
@@ -70,7 +70,7 @@ impl ContactHistory {
         }
     }
 
-    /// Sliding direction of the contact at `push`, a magnitude in radians.
+    /// Returns the sliding direction of the contact at `push`, a magnitude in radians.
     #[must_use]
     pub fn sliding(&self, push: f64) -> Sliding {
         let Some(base) = &self.base else {

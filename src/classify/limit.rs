@@ -9,8 +9,8 @@ use crate::sheet::{Continuation, LevelCurve, NODE_MISS, continuations};
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition};
 
-/// Slid distance of one row's contact by push, from first touch to the end of its stable states: the arclength of the contact minus
-/// the distance rolled around the pole, in whisker lengths.
+/// Slid distance of one row's contact by push angle, from first touch to the end of its stable states. It is the arclength of the contact
+/// minus the distance rolled around the pole, in whisker lengths.
 #[derive(Clone, Debug)]
 pub struct SlidingLimit(Vec<LimitSegment>);
 
@@ -26,8 +26,8 @@ struct SlidingKnot {
 }
 
 impl SlidingLimit {
-    /// Limits of `levels`, one each; `None` where the continuation fails. All levels have one method, and their trajectories share
-    /// batches.
+    /// Computes the sliding limits of `levels`, `[level]`; `None` where the continuation fails. All levels have one method, and their
+    /// trajectories share batches.
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
         let starts = levels.iter().map(|level| Some((level, level.touch()?)));
         let continued = continuations(&starts.collect::<Vec<_>>(), false, NODE_MISS);
@@ -72,7 +72,7 @@ impl SlidingLimit {
             .collect()
     }
 
-    /// Push angles of the knots, then push angles between them at which the limit reverses, in radians.
+    /// Returns the push angles, in radians, of the limit's knots, then those between them at which the limit reverses.
     pub fn pushes(&self) -> impl Iterator<Item = f64> {
         let knots = self.0.first().map(|first| first.from);
         let knots = knots.into_iter().chain(self.0.iter().map(|to| to.to));
@@ -80,12 +80,12 @@ impl SlidingLimit {
         knots.chain(reversals.flatten())
     }
 
-    /// Returns true if the limit moves toward the base anywhere.
+    /// Returns true if the sliding limit moves toward the base anywhere.
     pub fn falls(&self) -> bool {
         self.0.iter().any(LimitSegment::falls)
     }
 
-    /// Slid distance at `push`, in whisker lengths; `None` beyond the end.
+    /// Returns the slid distance at the push angle `push` (radians), in whisker lengths; `None` beyond the end.
     pub fn slid(&self, push: f64) -> Option<f64> {
         let at = self.0.partition_point(|segment| segment.to <= push);
         let segment = self.0.get(at).or(self.0.last())?;
@@ -93,14 +93,14 @@ impl SlidingLimit {
     }
 }
 
-/// Polynomial of the slid distance between two knots. Its variable `x` grows from 0 to 1. It is the fraction of the interval or, if the
-/// second knot is a fold, 1 minus the square root of the fraction that is left.
+/// Polynomial of the slid distance between two knots. Its variable `x` grows from 0 to 1. It is the fraction of the interval. If the
+/// second knot is a fold, it is 1 minus the square root of the fraction that is left.
 #[derive(Clone, Debug)]
 struct LimitSegment {
     /// Push angles of the knots, in radians.
     from: f64,
     to: f64,
-    /// Whether the second knot is a fold.
+    /// True if the second knot is a fold.
     is_to_fold: bool,
     /// Slid distance, with a value and a slope at each knot.
     cubic: Polynomial<4>,

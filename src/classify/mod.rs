@@ -23,16 +23,16 @@ macro_rules! named {
         pub enum $kind { $($(#[$inner])* $variant = $code,)* }
 
         impl $kind {
-            /// All variants, in the order of their codes.
+            /// All regimes or statuses, in the order of their codes.
             pub const ALL: [Self; [$($code),*].len()] = [$(Self::$variant),*];
 
-            /// Code of the variant in files.
+            /// Returns the code of the regime or status in files.
             #[must_use]
             pub const fn code(self) -> u32 {
                 self as u32
             }
 
-            /// Name of the variant in files and messages.
+            /// Returns the name of the regime or status in files and messages.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name),* }
@@ -42,7 +42,8 @@ macro_rules! named {
 }
 
 named! {
-    /// State or loss of contact of a whisker at one push angle and distance. The discriminants are the codes of the stored map.
+    /// Regime of a cell: state or loss of contact of a whisker at one push angle and distance. The discriminants are the codes of the
+    /// stored map.
     pub enum Regime {
         /// The resting whisker does not touch the pole at this distance, and no stable state exists.
         OutOfReach = 0, "out of reach";
@@ -60,15 +61,15 @@ named! {
 }
 
 named! {
-    /// How a cell was solved, or why it was not. The discriminants are the codes of the stored map.
+    /// Status of a cell: how it was solved, or why it was not. The discriminants are the codes of the stored map.
     pub enum Status {
-        /// A state was found on the stable sheet.
+        /// A state of the cell was found on the stable sheet.
         Solved = 0, "state found";
         /// The lattice has no solution near the cell, so no trajectory was computed.
         Outside = 1, "outside the sheet";
-        /// The fold at this distance lies before the push angle.
+        /// The cell has no state: the fold at this distance lies before the push angle.
         BeyondFold = 2, "beyond the fold";
-        /// The state found lies beyond the tip.
+        /// The state found for the cell lies beyond the tip.
         BeyondTip = 3, "beyond the tip";
         /// A state was found, but its contact slides toward the base, against the assumed friction. Regime and margin hold;
         /// force and moment do not.
@@ -76,11 +77,11 @@ named! {
         /// A state was found, but its contact sticks after sliding toward the base, with less friction than a sliding one.
         /// Regime and margin hold; contact, force and moment do not: they depend on the history of the push.
         Sticking = 5, "state found, but it sticks where it was dragged before, with less friction than assumed";
-        /// Newton's method failed, and the fold did not decide.
+        /// Newton's method failed for the cell, and the fold did not decide.
         NotConverged = 101, "unresolved: Newton's method did not converge";
         /// The cell and the boundary of its row contradict each other.
         Disagreement = 102, "unresolved: cell and boundary disagree";
-        /// The boundary of the row was not found, or only in part.
+        /// The boundary of the cell's row was not found, or only in part.
         NoBoundary = 103, "unresolved: boundary not found";
     }
 }

@@ -3,48 +3,49 @@
 use super::{Regime, Status};
 use crate::sheet::{Crossing, Edge};
 
-/// Push angles closer to a boundary than this, in radians, count as on it. Both verdicts are correct there.
+/// Tie: largest distance of a push angle from a boundary, in radians, at which the angle counts as on it. Both verdicts are correct
+/// there.
 pub const TIE: f64 = 1e-10;
 
-/// Interval of push angles (magnitudes, in radians) on the stable sheet, at one distance.
+/// Push span: interval of push angles (magnitudes, in radians) on the stable sheet, at one distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushSpan {
-    /// Smallest push angle, in radians.
+    /// Smallest push angle of the span, in radians.
     pub from: f64,
-    /// Largest push angle, in radians, at which the whisker detaches.
+    /// Largest push angle of the span, in radians, at which the whisker detaches.
     pub to: f64,
-    /// Edge of the sheet at `to`.
+    /// Edge of the sheet at which the push span ends.
     pub edge: Edge,
 }
 
 impl PushSpan {
-    /// Returns true if `push`, a magnitude in radians, lies in the interval or within [`TIE`] of one of its ends.
+    /// Returns true if `push`, a magnitude in radians, lies in the span or within [`TIE`] of one of its ends.
     #[must_use]
     pub fn contains(&self, push: f64) -> bool {
         self.from - TIE <= push && push <= self.to + TIE
     }
 
-    /// Distance from `push`, a magnitude in radians, to the detachment, in degrees; 0 beyond it.
+    /// Returns the distance from `push`, a magnitude in radians, to the detachment, in degrees; 0 beyond it.
     #[must_use]
     pub fn margin_deg(&self, push: f64) -> f32 {
         (self.to - push).max(0.0).to_degrees() as f32
     }
 }
 
-/// Push angles of one row that lie on the stable sheet.
+/// Boundary of one row: the push angles that lie on the stable sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowBoundary {
-    /// Whether the whisker at rest reaches the pole. The first span then begins at first touch.
+    /// True if the whisker at rest reaches the pole. The first span then begins at first touch.
     touches: bool,
     /// Spans, first the one from first touch, if any; `None` if the crossings contradict each other.
     spans: Option<Vec<PushSpan>>,
-    /// Whether `spans` holds all spans of the row.
+    /// True if `spans` holds all spans of the row.
     is_complete: bool,
 }
 
 impl RowBoundary {
-    /// Boundary from the `crossings` of a row: first the end of a push from first touch, then the others by push angle. A last
-    /// [unknown](Crossing::unknown) crossing means that there may be more.
+    /// Creates the boundary from the `crossings` of a row: first the end of a push from first touch, then the others by push angle. A
+    /// last [unknown](Crossing::unknown) crossing means that there may be more.
     #[must_use]
     pub fn new(touches: bool, crossings: &[Crossing]) -> Self {
         let (crossings, is_complete) = match crossings {
@@ -71,13 +72,13 @@ impl RowBoundary {
         }
     }
 
-    /// Span that contains the push angle `push`, a magnitude in radians; `None` if there is none.
+    /// Returns the push span that contains the push angle `push`, a magnitude in radians; `None` without one.
     #[must_use]
     pub fn span(&self, push: f64) -> Option<&PushSpan> {
         self.spans().iter().find(|span| span.contains(push))
     }
 
-    /// Spans of the row, first the one from first touch, if any; empty if the boundary is unknown.
+    /// Returns the push spans of the row, first the one from first touch, if any, `[span]`; empty if the boundary is unknown.
     #[must_use]
     pub fn spans(&self) -> &[PushSpan] {
         self.spans.as_deref().unwrap_or_default()
@@ -98,14 +99,15 @@ impl RowBoundary {
         (push < span.from + TIE && !from_touch) || push > span.to - TIE
     }
 
-    /// Span of a push from first touch to detachment; `None` if the boundary is unknown or the whisker does not touch the pole.
+    /// Returns the span of a push from first touch to detachment; `None` if the boundary is unknown or the whisker does not touch the
+    /// pole.
     #[must_use]
     pub fn detachment(&self) -> Option<&PushSpan> {
         self.spans.as_ref().filter(|_| self.touches)?.first()
     }
 
-    /// Regime and final status of the cell at `push`, a magnitude in radians, that was solved with `status`. The final status is unresolved
-    /// if cell and boundary contradict each other.
+    /// Returns regime and final status of the cell at `push`, a magnitude in radians, that was solved with `status`. The final status is
+    /// unresolved if cell and boundary contradict each other.
     #[must_use]
     pub fn classify(&self, push: f64, status: Status) -> (Regime, Status) {
         if self.spans.is_none() {

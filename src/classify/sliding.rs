@@ -14,16 +14,16 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sliding {
-    /// Toward the tip, as the friction of computed states assumes.
+    /// The contact slides toward the tip, as the friction of computed states assumes.
     Tip,
-    /// Toward the base, with the opposite friction.
+    /// The contact slides toward the base, with the opposite friction.
     Base,
-    /// No sliding: the contact sticks where its last sliding ended, with less than the limiting friction.
+    /// The contact sticks where its last sliding ended, with less than the limiting friction.
     Sticks,
 }
 
 impl Sliding {
-    /// Sliding direction in the state of `rod` with its contact at `tau`, if the contact slides; `None` without friction.
+    /// Returns the sliding direction of the contact at `tau` in the state of `rod`, if it slides; `None` without friction.
     #[must_use]
     pub fn of(variation: &FirstVariation, rod: &Rod, tau: f64) -> Option<Self> {
         // The sign of the side is that of the friction coefficient and of the change of the pole's direction.
@@ -31,7 +31,8 @@ impl Sliding {
         (rod.friction != 0.0).then_some(if rate < 0.0 { Self::Base } else { Self::Tip })
     }
 
-    /// Sliding directions at `points` `(tau, load)` of `rod`, with one trajectory each; `None` without friction.
+    /// Returns the sliding directions of the contact at `points` `(tau, load)` of `rod`, `[point]`, with one trajectory each; `None`
+    /// without friction.
     #[must_use]
     pub fn at(method: Method, rod: &Rod, points: &[DVec2]) -> Vec<Option<Self>> {
         if rod.friction == 0.0 {
@@ -44,12 +45,12 @@ impl Sliding {
     }
 }
 
-/// Sliding rate of the contact: derivative of the slid distance, in whisker lengths, by the direction `phi` of the pole, times
-/// `det J`. The rate is finite at the fold.
+/// Returns the sliding rate of the contact: derivative of the slid distance, in whisker lengths, by the direction `phi` of the pole,
+/// times `det J`. The rate is finite at the fold.
 ///
-/// The contact moves along the whisker by `ds` and along the pole's rim by `-pole dpsi`, where `psi` is the angle of the whisker's
-/// tangent at the contact in the frame of the pole. The difference is sliding; the rest is rolling. Along `D = const`,
-/// with `J` the Jacobian of `(ln D, phi)`, `det J d(tau, load)/dphi = (-dlnD/dload, dlnD/dtau)`.
+/// The contact moves along the whisker by `ds` and along the pole's rim by `-pole dpsi`. Here, `psi` is the angle of the whisker's
+/// tangent at the contact in the frame of the pole. The difference is sliding; the rest is rolling. Along `D = const`, with `J` the
+/// Jacobian of `(ln D, phi)`, `det J d(tau, load)/dphi = (-dlnD/dload, dlnD/dtau)`.
 pub(super) fn rate(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
     let map = &variation.full.map;
     let along = DVec2::new(-map.by_load.x, map.by_tau.x);
@@ -59,7 +60,7 @@ pub(super) fn rate(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
     rod.radius(tau) * along.x + rod.pole * turned
 }
 
-/// Slid distance of the contact at `node`: its arclength minus the distance rolled around the pole, in whisker lengths.
+/// Returns the slid distance of the contact at `node`: its arclength minus the distance rolled around the pole, in whisker lengths.
 pub(super) fn slid(rod: &Rod, node: &CurveNode) -> f64 {
     rod.pole
         .mul_add(node.angle - node.push, arclength(rod, node.point.x))

@@ -1,4 +1,4 @@
-//! `whiskmap branch`.
+//! Command `whiskmap branch`.
 
 use super::arguments::{column_help, whole};
 use super::failure::Failure;

@@ -1,4 +1,4 @@
-//! `whiskmap curve`.
+//! Command `whiskmap curve`.
 
 use super::arguments::column_help;
 use super::data;

@@ -1,4 +1,4 @@
-//! `--data`: measured detachments, and messages about them.
+//! Option `--data`: measured detachments, and messages about them.
 
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
@@ -15,7 +15,7 @@ pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads the points of the input `path`. Prints unused columns, and the number of points whose angle has the other side's sign.
+/// Reads measured points from the input `path`. Prints unused columns, and the number of points whose angle has the other side's sign.
 pub fn read(files: &mut Files, path: &Path) -> Result<MeasuredPoints, Failure> {
     let points = MeasuredPoints::read(path)?;
     files.input(path);
@@ -36,7 +36,7 @@ pub fn read(files: &mut Files, path: &Path) -> Result<MeasuredPoints, Failure> {
     Ok(points)
 }
 
-/// Prints the points that are left out because their side never detaches by theory.
+/// Prints the measured points that are left out because their side never detaches by theory.
 pub fn name_left_out(points: &MeasuredPoints, comparison: &Comparison) {
     for row in comparison.left_out() {
         message(&format!(

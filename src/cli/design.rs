@@ -1,4 +1,4 @@
-//! `whiskmap design`.
+//! Command `whiskmap design`.
 
 use super::arguments::{angle, parameter, side};
 use super::failure::Failure;

@@ -1,4 +1,4 @@
-//! `whiskmap devices`.
+//! Command `whiskmap devices`.
 
 use super::engine::chosen;
 use super::failure::Failure;

@@ -1,4 +1,4 @@
-//! Selection of the engine.
+//! Selection of the engine of a map by options.
 
 use super::estimate::{compare, estimate};
 use super::failure::{Failure, message};
@@ -34,7 +34,7 @@ pub struct EngineArgs {
     adapter: Option<String>,
 }
 
-/// Engine that solves cells, `None` for the CPU alone, and the reason for the choice in one line.
+/// Open engine that solves cells, `None` for the CPU alone, and the reason for the choice in one line.
 pub type OpenEngine = (Option<Box<dyn Engine>>, String);
 
 /// Seconds for samples that show whether a GPU is worth opening.
@@ -166,7 +166,7 @@ impl EngineArgs {
     }
 }
 
-/// Returns the bound on push angles in degrees for an engine with this `goal`, at the nearest distance.
+/// Returns the bound on push-angle errors in degrees for an engine with the residual bound `goal`, at the nearest distance.
 pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
     let distances = scene.grid.distance_mm.iter();
     let nearest = distances.copied().fold(f64::INFINITY, f64::min);

@@ -15,14 +15,14 @@ use whiskmap::store::{MapWriter, ZarrStore};
 pub struct MapCost {
     /// Elapsed seconds of the map with all threads at work, scaled from samples.
     pub seconds: f64,
-    /// Newton steps per cell, each one trajectory.
+    /// Newton steps per cell of the map, each one trajectory.
     pub steps_per_cell: f64,
 }
 
 /// Estimated cost of the files of a map.
 pub struct FileCost {
     pub format: MapFormat,
-    /// Bytes on disk.
+    /// Size of the files on disk, in bytes.
     pub bytes: f64,
     /// Elapsed seconds to pack the files with all threads at work, scaled from samples.
     pub seconds: f64,
@@ -56,7 +56,7 @@ impl MapFormat {
 /// Approximate number of cells of the packed sample. It has many lines, because denser cells pack better.
 const PACKED_CELLS: usize = 1 << 18;
 
-/// Estimates the cost of the files of `plan` in these `formats`, from a packed sample.
+/// Estimates the cost of the files of `plan` in these `formats`, from a packed sample, `[format]`.
 pub fn files(scene: &Scene, plan: &Plan, formats: &[MapFormat]) -> Result<Vec<FileCost>, Failure> {
     let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);

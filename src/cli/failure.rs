@@ -13,7 +13,7 @@ use whiskmap::scene::SceneError;
 use whiskmap::store;
 use whiskmap::trace::NoState;
 
-/// Failure of a command.
+/// Failure of a command, with its message and exit code.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     #[error("{0}")]
@@ -22,7 +22,7 @@ pub enum Failure {
     Points(#[from] CsvError),
     #[error(transparent)]
     Fit(#[from] fit::FitError),
-    /// The best values are not a fit; the text names the output that is therefore not written.
+    /// The best values of a fit are not a fit; the text names the output that is therefore not written.
     #[error("{0}{1}")]
     NotAFit(fit::NotAFit, String),
     #[error(transparent)]
@@ -40,14 +40,14 @@ pub enum Failure {
     Encode(#[from] EncodeError),
     #[error(transparent)]
     State(NoState),
-    /// Every result is unresolved.
+    /// Every result of the command is unresolved.
     #[error("all {all} {what} are unresolved: see {see}")]
     Unresolved {
         all: u64,
         what: &'static str,
         see: &'static str,
     },
-    /// `design` found no value.
+    /// The command `design` found no value.
     #[error("{0}")]
     NoValue(String),
     /// A store has missing or damaged files.
@@ -60,7 +60,7 @@ pub enum Failure {
         damaged: usize,
         metadata: usize,
     },
-    /// Checks of `verify` fail.
+    /// Checks of the command `verify` fail.
     #[error("{failed} of {all} checks fail")]
     Checks { failed: usize, all: usize },
     #[error("cannot write {}: {cause}", path.display())]
@@ -95,7 +95,7 @@ impl Failure {
         }
     }
 
-    /// Prints the message and returns the exit code.
+    /// Prints the message of the failure and returns the exit code.
     pub fn report(&self) -> ExitCode {
         match self {
             // A reader that stops early, like `head`, is not a failure.
@@ -112,7 +112,7 @@ pub fn message(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
-/// Warns if some of `all` results are unresolved; `see` names the place that marks them.
+/// Warns if some of `all` results are unresolved; `see` names the output that marks them.
 ///
 /// # Errors
 /// If all of them are unresolved.

@@ -21,7 +21,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Creates an empty list; `temporary` has the files of outputs until they are finished.
+    /// Creates an empty list of inputs and outputs; `temporary` has the files of outputs until they are finished.
     pub const fn new(temporary: TemporaryFiles) -> Self {
         Self {
             temporary,
@@ -30,7 +30,7 @@ impl Files {
         }
     }
 
-    /// Temporary files of the outputs.
+    /// Returns the temporary files of the outputs.
     pub const fn temporary(&self) -> &TemporaryFiles {
         &self.temporary
     }
@@ -55,7 +55,7 @@ impl Files {
         self.inputs.extend(id.map(|id| (path.to_owned(), id)));
     }
 
-    /// Opens the output of `option`.
+    /// Opens the output file of the command-line option `option`.
     ///
     /// # Errors
     /// If the output is an input, is inside one, is another output, or cannot be written.
@@ -154,14 +154,14 @@ fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error)
     move |error| Failure::Input(format!("{option} {}: {error}; {advice}", path.display()))
 }
 
-/// Open output of a command, and its path.
+/// Open output file of a command, and its path.
 pub struct OutputFile {
     pub output: Output,
     pub path: PathBuf,
 }
 
 impl OutputFile {
-    /// Writes `bytes` as the whole file. Returns the path of a regular file.
+    /// Writes `bytes` as the whole output file. Returns the path of a regular file.
     pub fn write(mut self, bytes: &[u8]) -> Result<Option<PathBuf>, Failure> {
         let is_regular = self.output.is_regular();
         let written = self.output.write_all(bytes);
@@ -171,7 +171,7 @@ impl OutputFile {
         Ok(Some(self.path).filter(|_| is_regular))
     }
 
-    /// Begins a table.
+    /// Begins a CSV table in the output file.
     pub fn table(self) -> OutputTable {
         OutputTable {
             is_regular: self.output.is_regular(),
@@ -181,7 +181,7 @@ impl OutputFile {
     }
 }
 
-/// Open table of a command.
+/// Open CSV table of a command's output.
 pub struct OutputTable {
     table: TableFile,
     path: PathBuf,
@@ -197,12 +197,12 @@ impl OutputTable {
         self.table.rows(rows).map_err(unwritten(&self.path))
     }
 
-    /// Appends the rows that `write` makes.
+    /// Appends to the CSV table the rows that `write` makes.
     pub fn write(&mut self, write: &TableRows) -> Result<(), Failure> {
         write(&mut self.table).map_err(unwritten(&self.path))
     }
 
-    /// Finishes the table. Returns the path of a regular file.
+    /// Finishes the CSV table. Returns the path of a regular file.
     pub fn finish(self) -> Result<Option<PathBuf>, Failure> {
         self.table.finish().map_err(unwritten(&self.path))?;
         Ok(Some(self.path).filter(|_| self.is_regular))

@@ -1,4 +1,4 @@
-//! `whiskmap fit`.
+//! Command `whiskmap fit`.
 
 use super::arguments::parameter;
 use super::data;

@@ -1,4 +1,4 @@
-//! `whiskmap map`.
+//! Command `whiskmap map`.
 
 use super::arguments::whole;
 use super::disk;
@@ -134,7 +134,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
 }
 
 impl MapArgs {
-    /// Text that an interrupt adds to its message.
+    /// Returns the text that an interrupt adds to its message.
     pub fn advice(&self) -> &'static str {
         match self.format {
             MapFormat::Exr => "",

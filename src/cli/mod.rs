@@ -106,7 +106,7 @@ enum Command {
     Devices,
 }
 
-/// Parses the arguments, runs the command and returns the exit code.
+/// Parses the arguments of the command line, runs the command and returns the exit code.
 pub fn main() -> ExitCode {
     let result = match Arguments::try_parse() {
         Ok(arguments) => stdout::check()

@@ -1,4 +1,4 @@
-//! `--csv` and `--plot`, and saving of pictures.
+//! Options `--csv` and `--plot`, and saving of pictures.
 
 use super::failure::{Failure, message};
 use super::files::{Files, OutputFile, OutputTable, STDOUT};
@@ -18,7 +18,7 @@ pub struct OutputArgs {
     plot: Option<PathBuf>,
 }
 
-/// Open table and plot of a run.
+/// Open CSV table and plot of a command.
 pub struct OpenOutputs {
     table: Option<OutputTable>,
     plot: Option<PictureFile>,
@@ -29,7 +29,7 @@ impl OutputArgs {
         self.plot.is_some()
     }
 
-    /// Opens the table and the plot, before any work.
+    /// Opens the CSV table and the plot, before any work.
     pub fn open(&self, files: &mut Files) -> Result<OpenOutputs, Failure> {
         let stdout = self.plot.is_none().then(|| Path::new(STDOUT));
         let csv = self.csv.as_deref().or(stdout);
@@ -40,12 +40,12 @@ impl OutputArgs {
 }
 
 impl OpenOutputs {
-    /// Appends rows to the table, if there is one.
+    /// Appends rows to the CSV table, if there is one.
     pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), Failure> {
         self.table.as_mut().map_or(Ok(()), |table| table.rows(rows))
     }
 
-    /// Finishes the table, draws the plot below its title, and prints the names of regular files.
+    /// Finishes the CSV table, draws the plot below its title, and prints the names of regular files.
     pub fn finish(self, title: String, plot: impl FnOnce() -> Plot) -> Result<(), Failure> {
         let table = self.table.map(OutputTable::finish).transpose()?;
         let plot = self.plot.map(|file| file.plot(title, plot())).transpose()?;
@@ -57,19 +57,19 @@ impl OpenOutputs {
     }
 }
 
-/// Open output for a picture.
+/// Open output file for a picture.
 pub struct PictureFile {
     pub file: OutputFile,
     pub format: PictureFormat,
 }
 
 impl PictureFile {
-    /// Draws one plot below its title. Returns the path of a regular file.
+    /// Draws one plot below its title into the file. Returns the path of a regular file.
     pub fn plot(self, title: String, plot: Plot) -> Result<Option<PathBuf>, Failure> {
         self.write(&Chart::single(title, plot).picture())
     }
 
-    /// Writes the picture; warns if a PNG lacks characters. Returns the path of a regular file.
+    /// Writes the picture into the file; warns if a PNG lacks characters. Returns the path of a regular file.
     pub fn write(self, picture: &Picture) -> Result<Option<PathBuf>, Failure> {
         let missing: String = picture.missing_glyphs().into_iter().collect();
         if self.format == PictureFormat::Png && !missing.is_empty() {

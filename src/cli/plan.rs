@@ -1,4 +1,4 @@
-//! `whiskmap plan`.
+//! Command `whiskmap plan`.
 
 use super::estimate::{FileCost, MapCost, MapFormat, estimate, files};
 use super::failure::Failure;

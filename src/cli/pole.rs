@@ -1,4 +1,4 @@
-//! One whisker, and the position of the pole.
+//! Arguments of commands for one whisker: the scene and the distance of the pole.
 
 use super::arguments::length;
 use super::failure::Failure;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::scene::{Scene, Whisker, digits};
 use whiskmap::trace::NoState;
 
-/// Returns an error if the scene has several whiskers, for `command`.
+/// Returns an error if the scene of `command` has several whiskers.
 pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
     let whiskers = scene.whisker_count();
     if whiskers == 1 {
@@ -48,7 +48,7 @@ pub struct PolesArgs {
     pub distance: Vec<f64>,
 }
 
-/// Reads the scene and its only whisker for `command`, with poles at these distances.
+/// Reads the scene of `command` and its only whisker, with poles at these distances.
 pub fn read(
     files: &mut Files,
     path: &Path,
@@ -73,7 +73,7 @@ pub fn read(
     Ok((scene, whisker))
 }
 
-/// Title of a chart of the scene, with poles at these distances.
+/// Returns the title of a chart of the scene, with poles at these distances.
 pub fn title(scene: &Scene, distances_mm: &[f64]) -> String {
     let distances: Vec<String> = distances_mm.iter().map(f64::to_string).collect();
     format!("{}, touched at {} mm", scene.title, distances.join(", "))

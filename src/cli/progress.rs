@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Progress of a count of things, such as cells; any number of threads may advance it.
+/// Progress of a count of things, such as cells, on standard error; any number of threads may advance it.
 pub struct Progress {
     bar: ProgressBar,
     lines: Mutex<ProgressLines>,

@@ -1,4 +1,4 @@
-//! `whiskmap render`.
+//! Command `whiskmap render`.
 
 use super::arguments::whole;
 use super::failure::Failure;

@@ -1,4 +1,4 @@
-//! `whiskmap reproduce`.
+//! Command `whiskmap reproduce`.
 
 use super::data;
 use super::failure::Failure;

@@ -1,4 +1,4 @@
-//! `--at` and `--channel`: the selected part of a map or a store.
+//! Options `--at` and `--channel`: the selected part of a map or a store.
 
 use super::failure::{Failure, message};
 use super::files::Files;
@@ -21,7 +21,7 @@ pub struct SelectionArgs {
 }
 
 impl SelectionArgs {
-    /// Opens the selected part of the input `source`, and prints the selected values.
+    /// Opens the selected part of the input `source`, a map or a store, and prints the selected values.
     pub fn open(&self, files: &mut Files, source: &Path) -> Result<MapSlice, Failure> {
         let stored = MapSource::open(source)?;
         files.input(source);
@@ -41,7 +41,7 @@ impl SelectionArgs {
     }
 }
 
-/// Returns `channels` of the slice of `source`, with friction also `status`; warns if the slice has no `status`.
+/// Returns the names of `channels` of the slice of `source`, with friction also `status`; warns if the slice has no `status`.
 pub fn with_marks(
     source: &Path,
     slice: &MapSlice,
@@ -61,7 +61,7 @@ pub fn with_marks(
     Ok(marked.names().filter(|name| known.contains(name)).collect())
 }
 
-/// Returns the `wanted` channels, or all if there are none.
+/// Returns the names of the `wanted` channels, or of all if there are none.
 pub fn channels(slice: &MapSlice, wanted: &[String]) -> Result<Vec<&'static str>, Failure> {
     let known = slice.channels();
     if let Some(name) = wanted.iter().find(|name| !known.contains(&name.as_str())) {

@@ -1,4 +1,4 @@
-//! `whiskmap shape`.
+//! Command `whiskmap shape`.
 
 use super::arguments::{angle, column_help, side, whole};
 use super::failure::{Failure, message};
@@ -36,7 +36,7 @@ pub struct ShapeArgs {
     /// Side of the whisker that the pole is on [default: by the sign of the push angle]
     #[arg(long, value_parser = side())]
     side: Option<Side>,
-    /// Which of the two states below the fold
+    /// State below the fold: stable or unstable
     #[arg(long, value_enum, default_value = "stable")]
     branch: BranchPart,
     /// Number of points along the whisker, besides the contact

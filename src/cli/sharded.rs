@@ -1,4 +1,4 @@
-//! `whiskmap map --format zarr`: computation of some blocks of a store.
+//! Command `whiskmap map --format zarr`: computation of some blocks of a store.
 
 use super::disk;
 use super::engine::OpenEngine;
@@ -16,7 +16,7 @@ use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 use whiskmap::store::{BlockState, CheckDepth, MapDescription, PackedPanel, ZarrStore};
 
-/// Blocks of one of `count` processes: every `count`-th block.
+/// Shard of a store: the blocks of one of `count` processes, every `count`-th block.
 #[derive(Clone, Copy, Debug)]
 pub struct Shard {
     index: usize,
@@ -57,7 +57,7 @@ pub struct RunArgs {
     pub force: bool,
 }
 
-/// Computes the blocks of this run of the store at `path`, and writes each as soon as it is finished.
+/// Computes the blocks of this run for the store at `path`, and writes each as soon as it is finished.
 pub fn fill(
     path: &Path,
     args: &RunArgs,

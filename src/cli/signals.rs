@@ -33,7 +33,7 @@ pub fn handle(temporary: TemporaryFiles, advice: &'static str) {
     });
 }
 
-/// Does nothing on other systems: the next run removes the leftovers of an interrupted run.
+/// Does nothing on systems without these signals: the next run removes the leftovers of an interrupted run.
 #[cfg(not(unix))]
 pub fn handle(_: TemporaryFiles, _: &'static str) {}
 

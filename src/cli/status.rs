@@ -1,4 +1,4 @@
-//! `whiskmap status`.
+//! Command `whiskmap status`.
 
 use super::failure::{Failure, message};
 use clap::Args;

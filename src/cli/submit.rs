@@ -1,4 +1,4 @@
-//! `whiskmap submit`: job array for Slurm.
+//! Command `whiskmap submit`: job array for Slurm.
 
 use super::arguments::whole;
 use super::failure::Failure;

@@ -1,4 +1,4 @@
-//! Summary of a run of `map` on standard output.
+//! Summary of a run of the command `map` on standard output.
 
 use super::failure::{Failure, check_resolved, message};
 use super::progress::Progress;

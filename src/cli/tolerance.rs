@@ -1,4 +1,4 @@
-//! `--tolerance`: the largest error of push angles.
+//! Option `--tolerance`: the maximum push-angle error.
 
 use super::arguments;
 use super::failure::{Failure, message};
@@ -37,7 +37,7 @@ impl ToleranceArgs {
         self.tolerance
     }
 
-    /// Returns and prints the accuracy that meets the tolerance on `sides` of the scene; `None` without a tolerance.
+    /// Chooses and prints the accuracy that meets the tolerance on `sides` of the scene; `None` without a tolerance.
     pub fn choose(&self, scene: &Scene, sides: &[Side]) -> Result<Option<Accuracy>, Failure> {
         let Some(tolerance_deg) = self.tolerance else {
             return Ok(None);

@@ -1,4 +1,4 @@
-//! `whiskmap curve --samples`: the detachment curve of randomly drawn whiskers.
+//! Command `whiskmap curve --samples`: the detachment curve of randomly drawn whiskers.
 
 use super::arguments::whole;
 use super::failure::{Failure, check_resolved, message};
@@ -23,7 +23,7 @@ pub struct SampleArgs {
 }
 
 impl SampleArgs {
-    /// Draws the whiskers; `None` without --samples.
+    /// Draws the random whiskers of a scene; `None` without --samples.
     pub fn draw(&self, scene: &Scene) -> Result<Option<Draws>, Failure> {
         let Some(samples) = self.samples else {
             return Ok(None);
@@ -37,7 +37,7 @@ impl SampleArgs {
     }
 }
 
-/// Writes the percentiles of the `draws`, and plots them around the `curve` of the `scene` itself.
+/// Writes the percentiles of the `draws` as a table, and plots them around the `curve` of the `scene` itself.
 pub fn run(
     scene: &Scene,
     draws: &Draws,

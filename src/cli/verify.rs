@@ -1,4 +1,4 @@
-//! `whiskmap verify`.
+//! Command `whiskmap verify`.
 
 use super::failure::Failure;
 use std::io::Write;

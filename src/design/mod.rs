@@ -1,4 +1,4 @@
-//! Values of a parameter with which a whisker detaches in a given way at a given push angle.
+//! Designs: values of a parameter with which a whisker detaches in a given way at a given push angle.
 //!
 //! The search scans the range that the scene accepts. Between samples it finds changes of the kind of detachment, and turns of
 //! the push angle. It bisects between neighbours of all these values. Every solution is a computed end: a jump of the push angle
@@ -19,38 +19,39 @@ const TOLERANCE_DEG: f64 = 1e-9;
 /// Relative difference of values below which they are one solution, or a range leaves no choice.
 const EQUAL: f64 = 1e-9;
 
-/// The detachment that a design looks for.
+/// Target of a design: the detachment to reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DesignTarget {
     /// Distance from the base to the contact at first touch, in millimetres.
     pub distance_mm: f64,
     /// Side of the whisker that the pole is on.
     pub side: Side,
-    /// How the push ends.
+    /// Kind of the target detachment: how the push ends.
     pub kind: DetachmentKind,
-    /// Push angle of the detachment in degrees: positive CB, negative CF.
+    /// Push angle of the target detachment, in degrees: positive CB, negative CF.
     pub push_angle_deg: f64,
 }
 
-/// The end of a push at a value of the parameter.
+/// End of a push at one value of the design's parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DesignEnd {
-    /// Value of the parameter, in its unit.
+    /// Value of the design's parameter, in its unit.
     pub value: f64,
-    /// How the push ends.
+    /// Kind of the end: how the push ends at this value.
     pub kind: DetachmentKind,
-    /// Push angle of the detachment in degrees; `None` without a detachment.
+    /// Push angle of the detachment at this value of the parameter, in degrees; `None` without a detachment.
     pub push_angle_deg: Option<f64>,
 }
 
 /// Solutions of a design, and the ends over the whole range of the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// Solutions in the unit of the parameter, growing; empty if no value reaches the target, or if every value has the same push angle.
+    /// Solutions of the design, in the unit of the parameter, growing: `[solution]`. Empty if no value reaches the target, or if every
+    /// value has the same push angle.
     pub values: Vec<f64>,
-    /// The least and the greatest value that the scene accepts, in the unit of the parameter.
+    /// Range of the parameter `[least, greatest]` that the scene accepts, in its unit.
     pub range: [f64; 2],
-    /// Ends of pushes at values over [`Design::range`], in growing order of the values.
+    /// Ends of pushes at values over [`Design::range`], `[value]`, in growing order of the values.
     pub ends: Vec<DesignEnd>,
 }
 
@@ -58,38 +59,38 @@ pub struct Design {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DesignError {
-    /// The scene sweeps whiskers, along this axis.
+    /// The scene sweeps whiskers along this axis, but a design needs one whisker.
     #[error("grid.{0}: must be left out, as one number of one whisker is varied")]
     Sweep(&'static str),
-    /// The scene does not give the parameter.
+    /// The scene does not give the parameter of the design.
     #[error("{}: must be one of {given}, which the scene has; it has no {}", .parameter.name(), .parameter.key())]
     Lacking {
-        /// The parameter of the design.
+        /// Parameter of the design that the scene does not give.
         parameter: Parameter,
         /// Names of the parameters that the scene gives.
         given: String,
     },
-    /// The scene accepts no other value of the parameter.
+    /// The scene accepts no other value of the design's parameter.
     #[error("{}: the scene accepts no value but {} for {}, with all other numbers fixed", .parameter.name(), digits(*.value), .parameter.key())]
     Fixed {
-        /// The parameter of the design.
+        /// Parameter of the design that has only one accepted value.
         parameter: Parameter,
         /// The only value of the parameter that the scene accepts.
         value: f64,
     },
-    /// The scene accepts no pole at the distance.
+    /// The scene accepts no pole at the distance of the design.
     #[error(transparent)]
     Distance(#[from] SceneError),
 }
 
 impl Design {
-    /// Returns true if the range is so wide that a logarithmic axis suits it.
+    /// Returns true if the parameter's range is so wide that a logarithmic axis suits it.
     #[must_use]
     pub fn is_wide(&self) -> bool {
         samples::is_wide(self.range)
     }
 
-    /// The least and the greatest push angle of ends of a kind, in degrees; `None` without such an end.
+    /// Returns the least and the greatest push angle of ends of a kind, in degrees; `None` without such an end.
     #[must_use]
     pub fn reached_deg(&self, kind: DetachmentKind) -> Option<[f64; 2]> {
         let ends = self.ends.iter().filter(|end| end.kind == kind);

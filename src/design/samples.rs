@@ -1,13 +1,13 @@
-//! Sample values of a range.
+//! Sample values of the range of a design's parameter.
 
-/// Number of samples of a range.
+/// Number of sample values of the range of a design's parameter.
 pub const SAMPLES: usize = 128;
 
 /// Ratio of the ends of a range of positive numbers above which half of the samples are logarithmic.
 const WIDE: f64 = 10.0;
 
-/// Sample values of a parameter in growing order, in its unit, with both ends of the range. They are evenly spaced; in a wide range of
-/// positive numbers, half of them are evenly spaced in the logarithm.
+/// Returns sample values of a parameter in growing order, `[sample]`, in its unit, with both ends of the range. They are evenly spaced;
+/// in a wide range of positive numbers, half of them are evenly spaced in the logarithm.
 pub fn samples([low, high]: [f64; 2]) -> Vec<f64> {
     let even = |count: usize| {
         (0..count).map(move |i| match i {
@@ -28,7 +28,7 @@ pub fn samples([low, high]: [f64; 2]) -> Vec<f64> {
     values
 }
 
-/// Returns true for a range of positive numbers that spans more than a factor of 10.
+/// Returns true for a range `[low, high]` of positive numbers that spans more than a factor of 10.
 pub fn is_wide([low, high]: [f64; 2]) -> bool {
     low > 0.0 && high > WIDE * low
 }

@@ -1,4 +1,4 @@
-//! Search for ends at a push angle: a scan, changes of kind, and bisection between turns.
+//! Search of a design for ends at a push angle: a scan, changes of kind, and bisection between turns.
 
 use super::samples::samples;
 use super::{DesignEnd, DesignTarget, TOLERANCE_DEG, turn};
@@ -11,7 +11,7 @@ use std::convert::Infallible;
 /// Width of the interval of a change of kind, in parts of the interval between two samples: 50 halvings.
 const CHANGE_WIDTH: f64 = 1e-15;
 
-/// A scene, the parameter that varies, and the target.
+/// Search of a design: the scene, the parameter that varies, and the target.
 pub struct DesignSearch<'a> {
     pub scene: &'a Scene,
     pub parameter: Parameter,
@@ -46,7 +46,7 @@ impl DesignSearch<'_> {
         self.miss(&self.end(value))
     }
 
-    /// Ends of pushes at values over the `range` of the parameter, in its unit, and on both sides of each change of kind.
+    /// Returns ends of pushes at values over the `range` of the parameter, in its unit, and on both sides of each change of kind.
     pub fn scan(&self, range: [f64; 2]) -> Vec<DesignEnd> {
         let scanned: Vec<DesignEnd> = samples(range)
             .into_par_iter()
@@ -80,7 +80,8 @@ impl DesignSearch<'_> {
         [before, after]
     }
 
-    /// Values of the parameter, in its unit, at which a push ends at the target, within a `piece` where every end has the target's kind.
+    /// Returns the values of the parameter, in its unit, at which a push ends at the target, `[solution]`. They lie within a `piece`
+    /// where every end has the target's kind.
     pub fn solutions(&self, piece: &[DesignEnd]) -> Vec<f64> {
         let mut places: Vec<[f64; 2]> = piece
             .iter()

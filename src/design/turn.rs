@@ -7,8 +7,8 @@ const STEPS: u32 = 40;
 /// Part of an interval that a step of the golden section keeps.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// The place and value of an extremum toward zero between three neighbouring places with their values, or the first place found
-/// beyond zero. `None` without such an extremum, or if it is too far from zero for a smooth function.
+/// Returns argument and value of an extremum toward zero between three neighbouring arguments with their values, or the first argument
+/// found beyond zero. `None` without such an extremum, or if it is too far from zero for a smooth function.
 pub fn toward_zero(
     [before, here, after]: [[f64; 2]; 3],
     mut value: impl FnMut(f64) -> f64,

@@ -1,4 +1,4 @@
-//! The request to an engine: the cells of some rows.
+//! Row batches: the cells of some rows, as a request to an engine.
 
 use super::{Values, WhiskerSide};
 use crate::refine::base_points;
@@ -10,63 +10,65 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Coefficients of a Taylor polynomial along a row.
+/// Number of coefficients of a Taylor polynomial along a row.
 pub const POWERS: usize = 12;
 
-/// Maximum number of steps of a base point's trajectory. Most take dozens; a row that needs more gets no base points.
+/// Maximum number of steps of the trajectory of a base point. Most take dozens; a row that needs more gets no base points.
 pub const MOST_TRAJECTORY_STEPS: u32 = 512;
 
 /// Base points per rayon task.
 const CHUNK: usize = 64;
 
-/// Numbers that are expanded along a row: push angle, `tau`, direction of the resting whisker's point at the distance of the contact, and
-/// the derivatives of `(ln D, phi)` by `tau` and by load.
+/// Seven numbers of a state that are expanded along a row. They are the push angle (radians), `tau`, a direction (radians), and the
+/// derivatives of `(ln D, phi)` by `tau` and by load. The direction is that of the resting whisker's point at the distance of the
+/// contact.
 pub type RowTerms = [f64; 7];
 
-/// An exact state of a row, with the Taylor expansion of the row around it.
+/// Base point: an exact state of a row, with the Taylor expansion of the row around it.
 #[derive(Clone, Debug)]
 pub struct BasePoint {
-    /// Index of the whisker side in the batch.
+    /// Index of the base point's whisker side in the batch.
     pub rod: u32,
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the base point, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`, dimensionless.
+    /// Signed load `f/rho^2` of the base point, dimensionless.
     pub load: f64,
-    /// Signed push angle since first touch, in radians.
+    /// Signed push angle of the base point since first touch, in radians.
     pub push: f64,
-    /// The state with its first derivatives, in the frame of the contact.
+    /// State at the base point with its first derivatives, in the frame of the contact.
     pub state: FirstVariation,
-    /// Signed load `f/rho^2` per unit of the row parameter `w`, which here is `load tau^2` over its value at the end of the row.
+    /// Derivative of the signed load `f/rho^2` by the row parameter `w` along a row. Here, `w` is `load tau^2` over its value at the end
+    /// of the row.
     pub load_per_w: f64,
-    /// Taylor coefficients of the row in `w`, less its value here: `[power][term]`.
+    /// Taylor coefficients of the row in `w` around the base point: `[power][term]`.
     pub row: [RowTerms; POWERS],
-    /// Cells of the base point: indices among the columns of all sides.
+    /// Cells of the base point: range of indices among the columns of all sides.
     pub cells: Range<u32>,
-    /// Trajectory of the base point, and its place in a batch.
+    /// Trajectory of the base point, and its place in the batch.
     pub trajectory: BaseTrajectory,
 }
 
 /// Trajectory of a base point, and its place in a batch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BaseTrajectory {
-    /// Number of steps of the trajectory.
+    /// Number of steps of the base point's trajectory.
     pub steps: u32,
-    /// Angle by which bending has turned the base since the contact, in radians.
+    /// Angle by which bending turns the base along the base point's trajectory, in radians.
     pub bent: f64,
     /// Index of the first cell of the base point among the cells of the batch.
     pub first_cell: usize,
-    /// Channel values at the base point, in map units.
+    /// Channel values at the base point, in map units: `[channel]`.
     pub values: Values,
 }
 
-/// The cells of one row to solve.
+/// Row of a batch: the cells of one row to solve.
 #[derive(Clone, Debug)]
 pub struct BatchRow {
-    /// Index of the whisker side in the batch.
+    /// Index of the row's whisker side in the batch.
     pub side: usize,
     /// Index of the row in the side's sheet.
     pub row: usize,
-    /// The cells to solve: growing, disjoint ranges of the side's columns.
+    /// Cells of the row to solve, `[range]`: growing, disjoint ranges of the side's columns.
     pub cells: Vec<Range<usize>>,
     /// Index of the row's first cell among the cells of the batch.
     pub first: usize,
@@ -75,41 +77,41 @@ pub struct BatchRow {
 }
 
 impl BatchRow {
-    /// Number of cells of the row in the batch.
+    /// Returns the number of cells of the row in the batch.
     #[must_use]
     pub fn count(&self) -> usize {
         self.cells.iter().map(Range::len).sum()
     }
 
-    /// The cells to solve, in order.
+    /// Returns the cells of the row to solve, in order.
     pub fn each(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         self.cells.iter().flat_map(Range::clone)
     }
 }
 
-/// Cells of some rows, for an [`Engine`](super::Engine).
+/// Row batch: cells of some rows, for an [`Engine`](super::Engine).
 #[derive(Clone, Debug)]
 pub struct RowBatch {
     /// Integration method of the trajectories: effects and resolution.
     pub method: Method,
-    /// The whisker sides: `[side]`.
+    /// Whisker sides of the batch: `[side]`.
     pub sides: Arc<[WhiskerSide]>,
-    /// The rows, in the order of their cells: `[row]`.
+    /// Rows of the batch, in the order of their cells: `[row]`.
     pub rows: Vec<BatchRow>,
-    /// Signed push angles of the columns of all sides, in radians.
+    /// Signed push angles of the columns of all sides, in radians: `[column]`.
     pub pushes: Arc<[f64]>,
-    /// Whether channel values are wanted.
+    /// True if the engine is to return channel values.
     pub has_values: bool,
-    /// Whether `(tau, load)` are wanted.
+    /// True if the engine is to return `(tau, load)` of the cells.
     pub has_points: bool,
-    /// Base points of all rows; none before [`RowBatch::with_base_points`].
+    /// Base points of all rows of the batch, `[base_point]`; none before [`RowBatch::with_base_points`].
     pub base_points: Vec<BasePoint>,
-    /// Starts of the steps of the base points' trajectories, one trajectory after the other.
+    /// Starts of the integration steps of the base points' trajectories, one trajectory after the other, `[step]`.
     pub starts: Vec<StepStart>,
 }
 
 impl RowBatch {
-    /// All cells of `rows`, pairs of a side and a row of its sheet.
+    /// Creates a batch of all cells of `rows`, pairs of a side and a row of its sheet.
     #[must_use]
     pub fn new(
         method: Method,
@@ -142,7 +144,7 @@ impl RowBatch {
         }
     }
 
-    /// A batch of some `cells` of each row, without base points.
+    /// Returns a batch of some `cells` of each row of this one, without base points.
     #[must_use]
     pub fn only(&self, cells: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
         let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
@@ -159,20 +161,20 @@ impl RowBatch {
         part
     }
 
-    /// Pairs of the index of a cell in this batch and in `part`, a batch of some of its cells.
+    /// Returns pairs of the index of a cell in this batch and in `part`, a batch of some of its cells.
     pub fn places_in<'a>(&'a self, part: &'a Self) -> impl Iterator<Item = (usize, usize)> + 'a {
         let rows = self.rows.iter().zip(&part.rows);
         rows.flat_map(|(whole, part)| part.each().map(|cell| whole.first + cell).zip(part.first..))
     }
 
-    /// Returns true if an engine can solve some of the cells: there are base points or spectral sheets.
+    /// Returns true if an engine can solve some cells of the batch: there are base points or spectral sheets.
     #[must_use]
     pub fn is_for_engine(&self) -> bool {
         let has_sheet = |row: &BatchRow| self.sides[row.side].spectral.is_some();
         !self.base_points.is_empty() || self.rows.iter().any(has_sheet)
     }
 
-    /// Adds base points to all rows that have them, with trajectories in the steps of `resolution`.
+    /// Returns the batch with base points for all rows that can have them, with trajectories in the steps of `resolution`.
     #[must_use]
     pub fn with_base_points(mut self, resolution: Resolution) -> Self {
         let found = base_points(&self);
@@ -186,7 +188,7 @@ impl RowBatch {
         self
     }
 
-    /// Replaces the base points, which are those of the rows in order, and integrates their trajectories.
+    /// Replaces the base points of the batch, which are those of the rows in order, and integrates their trajectories.
     pub fn set_base_points(&mut self, mut base_points: Vec<BasePoint>, resolution: Resolution) {
         let rows = self.rows.iter();
         let row_of = rows.flat_map(|row| std::iter::repeat_n(row, row.base_points.len()));
@@ -220,19 +222,19 @@ impl RowBatch {
         self.base_points = base_points;
     }
 
-    /// The rod of a base point.
+    /// Returns the rod of a base point.
     #[must_use]
     pub fn rod(&self, base: &BasePoint) -> &Rod {
         &self.sides[base.rod as usize].sheet.rod
     }
 
-    /// The sheets of all sides.
+    /// Returns the sheets of all sides of the batch: `[side]`.
     #[must_use]
     pub fn sheets(&self) -> Vec<&Sheet> {
         self.sides.iter().map(|side| &side.sheet).collect()
     }
 
-    /// Number of cells of all rows of the batch.
+    /// Returns the number of cells of all rows of the batch.
     #[must_use]
     pub fn cells(&self) -> usize {
         self.rows.last().map_or(0, |last| last.first + last.count())

@@ -1,4 +1,4 @@
-//! The response of an engine: one column per number of a cell.
+//! Cells: the response of an engine, with one column for each number of a cell.
 
 use super::RowBatch;
 use crate::plan::STATE_CHANNELS;
@@ -6,53 +6,53 @@ use glam::DVec2;
 use std::ops::Range;
 use std::slice;
 
-/// Result of an engine for one cell. A cell without a solution is data, not an error.
+/// Outcome of an engine for one cell. A cell without a solution is data, not an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Outcome {
-    /// Solved, with a bound on the residual.
+    /// The cell is solved, with a bound on the residual.
     Solved,
-    /// Solved, with the contact at the tip up to the residual.
+    /// The cell is solved, with the contact at the tip up to the residual.
     AtTip,
-    /// No solution: the contact lies beyond the tip.
+    /// The cell has no solution: the contact lies beyond the tip.
     BeyondTip,
-    /// No solution: the push angle lies beyond the fold.
+    /// The cell has no solution: the push angle lies beyond the fold.
     BeyondFold,
-    /// No solution: the sheet has no guess there.
+    /// The cell has no solution: the sheet has no guess there.
     OffSheet,
-    /// Failed: neither a solution nor a proof that there is none.
+    /// The engine failed on the cell: it found neither a solution nor a proof that there is none.
     NotConverged,
-    /// Not certified: a number is not finite, or nothing was written.
+    /// The cell is not certified: a number is not finite, or nothing was written.
     NotFinite,
-    /// Not certified: next to the fold or to the tip.
+    /// The cell is not certified: it lies next to the fold or to the tip.
     NearEdge,
-    /// Not certified: outside the trust region of its base point.
+    /// The cell is not certified: it lies outside the trust region of its base point.
     OutsideTrust,
-    /// Not certified: the bound on the residual is too large.
+    /// The cell is not certified: the bound on the residual is too large.
     Missed,
-    /// Not computed: the row has no base point there, or no expansion.
+    /// The cell is not computed: its row has no base point there, or no expansion.
     NoBasePoint,
 }
 
-/// One cell of [`Cells`].
+/// Result of an engine for one cell of [`Cells`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Result of the engine.
+    /// Outcome of the engine for the cell.
     pub outcome: Outcome,
-    /// Newton steps that the engine took for the cell.
+    /// Number of Newton steps that the engine took for the cell.
     pub steps: u32,
-    /// Bound on the distance of the pole from its place, in whisker lengths; NaN without a state.
+    /// Bound on the distance of the cell's pole from its target, in whisker lengths; NaN without a state.
     pub residual: f32,
-    /// Channel values in map units, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution, and NaN if the batch wants
-    /// none.
+    /// Channel values of the cell in map units, in the order of [`STATE_CHANNELS`], `[channel]`. They are unspecified without a solution,
+    /// and NaN if the batch requests none.
     pub values: [f32; STATE_CHANNELS.len()],
-    /// Contact coordinate and signed load `f/rho^2`, `(tau, load)`. They are unspecified without a solution, and NaN if the batch wants
-    /// none.
+    /// Contact coordinate and signed load `f/rho^2` of the cell, `(tau, load)`, dimensionless. They are unspecified without a solution,
+    /// and NaN if the batch requests none.
     pub point: DVec2,
 }
 
 impl Cell {
-    /// A cell without a state.
+    /// Creates a cell without a state.
     #[must_use]
     pub const fn new(outcome: Outcome, steps: u32) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl Cell {
         }
     }
 
-    /// This cell as a run.
+    /// Returns this cell as a run of one cell.
     #[must_use]
     pub fn run(&self) -> CellRun<'_> {
         CellRun {
@@ -77,24 +77,25 @@ impl Cell {
     }
 }
 
-/// Adjacent cells of [`Cells`] with one outcome.
+/// Run of cells: adjacent cells of [`Cells`] with one outcome.
 #[derive(Clone, Copy, Debug)]
 pub struct CellRun<'a> {
     /// Outcome of every cell of the run.
     pub outcome: Outcome,
-    /// Newton steps that the engine took for each cell: `[cell]`.
+    /// Number of Newton steps that the engine took for each cell of the run: `[cell]`.
     pub steps: &'a [u32],
-    /// Bounds on the distance of the pole from its place, in whisker lengths: `[cell]`; NaN without a state.
+    /// Bounds on the distance of the pole from its target, in whisker lengths, for each cell of the run: `[cell]`; NaN without a state.
     pub residual: &'a [f32],
-    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution, and
-    /// empty if the batch wants none.
+    /// Channel values of the run in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a
+    /// solution, and empty if the batch requests none.
     pub values: [&'a [f32]; STATE_CHANNELS.len()],
-    /// `(tau, load)` of the contacts: `[cell]`. They are unspecified without a solution, and empty if the batch wants none.
+    /// Contacts and signed loads `(tau, load)` of the run: `[cell]`. They are unspecified without a solution, and empty if the batch
+    /// requests none.
     pub points: &'a [DVec2],
 }
 
 impl CellRun<'_> {
-    /// The cell at `index`.
+    /// Returns the cell of the run at `index`.
     #[must_use]
     pub fn get(&self, index: usize) -> Cell {
         Cell {
@@ -109,7 +110,7 @@ impl CellRun<'_> {
     }
 }
 
-/// Some cells of [`Cells`], to be written.
+/// Writable part of [`Cells`].
 pub(super) struct CellsMut<'a> {
     pub outcome: &'a mut [Outcome],
     pub steps: &'a mut [u32],
@@ -119,7 +120,7 @@ pub(super) struct CellsMut<'a> {
 }
 
 impl CellsMut<'_> {
-    /// Replaces the cell at `index`.
+    /// Replaces the cell at `index` of this part.
     pub fn set(&mut self, index: usize, cell: &Cell) {
         self.outcome[index] = cell.outcome;
         self.steps[index] = cell.steps;
@@ -154,30 +155,31 @@ fn split_off<'a, T>(column: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     column.split_off_mut(..count).unwrap_or_default()
 }
 
-/// The cells of a [`RowBatch`], in its order, as columns.
+/// Cells of a [`RowBatch`], in its order, as columns.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
-    /// Result of the engine for each cell: `[cell]`.
+    /// Outcome of the engine for each cell: `[cell]`.
     pub outcome: Vec<Outcome>,
-    /// Newton steps that the engine took for each cell: `[cell]`.
+    /// Number of Newton steps that the engine took for each cell: `[cell]`.
     pub steps: Vec<u32>,
-    /// Bounds on the distance of the pole from its place, in whisker lengths: `[cell]`; NaN without a state.
+    /// Bound on the distance of each cell's pole from its target, in whisker lengths: `[cell]`; NaN without a state.
     pub residual: Vec<f32>,
-    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution;
-    /// empty if the batch wants none.
+    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution; empty
+    /// if the batch requests none.
     pub values: [Vec<f32>; STATE_CHANNELS.len()],
-    /// `(tau, load)` of the contacts: `[cell]`. They are unspecified without a solution, and empty if the batch wants none.
+    /// Contact and signed load `(tau, load)` of each cell: `[cell]`. They are unspecified without a solution, and empty if the batch
+    /// requests none.
     pub points: Vec<DVec2>,
 }
 
-/// Lengths of the columns that `batch` wants: of every cell, of channel values, and of points.
+/// Lengths of the columns that `batch` requests: of every cell, of channel values, and of points.
 fn lengths(batch: &RowBatch) -> [usize; 3] {
     let cells = batch.cells();
     [true, batch.has_values, batch.has_points].map(|is_wanted| if is_wanted { cells } else { 0 })
 }
 
 impl Cells {
-    /// Cells of `batch` that are still to be written, all with `outcome`.
+    /// Creates the cells of `batch`, still to be written, all with `outcome`.
     #[must_use]
     pub fn new(batch: &RowBatch, outcome: Outcome) -> Self {
         let [cells, values, points] = lengths(batch);
@@ -200,14 +202,14 @@ impl Cells {
         }
     }
 
-    /// The cells of each row of `batch`, to be written side by side.
+    /// Returns the cells of each row of `batch`, which can be written in parallel.
     pub(super) fn rows_mut(&mut self, batch: &RowBatch) -> Vec<CellsMut<'_>> {
         let mut rest = self.all_mut();
         let rows = batch.rows.iter();
         rows.map(|row| rest.split_off(row.count())).collect()
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     #[must_use]
     pub fn len(&self) -> usize {
         self.outcome.len()
@@ -219,7 +221,7 @@ impl Cells {
         self.outcome.is_empty()
     }
 
-    /// Returns true if every column has the length that `batch` wants.
+    /// Returns true if every column has the length that `batch` requests.
     #[must_use]
     pub fn fit(&self, batch: &RowBatch) -> bool {
         let [cells, values, points] = lengths(batch);
@@ -228,7 +230,7 @@ impl Cells {
             && self.points.len() == points
     }
 
-    /// The cells with the indices `range` as one run. All of them must have the outcome of the first.
+    /// Returns the cells with the indices `range` as one run. All of them must have the outcome of the first.
     #[must_use]
     pub fn run(&self, range: Range<usize>) -> CellRun<'_> {
         CellRun {
@@ -243,7 +245,7 @@ impl Cells {
         }
     }
 
-    /// The cell at `index`.
+    /// Returns the cell at `index`.
     #[must_use]
     pub fn get(&self, index: usize) -> Cell {
         self.run(index..index + 1).get(0)

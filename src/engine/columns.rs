@@ -1,30 +1,30 @@
-//! The columns of a map on one side of the pole.
+//! Columns of a map on one side of the pole: its push angles.
 
 use crate::rod::Side;
 use glam::DVec2;
 use std::ops::Range;
 
-/// A column of a map.
+/// Column of a map: a push angle on one side.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
-    /// Index among all columns of the map.
+    /// Index of the column among all columns of the map.
     pub index: usize,
-    /// Signed push angle, in radians.
+    /// Signed push angle of the column, in radians.
     pub push: f64,
-    /// `(cos, sin)` of the signed push angle.
+    /// Cosine and sine `(cos, sin)` of the column's signed push angle.
     pub turn: DVec2,
 }
 
-/// The columns on one side of the pole, by growing magnitude of the push angle.
+/// Columns of a map on one side of the pole, by growing magnitude of the push angle.
 #[derive(Clone, Debug)]
 pub struct SideColumns {
-    /// The side of the pole.
+    /// Side of the pole on which the columns lie.
     pub side: Side,
-    /// The columns by growing magnitude of the push angle: `[column]`.
+    /// Columns of the side by growing magnitude of the push angle: `[column]`.
     pub columns: Vec<Column>,
     /// Magnitudes of the push angles of the columns, in radians: `[column]`.
     pub magnitudes: Vec<f64>,
-    /// Number of columns on the sides before.
+    /// Number of columns of the map on the sides before this one.
     pub first: u32,
 }
 
@@ -54,7 +54,7 @@ impl SideColumns {
         }
     }
 
-    /// Number of columns.
+    /// Returns the number of columns of the side.
     #[must_use]
     pub fn len(&self) -> usize {
         self.columns.len()
@@ -66,7 +66,7 @@ impl SideColumns {
         self.columns.is_empty()
     }
 
-    /// Writes `value(i)` of the `i`-th of `cells` into a row of the map; nothing into an empty row.
+    /// Writes `value(i)` of the `i`-th of `cells` of a side's row into a row of the map; nothing into an empty row.
     pub fn write<T>(&self, row: &mut [T], cells: &Range<usize>, value: impl Fn(usize) -> T) {
         let Some(columns) = row.get_mut(self.span(cells)) else {
             return;
@@ -78,7 +78,7 @@ impl SideColumns {
         }
     }
 
-    /// The columns of the map that `cells` of a row of this side occupy.
+    /// Returns the columns of the map that `cells` of a row of this side occupy.
     #[must_use]
     pub fn span(&self, cells: &Range<usize>) -> Range<usize> {
         match &self.columns[cells.clone()] {

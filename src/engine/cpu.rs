@@ -12,14 +12,14 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Default)]
 pub struct Cpu {
     submitted: VecDeque<Arc<RowBatch>>,
-    /// Wall time spent on guesses, summed over all batches.
+    /// Wall time that the CPU engine spent on guesses, summed over all batches.
     pub guesses: Duration,
-    /// Wall time spent on Newton's method, summed over all batches.
+    /// Wall time that the CPU engine spent on Newton's method, summed over all batches.
     pub refinement: Duration,
 }
 
 impl Cpu {
-    /// Solves the cells of `batch`.
+    /// Solves the cells of `batch` on the CPU.
     pub fn solve(&mut self, batch: &RowBatch) -> Cells {
         let begun = Instant::now();
         let rows = batch.rows.par_iter();

@@ -33,9 +33,9 @@ use std::sync::Arc;
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Precision {
-    /// Every adapter.
+    /// Single precision, which every adapter supports.
     F32,
-    /// Vulkan adapters with shaderFloat64.
+    /// Double precision, on Vulkan adapters with shaderFloat64.
     F64,
 }
 
@@ -48,12 +48,12 @@ impl fmt::Display for Precision {
     }
 }
 
-/// Name and hardware of an engine, as printed and stored.
+/// Description of an engine: name and hardware, as printed and stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EngineDescription {
-    /// `cpu f64`, `spectral f64`, `gpu f32` or `gpu f64`.
+    /// Name of the engine: `cpu f64`, `spectral f64`, `gpu f32` or `gpu f64`.
     pub engine: String,
-    /// SIMD unit of the processor, or adapter with driver.
+    /// Hardware of the engine: SIMD unit of the processor, or adapter with driver.
     pub adapter: String,
 }
 
@@ -65,7 +65,7 @@ impl EngineDescription {
     }
 }
 
-/// What row batches carry for an engine.
+/// Kind of the data that row batches carry for an engine.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EngineInput {
@@ -76,33 +76,33 @@ pub enum EngineInput {
     SpectralSheets(f64),
 }
 
-/// Solves the cells of row batches, on any thread.
+/// Engine: solves the cells of row batches, on any thread.
 pub trait Engine: Send {
-    /// Name and hardware.
+    /// Returns name and hardware of the engine.
     fn describe(&self) -> EngineDescription;
 
-    /// Maximum residual bound of a solved cell, in whisker lengths.
+    /// Returns the maximum residual bound of a solved cell, in whisker lengths.
     fn residual_bound(&self) -> f64;
 
-    /// What batches carry for this engine where the CPU integrates with `resolution`.
+    /// Returns what batches carry for this engine where the CPU integrates with `resolution`.
     fn input(&self, resolution: Resolution) -> EngineInput {
         EngineInput::BasePoints(resolution)
     }
 
-    /// Takes a batch, and starts on it without waiting for a device.
+    /// Submits a batch to the engine, which starts without waiting for a device.
     ///
     /// # Errors
     /// When the device fails; every later call then fails.
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError>;
 
-    /// Returns the cells of the oldest batch submitted and not collected; no cells without such a batch.
+    /// Returns the cells of the oldest batch that was submitted and not collected; no cells without such a batch.
     ///
     /// # Errors
     /// When the device fails; a cell that is not certified is no error.
     fn collect(&mut self) -> Result<Cells, EngineError>;
 }
 
-/// Returns `Ok` if the shaders integrate these effects.
+/// Returns `Ok` if the GPU's shaders integrate these effects.
 ///
 /// # Errors
 /// The effect that only the CPU integrates.
@@ -116,30 +116,30 @@ pub const fn on_gpu(effects: Effects) -> Result<(), &'static str> {
     }
 }
 
-/// Failure of a device.
+/// Failure of an engine's device.
 #[non_exhaustive]
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum EngineError {
-    /// No adapter was found.
+    /// No GPU adapter was found.
     #[error("no GPU adapter found: {0}")]
     NoAdapter(String),
-    /// The adapter lacks a required feature.
+    /// The GPU adapter lacks a required feature.
     #[error("adapter {adapter} cannot {what}")]
     Unsupported {
-        /// Name of the adapter.
+        /// Name of the GPU adapter.
         adapter: String,
-        /// The missing feature.
+        /// Feature that the GPU adapter lacks.
         what: String,
     },
-    /// A call failed.
+    /// A call of the device failed.
     #[error("GPU: {0}")]
     Device(String),
-    /// Audited cells differ from the CPU's.
+    /// Audited cells of the engine differ from those of the CPU.
     #[error("{differing} of {cells} audited cells of the engine differ by more than the tolerance")]
     FailedAudit {
-        /// Cells that differ.
+        /// Number of audited cells that differ.
         differing: u64,
-        /// Cells audited.
+        /// Number of cells audited.
         cells: u64,
     },
 }

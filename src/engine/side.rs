@@ -1,4 +1,4 @@
-//! One side of one whisker, and the channel values of its states in map units.
+//! Whisker sides: one side of one whisker, and the channel values of its states in map units.
 
 use super::{BasePoint, Cell, Outcome, SideColumns, SpectralSheet};
 use crate::plan::STATE_CHANNELS;
@@ -10,20 +10,20 @@ use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// Channel values of a state in map units, in the order of [`STATE_CHANNELS`].
+/// Channel values of a state in map units, `[channel]`, in the order of [`STATE_CHANNELS`].
 pub type Values = [f64; STATE_CHANNELS.len()];
 
 /// Index of the contact force in [`STATE_CHANNELS`].
 pub const FORCE: usize = 2;
 
-/// One side of one whisker: its sheet, the columns of the map, and the units.
+/// Whisker side: its sheet, its columns of the map, and the units.
 #[derive(Debug)]
 pub struct WhiskerSide {
-    /// Columns of the map on this side.
+    /// Columns of the map on this whisker side.
     pub columns: Arc<SideColumns>,
-    /// The stable sheet, with a row per distance of the map.
+    /// Stable sheet of the whisker side, with a row for each distance of the map.
     pub sheet: Sheet,
-    /// Channel values of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
+    /// Channel values `[channel]` of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
     pub unit_values: Values,
     /// Expansions of the rows, if an engine needs them and rows have any.
     pub spectral: Option<SpectralSheet>,
@@ -31,7 +31,7 @@ pub struct WhiskerSide {
 }
 
 impl WhiskerSide {
-    /// Joins a sheet with the `columns` of its side; values are in `units`.
+    /// Joins a sheet with the `columns` of its whisker side; channel values are in `units`.
     #[must_use]
     pub fn new(columns: Arc<SideColumns>, units: Units, sheet: Sheet) -> Self {
         let reader = Reader::new(units, &sheet.rod);
@@ -51,7 +51,7 @@ impl WhiskerSide {
         Self { spectral, ..self }
     }
 
-    /// Returns true if the contact has friction.
+    /// Returns true if the contact on this whisker side has friction.
     #[must_use]
     pub fn has_friction(&self) -> bool {
         self.sheet.rod.friction != 0.0
@@ -62,14 +62,14 @@ impl WhiskerSide {
         self.values_at(&self.sheet.rows[row], tau, full, push)
     }
 
-    /// The values of a state of any `row` of this whisker at the signed `push`, in radians.
+    /// Returns the channel values `[channel]` of a state of any `row` of this whisker at the signed `push`, in radians.
     #[must_use]
     pub fn values_at(&self, row: &Row, tau: f64, full: &FullState, push: f64) -> Values {
         values(&self.reader.read(tau, full, row.touch, push))
     }
 
-    /// Sizes of the values along a row with this `end`: components of the force are as large as the force, moment and energy as the force
-    /// and its lever, angles as a radian.
+    /// Returns sizes of the channel values `[channel]` along a row with this `end`. Components of the force are as large as the force,
+    /// moment and energy as the force and its lever, angles as a radian.
     #[must_use]
     pub fn sizes(&self, end: &Crossing) -> Values {
         let rod = &self.sheet.rod;
@@ -82,13 +82,13 @@ impl WhiskerSide {
         ]
     }
 
-    /// The values at a base point of `row`.
+    /// Returns the channel values `[channel]` at a base point of `row`.
     #[must_use]
     pub fn base_values(&self, row: usize, base: &BasePoint) -> Values {
         self.values(row, base.tau, &base.state.full, base.push)
     }
 
-    /// The cell of `row` with a solution `state` at the signed `push`, in radians; NaN values unless `has_values`.
+    /// Returns the cell of `row` with a solution `state` at the signed `push`, in radians; NaN values unless `has_values`.
     #[must_use]
     pub fn solved(
         &self,
@@ -112,7 +112,7 @@ impl WhiskerSide {
         }
     }
 
-    /// The cell of `row` at first touch: the resting whisker without a load.
+    /// Returns the cell of `row` at first touch: the resting whisker without a load.
     #[must_use]
     pub fn first_touch(&self, row: usize, steps: u32) -> Cell {
         let row = &self.sheet.rows[row];

@@ -1,5 +1,5 @@
-//! The connection to an engine. A device's engine has a thread of its own: while it solves one batch, the next one waits there, so that
-//! the device never waits for the host. An engine of the CPU works on the threads of the current pool, where it is called.
+//! Worker: the connection to an engine. A device's engine has a thread of its own: while it solves one batch, the next one waits there,
+//! so that the device never waits for the host. An engine of the CPU works on the threads of the current pool, where it is called.
 //!
 //! After its first failure an engine gets no further batch.
 
@@ -31,13 +31,13 @@ enum Connection<'e> {
     Call(&'e mut (dyn Engine + 'e)),
 }
 
-/// Handle to an engine.
+/// Worker: a handle to an engine.
 pub struct Worker<'e> {
     /// None without an engine, and after its failure.
     connection: Option<Connection<'e>>,
     /// The batches submitted and not collected.
     submitted: VecDeque<Arc<RowBatch>>,
-    /// Why the engine is disabled, if it failed.
+    /// Failure for which the engine is disabled; `None` if it has not failed.
     pub failure: Option<EngineError>,
     /// Wall time in which the engine worked on batches, summed over all responses.
     pub busy: Duration,
@@ -89,7 +89,7 @@ impl<'e> Worker<'e> {
         matches!(self.connection, Some(Connection::Thread { .. }))
     }
 
-    /// Submits a batch; nothing without a working engine.
+    /// Submits a batch to the engine; does nothing without a working engine.
     pub fn submit(&mut self, batch: Arc<RowBatch>) {
         match &self.connection {
             None => return,

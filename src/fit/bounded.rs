@@ -11,7 +11,7 @@ const TOLERANCE: f64 = 1e-12;
 /// Residual of each point where the scene refuses the parameters, so large that no step goes there.
 const REFUSED: f64 = 1e100;
 
-/// Returns the parameters of the least misfit, each over its unit: `[parameter]`. The search starts at the scene's values.
+/// Returns the parameters with the smallest misfit, each over its unit: `[parameter]`. The search starts at the scene's values.
 ///
 /// Beyond a limit the misfit is continued as it is at the limit. Limits depend on the other parameters, and one that was
 /// met may be left again: while the misfit shrinks, the iteration starts again from where it has ended.

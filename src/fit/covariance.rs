@@ -12,14 +12,14 @@ const PART: f64 = 1e-3;
 /// Variances and covariances of parameters, for residuals of variance 1.
 pub(super) struct Covariance {
     matrix: Vec<Vec<f64>>,
-    /// Number of directions that are determined.
+    /// Number of directions of parameters that the residuals determine.
     pub rank: usize,
     is_determined: Vec<bool>,
 }
 
 impl Covariance {
-    /// The covariance from the columns of a Jacobian, scaled to length 1. A parameter is determined if it takes no part in a
-    /// direction along which the residuals stay as they are.
+    /// Computes the covariance from the columns of a Jacobian, scaled to length 1, `[parameter][residual]`. A parameter is determined if
+    /// it takes no part in a direction along which the residuals stay as they are.
     pub fn new(jacobian: &[Vec<f64>]) -> Self {
         let count = jacobian.len();
         let lengths: Vec<f64> = jacobian.iter().map(|column| norm(column)).collect();
@@ -61,12 +61,12 @@ impl Covariance {
         }
     }
 
-    /// Square root of the variance of parameter `i`; `None` if it is not determined.
+    /// Returns the square root of the variance of parameter `i`; `None` if it is not determined.
     pub fn deviation(&self, i: usize) -> Option<f64> {
         self.is_determined[i].then(|| self.matrix[i][i].sqrt())
     }
 
-    /// Correlation of two parameters, between -1 and 1; `None` if one is not determined.
+    /// Returns the correlation of two parameters, between -1 and 1; `None` if one is not determined.
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
         let deviations = self.deviation(i)? * self.deviation(j)?;
         Some((self.matrix[i][j] / deviations).clamp(-1.0, 1.0))

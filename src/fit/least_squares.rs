@@ -18,10 +18,10 @@ const RADIUS_SLACK: f64 = 0.1;
 /// Least ratio of actual and predicted reduction with which a step is taken.
 const LEAST_RATIO: f64 = 1e-4;
 
-/// Why there is no Jacobian.
+/// Message of a fit for which no Jacobian can be computed.
 pub(super) const NO_JACOBIAN: &str = "a parameter cannot be changed enough for a derivative: the scene refuses it, or a point is out of reach";
 
-/// Minimises the sum of the squares from `x` on. Returns the place and the sum.
+/// Minimises the sum of squares of residuals from the parameters `x` on. Returns the parameters and the sum.
 ///
 /// `residuals_at` returns the residuals at a place. `jacobian_at` returns the columns of the Jacobian at a place with these
 /// residuals, or `None` where there is none. The iteration ends where the relative change of the sum, or of the scaled

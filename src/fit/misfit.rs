@@ -8,13 +8,14 @@ use rayon::prelude::*;
 /// 5e-9 of a cone's derivatives, by each of its parameters; with ten times the step, 5e-7.
 const STEP: f64 = 1e-5;
 
-/// The residuals of points. Parameters are in units of [`Misfit::units`], so that all are of order 1.
+/// Misfit of points: their residuals as a function of parameters. Parameters are in units of [`Misfit::units`], so that all are of order
+/// 1.
 pub(super) struct Misfit<'a> {
     scene: &'a Scene,
     pub points: &'a MeasuredPoints,
     free: &'a [Parameter],
-    /// Unit of each free parameter: a power of 2 near its natural size, so that nothing is rounded by it. Parameters in this module are
-    /// over their units: `[parameter]`.
+    /// Unit of each free parameter, `[parameter]`: a power of 2 near its natural size, so that nothing is rounded by it. Parameters in
+    /// this module are divided by their units.
     pub units: Vec<f64>,
 }
 
@@ -32,7 +33,7 @@ impl<'a> Misfit<'a> {
         }
     }
 
-    /// The scene's values of the free parameters, each over its unit: `[parameter]`. The scene must give them all.
+    /// Returns the scene's values of the free parameters, each over its unit: `[parameter]`. The scene must give them all.
     pub fn start(&self) -> Vec<f64> {
         let values = self.free.iter().zip(&self.units);
         values
@@ -40,7 +41,7 @@ impl<'a> Misfit<'a> {
             .collect()
     }
 
-    /// The least and the greatest value of each parameter that `scene` accepts, over its unit, with the other parameters fixed:
+    /// Returns the least and the greatest value of each parameter that `scene` accepts, over its unit, with the other parameters fixed:
     /// `[parameter][end]`.
     pub fn ranges(&self, scene: &Scene) -> Vec<[f64; 2]> {
         let free = self.free.par_iter().zip(&self.units);
@@ -48,15 +49,15 @@ impl<'a> Misfit<'a> {
             .collect()
     }
 
-    /// The scene with these values of the free parameters, each over its unit.
+    /// Returns the scene with these values of the free parameters, each over its unit.
     pub fn scene(&self, parameters: &[f64]) -> Result<Scene, SceneError> {
         let values = self.free.iter().zip(&self.units).zip(parameters);
         let values: Vec<_> = values.map(|((own, unit), x)| (*own, unit * x)).collect();
         self.scene.with_parameters(&values)
     }
 
-    /// Predicted less measured angles over their standard deviations, dimensionless: `[point]`; `None` where the scene refuses the
-    /// parameters, or a point is out of reach or never detaches.
+    /// Returns predicted less measured angles over their standard deviations, dimensionless: `[point]`. `None` where the scene refuses
+    /// the parameters, or a point is out of reach or never detaches.
     pub fn residuals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
         let scene = self.scene(parameters).ok()?;
         let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
@@ -69,8 +70,8 @@ impl<'a> Misfit<'a> {
         Some(residuals)
     }
 
-    /// Derivatives of the residuals by the parameters over their units, `[parameter][point]`; `None` where neither side has one. `here` are
-    /// the residuals at `parameters`.
+    /// Returns the derivatives of the residuals by the parameters over their units, `[parameter][point]`; `None` where neither side has
+    /// one. `here` are the residuals at `parameters`.
     pub fn jacobian(&self, parameters: &[f64], here: &[f64]) -> Option<Vec<Vec<f64>>> {
         let columns = (0..self.free.len()).into_par_iter().map(|i| {
             let beside = |step: f64| {

@@ -1,8 +1,8 @@
-//! Parameters of a scene from measured detachments, by nonlinear least squares.
+//! Fits of parameters of a scene to measured detachments, by nonlinear least squares.
 //!
-//! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and
-//! Marquardt's method (`least_squares`) minimises it inside the limits of the scene (`bounded`). Angles are continuous where
-//! slip-off turns into pull-off, their derivatives are not: the trust region gets over that.
+//! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and Marquardt's method
+//! (`least_squares`) minimises it inside the limits of the scene (`bounded`). Angles are continuous where slip-off turns into pull-off,
+//! but their derivatives are not: the trust region limits steps there.
 
 mod bounded;
 mod covariance;
@@ -21,22 +21,22 @@ use covariance::Covariance;
 use least_squares::NO_JACOBIAN;
 use misfit::Misfit;
 
-/// Result of a fit.
+/// Result of a fit: the fitted scene, parameters, correlations and chi-square.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// The scene with the best values.
+    /// Scene with the fitted values.
     pub scene: Scene,
-    /// The best values, in the order of the free parameters.
+    /// Fitted parameters, `[parameter]`, in the order of the free parameters.
     pub estimates: Vec<Estimate>,
-    /// Correlations, `[parameter][parameter]`; `None` for a pair with a parameter that is not determined.
+    /// Correlations of fitted parameters, `[parameter][parameter]`; `None` for a pair with a parameter that is not determined.
     pub correlation: Vec<Vec<Option<f64>>>,
     /// Sum of the squares of residuals over standard deviations, which are 1 degree if the points have none.
     pub chi_square: f64,
-    /// Number of points used less the number of parameters that they determine.
+    /// Degrees of freedom of the fit: points used less the number of parameters that they determine.
     pub degrees_of_freedom: usize,
-    /// The points with the predictions of the fitted scene.
+    /// Measured points with the predictions of the fitted scene.
     pub comparison: Comparison,
-    /// Why the values are not a fit; `None` for a fit. Without a fit there are no standard errors and no correlations.
+    /// Reason why the best values are not a fit; `None` for a fit. Without a fit there are no standard errors and no correlations.
     pub not_a_fit: Option<NotAFit>,
 }
 
@@ -49,16 +49,16 @@ impl Fit {
     }
 }
 
-/// A fitted parameter.
+/// Fitted parameter: its value and standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The parameter.
+    /// Parameter of the scene that was fitted.
     pub parameter: Parameter,
-    /// Best value, in the parameter's unit; if it is not determined, one of many that fit as well.
+    /// Best value of the fitted parameter, in its unit; if it is not determined, one of many that fit as well.
     pub value: f64,
-    /// Standard error, in the parameter's unit; `None` if it is not determined, at a limit, and without a fit.
+    /// Standard error of the fitted parameter, in its unit; `None` if it is not determined, at a limit, and without a fit.
     pub standard_error: Option<f64>,
-    /// True if the value is the least or the greatest one that the scene accepts.
+    /// True if the fitted value is the least or the greatest one that the scene accepts.
     pub is_at_limit: bool,
 }
 
@@ -66,45 +66,45 @@ pub struct Estimate {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// No parameter is free.
+    /// No parameter of the fit is free.
     #[error("no parameter is free")]
     NothingFree,
-    /// The scene does not give the parameter.
+    /// The scene does not give a free parameter of the fit.
     #[error("{}: the scene has no {}; give it a value to start from, or free some of {has}", .parameter.name(), .parameter.key())]
     Lacking {
-        /// The parameter.
+        /// Free parameter that the scene does not give.
         parameter: Parameter,
         /// Names of the parameters that the scene gives.
         has: String,
     },
-    /// Two free parameters are one number of the scene.
+    /// Two free parameters of the fit are one number of the scene.
     #[error("{} and {}: both are {}; one of them may be free", .0.name(), .1.name(), .0.key())]
     Twice(Parameter, Parameter),
-    /// The rest of the scene leaves the parameter no range.
+    /// The rest of the scene leaves a free parameter no range.
     #[error("{}: the rest of the scene allows no values but {} to {}", .parameter.name(), digits(.range[0]), digits(.range[1]))]
     Held {
-        /// The parameter.
+        /// Free parameter without a range.
         parameter: Parameter,
-        /// The least and the greatest value that the scene allows, in the parameter's unit.
+        /// Values `[least, greatest]` of the parameter that the scene allows, in its unit.
         range: [f64; 2],
     },
-    /// The scene refuses the values.
+    /// The scene refuses values of the fit.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The scene's whisker does not touch a pole at some point.
+    /// The scene's whisker does not touch a pole at some measured point.
     #[error(transparent)]
     Points(#[from] CsvError),
-    /// There are fewer points than free parameters.
+    /// The fit has fewer points than free parameters.
     #[error("{free} free parameters need as many points: {origin} has {used} that detach")]
     TooFew {
-        /// Name of the file of the points.
+        /// Name of the file of the measured points.
         origin: String,
-        /// Number of free parameters.
+        /// Number of free parameters of the fit.
         free: usize,
         /// Number of points that detach.
         used: usize,
     },
-    /// The iteration has not reached a minimum.
+    /// The iteration of the fit has not reached a minimum.
     #[error("the fit has not converged: {0}")]
     NotConverged(&'static str),
 }
@@ -112,7 +112,7 @@ pub enum FitError {
 /// Width of a range, relative to the value, below which there is nothing to fit.
 const NARROWEST: f64 = 1e-6;
 
-/// Fits the `free` parameters of the first whisker of `scene` and of its pole to `points`, from the scene's values on.
+/// Fits the `free` parameters of the scene's first whisker and of its pole to `points`, starting at the scene's values.
 ///
 /// Points whose side never detaches at these values are left out; in [`Fit::comparison`] they have no residual.
 ///

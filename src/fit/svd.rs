@@ -6,11 +6,12 @@ const SWEEPS: u32 = 30;
 /// Largest cosine of orthogonal columns: the rounding of scalar products of a hundred components.
 const ORTHOGONAL: f64 = 1e-14;
 
-/// Directions `v` in the space of columns, with the images `A v` of each. Images are orthogonal to each other.
+/// Singular value decomposition of a matrix `A`: directions `v` in the space of columns, with their images `A v`. Images are orthogonal
+/// to each other.
 pub(super) struct Svd {
     /// Unit directions `v` in the space of columns: `[direction][column]`.
     pub directions: Vec<Vec<f64>>,
-    /// `A v` for each direction: `[direction][row]`; its length is the singular value.
+    /// Images `A v` of the directions `v` under the decomposed matrix: `[direction][row]`; the length of an image is a singular value.
     pub images: Vec<Vec<f64>>,
 }
 
@@ -47,13 +48,13 @@ impl Svd {
         Self { directions, images }
     }
 
-    /// Each singular value with its direction and image.
+    /// Returns each singular value with its direction and image.
     pub fn values(&self) -> impl Iterator<Item = (f64, &[f64], &[f64])> {
         let pairs = self.directions.iter().zip(&self.images);
         pairs.map(|(direction, image)| (norm(image), direction.as_slice(), image.as_slice()))
     }
 
-    /// The largest singular value.
+    /// Returns the largest singular value.
     pub fn largest(&self) -> f64 {
         self.values().fold(0.0, |most, (value, ..)| value.max(most))
     }
@@ -66,12 +67,12 @@ fn rotate(columns: &mut [Vec<f64>], [i, j]: [usize; 2], [cos, sin]: [f64; 2]) {
     }
 }
 
-/// Scalar product of `a` and `b`, which have the same length.
+/// Returns the scalar product of two vectors of the same length.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Euclidean length of `a`.
+/// Returns the Euclidean length of a vector.
 pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }

@@ -1,4 +1,4 @@
-//! Refusal of best values with which no whisker of the scene's kind explains the points.
+//! Verdict on a fit: refusal of best values with which no whisker of the scene's kind explains the points.
 
 use crate::measured::{Comparison, MeasuredPoints};
 use crate::scene::{Scene, SweptWhisker, digits};
@@ -24,16 +24,16 @@ const TURN: f64 = 6.3;
 /// Least predicted angle in degrees that shows measured angles in radians.
 const TENS_DEG: f64 = 10.0;
 
-/// Why the best values are not a fit.
+/// Reason why the best values are not a fit: sizes of the residuals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotAFit {
     /// Root mean square of the residuals, measured less predicted angles, in degrees.
     pub rms_deg: f64,
-    /// Largest RMS of a fit, in degrees: 5, or a third of the range of the measured angles and 0.
+    /// Largest root mean square of the residuals of a fit, in degrees: 5, or a third of the range of the measured angles and 0.
     pub largest_rms_deg: f64,
-    /// Chi-square over its degrees of freedom, where points have standard deviations.
+    /// Chi-square over the degrees of freedom, dimensionless; `None` if the points have no standard deviations.
     pub reduced_chi_square: Option<f64>,
-    /// A known mistake that the points show, if any.
+    /// Likely mistake in the file of points; `None` without one.
     pub cause: Option<LikelyCause>,
 }
 
@@ -41,16 +41,16 @@ pub struct NotAFit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LikelyCause {
-    /// All angles are below 6.3, and the scene predicts tens of degrees.
+    /// Angles in radians: all are below 6.3, and the scene predicts tens of degrees.
     Radians,
-    /// Ten times the distances are within reach, and halve the RMS at the start at least.
+    /// Distances in centimetres: ten times the distances are within reach, and at least halve the RMS at the start.
     Centimetres,
-    /// Standard deviations in degrees would explain the residuals, and all given ones are below 6.3 degrees in radians.
+    /// Standard deviations in radians: in degrees they would explain the residuals, and all given ones are below 6.3 degrees in radians.
     RadianDeviations,
 }
 
 impl NotAFit {
-    /// The verdict on the `end` of a fit of the `used` points, from `start` on; `None` for a fit.
+    /// Returns the verdict on the `end` of a fit of the `used` points, from `start` on; `None` for a fit.
     ///
     /// Without standard deviations, a fit has a small RMS. With them, points of low precision may be far off: a fit has a
     /// small RMS or a chi-square that the deviations explain, and its reduced chi-square is at most 400.

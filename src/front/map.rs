@@ -1,4 +1,4 @@
-//! Regime maps in memory.
+//! Regime maps, computed in memory.
 
 use super::{Error, MapEngine, Options, resolution};
 use crate::classify::Regime;
@@ -17,53 +17,53 @@ use std::sync::atomic::Ordering;
 pub struct Map {
     /// Axes of the map: push angles in degrees, distances in mm, and the sweep.
     pub grid: Grid,
-    /// The cells of each whisker, in the order of [`SceneData::whiskers`](crate::scene::SceneData::whiskers).
+    /// Panels of the map, one for each whisker, in the order of [`SceneData::whiskers`](crate::scene::SceneData::whiskers).
     pub panels: Vec<Panel>,
-    /// Counts and times of the run.
+    /// Counts and times of the run that computed the map.
     pub summary: Summary,
 }
 
-/// Place and regime of one cell of a [`Map`].
+/// Cell of a [`Map`]: its place and regime.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MapCell {
-    /// Index of the whisker in [`Map::panels`].
+    /// Index of the cell's whisker in [`Map::panels`].
     pub whisker: usize,
-    /// Index of the distance in the grid.
+    /// Index of the cell's distance in the grid.
     pub distance: usize,
-    /// Index of the push angle in the grid.
+    /// Index of the cell's push angle in the grid.
     pub push_angle: usize,
-    /// Distance from the base to the contact at first touch, in mm.
+    /// Distance of the cell from the base to the contact at first touch, in mm.
     pub distance_mm: f64,
-    /// Push angle since first touch, in degrees; positive concave backward, negative concave forward.
+    /// Push angle of the cell since first touch, in degrees; positive concave backward, negative concave forward.
     pub push_angle_deg: f64,
     /// Regime of the cell.
     pub regime: Regime,
 }
 
 impl Map {
-    /// Shape of a whisker's cells: the number of distances and of push angles.
+    /// Returns the shape of a panel: `[number of distances, number of push angles]`.
     #[must_use]
     pub const fn shape(&self) -> [usize; 2] {
         [self.grid.distance_mm.len(), self.grid.push_angle_deg.len()]
     }
 
-    /// Number of cells with this regime.
+    /// Returns the number of cells of the map with this regime.
     #[must_use]
     pub fn count(&self, regime: Regime) -> u64 {
         let place = Regime::ALL.iter().position(|other| *other == regime);
         place.map_or(0, |place| self.summary.regimes[place])
     }
 
-    /// The values of a channel of a whisker, row by row, of shape `[distance][push_angle]`; NaN without contact. `None` without such a
-    /// whisker.
+    /// Returns the values of a channel of a whisker, of shape `[distance][push_angle]`, in the channel's unit; NaN without contact.
+    /// `None` without such a whisker.
     #[must_use]
     pub fn channel(&self, whisker: usize, channel: Channel) -> Option<&[f32]> {
         Some(self.panels.get(whisker)?.channel(channel))
     }
 
-    /// The values of a channel of a whisker as a view of shape `[distance][push_angle]`; NaN without contact. `None` without such a
-    /// whisker.
+    /// Returns the values of a channel of a whisker as a view of shape `[distance][push_angle]`, in the channel's unit; NaN without
+    /// contact. `None` without such a whisker.
     ///
     /// ```
     /// use whiskmap::{Channel, Options, scene::Scene};
@@ -80,7 +80,7 @@ impl Map {
         ndarray::ArrayView2::from_shape(self.shape(), self.channel(whisker, channel)?).ok()
     }
 
-    /// Every cell with its regime: whisker by whisker, distance by distance, by push angle.
+    /// Returns every cell of the map with its regime: whisker by whisker, distance by distance, by push angle.
     pub fn cells(&self) -> impl Iterator<Item = MapCell> + '_ {
         let [_, width] = self.shape();
         let panels = self.panels.iter().enumerate();
@@ -99,14 +99,15 @@ impl Map {
         })
     }
 
-    /// The regime of a whisker at the index of a distance and of a push angle; `None` beyond the axes.
+    /// Returns the regime of a whisker at the index of a distance and of a push angle; `None` beyond the axes.
     #[must_use]
     pub fn regime(&self, whisker: usize, distance: usize, push_angle: usize) -> Option<Regime> {
         let index = self.index(distance, push_angle)?;
         self.panels.get(whisker)?.regimes().nth(index)
     }
 
-    /// The value of a channel of a whisker at the index of a distance and of a push angle; `None` beyond the axes and without contact.
+    /// Returns the value of a channel of a whisker at the index of a distance and of a push angle, in the channel's unit; `None` beyond
+    /// the axes and without contact.
     #[must_use]
     pub fn value(
         &self,

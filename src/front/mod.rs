@@ -30,13 +30,13 @@ use std::sync::atomic::AtomicBool;
 #[derive(Clone, Default)]
 #[non_exhaustive]
 pub struct Options {
-    /// Maximum push-angle error, in degrees. Without it, the finest steps are used.
+    /// Maximum push-angle error, in degrees. `None` selects the finest steps.
     pub tolerance_deg: Option<f64>,
     /// Engine that solves the cells of maps.
     pub engine: MapEngine,
-    /// Called with the number of finished cells and of all cells of a map, on the thread that computes it.
+    /// Function that is called with the number of finished cells and of all cells of a map, on the thread that computes it.
     pub on_progress: Option<Arc<dyn Fn(usize, usize) + Send + Sync>>,
-    /// If true, a map ends with [`Error::Cancelled`] after the current row batch.
+    /// Flag that cancels: if true, a map ends with [`Error::Cancelled`] after the current row batch.
     pub cancel: Option<Arc<AtomicBool>>,
 }
 
@@ -44,35 +44,35 @@ pub struct Options {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MapEngine {
-    /// A trajectory for each cell, in `f64` on all cores.
+    /// The CPU engine: a trajectory for each cell, in `f64` on all cores.
     #[default]
     Cpu,
-    /// Certified polynomials along rows, in `f64` on all cores. Rows without a certificate fall back to the CPU engine, and so do all rows
-    /// with measured radii.
+    /// The spectral engine: certified polynomials along rows, in `f64` on all cores. Rows without a certificate fall back to the CPU
+    /// engine, and so do all rows with measured radii.
     Spectral,
-    /// The preferred GPU in this precision; an error without the feature `gpu`.
+    /// The GPU engine: the preferred GPU in this precision; an error without the feature `gpu`.
     Gpu(Precision),
 }
 
-/// Failure of a computation. An unresolved cell is no error.
+/// Error of a computation in memory. An unresolved cell is no error.
 #[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The map takes too much memory.
+    /// The map takes more memory than is allowed.
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// The GPU cannot be opened.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// [`Options::cancel`] was set.
+    /// The computation was cancelled by [`Options::cancel`].
     #[error("cancelled")]
     Cancelled,
-    /// No resolution keeps the tolerance.
+    /// No resolution meets the tolerance.
     #[error("tolerance_deg {tolerance_deg:e}: must be at least {least:e} for this scene")]
     Tolerance {
-        /// The tolerance.
+        /// Requested maximum push-angle error, in degrees.
         tolerance_deg: f64,
-        /// Estimated error of the finest steps.
+        /// Estimated push-angle error of the finest steps, in degrees.
         least: f64,
     },
 }

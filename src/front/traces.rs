@@ -1,4 +1,4 @@
-//! Detachment curves, branches, shapes and fits in memory.
+//! Detachment curves, branches, shapes and fits, computed in memory.
 
 use super::{Error, Options, resolution};
 #[cfg(feature = "fit")]
@@ -39,7 +39,7 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
     Ok(groups.flat_map(curves).collect())
 }
 
-/// Follows the states of the scene's first whisker in front of one pole, from first touch at `distance_mm` through the fold.
+/// Computes the branch of the scene's first whisker at one pole, from first touch at `distance_mm` through the fold.
 ///
 /// ```
 /// use whiskmap::{rod::Side, scene::Scene};
@@ -57,7 +57,7 @@ pub fn branch(scene: &Scene, distance_mm: f64, side: Side) -> Result<Branch, NoS
     Branch::new(&first.whisker, &first.pole, side, distance_mm)
 }
 
-/// The stable shape of the scene's first whisker, in 200 places, after a push from first touch at `distance_mm`.
+/// Computes the stable shape of the scene's first whisker, at 200 points, after a push from first touch at `distance_mm`.
 ///
 /// ```
 /// use whiskmap::scene::Scene;
@@ -81,7 +81,7 @@ pub fn shape(
     Ok(WhiskerShape::new(&branch, &state, 200))
 }
 
-/// Fits parameters of the scene's first whisker and of its pole to measured detachments, from the scene's values on.
+/// Fits parameters of the scene's first whisker and of its pole to measured detachments, starting at the scene's values.
 ///
 /// ```
 /// use whiskmap::measured::MeasuredPoints;

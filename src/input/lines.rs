@@ -2,7 +2,7 @@
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-/// The cells of one line of a file, and its number from 1.
+/// Line of a CSV file: its cells, and its number from 1.
 #[derive(Clone, Debug)]
 pub(super) struct CsvLine {
     pub number: usize,
@@ -12,7 +12,7 @@ pub(super) struct CsvLine {
 /// The separators of columns. Decimal commas may stand between the first two, which are preferred therefore.
 const SEPARATORS: [char; 3] = [';', '\t', ','];
 
-/// The text of a file with one kind of line end, and without the byte order mark.
+/// Returns the text of a CSV file with one kind of line end, and without the byte order mark.
 pub(super) fn normalised(text: &str) -> String {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     text.replace("\r\n", "\n").replace('\r', "\n")
@@ -27,7 +27,7 @@ fn declared(text: &str) -> Option<char> {
         .find(|own| separator.trim_start_matches(' ') == own.to_string())
 }
 
-/// The separator of the columns of `text`: the declared one, or what its header has most of, outside of quotes.
+/// Returns the separator of the columns of a CSV text: the declared one, or the most frequent one of its header, outside of quotes.
 pub(super) fn separator(text: &str) -> char {
     if let Some(separator) = declared(text) {
         return separator;
@@ -43,7 +43,7 @@ pub(super) fn separator(text: &str) -> char {
     most.unwrap_or(',')
 }
 
-/// The lines of `text` that are neither blank nor comments nor declare the separator; a cell in quotes may have line breaks.
+/// Splits a CSV text into lines that are neither blank nor comments nor declare the separator; a cell in quotes may have line breaks.
 pub(super) fn lines(text: &str, separator: char) -> csv::Result<Vec<CsvLine>> {
     let mut reader = ReaderBuilder::new()
         .has_headers(false)

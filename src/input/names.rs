@@ -3,7 +3,7 @@
 /// Least similarity of a suggested name, as in clap.
 const SIMILAR: f64 = 0.7;
 
-/// The name among `known` that resembles `name` most, by Jaro's similarity of lower-case names; `None` where none does.
+/// Returns the name among `known` that resembles `name` most, by Jaro's similarity of lower-case names; `None` if none is similar.
 pub(crate) fn similar<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
     let known = known.into_iter();
@@ -13,7 +13,7 @@ pub(crate) fn similar<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
     best.map(|(_, other)| other)
 }
 
-/// The end of a message about an unknown `name`: a suggestion among the `known` names, or nothing.
+/// Returns the end of a message about an unknown `name`: a suggestion among the `known` names, or nothing.
 ///
 /// A name in another unit is not suggested without the unit, because its values must be converted.
 ///
@@ -67,7 +67,7 @@ fn is_of_another_unit(name: &str, other: &str) -> bool {
 /// The most characters that a message quotes of a text, at its beginning and at its end.
 const QUOTED: [usize; 2] = [60, 20];
 
-/// Escapes control characters, which a terminal would obey.
+/// Escapes the control characters of a text, so that a terminal does not obey them.
 pub(crate) fn escaped(text: &str) -> String {
     let parts = text.chars().map(|c| match c {
         control if control.is_control() => control.escape_default().to_string(),
@@ -76,7 +76,7 @@ pub(crate) fn escaped(text: &str) -> String {
     parts.collect()
 }
 
-/// Escapes a quoted value or key, and cuts the middle of a long one.
+/// Escapes a value or key for a message, and cuts the middle of a long one.
 pub(crate) fn shortened(text: &str) -> String {
     let text = escaped(text);
     let [head, tail] = QUOTED;

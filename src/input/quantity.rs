@@ -2,7 +2,7 @@
 
 use super::names::shortened;
 
-/// Quantity of a number, and its unit where the text gives none.
+/// Quantity of a number in text: length, angle or plain number, with the unit of a number without one.
 ///
 /// ```
 /// use whiskmap::input::Quantity;
@@ -15,13 +15,13 @@ use super::names::shortened;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
-    /// A length, in millimetres.
+    /// A length; a number without a unit is in millimetres.
     LengthMm,
-    /// A length, in micrometres.
+    /// A length; a number without a unit is in micrometres.
     LengthUm,
-    /// An angle, in degrees.
+    /// An angle; a number without a unit is in degrees.
     AngleDeg,
-    /// A number that is given without a unit.
+    /// A plain number, which has no unit.
     Number,
 }
 
@@ -36,7 +36,7 @@ const LENGTHS_UM: [(&str, f64); 6] = [
 ];
 
 impl Quantity {
-    /// The quantity of an axis or a channel, by the unit at the end of its name.
+    /// Returns the quantity of an axis or a channel, by the unit at the end of its name.
     #[must_use]
     pub fn of(name: &str) -> Self {
         match name.rsplit('_').next() {
@@ -48,7 +48,7 @@ impl Quantity {
         }
     }
 
-    /// Unit of the quantity; `None` for a plain number.
+    /// Returns the unit of the quantity; `None` for a plain number.
     #[must_use]
     pub const fn unit(self) -> Option<&'static str> {
         match self {
@@ -59,7 +59,7 @@ impl Quantity {
         }
     }
 
-    /// The finite number in `text`, in the quantity's own unit.
+    /// Returns the finite number in `text`, in the quantity's own unit.
     ///
     /// # Errors
     /// If there is no such number, or its unit is not one of the quantity.

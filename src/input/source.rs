@@ -5,7 +5,7 @@ use std::io::{self, Read};
 /// Longest input in bytes: far longer than any scene or table.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// Reads all bytes of `source`.
+/// Reads all bytes of an input file or stream, at most 1 MiB.
 ///
 /// # Errors
 /// If it cannot be read, or is longer than 1 MiB.

@@ -1,4 +1,4 @@
-//! The reader of all CSV files: a header, and columns by their names.
+//! Reader of all CSV files: a header, and columns by their names.
 
 use super::lines::{CsvLine, lines, normalised, separator};
 use super::names::{did_you_mean, escaped, shortened};
@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// An error in a CSV file: the file, the line, the value and what is allowed, in one line.
+/// Error in a CSV file: one line with the file, the line, the value and what is allowed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {what}")]
 pub struct CsvError {
@@ -16,7 +16,7 @@ pub struct CsvError {
 }
 
 impl CsvError {
-    /// An error in the whole file `origin`.
+    /// Creates an error about the whole CSV file `origin`.
     pub(crate) fn whole(origin: &str, what: impl Into<String>) -> Self {
         Self {
             place: escaped(origin),
@@ -24,13 +24,13 @@ impl CsvError {
         }
     }
 
-    /// An error in a line of the file `origin`.
+    /// Creates an error about a line of the CSV file `origin`.
     pub(crate) fn at(origin: &str, line: usize, what: impl Into<String>) -> Self {
         Self::whole(&format!("{origin}:{line}"), what)
     }
 }
 
-/// A CSV file as text: a header, and at least one row below it.
+/// CSV file as text: a header, and at least one row below it.
 ///
 /// Columns are separated by `;`, tabs or `,`: the one that a first line such as `sep=;` declares, or that the header has most
 /// of. Blank lines, rows of empty cells and lines that begin with `#` are left out. Where the separator is no comma, a column may have decimal commas.
@@ -47,7 +47,7 @@ impl CsvError {
 /// ```
 #[derive(Clone, Debug)]
 pub struct CsvTable {
-    /// The name of the file in messages.
+    /// Name of the CSV file in messages.
     pub origin: String,
     separator: char,
     header: CsvLine,
@@ -79,7 +79,7 @@ impl CsvTable {
         Self::parse(&text, origin)
     }
 
-    /// Splits the text of a CSV file. Messages call it `origin`.
+    /// Splits the text of a CSV file into cells. Messages call the file `origin`.
     ///
     /// # Errors
     /// If there is no row, or a row has fewer cells than the header has names, or more that are not empty.
@@ -121,7 +121,7 @@ impl CsvTable {
         })
     }
 
-    /// Checks the header: it must have one name of each group of `needed`, once, and each `optional` name at most once.
+    /// Checks the header of a CSV file: it must have one name of each group of `needed`, once, and each `optional` name at most once.
     /// Returns a note about other columns, if there are any.
     ///
     /// # Errors
@@ -165,18 +165,18 @@ impl CsvTable {
         Ok(unused.map(note))
     }
 
-    /// Returns true if the header has a column of this name.
+    /// Returns true if the CSV file has a column of this name.
     #[must_use]
     pub fn has(&self, column: &str) -> bool {
         self.header.cells.iter().any(|name| name == column)
     }
 
-    /// The line number of each row, from 1.
+    /// Returns the line number of each row of the CSV file, from 1.
     pub fn lines(&self) -> impl Iterator<Item = usize> + '_ {
         self.rows.iter().map(|row| row.number)
     }
 
-    /// The values of a column, row by row; `None` without such a column.
+    /// Returns the values of a column of the CSV file, row by row; `None` without such a column.
     ///
     /// # Errors
     /// The first cell for which `value` returns `None`, and what it `must` be.
@@ -199,8 +199,8 @@ impl CsvTable {
         values.collect::<Result<_, _>>().map(Some)
     }
 
-    /// The numbers of a column, row by row; `None` without such a column. A column with a decimal comma has no decimal
-    /// points.
+    /// Returns the numbers of a column of the CSV file, row by row; `None` without such a column. A column with a decimal comma has no
+    /// decimal points.
     ///
     /// # Errors
     /// The first cell that is no number, or not one that `is_allowed`, and what it `must` be.

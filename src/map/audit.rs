@@ -24,7 +24,7 @@ pub struct AuditSample {
 }
 
 impl AuditSample {
-    /// Returns the sample of `row` of `sheet` with `columns` columns.
+    /// Returns the audit sample of `row` of `sheet` with `columns` columns.
     pub fn new(sheet: &Sheet, row: usize, columns: usize) -> Self {
         let cells = (sheet.rows.len() * columns) as u64;
         let distance = sheet.rows[row].pole_distance;

@@ -1,8 +1,8 @@
 //! Cells in doubt, solved once more by continuation along the level curve of their row.
 //!
-//! The lattice follows a row from load to load, and its guesses can miss in two places: where a level curve runs almost
-//! along a line of constant load, as near the tip of a perfect cone, and where it turns back, as with friction.
-//! Continuation needs no guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
+//! The lattice follows a row from load to load, and its guesses can miss in two places. One is where a level curve runs almost along a
+//! line of constant load, as near the tip of a perfect cone. The other is where it turns back, as with friction. Continuation needs no
+//! guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
 use crate::classify::{RowBoundary, TIE};
 use crate::engine::{Cell, Outcome, WhiskerSide};
@@ -13,7 +13,7 @@ use crate::sheet::{CurveNode, Edge, LevelCurve, ON_CURVE};
 /// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
 const SAME_END: f64 = 1e-5;
 
-/// Solves `cells` of `row` once more. Cells that no continuation reaches stay as they are.
+/// Solves `cells` of `row` once more by continuation. Cells that no continuation reaches stay as they are.
 pub fn solve(
     side: &WhiskerSide,
     row: usize,

@@ -1,4 +1,4 @@
-//! The CPU's share of a row batch: cells that an engine has not certified, and the audit of the others.
+//! Fallback to the CPU: cells of a row batch that an engine has not certified, and the audit of the others.
 
 use super::audit::{self, AuditSample};
 use super::summary::{Audit, EngineCells};
@@ -6,7 +6,7 @@ use crate::engine::{Cells, Cpu, Outcome, RowBatch};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Completes the `cells` of an engine on the CPU, or solves all cells there without an engine's. Counts cells in `counts`; with a failed
+/// Completes the `cells` of an engine on the CPU, or solves all cells there without an engine. It counts cells in `counts`; with a failed
 /// engine (`has_failed`), those without a base point count as solved by the CPU instead. Returns all cells and the result of the audit.
 pub fn complete(
     batch: &RowBatch,

@@ -1,4 +1,4 @@
-//! The stages in order, for a whole scene: sheets, base points, an engine's cells, the CPU's cells, classification, panels.
+//! Computation of maps, stage by stage: sheets, base points, an engine's cells, the CPU's cells, classification, panels.
 
 mod audit;
 mod doubt;

@@ -1,26 +1,26 @@
-//! One whisker's map.
+//! Panels: the maps of single whiskers.
 
 use crate::classify::{Regime, Status};
 use crate::plan::{Channel, Channels, STATE_CHANNELS};
 use std::ops::Range;
 
-/// One whisker's map. Every vector has `distances * push_angles` cells; cell `(row, column)` is at
-/// `row * push_angles + column`; row 0 is the first distance, column 0 the first push angle.
+/// Panel: the map of one whisker. Every vector has `distances * push_angles` cells; cell `(row, column)` is at `row * push_angles +
+/// column`. Row 0 is the first distance, column 0 the first push angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// [`Regime`] codes: `[distance][push_angle]`.
+    /// [`Regime`] code of each cell: `[distance][push_angle]`.
     pub regime: Vec<u32>,
-    /// [`Status`] codes: `[distance][push_angle]`.
+    /// [`Status`] code of each cell: `[distance][push_angle]`.
     pub status: Vec<u32>,
     /// Channel values in map units: `[channel][distance][push_angle]`, a vector per name in [`STATE_CHANNELS`]. NaN without contact; empty
     /// if the channel is not computed.
     pub state: [Vec<f32>; STATE_CHANNELS.len()],
-    /// Distance of the pole's centre from the wanted one, in whisker lengths: `[distance][push_angle]`. In an unresolved cell it belongs to
-    /// the last state computed. NaN without contact.
+    /// Residual of each cell: distance of the pole's centre from its target, in whisker lengths, `[distance][push_angle]`. In an
+    /// unresolved cell it belongs to the last state computed. NaN without contact.
     pub residual: Vec<f32>,
-    /// Push angle left until detachment, in degrees: `[distance][push_angle]`; NaN without contact.
+    /// Margin of each cell: push angle left until detachment, in degrees, `[distance][push_angle]`; NaN without contact.
     pub margin_deg: Vec<f32>,
-    /// Newton steps of each cell, engine and refinement together: `[distance][push_angle]`.
+    /// Number of Newton steps of each cell, engine and refinement together: `[distance][push_angle]`.
     pub newton_steps: Vec<u32>,
 }
 
@@ -55,7 +55,8 @@ impl Panel {
         }
     }
 
-    /// The values of `channel`, of shape `[distance][push_angle]`; NaN without a state, empty where the channel is not computed.
+    /// Returns the values of `channel` in the panel, in the channel's unit, of shape `[distance][push_angle]`. NaN without a state; empty
+    /// if the channel is not computed.
     #[must_use]
     pub fn channel(&self, channel: Channel) -> &[f32] {
         match channel {
@@ -65,7 +66,7 @@ impl Panel {
         }
     }
 
-    /// The values of the channel `name` as bytes, 4 for each cell; none where the channel is not computed.
+    /// Returns the values of the channel `name` in the panel as bytes, 4 for each cell; none if the channel is not computed.
     pub(crate) fn bytes(&self, name: &str) -> &[u8] {
         let codes = match name {
             "regime" => &self.regime,
@@ -80,7 +81,7 @@ impl Panel {
         bytemuck::cast_slice(codes)
     }
 
-    /// The regime of each cell, in the order of [`Panel::regime`].
+    /// Returns the regime of each cell of the panel, in the order of [`Panel::regime`].
     pub fn regimes(&self) -> impl ExactSizeIterator<Item = Regime> + '_ {
         let of = |code: &u32| {
             Regime::ALL
@@ -92,7 +93,7 @@ impl Panel {
             .map(move |code| of(code).unwrap_or(Regime::Unresolved))
     }
 
-    /// The `rows` of a panel that is `width` cells wide, which can be written side by side.
+    /// Returns the `rows` of a panel that is `width` cells wide, which can be written in parallel.
     pub(super) fn rows_mut(&mut self, width: usize, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let cells = rows.start * width..rows.end * width;
         let mut state = self.state.each_mut().map(|channel| {
@@ -126,7 +127,7 @@ impl Panel {
     }
 }
 
-/// A row of a panel.
+/// Writable row of a panel.
 pub(super) struct RowMut<'a> {
     pub regime: &'a mut [u32],
     pub status: &'a mut [u32],

@@ -1,6 +1,7 @@
-//! The row batches of a run in order. An engine solves the next ones while the threads of the pool complete and classify one.
+//! Pipeline of the row batches of a run, in order. An engine solves the next ones while the threads of the pool complete and classify
+//! one.
 //!
-//! Cells are collected in order, and the audit of a batch ends before those of the next one are used, so that the bytes do not depend on
+//! Cells are collected in order, and the audit of a batch ends before the cells of the next one are used. So the bytes do not depend on
 //! the speed of a thread.
 
 use super::fallback::complete;
@@ -24,7 +25,7 @@ const CELLS_PER_THREAD: usize = 8192;
 /// Batches submitted ahead of the one that is completed: one that the engine solves, and one that waits.
 const AHEAD: usize = 2;
 
-/// A run: its batches and results.
+/// Pipeline of a run: its batches and results.
 pub struct Pipeline<'a, 'e> {
     scene: &'a Scene,
     plan: &'a Plan,
@@ -40,13 +41,13 @@ pub struct Pipeline<'a, 'e> {
     queue: VecDeque<(Arc<RowBatch>, bool)>,
     worker: Worker<'e>,
     cpu: Cpu,
-    /// What batches carry for the engine, if there is one.
+    /// Data that batches carry for the engine, if there is one.
     input: Option<EngineInput>,
     summary: Summary,
 }
 
 impl<'a, 'e> Pipeline<'a, 'e> {
-    /// A run before its first batch; batches carry the `input` of the engine of `worker`.
+    /// Creates the pipeline of a run; batches carry the `input` of the engine of `worker`.
     pub fn new(
         scene: &'a Scene,
         plan: &'a Plan,
@@ -83,7 +84,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         }
     }
 
-    /// Computes the panels of the next group; `None` if the run is cancelled.
+    /// Computes the panels of the next group of whiskers, `[whisker]`; `None` if the run is cancelled.
     pub fn panels(
         &mut self,
         on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,

@@ -1,4 +1,4 @@
-//! From the cells of a row batch to panels: regimes, statuses and values.
+//! Conversion of the cells of a row batch to panels: regimes, statuses and values.
 
 use super::panel::RowMut;
 use super::sliding::{self, FoundRow, FoundState};

@@ -6,19 +6,19 @@ use crate::sheet::{LevelCurve, rows_per_batch};
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// A state of a row.
+/// State of a row whose sliding is to be determined.
 pub struct FoundState {
     /// Index of the state's column in the panel.
     pub column: usize,
-    /// Contact if a push from first touch reaches the state.
+    /// Regime of the state: contact if a push from first touch reaches it.
     pub regime: Regime,
-    /// Contact coordinate and signed load, `(tau, load)` with `load = f/rho^2`.
+    /// Contact coordinate and signed load of the state, `(tau, load)` with `load = f/rho^2`, dimensionless.
     pub point: DVec2,
-    /// Magnitude of the push angle, in radians.
+    /// Magnitude of the state's push angle, in radians.
     pub push: f64,
 }
 
-/// The states of a row.
+/// States of a row whose sliding is to be determined.
 pub struct FoundRow {
     pub row: usize,
     pub states: Vec<FoundState>,

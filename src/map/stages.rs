@@ -1,29 +1,29 @@
-//! The stages of a run and their wall seconds.
+//! Stages of a run and their wall seconds.
 
 use std::time::{Duration, Instant};
 
-/// A stage of a run. Stages follow each other for one row batch; only packing runs beside the others.
+/// Stage of a run. Stages follow each other for one row batch; only packing runs beside the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Folds, lattices, exact row boundaries, and the expansions of a spectral engine.
+    /// Stage of the sheets: folds, lattices, exact row boundaries, and the expansions of a spectral engine.
     Sheets,
-    /// Base points of rows and the trajectories that an engine gets with them.
+    /// Stage of the base points of rows and the trajectories that an engine gets with them.
     BasePoints,
-    /// Cells of the spectral engine.
+    /// Stage in which the spectral engine solves cells.
     Expansions,
-    /// Guesses from the lattice.
+    /// Stage in which the lattice provides guesses.
     Guesses,
-    /// Newton's method in `f64`.
+    /// Stage of Newton's method in `f64`.
     Refinement,
-    /// Audit, regimes, and values in map units.
+    /// Stage of audit, regimes, and values in map units.
     Classification,
-    /// Packing and writing of finished panels while the next ones are computed.
+    /// Stage in which finished panels are packed and written while the next ones are computed.
     Packing,
 }
 
 impl Stage {
-    /// Every stage with its name, in order.
+    /// All stages of a run with their names, in order.
     pub const ALL: [(Self, &str); 7] = [
         (Self::Sheets, "sheets"),
         (Self::BasePoints, "base points"),
@@ -35,12 +35,12 @@ impl Stage {
     ];
 }
 
-/// Wall time per stage, in the order of [`Stage::ALL`].
+/// Wall time of each stage of a run, in the order of [`Stage::ALL`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StageTimes(pub [Duration; Stage::ALL.len()]);
 
 impl StageTimes {
-    /// Calls `work` and adds its wall time to `stage`.
+    /// Calls `work` and adds its wall time to `stage`. Returns its result.
     pub fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
         let begun = Instant::now();
         let done = work();
@@ -49,7 +49,7 @@ impl StageTimes {
     }
 }
 
-/// CPU seconds of this process since it started; `None` where the system has no such clock.
+/// Returns the CPU seconds of this process since it started; `None` if the system has no such clock.
 pub(super) fn process_seconds() -> Option<f64> {
     #[cfg(unix)]
     {

@@ -7,29 +7,29 @@ use crate::engine::{EngineError, Outcome};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Outcomes of the cells of a run with an engine.
+/// Numbers of cells of a run by their outcome in the engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EngineCells {
-    /// Cells that the engine solved.
+    /// Number of cells that the engine solved.
     pub solved: u64,
-    /// Fallback: next to the fold or to the tip.
+    /// Number of cells that fell back to the CPU because they lie next to the fold or to the tip.
     pub near_edge: u64,
-    /// Fallback: outside the trust region of the base point.
+    /// Number of cells that fell back to the CPU because they lie outside the trust region of the base point.
     #[serde(rename = "far")]
     pub outside_trust: u64,
-    /// Fallback: the bound on the residual was too large.
+    /// Number of cells that fell back to the CPU because the bound on the residual was too large.
     pub missed: u64,
-    /// Fallback: numbers that are not finite.
+    /// Number of cells that fell back to the CPU because of numbers that are not finite.
     pub not_finite: u64,
-    /// Cells that the engine did not get: their row has no base point there, or no expansion.
+    /// Number of cells that the engine did not get: their row has no base point there, or no expansion.
     #[serde(rename = "without_reference")]
     pub without_base_point: u64,
-    /// Cells that the CPU solved because the engine had failed.
+    /// Number of cells that the CPU solved because the engine had failed.
     pub on_cpu_instead: u64,
 }
 
 impl EngineCells {
-    /// Cells that fell back to the CPU because the engine could not certify them.
+    /// Returns the number of cells that fell back to the CPU because the engine could not certify them.
     #[must_use]
     pub const fn fallback(&self) -> u64 {
         self.near_edge + self.outside_trust + self.missed + self.not_finite
@@ -60,11 +60,11 @@ impl EngineCells {
 /// Result of the audit of an engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Audit {
-    /// Cells solved once more by the CPU.
+    /// Number of audited cells, which the CPU solved once more.
     pub cells: u64,
-    /// Cells among them that differ by more than the tolerance.
+    /// Number of audited cells that differ by more than the tolerance.
     pub differing: u64,
-    /// Cells that the CPU solved in place of the engine because an audited one differed.
+    /// Number of cells that the CPU solved instead of the engine because an audited one differed.
     pub turned_over: u64,
 }
 
@@ -82,9 +82,9 @@ const AT_ONCE: usize = 2048;
 /// Counts and times of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Summary {
-    /// Number of cells of each regime, in the order of [`Regime::ALL`].
+    /// Number of cells of the run with each regime, in the order of [`Regime::ALL`].
     pub regimes: [u64; Regime::ALL.len()],
-    /// Number of cells with a state.
+    /// Number of cells of the run with a state.
     pub refined: u64,
     /// Number of Newton steps, summed over all cells.
     pub steps: u64,
@@ -96,15 +96,15 @@ pub struct Summary {
     pub toward_base: u64,
     /// Number of cells with a state whose contact sticks.
     pub sticking: u64,
-    /// Outcomes of the engine's cells.
+    /// Numbers of cells of the run by their outcome in the engine.
     pub engine_cells: EngineCells,
-    /// Result of the engine's audit.
+    /// Result of the audit of the run's engine.
     pub audit: Audit,
-    /// Failure of the engine, after which the CPU solved all cells.
+    /// Failure of the engine, after which the CPU solved all cells; `None` without one.
     pub engine_failure: Option<EngineError>,
-    /// Whether the run was cancelled: its last panels are missing.
+    /// True if the run was cancelled: its last panels are missing.
     pub is_cancelled: bool,
-    /// Seconds from the first sheet to the last panel kept.
+    /// Wall seconds of the run, from the first sheet to the last panel kept.
     pub wall_seconds: f64,
     /// CPU seconds of the process during the run, over all its threads; `None` where the system has no such clock.
     pub cpu_seconds: Option<f64>,
@@ -116,7 +116,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Adds a finished panel.
+    /// Adds the cells of a finished panel to the counts.
     pub(super) fn count(&mut self, panel: &Panel) {
         let codes = [&panel.regime, &panel.status, &panel.newton_steps];
         let [regimes, statuses, steps] = codes.map(|codes| codes.par_chunks(AT_ONCE));
@@ -159,19 +159,19 @@ impl Summary {
         self.steps = steps.iter().copied().map(u64::from).sum();
     }
 
-    /// Cells of the map.
+    /// Returns the number of cells of the map.
     #[must_use]
     pub fn cells(&self) -> u64 {
         self.regimes.iter().sum()
     }
 
-    /// Cells without a regime.
+    /// Returns the number of cells of the map without a regime.
     #[must_use]
     pub fn unresolved(&self) -> u64 {
         self.regimes[Regime::ALL.len() - 1]
     }
 
-    /// Wall seconds of `stage`. All stages but [`Stage::Packing`] follow each other.
+    /// Returns the wall seconds of `stage`. All stages but [`Stage::Packing`] follow each other.
     #[must_use]
     pub const fn stage_seconds(&self, stage: Stage) -> f64 {
         self.stages.0[stage as usize].as_secs_f64()

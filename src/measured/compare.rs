@@ -11,21 +11,21 @@ row! {
     /// A measured detachment and the one that the theory predicts.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct ComparedPoint {
-        /// Line of the file of points.
+        /// Line of the measured point in its file, from 1.
         pub line: usize,
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch.
+        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
-        /// The measured angle: of the push or of the chord, as in the file.
+        /// Measured angle, in degrees: of the push or of the chord, as in the file.
         pub measured_deg: f64,
-        /// How the push was seen to end: slip-off, pull-off or empty.
+        /// Observed end of the push: slip-off, pull-off or empty.
         pub kind: Option<DetachmentKind>,
-        /// Predicted angle, of the same kind; empty where the side never detaches.
+        /// Predicted angle of the same kind, in degrees; empty where the side never detaches.
         pub predicted_deg: Option<f64>,
-        /// How the push ends by theory: slip-off, pull-off, out-of-reach or unresolved.
+        /// Predicted end of the push: slip-off, pull-off, out-of-reach or unresolved.
         pub predicted_kind: DetachmentKind,
-        /// Measured less predicted angle.
+        /// Measured less predicted angle, in degrees.
         pub residual_deg: Option<f64>,
     }
 }
@@ -77,18 +77,18 @@ impl MeasuredPoints {
 }
 
 impl Comparison {
-    /// The points without a prediction.
+    /// Returns the measured points without a prediction.
     pub fn left_out(&self) -> impl Iterator<Item = &ComparedPoint> {
         self.rows.iter().filter(|row| row.residual_deg.is_none())
     }
 
-    /// Number of points with a prediction.
+    /// Returns the number of measured points with a prediction.
     #[must_use]
     pub fn count(&self) -> usize {
         self.residuals().count()
     }
 
-    /// Number of points with a prediction whose measured kind is another one.
+    /// Returns the number of points with a prediction whose measured kind differs from the predicted one.
     #[must_use]
     pub fn of_another_kind(&self) -> usize {
         let compared = self.rows.iter().filter(|row| row.residual_deg.is_some());
@@ -97,14 +97,14 @@ impl Comparison {
         compared.filter(differs).count()
     }
 
-    /// Root mean square of the residuals in degrees; `None` without residuals.
+    /// Returns the root mean square of the residuals, in degrees; `None` without residuals.
     #[must_use]
     pub fn rms_deg(&self) -> Option<f64> {
         let squares: f64 = self.residuals().map(|residual| residual * residual).sum();
         self.mean(squares).map(f64::sqrt)
     }
 
-    /// Mean of the residuals in degrees; `None` without residuals.
+    /// Returns the mean of the residuals, in degrees; `None` without residuals.
     #[must_use]
     pub fn bias_deg(&self) -> Option<f64> {
         self.mean(self.residuals().sum())

@@ -11,46 +11,46 @@ use crate::trace::DetachmentKind;
 /// Measured detachments, in the order of their file. Every value is in its range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPoints {
-    /// Name of the file in messages.
+    /// Name of the file of measured points in messages.
     pub origin: String,
-    /// Message that names unused columns of the file.
+    /// Message that names unused columns of the file of points; `None` without such columns.
     pub note: Option<String>,
-    /// The measured angle.
+    /// Kind of the measured angles: push angle or chord angle.
     pub angle: MeasuredAngle,
-    /// True if the file gives standard deviations.
+    /// True if the file of points gives standard deviations.
     pub have_deviations: bool,
-    /// The points, at least one.
+    /// Measured points, at least one: `[point]`.
     pub points: Vec<MeasuredPoint>,
 }
 
-/// One measured detachment.
+/// Measured detachment: side, distance, angle and kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredPoint {
-    /// Line in the file, from 1.
+    /// Line of the measured point in its file, from 1.
     pub line: usize,
     /// Side of the whisker that the pole is on.
     pub side: Side,
     /// Distance from the base to the contact at first touch, in millimetres.
     pub distance_mm: f64,
-    /// Angle at detachment in degrees: positive CB, negative CF.
+    /// Angle at the measured detachment, in degrees: positive CB, negative CF.
     pub angle_deg: f64,
-    /// Slip-off or pull-off, if the file says which.
+    /// Kind of the measured detachment, slip-off or pull-off; `None` if the file does not give it.
     pub kind: Option<DetachmentKind>,
-    /// Standard deviation of the angle in degrees; 1 without deviations in the file.
+    /// Standard deviation of the measured angle in degrees; 1 without deviations in the file.
     pub sd_deg: f64,
 }
 
-/// Angle that was measured at detachment.
+/// Kind of the angle that was measured at detachment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeasuredAngle {
-    /// Rotation of the base since first touch.
+    /// The push angle: rotation of the base since first touch.
     Push,
-    /// Angle at the base between the contact and the resting whisker as far away (Fig. 1D).
+    /// The chord angle: at the base between the contact and the resting whisker as far away (Fig. 1D).
     Chord,
 }
 
 impl MeasuredAngle {
-    /// Name of its column, in files of points and of detachment curves.
+    /// Returns the name of the angle's column, in files of points and of detachment curves.
     #[must_use]
     pub const fn column(self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! Reader of measured points.
+//! Reader of CSV files of measured points.
 
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::input::{CsvError, CsvTable};
@@ -25,8 +25,8 @@ impl MeasuredPoints {
     /// Reads the points of a CSV file; `-` is standard input.
     ///
     /// # Errors
-    /// If the file cannot be read, is longer than 1 MiB, is neither UTF-8 nor UTF-16 with a byte order mark, or for the
-    /// reasons of [`MeasuredPoints::parse`].
+    /// If the file cannot be read, is longer than 1 MiB, or is neither UTF-8 nor UTF-16 with a byte order mark. Also for the reasons of
+    /// [`MeasuredPoints::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
         let path = path.as_ref();
         let table = if path == Path::new("-") {

@@ -1,43 +1,43 @@
-//! Comparisons of computed numbers with independently known ones.
+//! Checks: comparisons of computed numbers with independently verified values.
 
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::trace::{Detachment, curve};
 
-/// An independently known number, and the same number computed.
+/// Check of a computed number against an independently verified value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// Whisker, side and pole that the number belongs to.
+    /// Whisker, side and pole of the checked number.
     pub case: String,
-    /// Name of the number, with its unit.
+    /// Name of the checked number, with its unit.
     pub quantity: &'static str,
-    /// Source of the known number.
+    /// Source of the independently verified value.
     pub source: &'static str,
-    /// Known value or bound.
+    /// Independently verified value or bound, in the unit of the checked number.
     pub expected: ExpectedNumber,
-    /// Computed value; NaN if there is none.
+    /// Computed value of the checked number, in its unit; NaN if there is none.
     pub computed: f64,
-    /// Whether an independent solver also contradicts the source.
+    /// True if an independent solver also contradicts the source of the value.
     pub is_disputed: bool,
 }
 
-/// The result of a check.
+/// Verdict of a check: whether the number agrees with its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckVerdict {
-    /// The number agrees with its source.
+    /// The computed number agrees with its source.
     Pass,
-    /// The number differs from its source, and so does an independent solver.
+    /// The computed number differs from its source, and so does an independent solver.
     Differs,
-    /// The number differs from its source.
+    /// The computed number differs from its source.
     Fail,
 }
 
-/// The value or bound that a number is checked against.
+/// Value or bound that a number is checked against.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ExpectedNumber {
-    /// A value and the allowed difference: half of the last known digit, unless a check says otherwise.
+    /// Expected value and the allowed difference: half of the last known digit, unless a check says otherwise.
     Near(f64, f64),
-    /// A lower bound.
+    /// Lower bound of the checked number.
     Above(f64),
 }
 
@@ -67,14 +67,14 @@ impl Check {
     }
 }
 
-/// Sources of known numbers.
+/// Name of the paper as a source of checked numbers.
 pub const PAPER: &str = "paper";
 pub const AUTO: &str = "AUTO-07p";
 pub const FORWARD: &str = "forward BVP";
 pub const CLOSED: &str = "closed form";
 pub const EXACT: &str = "symmetry";
 
-/// A check of a number against a value, up to a tolerance.
+/// Creates a check of a number against a value, up to a tolerance.
 pub fn near(
     case: impl Into<String>,
     quantity: &'static str,
@@ -92,7 +92,7 @@ pub fn near(
     }
 }
 
-/// The detachment at one distance.
+/// Computes the detachment of a whisker at one distance, in millimetres.
 pub fn end(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Detachment {
     curve(whisker, pole, side, &[distance_mm])[0]
 }

@@ -1,19 +1,19 @@
-//! A straight cylinder pushed by a point: the classical elastica, in closed form.
+//! Elastica: a straight cylinder pushed by a point, in closed form.
 //!
-//! Seen from the contact, the tangent has turned by `psi` where `psi'^2 = 2 f sin psi`, so that with lengths in
-//! `1/sqrt(2f)` the base, at the turning angle `beta`, is at `X = 2 sqrt(sin beta)`, `Y = int sqrt(sin)`, and
-//! `s = int 1/sqrt(sin)`. With `u = sqrt(sin psi)` both are lemniscatic integrals, here in Carlson's symmetric forms
-//! (B. C. Carlson, "Numerical computation of real or complex elliptic integrals", Numer. Algorithms 10, 1995).
+//! Seen from the contact, the tangent has turned by `psi` where `psi'^2 = 2 f sin psi`. Lengths are in `1/sqrt(2f)`. The base, at the
+//! turning angle `beta`, is at `X = 2 sqrt(sin beta)`, `Y = int sqrt(sin)` and the arclength `s = int 1/sqrt(sin)`. With `u = sqrt(sin
+//! psi)` both integrals are lemniscatic, here in Carlson's symmetric forms (B. C. Carlson, "Numerical computation of real or complex
+//! elliptic integrals", Numer. Algorithms 10, 1995).
 
 use crate::numerics::Bracket;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A state of the straight cylinder.
+/// State of a straight cylinder pushed by a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elastica {
-    /// Rotation of the base since first touch, in radians.
+    /// Rotation of the cylinder's base since first touch, in radians.
     pub push: f64,
-    /// Arclength of the contact over its distance from the base.
+    /// Arclength of the contact over its distance from the base, dimensionless.
     pub arc_over_distance: f64,
     /// Load `F d^2/(E I)`, dimensionless; `d` is the distance of the contact from the base.
     pub load: f64,
@@ -21,7 +21,7 @@ pub struct Elastica {
     slope: f64,
 }
 
-/// The state in which the tangent turns by `beta` (radians, between 0 and pi) from base to contact.
+/// Returns the state of a straight cylinder in which the tangent turns by `beta` (radians, between 0 and pi) from base to contact.
 #[must_use]
 pub fn elastica(beta: f64) -> Elastica {
     let (arc, across) = if beta <= FRAC_PI_2 {
@@ -41,7 +41,7 @@ pub fn elastica(beta: f64) -> Elastica {
     }
 }
 
-/// The state of largest push: the saddle-node.
+/// Returns the state of a straight cylinder with the largest push angle: the saddle-node.
 #[must_use]
 pub fn fold() -> Elastica {
     let turns = Bracket {

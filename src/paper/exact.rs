@@ -1,4 +1,4 @@
-//! Closed forms, limits and symmetries.
+//! Checks against closed forms, limits and symmetries.
 
 use super::check::{CLOSED, Check, EXACT, end, near};
 use super::elastica::{elastica, fold};

@@ -15,7 +15,7 @@ pub use check::{Check, CheckVerdict, ExpectedNumber};
 pub use figures::{Figure, Measurements, TableRows, figures};
 pub use whiskers::{FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE};
 
-/// Compares computed numbers with published ones, closed forms and independent solvers.
+/// Compares computed numbers with published ones, closed forms and independent solvers. Returns all checks, `[check]`.
 #[must_use]
 pub fn checks() -> Vec<Check> {
     [published::checks(), exact::checks(), reference::checks()].concat()

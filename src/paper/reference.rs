@@ -1,4 +1,4 @@
-//! Detachment points of AUTO-07p on the paper's boundary-value problem, solved forward from the base.
+//! Checks against detachment points of AUTO-07p, for the paper's boundary-value problem solved forward from the base.
 
 use super::check::{AUTO, Check, near};
 use super::whiskers::whisker;
@@ -55,7 +55,7 @@ impl ReferencePoint {
     }
 }
 
-/// The worst differences of all points with modelled effects, and the number of points.
+/// Returns checks against AUTO-07p: the largest differences over all points with modelled effects, and the number of points.
 pub fn checks() -> Vec<Check> {
     let points: Vec<ReferencePoint> = csv::Reader::from_reader(POINTS.as_bytes())
         .deserialize()

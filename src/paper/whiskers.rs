@@ -1,9 +1,9 @@
-//! The whiskers of the paper, and those of the closed forms.
+//! Whiskers of the paper, and of the closed forms.
 
 use crate::rod::{Rest, Side};
 use crate::scene::{Curvature, Pole, Whisker};
 
-/// The paper's pole.
+/// Pole of the paper: radius 0.25 mm, without friction.
 pub const POLE: Pole = Pole::smooth(0.25);
 
 /// Centre of the pole in Figs. 2 and 3, in mm, in the frame of the base at first touch (CB; CF as in Fig. 3).
@@ -14,29 +14,29 @@ const fn pole_mm(side: Side) -> [f64; 2] {
     }
 }
 
-/// The truncated cone of Figs. 2A, 2B and 3A-E.
+/// Truncated cone of the paper's Figs. 2A, 2B and 3A-E.
 pub const CONE: Whisker = whisker([20.0, 30.0, 1.5], 0.02, 0.0);
 
-/// The cylinder of Figs. 2C, 2D and 3F-J.
+/// Cylinder of the paper's Figs. 2C, 2D and 3F-J.
 pub const CYLINDER: Whisker = whisker([20.0, 30.0, 30.0], 0.02, 0.0);
 
-/// The whisker of Fig. 4.
+/// Whisker of the paper's Fig. 4.
 pub const FIG4_WHISKER: Whisker = whisker([15.25, 32.5, 2.0], 0.02, 0.0);
 
-/// The hair of Fig. 4.
+/// Hair of the paper's Fig. 4.
 pub const FIG4_HAIR: Whisker = whisker([15.0, 30.0, 26.5], 0.017, 0.0);
 
-/// The blunt whisker of Fig. 5.
+/// Blunt whisker of the paper's Fig. 5.
 pub const FIG5_LEFT: Whisker = whisker([12.5, 35.0, 8.5], 0.02, 2.2);
 
-/// The slender whisker of Fig. 5, which droops out of the plane: it is 3 % longer than it looks.
+/// Slender whisker of the paper's Fig. 5, which droops out of the plane: it is 3 % longer than it looks.
 pub const FIG5_RIGHT: Whisker = {
     let mut whisker = whisker([15.3, 33.5, 2.0], 0.02, 2.2);
     whisker.arc_stretch = 1.03;
     whisker
 };
 
-/// A whisker with length (mm), base and tip radius (um), parabola coefficient (1/mm) and vertex of the parabola (mm).
+/// Creates a whisker with length (mm), base and tip radius (um), parabola coefficient (1/mm) and vertex of the parabola (mm).
 pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm: f64) -> Whisker {
     Whisker {
         length_mm,
@@ -58,14 +58,14 @@ pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm:
     }
 }
 
-/// The distance in mm at which the pole of Figs. 2 and 3 first touches `whisker` on one side: the paper's d = 15.7 mm.
+/// Returns the distance in mm at which the pole of Figs. 2 and 3 first touches `whisker` on one side: the paper's d = 15.7 mm.
 pub fn pole_distance_mm(whisker: &Whisker, side: Side) -> f64 {
     let rest = Rest::new(&whisker.rod(&POLE, side));
     let [x, y] = pole_mm(side);
     rest.distance_of_pole(x.hypot(y) / whisker.length_mm) * whisker.length_mm
 }
 
-/// A cylinder with the length, the base and the curvature of `whisker`.
+/// Returns a cylinder with the length, the base and the curvature of `whisker`.
 pub fn cylinder_of(whisker: &Whisker) -> Whisker {
     Whisker {
         tip_radius_um: whisker.base_radius_um,

@@ -4,7 +4,7 @@ use crate::input::did_you_mean;
 use std::fmt;
 use std::str::FromStr;
 
-/// The channels of a state.
+/// Names of the channels of a state, `[channel]`.
 pub const STATE_CHANNELS: [&str; 9] = [
     "arc_length_mm",
     "contact_angle_deg",
@@ -17,36 +17,36 @@ pub const STATE_CHANNELS: [&str; 9] = [
     "energy_nj",
 ];
 
-/// A channel of numbers of a map.
+/// Channel of a map: one number for each cell.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Channel {
-    /// Arclength of the contact from the base, in mm.
+    /// Arclength from the base to the contact, in mm.
     ArcLength,
-    /// Angle of the tangent at the contact from that at the base, in degrees.
+    /// Contact angle: of the tangent at the contact from that at the base, in degrees.
     ContactAngle,
-    /// Contact force, in uN.
+    /// Force at the contact, in uN.
     Force,
     /// Force on the base along the whisker, in uN.
     BaseForceX,
     /// Force on the base across the whisker, in uN.
     BaseForceY,
-    /// Bending moment at the base, in nNm.
+    /// Bending moment at the base, in nN m.
     BaseMoment,
-    /// Push angle less the rotation of the chord from base to contact, in degrees.
+    /// Chord angle: push angle less the rotation of the chord from base to contact, in degrees.
     PushChord,
     /// Distance of the contact from the base, in mm.
     ContactDistance,
-    /// Elastic energy, in nJ.
+    /// Bending energy of the whisker, in nJ.
     Energy,
-    /// Bound on the distance of the pole from its place, in whisker lengths.
+    /// Residual: bound on the distance of the pole from its target, in whisker lengths.
     Residual,
-    /// Push angle left until detachment, in degrees.
+    /// Margin: push angle left until detachment, in degrees.
     Margin,
 }
 
 impl Channel {
-    /// Every channel, those of a state in the order of [`STATE_CHANNELS`] first.
+    /// All channels of a map, those of a state in the order of [`STATE_CHANNELS`] first, `[channel]`.
     pub const ALL: [Self; STATE_CHANNELS.len() + 2] = [
         Self::ArcLength,
         Self::ContactAngle,
@@ -61,7 +61,7 @@ impl Channel {
         Self::Margin,
     ];
 
-    /// Name in files, with the unit at its end, such as `force_un`.
+    /// Returns the name of the channel in files, with the unit at its end, such as `force_un`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -78,7 +78,7 @@ const OTHERS: [&str; 5] = ["regime", "status", "margin_deg", "newton_steps", "re
 /// Number of channels.
 const COUNT: usize = OTHERS.len() + STATE_CHANNELS.len();
 
-/// Some of the channels of a map.
+/// Selection of the channels of a map.
 ///
 /// ```
 /// use whiskmap::plan::Channels;
@@ -93,7 +93,7 @@ const COUNT: usize = OTHERS.len() + STATE_CHANNELS.len();
 pub struct Channels([bool; COUNT]);
 
 impl Channels {
-    /// Every channel.
+    /// The selection of all channels.
     pub const ALL: Self = Self([true; COUNT]);
 
     /// Selects the channels for which `is_wanted` returns true.
@@ -106,7 +106,7 @@ impl Channels {
         Self(chosen)
     }
 
-    /// Adds the channel `name`.
+    /// Returns the selection with the channel `name` added.
     #[must_use]
     pub fn with(self, name: &str) -> Self {
         Self::those(|other| other == name || self.contains(other))
@@ -129,7 +129,7 @@ impl Channels {
         self.names().any(|own| own == name)
     }
 
-    /// Returns the names: regime and status, channels of a state, channels of the numerics.
+    /// Returns the names of the selected channels: regime and status, channels of a state, channels of the numerics.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         let chosen = names().zip(self.0);
         chosen.filter_map(|(name, is_chosen)| is_chosen.then_some(name))

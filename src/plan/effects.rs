@@ -1,33 +1,33 @@
-//! The only list of effects by name: whether each is on, and which line of the scene decides it.
+//! List of the mechanical effects by name: whether each is on, and which line of the scene decides it.
 
 use crate::rod::Effects;
 use crate::scene::{Parameter, Scene, SceneData, SweptWhisker, Whisker};
 
-/// An effect of the scene.
+/// Mechanical effect of a scene: its name, reason and cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Effect {
     /// Name of the effect, as printed.
     pub name: &'static str,
-    /// Whether the effect changes anything in this scene.
+    /// True if the effect changes anything in this scene.
     pub on: bool,
-    /// Keys of the scene that decide, with their values.
+    /// Keys of the scene that decide the effect, with their values.
     pub why: String,
-    /// Cost in the integration loop if the effect is on.
+    /// Cost of the effect in the integration loop if it is on.
     pub cost: Cost,
 }
 
 /// Cost of an effect in the integration loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
-    /// Work at every step: sets of such effects have kernels of their own.
+    /// The effect costs work at every step: sets of such effects have kernels of their own.
     Kernel,
-    /// Nothing: the effect only changes the start of a trajectory.
+    /// The effect costs nothing: it only changes the start of a trajectory.
     Start,
-    /// Nothing: the effect is a faster taper and a steeper modulus gradient.
+    /// The effect costs nothing: it is a faster taper and a steeper modulus gradient.
     Taper,
 }
 
-/// Returns every effect; `kernels` are the effects in the kernels of the run.
+/// Returns every effect of `scene`, `[effect]`; `kernels` are the effects in the kernels of the run.
 #[must_use]
 pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let SceneData { whisker, pole, .. } = &**scene;

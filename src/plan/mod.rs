@@ -1,4 +1,4 @@
-//! What will be computed, decided beforehand: without a device, a disk or a clock.
+//! Plan of a run: what will be computed, decided without a device, a disk or a clock.
 
 mod channels;
 mod effects;
@@ -20,7 +20,7 @@ const BYTES_PER_CELL: u64 = 14 * 4;
 /// Bytes per cell in flight: targets and states of the refinement, and with an engine the base points of three row batches.
 const BYTES_IN_FLIGHT: u64 = 1536;
 
-/// Cells of a row batch: enough for every lane of a GPU, in little memory.
+/// Maximum number of cells of a row batch: enough for every lane of a GPU, in little memory.
 pub const CELLS_IN_FLIGHT: usize = 1 << 17;
 
 /// Rows of a row batch for an engine: the base points of each take about 40 KiB, however few its cells are.
@@ -37,34 +37,34 @@ const MOST_PANELS: usize = 64;
 /// differed by a factor of 1.25; with 32 lines by 2.6.
 pub const SAMPLE_LINES: usize = 128;
 
-/// Values of each sweep axis in such a sample.
+/// Number of values of each sweep axis in a sample that estimates the time of a scene.
 pub const SAMPLE_VALUES: usize = 2;
 
-/// Number of states of a trajectory for the rod: cos and sin of its tilt, and two coordinates.
+/// Number of states that a trajectory carries for the rod: cos and sin of its tilt, and two coordinates.
 pub const ROD_STATES: usize = 4;
 
-/// The sizes and effects of a run.
+/// Plan of a run: its sizes and effects.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Whiskers of the sweep.
+    /// Number of whiskers of the sweep.
     pub whiskers: usize,
-    /// Effects of the scene, and resolution of the refinement.
+    /// Integration method of the run: effects of the scene, and resolution of the refinement.
     pub method: Method,
-    /// Sides of the whisker that the push angles need; first touch belongs to CB.
+    /// Sides of the whisker that the push angles of the run need, `[side]`; first touch belongs to CB.
     pub sides: Vec<Side>,
-    /// Cells of all panels.
+    /// Number of cells of all panels of the run.
     pub cells: usize,
-    /// Whiskers to compute, as ranges of their indices.
+    /// Whiskers that the run computes, as ranges of their indices in the sweep, `[part]`.
     pub parts: Vec<Range<usize>>,
-    /// Channels to compute.
+    /// Channels that the run computes.
     pub channels: Channels,
-    /// Panels computed together, so that small panels fill an engine.
+    /// Number of panels computed together, so that small panels fill an engine.
     pub panels_at_once: usize,
     /// Maximum number of rows of a batch for an engine.
     pub rows_at_once: usize,
     /// Maximum number of batches for an engine.
     pub engine_calls: usize,
-    /// Maximum memory of panels and cells in flight, in bytes.
+    /// Maximum memory of panels and cells in flight in the run, in bytes.
     pub bytes: u64,
 }
 
@@ -72,7 +72,7 @@ pub struct Plan {
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PlanError {
-    /// One panel is too large.
+    /// One panel takes more memory than is allowed.
     #[error(
         "grid: {push_angles} push angles x {distances} distances make a panel of {cells} cells that takes \
          {needed} MiB: must be at most {limit} MiB; lower grid.push_angle_deg.count or grid.distance_mm.count",
@@ -80,23 +80,23 @@ pub enum PlanError {
         limit = MEMORY_LIMIT >> 20
     )]
     Panel {
-        /// Push angles of the grid.
+        /// Number of push angles of the grid.
         push_angles: usize,
-        /// Distances of the grid.
+        /// Number of distances of the grid.
         distances: usize,
         /// Memory of the run, in MiB.
         needed: u64,
     },
-    /// The panels of all whiskers together are too large to be kept in memory.
+    /// The panels of all whiskers together take more memory than is allowed.
     #[error(
         "grid: {whiskers} panels of {cells} cells take {needed} MiB in memory: must be at most {limit} MiB; \
          take one panel at a time with `for_each_panel`, or lower the counts of the axes",
         limit = MEMORY_LIMIT >> 20
     )]
     AllPanels {
-        /// Whiskers of the sweep.
+        /// Number of whiskers of the sweep.
         whiskers: usize,
-        /// Cells of one panel.
+        /// Number of cells of one panel.
         cells: usize,
         /// Memory of the run, in MiB.
         needed: u64,
@@ -109,7 +109,7 @@ fn bytes_in_flight(scene: &Scene) -> u64 {
 }
 
 impl Plan {
-    /// Returns the plan for `scene`.
+    /// Creates the plan of a run for `scene`.
     ///
     /// # Errors
     /// When one panel takes more than [`MEMORY_LIMIT`].
@@ -154,7 +154,7 @@ impl Plan {
         })
     }
 
-    /// The plan for a run of `scene` that keeps the panels of all whiskers in memory.
+    /// Creates the plan of a run of `scene` that keeps the panels of all whiskers in memory.
     ///
     /// # Errors
     /// When one panel, or all panels with those that are being computed, take more than [`MEMORY_LIMIT`].
@@ -173,7 +173,7 @@ impl Plan {
         Ok(Self { bytes, ..plan })
     }
 
-    /// Returns the sides of the push angles of `scene`.
+    /// Returns the whisker sides that the push angles of `scene` need, `[side]`.
     #[must_use]
     pub fn sides(scene: &Scene) -> Vec<Side> {
         let pushes = &scene.grid.push_angle_deg;
@@ -189,13 +189,14 @@ impl Plan {
         })
     }
 
-    /// Number of states of a trajectory for derivatives of the rod: by the force and, if they do not follow from it, two by the contact.
+    /// Returns the number of states that a trajectory carries for derivatives of the rod: by the force and, if they do not follow from
+    /// it, two by the contact.
     #[must_use]
     pub const fn derivative_states(&self) -> usize {
         if self.method.effects.similar() { 3 } else { 5 }
     }
 
-    /// Number of states of a trajectory for the rest shape: cos and sin of its tangent, if it is curved.
+    /// Returns the number of states that a trajectory carries for the rest shape: cos and sin of its tangent, if it is curved.
     #[must_use]
     pub const fn rest_states(&self) -> usize {
         if self.method.effects.curvature { 2 } else { 0 }

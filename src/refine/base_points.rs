@@ -13,10 +13,10 @@ use crate::rod::Rest;
 use crate::sheet::{RowSpan, Sheet};
 use rayon::prelude::*;
 
-/// Returns the base points of each row of `batch`, `[row][base point]`, for its cells from first touch on.
+/// Returns the base points of each row of a batch, `[row][base point]`, for its cells from first touch on.
 ///
-/// A row has none if it has no span from first touch, if a trajectory takes more than [`MOST_TRAJECTORY_STEPS`], or if it has fewer cells
-/// than base points.
+/// A row has no base points if it has no span from first touch, or fewer cells than base points. It also has none if a trajectory takes
+/// more than [`MOST_TRAJECTORY_STEPS`].
 #[must_use]
 pub fn base_points(batch: &RowBatch) -> Vec<Vec<BasePoint>> {
     let wanted = batch.rows.par_iter().map(|row| {
@@ -50,7 +50,7 @@ pub fn base_points(batch: &RowBatch) -> Vec<Vec<BasePoint>> {
     expanded.map(Option::unwrap_or_default).collect()
 }
 
-/// Span of a row from first touch to a sound end.
+/// Row span from first touch to a sound end of the row.
 pub struct SpanFromTouch<'a> {
     sheet: &'a Sheet,
     row: usize,
@@ -60,7 +60,7 @@ pub struct SpanFromTouch<'a> {
 }
 
 impl<'a> SpanFromTouch<'a> {
-    /// The span of `row`; `None` if the row does not go from first touch to a sound end in one span.
+    /// Returns the span of `row` from first touch; `None` if the row does not go to a sound end in one span.
     pub fn new(sheet: &'a Sheet, row: usize) -> Option<Self> {
         let end = sheet.crossings[row].first()?;
         // On a lattice, a row with more crossings may be in several pieces.
@@ -77,7 +77,7 @@ impl<'a> SpanFromTouch<'a> {
         })
     }
 
-    /// Approximate states at `parts` of the row parameter's end.
+    /// Returns approximate states of the row at `parts` of the row parameter's end, `[part]`.
     pub fn states(&self, parts: &[f64]) -> impl Iterator<Item = RowState<'a>> {
         parts.iter().map(|part| {
             let w = part * self.w_end;

@@ -35,18 +35,18 @@ const STEPS_NEAR_FOLD: u32 = 30;
 /// Target of Newton's method for one cell: a guess and the pole to reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellTarget {
-    /// Index of the rod and its sheet in the call.
+    /// Index of the target's rod and sheet among those of the call.
     pub rod: u32,
-    /// Guess for the contact coordinate `tau`.
+    /// Guess for the cell's contact coordinate `tau`, dimensionless.
     pub tau: f64,
-    /// Guess for the signed load `f/rho^2`.
+    /// Guess for the cell's signed load `f/rho^2`, dimensionless.
     pub load: f64,
-    /// Target centre of the pole in the frame of the base, in whisker lengths.
+    /// Target centre of the pole for the cell in the frame of the base, in whisker lengths.
     pub pole: DVec2,
 }
 
 impl CellTarget {
-    /// Returns the start of Newton's method.
+    /// Returns the start of Newton's method for the cell.
     #[must_use]
     pub const fn guess(&self) -> Guess {
         Guess {
@@ -61,9 +61,9 @@ impl CellTarget {
 pub struct Refined {
     /// Last state computed for the cell.
     pub state: ContactState,
-    /// Number of Newton steps taken.
+    /// Number of Newton steps taken for the cell.
     pub steps: u32,
-    /// Outcome of the refinement.
+    /// Outcome of the refinement of the cell.
     pub outcome: RefineOutcome,
 }
 
@@ -86,13 +86,13 @@ impl Default for Refined {
 /// State of the whisker at a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the state, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`.
+    /// Signed load `f/rho^2` of the state, dimensionless.
     pub load: f64,
-    /// The state: pole with first derivatives, pose of the base, force and energy.
+    /// Pole of the state with first derivatives, pose of the base, force and energy.
     pub full: FullState,
-    /// Distance of the pole from its target, in whisker lengths; an upper bound if the last step is extrapolated.
+    /// Residual of the state: distance of the pole from its target, in whisker lengths; an upper bound if the last step is extrapolated.
     pub residual: f64,
 }
 
@@ -107,17 +107,18 @@ impl ContactState {
 /// Outcome of the refinement of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefineOutcome {
-    /// Found a stable state.
+    /// The refinement found a stable state.
     Solved,
-    /// Stable state of a longer whisker: the contact lies beyond the tip.
+    /// The refinement found a stable state of a longer whisker: the contact lies beyond the tip.
     BeyondTip,
-    /// No state: the target direction lies beyond the fold.
+    /// The cell has no state: the target direction lies beyond the fold.
     BeyondFold,
-    /// Neither a state nor a proof that there is none.
+    /// The refinement found neither a state nor a proof that there is none.
     NotConverged,
 }
 
-/// Refines the guesses of `targets` by `method`, each on the sheet `sheets[target.rod]`. Returns one cell for each target.
+/// Refines the guesses of `targets` by `method`, each on the sheet `sheets[target.rod]`. Returns one refined cell for each target,
+/// `[target]`.
 #[must_use]
 pub fn refine(method: Method, sheets: &[&Sheet], targets: &[CellTarget]) -> Vec<Refined> {
     let mut cells = vec![Refined::default(); targets.len()];
@@ -150,8 +151,8 @@ fn refine_chunk(method: Method, sheets: &[&Sheet], targets: &[CellTarget], cells
     }
 }
 
-/// Returns the targets of the cells of `sheet` at those of the signed push angles, in degrees, that are on its side. They are sorted by
-/// row, then by magnitude of the push angle; `rod` is the index of the sheet's rod.
+/// Returns the targets of the cells of `sheet` at those of the signed push angles, in degrees, that are on its side, `[target]`. They are
+/// sorted by row, then by magnitude of the push angle; `rod` is the index of the sheet's rod.
 #[must_use]
 pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarget> {
     let sign = sheet.side.sign();

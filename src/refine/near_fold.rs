@@ -1,4 +1,4 @@
-//! Cells next to the fold, where Newton's method has a singular Jacobian.
+//! Cells next to the fold, where the Jacobian of Newton's method is singular.
 //!
 //! Along the level curve of `D` the direction of the pole has its maximum at the fold, `phi = phi_fold - c eta^2/2`. So the fold at the
 //! target distance decides whether the target direction has a solution, and gives its `eta`.
@@ -10,18 +10,19 @@ use crate::shooting::SecondVariation;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
-/// What follows from the fold for a cell.
+/// Decision of the fold about a cell that Newton's method did not solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FoldVerdict {
-    /// No solution: the target direction lies beyond the fold.
+    /// The cell has no solution: the target direction lies beyond the fold.
     Beyond,
-    /// Newton's method starts again at this `(tau, load)`.
+    /// The cell may have a solution: Newton's method starts again at this `(tau, load)`.
     Start(DVec2),
-    /// The fold was not found.
+    /// The fold was not found, so nothing follows for the cell.
     Unknown,
 }
 
-/// Finds the fold at the distance of each target, from the target's guess, and compares directions. Returns one verdict for each target.
+/// Finds the fold at the distance of each target, from the target's guess, and compares directions. Returns one verdict for each target,
+/// `[target]`.
 pub fn decide(method: Method, sheets: &[&Sheet], targets: &[CellTarget]) -> Vec<FoldVerdict> {
     let problems: Vec<EdgeProblem> = targets
         .iter()

@@ -11,9 +11,10 @@ use glam::DVec2;
 /// Longest Newton step, as [`limited`] measures it, at whose end the state is extrapolated instead of integrated.
 const EXTRAPOLATED_STEP: f64 = 1.5e-7;
 
-/// Bound on the residual after such a step, in units of `length^2 (s + D)`, with the contact's arclength `s` and the pole's distance `D`.
-/// Measured on 400,000 random states: at most 16.3, for 99 % of them at most 4.6. Their ranges: taper up to 0.995, `A*` up to 1.5, poles
-/// up to a tenth of the length, friction up to 1, moduli from a tenth to ten times, loads up to [`LARGEST_Q`].
+/// Bound on the residual after an extrapolated last step of a given length, in units of `length^2 (s + D)`. Here, `s` is the contact's
+/// arclength and `D` the pole's distance. Measured on 400,000 random states: at most 16.3, for 99 % of them at most 4.6. Their ranges:
+/// taper up to 0.995, `A*` up to 1.5, poles up to a tenth of the length, friction up to 1, moduli from a tenth to ten times, loads up to
+/// [`LARGEST_Q`].
 pub const LEFT_BY_STEP: f64 = 20.0;
 
 /// Largest `|load| s^2` for which [`LEFT_BY_STEP`] is measured, with measured radii times their softness. Beyond it, a whisker coils up.
@@ -117,8 +118,8 @@ struct ConeDeviation {
     /// Ratio of the rod's rotation under a small load to the cone's, at least 1.
     softness: f64,
     /// Ratio of the residual that a step leaves to the cone's. Second derivatives grow with the square of the softness, and with the
-    /// compliance at the contact. Measured on 137,000 random states of rods of up to 200 rows, with radii of a thousandth to one and a
-    /// half times the cone's, moduli, friction and loads as for [`LEFT_BY_STEP`]: without the margin, one state left 1.02 times as much.
+    /// compliance at the contact. Measured on 137,000 random states of rods of up to 200 rows: without the margin, one state left 1.02
+    /// times as much. Radii were a thousandth to one and a half times the cone's, moduli, friction and loads as for [`LEFT_BY_STEP`].
     left: f64,
 }
 
@@ -153,7 +154,8 @@ fn is_near(guess: Guess, state: &ContactState, s: f64) -> bool {
         && (state.load - guess.load).abs() <= NEAR_GUESS * per_load
 }
 
-/// Returns the outcome of a converged state: it counts only on the sheet, and near its guess where the sheet is followed by continuation.
+/// Returns the outcome of a converged state of a cell. The state counts only on the sheet, and only near its guess where the sheet is
+/// followed by continuation.
 pub fn verdict(sheet: &Sheet, guess: Guess, state: &ContactState) -> RefineOutcome {
     let s = arclength(&sheet.rod, state.tau);
     let is_elsewhere = sheet.is_continued() && !is_near(guess, state, s);

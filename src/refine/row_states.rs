@@ -13,27 +13,27 @@ use crate::shooting::{FirstVariation, limited};
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// State of a row to find.
+/// Target of a search for a state of a row at a row parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct RowState<'a> {
-    /// Sheet of the whisker side.
+    /// Stable sheet on which the state lies.
     pub sheet: &'a Sheet,
-    /// Index of the row in the sheet.
+    /// Index of the state's row in the sheet.
     pub row: usize,
-    /// Signed row parameter `load tau^2`.
+    /// Signed row parameter `load tau^2` of the state, dimensionless.
     pub w: f64,
-    /// Contact coordinate `tau` near the state; the load follows from `w`.
+    /// Contact coordinate `tau` near the state, dimensionless; the load follows from `w`.
     pub tau: f64,
 }
 
-/// State that is exact to rounding.
+/// State of a row that is exact to rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct ExactState {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the exact state, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`.
+    /// Signed load `f/rho^2` of the exact state, dimensionless.
     pub load: f64,
-    /// State, with the derivatives of the last trajectory.
+    /// Exact state, with the derivatives of the last trajectory.
     pub variation: FirstVariation,
 }
 

@@ -7,8 +7,9 @@ use whiskmap_plot::CellAxis;
 /// Boundaries of neighbouring rows are not connected if they lie farther apart than this fraction of the axis.
 const JUMP: f64 = 0.25;
 
-/// The boundary on both sides of the whisker, inside the axis: lines through points `[push angle (deg), distance (mm)]`. In each row
-/// and side, the whisker detaches at the push angle of the cell with the smallest margin, plus that margin away from 0.
+/// Returns the detachment boundary on both sides of the whisker, inside the axis: lines through points `[push angle (deg), distance
+/// (mm)]`, `[line][point]`. In each row and side, the whisker detaches at the push angle of the cell with the smallest margin, plus that
+/// margin away from 0.
 pub fn stretches(grid: &Grid, margin_deg: &ChannelValues) -> Vec<Vec<[f64; 2]>> {
     let [low, high] = CellAxis::new("", &grid.push_angle_deg).range();
     let mut stretches: Vec<Vec<[f64; 2]>> = Vec::new();

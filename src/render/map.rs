@@ -1,4 +1,4 @@
-//! The picture of a stored map: the regimes, or any channel.
+//! Pictures of stored maps: the regimes, or any channel.
 
 use super::RenderError;
 use super::boundary::stretches;
@@ -11,17 +11,18 @@ use whiskmap_plot::{
     ScaleOptions, Shading, ValueSummary,
 };
 
-/// How to draw a map.
+/// Options of the picture of a map: channel, colour scale and width.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MapOptions<'a> {
-    /// Name of the channel. `None` draws the regimes, with the detachment boundary over them.
+    /// Name of the drawn channel. `None` draws the regimes, with the detachment boundary over them.
     pub channel: Option<&'a str>,
-    /// Whether the colour scale is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the 1st
-    /// percentile of the positive values.
+    /// True if the colour scale of the map is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the
+    /// 1st percentile of the positive values.
     pub log: bool,
-    /// Ends `[low, high]` of the colour bar, in the channel's unit; values beyond them take the colours of the ends.
+    /// Ends `[low, high]` of the colour bar, in the channel's unit; values beyond them take the colours of the ends. `None` for the
+    /// extent of the values.
     pub range: Option<[f64; 2]>,
-    /// Width in pixels; `None` for the width at which all text can be read.
+    /// Width of the picture in pixels; `None` for the width at which all text can be read.
     pub width: Option<u32>,
 }
 
@@ -29,8 +30,7 @@ pub struct MapOptions<'a> {
 /// sweep axis to the right and the second upwards.
 ///
 /// # Errors
-/// The map has more than two sweep axes, it lacks the channel, the channel cannot have the requested colour scale, or the map is
-/// damaged.
+/// The map has more than two sweep axes, lacks the channel, or is damaged. Or the channel cannot have the requested colour scale.
 pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderError> {
     let grid = map.grid();
     if grid.sweep.len() > 2 {
@@ -104,7 +104,7 @@ fn codes(
     Ok((Shading::Codes { fills, other }, legend))
 }
 
-/// Whether any panel shows a stretch of the detachment boundary.
+/// Returns true if any panel shows a stretch of the detachment boundary.
 fn has_boundary(map: &MapSlice) -> Result<bool, RenderError> {
     if !map.channels().contains(&"margin_deg") {
         return Ok(false);
@@ -163,7 +163,7 @@ fn quantities(
     Ok((Shading::Quantities(scale), marks.into_iter().collect()))
 }
 
-/// Whether the states in `channel` include some whose friction is not the assumed one.
+/// Returns true if the states in `channel` include some whose friction is not the assumed one.
 fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
     let is_marked = STATE_CHANNELS.contains(&channel) && map.channels().contains(&"status");
     Ok(is_marked && map.codes("status")?.into_iter().any(is_mark))

@@ -20,19 +20,19 @@ pub use whiskmap_plot::{
 use crate::store;
 use whiskmap_plot::ScaleError;
 
-/// A picture that cannot be drawn. Every message is complete; there is no chain of sources to print.
+/// Error of a picture that cannot be drawn. Every message is complete; there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// The map lacks what is to be drawn, or it is damaged.
+    /// The stored map lacks the channel that is to be drawn, or it is damaged.
     #[error(transparent)]
     Store(#[from] store::StoreError),
     /// The channel cannot have the requested colour scale.
     #[error("colour scale of `{channel}`: {cause}")]
     Scale {
-        /// Name of the channel.
+        /// Name of the channel with the impossible colour scale.
         channel: String,
-        /// What is wrong, and what is allowed.
+        /// Fault of the colour scale: what is wrong, and what is allowed.
         cause: ScaleError,
     },
     /// A colour scale is requested for a channel of codes.
@@ -40,7 +40,7 @@ pub enum RenderError {
         "colour scale of `{0}`: the channel is made of codes; choose a channel of quantities, such as force_un"
     )]
     Codes(String),
-    /// The map has more than two sweep axes; their names.
+    /// The map has more than two sweep axes, with these names.
     #[error(
         "a picture has room for two sweep axes, there are {0}; choose a value of each other one by --at"
     )]

@@ -9,33 +9,33 @@ use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerS
 use crate::uncertainty::EndSpread;
 use whiskmap_plot::{Band, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
 
-/// An axis of a plot of rows.
+/// Axis of a plot of table rows: a label and the value of each row.
 #[derive(Clone, Copy, Debug)]
 pub struct PlotAxis<Row, Value> {
-    /// Label, with its unit.
+    /// Label of the plot axis, with its unit.
     pub label: &'static str,
-    /// Value of a row, in the unit of the label.
+    /// Function that returns the value of a row on the plot axis, in the unit of the label.
     pub value: fn(&Row) -> Value,
 }
 
-/// An axis of a detachment curve; rows without a value are not drawn.
+/// Axis of a plot of detachment curves; rows without a value are not drawn.
 pub type CurveAxis = PlotAxis<Detachment, Option<f64>>;
 
-/// An axis of a branch.
+/// Axis of a plot of branches.
 pub type BranchAxis = PlotAxis<BranchPoint, f64>;
 
 /// Detachments to draw with one stroke and one name, as a line for each whisker, side and kind of detachment.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawnCurve<'a> {
-    /// Detachments, one whisker and side after the other, each in order of increasing distance.
+    /// Detachments of the curve, one whisker and side after the other, each in order of increasing distance.
     pub rows: &'a [Detachment],
-    /// Solid or dashed.
+    /// Dash pattern of the curve: solid or dashed.
     pub stroke: Stroke,
-    /// Name of the whisker, before the kind of detachment in the legend; may be empty.
+    /// Name of the curve's whisker, before the kind of detachment in the legend; may be empty.
     pub name: &'a str,
 }
 
-/// A plot of detachment curves, a line for each kind of detachment.
+/// Returns a plot of detachment curves, with a line for each kind of detachment.
 #[must_use]
 pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
@@ -58,7 +58,7 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
     plot
 }
 
-/// A bifurcation diagram of the branches at each pole, in the ink beside them. Each branch begins at its first touch.
+/// Returns a bifurcation diagram: a plot of the branches at each pole, in the ink beside them. Each branch begins at its first touch.
 #[must_use]
 pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
@@ -93,7 +93,8 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
     plot
 }
 
-/// Measured detachments as dots at `[distance (mm), angle (deg)]`: slip-off open, pull-off filled, grey where the kind is unknown.
+/// Returns measured detachments as dots at `[distance (mm), angle (deg)]`: slip-off open, pull-off filled, grey where the kind is
+/// unknown.
 #[must_use]
 pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
     let dots = points.iter().map(|point| {
@@ -115,17 +116,17 @@ pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
 /// A whisker shape to draw, with its colour, stroke and name in the legend.
 #[derive(Clone, Debug)]
 pub struct DrawnShape {
-    /// The whisker and its pole.
+    /// Shape of the whisker to draw, with its pole.
     pub shape: WhiskerShape,
-    /// Colour of the whisker.
+    /// Colour of the drawn whisker.
     pub ink: Ink,
-    /// Solid or dashed.
+    /// Dash pattern of the drawn whisker: solid or dashed.
     pub stroke: Stroke,
-    /// Name in the legend.
+    /// Name of the drawn whisker in the legend.
     pub name: String,
 }
 
-/// A plot of whiskers, in mm, in front of the pole of the first one.
+/// Returns a plot of whisker shapes, in mm, in front of the pole of the first one.
 #[must_use]
 pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
     let mut plot = empty(title, "x (mm)", "y (mm)");
@@ -142,7 +143,7 @@ pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
     plot
 }
 
-/// A plot of the push angles of a design, with its solutions as dots; over the logarithm of the parameter if its range is wide.
+/// Returns a plot of the push angles of a design, with its solutions as dots; over the logarithm of the parameter if its range is wide.
 #[must_use]
 pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> Plot {
     let (x_label, x): (String, fn(f64) -> f64) = match design.is_wide() {
@@ -172,8 +173,8 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
     plot
 }
 
-/// Bands of push angle (deg) over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th. `rows`
-/// has one side after the other, each in order of increasing distance.
+/// Returns bands of push angle (deg) over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th.
+/// `rows` has one side after the other, each in order of increasing distance.
 #[must_use]
 pub fn bands(rows: &[EndSpread]) -> Vec<Band> {
     type Percentiles = fn(&EndSpread) -> [Option<f64>; 2];

@@ -1,4 +1,4 @@
-//! Values of an axis: a list, or a range with a number of values.
+//! Values of a scene's axis: a list, or a range with a number of values.
 
 use super::error::SceneFault;
 use super::limits::{NumberLimits, digits};
@@ -6,7 +6,7 @@ use super::limits::{NumberLimits, digits};
 /// Most values of one axis.
 const MOST_VALUES: usize = 65_536;
 
-/// Start of the message about a list that does not grow.
+/// Start of the message about values of an axis that do not increase.
 pub(super) const NOT_GROWING: &str = "must be greater than the value before it";
 
 /// Values of an axis as a scene gives them. A built scene accepts strictly increasing values only.
@@ -21,30 +21,30 @@ pub(super) const NOT_GROWING: &str = "must be greater than the value before it";
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisValues {
-    /// Every value.
+    /// List of all values of an axis, in the axis' unit, `[value]`.
     List(Vec<f64>),
-    /// `count` values from `from` to `to`; a range of one value needs no `to`.
+    /// Range of `count` values of an axis from `from` to `to`; a range of one value needs no `to`.
     Range {
-        /// First value.
+        /// First value of the range, in the axis' unit.
         from: f64,
-        /// Last value.
+        /// Last value of the range, in the axis' unit; `None` for a range of one value.
         to: Option<f64>,
-        /// Number of values.
+        /// Number of values of the range.
         count: usize,
-        /// Spacing of the values.
+        /// Spacing of the values of the range: linear or logarithmic.
         scale: AxisScale,
     },
 }
 
-/// Spacing of the values of a range.
+/// Spacing of the values of a range: equal differences or equal ratios.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum AxisScale {
-    /// Equal differences.
+    /// Equal differences between neighbouring values of a range.
     #[default]
     Linear,
-    /// Equal ratios.
+    /// Equal ratios of neighbouring values of a range.
     Log,
 }
 
@@ -73,7 +73,7 @@ impl<const N: usize> From<[f64; N]> for AxisValues {
 }
 
 impl AxisValues {
-    /// `count` values with equal differences, from `from` to `to`.
+    /// Creates a range of `count` values with equal differences, from `from` to `to`, in the axis' unit.
     #[must_use]
     pub const fn linear(from: f64, to: f64, count: usize) -> Self {
         Self::Range {
@@ -84,7 +84,8 @@ impl AxisValues {
         }
     }
 
-    /// The values of the axis `key`: within the limits, strictly increasing, at least one.
+    /// Returns the values of the axis `key`, in its unit, if they are within the limits, strictly increasing, and at least one,
+    /// `[value]`.
     pub(super) fn checked(&self, key: &str, limits: &NumberLimits) -> Result<Vec<f64>, SceneFault> {
         match self {
             Self::List(list) if (1..=MOST_VALUES).contains(&list.len()) => {

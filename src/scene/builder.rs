@@ -1,4 +1,4 @@
-//! The numbers of a scene as they are given, before the checks.
+//! Numbers of a scene before they are checked.
 
 use super::axis::AxisValues;
 use super::grid::SweepPlace;
@@ -13,7 +13,7 @@ pub struct Deviations {
     pub profile_radius_um: Option<f64>,
 }
 
-/// Numbers of a scene by parameter: those that are given.
+/// Given numbers of a scene, by parameter: `[parameter]`, each in its unit; `None` for a number that is not given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Numbers([Option<f64>; Parameter::ALL.len()]);
 
@@ -22,7 +22,7 @@ impl Numbers {
         self.0[parameter as usize]
     }
 
-    /// Sets a number. A taper takes the place of the radius at the tip, and that of the taper.
+    /// Sets a number of the scene, in its unit. A taper replaces the radius at the tip, and the reverse.
     pub fn set(&mut self, parameter: Parameter, value: f64) {
         match parameter {
             Parameter::Taper => self.0[Parameter::TipRadiusUm as usize] = None,
@@ -32,7 +32,7 @@ impl Numbers {
         self.0[parameter as usize] = Some(value);
     }
 
-    /// The numbers of the whisker at a place of the sweep.
+    /// Returns the numbers of the whisker at a place of the sweep.
     pub fn at(mut self, place: &SweepPlace) -> Self {
         for (parameter, value) in place.values() {
             self.set(parameter, value);
@@ -40,7 +40,7 @@ impl Numbers {
         self
     }
 
-    /// The radius at the tip, in micrometres: given, or that of a taper from the base.
+    /// Returns the radius at the tip, in micrometres, as given or from a taper; `None` if neither is given.
     pub fn tip_radius_um(&self) -> Option<f64> {
         let base = self.get(Parameter::BaseRadiusUm);
         let tapered = base.zip(self.get(Parameter::Taper));
@@ -49,7 +49,7 @@ impl Numbers {
     }
 }
 
-/// Description of a scene that is not yet checked.
+/// Builder of a scene: its description before the checks.
 ///
 /// Required are the length, Young's modulus, the radii at base and tip (or [`SceneBuilder::profile`]), push angles and distances.
 /// A curvature, a pole radius and a friction that are left out are 0; a modulus ratio and an arc stretch are 1.
@@ -76,41 +76,42 @@ impl Numbers {
 pub struct SceneBuilder {
     pub(super) title: String,
     pub(super) numbers: Numbers,
-    /// Arclength in millimetres and radius in micrometres of measured rows.
+    /// Measured rows of arclength in millimetres and radius in micrometres, `[row][arclength, radius]`; `None` without a profile.
     pub(super) rows: Option<Vec<[f64; 2]>>,
     pub(super) push_angle_deg: AxisValues,
     pub(super) distance_mm: AxisValues,
     pub(super) sweep: Vec<(Parameter, AxisValues)>,
     pub(super) uncertainty: Option<Deviations>,
-    /// Stem of the output files, if the scene names it.
+    /// Stem of the names of the output files; `None` if the scene does not give it.
     pub(super) name: Option<String>,
-    /// Stem of the output files otherwise.
+    /// Stem of the names of the output files if the scene does not give one.
     pub(super) stem: String,
 }
 
 impl SceneBuilder {
-    /// Sets the title: one line of text.
+    /// Sets the title of the scene: one line of text.
     #[must_use]
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.title = title.into();
         self
     }
 
-    /// Sets a number, in the unit of the parameter.
+    /// Sets a number of the scene, in the unit of the parameter.
     #[must_use]
     pub fn set(mut self, parameter: Parameter, value: f64) -> Self {
         self.numbers.set(parameter, value);
         self
     }
 
-    /// Sets measured radii in place of those at base and tip: arclength in millimetres and radius in micrometres of each row.
+    /// Sets measured radii instead of those at base and tip: arclength in millimetres and radius in micrometres, `[row][arclength,
+    /// radius]`.
     #[must_use]
     pub fn profile(mut self, rows: impl Into<Vec<[f64; 2]>>) -> Self {
         self.rows = Some(rows.into());
         self
     }
 
-    /// Sets the push angles, in degrees: negative CF, positive CB.
+    /// Sets the push angles of the scene's grid, in degrees: negative CF, positive CB.
     #[must_use]
     pub fn push_angle_deg(mut self, values: impl Into<AxisValues>) -> Self {
         self.push_angle_deg = values.into();
@@ -124,7 +125,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Sets the axis along which whiskers differ in `parameter`, one of [`Parameter::SWEPT`]; a new axis is the last one.
+    /// Sets the sweep axis along which whiskers differ in `parameter`, one of [`Parameter::SWEPT`]; a new axis is the last one.
     #[must_use]
     pub fn sweep(mut self, parameter: Parameter, values: impl Into<AxisValues>) -> Self {
         let values = values.into();
@@ -135,12 +136,12 @@ impl SceneBuilder {
         self
     }
 
-    /// Returns true if there is an axis along which whiskers differ in `parameter`.
+    /// Returns true if the scene has a sweep axis along which whiskers differ in `parameter`.
     pub(super) fn sweeps(&self, parameter: Parameter) -> bool {
         self.sweep.iter().any(|(own, _)| *own == parameter)
     }
 
-    /// Sets the standard deviations of the numbers.
+    /// Sets the standard deviations of the numbers of the scene.
     #[must_use]
     pub fn uncertainty(mut self, deviations: Deviations) -> Self {
         self.uncertainty = Some(deviations);

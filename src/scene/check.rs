@@ -1,4 +1,4 @@
-//! The ranges: what makes a scene valid everywhere after.
+//! Checks of a scene: the ranges in which all later modules are valid.
 //!
 //! Ranges are wide; they keep units from being mixed up and f32 from overflowing, and they hold wherever
 //! the geometry of first touch is one-to-one. Lengths are measured in lengths of the whisker.
@@ -27,7 +27,7 @@ pub const LONGEST_TITLE: usize = 1000;
 const LONGEST_NAME: usize = 200;
 
 impl SceneBuilder {
-    /// The data of the scene, with this text.
+    /// Checks the description and returns the data of the scene, with `text` as its TOML.
     pub(super) fn checked(&self, text: SceneText) -> Result<SceneData, SceneFault> {
         check_title(&self.title)?;
         let lengths_mm = sweep::lengths_mm(self)?;
@@ -150,9 +150,9 @@ fn grid(scene: &SceneBuilder, [shortest, longest]: [f64; 2]) -> Result<Grid, Sce
     })
 }
 
-/// Checks the pole. Where its rim touches the whisker at rest, the centre is `D` away from the base, and `D^2` grows along the
-/// whisker `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r` below the
-/// whisker's smallest radius of curvature, first touch is one-to-one and the base stays outside the pole.
+/// Checks the pole. Where its rim touches the whisker at rest, the centre is at a distance `D` from the base. Along the whisker, `D^2`
+/// grows `1 -+ r kappa` times as fast as the chord's square (the sign is the side). So with `r` below the whisker's smallest radius of
+/// curvature, first touch is one-to-one and the base stays outside the pole.
 fn pole(numbers: &Numbers, whisker: &Whisker, grid: &Grid) -> Result<Pole, SceneFault> {
     let sharpest = 1.0 / whisker.sharpest_bend_per_mm();
     let nearest = grid.distance_mm[0];

@@ -9,24 +9,24 @@ use super::whisker::{Curvature, Pole, SweptWhisker, Whisker};
 /// Data of a scene. Only a [`Scene`](super::Scene) guarantees that the values are valid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneData {
-    /// Title: one line of text.
+    /// Title of the scene: one line of text.
     pub title: String,
-    /// The whisker, the first one of a sweep. [`SceneData::whiskers`] yields the whiskers to simulate.
+    /// Whisker of the scene, the first one of a sweep. [`SceneData::whiskers`] yields the whiskers to simulate.
     pub whisker: Whisker,
-    /// The pole, the first one of a sweep.
+    /// Pole of the scene, the first one of a sweep.
     pub pole: Pole,
     /// Push angles, distances and sweep axes of the map.
     pub grid: Grid,
-    /// Standard deviations of the numbers, if the scene gives them.
+    /// Standard deviations of the scene's numbers; `None` if the scene does not give them.
     pub uncertainty: Option<Deviations>,
     /// Name of the scene: the stem of its output files.
     pub name: String,
-    /// The scene as TOML.
+    /// TOML text of the scene.
     pub text: SceneText,
 }
 
 impl SceneData {
-    /// The scene's whisker and pole with the values of `place`. A taper determines the radius at the tip. The vertex of a
+    /// Returns the scene's whisker and pole with the values of `place`. A taper determines the radius at the tip. The vertex of a
     /// curvature axis is the whisker's own, or 0 if the scene gives none.
     #[must_use]
     pub fn whisker_at(&self, place: SweepPlace) -> SweptWhisker {
@@ -60,37 +60,37 @@ impl SceneData {
         }
     }
 
-    /// Every whisker of the sweep; the first axis varies fastest. Without axes, the one whisker of the scene.
+    /// Returns every whisker of the sweep; the first axis varies fastest. Without axes, it is the one whisker of the scene.
     pub fn whiskers(&self) -> impl Iterator<Item = SweptWhisker> {
         (0..self.whisker_count()).map(|index| self.whisker(index))
     }
 
-    /// Whisker `index` of the sweep, in the order of [`Self::whiskers`]. Indices are taken modulo [`Self::whisker_count`].
+    /// Returns whisker `index` of the sweep, in the order of [`Self::whiskers`]. Indices are taken modulo [`Self::whisker_count`].
     #[must_use]
     pub fn whisker(&self, index: usize) -> SweptWhisker {
         self.whisker_at(self.grid.place(index))
     }
 
-    /// Groups of `size` whiskers of the sweep; the last group has the rest.
+    /// Returns groups of `size` whiskers of the sweep, `[group]`; the last group has the rest.
     pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<SweptWhisker>> {
         let mut whiskers = self.whiskers();
         let next = move || -> Vec<_> { whiskers.by_ref().take(size).collect() };
         std::iter::repeat_with(next).take_while(|group| !group.is_empty())
     }
 
-    /// Number of whiskers of the sweep.
+    /// Returns the number of whiskers of the sweep.
     #[must_use]
     pub fn whisker_count(&self) -> usize {
         self.grid.whisker_count()
     }
 
-    /// The first whisker of the sweep, or the only one.
+    /// Returns the first whisker of the sweep, or the only one.
     #[must_use]
     pub fn first_whisker(&self) -> SweptWhisker {
         self.whisker(0)
     }
 
-    /// The whiskers at the ends of the sweep axes: an effect that any whisker has, one of these has.
+    /// Returns the whiskers at the ends of the sweep axes: an effect that any whisker has, one of these has.
     pub fn corner_whiskers(&self) -> impl Iterator<Item = SweptWhisker> {
         let ends = self.grid.ends();
         let corners = 0..ends.whisker_count();
@@ -103,13 +103,13 @@ impl SceneData {
         self.corner_whiskers().any(|own| own.pole.friction != 0.0)
     }
 
-    /// Returns true if there is an axis along which whiskers differ.
+    /// Returns true if the scene has an axis along which whiskers differ.
     #[must_use]
     pub fn is_sweep(&self) -> bool {
         !self.grid.sweep.is_empty()
     }
 
-    /// The smallest and the largest allowed distance of first touch, in millimetres. It must exceed the pole's radius, too.
+    /// Returns the smallest and the largest allowed distance of first touch, in millimetres. It must exceed the pole's radius, too.
     #[must_use]
     pub fn distances_mm(&self) -> (f64, f64) {
         let length = self.whisker.length_mm;

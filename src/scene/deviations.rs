@@ -1,17 +1,17 @@
-//! `[uncertainty]`: standard deviations of the numbers of a scene.
+//! Table `[uncertainty]` of a scene: standard deviations of its numbers.
 
 use super::builder::{Deviations, SceneBuilder};
 use super::error::SceneFault;
 use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
 
-/// Key of the radii of measured rows.
+/// Key of the standard deviation of the radii of measured rows.
 pub(super) const ROWS: &str = "profile_radius_um";
 
 /// Largest standard deviation: the largest number that any key of a scene may have.
 const MOST: f64 = 1e5;
 
-/// Checks the deviations of a scene, if it has any.
+/// Checks the standard deviations of a scene's numbers. Returns `None` if the scene gives none.
 pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneFault> {
     let Some(deviations) = &scene.uncertainty else {
         return Ok(None);
@@ -59,7 +59,7 @@ pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneF
     Ok(Some(deviations.clone()))
 }
 
-/// Lists every key of the table.
+/// Returns the names of all keys of the table `[uncertainty]`, with commas between them.
 pub(super) fn names() -> String {
     let names = Parameter::ALL.map(|one| format!("`{}`", one.name()));
     format!("{}, `{ROWS}`", names.join(", "))

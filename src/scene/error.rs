@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::input::{did_you_mean, shortened};
 
-/// A scene that cannot be read or is refused.
+/// Error of a scene that cannot be read or is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}", self.render(false))]
 pub struct SceneError {
@@ -18,7 +18,7 @@ pub struct SceneError {
 }
 
 impl SceneError {
-    /// An error about a place in the text.
+    /// Creates an error about a part of a scene's text.
     pub(super) fn at(
         origin: &str,
         text: &str,
@@ -33,7 +33,7 @@ impl SceneError {
         }
     }
 
-    /// An error of the reader of TOML, in the terms of TOML rather than of Rust.
+    /// Creates an error from one of the TOML reader, in the terms of TOML rather than of Rust.
     pub(super) fn of_toml(origin: &str, text: &str, why: &toml_edit::de::Error) -> Self {
         let message = match why.message().rsplit_once(", expected ") {
             Some((found, expected)) => {
@@ -72,7 +72,7 @@ impl SceneError {
         )
     }
 
-    /// A refused value: `key = value: must ...`.
+    /// Creates an error about a refused value of a scene: `key = value: must ...`.
     pub(super) fn of_fault(origin: &str, text: &str, fault: SceneFault) -> Self {
         let SceneFault { key, value, must } = fault;
         let message = match value {
@@ -82,19 +82,19 @@ impl SceneError {
         Self::at(origin, text, None, message)
     }
 
-    /// The error with a place in its text.
+    /// Returns the error with a range of bytes in the scene's text.
     pub(super) fn with_span(mut self, span: Option<Range<usize>>) -> Self {
         self.span = span.and_then(|span| within_a_line(&self.text, span));
         self
     }
 
-    /// An error about the file as a whole.
+    /// Creates an error about a scene file as a whole.
     pub(super) fn whole(origin: &str, message: impl Into<String>) -> Self {
         Self::at(origin, "", None, message)
     }
 
-    /// The message for people, over several lines: what is wrong, then file, line, column, the line itself
-    /// and a mark below the culprit. It begins with `error: `; colours are ANSI escapes.
+    /// Returns the message of the error over several lines: what is wrong, then file, line and column, and the line itself with a mark.
+    /// It begins with `error: `; colours are ANSI escapes.
     #[must_use]
     pub fn render(&self, color: bool) -> String {
         let renderer = if color {
@@ -133,10 +133,10 @@ fn suggestion(found: &str, expected: &str) -> String {
     did_you_mean(found, expected.iter().map(String::as_str))
 }
 
-/// The end of a message about a list whose numbers seem to have decimal commas.
+/// End of a message about a list of numbers that seem to have decimal commas.
 pub(super) const DECIMAL_POINTS: &str = "; numbers have decimal points, and commas separate values";
 
-/// Whether a comma stands between two digits.
+/// Returns true if a comma stands between two digits of a text.
 pub(super) fn has_tight_comma(text: &str) -> bool {
     let digit = |byte: &u8| byte.is_ascii_digit();
     let mut windows = text.as_bytes().windows(3);
@@ -168,19 +168,19 @@ fn within_a_line(text: &str, span: Range<usize>) -> Option<Range<usize>> {
     Some(span.start..span.start + line.len())
 }
 
-/// A value that the checks refuse, before the file's name and text join it.
+/// Fault of a scene: a value that the checks refuse, without the file's name and text.
 #[derive(Debug, PartialEq)]
 pub(super) struct SceneFault {
-    /// Key of the value in a scene file.
+    /// Key of the refused value in a scene file.
     pub key: String,
-    /// The value, if it fits into a sentence.
+    /// Text of the refused value; `None` if it is missing or too long for a sentence.
     pub value: Option<String>,
-    /// What is wrong, and what is allowed.
+    /// Message of the fault: what is wrong, and what is allowed.
     pub must: String,
 }
 
 impl SceneFault {
-    /// A key whose value is missing, or too long for a sentence.
+    /// Creates a fault of a key whose value is missing, or too long for a sentence.
     pub fn new(key: impl Into<String>, must: impl Into<String>) -> Self {
         Self {
             key: key.into(),
@@ -189,7 +189,7 @@ impl SceneFault {
         }
     }
 
-    /// A value that is not allowed.
+    /// Creates a fault of a value that is not allowed.
     pub fn of_value(key: impl Into<String>, value: String, must: impl Into<String>) -> Self {
         Self {
             value: Some(value),

@@ -1,38 +1,38 @@
-//! The axes of a sweep, and the place of a whisker in it.
+//! Grid of a map: its axes, and the place of a whisker in a sweep.
 
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
 
 use super::parameter::Parameter;
 
-/// The whisker's length over the nearest distance of first touch.
+/// Largest ratio of the whisker's length to the distance of first touch.
 pub(crate) const NEAREST: f64 = 1000.0;
 
-/// The farthest distance of first touch over the whisker's length.
+/// Largest ratio of the distance of first touch to the whisker's length.
 pub(super) const FARTHEST: f64 = 10.0;
 
-/// Axes of a sweep. Every list of values is strictly increasing and not empty.
+/// Grid of a map: push angles, distances and sweep axes. Every list of values is strictly increasing and not empty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// Push angles, the rotations of the base since first touch, in degrees: `[push_angle]`; negative CF, positive CB.
     pub push_angle_deg: Vec<f64>,
     /// Distances from the base to the contact at first touch, in millimetres: `[distance]`.
     pub distance_mm: Vec<f64>,
-    /// Axes along which whiskers differ, in the order of the scene. Of two axes, a curvature is the second.
+    /// Sweep axes, along which whiskers differ, in the order of the scene, `[axis]`. Of two axes, a curvature is the second.
     pub sweep: Vec<SweepAxis>,
 }
 
-/// An axis along which whiskers, or their poles, differ.
+/// Sweep axis, along which whiskers or their poles differ in one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepAxis {
-    /// The parameter that differs.
+    /// Parameter that differs along the sweep axis.
     pub parameter: Parameter,
-    /// Values of the parameter, in its unit.
+    /// Values of the parameter along the sweep axis, in its unit, `[value]`.
     pub values: Vec<f64>,
 }
 
 impl Grid {
-    /// The values of the axis of `parameter`, if there is one.
+    /// Returns the values of the sweep axis of `parameter`, in its unit, `[value]`; `None` without such an axis.
     #[must_use]
     pub fn axis(&self, parameter: Parameter) -> Option<&[f64]> {
         let mut axes = self.sweep.iter();
@@ -40,14 +40,14 @@ impl Grid {
         axis.map(|axis| &*axis.values)
     }
 
-    /// Names of the axes along which whiskers differ, with commas between them.
+    /// Returns the names of the sweep axes, with commas between them.
     #[must_use]
     pub fn sweep_names(&self) -> String {
         let names = self.sweep.iter().map(|axis| axis.parameter.axis());
         names.collect::<Vec<_>>().join(", ")
     }
 
-    /// The axes along x and along y of an atlas of at most two axes. A single axis of curvatures lies along y.
+    /// Returns the sweep axes along x and y of an atlas of at most two axes: `[x, y]`. A single axis of curvatures lies along y.
     #[must_use]
     pub fn atlas(&self) -> [Option<&SweepAxis>; 2] {
         match &*self.sweep {
@@ -56,13 +56,13 @@ impl Grid {
         }
     }
 
-    /// Number of whiskers of the sweep.
+    /// Returns the number of whiskers of the sweep.
     #[must_use]
     pub fn whisker_count(&self) -> usize {
         self.sweep.iter().map(|axis| axis.values.len()).product()
     }
 
-    /// Indices of whisker `index` on the sweep axes: `[axis]`. The first axis varies fastest; `index` is taken modulo
+    /// Returns the indices of whisker `index` on the sweep axes: `[axis]`. The first axis varies fastest; `index` is taken modulo
     /// [`Self::whisker_count`].
     #[must_use]
     pub fn indices(&self, index: usize) -> Vec<usize> {
@@ -76,7 +76,7 @@ impl Grid {
         .collect()
     }
 
-    /// Values of whisker `index` on the sweep axes; `index` is taken modulo [`Self::whisker_count`].
+    /// Returns the values of whisker `index` on the sweep axes; `index` is taken modulo [`Self::whisker_count`].
     #[must_use]
     pub fn place(&self, index: usize) -> SweepPlace {
         let axes = self.sweep.iter().zip(self.indices(index));
@@ -86,7 +86,7 @@ impl Grid {
         )
     }
 
-    /// The grid with only the ends of every sweep axis.
+    /// Returns the grid with only the ends of every sweep axis.
     pub(super) fn ends(&self) -> Self {
         let mut ends = self.clone();
         for axis in &mut ends.sweep {
@@ -98,19 +98,19 @@ impl Grid {
     }
 }
 
-/// Place of a whisker in a sweep: a value for each axis, in the order of the axes. A row of a table has a column for each.
+/// Place of a whisker in a sweep: a value for each sweep axis, in the order of the axes. In a table, each axis is a column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepPlace(Vec<(Parameter, f64)>);
 
 impl SweepPlace {
-    /// The value on the axis of `parameter`, if there is one.
+    /// Returns the whisker's value on the sweep axis of `parameter`, in its unit; `None` without such an axis.
     #[must_use]
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
         let mut axes = self.0.iter();
         axes.find_map(|(own, value)| (*own == parameter).then_some(*value))
     }
 
-    /// The parameter and the value of each axis.
+    /// Returns the parameter of each sweep axis with the whisker's value, in the parameter's unit.
     pub fn values(&self) -> impl Iterator<Item = (Parameter, f64)> + '_ {
         self.0.iter().copied()
     }

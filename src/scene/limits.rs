@@ -1,4 +1,4 @@
-//! The values a key may have, and how a message says so.
+//! Limits of the values of a scene, and their texts in messages.
 
 use std::fmt;
 use std::ops::{Bound, RangeBounds};
@@ -6,13 +6,13 @@ use std::ops::{Bound, RangeBounds};
 use super::error::SceneFault;
 use super::parameter::Parameter;
 
-/// Largest ratio of the moduli at tip and base, and of base and tip. Measured ratios lie between 0.7 and 1.4.
+/// Largest ratio of the moduli at tip and base, and of those at base and tip. Measured ratios lie between 0.7 and 1.4.
 pub(super) const STIFFEST_TIP: f64 = 20.0;
 
 /// Largest accepted arc stretch, a ratio.
 pub(super) const MOST_STRETCH: f64 = 2.0;
 
-/// The limits of a parameter, whatever the other numbers are. Other numbers narrow some of them.
+/// Returns the limits of a parameter, whatever the other numbers are. Other numbers narrow some of them.
 ///
 /// Coulomb's coefficient is about 0.5 for whiskers of rats on steel. Up to 1, every end of 25,000 random whiskers was found
 /// (`benches/NOTES.md`).
@@ -31,14 +31,14 @@ pub(super) fn limits(parameter: Parameter) -> NumberLimits {
     }
 }
 
-/// A range of numbers. NaN is in none, and no range here reaches infinity.
+/// Limits of a number: a range, in the number's unit. NaN is in none, and no range here reaches infinity.
 pub(super) struct NumberLimits {
     range: (Bound<f64>, Bound<f64>),
     must: String,
 }
 
 impl NumberLimits {
-    /// Both ends are allowed.
+    /// Creates limits of which both ends are allowed.
     pub fn between(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self {
@@ -47,7 +47,7 @@ impl NumberLimits {
         }
     }
 
-    /// The lower end is allowed, the upper one is not.
+    /// Creates limits of which the lower end is allowed, and the upper one is not.
     pub fn below(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self {
@@ -56,7 +56,7 @@ impl NumberLimits {
         }
     }
 
-    /// Adds remarks to the end of the message.
+    /// Adds remarks to the end of the message about a number outside the limits.
     pub fn remarks(mut self, remarks: impl IntoIterator<Item = impl fmt::Display>) -> Self {
         for remark in remarks {
             self.must = format!("{}; {remark}", self.must);
@@ -64,7 +64,7 @@ impl NumberLimits {
         self
     }
 
-    /// Returns the `value` of `key` if it lies within the limits.
+    /// Returns the `value` of `key` if it lies within the limits, otherwise a fault.
     pub fn check(&self, key: &str, value: f64) -> Result<f64, SceneFault> {
         if self.range.contains(&value) {
             Ok(value)
@@ -74,7 +74,7 @@ impl NumberLimits {
     }
 }
 
-/// Formats a number with the fewest digits that identify it, with an exponent where it is very large or small.
+/// Formats a number with the fewest digits that identify it, with an exponent if it is very large or small.
 #[must_use]
 pub fn digits(value: f64) -> String {
     // `Debug` writes 5e-11 where `Display` writes eleven digits, but also 30.0 for 30.
@@ -82,7 +82,7 @@ pub fn digits(value: f64) -> String {
     digits.trim_end_matches(".0").to_owned()
 }
 
-/// One end of a range: a number, and its meaning if it follows from other numbers.
+/// End of a range of allowed numbers: the number, and its meaning if it follows from other numbers.
 pub(super) struct LimitEnd {
     value: f64,
     meaning: Option<&'static str>,

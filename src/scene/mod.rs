@@ -1,4 +1,4 @@
-//! Scenes: checked descriptions of whiskers, poles and grids. An accepted scene is valid everywhere after.
+//! Scenes: checked descriptions of whiskers, poles and grids. An accepted scene is valid in all later modules.
 //!
 //! A [`SceneBuilder`] holds the numbers as they are given. `check` turns it into [`SceneData`], and only checked data becomes a
 //! [`Scene`]. `toml` reads builders from files, writes them, and adds the place in the file to what the checks refuse.

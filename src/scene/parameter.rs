@@ -11,22 +11,22 @@ macro_rules! parameters {
         pub enum $kind { $($(#[$inner])* $parameter,)* }
 
         impl $kind {
-            /// All parameters.
+            /// All parameters of a scene.
             pub const ALL: [Self; [$($name),*].len()] = [$(Self::$parameter),*];
 
-            /// Name, with the unit.
+            /// Returns the name of the parameter, with its unit at the end.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$parameter => $name),* }
             }
 
-            /// Unit; `1` for a ratio.
+            /// Returns the unit of the parameter; `1` for a ratio.
             #[must_use]
             pub const fn unit(self) -> &'static str {
                 match self { $(Self::$parameter => $unit),* }
             }
 
-            /// Key in a scene file.
+            /// Returns the key of the parameter in a scene file.
             #[must_use]
             pub const fn key(self) -> &'static str {
                 match self { $(Self::$parameter => $key),* }
@@ -37,7 +37,7 @@ macro_rules! parameters {
                 match self { $(Self::$parameter => concat!("grid.", $name)),* }
             }
 
-            /// Title in charts.
+            /// Returns the title of the parameter in charts.
             #[must_use]
             pub const fn title(self) -> &'static str {
                 match self { $(Self::$parameter => $title),* }
@@ -47,7 +47,7 @@ macro_rules! parameters {
 }
 
 parameters! {
-    /// A number of the whisker or the pole.
+    /// Parameter of a scene: a number of the whisker or the pole.
     ///
     /// ```
     /// use whiskmap::scene::{Parameter, Scene};
@@ -59,43 +59,43 @@ parameters! {
     /// # Ok::<(), whiskmap::scene::SceneError>(())
     /// ```
     pub enum Parameter {
-        /// Arclength from base to tip.
+        /// Arclength of the whisker from base to tip, in mm.
         LengthMm = "length_mm", "mm", "whisker.length_mm", "length";
-        /// Radius at the base.
+        /// Radius of the whisker at the base, in um.
         BaseRadiusUm = "base_radius_um", "um", "whisker.base_radius_um", "radius at the base";
-        /// Radius at the tip.
+        /// Radius of the whisker at the tip, in um.
         TipRadiusUm = "tip_radius_um", "um", "whisker.tip_radius_um", "radius at the tip";
-        /// `1 - tip/base radius`; it determines the radius at the tip.
+        /// Taper of the whisker, `1 - tip/base radius`, dimensionless; it determines the radius at the tip.
         Taper = "taper", "1", "whisker.tip_radius_um", "taper (1 \u{2212} tip/base radius)";
-        /// Young's modulus at the base, on which no detachment depends.
+        /// Young's modulus of the whisker at the base, in GPa; no detachment depends on it.
         YoungsModulusGpa = "youngs_modulus_gpa", "GPa", "whisker.youngs_modulus_gpa", "Young's modulus";
-        /// Coefficient of the resting whisker's parabola.
+        /// Coefficient of the parabola of the resting whisker, in 1/mm.
         ParabolaPerMm = "parabola_per_mm", "1/mm", "whisker.curvature.parabola_per_mm", "curvature";
-        /// Position of the vertex of the resting whisker's parabola.
+        /// Position of the vertex of the resting whisker's parabola, in mm.
         VertexMm = "vertex_mm", "mm", "whisker.curvature.vertex_mm", "vertex of the parabola";
-        /// Curvature of an Euler spiral at the base.
+        /// Curvature of the resting whisker's Euler spiral at the base, in 1/mm.
         SpiralPerMm = "spiral_per_mm", "1/mm", "whisker.curvature.euler_spiral.per_mm", "curvature of the spiral at the base";
-        /// Growth of an Euler spiral's curvature along the whisker.
+        /// Growth of the curvature of the resting whisker's Euler spiral along the whisker, in 1/mm2.
         SpiralPerMm2 = "spiral_per_mm2", "1/mm2", "whisker.curvature.euler_spiral.per_mm2", "growth of the spiral's curvature";
-        /// Young's modulus at the tip over that at the base.
+        /// Young's modulus of the whisker at the tip over that at the base, dimensionless.
         ModulusTipToBase = "modulus_tip_to_base", "1", "whisker.modulus_gradient.tip_to_base", "modulus, tip over base";
-        /// Real arclength over that in the plane of contact.
+        /// Real arclength of the whisker over its arclength in the plane of contact, dimensionless.
         ArcStretch = "arc_stretch", "1", "whisker.projection.arc_stretch", "arc stretch";
-        /// Radius of the pole.
+        /// Radius of the pole, in mm.
         PoleRadiusMm = "pole_radius_mm", "mm", "pole.radius_mm", "pole radius";
-        /// Coulomb's coefficient of friction.
+        /// Coulomb's coefficient of friction between whisker and pole, dimensionless.
         Friction = "friction", "1", "contact.friction", "friction";
     }
 }
 
 impl Parameter {
-    /// The parameter of this name.
+    /// Returns the parameter with this name; `None` without one.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|one| one.name() == name)
     }
 
-    /// Parameters that an axis of a sweep can vary.
+    /// Parameters that a sweep axis can vary.
     pub const SWEPT: [Self; 10] = [
         Self::Taper,
         Self::TipRadiusUm,
@@ -109,7 +109,7 @@ impl Parameter {
         Self::ArcStretch,
     ];
 
-    /// Name of the axis of the sweep: the parameter's name, but `curvature_per_mm` for a parabola.
+    /// Returns the name of the parameter's sweep axis: the parameter's name, but `curvature_per_mm` for a parabola.
     #[must_use]
     pub const fn axis(self) -> &'static str {
         match self {
@@ -118,7 +118,7 @@ impl Parameter {
         }
     }
 
-    /// Key of the axis of the sweep in a scene file, such as `grid.taper`.
+    /// Returns the key of the parameter's sweep axis in a scene file, such as `grid.taper`.
     #[must_use]
     pub const fn axis_key(self) -> &'static str {
         match self {

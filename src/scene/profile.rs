@@ -1,14 +1,14 @@
-//! Radii: base and tip of a cone, or a measured profile.
+//! Radii of a whisker: base and tip of a cone, or a measured profile.
 
 use super::builder::Numbers;
 use super::error::SceneFault;
 use super::limits::{NumberLimits, digits, limits};
 use super::parameter::Parameter;
 
-/// Key of the measured rows.
+/// Key of the measured rows of radii in a scene file.
 pub(super) const KEY: &str = "whisker.profile.rows";
 
-/// Most rows of a profile. A trajectory takes at least two steps from row to row.
+/// Largest number of rows of a measured profile. A trajectory takes at least two steps from row to row.
 pub(super) const MOST: usize = 256;
 
 /// Largest distance of the last row from the tip, relative to the length: tables are rounded.
@@ -25,15 +25,15 @@ const SHARPEST_TIP: f64 = 1000.0;
 /// unresolved after 20 s.
 const DEEPEST_WAIST: f64 = 4.0;
 
-/// Radii of a whisker.
+/// Checked radii of a whisker: base and tip, or a measured profile.
 pub(super) struct Radii {
     pub base_radius_um: f64,
     pub tip_radius_um: f64,
-    /// Rows of arclength and radius, as fractions of the length and the base radius: `[row][arclength, radius]`.
+    /// Rows of the measured profile, `[row][arclength, radius]`, as fractions of the length and the base radius; `None` for a cone.
     pub profile: Option<Vec<[f64; 2]>>,
 }
 
-/// Checks the radii of a whisker of `length_mm`.
+/// Checks and returns the radii of a whisker of `length_mm`.
 pub(super) fn radii(
     numbers: &Numbers,
     rows: Option<&[[f64; 2]]>,

@@ -41,10 +41,10 @@ impl Deref for Scene {
 }
 
 impl SceneBuilder {
-    /// Checks the description.
+    /// Checks the description and builds the scene.
     ///
     /// # Errors
-    /// A number that is missing, out of its range or at odds with another one, by the key that it has in a scene file.
+    /// If a number is missing, out of its range, or contradicts another one. The error names its key in a scene file.
     pub fn build(mut self) -> Result<Scene, SceneError> {
         let refused = |fault| SceneError::of_fault("", "", fault);
         if let Some(taper) = self.numbers.get(Parameter::Taper) {
@@ -70,7 +70,7 @@ impl SceneBuilder {
 }
 
 impl Scene {
-    /// Starts the description of a scene with this title. Its outputs are called `scene` unless it names them.
+    /// Creates the builder of a scene with this title. Its outputs are called `scene` unless it names them.
     #[must_use]
     pub fn builder(title: impl Into<String>) -> SceneBuilder {
         SceneBuilder {
@@ -80,25 +80,25 @@ impl Scene {
         }
     }
 
-    /// The description from which this scene was built.
+    /// Returns the builder with the description from which this scene was built.
     #[must_use]
     pub fn to_builder(&self) -> SceneBuilder {
         SceneBuilder::clone(&self.builder)
     }
 
-    /// The CSV file from which the radii were read, if the scene names one.
+    /// Returns the path of the CSV file from which the radii were read; `None` if the scene names none.
     #[must_use]
     pub fn rows_file(&self) -> Option<&Path> {
         self.rows_file.as_deref()
     }
 
-    /// Message that names unused columns of the CSV file of the radii.
+    /// Returns the message that names unused columns of the CSV file of the radii; `None` without such columns.
     #[must_use]
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
     }
 
-    /// The scene with another value of a parameter, in the parameter's unit.
+    /// Returns the scene with another value of a parameter, in the parameter's unit.
     ///
     /// # Errors
     /// If the scene would be refused with it, or a taper is not between 0 and 1.
@@ -106,7 +106,7 @@ impl Scene {
         self.with_parameters(&[(parameter, value)])
     }
 
-    /// The scene with other values of some parameters. A taper is that of the new radius at the base.
+    /// Returns the scene with other values of some parameters, in their units. A taper is that of the new radius at the base.
     ///
     /// # Errors
     /// If the scene would be refused with them, or a taper is not between 0 and 1.
@@ -118,14 +118,14 @@ impl Scene {
         builder.build()
     }
 
-    /// The scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over
-    /// the axis. Its text stays that of the whole.
+    /// Returns the scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over the axis.
+    /// Its text stays that of the whole scene.
     #[must_use]
     pub fn thinned(&self, lines: usize, values: usize) -> Self {
         self.thinned_to([lines, lines], values)
     }
 
-    /// The scene with at most so many push angles and distances, and at most `values` of each sweep axis.
+    /// Returns the scene with at most so many push angles and distances, and at most `values` of each sweep axis.
     #[must_use]
     pub fn thinned_to(&self, [push_angles, distances]: [usize; 2], values: usize) -> Self {
         let mut thinned = self.clone();
@@ -148,7 +148,8 @@ fn thin(values: &mut Vec<f64>, most: usize) {
 }
 
 impl SceneBuilder {
-    /// The given value of a parameter. A taper is given with the radius at the tip, whose value this is.
+    /// Returns the given value of a parameter, in its unit; `None` if it is not given. A taper is given with the radius at the tip, whose
+    /// value this is.
     pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         let tip = || self.numbers.get(Parameter::TipRadiusUm);
         let own = self.numbers.get(parameter);
@@ -157,7 +158,7 @@ impl SceneBuilder {
 }
 
 impl Parameter {
-    /// The parameter's value, if the scene gives it.
+    /// Returns the value of the parameter in `scene`, in its unit; `None` if the scene does not give it.
     #[must_use]
     pub fn value(self, scene: &Scene) -> Option<f64> {
         let given = scene.builder.given(self)?;
@@ -167,14 +168,14 @@ impl Parameter {
         })
     }
 
-    /// The names of the parameters that the scene gives, with commas between them.
+    /// Returns the names of the parameters that the scene gives, with commas between them.
     pub(crate) fn given(scene: &Scene) -> String {
         let all = Self::ALL.into_iter();
         let given = all.filter(|own| own.value(scene).is_some());
         given.map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
-    /// The least and the greatest value that the scene accepts around its own, in the unit of the parameter, with all other numbers fixed.
+    /// Returns the least and the greatest value of the parameter that the scene accepts, in its unit, with all other numbers fixed.
     ///
     /// Both are NaN if the scene does not give the parameter.
     #[must_use]

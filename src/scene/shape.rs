@@ -20,7 +20,7 @@ const CHORDS: u32 = 8192;
 /// Least cosine of the angle between spiral and chord: with it, the distance from the base grows everywhere.
 const LEAST_COS: f64 = 0.05;
 
-/// The parabola, which may be straight, or the Euler spiral of the numbers.
+/// Returns the resting shape of the given numbers: the parabola, which may be straight, or the Euler spiral.
 pub(super) fn shape(
     numbers: &Numbers,
     length_mm: f64,
@@ -77,13 +77,13 @@ fn parabola(
     })
 }
 
-/// Limits of a parabola's coefficient, in 1/mm.
+/// Returns the limits of a parabola's coefficient, in 1/mm.
 pub(super) fn parabola_limits(length_mm: f64) -> NumberLimits {
     NumberLimits::between(0.0, ("10 / length_mm", 10.0 / length_mm))
         .remarks(["a whisker bent toward the other side is the same one mirrored"])
 }
 
-/// Refuses coefficients so small that they would underflow in `f32`.
+/// Refuses coefficients of a parabola so small that they would underflow in `f32`.
 pub(super) fn refuse_faint(parabola_per_mm: f64, length_mm: f64) -> Result<(), SceneFault> {
     let least = 1e-9 / length_mm;
     if parabola_per_mm > 0.0 && parabola_per_mm < least {
@@ -119,7 +119,7 @@ fn euler_spiral(
     Ok(Some(EulerSpiral { per_mm, per_mm2 }))
 }
 
-/// Whether the distance from the base grows along a spiral of curvature `k0 + k1 s`, by the midpoint rule.
+/// Returns true if the distance from the base grows along a spiral of curvature `k0 + k1 s`, by the midpoint rule.
 fn chord_grows(k0: f64, k1: f64) -> bool {
     let step = 1.0 / f64::from(CHORDS);
     let mut point = DVec2::ZERO;

@@ -1,4 +1,4 @@
-//! The axes along which whiskers differ.
+//! Checks of the sweep axes, along which whiskers differ.
 
 use super::builder::SceneBuilder;
 use super::error::SceneFault;
@@ -7,7 +7,7 @@ use super::limits::{digits, limits};
 use super::parameter::Parameter;
 use super::shape;
 
-/// The axes. Each value is within the limits that hold whatever the other numbers are.
+/// Returns the sweep axes. Each value is within the limits that hold whatever the other numbers are.
 pub(super) fn axes(
     scene: &SceneBuilder,
     lengths_mm: [f64; 2],
@@ -37,7 +37,7 @@ pub(super) fn axes(
     Ok(axes)
 }
 
-/// The least and the greatest length of the whiskers, in millimetres.
+/// Returns the least and the greatest length of the whiskers of a sweep, in millimetres.
 pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
     let length = Parameter::LengthMm;
     let limits = limits(length);
@@ -51,7 +51,7 @@ pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
     Ok([values[0], values[values.len() - 1]])
 }
 
-/// Refuses axes of parameters that another part of the scene determines.
+/// Refuses sweep axes of parameters that another part of the scene determines.
 pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
     let given = |parameter| scene.numbers.get(parameter).is_some();
     let is_measured = scene.rows.is_some();
@@ -90,8 +90,8 @@ pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
     }
 }
 
-/// Runs `check` at the places whose whiskers are valid only if all are. Every limit moves one way along every axis, so these are
-/// the corners; next to a curvature of 0 there is the least one that bends.
+/// Runs `check` at the places of a sweep whose whiskers are valid only if all are. Every limit moves one way along every axis, so these
+/// are the corners; next to a curvature of 0 there is the least one that bends.
 ///
 /// The fault names the axis where an axis gives the number, and the place unless the fault is the same at every corner.
 pub(super) fn check_corners(

@@ -1,4 +1,4 @@
-//! Numbers that a scene accepts, but that look like numbers in another unit.
+//! Warnings about numbers that a scene accepts, but that look like numbers in another unit.
 
 use super::data::SceneData;
 use super::limits::digits;
@@ -7,17 +7,17 @@ use super::parameter::Parameter;
 /// Radius over length. Whiskers of rats lie between 1e-4 (at the tip) and 0.01; a thicker rod is no beam.
 const SLENDER: [f64; 2] = [1e-5, 0.1];
 
-/// Young's modulus in GPa of hair, polymers and light metals. Whiskers of rats have 1 to 8.
+/// Expected range of Young's modulus in GPa: hair, polymers and light metals. Whiskers of rats have 1 to 8.
 pub(super) const MODULUS_GPA: [f64; 2] = [0.1, 100.0];
 
-/// Other units of the modulus, in GPa.
+/// Other units of Young's modulus, in GPa.
 pub(super) const MODULUS_UNITS: [(&str, f64); 4] =
     [("Pa", 1e-9), ("kPa", 1e-6), ("MPa", 1e-3), ("TPa", 1e3)];
 
-/// Length in mm. Whiskers of rats have 5 to 60.
+/// Expected range of a whisker's length in mm. Whiskers of rats have 5 to 60.
 pub(super) const LENGTH_MM: [f64; 2] = [1.0, 200.0];
 
-/// Other units of the length, in mm.
+/// Other units of a whisker's length, in mm.
 pub(super) const LENGTH_UNITS: [(&str, f64); 3] = [("um", 1e-3), ("cm", 10.0), ("m", 1e3)];
 
 /// Other units of radii and lengths that change their ratio, and by which factor.
@@ -59,11 +59,11 @@ impl SceneNumber {
 }
 
 impl SceneData {
-    /// Warnings about numbers that look like another unit: one line each, with key, value, unit and the expected range.
+    /// Returns warnings about numbers that look like another unit: one line each, with key, value, unit and the expected range.
     ///
-    /// These are radii below 1e-5 or above 0.1 of the length, a Young's modulus outside 0.1 to 100 GPa, and forces outside
-    /// 1e-6 to 1e9 uN. All values of sweep axes count; of measured radii the largest one does. A message names another unit
-    /// only if the number in that unit is as expected.
+    /// The numbers are radii below 1e-5 or above 0.1 of the length, moduli outside 0.1 to 100 GPa, and forces outside 1e-6 to 1e9 uN. All
+    /// values of sweep axes count; of measured radii the largest one does. A message names another unit only if the number in that unit
+    /// is as expected.
     ///
     /// The force is `E I / L^2` with the second moment of area at the base: a cylinder bends by 1 radian under twice that
     /// force across its tip, to first order.
@@ -180,7 +180,8 @@ fn unexpected(
     is_beyond.then(|| other_unit(value, expected, units))
 }
 
-/// The first of the `units` with which `value` is within `expected`; each has its size in the unit of the value.
+/// Returns the first of the `units` with which `value` is within `expected`; each has its size in the unit of the value. `None` without
+/// such a unit.
 pub(super) fn other_unit(
     value: f64,
     expected: [f64; 2],

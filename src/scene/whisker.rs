@@ -8,41 +8,41 @@ use crate::rod::{RadiusProfile, Rod, Side, Units};
 /// One whisker of a sweep, in front of its pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweptWhisker {
-    /// Place in the sweep.
+    /// Place of the whisker in the sweep.
     pub place: SweepPlace,
-    /// The whisker.
+    /// Whisker at this place of the sweep.
     pub whisker: Whisker,
-    /// The pole.
+    /// Pole in front of the whisker.
     pub pole: Pole,
 }
 
-/// A whisker at rest.
+/// A whisker at rest: length, radii, moduli and curvature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whisker {
-    /// Arclength from base to tip, in millimetres.
+    /// Arclength of the whisker from base to tip, in millimetres.
     pub length_mm: f64,
-    /// Radius at the base, in micrometres.
+    /// Radius of the whisker at the base, in micrometres.
     pub base_radius_um: f64,
-    /// Radius at the tip, in micrometres; 0 is a perfect cone.
+    /// Radius of the whisker at the tip, in micrometres; 0 is a perfect cone.
     pub tip_radius_um: f64,
     /// Young's modulus at the base, in GPa; it scales forces, moments and energies, never an angle.
     pub youngs_modulus_gpa: f64,
-    /// Intrinsic curvature as a parabola, `None` for a straight whisker.
+    /// Shape of the whisker at rest as a parabola; `None` for a straight whisker.
     pub curvature: Option<Curvature>,
-    /// Intrinsic curvature as an Euler spiral, in place of the parabola.
+    /// Shape of the whisker at rest as an Euler spiral, instead of the parabola; `None` without one.
     pub euler_spiral: Option<EulerSpiral>,
-    /// Measured radii in place of those that fall linearly: `[row][arclength, radius]`, over the whisker's length and base radius. Rows go
-    /// from `[0, 1]` to `[1, tip radius]`.
+    /// Measured radii instead of those that fall linearly: `[row][arclength, radius]`, over the whisker's length and base radius. Rows go
+    /// from `[0, 1]` to `[1, tip radius]`. `None` without a profile.
     pub profile: Option<Vec<[f64; 2]>>,
-    /// Young's modulus at the arclength `length_mm` over that at the base; linear in the arclength.
+    /// Young's modulus at the arclength `length_mm` over that at the base, dimensionless; it is linear in the arclength.
     pub modulus_tip_to_base: f64,
-    /// Real arclength over the arclength in the plane of contact: more than 1 where the whisker droops out of the
-    /// plane. Radius and modulus are read at the real arclength.
+    /// Real arclength over the arclength in the plane of contact, dimensionless: more than 1 if the whisker droops out of the plane.
+    /// Radius and modulus are read at the real arclength.
     pub arc_stretch: f64,
 }
 
 impl SweptWhisker {
-    /// The rod of the swept whisker with its pole on `side`, without units: lengths are in whisker lengths.
+    /// Returns the dimensionless rod of the swept whisker with its pole on `side`: lengths are in whisker lengths.
     #[must_use]
     pub fn rod(&self, side: Side) -> Rod {
         self.whisker.rod(&self.pole, side)
@@ -50,7 +50,7 @@ impl SweptWhisker {
 }
 
 impl Whisker {
-    /// The rod, without units, of this whisker with `pole` on `side`.
+    /// Returns the dimensionless rod of this whisker with `pole` on `side`.
     #[must_use]
     pub fn rod(&self, pole: &Pole, side: Side) -> Rod {
         let parabola = self.curvature.unwrap_or_default();
@@ -73,19 +73,19 @@ impl Whisker {
         }
     }
 
-    /// Units of length, force and moment of this whisker's rod.
+    /// Returns the units of length, force and moment of this whisker's rod.
     #[must_use]
     pub fn units(&self) -> Units {
         Units::new(self.length_mm, self.base_radius_um, self.youngs_modulus_gpa)
     }
 
-    /// `1 - tip/base radius`: 0 is a cylinder, 1 a perfect cone.
+    /// Returns the taper of the whisker, `1 - tip/base radius`: 0 is a cylinder, 1 a perfect cone.
     #[must_use]
     pub fn taper(&self) -> f64 {
         1.0 - self.tip_radius_um / self.base_radius_um
     }
 
-    /// The largest curvature at rest, in radians per millimetre.
+    /// Returns the largest curvature of the whisker at rest, in radians per millimetre.
     #[must_use]
     pub fn sharpest_bend_per_mm(&self) -> f64 {
         let parabola = self.curvature.map_or(0.0, |own| 2.0 * own.parabola_per_mm);
@@ -97,28 +97,28 @@ impl Whisker {
     }
 }
 
-/// The undeflected shape `y = A (x - vertex)^2` with the base at `x = 0` (paper, Eq. 7); straight by default.
+/// Parabola of the resting whisker, `y = A (x - vertex)^2` with the base at `x = 0` (paper, Eq. 7); straight by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature {
-    /// Coefficient `A`, in 1/mm.
+    /// Coefficient `A` of the parabola, in 1/mm.
     pub parabola_per_mm: f64,
-    /// Position of the vertex along `x`, in millimetres.
+    /// Position of the parabola's vertex along `x`, in millimetres.
     pub vertex_mm: f64,
 }
 
 impl Curvature {
-    /// Returns true unless the shape is straight.
+    /// Returns true unless the parabola is a straight line.
     pub(super) fn bends(&self) -> bool {
         self.parabola_per_mm != 0.0
     }
 }
 
-/// The undeflected shape whose curvature is linear in the arclength (Starostin et al. 2020).
+/// Euler spiral of the resting whisker: its curvature is linear in the arclength (Starostin et al. 2020).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EulerSpiral {
-    /// Curvature at the base, in 1/mm; positive bends toward the CF side, as a parabola does.
+    /// Curvature of the spiral at the base, in 1/mm; positive bends toward the CF side, as a parabola does.
     pub per_mm: f64,
-    /// Growth of the curvature along the whisker, in 1/mm2.
+    /// Growth of the spiral's curvature along the whisker, in 1/mm2.
     pub per_mm2: f64,
 }
 
@@ -128,14 +128,14 @@ pub struct EulerSpiral {
 /// matters, give the sum of both radii at the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
-    /// Radius in millimetres; 0 is a point contact.
+    /// Radius of the pole, in millimetres; 0 is a point contact.
     pub radius_mm: f64,
-    /// Coulomb's coefficient of friction.
+    /// Coulomb's coefficient of friction between whisker and pole, dimensionless.
     pub friction: f64,
 }
 
 impl Pole {
-    /// A pole without friction.
+    /// Creates a pole without friction; its radius is in millimetres.
     #[must_use]
     pub const fn smooth(radius_mm: f64) -> Self {
         Self {

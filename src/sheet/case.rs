@@ -6,22 +6,22 @@ use crate::shooting::batch::{Batch, Method, OutputSet};
 /// Whisker side to sample, with the integration method.
 #[derive(Clone, Copy, Debug)]
 pub struct SheetCase<'a> {
-    /// Integration method of the trajectories.
+    /// Integration method of the sheet's trajectories.
     pub method: Method,
-    /// Whisker and pole.
+    /// Whisker and pole of the sheet.
     pub rod: &'a Rod,
-    /// Whisker side.
+    /// Whisker side of the sheet.
     pub side: Side,
 }
 
 impl SheetCase<'_> {
-    /// Returns the case at the coarse resolution.
+    /// Returns this case of a sheet at the coarse resolution.
     pub const fn coarsely(self) -> Self {
         let method = self.method.coarsely();
         Self { method, ..self }
     }
 
-    /// Computes the outputs at `points` `(tau, load)` in padded blocks ([`Batch::padded`]).
+    /// Computes the outputs of trajectories at `points` `(tau, load)`, `[point]`, in padded blocks ([`Batch::padded`]).
     pub fn shoot<O: OutputSet>(
         &self,
         points: impl IntoIterator<Item = impl Into<(f64, f64)>>,

@@ -37,8 +37,8 @@ use samples::SheetSamples;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Number of rows, of `rows` in total, that one batch of continuations follows: 32 to 128. Each thread gets a batch, and lanes stay full
-/// although continuations end at different times. Results do not depend on it.
+/// Returns the number of rows, of `rows` in total, that one batch of continuations follows: 32 to 128. Each thread gets a batch, and
+/// lanes stay full although continuations end at different times. Results do not depend on it.
 pub fn rows_per_batch(rows: usize) -> usize {
     rows.div_ceil(rayon::current_num_threads()).clamp(32, 128)
 }
@@ -49,11 +49,11 @@ const TIP_TIE: f64 = 1e-12;
 /// The stable sheet of one whisker on one side of the pole, with the rows of a map.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// Whisker and pole, without units.
+    /// Whisker and pole of the sheet, in dimensionless form.
     pub rod: Rod,
-    /// Whisker side.
+    /// Whisker side of the sheet.
     pub side: Side,
-    /// Tip of the whisker: `[tau, radius / base radius]`.
+    /// Position of the whisker's tip: `[tau, radius / base radius]`, dimensionless.
     pub tip: [f64; 2],
     /// Rows of the map, one for each distance: `[row]`.
     pub rows: Vec<Row>,

@@ -13,11 +13,11 @@ pub const REACH_SLACK: f64 = 1e-12;
 pub struct Row {
     /// Distance `D` of the pole's centre from the base, in whisker lengths.
     pub pole_distance: f64,
-    /// Arclength of the contact at first touch, in whisker lengths. Beyond 1 the rest shape is continued.
+    /// Arclength of the contact at first touch, in whisker lengths. Beyond 1, the whisker's shape at rest is continued.
     pub contact: f64,
     /// Direction of the pole's centre at first touch, in radians from the base's tangent.
     pub touch: f64,
-    /// Arclength at the tip, in whisker lengths: 1, or a little less for a perfect cone.
+    /// Arclength of the whisker's tip, in whisker lengths: 1, or a little less for a perfect cone.
     pub end: f64,
 }
 
@@ -47,7 +47,7 @@ impl Row {
         (self.contact - self.end).abs() <= REACH_SLACK
     }
 
-    /// Returns `(tau, load)` of `rod` at first touch, where the load is 0.
+    /// Returns `(tau, load)` of `rod` at first touch of a row, where the load is 0.
     #[must_use]
     pub fn first_touch(&self, rod: &Rod) -> DVec2 {
         DVec2::new(rod.tau(self.contact).min(rod.tau_tip()), 0.0)
@@ -64,9 +64,9 @@ impl Row {
 /// Edge over which a row leaves the sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
-    /// Saddle-node: the whisker slips off.
+    /// Fold edge (saddle-node): the whisker slips off.
     Fold,
-    /// Contact at the tip: the whisker is pulled off.
+    /// Tip edge, with the contact at the tip: the whisker is pulled off.
     Tip,
 }
 
@@ -88,14 +88,14 @@ impl Edge {
 pub struct Crossing {
     /// Edge that the row crosses.
     pub edge: Edge,
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the crossing, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`.
+    /// Signed load `f/rho^2` of the crossing, dimensionless.
     pub load: f64,
-    /// Push angle since first touch, in radians: a magnitude on the row's side.
+    /// Push angle of the crossing since first touch, in radians: a magnitude on the row's side.
     pub push: f64,
-    /// Remaining relative error: the miss in `ln D`, plus the square of the remaining step in `(tau, load)` (the push angle is flat at a
-    /// fold). Infinite for a crossing that is not found.
+    /// Remaining relative error of the crossing: the miss in `ln D`, plus the square of the remaining step in `(tau, load)` (the push
+    /// angle is flat at a fold). Infinite for a crossing that is not found.
     pub residual: f64,
     /// Derivative of the push angle by `ln D` along the edge, in radians ([`Edge::slope`]); NaN for a crossing that is not found.
     pub slope: f64,

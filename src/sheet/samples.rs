@@ -10,7 +10,7 @@ use crate::sheet::row::Row;
 /// first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
 
-/// Samples of the sheet: contact nodes, lattice and edges.
+/// Samples of a sheet: contact nodes, lattice and edges.
 #[derive(Clone, Debug)]
 pub struct SheetSamples {
     pub contacts: ContactNodes,
@@ -21,8 +21,8 @@ pub struct SheetSamples {
 }
 
 impl SheetSamples {
-    /// Samples the sheet from the tip down to the row `nearest` to the base, and again at a narrow spacing if the samples are not certified.
-    /// Returns `None` if some contact has no fold, or no stable state at first touch.
+    /// Samples the sheet from the tip down to the row `nearest` to the base. If the samples are not certified, it samples again at a
+    /// narrow spacing. Returns `None` if some contact has no fold, or no stable state at first touch.
     pub fn new(case: SheetCase, nearest: &Row) -> Option<Self> {
         let sampled = |spacing| {
             let contacts = ContactNodes::new(case, nearest, spacing)?;

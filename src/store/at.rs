@@ -1,15 +1,15 @@
-//! Values selected on axes.
+//! Values selected on the axes of a map or a store.
 
 use crate::input::Quantity;
 use crate::scene::digits;
 use std::str::FromStr;
 
-/// A value selected on an axis.
+/// Selected value of an axis of a map or a store.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisValue {
-    /// Name of the axis, such as `taper` or `distance_mm`.
+    /// Name of the selected axis, such as `taper` or `distance_mm`.
     pub axis: String,
-    /// The value, in the unit of the axis.
+    /// Selected value, in the unit of the axis.
     pub value: f64,
 }
 
@@ -58,7 +58,7 @@ pub(super) fn check_near(name: &str, values: &[f64], wanted: f64) -> Result<(), 
     })
 }
 
-/// A value of the axis `name`, with the unit of a length or an angle.
+/// Returns a value of the axis `name` as text, with the unit of a length or an angle.
 pub(super) fn with_unit(name: &str, value: f64) -> String {
     match Quantity::of(name).unit() {
         Some(unit) => format!("{} {unit}", digits(value)),
@@ -66,7 +66,7 @@ pub(super) fn with_unit(name: &str, value: f64) -> String {
     }
 }
 
-/// Index of the value nearest to `wanted`.
+/// Returns the index of the value nearest to `wanted`.
 pub(super) fn nearest(values: &[f64], wanted: f64) -> usize {
     let apart = |value: &f64| (value - wanted).abs();
     let places = values.iter().enumerate();

@@ -10,22 +10,22 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 
-/// Attributes that are known before a run.
+/// Description of a map before it is computed: scene, engine, tolerances and channels.
 #[derive(Clone, Copy, Debug)]
 pub struct MapDescription<'a> {
-    /// The scene that is computed.
+    /// Scene that is computed.
     pub scene: &'a SceneData,
-    /// The engine and its device.
+    /// Engine of the run, and its device.
     pub engine: &'a engine::EngineDescription,
-    /// Tolerances and step limits.
+    /// Tolerances and step limits of the run, as JSON.
     pub tolerances: &'a Value,
-    /// The channels that are stored.
+    /// Channels of the map that are stored.
     pub channels: Channels,
-    /// Rounding of the CPU: the [name](crate::numerics::ArithmeticClass::name) of a class.
+    /// Rounding of the CPU of the run: the [name](crate::numerics::ArithmeticClass::name) of an arithmetic class.
     pub arithmetic: &'a str,
 }
 
-/// An axis in the attribute `axes`.
+/// Axis of a map in the attribute `axes`.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct AxisAttribute {
     name: String,
@@ -49,21 +49,21 @@ const ATLAS: [[&str; 2]; 2] = [
     ["panel y", "row 0 of the atlas (top)"],
 ];
 
-/// Attribute with the CRC-32C of all bytes before the offset tables, in 8 hexadecimal digits.
+/// Name of the attribute with the CRC-32C of all bytes before the offset tables, in 8 hexadecimal digits.
 pub(super) const CHECKSUM: &str = "checksum";
 
-/// The digits of the checksum while it is computed.
+/// Digits of the checksum of an EXR map while it is computed.
 pub(super) const NO_CHECKSUM: &str = "00000000";
 
-/// Attribute texts by name.
+/// Attributes of an EXR map: texts by name.
 pub(super) type ExrAttributes = HashMap<Text, AttributeValue>;
 
-/// The attribute `name` with this `text`.
+/// Creates the attribute `name` of an EXR map with this `text`.
 pub(super) fn attribute(name: &str, text: &str) -> (Text, AttributeValue) {
     (Text::from(name), AttributeValue::Text(Text::from(text)))
 }
 
-/// All attributes of a map but `counts`, which [`encode_counts`] makes.
+/// Encodes all attributes of an EXR map but `counts`, which [`encode_counts`] makes.
 pub(super) fn encode(about: &MapDescription<'_>) -> ExrAttributes {
     let layout = AtlasLayout::of(&about.scene.grid);
     let attributes = [
@@ -84,13 +84,13 @@ pub(super) fn encode(about: &MapDescription<'_>) -> ExrAttributes {
     encoded.into()
 }
 
-/// `counts`, padded with spaces to [`counts_width`].
+/// Encodes the attribute `counts`, padded with spaces to [`counts_width`].
 pub(super) fn encode_counts(counts: &CellCounts) -> String {
     let text = ascii_json(&json!(counts));
     format!("{text:width$}", width = counts_width())
 }
 
-/// Bytes of the longest text that [`encode_counts`] can make.
+/// Returns the length in bytes of the longest text that [`encode_counts`] can make.
 pub(super) fn counts_width() -> usize {
     let most = |name: &'static str| (name.to_owned(), u64::MAX);
     let counts = CellCounts {
@@ -138,7 +138,7 @@ fn axes(grid: &Grid) -> Vec<AxisAttribute> {
     inside.into_iter().chain(atlas).collect()
 }
 
-/// The grid that the attribute `axes` describes.
+/// Returns the grid that the attribute `axes` describes.
 ///
 /// # Errors
 /// An axis is unknown, missing or one too many, or its values are not increasing.
@@ -174,7 +174,8 @@ pub(super) fn decode_axes(mut found: Vec<AxisAttribute>) -> Result<Grid, String>
     Ok(grid)
 }
 
-/// The value with the names of every object sorted. The order that `serde_json` keeps depends on features that other crates enable.
+/// Returns a JSON value with the names of every object sorted. The order that `serde_json` keeps depends on features that other crates
+/// enable.
 pub(super) fn sorted(value: &Value) -> Value {
     match value {
         Value::Object(names) => {

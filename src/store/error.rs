@@ -1,16 +1,16 @@
-//! Errors of files.
+//! Errors of maps, stores and their files.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A file that cannot be written or read. Every message is complete: there is no chain of sources to print.
+/// Error of a file that cannot be written or read. Every message is complete: there is no chain of sources to print.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoreError {
-    /// The file system refused to read.
+    /// The file system refused to read the file at this path.
     #[error("cannot read {file}: {1}", file = .0.display())]
     Read(PathBuf, io::Error),
-    /// The file system refused to write.
+    /// The file system refused to write the file at this path.
     #[error("cannot write {file}: {1}", file = .0.display())]
     Write(PathBuf, io::Error),
     /// The map cannot be expressed as EXR, such as an atlas wider than 2^30 pixels.
@@ -19,105 +19,105 @@ pub enum StoreError {
     /// A sweep over more axes than an atlas has.
     #[error("cannot write {} as EXR: it has room for two sweep axes, the scene has {axes}", path.display())]
     TooManyAxes {
-        /// The file.
+        /// Path of the map.
         path: PathBuf,
-        /// The axes, by name.
+        /// Names of the sweep axes.
         axes: String,
     },
-    /// A store that exists although the run does not resume it.
+    /// The store exists already, and the run does not resume it.
     #[error("{folder} exists already; resume it with --resume, or remove it", folder = .0.display())]
     Exists(PathBuf),
-    /// A store that was created with other settings.
+    /// The store was created with other settings.
     #[error(
         "{} differs in `{name}`: {there} there, {here} here{reason}; use the settings with which it was created, or \
          give another --output", path.display(), reason = reason(name)
     )]
     AtOdds {
-        /// The store.
+        /// Path of the store.
         path: PathBuf,
-        /// The attribute.
+        /// Name of the attribute in which store and run differ.
         name: &'static str,
-        /// Value of the attribute in the store.
+        /// Value of the differing attribute in the store.
         there: String,
-        /// Value of the attribute in this run.
+        /// Value of the differing attribute in this run.
         here: String,
     },
-    /// A folder with blocks of another store, whose metadata are missing or damaged.
+    /// The folder has blocks of another store, whose metadata are missing or damaged.
     #[error(
         "{folder} has blocks of another scene, version, engine, arithmetic, accuracy or choice of channels; \
          remove it, or give another --output", folder = .0.display()
     )]
     OtherBlocks(PathBuf),
-    /// A store that is no longer at its path.
+    /// The store is no longer at its path.
     #[error("{folder} was moved, removed or replaced during the run", folder = .0.display())]
     Displaced(PathBuf),
-    /// A store of an incompatible version: the version.
+    /// The store was written by an incompatible version, which is named.
     #[error("{folder} was written by whiskmap {1}, and only that version can check and read it", folder = .0.display())]
     OtherVersion(PathBuf, String),
-    /// A Zarr folder of another program: what is missing or different.
+    /// The folder is a Zarr store of another program; the text says what is missing or different.
     #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
     NotAStore(PathBuf, String),
-    /// A file of a block that is not computed, or lost.
+    /// A file of a block does not exist: it is not computed, or lost.
     #[error("{file} is missing: the store is not complete; compute the rest with `map --resume`", file = .0.display())]
     NotComputed(PathBuf),
-    /// A folder, a pipe or a device.
+    /// The path leads to a folder, a pipe or a device instead of a file.
     #[error("{file} is no regular file", file = .0.display())]
     NotAFile(PathBuf),
-    /// A file that does not begin like an EXR file.
+    /// The file does not begin like an EXR file.
     #[error("{file} is not an EXR file", file = .0.display())]
     NotExr(PathBuf),
-    /// An EXR file of another program: what is missing or different.
+    /// The EXR file was written by another program; the text says what is missing or different.
     #[error("{file} is an EXR file, but not a map of whiskmap: {1}", file = .0.display())]
     NotAMap(PathBuf, String),
-    /// A file whose bytes end too early or contradict each other: where, and how.
+    /// The bytes of the file end too early or contradict each other; the text says where, and how.
     #[error("{file} is damaged: {1}", file = .0.display())]
     Damaged(PathBuf, String),
-    /// A channel that the file does not have.
+    /// The file does not have the requested channel.
     #[error("{} has no channel `{name}`; it has {known}", path.display())]
     UnknownChannel {
-        /// The file.
+        /// Path of the file without the channel.
         path: PathBuf,
-        /// The name.
+        /// Name of the channel that the file does not have.
         name: String,
-        /// The names of its channels, separated by commas.
+        /// Names of the channels that the file has, separated by commas.
         known: String,
     },
-    /// A panel that the map does not have.
+    /// The map does not have the requested panel.
     #[error("there is no panel {index}; the map has {panels}")]
     NoSuchPanel {
-        /// The index.
+        /// Index of the requested panel.
         index: usize,
-        /// The number of panels.
+        /// Number of panels of the map.
         panels: usize,
     },
     /// A channel of a panel does not have one value per cell.
     #[error("panel {index}: channel `{channel}` has {cells} cells instead of {expected}")]
     PanelSize {
-        /// The panel.
+        /// Index of the panel of wrong size.
         index: usize,
-        /// The channel.
+        /// Name of the channel of wrong size.
         channel: &'static str,
         /// Number of cells of the channel.
         cells: usize,
-        /// Distances times push angles.
+        /// Number of cells of a panel: distances times push angles.
         expected: usize,
     },
-    /// A regime or status that has no name.
+    /// A cell has a regime or a status without a name.
     #[error("panel {index}: channel `{channel}` holds the code {code}, which has no name")]
     UnknownCode {
-        /// The panel.
+        /// Index of the panel with the unknown code.
         index: usize,
-        /// `regime` or `status`.
+        /// Name of the channel with the unknown code: `regime` or `status`.
         channel: &'static str,
-        /// The code.
+        /// Code of a regime or a status that has no name.
         code: u32,
     },
     /// The map was finished before its last panel.
     #[error("the map was finished after {written} of {panels} panels")]
     Incomplete {
-        /// Panels written.
+        /// Number of panels written.
         written: usize,
-        /// Panels due.
+        /// Number of panels of the map.
         panels: usize,
     },
 }
@@ -132,12 +132,12 @@ fn reason(name: &str) -> &'static str {
 }
 
 impl StoreError {
-    /// Makes the error `kind` of the file at `path` from its cause.
+    /// Returns a function that makes the error `kind` of the file at `path` from its cause.
     pub(super) fn at<C>(path: &Path, kind: fn(PathBuf, C) -> Self) -> impl Fn(C) -> Self {
         move |cause| kind(path.to_owned(), cause)
     }
 
-    /// Returns true if a file cannot be read or resumed, which is an error of the input.
+    /// Returns true if the error is one of the input: a file that cannot be read or resumed.
     #[must_use]
     pub fn is_unreadable(&self) -> bool {
         matches!(

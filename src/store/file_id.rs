@@ -21,10 +21,10 @@ enum FileKey {
 }
 
 impl FileId {
-    /// Identity of standard output.
+    /// File identity of standard output.
     pub(super) const STDOUT: Self = Self(FileKey::Stdout);
 
-    /// Identity of the file or folder at `path`, behind its symbolic links. A device or a pipe has none.
+    /// Returns the identity of the file or folder at `path`, behind its symbolic links; `None` for a device or a pipe.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let id = match fs::metadata(path) {
@@ -48,14 +48,14 @@ impl FileId {
         }
     }
 
-    /// Identity of the file at standard input, where a file is redirected to it.
+    /// Returns the identity of the file at standard input; `None` unless a file is redirected to it.
     #[must_use]
     pub fn of_stdin() -> Option<Self> {
         let stdin = Path::new("/dev/stdin");
         stdin.exists().then(|| Self::of(stdin)).flatten()
     }
 
-    /// Identities of the folders that hold `path`, from the innermost one on.
+    /// Returns the identities of the folders that hold `path`, from the innermost one on.
     #[must_use]
     pub fn of_folders(path: &Path) -> Vec<Self> {
         let path = resolved(path).unwrap_or_default();
@@ -81,7 +81,7 @@ fn resolved(path: &Path) -> Option<PathBuf> {
     })
 }
 
-/// The folder that holds `path`.
+/// Returns the folder that holds `path`.
 pub(super) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

@@ -1,4 +1,4 @@
-//! The header of an EXR map: all bytes before the blocks.
+//! Header of an EXR map: all bytes before the blocks.
 
 use super::attributes::{CHECKSUM, ExrAttributes, NO_CHECKSUM};
 use super::layout::AtlasLayout;
@@ -14,7 +14,8 @@ use std::io::{self, BufReader, Read, Seek};
 use std::ops::Range;
 use std::path::Path;
 
-/// All bytes before the offset tables. Attributes are sorted by name, so that equal maps have equal bytes.
+/// Encodes the header of an EXR map: all bytes before the offset tables. Attributes are sorted by name, so that equal maps have equal
+/// bytes.
 pub(super) fn encode(headers: &[Header]) -> exr::error::Result<Vec<u8>> {
     let requirements = MetaData::validate(headers, true)?;
     let mut bytes = Vec::new();
@@ -35,7 +36,7 @@ pub(super) fn encode(headers: &[Header]) -> exr::error::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads the headers and checks their checksum, but not their layout.
+/// Reads the header of an EXR map and checks its checksum, but not its layout.
 pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, StoreError> {
     let mut magic = [0; 4];
     match file.read_exact(&mut magic) {
@@ -74,7 +75,7 @@ fn has_checksum(file: &mut BufReader<File>, meta: &MetaData) -> io::Result<bool>
     Ok(sealed == preamble)
 }
 
-/// Writes the checksum of a preamble into each part in place of [`NO_CHECKSUM`].
+/// Writes the checksum of the header of an EXR map into each part, in the place of [`NO_CHECKSUM`].
 pub(super) fn seal(preamble: &mut [u8]) {
     let digits = format!("{:08x}", crc32c::crc32c(preamble));
     for place in places_of_checksum(preamble) {
@@ -95,7 +96,7 @@ fn places_of_checksum(preamble: &[u8]) -> Vec<Range<usize>> {
     places.collect()
 }
 
-/// Reads the offset tables between the headers and the blocks.
+/// Reads the offset tables of an EXR map, which are between the header and the blocks.
 pub(super) fn read_offsets(
     path: &Path,
     file: &mut BufReader<File>,
@@ -105,7 +106,7 @@ pub(super) fn read_offsets(
         .map_err(|cause| StoreError::Damaged(path.to_owned(), format!("offset table: {cause}")))
 }
 
-/// Checks that parts, channels, size, tiles and compression are as this program writes `layout`.
+/// Checks that parts, channels, size, tiles and compression of an EXR map are as this program writes `layout`.
 pub(super) fn check_layout(
     meta: &MetaData,
     layout: AtlasLayout,
@@ -124,14 +125,14 @@ pub(super) fn check_layout(
     Ok(())
 }
 
-/// The channels of the file.
+/// Returns the channels of an EXR map.
 pub(super) fn channels(meta: &MetaData) -> Channels {
     let lists = meta.headers.iter().map(|header| &header.channels.list);
     let found: Vec<_> = lists.flatten().map(|channel| &channel.name).collect();
     Channels::those(|name| found.iter().any(|own| own.bytes() == name.as_bytes()))
 }
 
-/// Decodes an attribute of the first part.
+/// Decodes an attribute of the first part of an EXR map.
 pub(super) fn parse<T: DeserializeOwned>(meta: &MetaData, name: &str) -> Result<T, String> {
     let attributes = meta.headers.first().map(|header| &header.own_attributes);
     let mut attributes = attributes.into_iter().flat_map(|own| &own.other);

@@ -1,4 +1,4 @@
-//! The place of each value in an EXR map: parts, channels, tiles and blocks.
+//! Layout of an EXR map: the position of each value in parts, channels, tiles and blocks.
 
 use super::{Channels, STATE_CHANNELS};
 use crate::scene::Grid;
@@ -12,21 +12,21 @@ use exr::meta::{BlockDescription, Headers};
 use exr::prelude::Compression;
 use std::collections::HashMap;
 
-/// Numbers of panels and of cells in a panel.
+/// Layout of an atlas: numbers of panels, and of cells in a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AtlasLayout {
-    /// Number of panels along x, one per value of the first sweep axis.
+    /// Number of panels of the atlas along x, one for each value of the first sweep axis.
     pub columns: usize,
-    /// Number of panels along y, one per value of the second sweep axis.
+    /// Number of panels of the atlas along y, one for each value of the second sweep axis.
     pub rows: usize,
-    /// Number of cells along x in a panel, one per push angle.
+    /// Number of cells along x in a panel, one for each push angle.
     pub push_angles: usize,
-    /// Number of cells along y in a panel, one per distance.
+    /// Number of cells along y in a panel, one for each distance.
     pub distances: usize,
 }
 
 impl AtlasLayout {
-    /// The layout of a sweep over at most two axes.
+    /// Returns the atlas layout of a sweep over at most two axes.
     #[must_use]
     pub fn of(grid: &Grid) -> Self {
         let [columns, rows] = grid
@@ -40,13 +40,14 @@ impl AtlasLayout {
         }
     }
 
-    /// Number of panels. Panel `row * columns + column` has value `column` of the first sweep axis and `row` of the second.
+    /// Returns the number of panels of the atlas. Panel `row * columns + column` has value `column` of the first sweep axis and `row` of
+    /// the second.
     #[must_use]
     pub const fn panels(&self) -> usize {
         self.columns * self.rows
     }
 
-    /// Number of cells in a panel.
+    /// Returns the number of cells in a panel of the atlas.
     #[must_use]
     pub const fn cells(&self) -> usize {
         self.push_angles * self.distances
@@ -72,22 +73,22 @@ impl AtlasLayout {
         }
     }
 
-    /// Blocks of a panel in each part.
+    /// Returns the number of blocks of a panel in each part of an EXR map.
     pub(super) fn blocks_per_panel(&self) -> usize {
         self.distances.div_ceil(self.block_height())
     }
 
-    /// Indices `(column, row)` of the tile of a `panel` in the atlas; `None` if there is only one panel.
+    /// Returns the indices `(column, row)` of the tile of a `panel` in the atlas; `None` if there is only one panel.
     pub(super) fn tile(&self, panel: usize) -> Option<Vec2<usize>> {
         (self.panels() > 1).then_some(Vec2(panel % self.columns, panel / self.columns))
     }
 
-    /// First row of cells of a block of a panel.
+    /// Returns the first row of cells of a block of a panel.
     pub(super) fn first_row(&self, block: usize) -> usize {
         block * self.block_height()
     }
 
-    /// The samples of a block of a panel, line by line, in the order of the file, from all samples of each channel.
+    /// Returns the samples of a block of a panel, line by line, in the order of the file, from all samples of each channel.
     pub(super) fn lines<'a>(
         &self,
         block: usize,
@@ -102,7 +103,7 @@ impl AtlasLayout {
         })
     }
 
-    /// Block `block` of panel `panel` in part `part`.
+    /// Returns the index of block `block` of panel `panel` in part `part` of an EXR map.
     pub(super) fn block(&self, part: usize, panel: usize, block: usize) -> BlockIndex {
         let first_row = self.first_row(block);
         let rows = self.block_height().min(self.distances - first_row);
@@ -118,7 +119,7 @@ impl AtlasLayout {
         }
     }
 
-    /// One header per part, all with the same attributes: readers may take a part alone.
+    /// Returns one header for each part of an EXR map, all with the same attributes: readers may take a part alone.
     pub(super) fn headers(
         &self,
         channels: Channels,
@@ -142,7 +143,7 @@ impl AtlasLayout {
 /// Lossless.
 const COMPRESSION: Compression = Compression::ZIP16;
 
-/// Name and channels of each part of an EXR map with these `channels`, in the order of the file. The channels of a part are
+/// Returns name and channels of each part of an EXR map with these `channels`, in the order of the file. The channels of a part are
 /// sorted by name, as EXR demands.
 pub(super) fn parts(channels: Channels) -> Vec<(&'static str, Vec<&'static str>)> {
     let part = |name: &&str| match *name {
@@ -160,7 +161,7 @@ pub(super) fn parts(channels: Channels) -> Vec<(&'static str, Vec<&'static str>)
     sorted.collect()
 }
 
-/// Type of the samples of the channel `name`: `U32` for codes and counts, `F32` for all others.
+/// Returns the type of the samples of the channel `name`: `U32` for codes and counts, `F32` for all others.
 pub(super) fn sample_type(name: &str) -> SampleType {
     match name {
         "regime" | "status" | "newton_steps" => SampleType::U32,
@@ -168,5 +169,5 @@ pub(super) fn sample_type(name: &str) -> SampleType {
     }
 }
 
-/// Bytes of one sample; every channel is 32 bits wide.
+/// Size of one sample of an EXR map in bytes; every channel is 32 bits wide.
 pub(super) const SAMPLE_BYTES: usize = 4;

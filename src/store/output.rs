@@ -1,4 +1,4 @@
-//! Files being written. No other module opens files for writing.
+//! Outputs: files being written. No other module opens files for writing.
 
 use super::file_id::{FileId, folder_of};
 use super::target::OutputTarget;
@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// A file being written.
+/// Output: a file being written.
 ///
 /// [`Output::finish`] replaces a regular file as a whole and keeps its owner, group and permissions. An output that is dropped
 /// before that leaves the file as it was. A device or a pipe is opened by `finish` and written to. Symbolic links are followed,
@@ -30,17 +30,17 @@ enum Destination {
 }
 
 impl Output {
-    /// Standard output, written as it comes.
+    /// Creates an output that writes to standard output at once.
     #[must_use]
     pub fn stdout() -> Self {
         Self(Destination::Stdout)
     }
 
-    /// The file that will be at `path` once it is finished; until then its bytes are in one of the temporary `files`.
+    /// Creates an output for the file at `path`; until it is finished, its bytes are in one of the temporary `files`.
     ///
     /// # Errors
-    /// `path` leads to a folder, or to a file that is read-only or whose owner cannot be kept, or through a link that must not be
-    /// followed; or its folder does not exist or is not writable.
+    /// `path` leads to a folder, to a read-only file, or to a file whose owner cannot be kept. Or it leads through a link that must not
+    /// be followed, or its folder does not exist or is not writable.
     pub fn create(path: &Path, files: &TemporaryFiles) -> io::Result<Self> {
         Ok(Self(match OutputTarget::of(path)? {
             OutputTarget::Regular(target, replaced) => Destination::Regular {
@@ -62,13 +62,13 @@ impl Output {
         }
     }
 
-    /// Returns true if a regular file is made or replaced.
+    /// Returns true if the output makes or replaces a regular file.
     #[must_use]
     pub fn is_regular(&self) -> bool {
         matches!(self.0, Destination::Regular { .. })
     }
 
-    /// Path of the regular file behind all symbolic links.
+    /// Returns the path of the output's regular file behind all symbolic links; `None` for other outputs.
     #[must_use]
     pub fn target(&self) -> Option<&Path> {
         match &self.0 {
@@ -77,7 +77,7 @@ impl Output {
         }
     }
 
-    /// Identity of the file, equal for two outputs that are one file. Devices and pipes have none.
+    /// Returns the identity of the output, equal for two outputs that are one file; `None` for devices and pipes.
     #[must_use]
     pub fn id(&self) -> Option<FileId> {
         match &self.0 {
@@ -87,8 +87,8 @@ impl Output {
         }
     }
 
-    /// Finishes a regular file such that its bytes are on the disk before its name, and its name before this returns: a crash of
-    /// the machine damages neither. It takes 1 to 5 ms.
+    /// Finishes a regular file such that its bytes are on the disk before its name, and its name before this returns. A crash of the
+    /// machine damages neither. It takes 1 to 5 ms.
     ///
     /// # Errors
     /// An error of [`Output::finish`].
@@ -133,7 +133,7 @@ impl Output {
         }
     }
 
-    /// Flushes the file and gives it its name.
+    /// Flushes the output and gives the file its name.
     ///
     /// # Errors
     /// The file cannot be renamed, or the device takes no more.

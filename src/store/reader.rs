@@ -1,4 +1,4 @@
-//! Reads an EXR map, one channel of a panel at a time.
+//! Reader of EXR maps, which reads one channel of a panel at a time.
 
 use super::attributes;
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
@@ -17,14 +17,14 @@ use std::path::{Path, PathBuf};
 /// Values of a channel: `[distance][push_angle]` of one panel, or of several panels one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChannelValues {
-    /// Quantities in map units; NaN where there is none.
+    /// Quantities of a channel in map units, `[cell]`; NaN where there is none.
     F32(Vec<f32>),
-    /// Codes and counts.
+    /// Codes or counts of a channel, `[cell]`.
     U32(Vec<u32>),
 }
 
 impl ChannelValues {
-    /// The value of the cell with this index; a code or a count as a whole number.
+    /// Returns the channel's value of the cell with this index; a code or a count as a whole number.
     #[must_use]
     pub fn value(&self, cell: usize) -> f64 {
         match self {
@@ -33,7 +33,7 @@ impl ChannelValues {
         }
     }
 
-    /// All values in the order of the cells; a code or a count as a whole number.
+    /// Returns all values of the channel in the order of the cells; a code or a count as a whole number.
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
         let cells = match self {
             Self::F32(values) => values.len(),
@@ -47,17 +47,17 @@ impl ChannelValues {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct StoredMap {
-    /// Title of the scene, one line.
+    /// Title of the scene of the stored map, one line.
     pub title: String,
     /// Axes of the stored map: push angles in degrees, distances in mm, and the sweep.
     pub grid: Grid,
-    /// Numbers of panels and cells.
+    /// Numbers of panels and cells of the stored map.
     pub layout: AtlasLayout,
-    /// Name of every code of the channel `regime`.
+    /// Name of every code of the channel `regime`, by code.
     pub regime_names: BTreeMap<u32, String>,
-    /// Name of every code of the channel `status`.
+    /// Name of every code of the channel `status`, by code.
     pub status_names: BTreeMap<u32, String>,
-    /// Cells of each regime and status.
+    /// Number of cells of each regime and status in the stored map.
     pub counts: CellCounts,
     path: PathBuf,
     meta: MetaData,
@@ -67,7 +67,7 @@ pub struct StoredMap {
 }
 
 impl StoredMap {
-    /// Reads the header of a map.
+    /// Opens an EXR map and reads its header.
     ///
     /// # Errors
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
@@ -95,7 +95,7 @@ impl StoredMap {
         })
     }
 
-    /// The codes of `regime` or `status` that occur, by the counts of the header.
+    /// Returns the codes of `regime` or `status` that occur in the map, by the counts of the header.
     pub(super) fn codes(&self, channel: &str) -> BTreeSet<u32> {
         let (names, cells) = match channel {
             "regime" => (&self.regime_names, &self.counts.regimes),
@@ -106,7 +106,7 @@ impl StoredMap {
         present.map(|(code, _)| *code).collect()
     }
 
-    /// The attribute `name`; texts such as `scene` and `adapter` are JSON strings.
+    /// Returns the attribute `name` of the map; texts such as `scene` and `adapter` are JSON strings.
     ///
     /// # Errors
     /// There is no such attribute, or it is not JSON.
@@ -114,14 +114,14 @@ impl StoredMap {
         header::parse(&self.meta, name).map_err(StoreError::at(&self.path, StoreError::NotAMap))
     }
 
-    /// The names of all channels, part by part.
+    /// Returns the names of all channels of the map, part by part, `[channel]`.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
         let parts = layout::parts(self.channels).into_iter();
         parts.flat_map(|(_, channels)| channels).collect()
     }
 
-    /// A channel of all panels: `[second sweep axis][first sweep axis][distance][push angle]`, the last axis fastest.
+    /// Reads a channel of all panels of the map: `[second sweep axis][first sweep axis][distance][push angle]`, the last axis fastest.
     ///
     /// # Errors
     /// There is no such channel, or the file is damaged.
@@ -129,7 +129,7 @@ impl StoredMap {
         self.read(name, 0..self.layout.panels())
     }
 
-    /// A channel of one panel: `[distance][push angle]`. No other panel is read.
+    /// Reads a channel of one panel of the map: `[distance][push angle]`. No other panel is read.
     ///
     /// # Errors
     /// There is no such channel or panel, or the file is damaged.

@@ -1,4 +1,4 @@
-//! A part of a map or a store: the values of some of its axes are fixed.
+//! Slices: parts of a map or a store in which the values of some axes are fixed.
 
 use super::at::{AxisValue, check_near, nearest, with_unit};
 use super::{
@@ -8,7 +8,7 @@ use crate::input::did_you_mean;
 use crate::scene::{Grid, Scene, digits};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A selected value that an axis does not have.
+/// Error of a selected value that an axis does not have.
 #[derive(Debug, thiserror::Error)]
 #[error("{axis}: {why}")]
 pub struct InvalidAxisValue {
@@ -16,7 +16,7 @@ pub struct InvalidAxisValue {
     why: String,
 }
 
-/// A part of a map or a store, read panel by panel.
+/// Slice: a part of a map or a store, read panel by panel.
 #[derive(Debug)]
 pub struct MapSlice {
     stored: MapSource,
@@ -30,7 +30,7 @@ pub struct MapSlice {
 }
 
 impl MapSlice {
-    /// The part of `stored` at the values nearest to those `wanted`, which must be values of the axes if `exact`.
+    /// Creates the slice of `stored` at the values nearest to those `wanted`, which must be values of the axes if `exact`.
     ///
     /// # Errors
     /// An axis is unknown or given twice, ends more than half a step before the value, or does not have it although `exact`.
@@ -109,31 +109,31 @@ impl MapSlice {
         Ok(())
     }
 
-    /// The whole map or store.
+    /// Returns the whole map or store of the slice.
     #[must_use]
     pub fn stored(&self) -> &MapSource {
         &self.stored
     }
 
-    /// The axes of the part. A fixed sweep axis is absent; a fixed axis of the panels has one value.
+    /// Returns the axes of the slice. A fixed sweep axis is absent; a fixed axis of the panels has one value.
     #[must_use]
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// Numbers of panels and cells of the part, which has at most two sweep axes.
+    /// Returns the numbers of panels and cells of the slice, which has at most two sweep axes.
     #[must_use]
     pub fn layout(&self) -> AtlasLayout {
         AtlasLayout::of(&self.grid)
     }
 
-    /// Names and values of the fixed axes.
+    /// Returns names and values of the fixed axes of the slice, each in the unit of its axis.
     #[must_use]
     pub fn chosen(&self) -> &[(&'static str, f64)] {
         &self.chosen
     }
 
-    /// Names and values of the fixed axes, to four digits.
+    /// Returns names of the fixed axes of the slice, and their values as text to four digits.
     pub fn readable(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
         self.chosen.iter().map(|(name, value)| {
             let rounded = format!("{value:.3e}").parse().unwrap_or(*value);
@@ -141,7 +141,7 @@ impl MapSlice {
         })
     }
 
-    /// Title of the scene with the fixed values, one line.
+    /// Returns the title of the scene with the fixed values, one line.
     #[must_use]
     pub fn title(&self) -> String {
         let chosen = self.readable();
@@ -151,13 +151,13 @@ impl MapSlice {
             .collect()
     }
 
-    /// The names of all channels.
+    /// Returns the names of all channels of the slice, `[channel]`.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
         self.stored.channels()
     }
 
-    /// Returns true if a whisker of the part has friction with its pole, or this version cannot read the scene.
+    /// Returns true if a whisker of the slice has friction with its pole, or this version cannot read the scene.
     ///
     /// # Errors
     /// The map or store has no scene.
@@ -171,7 +171,7 @@ impl MapSlice {
         })
     }
 
-    /// Indices of the whiskers of the part, with the last axis varying fastest.
+    /// Returns the indices of the slice's whiskers in the whole sweep, with the last axis varying fastest.
     pub fn whiskers(&self) -> impl Iterator<Item = usize> + '_ {
         let sizes = self.grid.sweep.iter().map(|axis| axis.values.len());
         let sizes: Vec<usize> = sizes.collect();
@@ -187,7 +187,7 @@ impl MapSlice {
         })
     }
 
-    /// Names and values of all sweep axes of the whole, for a whisker of the part.
+    /// Returns names and values of all sweep axes of the whole map or store, for a whisker of the slice, `[axis]`.
     #[must_use]
     pub fn place(&self, whisker: usize) -> Vec<(&'static str, f64)> {
         let place = self.stored.grid().place(self.in_whole(whisker));
@@ -197,7 +197,7 @@ impl MapSlice {
             .collect()
     }
 
-    /// Sizes of the axes that are not fixed: the sweep axes, then distance and push angle.
+    /// Returns the sizes of the axes of the slice that are not fixed, `[axis]`: the sweep axes, then distance and push angle.
     #[must_use]
     pub fn shape(&self) -> Vec<usize> {
         let sweep = self.grid.sweep.iter().map(|axis| axis.values.len());
@@ -210,8 +210,8 @@ impl MapSlice {
         sweep.chain(inside.map(|(_, size)| size)).collect()
     }
 
-    /// Reads a channel of a whisker of the part: `[distance][push_angle]`. `whisker` is an index in the part, whose first sweep axis varies
-    /// fastest.
+    /// Reads a channel of a whisker of the slice: `[distance][push_angle]`. `whisker` is an index in the slice, whose first sweep axis
+    /// varies fastest.
     ///
     /// # Errors
     /// There is no such channel or whisker, or it is missing or damaged.
@@ -238,8 +238,8 @@ impl MapSlice {
         })
     }
 
-    /// Reads the `channels` of a whisker of the part; all other channels are those of [`Panel::unresolved`]. `whisker` is an index in the
-    /// part, whose first sweep axis varies fastest.
+    /// Reads the `channels` of a whisker of the slice; all other channels are those of [`Panel::unresolved`]. `whisker` is an index in
+    /// the slice, whose first sweep axis varies fastest.
     ///
     /// # Errors
     /// An error of [`MapSlice::read_panel`].
@@ -259,13 +259,13 @@ impl MapSlice {
         Ok(panel)
     }
 
-    /// Names of the codes of `regime` or `status`.
+    /// Returns the names of the codes of `regime` or `status` in the slice, by code; `None` for other channels.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
         self.stored.names(channel)
     }
 
-    /// The codes of a channel that occur in the part.
+    /// Returns the codes of a channel that occur in the slice.
     ///
     /// # Errors
     /// An error of [`MapSlice::read_panel`].

@@ -1,4 +1,4 @@
-//! A map or a store, whichever is at a path: both are read panel by panel.
+//! Stored maps: an EXR file or a Zarr store, both read panel by panel.
 
 use super::{ChannelValues, StoreError, StoredMap};
 #[cfg(feature = "zarr")]
@@ -12,15 +12,15 @@ use std::path::Path;
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MapSource {
-    /// An EXR file.
+    /// The stored map is an EXR file.
     Exr(Box<StoredMap>),
-    /// A Zarr store.
+    /// The stored map is a Zarr store.
     #[cfg(feature = "zarr")]
     Zarr(Box<ZarrStore>),
 }
 
 impl MapSource {
-    /// Opens the map at `path`, or the store if it is a folder.
+    /// Opens the EXR map at `path`, or the Zarr store if it is a folder.
     ///
     /// # Errors
     /// It cannot be read, or this program did not write it.
@@ -32,7 +32,7 @@ impl MapSource {
         Ok(Self::Exr(Box::new(StoredMap::open(path)?)))
     }
 
-    /// Title of the scene, one line.
+    /// Returns the title of the scene of the stored map, one line.
     #[must_use]
     pub fn title(&self) -> &str {
         match self {
@@ -42,7 +42,7 @@ impl MapSource {
         }
     }
 
-    /// Axes of the stored map: push angles in degrees, distances in mm, and the sweep.
+    /// Returns the axes of the stored map: push angles in degrees, distances in mm, and the sweep.
     #[must_use]
     pub fn grid(&self) -> &Grid {
         match self {
@@ -52,7 +52,7 @@ impl MapSource {
         }
     }
 
-    /// The names of all channels.
+    /// Returns the names of all channels of the stored map, `[channel]`.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
         match self {
@@ -62,7 +62,7 @@ impl MapSource {
         }
     }
 
-    /// The attribute `name`, such as `scene`, `engine` or `tolerances`.
+    /// Returns the attribute `name` of the stored map, such as `scene`, `engine` or `tolerances`.
     ///
     /// # Errors
     /// There is no such attribute.
@@ -74,7 +74,7 @@ impl MapSource {
         }
     }
 
-    /// The version that wrote it, if it is not compatible with this version.
+    /// Returns the version that wrote the stored map, if it is not compatible with this version; otherwise `None`.
     ///
     /// # Errors
     /// There is no such attribute.
@@ -84,7 +84,7 @@ impl MapSource {
         Ok((!is_compatible(version)).then(|| version.to_owned()))
     }
 
-    /// Names of the codes of `regime` or `status`.
+    /// Returns the names of the codes of `regime` or `status` of the stored map, by code; `None` for other channels.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
         let [regimes, statuses] = match self {
@@ -102,7 +102,7 @@ impl MapSource {
         }
     }
 
-    /// A channel of one whisker: `[distance][push angle]`.
+    /// Reads a channel of one whisker of the stored map: `[distance][push angle]`.
     ///
     /// # Errors
     /// There is no such channel or whisker, or it is missing or damaged.

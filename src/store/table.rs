@@ -4,18 +4,18 @@ use super::Output;
 use serde::Serialize;
 use std::io;
 
-/// A table being written.
+/// CSV table that is being written.
 #[derive(Debug)]
 pub struct TableFile(csv::Writer<Output>);
 
 impl TableFile {
-    /// A table that is written to `output`.
+    /// Creates a CSV table that is written to `output`.
     #[must_use]
     pub fn new(output: Output) -> Self {
         Self(csv::Writer::from_writer(output))
     }
 
-    /// Appends `rows`; the names of the fields of the first one are the header.
+    /// Appends `rows` to the CSV table; the names of the fields of the first one are the header.
     ///
     /// # Errors
     /// When the output takes no more.
@@ -24,7 +24,7 @@ impl TableFile {
             .try_for_each(|row| self.0.serialize(row).map_err(unwrapped))
     }
 
-    /// Flushes the table and finishes the output.
+    /// Flushes the CSV table and finishes the output.
     ///
     /// # Errors
     /// When the output takes no more.

@@ -5,32 +5,32 @@ use crate::map::{Audit, EngineCells};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The attribute `counts` of a map.
+/// Counts of the cells of a map: its attribute `counts`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CellCounts {
-    /// Cells of each regime, by name.
+    /// Number of cells of each regime, by the regime's name.
     pub regimes: BTreeMap<String, u64>,
-    /// Cells of each status, by name.
+    /// Number of cells of each status, by the status' name.
     pub statuses: BTreeMap<String, u64>,
-    /// The greatest residual, relative to the whisker's length; `None` where no cell is in contact.
+    /// Largest residual of a cell of the map, in whisker lengths; `None` if no cell is in contact.
     pub worst_residual: Option<f64>,
-    /// Cells by what the engine did with them.
+    /// Number of cells of the map by their outcome in the engine.
     pub engine_cells: EngineCells,
-    /// Result of the engine's audit.
+    /// Result of the audit of the map's engine.
     pub audit: Audit,
 }
 
-/// Names of the regimes by code.
+/// Returns the names of the regimes by code.
 pub(super) fn regimes() -> BTreeMap<u32, &'static str> {
     Regime::ALL.map(|own| (own.code(), own.name())).into()
 }
 
-/// Names of the statuses by code.
+/// Returns the names of the statuses by code.
 pub(super) fn statuses() -> BTreeMap<u32, &'static str> {
     Status::ALL.map(|own| (own.code(), own.name())).into()
 }
 
-/// Adds the number of `codes` of each name to `cells`. A code without a name is an error.
+/// Adds to `cells`, by name, the number of cells with each of the `codes`. A code without a name is an error.
 pub(super) fn add(
     cells: &mut BTreeMap<String, u64>,
     names: BTreeMap<u32, &'static str>,

@@ -1,14 +1,14 @@
-//! Resolves the path of an output and checks that the file there can be replaced.
+//! Targets of outputs: the path of an output is resolved, and the file there must be replaceable.
 
 use super::file_id::folder_of;
 use std::fs::{self, File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What an output becomes.
+/// Target of an output: a regular file or a stream.
 #[derive(Debug)]
 pub(super) enum OutputTarget {
-    /// A regular file, in place of the one with this metadata if there is one.
+    /// A regular file, with the metadata of the file that it replaces, if there is one.
     Regular(PathBuf, Option<Metadata>),
     /// A device, a pipe or an open file of a process: bytes are appended to it.
     Stream(PathBuf),
@@ -18,7 +18,7 @@ pub(super) enum OutputTarget {
 const MOST_LINKS: usize = 40;
 
 impl OutputTarget {
-    /// Follows the symbolic links of `path` and checks what is there.
+    /// Follows the symbolic links of `path` and checks the file there.
     ///
     /// # Errors
     /// A link must not be followed, or `path` leads to a folder, or to a file without write permission.

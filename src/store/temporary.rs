@@ -14,7 +14,7 @@ use tempfile::NamedTempFile;
 #[cfg(feature = "zarr")]
 use tempfile::TempDir;
 
-/// The temporary files and folders of a process, shared by its outputs and its signal handler.
+/// List of the temporary files and folders of a process, shared by its outputs and its signal handler.
 #[derive(Clone, Debug, Default)]
 pub struct TemporaryFiles(Arc<Mutex<Vec<PathBuf>>>);
 
@@ -40,8 +40,8 @@ impl TemporaryFiles {
         Ok((made, listed))
     }
 
-    /// Removes all files and folders of the list, for a process that is about to end without unwinding. Threads that begin or
-    /// finish a file after this wait forever.
+    /// Removes all temporary files and folders of a process that is about to end without unwinding. Threads that begin or finish a file
+    /// after this wait forever.
     pub fn abandon(&self) {
         let list = self.list();
         for path in list.iter() {
@@ -51,7 +51,7 @@ impl TemporaryFiles {
         std::mem::forget(list);
     }
 
-    /// Checks that files can be made in `folder`, and removes those that interrupted processes have left there.
+    /// Checks that files can be made in `folder`, and removes temporary files of interrupted processes there.
     ///
     /// # Errors
     /// The folder does not exist or is not writable.
@@ -75,7 +75,7 @@ impl Drop for ListedPath {
     }
 }
 
-/// A file that gets its name when it is complete.
+/// Temporary file that gets its name when it is complete.
 #[derive(Debug)]
 pub(super) struct TemporaryFile {
     file: NamedTempFile,
@@ -83,7 +83,7 @@ pub(super) struct TemporaryFile {
 }
 
 impl TemporaryFile {
-    /// A new file in `folder`, with owner and permissions of the file that it replaces.
+    /// Creates a temporary file in `folder`, with owner and permissions of the file that it replaces.
     pub(super) fn create(
         folder: &Path,
         replaced: Option<&Metadata>,
@@ -118,13 +118,13 @@ impl TemporaryFile {
         self.file.as_file_mut()
     }
 
-    /// Gives the file its name, in place of the file that has it.
+    /// Gives the temporary file its name, and replaces the file that has it.
     pub(super) fn persist(self, name: &Path) -> io::Result<()> {
         self.file.persist(name)?;
         Ok(())
     }
 
-    /// Gives the file its name, unless a file has it: by a rename that replaces nothing or, on file systems without, such as
+    /// Gives the temporary file its name, unless a file has it: by a rename that replaces nothing or, on file systems without, such as
     /// NFS, by a hard link.
     #[cfg(feature = "zarr")]
     pub(super) fn persist_new(self, name: &Path) -> io::Result<()> {
@@ -132,7 +132,7 @@ impl TemporaryFile {
         Ok(())
     }
 
-    /// Removes the temporary files beside this one whose processes are gone. Files of other users stay.
+    /// Removes the temporary files beside this one whose processes have ended. Files of other users stay.
     ///
     /// A process that has ended has lost its lock. Locks of other hosts may not be visible here, so their files must also
     /// be [`ABANDONED`] by the clock that dates them and this file.
@@ -169,7 +169,7 @@ impl TemporaryFile {
     }
 }
 
-/// A folder that gets its name when it is complete. It is removed when it is dropped and when the process is interrupted. A
+/// Temporary folder that gets its name when it is complete. It is removed when it is dropped and when the process is interrupted. A
 /// process that ends without unwinding leaves it.
 #[cfg(feature = "zarr")]
 #[derive(Debug)]
@@ -180,7 +180,7 @@ pub struct TemporaryFolder {
 
 #[cfg(feature = "zarr")]
 impl TemporaryFolder {
-    /// An empty folder beside `target`.
+    /// Creates an empty temporary folder beside `target`.
     ///
     /// # Errors
     /// The folder of `target` does not exist, is not writable, or lies behind a link that must not be followed.
@@ -200,13 +200,13 @@ impl TemporaryFolder {
         })
     }
 
-    /// The path of the folder until it is finished.
+    /// Returns the path of the temporary folder until it is finished.
     #[must_use]
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Gives the folder its name.
+    /// Gives the temporary folder its name.
     ///
     /// # Errors
     /// A file, or a folder that is not empty, has the name.
@@ -259,7 +259,7 @@ fn prefix() -> String {
     format!("{PREFIX}{}{DELIMITER}", host())
 }
 
-/// The host in the name of a temporary file; any other name has none.
+/// Returns the host in the name of a temporary file; `None` for any other name.
 pub(super) fn host_of(name: &str) -> Option<&str> {
     let (host, random) = name.strip_prefix(PREFIX)?.split_once(DELIMITER)?;
     let is_random = random.len() == RANDOM && random.chars().all(|c| c.is_ascii_alphanumeric());

@@ -1,4 +1,4 @@
-//! Writes an EXR map, some panels at a time.
+//! Writer of EXR maps, which writes some panels at a time.
 
 use super::attributes::{self, MapDescription, attribute};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 /// Bytes of a place in the file.
 const OFFSET_BYTES: u64 = 8;
 
-/// An EXR map being written; it appears at its path with [`MapWriter::finish`].
+/// Writer of an EXR map, which appears at its path with [`MapWriter::finish`].
 #[derive(Debug)]
 pub struct MapWriter {
     path: PathBuf,
@@ -39,7 +39,7 @@ pub struct MapWriter {
 }
 
 impl MapWriter {
-    /// Begins the map that will be at `path`. Until it is finished, its bytes are in one of the temporary `files`.
+    /// Begins to write the EXR map that will be at `path`. Until it is finished, its bytes are in one of the temporary `files`.
     ///
     /// # Errors
     /// The folder is not writable, or the map is too large for EXR or has more than two sweep axes.
@@ -92,7 +92,7 @@ impl MapWriter {
         Ok(writer)
     }
 
-    /// Compresses the next panels in parallel and appends them, in the order of the sweep.
+    /// Compresses the next panels of the map in parallel and appends them, in the order of the sweep.
     ///
     /// # Errors
     /// A panel is one too many, has the wrong size or a code without a name, or the disk is full.
@@ -136,7 +136,7 @@ impl MapWriter {
         Ok(())
     }
 
-    /// Packs `panels` of a map with this `grid`, and returns how many bytes they take without headers.
+    /// Packs `panels` of a map with this `grid`, and returns their size in bytes without headers.
     #[must_use]
     pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> u64 {
         let layout = AtlasLayout::of(grid);
@@ -152,7 +152,7 @@ impl MapWriter {
         packed.sum()
     }
 
-    /// Writes counts and checksum into the header and gives the map its name. Returns the counts.
+    /// Writes counts and checksum into the header and gives the EXR map its name. Returns the counts.
     ///
     /// # Errors
     /// A panel is missing, or the file cannot be written or renamed; then no map appears.

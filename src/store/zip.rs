@@ -9,7 +9,7 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 /// The fastest level of `miniz_oxide`, at nearly the smallest size: see `benches/NOTES.md`.
 const LEVEL: u8 = 1;
 
-/// The block of these `lines` of samples, in the order of the file.
+/// Packs the `lines` of samples of a block, in the order of the file; returns its bytes.
 pub(super) fn pack<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
     let mut bytes = separated(lines.clone());
     take_differences(&mut bytes);

@@ -12,7 +12,7 @@ use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
 use serde::Serialize;
 
-/// All states of one whisker at one pole that are connected with first touch.
+/// Branch: all states of one whisker at one pole that are connected with first touch.
 #[derive(Clone, Debug)]
 pub struct Branch {
     pub(super) level: LevelCurve,
@@ -22,38 +22,38 @@ pub struct Branch {
 }
 
 row! {
-    /// State on a branch, in mm, deg, uN and nN m.
+    /// Point of a branch: a state in mm, deg, uN and nN m.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct BranchPoint {
-        /// Distance from the base to the contact at first touch.
+        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Whether the state is stable; at the fold, the last one that is.
+        /// True if the state is stable; at the fold, true for the last stable state.
         pub stable: bool,
-        /// Rotation of the base since first touch: positive CB, negative CF.
+        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: f64,
-        /// Angle at the base between the contact and the resting whisker as far away.
+        /// Chord angle: from the resting whisker as far away to the contact, in degrees.
         pub push_chord_deg: f64,
-        /// Arclength from the base to the contact.
+        /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: f64,
-        /// Angle of the tangent at the contact, from the base's tangent.
+        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
         pub contact_angle_deg: f64,
-        /// Size of the force between pole and whisker, normal to both.
+        /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: f64,
-        /// Moment that the pole puts on the base: positive turns it to the left.
+        /// Moment of the pole on the base, in nN m: positive turns it to the left.
         pub base_moment_nnm: f64,
-        /// det d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
+        /// Determinant of d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
-        /// first-touch; slip-off, pull-off (stable end); second-fold, tip (unstable end).
+        /// Mark: first-touch; slip-off, pull-off (stable); second-fold, tip (unstable).
         pub mark: Option<BranchMark>,
-        /// With friction, the sliding direction: tip; loads are off at base, sticks.
+        /// Sliding direction, with friction: tip; base or sticks (loads are inexact).
         pub sliding: Option<Sliding>,
     }
 }
 
 impl Branch {
-    /// Branch of `whisker` at `pole`, whose first touch is at `distance_mm` from the base.
+    /// Computes the branch of `whisker` at `pole`, whose first touch is at `distance_mm` from the base.
     ///
     /// # Errors
     /// The whisker at rest does not reach the pole, or the continuation fails.
@@ -88,14 +88,14 @@ impl Branch {
         })
     }
 
-    /// Row of the branch: distance and direction of the pole.
+    /// Returns the row of the branch: distance and direction of the pole.
     #[must_use]
     pub fn row(&self) -> &Row {
         &self.level.row
     }
 
-    /// `count` points of the branch, at least 3, with the fold as one of them. They are evenly spaced on each side of the fold, in push
-    /// angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
+    /// Returns `count` points of the branch, at least 3, with the fold as one of them. They are evenly spaced on each side of the fold.
+    /// Lengths are measured in push angle and contact angle (radians), and arclength of the contact (whisker lengths).
     ///
     /// # Errors
     /// The corrector fails at a point between two nodes of the continuation.
@@ -147,8 +147,8 @@ impl Branch {
         Ok(points.collect())
     }
 
-    /// Sliding direction at each of `states`, given as `(tau, load)` and push angle in radians; `None` without friction. The first
-    /// `stable` states are stable.
+    /// Returns the sliding direction at each of `states`, given as `(tau, load)` and push angle in radians, `[state]`; `None` without
+    /// friction. The first `stable` states are stable.
     pub(super) fn slidings(&self, states: &[(DVec2, f64)], stable: usize) -> Vec<Option<Sliding>> {
         let level = &self.level;
         if level.rod.friction == 0.0 {
@@ -168,13 +168,13 @@ impl Branch {
         stable.iter().map(sliding).chain(unstable).collect()
     }
 
-    /// State `full` with its contact at `tau` and the push angle `push` in radians, in mm, deg, uN and nN m.
+    /// Returns the state `full` of the branch in mm, deg, uN and nN m. Its contact is at `tau`, and its push angle is `push` in radians.
     pub(super) fn reading(&self, tau: f64, full: &FullState, push: f64) -> Reading {
         let LevelCurve { rod, row, .. } = &self.level;
         Reader::new(self.units, rod).read(tau, full, row.touch, push)
     }
 
-    /// Error of a failed continuation or corrector.
+    /// Returns the error of a failed continuation or corrector.
     pub(super) fn failed(&self) -> NoState {
         NoState::Failed {
             push_deg: self.continuation.nodes[self.continuation.nodes.len() - 1]

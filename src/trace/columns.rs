@@ -11,7 +11,7 @@ macro_rules! row {
         }
 
         impl $name {
-            /// Names and descriptions of the columns of the table, in order.
+            /// Names and descriptions of the columns of the table, `[column]`, in order.
             pub const COLUMNS: &[(&str, &str)] = &[$((stringify!($column), concat!($($text),+))),*];
         }
     };

@@ -1,4 +1,4 @@
-//! Detachment curves: the ends of pushes from first touch, by distance.
+//! Detachment curves: the ends of pushes from first touch, for each distance.
 
 use super::columns::row;
 use crate::classify::{RowBoundary, Sliding};
@@ -18,9 +18,9 @@ pub enum DetachmentKind {
     SlipOff,
     /// The push ends with the contact at the tip.
     PullOff,
-    /// No push begins: the resting whisker does not reach the pole.
+    /// The push does not begin: the resting whisker does not reach the pole.
     OutOfReach,
-    /// The boundary of the row was not found.
+    /// The end of the push is unknown: the boundary of the row was not found.
     Unresolved,
 }
 
@@ -30,33 +30,33 @@ row! {
     pub struct Detachment {
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch.
+        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
-        /// Distance from the base to the pole's centre; the push leaves it as it is.
+        /// Distance from the base to the pole's centre, in mm, constant in a push.
         pub pole_distance_mm: f64,
-        /// How the push ends: slip-off, pull-off, out-of-reach or unresolved.
+        /// End of the push: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,
-        /// Rotation of the base since first touch: positive CB, negative CF.
+        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Angle at the base between the contact and the resting whisker as far away.
+        /// Chord angle: from the resting whisker as far away to the contact, in degrees.
         pub push_chord_deg: Option<f64>,
-        /// Straight distance from the base to the contact.
+        /// Straight distance from the base to the contact, in mm.
         pub contact_distance_mm: Option<f64>,
-        /// Arclength from the base to the contact.
+        /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: Option<f64>,
-        /// Size of the force between pole and whisker, normal to both.
+        /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: Option<f64>,
-        /// Force that the pole puts on the base, along the base's tangent.
+        /// Force that the pole puts on the base, along the base's tangent, in uN.
         pub base_force_x_un: Option<f64>,
-        /// Force that the pole puts on the base, across the base's tangent, to the left.
+        /// Force that the pole puts on the base, to the left of its tangent, in uN.
         pub base_force_y_un: Option<f64>,
-        /// Moment that the pole puts on the base: positive turns it to the left.
+        /// Moment of the pole on the base, in nN m: positive turns it to the left.
         pub base_moment_nnm: Option<f64>,
-        /// Angle of the tangent at the contact, from the base's tangent.
+        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
         pub contact_angle_deg: Option<f64>,
-        /// Remaining error relative to the distance of the pole.
+        /// Remaining error of the detachment, relative to the distance of the pole.
         pub residual: Option<f64>,
-        /// With friction, the sliding direction: tip; loads are off at base.
+        /// Sliding direction, with friction: tip, or base (loads are inexact).
         pub sliding: Option<Sliding>,
     }
 }
@@ -67,11 +67,11 @@ row! {
     pub struct Corner {
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch.
+        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: Option<f64>,
-        /// Rotation of the base since first touch: positive CB, negative CF.
+        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Why there is none: always-slips-off, always-pulls-off or not-found.
+        /// Reason why there is no corner: always-slips-off, always-pulls-off or not-found.
         pub reason: Option<NoCorner>,
     }
 }
@@ -80,21 +80,21 @@ row! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NoCorner {
-    /// Every push that begins ends at the fold, as with a perfect cone and with whiskers that bend away from the pole.
+    /// No corner exists: every push that begins ends at the fold, as with a perfect cone and with whiskers that bend away from the pole.
     AlwaysSlipsOff,
-    /// Every push that begins ends at the tip.
+    /// No corner exists: every push that begins ends at the tip.
     AlwaysPullsOff,
-    /// The fold with the contact at the tip, or an end next to it, was not found.
+    /// No corner was found: the fold with the contact at the tip, or an end next to it, is missing.
     NotFound,
 }
 
-/// Detachment curve of `whisker` on one `side`, one end per distance of `distances_mm`, which must increase.
+/// Computes the detachment curve of `whisker` on one `side`: one end for each of `distances_mm`, which must increase, `[distance]`.
 #[must_use]
 pub fn curve(whisker: &Whisker, pole: &Pole, side: Side, distances_mm: &[f64]) -> Vec<Detachment> {
     curve_at(Resolution::FINE, whisker, pole, side, distances_mm)
 }
 
-/// Detachment curve as [`curve`] returns it, at another resolution.
+/// Computes the detachment curve as [`curve`] does, at another resolution.
 #[must_use]
 pub fn curve_at(
     resolution: Resolution,
@@ -160,7 +160,7 @@ pub fn curve_at(
     .collect()
 }
 
-/// Corner of the detachment curve of `whisker` on one `side`, or the reason why there is none.
+/// Computes the corner of the detachment curve of `whisker` on one `side`, or the reason why there is none.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     let end = |distance: f64| curve(whisker, pole, side, &[distance])[0];

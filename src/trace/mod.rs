@@ -26,19 +26,19 @@ use serde::Serialize;
 /// Resolution of branches and shapes, twice as fine as [`Resolution::FINE`]: unstable states have larger loads.
 const FINER: Resolution = Resolution::FINE.doubled();
 
-/// Special point of a branch.
+/// Mark of a branch point that is special, such as its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BranchMark {
-    /// First touch: the resting whisker touches the pole.
+    /// Start of the branch: the resting whisker touches the pole.
     FirstTouch,
-    /// Fold (saddle-node) at which the stable states end.
+    /// Fold (saddle-node) of the branch, at which the stable states end.
     SlipOff,
-    /// End of the stable states with the contact at the tip.
+    /// End of the branch's stable states with the contact at the tip.
     PullOff,
-    /// End of the unstable states with the contact at the tip.
+    /// End of the branch's unstable states with the contact at the tip.
     Tip,
-    /// End of the unstable states at a second fold.
+    /// End of the branch's unstable states at a second fold.
     SecondFold,
 }
 
@@ -48,13 +48,13 @@ const ENDS_AT_ONCE: usize = 1 << 19;
 /// Maximum number of whiskers whose curves are computed together, enough for several threads.
 const MOST_WHISKERS: usize = 64;
 
-/// Number of whiskers to compute together if each has ends at `distances` distances on both sides.
+/// Returns the number of whiskers to compute together if each has ends at `distances` distances on both sides.
 #[must_use]
 pub fn whiskers_at_once(distances: usize) -> usize {
     (ENDS_AT_ONCE / (2 * distances)).clamp(1, MOST_WHISKERS)
 }
 
-/// Results of `of_side` for each side of each whisker, in the order of `whiskers`, CF before CB.
+/// Returns the results of `of_side` for each side of each whisker, in the order of `whiskers`, CF before CB.
 pub fn sides<R: Send>(
     whiskers: &[SweptWhisker],
     of_side: impl Fn(&SweptWhisker, Side) -> Vec<R> + Sync,
@@ -78,21 +78,21 @@ pub enum NoState {
         /// Distance from the base to the tip of the resting whisker, in mm.
         reach_mm: f64,
     },
-    /// The base is turned away from the pole.
+    /// The whisker has lost touch: the base is turned away from the pole.
     #[error(
         "lost touch: the whisker has moved away from the pole; must be between {:.9} and {:.9} deg", .stays_deg[0], .stays_deg[1]
     )]
     LostTouch {
-        /// Smallest and largest push angle in contact, in degrees.
+        /// Smallest and largest push angle in contact, in degrees: `[smallest, largest]`.
         stays_deg: [f64; 2],
     },
-    /// The push angle lies beyond the fold.
+    /// The whisker has slipped off: the push angle lies beyond the fold.
     #[error("slipped off at {at_deg:.9} deg")]
     SlippedOff {
         /// Signed push angle of the fold, in degrees.
         at_deg: f64,
     },
-    /// The push angle lies beyond the one at which the contact reaches the tip.
+    /// The whisker has been pulled off: the push angle lies beyond the one at which the contact reaches the tip.
     #[error("pulled off at {at_deg:.9} deg")]
     PulledOff {
         /// Signed push angle at which the contact reaches the tip, in degrees.
@@ -107,13 +107,13 @@ pub enum NoState {
     /// The branch has unstable states, but not at this push angle.
     #[error("the unstable states lie between {:.9} and {:.9} deg", .ends_deg[0], .ends_deg[1])]
     NotUnstable {
-        /// Signed push angles of the fold and of the end of the branch, in degrees.
+        /// Signed push angles of the fold and of the end of the branch, in degrees: `[fold, end]`.
         ends_deg: [f64; 2],
     },
-    /// The continuation failed.
+    /// The continuation of the branch failed.
     #[error("the continuation of the branch failed near {push_deg} deg")]
     Failed {
-        /// Signed push angle of the last node, in degrees.
+        /// Signed push angle of the last node of the continuation, in degrees.
         push_deg: f64,
     },
 }

@@ -4,8 +4,8 @@ use crate::numerics::newton_form::{Polynomial, stencil, through_nodes};
 use crate::sheet::CurveNode;
 use glam::DVec2;
 
-/// Positions of `count` points along a curve, and the index of the fold among them. `lengths` and the positions are lengths along the
-/// curve, as in [`LevelCurve::length`](crate::sheet::LevelCurve::length). The parts before and after the fold each get intervals in
+/// Returns positions of `count` points along a curve, and the index of the fold among them. `lengths` and the positions are lengths along
+/// the curve, as in [`LevelCurve::length`](crate::sheet::LevelCurve::length). The parts before and after the fold each get intervals in
 /// proportion to their length.
 pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>, Option<usize>) {
     let intervals = count - 1;
@@ -28,7 +28,8 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
 /// Maximum number of nodes of an interpolation.
 const NODES: usize = 6;
 
-/// Index of the last node before `target`, and the point `(tau, load)` at `target` of the polynomial through the nodes around it.
+/// Returns the index of the last node before `target`, and the point `(tau, load)` at `target` of the polynomial through the nodes around
+/// it.
 pub fn interpolate(nodes: &[CurveNode], lengths: &[f64], target: f64) -> (usize, DVec2) {
     let near = lengths.partition_point(|length| *length <= target);
     let near = near.saturating_sub(1);

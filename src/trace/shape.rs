@@ -12,11 +12,11 @@ use serde::Serialize;
 /// first touch. A push rotates the base and leaves the pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WhiskerShape {
-    /// Points of the whisker, from the base to the tip.
+    /// Points of the whisker's shape, from the base to the tip, `[point]`.
     pub points: Vec<ShapePoint>,
-    /// Centre of the pole, `[x, y]` in mm.
+    /// Centre of the pole in front of the whisker, `[x, y]` in mm.
     pub pole_mm: [f64; 2],
-    /// Radius of the pole, in mm.
+    /// Radius of the pole in front of the whisker, in mm.
     pub pole_radius_mm: f64,
     /// Distance of the computed pole from its true position, in whisker lengths.
     pub residual: f64,
@@ -25,22 +25,22 @@ pub struct WhiskerShape {
 }
 
 row! {
-    /// Point of a bent whisker.
+    /// Point of the shape of a bent whisker.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct ShapePoint {
-        /// Arclength from the base.
+        /// Arclength from the base to the point, in mm.
         pub arc_length_mm: f64,
-        /// Position along the base's tangent at first touch; the base is at 0.
+        /// Position along the base's tangent at first touch, in mm; the base is at 0.
         pub x_mm: f64,
-        /// Position across it, to the left: the CF side of a curved whisker.
+        /// Position to the left of the base's tangent at first touch, in mm: the CF side.
         pub y_mm: f64,
-        /// Angle of the tangent, from the base's tangent at first touch.
+        /// Angle of the tangent, from the base's tangent at first touch, in degrees.
         pub angle_deg: f64,
-        /// Curvature of the bent whisker.
+        /// Curvature of the bent whisker at the point, in 1/mm.
         pub curvature_per_mm: f64,
-        /// Bending moment in the whisker.
+        /// Bending moment in the whisker at the point, in nN m.
         pub moment_nnm: f64,
-        /// loaded (before the contact), contact or free (beyond it).
+        /// Part of the whisker: loaded (before the contact), contact or free (beyond it).
         pub part: WhiskerPart,
     }
 }
@@ -49,16 +49,16 @@ row! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WhiskerPart {
-    /// Between the base and the contact, bent by the pole.
+    /// The part between the base and the contact, bent by the pole.
     Loaded,
-    /// At the contact.
+    /// The point of contact with the pole.
     Contact,
-    /// Between the contact and the tip, unloaded.
+    /// The part between the contact and the tip, without load.
     Free,
 }
 
 impl WhiskerShape {
-    /// Shape in the state `found` on `branch`, at `count` points evenly spaced along the whisker and at the contact.
+    /// Computes the shape in the state `found` on `branch`, at `count` points evenly spaced along the whisker and at the contact.
     #[must_use]
     pub fn new(branch: &Branch, found: &StateAtPush, count: usize) -> Self {
         let (rod, row, units) = (&branch.level.rod, branch.row(), &branch.units);
@@ -107,7 +107,7 @@ impl WhiskerShape {
         }
     }
 
-    /// Shape of the resting whisker at first touch: `count` points `[x, y]` in mm, in the axes of [`WhiskerShape`].
+    /// Computes the shape of the resting whisker at first touch: `count` points `[x, y]` in mm, in the axes of [`WhiskerShape`].
     #[must_use]
     pub fn at_rest(branch: &Branch, count: usize) -> Vec<[f64; 2]> {
         let rest = Rest::new(&branch.level.rod);

@@ -7,26 +7,26 @@ use crate::shooting::{FullState, Reading};
 /// State of a branch at a push angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StateAtPush {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the state, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`, dimensionless.
+    /// Signed load `f/rho^2` of the state, dimensionless.
     pub load: f64,
-    /// Requested push angle, signed, in radians.
+    /// Push angle of the state as requested, signed, in radians.
     pub push: f64,
-    /// Whether the state is stable.
+    /// True if the state at the push angle is stable.
     pub stable: bool,
-    /// Pole, pose of the base, force and energy of the state, in the frame of the contact and without units.
+    /// Pole, pose of the base, force and energy of the state, in the frame of the contact, dimensionless.
     pub full: FullState,
 }
 
 impl Branch {
-    /// Values of `state` in mm, deg, uN and nN m.
+    /// Returns the values of `state` in mm, deg, uN and nN m.
     #[must_use]
     pub fn read(&self, state: &StateAtPush) -> Reading {
         self.reading(state.tau, &state.full, state.push)
     }
 
-    /// State at the signed push angle `push`, in radians, on the stable or the unstable part.
+    /// Returns the state at the signed `push`, in radians, on the stable or the unstable part of the branch.
     ///
     /// # Errors
     /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// (1e-12), and so small that its truncation error (its square) is negligible.
 const STEP: [f64; 2] = [1e-3, 1e-6];
 
-/// Standard deviation of the push angle in degrees, a value for each distance; `None` where a derivative lacks an end.
+/// Returns the standard deviation of the push angle in degrees, to first order, `[distance]`; `None` where a derivative lacks an end.
 pub(super) fn deviations_deg(
     scene: &Scene,
     varying: &[Varying],

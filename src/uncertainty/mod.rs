@@ -24,7 +24,7 @@ const MOST_ENDS: usize = 1 << 24;
 /// Most draws for one sample.
 const MOST_TRIES: u64 = 1000;
 
-/// Whiskers drawn from the uncertainty of a scene.
+/// Random whiskers drawn from the uncertainty of a scene.
 #[derive(Clone, Debug)]
 pub struct Draws {
     scene: Scene,
@@ -38,37 +38,37 @@ pub struct Draws {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DrawError {
-    /// The scene has no `[uncertainty]`.
+    /// The scene has no table `[uncertainty]`.
     #[error(
         "the scene has no [uncertainty]: add that table, such as `base_radius_um = 1.0`, a standard deviation"
     )]
     NoTable,
-    /// The scene sweeps whiskers, along this axis.
+    /// The scene sweeps whiskers along this axis, but draws need one whisker.
     #[error("grid.{0}: must be left out, as one whisker is drawn around")]
     Sweep(&'static str),
-    /// Samples times distances exceed the limit.
+    /// The number of samples times the number of distances exceeds the limit.
     #[error(
         "makes {ends} ends at the scene's {distances} distances on each side; must make at most {MOST_ENDS}"
     )]
     TooMany {
-        /// Samples times distances.
+        /// Number of samples times the number of distances.
         ends: usize,
         /// Number of distances of the scene.
         distances: usize,
     },
-    /// The deviations are far larger than the ranges of the scene.
+    /// The standard deviations are far larger than the ranges of the scene, which refuses almost every draw.
     #[error(
         "{MOST_TRIES} draws in a row are outside of the scene's limits; [uncertainty] must have smaller deviations; the \
          last one: {why}"
     )]
     Refused {
-        /// Why the scene refuses the last draw.
+        /// Reason why the scene refuses the last draw.
         why: String,
     },
 }
 
 impl Draws {
-    /// Draws `samples` whiskers.
+    /// Draws `samples` random whiskers; equal seeds give equal whiskers.
     ///
     /// # Errors
     /// If the scene has no `[uncertainty]`, sweeps whiskers, or refuses almost every draw, or if there are too many.
@@ -94,19 +94,20 @@ impl Draws {
         })
     }
 
-    /// Number of random whiskers.
+    /// Returns the number of random whiskers.
     #[must_use]
     pub fn len(&self) -> usize {
         self.drawn.len()
     }
 
-    /// Returns true without any whisker.
+    /// Returns true if there are no random whiskers.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.drawn.is_empty()
     }
 
-    /// Spread of the ends of pushes on one side, at every distance of the scene. `tick` is called after every whisker.
+    /// Computes the spread of the ends of pushes on one side, `[distance]`, at every distance of the scene. `tick` is called after every
+    /// whisker.
     #[must_use]
     pub fn spread(
         &self,

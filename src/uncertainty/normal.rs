@@ -2,22 +2,22 @@
 
 use std::f64::consts::TAU;
 
-/// Numbers with the normal distribution of mean 0 and standard deviation 1: SplitMix64 (Steele, Lea and Flood, OOPSLA
-/// 2014), transformed by the method of Box and Muller (Ann. Math. Stat. 29, 610, 1958).
+/// Stream of random numbers with the normal distribution of mean 0 and standard deviation 1. They are made by SplitMix64 (Steele, Lea and
+/// Flood, OOPSLA 2014) and the method of Box and Muller (Ann. Math. Stat. 29, 610, 1958).
 #[derive(Clone, Debug)]
 pub(super) struct Normal {
     state: u64,
 }
 
 impl Normal {
-    /// The stream of a `seed` and a `sample`.
+    /// Creates the stream of random numbers of a `seed` and a `sample`.
     pub fn new(seed: u64, sample: u64) -> Self {
         Self {
             state: mixed(mixed(seed).wrapping_add(sample)),
         }
     }
 
-    /// Next number of the stream: mean 0, standard deviation 1.
+    /// Returns the next random number of the stream: mean 0, standard deviation 1.
     pub fn draw(&mut self) -> f64 {
         // The first is in (0, 1], whose logarithm is finite.
         let [radius, turn] = [1.0, 0.0].map(|shift| (self.bits() as f64 + shift) / STEPS);

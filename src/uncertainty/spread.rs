@@ -1,4 +1,4 @@
-//! Statistics of many ends: percentiles, mean and standard deviation.
+//! Spread of many ends of pushes: percentiles, mean and standard deviation.
 
 use super::PushEnd;
 use crate::rod::Side;
@@ -6,46 +6,46 @@ use crate::trace::{DetachmentKind, row};
 use serde::Serialize;
 
 row! {
-    /// How the ends of pushes spread at one distance. Percentiles are those of the detachments, of either kind.
+    /// Spread of the ends of pushes at one distance. Percentiles are those of the detachments, of either kind.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct EndSpread {
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch.
+        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
-        /// How the scene's own push ends: slip-off, pull-off, out-of-reach or unresolved.
+        /// End of the scene's own push: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,
-        /// Push angle at the end of the scene's own push: positive CB, negative CF.
+        /// Push angle of the scene's detachment, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Samples that slip off.
+        /// Number of samples that slip off.
         pub slip_off: u64,
-        /// Samples that are pulled off.
+        /// Number of samples that are pulled off.
         pub pull_off: u64,
-        /// Samples that do not reach the pole.
+        /// Number of samples that do not reach the pole.
         pub out_of_reach: u64,
-        /// Samples whose end was not found.
+        /// Number of samples whose end was not found.
         pub unresolved: u64,
-        /// 5th percentile of the push angles at detachment.
+        /// 5th percentile of the push angles at detachment, in degrees.
         pub p5_deg: Option<f64>,
-        /// 25th percentile of the push angles at detachment.
+        /// 25th percentile of the push angles at detachment, in degrees.
         pub p25_deg: Option<f64>,
-        /// Median of the push angles at detachment.
+        /// Median of the push angles at detachment, in degrees.
         pub p50_deg: Option<f64>,
-        /// 75th percentile of the push angles at detachment.
+        /// 75th percentile of the push angles at detachment, in degrees.
         pub p75_deg: Option<f64>,
-        /// 95th percentile of the push angles at detachment.
+        /// 95th percentile of the push angles at detachment, in degrees.
         pub p95_deg: Option<f64>,
-        /// Mean push angle at detachment.
+        /// Mean push angle at detachment, in degrees.
         pub mean_deg: Option<f64>,
-        /// Standard deviation of the push angles at detachment, from the samples.
+        /// Standard deviation of push angles at detachment, from samples, in degrees.
         pub sd_deg: Option<f64>,
-        /// Standard deviation of the push angle to first order, from derivatives alone.
+        /// Standard deviation of the push angle to first order, in degrees.
         pub sd_first_order_deg: Option<f64>,
     }
 }
 
 impl EndSpread {
-    /// The spread of the `ends` of samples around the scene's `own` one.
+    /// Computes the spread of the `ends` of samples around the scene's `own` one.
     pub(super) fn new(
         side: Side,
         distance_mm: f64,

@@ -1,14 +1,14 @@
-//! The numbers of a scene that vary.
+//! Numbers of a scene that vary randomly.
 
 use crate::scene::{Deviations, Parameter, Scene, SceneError};
 
-/// A number of a scene that varies.
+/// Number of a scene that varies randomly.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Varying {
     source: VaryingSource,
-    /// Value in the scene, in the unit of the parameter or, for a row of the profile, in micrometres.
+    /// Value of the number in the scene, in the unit of the parameter or, for a row of the profile, in micrometres.
     pub value: f64,
-    /// Standard deviation of the value, in the same unit, more than 0.
+    /// Standard deviation of the number, in the same unit, more than 0.
     pub deviation: f64,
 }
 
@@ -20,7 +20,7 @@ enum VaryingSource {
     Row(usize),
 }
 
-/// The numbers of `scene` whose `deviations` are not 0.
+/// Returns the numbers of `scene` whose `deviations` are not 0, `[number]`.
 pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
     let parameters = deviations.parameters.iter().filter_map(|own| {
         let (parameter, deviation) = *own;
@@ -42,7 +42,7 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
     all.filter(|one| one.deviation > 0.0).collect()
 }
 
-/// The scene with each number moved by its step.
+/// Returns the scene with each number moved by its step.
 ///
 /// # Errors
 /// If the scene is refused with these numbers.

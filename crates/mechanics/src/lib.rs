@@ -1,5 +1,5 @@
-//! The mechanics of one whisker in front of one pole: [`numerics`], the [`rod`], and how it is integrated from its contact
-//! ([`shooting`]). `whiskmap` builds sheets, maps and curves from it.
+//! Mechanics of one whisker in front of one pole: [`numerics`], the [`rod`], and its integration from contact to base ([`shooting`]).
+//! `whiskmap` builds sheets, maps and curves from it.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

@@ -22,9 +22,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Axes choose their ranges, ticks and units: a label that ends in a unit of length, force, moment or energy, such as `(mm)`,
-//! changes to the unit in which the numbers read best. The font is DejaVu Sans; the crate contains it, and its
-//! licence in `fonts/`.
+//! Axes choose their ranges, ticks and units. A label that ends in a unit of length, force, moment or energy, such as `(mm)`, changes to
+//! the unit in which numbers read best. The font is DejaVu Sans; the crate contains it, and its licence in `fonts/`.
 
 mod chart;
 mod frame;

@@ -1,4 +1,4 @@
-//! `whiskmap bench`.
+//! Command `whiskmap bench`.
 
 mod plot;
 mod tables;

@@ -1,9 +1,9 @@
-//! Plot of `whiskmap bench`.
+//! Plot of the command `whiskmap bench`.
 
 use whiskmap::bench::{Measurement, NOISY, named};
 use whiskmap::render::{Dot, Ink, Line, Plot, Stroke};
 
-/// Plots error against time, with one line per engine and integrator.
+/// Plots error against time of all measurements, with one line per engine and integrator.
 pub fn plot(rows: &[Measurement]) -> Plot {
     let looks = [
         (Ink::Grey, Stroke::Solid),

@@ -1,4 +1,4 @@
-//! Tables of `whiskmap bench`.
+//! Tables of the command `whiskmap bench`.
 
 use std::io::{self, Write};
 use whiskmap::bench::{NOISY, Report, Timing, named};

@@ -1,4 +1,4 @@
-//! One channel of a slice as a NumPy array.
+//! Output of one channel of a slice as a NumPy array.
 
 use super::super::failure::{Failure, message};
 use super::super::files::{Files, unwritten};
@@ -8,7 +8,7 @@ use std::path::Path;
 use whiskmap::classify::Status;
 use whiskmap::store::{ChannelValues, MapSlice, Output};
 
-/// Writes the only channel of `channels`.
+/// Writes the only channel of `channels` of a slice as a NumPy array.
 pub fn array(
     slice: &MapSlice,
     channels: &[&'static str],

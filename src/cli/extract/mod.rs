@@ -1,4 +1,4 @@
-//! `whiskmap extract`.
+//! Command `whiskmap extract`.
 
 mod array;
 mod table;

@@ -1,4 +1,4 @@
-//! A slice as a table with one line per cell.
+//! Output of a slice as a table with one line per cell.
 
 use super::super::failure::Failure;
 use super::super::files::Files;

@@ -1,18 +1,18 @@
-//! The adapters of this machine, and which one the engine uses.
+//! GPU adapters of this machine, and the choice of the one that the engine uses.
 
 use super::Precision;
 use wgpu::{AdapterInfo, DeviceType};
 
-/// Description of an adapter.
+/// Description of a GPU adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterReport {
-    /// Name, interface, kind and driver.
+    /// Name, interface, kind and driver of the adapter.
     pub info: AdapterInfo,
-    /// Whether shaders can compute in `f64`.
+    /// True if shaders of the adapter can compute in `f64`.
     pub shader_f64: bool,
-    /// Largest storage buffer that a shader can see, in bytes.
+    /// Size in bytes of the largest storage buffer of the adapter that a shader can access.
     pub most_storage_bytes: u64,
-    /// Workgroups per dispatch.
+    /// Maximum number of workgroups per dispatch of the adapter.
     pub most_workgroups: u32,
 }
 
@@ -38,7 +38,7 @@ impl AdapterReport {
         }
     }
 
-    /// Name of the adapter's kind.
+    /// Returns the name of the adapter's kind, such as integrated or software.
     #[must_use]
     pub const fn kind(&self) -> &'static str {
         self.ranked_kind().1
@@ -49,13 +49,13 @@ impl AdapterReport {
     }
 }
 
-/// Every adapter that a driver offers.
+/// Returns every adapter that a driver offers.
 pub(super) fn enumerate() -> Vec<wgpu::Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
 }
 
-/// Describes every adapter of every interface.
+/// Returns a description of every adapter of every interface.
 #[must_use]
 pub fn adapters() -> Vec<AdapterReport> {
     enumerate().iter().map(AdapterReport::new).collect()
@@ -68,13 +68,15 @@ fn best(reports: &[AdapterReport], good: impl Fn(&AdapterReport) -> bool) -> Opt
         .min_by_key(|&i| reports[i].ranked_kind().0)
 }
 
-/// Index of the adapter that the engine uses by default: the first of the best kind that has this precision.
+/// Returns the index of the adapter that the engine uses by default: the first of the best kind that has this precision; `None` without
+/// one.
 #[must_use]
 pub fn preferred(reports: &[AdapterReport], precision: Precision) -> Option<usize> {
     best(reports, |report| report.computes_in(precision))
 }
 
-/// Index of the adapter with `part` in its name, ignoring case: the first of the best kind, with this precision if there is one.
+/// Returns the index of the adapter with `part` in its name, ignoring case: the first of the best kind, with this precision if there is
+/// one. `None` without one.
 #[must_use]
 pub fn named(reports: &[AdapterReport], part: &str, precision: Precision) -> Option<usize> {
     let part = part.to_lowercase();

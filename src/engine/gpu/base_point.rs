@@ -25,18 +25,18 @@ const _: () = assert!(
     "shaders/row.wgsl writes them out"
 );
 
-/// A scalar of the shaders.
+/// Scalar type of the shaders: `f32` or `f64`.
 pub trait Scalar: Real + Pod + Into<f64> {}
 
 impl<T: Real + Pod + Into<f64>> Scalar for T {}
 
-/// `[high, low]`: `number` rounded to the shaders' scalar, and the rounded remainder.
+/// Returns `number` as `[high, low]`: rounded to the shaders' scalar, and the rounded remainder.
 pub fn halves<T: Scalar>(number: f64) -> [T; 2] {
     let high = T::of(number);
     [high, T::of(number - high.into())]
 }
 
-/// Start of a step: the shaders' `StepStart`.
+/// Start of an integration step, in the layout of the shaders' `StepStart`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, packed)]
 pub struct GpuStart<T> {
@@ -72,7 +72,7 @@ pub struct GpuBasePoint<T> {
     by_tau: [T; 4],
     /// Derivatives of `(theta, X, Y)` at the base and of the energy by load.
     by_load: [T; 4],
-    /// Push angle as two numbers, number of steps, and index of the first.
+    /// Push angle of the base point as two numbers (radians), number of steps, and index of the first step.
     pub push: [T; 4],
     /// Taylor polynomials in the change of the row parameter: changes of the push angle, of `tau`, and of the direction of the resting
     /// whisker's point at the distance of the contact.
@@ -83,7 +83,7 @@ pub struct GpuBasePoint<T> {
     jacobian: [[T; 4]; JACOBIAN_POWERS],
 }
 
-/// Index of each field of a base point in the shaders, in quads, and the number of quads.
+/// Position of each field of a base point in the shaders, in quads of numbers, and the number of quads.
 pub const QUADS: [(&str, usize); 13] = {
     macro_rules! quads {
         ($($name:literal $member:ident)+) => {

@@ -7,10 +7,10 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use std::ops::Range;
 
-/// Bytes of a cell.
+/// Size in bytes of a cell as the shaders write it.
 pub const CELL_BYTES: usize = size_of::<GpuCell>();
 
-/// The codes that the shaders write, from 0. A kernel that writes nothing leaves zeros, which are no solution.
+/// Outcomes by the codes that the shaders write, from 0, `[code]`. A kernel that writes nothing leaves zeros, which are no solution.
 pub const OUTCOMES: [(&str, Outcome); 5] = [
     ("NOT_FINITE", Outcome::NotFinite),
     ("SOLVED", Outcome::Solved),

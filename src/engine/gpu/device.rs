@@ -1,4 +1,4 @@
-//! A device whose errors are values.
+//! GPU device whose errors are returned as values.
 
 use super::adapters::{AdapterReport, enumerate, preferred};
 use super::guard::guarded;
@@ -10,7 +10,7 @@ use wgpu::BufferUsages as Usage;
 /// Maximum time of a submission: hundreds of times the goal of the pace.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A device, its queue, and the errors that have not been returned yet.
+/// GPU device, its queue, and the errors that have not been returned yet.
 ///
 /// wgpu reports errors at any time; they are kept until [`Device::check`] returns the first one.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// Opens the adapter at `index` of [`adapters`](super::adapters), or the [`preferred`] one.
+    /// Opens the GPU adapter at `index` of [`adapters`](super::adapters), or the [`preferred`] one.
     pub fn open(index: Option<usize>, precision: Precision) -> Result<Self, EngineError> {
         let found = enumerate();
         let reports: Vec<_> = found.iter().map(AdapterReport::new).collect();
@@ -75,7 +75,7 @@ impl Device {
         })
     }
 
-    /// Returns the first error since the last call, if any.
+    /// Returns the first error of the device since the last call, if any.
     pub fn check(&self) -> Result<(), EngineError> {
         let mut unseen = self.errors.try_iter();
         let first = unseen.next();
@@ -83,7 +83,7 @@ impl Device {
         first.map_or(Ok(()), |what| Err(EngineError::Device(what)))
     }
 
-    /// Waits until all submissions up to `submission` are done.
+    /// Waits until the device has finished all submissions up to `submission`.
     pub fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), EngineError> {
         let waiting = wgpu::PollType::Wait {
             submission_index: Some(submission),
@@ -95,12 +95,12 @@ impl Device {
         waited.flatten().map(drop).map_err(EngineError::Device)
     }
 
-    /// Largest storage buffer of this device, in bytes.
+    /// Returns the size in bytes of the largest storage buffer of this device.
     pub fn most_bytes(&self) -> u64 {
         self.handle.limits().max_storage_buffer_binding_size
     }
 
-    /// Creates a buffer.
+    /// Creates a buffer on the device.
     pub fn buffer(
         &self,
         label: &str,

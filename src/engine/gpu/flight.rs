@@ -1,4 +1,4 @@
-//! A submission on the device, in buffers that are used again.
+//! Flights: submissions on the device, in buffers that are used again.
 
 use super::EngineError;
 use super::cells::{CELL_BYTES, read_cells};
@@ -12,7 +12,7 @@ use wgpu::BufferUsages as Usage;
 /// Wall times of the stages of submissions, each summed over all submissions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
-    /// Time to pack and submit on the CPU.
+    /// Wall time to pack and submit on the CPU.
     pub upload: Duration,
     /// Run time of the shader by the device's own clock; 0 if the device has none.
     pub dispatch: Duration,
@@ -22,7 +22,7 @@ pub struct Times {
     pub readback: Duration,
 }
 
-/// Buffers of a submission, which grow when they must.
+/// Buffers of a submission on the device, which grow when they must.
 #[derive(Debug, Default)]
 pub struct Buffers {
     stamps: Option<Stamps>,
@@ -33,14 +33,14 @@ pub struct Buffers {
     readback: Option<wgpu::Buffer>,
 }
 
-/// A submission on the device.
+/// Flight: a submission on the device.
 #[derive(Debug)]
 pub struct Flight {
-    /// Number of cells of the submission.
+    /// Number of cells of the flight.
     pub cells: usize,
     /// End of its base points in the batch.
     base_points_end: usize,
-    /// Time of the submission.
+    /// Time at which the flight was submitted.
     pub submitted: Instant,
     index: wgpu::SubmissionIndex,
     buffers: Buffers,

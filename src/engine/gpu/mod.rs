@@ -39,15 +39,15 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The GPU engine on one adapter.
+/// GPU engine on one adapter.
 #[derive(Debug)]
 pub struct Gpu {
     precision: Precision,
-    /// Text of the shader, by default [`shaders::cells`]: tests replace it before the first batch.
+    /// Text of the engine's shader, by default [`shaders::cells`]: tests replace it before the first batch.
     pub shader: String,
-    /// Whether the device's clock times submissions.
+    /// True if the device's clock times submissions.
     pub is_timed: bool,
-    /// Times of the stages of all submissions.
+    /// Wall times of the stages of all submissions of the engine.
     pub times: Times,
     device: Device,
     pushes: Option<wgpu::Buffer>,
@@ -72,7 +72,7 @@ const IN_FLIGHT: usize = 2;
 const MOST_DISPATCHES: usize = 64;
 
 impl Gpu {
-    /// Opens the adapter at `index` of [`adapters`], or the [`preferred`] one.
+    /// Opens the GPU engine on the adapter at `index` of [`adapters`], or on the [`preferred`] one.
     ///
     /// # Errors
     /// [`EngineError::NoAdapter`] without such an adapter, [`EngineError::Unsupported`] if the adapter has no `f64`,
@@ -161,13 +161,13 @@ impl Gpu {
         Ok(())
     }
 
-    /// The device, which tests destroy.
+    /// Returns the GPU device, which tests destroy.
     #[must_use]
     pub const fn device(&self) -> &wgpu::Device {
         &self.device.handle
     }
 
-    /// Resolution of the trajectories of base points where the CPU integrates with `resolution`.
+    /// Returns the resolution of the trajectories of base points where the CPU integrates with `resolution`.
     #[must_use]
     pub fn resolution(&self, resolution: Resolution) -> Resolution {
         self.precision.resolution(resolution)

@@ -14,7 +14,7 @@ const MOST: usize = 1 << 20;
 /// Number of cells per submission, adapted to the times of the previous ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pace {
-    /// Cells of the next submission.
+    /// Number of cells of the next submission.
     pub cells: usize,
     most: usize,
     warm: bool,
@@ -33,8 +33,8 @@ impl Pace {
         }
     }
 
-    /// Adapts to a submission of `cells` that took at most `time`. The first one of a pipeline is ignored, since it compiles the pipeline;
-    /// the last one of a batch, which is not full, can only slow the pace down.
+    /// Adapts the pace to a submission of `cells` that took at most `time`. The first one of a pipeline is ignored, since it compiles the
+    /// pipeline; the last one of a batch, which is not full, can only slow the pace down.
     pub fn learn(&mut self, cells: usize, is_last: bool, time: Duration) {
         if std::mem::replace(&mut self.warm, true) && (!is_last || time > GOAL) {
             let fitting = cells as f64 * GOAL.as_secs_f64() / time.as_secs_f64().max(1e-6);

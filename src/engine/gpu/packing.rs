@@ -6,13 +6,13 @@ use super::pending::BatchPart;
 use crate::engine::RowBatch;
 use std::ops::Range;
 
-/// Invocations per workgroup; every device allows this many.
+/// Number of shader invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 32;
 
 /// Alignment of a buffer range in groups: every device takes multiples of 256 bytes.
 const ALIGNED: usize = 256 / size_of::<[u32; 4]>();
 
-/// Signed push angles, in radians, as bytes for the shaders. Each is two numbers of `precision`, `[high, low]` of [`halves`], which
+/// Packs signed push angles, in radians, as bytes for the shaders. Each is two numbers of `precision`, `[high, low]` of [`halves`], which
 /// together hold the angle.
 pub fn pushes(precision: Precision, pushes: &[f64]) -> Vec<u8> {
     fn bytes<T: Scalar>(pushes: &[f64]) -> Vec<u8> {
@@ -28,11 +28,11 @@ pub fn pushes(precision: Precision, pushes: &[f64]) -> Vec<u8> {
 /// Base points of a batch as bytes, in dispatches.
 #[derive(Debug, Default)]
 pub struct Packed {
-    /// Number of cells.
+    /// Number of packed cells.
     pub cells: usize,
-    /// End of the base points in the batch.
+    /// Index after the last packed base point in the batch.
     pub base_points_end: usize,
-    /// Groups of cells of one base point; those of a dispatch begin at a multiple of [`ALIGNED`].
+    /// Groups of cells of one base point, `[group]`; those of a dispatch begin at a multiple of [`ALIGNED`].
     pub groups: Vec<[u32; 4]>,
     /// Ranges of [`Packed::groups`]: one for each dispatch.
     pub dispatches: Vec<Range<usize>>,

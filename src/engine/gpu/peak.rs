@@ -1,4 +1,4 @@
-//! Peak rate of the device.
+//! Peak rate of a GPU device.
 
 use super::packing::WORKGROUP;
 use super::{EngineError, Gpu, shaders};
@@ -20,8 +20,8 @@ const LONG_ENOUGH: f64 = 0.05;
 const MOST: u32 = 1 << 14;
 
 impl Gpu {
-    /// Floating-point operations per second, in the engine's precision, of kernels that only multiply and add; the fastest
-    /// of so many `runs` of each, and of one before them.
+    /// Measures the peak rate of the device in floating-point operations per second, in the engine's precision, with kernels that only
+    /// multiply and add. It is that of the fastest of `runs` of each kernel, and of one before them.
     ///
     /// # Errors
     /// When the device fails.

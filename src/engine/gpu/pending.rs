@@ -1,21 +1,21 @@
-//! A batch on the device: sent in parts, whose cells return in the same order.
+//! Pending batches: a batch on the device is sent in parts, whose cells return in the same order.
 
 use crate::engine::{Cells, Outcome, RowBatch};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A batch of which parts are on the device.
+/// Pending batch, of which parts are on the device.
 #[derive(Debug)]
 pub struct PendingBatch {
     pub batch: Arc<RowBatch>,
-    /// The cells; those that have not returned are [`Outcome::NoBasePoint`].
+    /// Cells of the pending batch; those that have not returned are [`Outcome::NoBasePoint`].
     pub cells: Cells,
-    /// Number of base points whose cells have returned.
+    /// Number of base points of the pending batch whose cells have returned.
     pub received: usize,
     sent: BatchPart,
 }
 
-/// Base points of a batch, and the starts of their steps.
+/// Part of a batch: some base points, and the starts of their steps.
 #[derive(Clone, Debug)]
 pub struct BatchPart {
     pub base_points: Range<usize>,
@@ -35,17 +35,17 @@ impl PendingBatch {
         }
     }
 
-    /// Returns true if a part is still to be sent.
+    /// Returns true if a part of the pending batch is still to be sent.
     pub fn is_waiting(&self) -> bool {
         self.sent.base_points.end < self.batch.base_points.len()
     }
 
-    /// Returns true if all cells have returned.
+    /// Returns true if all cells of the pending batch have returned.
     pub fn is_done(&self) -> bool {
         self.received == self.batch.base_points.len()
     }
 
-    /// The part to send next: at least one base point, at most `cells` cells and about `steps` steps.
+    /// Returns the part of the pending batch to send next: at least one base point, at most `cells` cells and about `steps` steps.
     pub fn next(&mut self, cells: usize, steps: usize) -> BatchPart {
         let [first, first_start] = [self.sent.base_points.end, self.sent.starts.end];
         let (mut count, mut cells_here, mut steps_here) = (0, 0, 0);

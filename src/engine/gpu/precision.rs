@@ -9,8 +9,8 @@ use crate::shooting::Resolution;
 const UNIFORM_BYTES: usize = 1 << 16;
 
 impl Precision {
-    /// Resolution of the differences where the CPU integrates with `resolution`. Differences have a small part of the integrator's error:
-    /// in `f32` more steps only add rounding, and with fewer the derivatives are too inexact for a Newton step.
+    /// Returns the resolution of the differences where the CPU integrates with `resolution`. Differences have a small part of the
+    /// integrator's error: in `f32` more steps only add rounding, and with fewer the derivatives are too inexact for a Newton step.
     #[must_use]
     pub fn resolution(self, resolution: Resolution) -> Resolution {
         match self {
@@ -19,7 +19,7 @@ impl Precision {
         }
     }
 
-    /// Maximum number of steps of all base points of a dispatch: as many as every device allows as uniforms.
+    /// Returns the maximum number of steps of all base points of a dispatch: as many as every device allows as uniforms.
     #[must_use]
     pub(super) const fn most_steps(self) -> usize {
         UNIFORM_BYTES
@@ -29,8 +29,8 @@ impl Precision {
             }
     }
 
-    /// Largest residual bound that the shaders certify, in whisker lengths. At a contact with an arclength `s` below 0.5 whisker lengths,
-    /// they certify at most `2 s` times this bound.
+    /// Returns the largest residual bound that the shaders certify, in whisker lengths. At a contact with an arclength `s` below 0.5
+    /// whisker lengths, they certify at most `2 s` times this bound.
     #[must_use]
     pub const fn goal(self) -> f64 {
         match self {
@@ -39,7 +39,7 @@ impl Precision {
         }
     }
 
-    /// Limits of the shaders' certificate, by their names in WGSL.
+    /// Returns the limits of the shaders' certificate, by their names in WGSL.
     ///
     /// `LEFT_BY_STEP` and `LARGEST_Q` are the refinement's. `JACOBIAN_ERROR` bounds the relative error of the Jacobian, a polynomial through
     /// 16 states of the row. With 1e-6 and 4e-6, single random cells in `f64` missed the pole by 1.6 and 1.2 times their bound; with 6e-6

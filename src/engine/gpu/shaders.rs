@@ -1,4 +1,4 @@
-//! The shaders' text: whole pieces in order, after one that Rust writes.
+//! Text of the shaders: whole pieces in order, after one that Rust writes.
 
 use super::Precision;
 use super::base_point::QUADS;
@@ -85,20 +85,20 @@ fn rest_terms() -> String {
     )
 }
 
-/// The engine's shader; its entry point is `solve_cells`.
+/// Returns the text of the engine's shader; its entry point is `solve_cells`.
 #[must_use]
 pub fn cells(precision: Precision) -> String {
     constants(precision) + &CELLS.concat()
 }
 
-/// Kernels that only multiply and add; their entry points are `peak_of_8` and `peak_of_16`, by accumulators.
+/// Returns the text of kernels that only multiply and add; their entry points are `peak_of_8` and `peak_of_16`, by accumulators.
 #[must_use]
 pub fn peak(precision: Precision) -> String {
     format!("alias real = {precision};\nconst WORKGROUP = {WORKGROUP}u;\n")
         + include_str!("../../../shaders/peak.wgsl")
 }
 
-/// The values of the `override` constants.
+/// Returns the values of the shaders' `override` constants, by name.
 #[must_use]
 pub fn overrides(effects: Effects) -> [(&'static str, f64); 3] {
     let flag = |on: bool| f64::from(u8::from(on));

@@ -8,7 +8,7 @@ use wgpu::BufferUsages as Usage;
 /// Bytes of two time stamps.
 const BYTES: u64 = 16;
 
-/// Time stamps of one submission.
+/// Time stamps of one submission, by the device's clock.
 #[derive(Debug)]
 pub struct Stamps {
     set: wgpu::QuerySet,
@@ -17,7 +17,7 @@ pub struct Stamps {
 }
 
 impl Stamps {
-    /// Returns `None` if the device has no clock.
+    /// Creates time stamps; returns `None` if the device has no clock.
     pub fn new(device: &Device) -> Result<Option<Self>, EngineError> {
         let features = device.handle.features();
         if !features.contains(wgpu::Features::TIMESTAMP_QUERY) {
@@ -36,7 +36,7 @@ impl Stamps {
         }))
     }
 
-    /// Stamps before and after a pass.
+    /// Returns the time stamps to write before and after a pass.
     pub fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.set,
@@ -45,13 +45,13 @@ impl Stamps {
         }
     }
 
-    /// Copies the stamps back after the pass.
+    /// Copies the time stamps back after the pass.
     pub fn resolve(&self, commands: &mut wgpu::CommandEncoder) {
         commands.resolve_query_set(&self.set, 0..2, &self.resolved, 0);
         copy_back(commands, &self.resolved, &self.readback, BYTES);
     }
 
-    /// Returns the time of the pass, which is done.
+    /// Returns the duration of the pass, which is done.
     pub fn read(&self, device: &Device) -> Result<Duration, EngineError> {
         let [start, end]: [u64; 2] =
             Device::read(&self.readback, BYTES, bytemuck::pod_read_unaligned)?;

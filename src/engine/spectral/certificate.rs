@@ -1,4 +1,4 @@
-//! The certificate of expansions: the decay of their last coefficients, and trajectories between their points.
+//! Certificate of expansions: the decay of their last coefficients, and trajectories between their points.
 
 use super::row::{FUNCTIONS, Numbers, Weights, larger, largest};
 use crate::engine::WhiskerSide;
@@ -11,20 +11,21 @@ use crate::shooting::batch::{Batch, InitialCondition, Method};
 /// Factor by which a bound exceeds the largest error seen: the error between a few places may be larger than there.
 pub const MARGIN: f64 = 4.0;
 
-/// Places of a row between its points, and the expansions there.
+/// Check of the expansions of a row at places between its points.
 pub struct Check<'a> {
-    /// The row.
+    /// Row that is checked.
     pub row: Row,
-    /// Its expansions.
+    /// Expansions of the row that are checked.
     pub functions: &'a Chebyshev<FUNCTIONS>,
-    /// Weights of errors.
+    /// Weights that convert errors of the expansions to whisker lengths.
     pub weights: &'a Weights,
-    /// Places in `[0, 1]`.
+    /// Places of the row in `[0, 1]` at which its expansions are checked.
     pub places: &'a [f64],
 }
 
-/// Returns a bound on the errors of each check's expansions, in whisker lengths, from trajectories at its places and the error
-/// `by_decay` that the coefficients left out are expected to make; at least [`GOAL`], the residual of refined states. NaN if a number is.
+/// Returns a bound on the errors of each check's expansions, in whisker lengths: `[check]`. It follows from trajectories at the places
+/// and from the error `by_decay` that the coefficients left out are expected to make. It is at least [`GOAL`], the residual of refined
+/// states; NaN if a number is.
 pub fn bounds(method: Method, side: &WhiskerSide, checks: &[Check], by_decay: &[f64]) -> Vec<f64> {
     let at = |check: &Check| -> Vec<Numbers> {
         check

@@ -1,7 +1,7 @@
 //! Patches: the expansions of many rows of one whisker side as a tensor.
 //!
-//! Rows that end at the fold are a patch in the logarithm of `tau` at first touch, rows that end at the tip in the load there. In these
-//! coordinates every number is analytic, the fold and the turning point of the distance along the tip included.
+//! For rows that end at the fold, the coordinate of a patch is the logarithm of `tau` at first touch. For rows that end at the tip, it is
+//! the load there. In these coordinates every number is analytic, the fold and the turning point of the distance along the tip included.
 
 use super::certificate::{Check, MARGIN, bounds};
 use super::row::{
@@ -15,12 +15,12 @@ use crate::sheet::{Edge, Row, Sheet};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 
-/// Number of states of a patch: of rows, and of states along each.
+/// Size of a patch: its number of rows, and of states along each.
 #[derive(Clone, Copy, Debug)]
 pub struct PatchSize {
-    /// Number of rows with exact states.
+    /// Number of rows of the patch with exact states.
     pub rows: usize,
-    /// Number of states along each.
+    /// Number of exact states along each row of the patch.
     pub states: usize,
 }
 
@@ -70,14 +70,15 @@ impl PatchSize {
 /// Interval of rows that end at one edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowInterval {
-    /// The edge.
+    /// Edge of the sheet at which the rows of the interval end.
     pub edge: Edge,
-    /// Coordinates of the first and of the last row.
+    /// Coordinates of the first and of the last row of the interval: `[first, last]`.
     pub ends: [f64; 2],
 }
 
 impl RowInterval {
-    /// Coordinate of a row of `sheet`, with the edge where it ends; `None` if it has no simple span from first touch.
+    /// Returns the coordinate of a row of `sheet` in a patch, with the edge where it ends; `None` if it has no simple span from first
+    /// touch.
     pub fn coordinate(sheet: &Sheet, row: usize) -> Option<(Edge, f64)> {
         let [end] = &sheet.crossings[row][..] else {
             return None;
@@ -118,7 +119,7 @@ impl RowInterval {
     }
 }
 
-/// Certified expansions of all rows of an interval.
+/// Patch: certified expansions of all rows of an interval.
 #[derive(Clone, Debug)]
 pub struct Patch {
     interval: RowInterval,
@@ -228,8 +229,8 @@ impl Patch {
         bounds.into_iter().fold(0.0, larger)
     }
 
-    /// The expansions of `row` of `side`; `None` if the row is outside the interval, contradicts its end, or has values so small that the
-    /// bound is too large for them. At the ends of the interval there is no row with states.
+    /// Returns the expansions of `row` of `side` in the patch. `None` if the row is outside the interval, contradicts its end, or has
+    /// values so small that the bound is too large for them. At the ends of the interval there is no row with states.
     pub fn row(&self, side: &WhiskerSide, row: usize) -> Option<RowExpansion> {
         let sheet = &side.sheet;
         let (edge, coordinate) = RowInterval::coordinate(sheet, row)?;

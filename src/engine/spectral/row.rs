@@ -15,10 +15,11 @@ use rayon::prelude::*;
 /// Number of functions that are expanded along a row.
 pub const FUNCTIONS: usize = 3 + STATE_CHANNELS.len();
 
-/// Numbers of a state: magnitude of the push angle since first touch in radians, `tau`, signed load, and the channel values in map units.
+/// Numbers of a state, `[function]`: magnitude of the push angle since first touch in radians, `tau`, signed load, and the channel values
+/// in map units.
 pub type Numbers = [f64; FUNCTIONS];
 
-/// Weights that convert errors of [`Numbers`] to whisker lengths.
+/// Weights that convert errors of [`Numbers`] to whisker lengths, `[function]`.
 pub type Weights = [f64; FUNCTIONS];
 
 /// Error in whisker lengths that an error as large as the value's size along the row counts as: values may be ten times less accurate
@@ -31,11 +32,11 @@ const ROUNDING: f64 = 1e-15;
 /// Exact states of a row at the Chebyshev points of its row parameter.
 #[derive(Clone, Debug)]
 pub struct ExactRow {
-    /// The row.
+    /// Row of the exact states.
     pub row: Row,
-    /// The row's end.
+    /// Crossing at which the row ends.
     pub end: Crossing,
-    /// The states, by growing push angle.
+    /// Exact states of the row, by growing push angle, `[state]`.
     pub states: Vec<ExactState>,
 }
 
@@ -100,7 +101,7 @@ impl ExactRow {
         rows.collect()
     }
 
-    /// The expansions through the states.
+    /// Returns the expansions through the exact states of the row.
     pub fn expansion(&self, side: &WhiskerSide) -> Chebyshev<FUNCTIONS> {
         let mut before = 0.0;
         let numbers = self.states.iter().map(|state| {
@@ -118,7 +119,7 @@ impl ExactRow {
         Chebyshev::through(&numbers.collect::<Vec<_>>())
     }
 
-    /// The weights of the row's numbers.
+    /// Returns the weights of the numbers of the row's states.
     pub fn weights(&self, side: &WhiskerSide) -> Weights {
         let maps = self.states.iter().map(|state| &state.variation.full.map);
         let steepest = |slope: fn(&ShootingMap) -> f64| maps.clone().map(slope).fold(0.0, f64::max);
@@ -133,8 +134,8 @@ impl ExactRow {
     }
 }
 
-/// Weights of channel values along a row with this `end`. The energy is at most the moment times the push angle, in radians, and the chord
-/// angle at most about the push angle.
+/// Returns the weights of channel values along a row with this `end`. The energy is at most the moment times the push angle, in radians,
+/// and the chord angle at most about the push angle.
 pub fn value_weights(side: &WhiskerSide, end: &Crossing) -> Values {
     let push = end.push.min(1.0);
     let [arc, angle, force, x, y, moment, chord, distance, energy] = side.sizes(end);
@@ -159,12 +160,12 @@ fn numbers(push: f64, tau: f64, load: f64, values: &Values) -> Numbers {
     numbers
 }
 
-/// The larger of two errors; NaN if either is.
+/// Returns the larger of two errors; NaN if either is.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
 }
 
-/// Largest of the weighted `errors`, in whisker lengths; NaN if one is.
+/// Returns the largest of the weighted `errors`, in whisker lengths; NaN if one is.
 pub fn largest(errors: &Numbers, weights: &Weights) -> f64 {
     let weighted = errors.iter().zip(weights);
     let weighted = weighted.map(|(error, weight)| error.abs() * weight);
@@ -214,9 +215,9 @@ impl ExpansionTail {
 /// A certified row.
 #[derive(Clone, Debug)]
 pub struct RowExpansion {
-    /// The expansions, with the inverse of the push angle.
+    /// Expansions of the row, with the inverse of the push angle.
     pub inverse: Inverse<FUNCTIONS>,
-    /// Bound on the residual of a state, in whisker lengths.
+    /// Bound on the residual of a state of the row, in whisker lengths.
     pub residual: f64,
 }
 

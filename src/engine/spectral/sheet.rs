@@ -1,4 +1,4 @@
-//! The spectral sheet of a whisker side: which row is expanded through its own states, and which belongs to a patch.
+//! Spectral sheet of a whisker side: which row is expanded through its own states, and which belongs to a patch.
 
 use super::certificate::{Check, bounds};
 use super::patch::{Patch, PatchSize, RowInterval};
@@ -27,7 +27,7 @@ const STATES: [usize; 2] = [32, 40];
 /// Places at which a row that is expanded alone is checked.
 const ROW_CHECKS: [f64; 2] = [0.237, 0.761];
 
-/// Where the expansions of a row are.
+/// Place of the expansions of a row.
 #[derive(Clone, Debug)]
 enum RowSource {
     /// In a patch with this index.
@@ -38,7 +38,7 @@ enum RowSource {
     Missing,
 }
 
-/// Certified expansions of the rows of a whisker side.
+/// Spectral sheet: certified expansions of the rows of a whisker side.
 #[derive(Clone, Debug)]
 pub struct SpectralSheet {
     patches: Vec<Patch>,
@@ -128,7 +128,7 @@ impl SpectralSheet {
         }
     }
 
-    /// The expansions of `row` of `side`; `None` if the row has none.
+    /// Returns the expansions of `row` of `side`; `None` if the row has none.
     #[must_use]
     pub fn row(&self, side: &WhiskerSide, row: usize) -> Option<RowExpansion> {
         match &self.rows[row] {

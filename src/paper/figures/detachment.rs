@@ -1,4 +1,4 @@
-//! Detachment curves in the plane of push angle and distance, Figs. 3E, 3J, 4D and 5C, with measured detachments over them.
+//! Panels of the paper with detachment curves over push angle and distance, Figs. 3E, 3J, 4D and 5C, and measured detachments.
 
 use super::{Figure, FigurePanel, PUSH, figure};
 use crate::measured::MeasuredPoint;
@@ -9,14 +9,14 @@ use crate::scene::Whisker;
 use crate::trace::{Detachment, DetachmentKind, curve};
 use serde::Serialize;
 
-/// Measured detachments, by push angle, for the panels that show such; each list may be empty.
+/// Measured detachments, by push angle, for the panels of the paper that show them; each list may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measurements {
-    /// Fig. 4D: slip-offs (the whisker's) are open circles, others (the hair's) filled circles.
+    /// Measured detachments of Fig. 4D, `[point]`: slip-offs (the whisker's) are open circles, others (the hair's) filled circles.
     pub fig4d: Vec<MeasuredPoint>,
-    /// Fig. 5C, left: open circles.
+    /// Measured detachments of Fig. 5C, left, as open circles: `[point]`.
     pub fig5c_left: Vec<MeasuredPoint>,
-    /// Fig. 5C, right: open circles.
+    /// Measured detachments of Fig. 5C, right, as open circles: `[point]`.
     pub fig5c_right: Vec<MeasuredPoint>,
 }
 
@@ -62,7 +62,7 @@ const AXES: [CurveAxis; 2] = [
     },
 ];
 
-/// A panel with the detachment curves of named whiskers.
+/// Draws a panel with the detachment curves of named whiskers.
 pub fn panel(
     letter: &'static str,
     title: &str,
@@ -117,7 +117,7 @@ fn dots(measured: &[MeasuredPoint], is_open: impl Fn(Option<DetachmentKind>) -> 
     measured.iter().map(dot).collect()
 }
 
-/// Fig. 4D: a mouse whisker and a human hair.
+/// Draws the paper's Fig. 4D: a mouse whisker and a human hair.
 pub fn fig4d(measured: &[MeasuredPoint]) -> Figure {
     let whiskers = [
         ("mouse whisker", &FIG4_WHISKER, Stroke::Solid),
@@ -130,7 +130,7 @@ pub fn fig4d(measured: &[MeasuredPoint]) -> Figure {
     figure("fig4d", title, vec![PUSH.to_owned()], panels)
 }
 
-/// Fig. 5C: two whiskers of behaving mice, each beside a cylinder.
+/// Draws the paper's Fig. 5C: two whiskers of behaving mice, each beside a cylinder.
 pub fn fig5c(measured: &Measurements) -> Figure {
     #[rustfmt::skip]
     let panels = [

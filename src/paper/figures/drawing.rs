@@ -6,23 +6,23 @@ use crate::scene::{Pole, Whisker};
 use glam::DVec2;
 use serde::Serialize;
 
-/// Magnification of radii relative to lengths.
+/// Magnification of radii relative to lengths in schematics, dimensionless.
 pub const MAGNIFIED: f64 = 50.0;
 
-/// A cross-section of a whisker at rest.
+/// Cross-section of a whisker at rest, for its outline.
 #[derive(Clone, Copy, Serialize)]
 pub struct OutlineSection {
-    /// Arclength from the base.
+    /// Arclength of the cross-section from the base, in mm.
     pub arc_length_mm: f64,
-    /// Coordinate along the tangent at the base.
+    /// Coordinate of the cross-section along the tangent at the base, in mm.
     pub x_mm: f64,
-    /// Coordinate across the tangent at the base, to its left.
+    /// Coordinate of the cross-section across the tangent at the base, to its left, in mm.
     pub y_mm: f64,
-    /// Radius of the whisker.
+    /// Radius of the whisker at the cross-section, in um.
     pub radius_um: f64,
 }
 
-/// Returns `count` sections of a whisker at rest, evenly spaced from base to tip.
+/// Returns `count` cross-sections of a whisker at rest, evenly spaced from base to tip, `[section]`.
 pub fn sections(whisker: &Whisker, count: usize) -> Vec<OutlineSection> {
     let rest = Rest::new(&whisker.rod(&Pole::smooth(0.0), Side::Cb));
     let at = |s: f64| {
@@ -39,7 +39,7 @@ pub fn sections(whisker: &Whisker, count: usize) -> Vec<OutlineSection> {
     (0..=last).map(|i| at(i as f64 / last as f64)).collect()
 }
 
-/// The closed outline of a whisker through its `sections`: `[point][x, y]` in mm. Radii are multiplied by [`MAGNIFIED`].
+/// Returns the closed outline of a whisker through its `sections`: `[point][x, y]` in mm. Radii are multiplied by [`MAGNIFIED`].
 pub fn outline(sections: &[OutlineSection]) -> Vec<[f64; 2]> {
     let places: Vec<DVec2> = sections
         .iter()
@@ -56,7 +56,7 @@ pub fn outline(sections: &[OutlineSection]) -> Vec<[f64; 2]> {
     left.chain(right).chain([side(0, 1.0)]).collect()
 }
 
-/// An arc around the origin, between two angles in radians: `[point][x, y]` in the unit of `radius`.
+/// Returns an arc around the origin, between two angles in radians: `[point][x, y]` in the unit of `radius`.
 pub fn arc(radius: f64, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     const STEPS: u32 = 24;
     let angle = |step: u32| (to - from).mul_add(f64::from(step) / f64::from(STEPS), from);
@@ -65,7 +65,7 @@ pub fn arc(radius: f64, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// An arrow with heads at both ends, and a text above its middle.
+/// Returns notes that draw an arrow with heads at both ends, and a text above its middle.
 pub fn extent(from: [f64; 2], to: [f64; 2], words: &str) -> [Note; 3] {
     let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
     [

@@ -1,4 +1,4 @@
-//! Fig. 2: shapes of a cone and a cylinder in front of one pole, CB.
+//! Fig. 2 of the paper: shapes of a cone and a cylinder in front of one pole, CB.
 
 use super::{Figure, FigurePanel, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// Points along a whisker.
 const POINTS: usize = 200;
-/// Push angle of panels A and C, in degrees.
+/// Push angle of panels A and C of Fig. 2, in degrees.
 pub const PUSH_DEG: f64 = 10.0;
 
 /// The state of a shape, in the first columns of a panel's table.
@@ -21,7 +21,7 @@ struct ShapeState {
     push_angle_deg: f64,
 }
 
-/// The branch of a whisker at the pole of Fig. 2, and its last stable state.
+/// Computes the branch of a whisker at the pole of Fig. 2, and its last stable state.
 pub fn branch(whisker: &Whisker) -> Result<(Branch, BranchPoint), NoState> {
     let distance = pole_distance_mm(whisker, Side::Cb);
     let branch = Branch::new(whisker, &POLE, Side::Cb, distance)?;

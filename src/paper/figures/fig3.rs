@@ -1,4 +1,4 @@
-//! Fig. 3: bifurcation diagrams at one pole, and the detachment curves, of a cone and a cylinder.
+//! Fig. 3 of the paper: bifurcation diagrams at one pole, and detachment curves, of a cone and a cylinder.
 
 use super::drawing::{MAGNIFIED, outline, sections};
 use super::fig2::{self, PUSH_DEG};

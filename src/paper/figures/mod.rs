@@ -1,4 +1,4 @@
-//! The theory of the paper's figures, panel by panel, each with the table behind it.
+//! The theory of the paper's figures, panel by panel, each with its table of values.
 //!
 //! The push angle is the rotation of the base since first touch, except in the drawing of Fig. 1D. `d` is the distance from the
 //! base to the contact at first touch, so that a row of Fig. 3E is the pole of Figs. 3B-D.
@@ -17,17 +17,17 @@ use crate::trace::NoState;
 use serde::Serialize;
 use std::io;
 
-/// A figure: a chart, and the tables behind its panels.
+/// Figure of the paper: a chart, and the tables of its panels.
 pub struct Figure {
-    /// Stem of the chart's file.
+    /// Stem of the name of the figure's file.
     pub name: &'static str,
-    /// The chart, one plot per panel.
+    /// Chart of the figure, one plot for each panel.
     pub chart: Chart,
-    /// Stem of the file and rows of each table.
+    /// Tables of the figure, `[table]`: the stem of the file's name, and the function that writes the rows.
     pub tables: Vec<(String, TableRows)>,
 }
 
-/// Writes the rows of one panel into a table.
+/// Function that writes the rows of one panel into a table.
 pub type TableRows = Box<dyn Fn(&mut TableFile) -> io::Result<()>>;
 
 /// A panel: its letter, its plot and its table.
@@ -47,7 +47,7 @@ impl FigurePanel {
     }
 }
 
-/// Computes every figure of the paper that shows theory, with measured detachments where the paper shows such.
+/// Computes every figure of the paper that shows theory, with measured detachments where the paper shows them, `[figure]`.
 ///
 /// # Errors
 /// A branch cannot be followed.

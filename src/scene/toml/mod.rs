@@ -1,4 +1,4 @@
-//! TOML as a front of scenes: text to a description, a description to text, and edited text.
+//! TOML files of scenes: reading, writing and editing of the text.
 
 mod read;
 mod rows;

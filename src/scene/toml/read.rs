@@ -1,4 +1,4 @@
-//! From a file, or text, to a checked scene.
+//! Reading of scene files and texts into checked scenes.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -46,8 +46,8 @@ impl Scene {
     /// where the scene gives none.
     ///
     /// # Errors
-    /// If the text is not TOML, names a CSV file, has a key too many or too few, or a value that is out of its range or at
-    /// odds with another one.
+    /// If the text is not TOML, names a CSV file, or has a key too many or too few. If a value is out of its range or contradicts another
+    /// one.
     pub fn parse(text: &str, origin: &str) -> Result<Self, SceneError> {
         checked(text, origin, Path::new(origin), None)
     }

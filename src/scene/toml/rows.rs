@@ -1,4 +1,4 @@
-//! Rows of radii: a list in the scene, or a CSV file that a scene file names.
+//! Rows of radii in a scene file: a list, or the name of a CSV file.
 
 use std::fmt;
 use std::fs;
@@ -17,7 +17,7 @@ pub(super) enum ListedRows {
     Listed(Vec<RowPair>),
 }
 
-/// Arclength in millimetres and radius in micrometres.
+/// Row of a measured profile: arclength in millimetres and radius in micrometres.
 pub(super) struct RowPair(pub [f64; 2]);
 
 impl<'de> Deserialize<'de> for RowPair {
@@ -54,19 +54,20 @@ impl<'de> Deserialize<'de> for ListedRows {
     }
 }
 
-/// Rows of a CSV file.
+/// Rows of radii from a CSV file.
 pub(super) struct CsvRows {
     pub path: PathBuf,
     /// Arclength in millimetres and radius in micrometres: `[row][arclength, radius]`. There is at most one row more than a scene may have.
     pub values: Vec<[f64; 2]>,
-    /// Line number of each row of the file, from 1: `[row]`.
+    /// Line numbers of the rows in the CSV file, from 1: `[row]`.
     pub lines: Vec<usize>,
-    /// Message that names unused columns.
+    /// Message that names unused columns of the CSV file; `None` without such columns.
     pub note: Option<String>,
 }
 
 impl CsvRows {
-    /// Reads the regular file `name` in `folder`. Without a folder, the text of a scene must not name files.
+    /// Reads rows of radii from the regular file `name` in `folder`. Without a folder, it refuses, because the text of a scene must not
+    /// name files.
     pub fn read(name: &str, folder: Option<&Path>) -> Result<Self, String> {
         let Some(folder) = folder else {
             return Err("must be a list of rows: only a scene file may name a CSV file".to_owned());

@@ -1,4 +1,4 @@
-//! The keys of a scene file, and a reader that accepts these and no others.
+//! Keys of a scene file, and a reader that accepts these and no others.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -82,12 +82,12 @@ fn keys_in(path: &str) -> Vec<(&'static str, KeyValue)> {
     inside
 }
 
-/// The values of a scene file: right in shape, not yet checked. The axes of the sweep are in the order of the file.
+/// Values of a scene file: right in type, not yet checked. The axes of the sweep are in the order of the file.
 #[derive(Default)]
 pub(super) struct SceneTable {
     pub builder: SceneBuilder,
     pub rows: Option<ListedRows>,
-    /// Standard deviations by name.
+    /// Standard deviations of the scene's numbers by name, each in its unit; `None` without the table.
     pub deviations: Option<BTreeMap<String, f64>>,
 }
 

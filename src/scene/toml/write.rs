@@ -1,4 +1,4 @@
-//! From the description of a scene to text, and edited text.
+//! Writing of scenes as TOML, and editing of their text.
 
 use std::fmt::{self, Write};
 use std::sync::Arc;
@@ -25,7 +25,7 @@ enum TextSource {
 }
 
 impl SceneText {
-    /// The text from which a scene was read.
+    /// Creates the text of a scene that was read from `text`.
     #[must_use]
     pub fn of_source(text: &str) -> Self {
         Self(TextSource::Text(text.into()))
@@ -52,13 +52,13 @@ impl fmt::Display for SceneText {
 }
 
 impl Scene {
-    /// The scene as TOML: its source text if it was read, otherwise text that [`Scene::parse`] turns into the same scene.
+    /// Returns the scene as TOML: its source text if it was read, otherwise text that [`Scene::parse`] turns into the same scene.
     #[must_use]
     pub fn to_toml(&self) -> String {
         self.text.to_string()
     }
 
-    /// The TOML text of this scene with other values of some parameters. Comments and layout stay.
+    /// Returns the TOML text of this scene with other values of some parameters, in their units. Comments and layout stay.
     ///
     /// # Errors
     /// If a value is not allowed, as in [`Scene::with_parameters`].
@@ -159,7 +159,7 @@ impl From<&AxisValues> for Value {
     }
 }
 
-/// Rows of radii as a list in TOML, a row a line.
+/// Returns rows of radii as a list in TOML, one row on a line.
 pub(super) fn rows_text(rows: &[[f64; 2]]) -> String {
     let mut list = String::from("[\n");
     for [arc_length_mm, radius_um] in rows {

@@ -7,7 +7,7 @@ use crate::sheet::continuation::level_curve::LevelCurve;
 use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 
-/// Maximum number of trajectories for each point.
+/// Maximum number of the corrector's trajectories for each point.
 pub const CORRECTOR_TRAJECTORIES: u32 = 12;
 
 /// Step length, in parts of the scale and in `ln D`, whose end is extrapolated if the point may miss the curve by [`NODE_MISS`]. The
@@ -63,8 +63,9 @@ impl<'a> NewtonProblem<'a> for Corrector<'a> {
     }
 }
 
-/// Moves each point onto its level curve, to its tolerance in `ln D`. Returns `(tau, load)` and the state of each point, or `None` where
-/// the corrector fails. The method of the first curve applies to all of them. Results do not depend on the other points.
+/// Moves each point `(tau, load)` onto its level curve, to its tolerance in `ln D`. Returns `(tau, load)` and the state of each point,
+/// `[point]`, or `None` where the corrector fails. The method of the first curve applies to all of them. Results do not depend on the
+/// other points.
 pub fn correct(points: &[(&LevelCurve, DVec2, f64)]) -> Vec<Option<(DVec2, FullState)>> {
     let Some((first, ..)) = points.first() else {
         return Vec::new();

@@ -12,39 +12,39 @@ use crate::shooting::FullState;
 use crate::shooting::batch::Method;
 use glam::{DVec2, DVec3};
 
-/// Largest miss in `ln D` of a point on the curve: rounding.
+/// Largest miss in `ln D` of a point on a level curve, due to rounding.
 pub const ON_CURVE: f64 = 1e-14;
 
-/// State on the level curve.
+/// Node of a level curve: a state, with its push angle and contact angle.
 #[derive(Clone, Copy, Debug)]
 pub struct CurveNode {
-    /// Contact coordinate and signed load, `(tau, load)`.
+    /// Contact coordinate and signed load of the node, `(tau, load)`, dimensionless.
     pub point: DVec2,
-    /// State at `point`: pole with first derivatives, pose of the base, force and energy.
+    /// State of the node: pole with first derivatives, pose of the base, force and energy.
     pub full: FullState,
-    /// Signed push angle since first touch, in radians, continuous along the curve.
+    /// Signed push angle of the node since first touch, in radians, continuous along the curve.
     pub push: f64,
-    /// Tangent angle at the contact, in radians from the base's tangent, continuous along the curve.
+    /// Tangent angle at the contact of the node, in radians from the base's tangent, continuous along the curve.
     pub angle: f64,
 }
 
 /// Level curve of one row, with the direction in which it is followed.
 #[derive(Clone, Debug)]
 pub struct LevelCurve {
-    /// Integration method of the trajectories.
+    /// Integration method of the level curve's trajectories.
     pub method: Method,
-    /// Whisker and pole.
+    /// Whisker and pole of the level curve.
     pub rod: Rod,
-    /// Whisker side.
+    /// Whisker side of the level curve.
     pub side: Side,
-    /// Row of the pole.
+    /// Row of the level curve, with the pole's distance.
     pub row: Row,
     /// True if the curve is followed in the direction of growing push angles.
     forward: bool,
 }
 
 impl LevelCurve {
-    /// Creates the curve of `row`, followed in the direction of growing push angles.
+    /// Creates the level curve of `row`, followed in the direction of growing push angles.
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, row: &Row) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl LevelCurve {
         }
     }
 
-    /// Returns this curve with twice the integration steps.
+    /// Returns this level curve with twice the integration steps.
     #[must_use]
     pub(super) fn finer(&self) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl LevelCurve {
         }
     }
 
-    /// Returns this curve, followed in the opposite direction.
+    /// Returns this level curve, followed in the opposite direction.
     #[must_use]
     pub fn backward(&self) -> Self {
         Self {
@@ -74,7 +74,8 @@ impl LevelCurve {
         }
     }
 
-    /// Returns the node with the state `full` at `point`, `(tau, load)`. Its angles are continued from `push` and `angle`, in radians.
+    /// Returns the node of a level curve with the state `full` at `point`, `(tau, load)`. Its angles are continued from `push` and
+    /// `angle`, in radians.
     #[must_use]
     pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> CurveNode {
         let phi = full.map.pole.to_angle();
@@ -88,7 +89,7 @@ impl LevelCurve {
         }
     }
 
-    /// Returns the unit direction of the curve at a node, in parts of [`LevelCurve::scale`].
+    /// Returns the unit direction of the level curve at a node, in parts of [`LevelCurve::scale`].
     pub(super) fn direction(&self, node: &CurveNode) -> DVec2 {
         let gradient = self.scale(node.point) * gradient(node);
         // Along the curve, the push angle changes by minus `det` times its direction (by_load, -by_tau).
@@ -96,12 +97,12 @@ impl LevelCurve {
         -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize()
     }
 
-    /// Returns the change of `(tau, load)` for each unit of scaled length at a node.
+    /// Returns the change of `(tau, load)` at a node for each unit of scaled length along the level curve.
     pub(super) fn velocity(&self, node: &CurveNode) -> DVec2 {
         self.scale(node.point) * self.direction(node)
     }
 
-    /// Returns the scale of `(tau, load)`: the changes after which the state changes by about its own size.
+    /// Returns the scale of `(tau, load)` on a level curve: the changes after which the state changes by about its own size.
     pub(super) fn scale(&self, point: DVec2) -> DVec2 {
         let s = arclength(&self.rod, point.x);
         DVec2::new(s, point.y.abs() + 1.0 / (s * s))

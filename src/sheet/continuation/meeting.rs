@@ -20,17 +20,17 @@ pub struct Chord<'a> {
     pub level: &'a LevelCurve,
     pub from: CurveNode,
     pub to: CurveNode,
-    /// True if the nodes belong to the stable part.
+    /// True if both nodes of the chord belong to the stable part of the level curve.
     pub is_stable: bool,
 }
 
-/// Edge between two nodes of a level curve.
+/// Edge of the sheet between two nodes of a level curve, if any.
 pub enum Meeting {
-    /// No edge lies between the nodes.
+    /// No edge of the sheet lies between the nodes of the level curve.
     None,
-    /// First edge between the nodes, and the node on it.
+    /// First edge of the sheet between the nodes of the level curve, and the node on it.
     Edge(Edge, CurveNode),
-    /// An edge lies between the nodes, but Newton's method has not found it from there.
+    /// An edge of the sheet lies between the nodes of the level curve, but Newton's method has not found it from there.
     Unclear,
 }
 

@@ -1,4 +1,4 @@
-//! Continuation along `D = const`: the states in front of one pole, from first touch through the fold to the end of the branch.
+//! Continuation along a level curve `D = const`: the states in front of one pole, from first touch through the fold to the branch's end.
 
 mod corrector;
 pub mod level_curve;
@@ -14,17 +14,17 @@ use crate::sheet::continuation::stepper::Stepper;
 use crate::sheet::row::{Edge, STEEP};
 use glam::DVec2;
 
-/// Largest miss in `ln D` at a node between the ends, which only guides the continuation and approximates states.
+/// Largest miss in `ln D` of a node between the ends of a continuation. Such nodes only guide it and approximate states.
 pub const NODE_MISS: f64 = 1e-8;
 
 /// Part of a level curve that a continuation has followed.
 #[derive(Clone, Debug)]
 pub struct Continuation {
-    /// Nodes from the start to the end.
+    /// Nodes of the continuation, from its start to its end, `[node]`.
     pub nodes: Vec<CurveNode>,
-    /// Index of the node at the fold; `None` if the tip comes first.
+    /// Index of the continuation's node at the fold; `None` if the tip comes first.
     pub fold: Option<usize>,
-    /// Edge at which the last node lies.
+    /// Edge of the sheet at which the last node lies.
     pub end: Edge,
 }
 
@@ -41,7 +41,7 @@ impl Continuation {
 }
 
 impl LevelCurve {
-    /// Follows the curve from `start` to the tip or the fold, or past the fold to the tip or the second fold. Returns `None` if the
+    /// Follows the level curve from `start` to the tip or the fold, or past the fold to the tip or the second fold. Returns `None` if the
     /// continuation fails.
     #[must_use]
     pub fn continuation(&self, start: CurveNode, past_fold: bool) -> Option<Continuation> {
@@ -52,7 +52,7 @@ impl LevelCurve {
 /// Level curve with the node from which it is followed, or `None` for a curve that is left out.
 pub type CurveStart<'a> = Option<(&'a LevelCurve, CurveNode)>;
 
-/// Follows several curves at once, each as [`LevelCurve::continuation`] does; their trajectories share batches.
+/// Follows several level curves at once, each as [`LevelCurve::continuation`] does; their trajectories share batches.
 ///
 /// Nodes between the ends may miss their curve by `miss` in `ln D`. Results do not depend on the other curves. Where an end is steep, the
 /// curve is followed again with twice the steps.

@@ -1,5 +1,5 @@
 //! Stable pieces of a row: the crossings that belong together. With friction or strong curvature, `D` can have a saddle on the edge of
-//! the sheet. The level curve of a row is then in several pieces, whose push angles may overlap.
+//! the sheet. Then the level curve of a row is in several pieces, whose push angles may overlap.
 
 use crate::rod::Side;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve};
@@ -11,19 +11,19 @@ use crate::sheet::span::{RowSpan, SpanNode};
 /// Largest relative difference in contact and load of two crossings that are the same.
 const SAME_CROSSING: f64 = 1e-5;
 
-/// Part of a level curve on the stable sheet, in the direction of growing push angles.
+/// Stable piece of a row: a part of its level curve on the stable sheet, in the direction of growing push angles.
 #[derive(Clone, Debug)]
 pub struct StablePiece {
     /// Crossing at which the piece begins; `None` for first touch.
     pub begin: Option<Crossing>,
-    /// Crossing at which the piece ends.
+    /// Crossing at which the stable piece ends.
     pub end: Crossing,
-    /// Nodes of the piece, in this direction or the opposite one.
+    /// Nodes of the stable piece, in this direction or the opposite one, `[node]`.
     pub nodes: Vec<CurveNode>,
 }
 
 impl StablePiece {
-    /// Returns the row span through the nodes, or `None` if the row parameter turns back, or there are too few nodes.
+    /// Returns the row span through the piece's nodes, or `None` if the row parameter turns back, or there are too few nodes.
     pub fn span(&self, side: Side) -> Option<RowSpan> {
         let node = |node: &CurveNode| SpanNode {
             w: node.point.y.abs() * node.point.x * node.point.x,
@@ -41,24 +41,24 @@ impl StablePiece {
 pub struct ContinuedRow<'a> {
     /// Level curve of the row.
     pub level: &'a LevelCurve,
-    /// True if the row has a first touch.
+    /// True if the row has a first touch: the resting whisker reaches the pole.
     pub touches: bool,
-    /// Crossings found on the sampled edges: starts of further pieces.
+    /// Crossings of the row found on the sampled edges: starts of further pieces.
     pub crossings: &'a [Crossing],
 }
 
-/// Stable pieces of a row. The piece from first touch comes first.
+/// Stable pieces of a row found by continuation. The piece from first touch comes first.
 #[derive(Clone, Debug, Default)]
 pub struct StablePieces {
-    /// Pieces that were followed; empty where the continuation from first touch failed.
+    /// Stable pieces that were followed, `[piece]`; empty where the continuation from first touch failed.
     pub pieces: Vec<StablePiece>,
     /// True if `pieces` are all stable pieces: no continuation has failed.
     pub are_complete: bool,
 }
 
 impl StablePieces {
-    /// Returns the crossings at which the pieces begin and end, piece by piece. First touch is no crossing: a piece that begins there has
-    /// only an end.
+    /// Returns the crossings at which the stable pieces begin and end, piece by piece. First touch is no crossing: a piece that begins
+    /// there has only an end.
     pub fn ends(&self) -> impl Iterator<Item = Crossing> {
         let ends = |piece: &StablePiece| [piece.begin, Some(piece.end)];
         self.pieces.iter().flat_map(ends).flatten()
@@ -70,7 +70,7 @@ impl StablePieces {
     }
 }
 
-/// Returns the stable pieces of each of the `rows`, whose trajectories share batches. Results do not depend on the other rows.
+/// Returns the stable pieces of each of the `rows`, `[row]`. Their trajectories share batches. Results do not depend on the other rows.
 pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     let mut found: Vec<StablePieces> = from_touch(rows);
     let most = rows.iter().map(|row| row.crossings.len()).max();

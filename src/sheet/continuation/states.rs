@@ -14,7 +14,7 @@ use glam::DVec2;
 const ROUGHENING: f64 = 0.1;
 
 impl LevelCurve {
-    /// Returns the state at first touch, from which push angles are counted.
+    /// Returns the level curve's state at first touch, from which push angles are counted.
     #[must_use]
     pub fn touch(&self) -> Option<CurveNode> {
         let at_touch = self.row.first_touch(&self.rod);
@@ -26,7 +26,7 @@ impl LevelCurve {
         })
     }
 
-    /// Returns the state at a crossing, or `None` if the corrector fails.
+    /// Returns the level curve's state at a crossing, or `None` if the corrector fails.
     #[must_use]
     pub fn at_crossing(&self, crossing: &Crossing) -> Option<CurveNode> {
         let at = DVec2::new(crossing.tau, crossing.load);
@@ -34,15 +34,15 @@ impl LevelCurve {
         Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
     }
 
-    /// Returns the state at the signed `push`, in radians, between two of the `nodes`, along which the push angle grows or falls
-    /// throughout. Returns `None` outside the nodes, or if the corrector fails.
+    /// Returns the level curve's state at the signed `push`, in radians, between two of the `nodes`, along which the push angle grows or
+    /// falls throughout. Returns `None` outside the nodes, or if the corrector fails.
     #[must_use]
     pub fn state_at_push(&self, nodes: &[CurveNode], push: f64) -> Option<CurveNode> {
         Some(self.bracketed_push(nodes, push)?.0)
     }
 
-    /// Returns the state at the signed `push`, in radians, and the root search that found it. The search uses no slopes, because that of
-    /// the push angle is zero at the fold.
+    /// Returns the level curve's state at the signed `push`, in radians, and the root search that found it. The search uses no slopes,
+    /// because that of the push angle is zero at the fold.
     pub(super) fn bracketed_push(
         &self,
         nodes: &[CurveNode],
@@ -78,8 +78,8 @@ impl LevelCurve {
         ON_CURVE * (ROUGHENING * q).max(1.0)
     }
 
-    /// Moves each point onto the curve, to `tolerance` in `ln D` or to rounding. Returns `(tau, load)` and the state of each point, or
-    /// `None` where the corrector fails.
+    /// Moves each point onto the level curve, to `tolerance` in `ln D` or to rounding. Returns `(tau, load)` and the state of each point,
+    /// `[point]`, or `None` where the corrector fails.
     #[must_use]
     pub fn correct(&self, points: &[DVec2], tolerance: f64) -> Vec<Option<(DVec2, FullState)>> {
         let point = |point: &DVec2| (self, *point, tolerance);

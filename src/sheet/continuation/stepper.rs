@@ -28,23 +28,24 @@ const SHORTEST_ARC_STEP: f64 = 1e-9;
 /// Difference between the directions of two nodes up to which the predictor uses the curvature between them.
 const MOST_BEND: f64 = 0.25;
 
-/// Largest push angle of a node, in radians: nine turns. Push angles of maps are at most one turn. The largest detachment that another
-/// program has confirmed is at 2924 degrees. Beyond a soft waist, a whisker can coil up for thirty turns, in thousands of nodes.
+/// Largest push angle of a node of a continuation, in radians: nine turns. Push angles of maps are at most one turn. The largest
+/// detachment that another program has confirmed is at 2924 degrees. Beyond a soft waist, a whisker can coil up for thirty turns, in
+/// thousands of nodes.
 pub const MOST_PUSH: f64 = 9.0 * TAU;
 
 /// Maximum number of nodes; no known branch has more than 300.
 const MOST_NODES: usize = 10_000;
 
-/// Continuation in progress. As a [`NewtonProblem`] it takes one step after another, until a chord may meet an edge.
+/// Stepper of a continuation in progress. As a [`NewtonProblem`] it takes one step after another, until a chord may meet an edge.
 pub struct Stepper<'a> {
-    /// Index of its curve among those followed in the same batch.
+    /// Index of the stepper's level curve among those followed in the same batch.
     pub index: usize,
     level: &'a LevelCurve,
-    /// Nodes from the start to the last one found.
+    /// Nodes of the continuation, from the start to the last one found, `[node]`.
     pub nodes: Vec<CurveNode>,
-    /// Index of the node at the first fold.
+    /// Index of the continuation's node at the first fold; `None` before it is found.
     pub fold: Option<usize>,
-    /// Node after the last one, if the chord to it may meet an edge.
+    /// Node after the last one, if the chord to it may meet an edge; otherwise `None`.
     pub candidate: Option<CurveNode>,
     step: f64,
     /// Step lengths from node to node, up to the last node, since the last edge.
@@ -53,7 +54,7 @@ pub struct Stepper<'a> {
     miss: f64,
     /// Unit direction at the last node, in parts of the scale.
     along: DVec2,
-    /// Predicted `(tau, load)` of the next node, at which the corrector starts.
+    /// Predicted `(tau, load)` of the next node, at which the corrector starts, dimensionless.
     pub predicted: DVec2,
     corrector: Corrector<'a>,
     /// Number of trajectories of the corrector for this node.
@@ -81,14 +82,14 @@ impl<'a> Stepper<'a> {
         stepper
     }
 
-    /// Predicts the next node. Returns false where the continuation ends without an edge.
+    /// Predicts the next node of the continuation. Returns false where it ends without an edge.
     pub fn advance(&mut self) -> bool {
         self.predict();
         let is_within = self.nodes.len() < MOST_NODES && self.last().push.abs() <= MOST_PUSH;
         is_within && self.step > SHORTEST_ARC_STEP
     }
 
-    /// Predicts the next node with half the step. Returns false if the step is too short.
+    /// Predicts the next node of the continuation with half the step. Returns false if the step is too short.
     pub fn shorten(&mut self) -> bool {
         self.step *= 0.5;
         self.advance()
@@ -131,7 +132,7 @@ impl<'a> Stepper<'a> {
         self.trajectories = 0;
     }
 
-    /// Returns the chord from the last node to `next`.
+    /// Returns the chord from the last node of the continuation to `next`.
     pub fn chord(&self, next: CurveNode) -> Chord<'a> {
         Chord {
             level: self.level,
@@ -153,7 +154,7 @@ impl<'a> Stepper<'a> {
             && (turn < SHARPEST_TURN || chord.length() < SHORT_CHORD)
     }
 
-    /// Adds the node `next` and predicts the one after it. Returns false where the continuation ends without an edge.
+    /// Adds the node `next` to the continuation and predicts the one after it. Returns false where the continuation ends without an edge.
     pub fn add(&mut self, next: CurveNode) -> bool {
         let length = self.level.length(self.last(), &next);
         self.steps.push(self.step);
@@ -162,7 +163,7 @@ impl<'a> Stepper<'a> {
         self.advance()
     }
 
-    /// Adds the node of an edge. Returns true if it is the first fold.
+    /// Adds the node of an edge to the continuation. Returns true if it is the first fold.
     pub fn end_at(&mut self, edge: Edge, node: CurveNode) -> bool {
         // Interpolation between two nodes that are close together is inaccurate.
         if let [.., before, last] = &self.nodes[..]

@@ -93,8 +93,8 @@ impl EdgeBisection {
     }
 }
 
-/// Returns the point of each interval at which `ln D` is the target, or the closer end if both are on the same side of it. An entry is
-/// `None` where a fold is missing, or the distance leaps over the target.
+/// Returns the point of each interval of an edge at which `ln D` is the target, `[interval]`. If both ends are on the same side of it, the
+/// closer end is returned. An entry is `None` where a fold is missing, or the distance leaps over the target.
 pub fn bisect(case: SheetCase, mut all: Vec<EdgeBisection>) -> Vec<Option<EdgeIterate>> {
     for edge in [Edge::Fold, Edge::Tip] {
         let open = all.iter_mut().filter(|search| search.edge == edge);

@@ -12,29 +12,29 @@ use glam::DVec2;
 /// Newton problem for one point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeProblem<'a> {
-    /// Whisker and pole.
+    /// Whisker and pole of the edge problem.
     pub rod: &'a Rod,
-    /// Edge on which the point lies.
+    /// Edge of the sheet on which the point lies.
     pub edge: Edge,
     /// Distance `D` of the pole's centre from the base, in whisker lengths.
     pub pole_distance: f64,
-    /// Start of Newton's method, `(tau, load)`.
+    /// Start of Newton's method, `(tau, load)`, dimensionless.
     pub start: DVec2,
-    /// Second derivatives at `start`, if the start is a good prediction.
+    /// Second derivatives of `(ln D, phi)` at the start; `None` if the start is not a good prediction.
     pub second: Option<SecondDerivatives>,
 }
 
-/// Last iterate of an edge Newton.
+/// Last iterate of the edge Newton for one point of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeIterate {
-    /// Contact coordinate and signed load, `(tau, load)`.
+    /// Contact coordinate and signed load of the iterate, `(tau, load)`, dimensionless.
     pub point: DVec2,
-    /// Pole and derivatives at `point`.
+    /// Pole of the iterate, with its first and second derivatives.
     pub here: SecondVariation,
-    /// Remaining error: the miss in `ln D`, plus the square of the remaining step as [`limited`] measures it. The remaining step is the
-    /// square of the last one, or the step that was not taken.
+    /// Remaining error of the iterate: the miss in `ln D`, plus the square of the remaining step as [`limited`] measures it. The
+    /// remaining step is the square of the last one, or the step that was not taken.
     pub residual: f64,
-    /// True if a step was short enough to be the last one.
+    /// True if the last Newton step was short enough.
     pub has_converged: bool,
 }
 
@@ -134,7 +134,7 @@ impl<'a> NewtonProblem<'a> for EdgeSearch<'a, '_> {
     }
 }
 
-/// Solves all `problems`. Returns one iterate for each, with its remaining error.
+/// Solves all `problems` of points on edges. Returns one iterate for each, `[problem]`, with its remaining error.
 #[must_use]
 pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
     let mut newton = BatchNewton::new(method, EDGE_TRAJECTORIES);
@@ -157,8 +157,9 @@ pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -
     ended.collect()
 }
 
-/// Solves all `problems` of one rod from predictions. With predicted second derivatives, most problems need a single trajectory with first
-/// derivatives. Toward the tip, second derivatives by the load are enough. This is one step of another kernel, not a loop.
+/// Solves all `problems` of one rod from predictions, `[problem]`. With predicted second derivatives, most problems need a single
+/// trajectory with first derivatives. Toward the tip, second derivatives by the load are enough. This is one step of another kernel, not
+/// a loop.
 #[must_use]
 pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
     let Some(first) = problems.first() else {

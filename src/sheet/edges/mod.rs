@@ -19,13 +19,13 @@ use crate::sheet::row::Edge;
 /// Sampled edges of a sheet.
 #[derive(Clone, Debug)]
 pub struct Edges {
-    /// Samples of the fold edge, from the base to the corner.
+    /// Samples of the fold edge, from the base to the corner, `[sample]`.
     pub fold: Vec<EdgeSample>,
     fold_edge: FoldEdge,
     /// True if the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the first fold jumps
     /// from contact to contact, the samples do not show all of the fold.
     pub fold_grows: bool,
-    /// Samples of the tip edge, from first touch to the corner.
+    /// Samples of the tip edge, from first touch to the corner, `[sample]`.
     pub tip: Vec<EdgeSample>,
     /// Polynomials of the tip edge; `None` where the edge needs more samples than polynomials have nodes.
     tip_edge: Option<TipEdge>,
@@ -36,7 +36,7 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// Samples both edges; `lattice` provides the whole turns of the pole's direction.
+    /// Samples both edges of the sheet; `lattice` provides the whole turns of the pole's direction.
     pub fn new(case: SheetCase, contacts: &ContactNodes, lattice: &Lattice) -> Self {
         let rod = case.rod;
         let fold: Vec<EdgeSample> = contacts.folds[..=contacts.tip]
@@ -96,7 +96,7 @@ impl Edges {
         }
     }
 
-    /// Returns true if no crossing is hidden between the samples.
+    /// Returns true if no crossing is hidden between the samples of the edges.
     pub fn are_certified(&self) -> bool {
         self.fold_is_certified && self.tip_edge.is_some()
     }

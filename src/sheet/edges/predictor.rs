@@ -6,39 +6,41 @@ use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL};
 use glam::DVec2;
 
-/// Computed point of an edge.
+/// Sample of an edge of the sheet: a computed point.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeSample {
-    /// Coordinate along the edge: the index of the contact node on the fold, or the part of the corner's load at the tip.
+    /// Coordinate of the sample along the edge, dimensionless: the index of the contact node on the fold, or the part of the corner's
+    /// load at the tip.
     pub place: f64,
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the edge sample, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`.
+    /// Signed load `f/rho^2` of the edge sample, dimensionless.
     pub load: f64,
-    /// Logarithm `ln D` of the pole's distance in whisker lengths.
+    /// Logarithm `ln D` of the pole's distance, in whisker lengths, at the edge sample.
     pub ln_distance: f64,
-    /// Direction of the pole in radians, continuous from first touch.
+    /// Direction of the pole at the edge sample in radians, continuous from first touch.
     pub phi: f64,
 }
 
-/// Second derivatives of `(ln D, phi)`: twice by `tau`, by `tau` and load, twice by load.
+/// Second derivatives of `(ln D, phi)` at a point of an edge: twice by `tau`, by `tau` and load, twice by load.
 pub type SecondDerivatives = [DVec2; 3];
 
-/// Predicted point of an edge.
+/// Predicted point of an edge of the sheet, where Newton's method starts.
 #[derive(Clone, Copy, Debug)]
 pub struct Prediction {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the predicted point, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`.
+    /// Signed load `f/rho^2` of the predicted point, dimensionless.
     pub load: f64,
-    /// Direction of the pole in radians, continuous from first touch.
+    /// Direction of the pole at the predicted point in radians, continuous from first touch.
     pub phi: f64,
-    /// Second derivatives at the point; `None` where the prediction is poor.
+    /// Second derivatives of `(ln D, phi)` at the predicted point; `None` where the prediction is poor.
     pub second: Option<SecondDerivatives>,
 }
 
 impl Prediction {
-    /// Returns the point at which `ln D` is `target` if all quantities change linearly from one sample to the other.
+    /// Returns the point between two edge samples at which `ln D` is `target` if all quantities change linearly from one sample to the
+    /// other.
     pub fn linear([a, b]: [&EdgeSample; 2], target: f64) -> Self {
         let t = (target - a.ln_distance) / (b.ln_distance - a.ln_distance);
         let scaled = |s: &EdgeSample| s.load * s.tau * s.tau;
@@ -56,7 +58,7 @@ impl Prediction {
 /// its square.
 pub const LAST_STEP_ALONG_EDGE: f64 = 1e-5;
 
-/// Returns the place between the places `ends` of two samples at which `ln_distance` is `target`.
+/// Returns the place along an edge between the places `ends` of two samples at which `ln_distance` is `target`.
 pub fn place_between<const N: usize>(
     ln_distance: &Polynomial<N>,
     ends: [f64; 2],
@@ -139,7 +141,7 @@ impl FoldEdge {
         }
     }
 
-    /// Returns the predicted point between the samples of two neighbouring contact nodes at which `ln D` is `target`.
+    /// Returns the predicted point of the fold edge between the samples of two neighbouring contact nodes at which `ln D` is `target`.
     pub fn predict(&self, pair: [&EdgeSample; 2], target: f64) -> Prediction {
         let ends = pair.map(|sample| sample.place);
         let start = stencil(ends[0] as usize, STENCIL, self.count);

@@ -34,16 +34,16 @@ const MANY_TIP_INTERVALS: usize = 256;
 /// Sampled tip edge, without the corner.
 #[derive(Clone, Debug)]
 pub struct SampledTipEdge {
-    /// Samples by load, including extrema of the distance.
+    /// Samples of the tip edge by load, including extrema of the distance, `[sample]`.
     pub samples: Vec<EdgeSample>,
-    /// Polynomials through the samples at Lobatto points and the corner, if they are certified.
+    /// Polynomials of the tip edge through the samples at Lobatto points and the corner; `None` if they are not certified.
     pub edge: Option<TipEdge>,
-    /// Map at first touch.
+    /// Shooting map at first touch with the contact at the tip.
     pub at_touch: ShootingMap,
 }
 
 impl SampledTipEdge {
-    /// Samples the edge up to the `corner`: at few loads, or at many if the few are not certified.
+    /// Samples the tip edge up to the `corner`: at few loads, or at many if the few are not certified.
     pub fn new(case: SheetCase, corner: &FoldPoint) -> Self {
         let sampled = TipLoads::new(case, corner, &*LOBATTO_NODES);
         let edge = TipEdge::new(&sampled);
@@ -217,7 +217,7 @@ impl TipEdge {
         }
     }
 
-    /// Returns the predicted point between two neighbouring samples at which `ln D` is `target`.
+    /// Returns the predicted point of the tip edge between two neighbouring samples at which `ln D` is `target`.
     pub fn predict(&self, pair: [&EdgeSample; 2], target: f64) -> Prediction {
         let ends = pair.map(|sample| sample.place);
         let part = place_between(&self.ln_distance, ends, pair, target);
@@ -229,7 +229,8 @@ impl TipEdge {
         }
     }
 
-    /// Returns the extrema between the Lobatto loads. Three places from load to load are tested, because two extrema may be close.
+    /// Returns the extrema of the distance between the Lobatto loads of the tip edge, `[extremum]`. Three places from load to load are
+    /// tested, because two extrema may be close.
     pub(super) fn extrema(&self) -> Vec<DistanceExtremum> {
         let slope = |part| (part, DVec2::from(self.by_load.map(|by| by.at(part).0)));
         let mut extrema = Vec::new();

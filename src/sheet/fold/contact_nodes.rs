@@ -42,9 +42,9 @@ pub struct ContactNodes {
     least_q: f64,
     /// Derivatives of `ln tau` and `ln(|load| tau^2)` of the folds by node index.
     slopes: Vec<[f64; 2]>,
-    /// Polynomials of `ln tau` of the folds, indexed by the first node of the stencil.
+    /// Polynomials of `ln tau` of the folds, indexed by the first node of the stencil, `[stencil]`.
     pub ln_tau: Vec<Hermite>,
-    /// Polynomials of `ln(|load| tau^2)` of the folds, indexed by the first node of the stencil.
+    /// Polynomials of `ln(|load| tau^2)` of the folds, indexed by the first node of the stencil, `[stencil]`.
     pub ln_q: Vec<Hermite>,
 }
 
@@ -115,8 +115,8 @@ fn folds_down_to(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Vec<Fol
 }
 
 impl ContactNodes {
-    /// Computes the nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. Returns `None`
-    /// where a fold is missing.
+    /// Computes the contact nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. Returns
+    /// `None` where a fold is missing.
     pub fn new(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Self> {
         let rod = case.rod;
         let folds = folds_down_to(case, nearest, spacing)?;
@@ -153,8 +153,8 @@ impl ContactNodes {
         load.abs() * tau * tau < SURELY_BELOW * self.least_q
     }
 
-    /// Returns the derivatives of `(ln D, phi)` by node index along the line on which the load is this `part` of the fold's. `map` is the
-    /// map at the node `i`.
+    /// Returns the derivatives of `(ln D, phi)` by contact-node index along the line on which the load is this `part` of the fold's.
+    /// `map` is the map at the node `i`.
     #[must_use]
     pub fn slope(&self, i: usize, part: f64, map: &ShootingMap) -> DVec2 {
         let (fold, [ln_tau, ln_q]) = (&self.folds[i], self.slopes[i]);
@@ -162,7 +162,7 @@ impl ContactNodes {
         map.by_tau * (fold.tau * ln_tau) + map.by_load * (part * fold.load * ln_load)
     }
 
-    /// Returns true if the distance at the fold grows from the node `i` to the next one, and the fold does not jump.
+    /// Returns true if the distance at the fold grows from the contact node `i` to the next one, and the fold does not jump.
     #[must_use]
     pub fn grow_after(&self, i: usize) -> bool {
         let ends = [i, i + 1];

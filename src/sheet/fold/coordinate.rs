@@ -4,9 +4,9 @@ use crate::numerics::Bracket;
 use crate::numerics::newton_form::Polynomial;
 use crate::rod::{Rod, arclength};
 
-/// Returns `u = ln tau + tau`. Toward the base the sheet depends on the contact through its logarithm, because everything scales; toward
-/// a slender tip it depends on `tau`. Where the modulus falls toward the tip, its logarithm is subtracted: continued beyond the tip, the
-/// modulus would become 0.
+/// Returns the coordinate `u = ln tau + tau` of a contact, dimensionless. Toward the base the sheet depends on the contact through its
+/// logarithm, because everything scales; toward a slender tip it depends on `tau`. Where the modulus falls toward the tip, its logarithm
+/// is subtracted: continued beyond the tip, the modulus would become 0.
 pub fn u_of(rod: &Rod, tau: f64) -> f64 {
     let softening = if rod.gradient < 0.0 {
         libm::log(rod.modulus(arclength(rod, tau)))
@@ -16,7 +16,7 @@ pub fn u_of(rod: &Rod, tau: f64) -> f64 {
     libm::log(tau) + tau - softening
 }
 
-/// Returns `du/dln tau`.
+/// Returns the derivative `du/dln tau` of the contact coordinate `u`.
 pub fn slope_of_u(rod: &Rod, tau: f64) -> f64 {
     let mut slope = 1.0 + tau;
     if rod.gradient < 0.0 {
@@ -29,7 +29,7 @@ pub fn slope_of_u(rod: &Rod, tau: f64) -> f64 {
 /// Relative step in `tau` at which the iteration stops. The remaining error is its square.
 const LAST_TAU_STEP: f64 = 1e-9;
 
-/// Returns the inverse of [`u_of`], by Newton's method for `ln tau` from `near`.
+/// Returns `tau` of a contact with the coordinate `u` (the inverse of [`u_of`]), by Newton's method for `ln tau` from `near`.
 pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     let softening = (-rod.gradient).max(0.0);
     let end = if softening > rod.taper {
@@ -55,11 +55,12 @@ pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     bracket.newton(start, |tau| LAST_TAU_STEP * tau, newton).x
 }
 
-/// Number of nodes through which a [`Hermite`] polynomial passes.
+/// Number of contact nodes through which a [`Hermite`] polynomial passes.
 pub const STENCIL: usize = 6;
 
 /// Number of terms of a [`Hermite`] polynomial: a value and a slope for each node.
 pub const TERMS: usize = 2 * STENCIL;
 
-/// Function of the contact as a polynomial of the number of nodes, whole or fractional, from the first node of a stencil.
+/// Polynomial of a function of the contact between contact nodes. Its variable is the number of nodes, whole or fractional, from the
+/// first node of a stencil.
 pub type Hermite = Polynomial<TERMS>;

@@ -14,16 +14,16 @@ use glam::DVec2;
 /// Point of the fold edge.
 #[derive(Clone, Copy, Debug)]
 pub struct FoldPoint {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the fold point, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2` at the fold.
+    /// Signed load `f/rho^2` at the fold point, dimensionless.
     pub load: f64,
-    /// Pole and its first and second derivatives at the fold.
+    /// Pole and its first and second derivatives at the fold point.
     pub variation: SecondVariation,
 }
 
 impl FoldPoint {
-    /// Returns the row parameter `|load| tau^2`.
+    /// Returns the row parameter `|load| tau^2` of the fold point, dimensionless.
     pub fn q(&self) -> f64 {
         self.load.abs() * self.tau * self.tau
     }
@@ -63,8 +63,8 @@ const MARCH_END: f64 = 1e4;
 /// Maximum number of trajectories for each fold; bisection alone would need 50.
 const POLISH_TRAJECTORIES: u32 = 60;
 
-/// Returns the first folds of `rod` at the contacts `taus`, in the same order. An entry is `None` where there is no fold up to
-/// [`MARCH_END`], or no stable state at first touch.
+/// Returns the first folds of `rod` at the contacts `taus`, in the same order, `[contact]`. An entry is `None` where there is no fold up
+/// to [`MARCH_END`], or no stable state at first touch.
 pub fn first_folds(case: SheetCase, taus: &[f64]) -> Vec<Option<FoldPoint>> {
     let rod = case.rod;
     let begin = if rod.profile.is_none() && rod.gradient >= 0.0 {

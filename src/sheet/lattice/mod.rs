@@ -17,7 +17,7 @@ use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::TERMS;
 use crate::shooting::ShootingMap;
 
-/// Trajectories by contact node and load, with polynomials between them.
+/// Lattice of trajectories by contact node and load, with polynomials between them.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     side: Side,
@@ -73,7 +73,7 @@ impl LoadLine {
 }
 
 impl Lattice {
-    /// Computes the lattice over `contacts`.
+    /// Computes the lattice of trajectories over `contacts`.
     pub fn new(case: SheetCase, contacts: &ContactNodes) -> Self {
         let folds = contacts.folds.iter();
         let points = LOBATTO_NODES.iter().flat_map(|part| {
@@ -99,8 +99,8 @@ impl Lattice {
         }
     }
 
-    /// Returns true if no fold is hidden below the first folds, at the contact nodes or between them. The loads are evenly spaced in the
-    /// angle of which they are the cosine.
+    /// Returns true if the lattice shows that no fold is hidden below the first folds, at the contact nodes or between them. The loads
+    /// are evenly spaced in the angle of which they are the cosine.
     pub fn is_certified(&self) -> bool {
         const BELOW_FOLD: usize = CHEBYSHEV_COUNT - 1;
         let count = self.lines.len();

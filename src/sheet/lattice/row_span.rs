@@ -36,8 +36,8 @@ impl Lattice {
         None
     }
 
-    /// Returns the span of `row` on the lattice. Its nodes are at consecutive loads of the lattice, one for each load at which the row
-    /// crosses it.
+    /// Returns the row span of `row` on the lattice. Its nodes are at consecutive loads of the lattice, one for each load at which the
+    /// row crosses it.
     #[must_use]
     pub fn span(&self, contacts: &ContactNodes, row: &Row) -> RowSpan {
         let target = libm::log(row.pole_distance);

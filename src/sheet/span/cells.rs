@@ -10,7 +10,8 @@ use crate::numerics::{Bracket, WIDTH};
 const LAST_SPAN_STEP: f64 = 1e-5;
 
 impl RowSpan {
-    /// Returns one guess for each of the growing push angles (magnitudes, in radians). An entry is `None` outside the span.
+    /// Returns one guess for each of the growing push angles (magnitudes, in radians), `[push_angle]`. An entry is `None` outside the
+    /// span.
     pub fn guesses(&self, pushes: impl Iterator<Item = f64>) -> Vec<Option<Guess>> {
         let mut guesses = Vec::with_capacity(pushes.size_hint().0);
         if self.ends.len() < 2 {

@@ -9,23 +9,23 @@ mod cells;
 use crate::numerics::WIDTH;
 use crate::numerics::newton_form::{Polynomial, stencil, through_nodes};
 
-/// Start of Newton's method for one cell.
+/// Guess for one cell: the start of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guess {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the guess, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`.
+    /// Signed load `f/rho^2` of the guess, dimensionless.
     pub load: f64,
 }
 
-/// State of a span: an interpolation node.
+/// Node of a row span: a state through which its polynomials pass.
 #[derive(Clone, Copy, Debug)]
 pub struct SpanNode {
-    /// Row parameter `|load| tau^2`.
+    /// Row parameter `|load| tau^2` of the span node, dimensionless.
     pub w: f64,
-    /// Push angle since first touch, in radians: a magnitude on the row's side.
+    /// Push angle of the span node since first touch, in radians: a magnitude on the row's side.
     pub push: f64,
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the span node, dimensionless.
     pub tau: f64,
 }
 
@@ -38,7 +38,7 @@ struct IntervalEnd {
     below: f64,
 }
 
-/// Stable piece of a row, between two ends.
+/// Row span: a stable piece of a row between two ends, as polynomials of the row parameter.
 #[derive(Clone, Debug)]
 pub struct RowSpan {
     /// Sign of the loads: 1 or -1.
@@ -65,7 +65,7 @@ const END_ERROR: f64 = 2e-3;
 pub const PUSH_MARGIN: f64 = 1e-4;
 
 impl RowSpan {
-    /// Creates the span through the states of a continuation, by growing push angle. Returns `None` if `w` turns back.
+    /// Creates the row span through the states of a continuation, by growing push angle. Returns `None` if `w` turns back.
     pub fn through(sign: f64, nodes: Vec<SpanNode>) -> Option<Self> {
         let is_ordered = |pair: &[SpanNode]| pair[0].push < pair[1].push;
         let grows = |pair: &[SpanNode]| pair[0].w < pair[1].w;
@@ -76,10 +76,10 @@ impl RowSpan {
         (is_monotone && nodes.len() > 1).then(|| Self::new(sign, nodes, 0.0))
     }
 
-    /// Creates the span through states of a lattice.
+    /// Creates the row span through states of a lattice.
     ///
     /// A row leaves the lattice between two loads. Where the states end before first touch or before the fold, the span is extended to
-    /// the row parameters of the next load, `beyond`, unless the push angle turns in between.
+    /// the row parameters of the next load, `beyond`. It is not extended if the push angle turns in between.
     pub fn on_lattice(sign: f64, nodes: Vec<SpanNode>, beyond: [Option<f64>; 2]) -> Self {
         let mut span = Self::new(sign, nodes, PUSH_MARGIN);
         let count = span.ends.len();
@@ -139,18 +139,18 @@ impl RowSpan {
         self.polynomials(stencil(i, AROUND, self.nodes.len()))
     }
 
-    /// Returns true if the span begins at first touch, where the load is 0.
+    /// Returns true if the row span begins at first touch, where the load is 0.
     pub fn begins_at_touch(&self) -> bool {
         self.nodes.first().is_some_and(|node| node.w == 0.0)
     }
 
-    /// Returns true if the span goes to the row parameter `w_end`, up to the error of interpolation.
+    /// Returns true if the row span goes to the row parameter `w_end`, up to the error of interpolation.
     pub fn reaches(&self, w_end: f64) -> bool {
         let reaches = |end: &IntervalEnd| end.w >= (1.0 - END_ERROR) * w_end;
         self.ends.iter().any(reaches)
     }
 
-    /// Returns `[push angle in radians, tau]` at the row parameter `w`.
+    /// Returns `[push angle in radians, tau]` of the row span at the row parameter `w`.
     pub fn at(&self, w: f64) -> [f64; 2] {
         let is_before = |node: &SpanNode| node.w <= w;
         let after = match self.nodes.first().zip(self.nodes.last()) {

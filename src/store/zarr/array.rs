@@ -1,23 +1,23 @@
-//! One array of a store: its metadata as Zarr has them, and its chunks from values to bytes and back.
+//! Arrays of a Zarr store: metadata, and conversion of chunks between values and bytes.
 
 use super::blocks::Blocks;
 use super::blosc;
 use serde_json::{Value, json};
 
-/// Kinds of values.
+/// Kind of the values of a Zarr array: their type and fill value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ValueKind {
-    /// Codes as `u8`, whose fill value is [`NOT_COMPUTED`].
+    /// Codes as `u8`; the fill value is [`NOT_COMPUTED`].
     Code,
-    /// Counts as `u32`.
+    /// Counts of cells or steps as `u32`.
     Count,
-    /// Quantities as `f32`.
+    /// Quantities of cells as `f32`.
     Quantity,
-    /// Coordinates as `f64`.
+    /// Coordinates along an axis as `f64`.
     Coordinate,
 }
 
-/// The code of a cell that is not computed yet.
+/// Code of a cell of a Zarr store that is not computed yet.
 pub(super) const NOT_COMPUTED: u8 = 254;
 
 impl ValueKind {
@@ -30,7 +30,7 @@ impl ValueKind {
         }
     }
 
-    /// Bytes of a value.
+    /// Returns the size in bytes of a value of this kind.
     pub(super) const fn size(self) -> usize {
         match self {
             Self::Code => 1,
@@ -50,16 +50,16 @@ impl ValueKind {
     }
 }
 
-/// An array of a store. Each block of it is a file of equal chunks.
+/// Array of a Zarr store. Each of its blocks is a file of equal chunks.
 #[derive(Debug)]
 pub(super) struct ZarrArray {
     pub(super) name: String,
     pub(super) kind: ValueKind,
-    /// The metadata as they are written.
+    /// Metadata of the Zarr array, as they are written.
     pub(super) metadata: Value,
-    /// Number of dimensions of the array, sweep axes included.
+    /// Number of dimensions of the Zarr array, sweep axes included.
     pub(super) dimensions: usize,
-    /// Values of a block's file.
+    /// Number of values in the file of a block of the Zarr array.
     pub(super) values: usize,
     /// Values of a chunk.
     chunk_values: usize,
@@ -68,8 +68,8 @@ pub(super) struct ZarrArray {
 }
 
 impl ZarrArray {
-    /// An array in blocks. Its first dimensions are the sweep axes. Its last dimensions have these `sizes`: in all, in a block's
-    /// file, and in a chunk, whose lines of `width` values are stored as columns.
+    /// Creates a Zarr array in blocks. Its first dimensions are the sweep axes. Its last dimensions have these `sizes`: in all, in a
+    /// block's file, and in a chunk, whose lines of `width` values are stored as columns.
     pub(super) fn in_blocks(
         name: &str,
         kind: ValueKind,
@@ -97,7 +97,7 @@ impl ZarrArray {
         }
     }
 
-    /// The values along an axis, in one chunk that is not packed.
+    /// Creates the Zarr array of the values along an axis, in one chunk that is not packed.
     pub(super) fn of_axis(name: &str, kind: ValueKind, count: usize, about: Value) -> Self {
         let about = (about, json!([little_endian()]));
         Self::new(name, kind, [&[count]; 2], &[name], about)
@@ -134,7 +134,7 @@ impl ZarrArray {
         }
     }
 
-    /// The name of a block's file in the folder of the array.
+    /// Returns the name of the file of a block of the Zarr array, in the folder of the array.
     pub(super) fn file(place: &[usize], dimensions: usize) -> String {
         let inside = std::iter::repeat_n(&0, dimensions);
         let indices = place.iter().chain(inside).map(usize::to_string);
@@ -142,17 +142,17 @@ impl ZarrArray {
         parts.join(".")
     }
 
-    /// Chunks of a block's file.
+    /// Returns the number of chunks in the file of a block.
     pub(super) const fn chunk_count(&self) -> usize {
         self.values / self.chunk_values
     }
 
-    /// Bytes of a chunk's values.
+    /// Returns the size of the values of a chunk in bytes.
     pub(super) const fn chunk_bytes(&self) -> usize {
         self.chunk_values * self.kind.size()
     }
 
-    /// The chunks of a whisker with these `values`, given as bytes; the last chunk is filled up.
+    /// Packs the `values` of a whisker, given as bytes, into chunks, `[chunk][byte]`; the last chunk is filled up.
     pub(super) fn pack(&self, values: &[u8]) -> Vec<Vec<u8>> {
         let size = self.chunk_bytes();
         let chunks = values.chunks(size).map(|chunk| {
@@ -166,7 +166,7 @@ impl ZarrArray {
         chunks.collect()
     }
 
-    /// The chunks of a whisker that does not exist, in a block with room for `whiskers`.
+    /// Packs the chunks, `[chunk][byte]`, of a whisker that does not exist, in a block with space for `whiskers`.
     pub(super) fn pack_fill(&self, whiskers: usize) -> Vec<Vec<u8>> {
         let chunks = self.chunk_count() / whiskers;
         vec![self.pack_chunk(&self.kind.fill().1.repeat(self.chunk_values)); chunks]
@@ -183,7 +183,7 @@ impl ZarrArray {
         chunk
     }
 
-    /// The values of frames of Blosc, as bytes.
+    /// Returns the values of frames of Blosc, as bytes.
     ///
     /// # Errors
     /// A frame is not as [`pack`](Self::pack) writes it.
@@ -247,7 +247,7 @@ fn turned(lines: &[u8], width: usize) -> Vec<u8> {
     turned
 }
 
-/// The attributes of an array by which xarray labels its values: unit and name.
+/// Returns the attributes of a Zarr array by which xarray labels its values: unit and name.
 pub(super) fn about(units: Option<&str>, long_name: &str) -> Value {
     let mut about = json!({});
     if let Some(units) = units {

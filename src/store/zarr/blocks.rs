@@ -1,4 +1,4 @@
-//! The blocks of a sweep: the whiskers that share a file of each array, and that a run finishes together.
+//! Blocks of a sweep: whiskers that share a file of each Zarr array, and that a run finishes together.
 
 use crate::scene::Grid;
 use std::ops::Range;
@@ -12,20 +12,20 @@ const WANTED: usize = 128;
 /// Most cells of a chunk, which is packed and read as a whole: 4 MB of a quantity.
 const CELLS_OF_A_CHUNK: usize = 1 << 20;
 
-/// The blocks of a sweep. They depend on its grid alone, so that any number of processes agree on them.
+/// Blocks of a sweep. They depend on its grid alone, so that any number of processes agree on them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Blocks {
-    /// Number of values of each sweep axis: `[axis]`.
+    /// Number of values of each sweep axis of the store: `[axis]`.
     pub(super) axes: Vec<usize>,
     /// Number of values of each sweep axis in a block: `[axis]`; the last block of an axis may have fewer.
     pub(super) shape: Vec<usize>,
-    /// Numbers of distances and of push angles of a panel.
+    /// Numbers of distances and of push angles of a panel: `[distances, push_angles]`.
     pub(super) panel: [usize; 2],
 }
 
 impl Blocks {
-    /// The blocks of `grid`. Along the first axes a block has all values, along one of them some, and one along the
-    /// rest: its whiskers follow one another.
+    /// Returns the blocks of `grid`. A block has all values of the first sweep axes, some values of one axis, and one value of each of
+    /// the rest: its whiskers follow one another.
     pub(super) fn of(grid: &Grid) -> Self {
         let axes: Vec<usize> = grid.sweep.iter().map(|axis| axis.values.len()).collect();
         let panel = [grid.distance_mm.len(), grid.push_angle_deg.len()];
@@ -45,7 +45,7 @@ impl Blocks {
         }
     }
 
-    /// Number of blocks of the sweep.
+    /// Returns the number of blocks of the sweep.
     pub(super) fn count(&self) -> usize {
         self.blocks_per_axis().product()
     }
@@ -55,7 +55,7 @@ impl Blocks {
         axes.map(|(values, block)| values.div_ceil(*block))
     }
 
-    /// Indices of a block on the sweep axes of an array.
+    /// Returns the indices of a block on the sweep axes of an array: `[axis]`.
     pub(super) fn place(&self, block: usize) -> Vec<usize> {
         let mut rest = block;
         let on_axes = self.blocks_per_axis().map(|blocks| {
@@ -66,7 +66,7 @@ impl Blocks {
         on_axes.collect()
     }
 
-    /// Indices in the sweep of the whiskers of a block.
+    /// Returns the indices in the sweep of the whiskers of a block.
     pub(super) fn whiskers(&self, block: usize) -> Range<usize> {
         let (mut first, mut count, mut stride) = (0, 1, 1);
         for (axis, at) in self.place(block).into_iter().enumerate() {
@@ -78,7 +78,7 @@ impl Blocks {
         first..first + count
     }
 
-    /// The block of a whisker, and its index in the block.
+    /// Returns the block of a whisker, and the whisker's index in the block.
     pub(super) fn find(&self, whisker: usize) -> (usize, usize) {
         let (mut rest, mut block, mut stride) = (whisker, 0, 1);
         let axes = self.axes.iter().zip(&self.shape);
@@ -90,7 +90,7 @@ impl Blocks {
         (block, whisker - self.whiskers(block).start)
     }
 
-    /// The slot of whisker `index` of `block` in its files, which the last axis varies fastest.
+    /// Returns the slot of whisker `index` of `block` in its files, which the last axis varies fastest.
     pub(super) fn slot(&self, block: usize, index: usize) -> usize {
         let mut rest = index;
         let at = self.place(block);
@@ -103,12 +103,12 @@ impl Blocks {
         slot
     }
 
-    /// Number of slots, each for one whisker, of a block's files.
+    /// Returns the number of slots, each for one whisker, of the file of a block.
     pub(super) fn slots(&self) -> usize {
         self.shape.iter().product()
     }
 
-    /// Distances of a chunk, and of a panel filled up to whole chunks.
+    /// Returns the number of distances of a chunk, and of a panel filled up to whole chunks.
     pub(super) fn distances(&self) -> [usize; 2] {
         let [distances, push_angles] = self.panel;
         let chunk = (CELLS_OF_A_CHUNK / push_angles).clamp(1, distances);

@@ -1,4 +1,4 @@
-//! Chunks as frames of Blosc 1: the bytes of the values are shuffled, then deflated (zlib).
+//! Frames of Blosc 1 as chunks: the bytes of the values are shuffled, then deflated (zlib).
 //!
 //! Every reader of Zarr decodes such frames, zarr-python by `numcodecs`. A frame (c-blosc, `README_CHUNK_FORMAT.rst`) begins with
 //! 16 bytes: format version, codec version, flags, bytes of a value, and as little-endian `u32` the bytes of all values, of a
@@ -8,13 +8,13 @@
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 
-/// The name of the codec in the metadata.
+/// Name of the compression codec in the metadata of a store.
 pub(super) const CODEC: &str = "zlib";
 
 /// Compression level of zlib, from 1 (fastest) to 9. At level 6 a store is 6 % smaller and takes four times as long.
 pub(super) const LEVEL: u8 = 1;
 
-/// Most bytes by which a frame is longer than its values.
+/// Largest number of bytes by which a Blosc frame is longer than its values.
 pub(super) const OVERHEAD: usize = 16;
 
 /// Bytes before the zlib stream: the header, position and size of the block.
@@ -32,7 +32,7 @@ const COPIED: u8 = 2;
 /// Flags of zlib, and of a block that is one stream.
 const ZLIB_IN_ONE: u8 = 3 << 5 | 1 << 4;
 
-/// The frame of `values`, each of `size` bytes.
+/// Packs `values`, each of `size` bytes, into a Blosc frame.
 pub(super) fn pack(values: &[u8], size: usize) -> Vec<u8> {
     let stream = compress_to_vec_zlib(&shuffled(values, size), LEVEL);
     let length = BEFORE_STREAM + stream.len();
@@ -54,7 +54,7 @@ pub(super) fn pack(values: &[u8], size: usize) -> Vec<u8> {
     frame
 }
 
-/// Appends the values of a `frame`, `count` values of `size` bytes, to `values`.
+/// Unpacks a Blosc `frame` of `count` values of `size` bytes, and appends them to `values`.
 ///
 /// # Errors
 /// The frame is not as [`pack`] writes it, or it has another number of values.

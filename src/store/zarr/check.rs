@@ -1,4 +1,4 @@
-//! Checks blocks and metadata of a store, and removes damaged blocks.
+//! Checks of the blocks and metadata of a store, and removal of damaged blocks.
 
 use super::ZarrStore;
 use super::array::{NOT_COMPUTED, ZarrArray};
@@ -12,34 +12,34 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// How thoroughly a block's files are checked.
+/// Depth of a check of a block's files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CheckDepth {
-    /// Identity, length and index of each file.
+    /// Checks identity, length and index of each file.
     Structure,
-    /// The checksum of each chunk too: files are read as a whole, at several GB/s.
+    /// Checks the checksum of each chunk, too: files are read as a whole, at several GB/s.
     Checksums,
-    /// Every value too: files are decoded, and the counts of regimes are compared with the regimes.
+    /// Checks every value, too: files are decoded, and the counts of regimes are compared with the regimes.
     Values,
 }
 
-/// The state of a block on disk.
+/// State of a block of a store on disk.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum BlockState {
-    /// A file is missing: the block is not finished.
+    /// A file of the block is missing: the block is not finished.
     Missing,
-    /// All files exist, and these are damaged.
+    /// All files of the block exist, and these are damaged.
     Damaged(Vec<StoreError>),
-    /// The file system refused to read these files: they may be whole.
+    /// The file system refused to read these files of the block: they may be undamaged.
     Unreadable(Vec<StoreError>),
-    /// All files exist, without a fault at this depth.
+    /// All files of the block exist, without a fault at this depth.
     Done,
 }
 
 impl ZarrStore {
-    /// Checks the files of a block.
+    /// Checks the files of a block and returns its state.
     #[must_use]
     pub fn state(&self, block: usize, depth: CheckDepth) -> BlockState {
         // The file that is written last is looked for first.
@@ -118,7 +118,8 @@ impl ZarrStore {
         })
     }
 
-    /// Missing and damaged metadata and coordinates, which [`ZarrStore::begin`] and [`ZarrStore::restore_metadata`] write again.
+    /// Returns missing and damaged metadata and coordinates of the store, which [`ZarrStore::begin`] and [`ZarrStore::restore_metadata`]
+    /// write again.
     ///
     /// # Errors
     /// The store is of another version, whose metadata may differ, or a file cannot be read.
@@ -164,7 +165,7 @@ impl ZarrStore {
         Ok(true)
     }
 
-    /// The owner of the blocks in the folder, by the first bytes of their files.
+    /// Returns the owner of the blocks in the store's folder, by the first bytes of their files.
     pub(super) fn owner(&self) -> BlockOwner {
         let mut owner = BlockOwner::Nobody;
         for array in &self.arrays {
@@ -194,15 +195,15 @@ fn identity_in(file: &Path) -> Option<FileIdentity> {
 /// The store to which the blocks in a folder belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockOwner {
-    /// There are no blocks.
+    /// The folder has no blocks.
     Nobody,
-    /// At least one block belongs to this store.
+    /// At least one block of the folder belongs to this store.
     This,
-    /// There are blocks, and none belongs to this store.
+    /// The folder has blocks, and none belongs to this store.
     Other,
 }
 
-/// The fault of a metadata file that must have these `bytes`. A longer file is not read to its end.
+/// Returns the fault of a metadata file that must have these `bytes`; `None` without one. A longer file is not read to its end.
 pub(super) fn metadata_fault(path: &Path, bytes: &[u8]) -> Option<StoreError> {
     let mut found = Vec::new();
     let read = open_regular(path).and_then(|file| {

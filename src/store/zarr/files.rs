@@ -1,4 +1,4 @@
-//! The metadata and coordinates of a store, which follow from the scene and the settings.
+//! Metadata and coordinates of a store, which follow from the scene and the settings.
 
 use super::array::ZarrArray;
 use super::check::{BlockOwner, metadata_fault};
@@ -48,7 +48,7 @@ impl ZarrStore {
         Ok(restored)
     }
 
-    /// Writes missing and damaged metadata and coordinates again. Returns the damaged files.
+    /// Writes missing and damaged metadata and coordinates of the store again. Returns the paths of the damaged files.
     ///
     /// # Errors
     /// A file cannot be read or written.
@@ -69,7 +69,7 @@ impl ZarrStore {
         failures.into_iter().next().map_or(Ok(damaged), Err)
     }
 
-    /// Every file of metadata and coordinates with its bytes; the root's is the last.
+    /// Returns every file of metadata and coordinates of the store with its bytes; the root's is the last.
     pub(super) fn metadata_files(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files = Vec::new();
         for (array, values) in metadata::coordinates(&self.scene.grid) {
@@ -204,8 +204,8 @@ fn json(value: &Value) -> Vec<u8> {
     value.to_string().into_bytes()
 }
 
-/// Writes a file as a whole, piece by piece, into an existing folder. It is on the disk before this returns, because a run that
-/// resumes after a crash takes existing files for finished ones.
+/// Writes a file as a whole, piece by piece, into an existing folder. It is on the disk before this returns, because a run that resumes
+/// after a crash takes existing files for finished ones.
 pub(super) fn write(
     path: &Path,
     pieces: &[impl AsRef<[u8]>],

@@ -4,7 +4,7 @@ use crate::store::attributes::sorted;
 use serde_json::{Map, Value};
 use twox_hash::XxHash3_128;
 
-/// The attributes in which all runs that fill a store must agree; the first that differs is named.
+/// Names of the attributes in which all runs that fill a store must agree; the first that differs is named.
 pub(super) const AGREED: [&str; 6] = [
     "whiskmap_version",
     "engine",
@@ -14,27 +14,27 @@ pub(super) const AGREED: [&str; 6] = [
     "scene",
 ];
 
-/// The XXH3-128 hash of the attributes in which all runs that fill a store agree.
+/// Identity of a store: the XXH3-128 hash of the attributes in which all runs that fill it agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct StoreIdentity(u128);
 
-/// The first bytes of a block's file: a hash of the store's identity, the array and the file's name.
+/// Identity of a block's file: its first bytes, a hash of the store's identity, the array and the file's name.
 pub(super) type FileIdentity = [u8; 16];
 
 impl StoreIdentity {
-    /// The identity of a store with these attributes.
+    /// Returns the identity of a store with these attributes.
     pub(super) fn of(attributes: &Map<String, Value>) -> Self {
         let agreed = AGREED.map(|name| attributes.get(name).map(sorted));
         let text = serde_json::json!(agreed).to_string();
         Self(XxHash3_128::oneshot(text.as_bytes()))
     }
 
-    /// The identity as 32 hexadecimal digits.
+    /// Returns the identity of the store as 32 hexadecimal digits.
     pub(super) fn text(self) -> String {
         format!("{:032x}", self.0)
     }
 
-    /// The identity of the file `name` of the array `array`.
+    /// Returns the identity of the file `name` of the array `array`.
     pub(super) fn of_file(self, array: &str, name: &str) -> FileIdentity {
         let text = format!("{}/{array}/{name}", self.text());
         XxHash3_128::oneshot(text.as_bytes()).to_le_bytes()

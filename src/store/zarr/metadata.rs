@@ -1,4 +1,4 @@
-//! The arrays and attributes of a store.
+//! Arrays and attributes of a store.
 
 use super::array::ValueKind::{self, Code, Coordinate, Count, Quantity};
 use super::array::{NOT_COMPUTED, ZarrArray, about};
@@ -9,7 +9,7 @@ use crate::scene::{Grid, SceneData};
 use crate::store::{Channels, MapDescription};
 use serde_json::{Map, Value, json};
 
-/// Array with the number of cells of each regime: `[sweep axes.., regime]`.
+/// Name of the array with the number of cells of each regime: `[sweep axes.., regime]`.
 pub(super) const CELLS: &str = "regime_cells";
 
 /// Coordinate with the codes of the regimes, the last axis of [`CELLS`].
@@ -34,7 +34,7 @@ const CHANNELS: [(&str, ValueKind, Option<&str>, &str); 14] = [
     ("residual", Quantity, Some("1"), "distance from the wanted pole over the whisker's length"),
 ];
 
-/// The arrays that are filled block by block. The regimes, which mark a block as finished, are the last.
+/// Returns the arrays of a store that are filled block by block, `[array]`. The regimes, which mark a block as finished, are the last.
 pub(super) fn arrays(grid: &Grid, blocks: &Blocks, channels: Channels) -> Vec<ZarrArray> {
     let sweep = grid.sweep.iter().map(|axis| axis.parameter.axis());
     let sweep: Vec<&str> = sweep.collect();
@@ -96,7 +96,7 @@ fn word(name: &str) -> String {
     parts.join("_")
 }
 
-/// The coordinates along every axis, with their values as bytes.
+/// Returns the coordinate arrays along every axis of a store, with their values as bytes.
 pub(super) fn coordinates(grid: &Grid) -> Vec<(ZarrArray, Vec<u8>)> {
     let inside = [
         (
@@ -130,7 +130,7 @@ pub(super) fn coordinates(grid: &Grid) -> Vec<(ZarrArray, Vec<u8>)> {
     all
 }
 
-/// The attributes of a store, equal on all machines of one arithmetic class.
+/// Returns the attributes of a store, equal on all machines of one arithmetic class.
 pub(super) fn attributes(about: &MapDescription<'_>, scene: &SceneData) -> Map<String, Value> {
     let agreed = [
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
@@ -144,7 +144,7 @@ pub(super) fn attributes(about: &MapDescription<'_>, scene: &SceneData) -> Map<S
     completed(&Map::from_iter(agreed), &scene.title)
 }
 
-/// The attributes of a store: those of `found` in [`AGREED`], the `title`, and those that follow.
+/// Returns the attributes of a store: those of `found` in [`AGREED`], the `title`, and those that follow.
 pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, Value> {
     let agreed = AGREED.iter().filter_map(|name| {
         let value = found.get(*name)?;
@@ -158,10 +158,10 @@ pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, 
     attributes
 }
 
-/// Attribute with the identity of the store.
+/// Name of the attribute with the identity of the store.
 pub(super) const IDENTITY: &str = "identity";
 
-/// The root's metadata, with those of all arrays.
+/// Returns the metadata of the store's root, with those of all arrays.
 pub(super) fn group<'a>(
     attributes: &Map<String, Value>,
     arrays: impl Iterator<Item = &'a ZarrArray>,

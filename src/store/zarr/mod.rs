@@ -31,18 +31,18 @@ use serde_json::{Map, Value};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// A Zarr store on disk.
+/// Zarr store of a map on disk.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ZarrStore {
-    /// The scene with which the store was created.
+    /// Scene with which the store was created.
     pub scene: Scene,
-    /// The channels that are stored.
+    /// Channels of the map that are stored.
     pub channels: Channels,
     path: PathBuf,
     attributes: Map<String, Value>,
     identity: StoreIdentity,
-    /// Whether the store may exist when it is begun.
+    /// True if the store may exist when it is begun.
     may_exist: bool,
     blocks: Blocks,
     arrays: Vec<ZarrArray>,
@@ -52,7 +52,8 @@ pub struct ZarrStore {
 const METADATA: &str = "zarr.json";
 
 impl ZarrStore {
-    /// The store at `path`, which [`begin`](Self::begin) creates; it exists already only if it `may_exist`. Regimes are always stored.
+    /// Joins the store at `path`, which [`begin`](Self::begin) creates; it exists already only if it `may_exist`. Regimes are always
+    /// stored.
     ///
     /// # Errors
     /// The store was created with another scene, version, engine, accuracy or choice of channels, or it exists although it must
@@ -130,7 +131,7 @@ impl ZarrStore {
         }
     }
 
-    /// The attribute `name`, such as `scene` or `tolerances`.
+    /// Returns the attribute `name` of the store, such as `scene` or `tolerances`.
     ///
     /// # Errors
     /// There is no such attribute.
@@ -141,19 +142,19 @@ impl ZarrStore {
         })
     }
 
-    /// Number of blocks of a store of a sweep over `grid`.
+    /// Returns the number of blocks of a store of a sweep over `grid`.
     #[must_use]
     pub fn blocks(grid: &Grid) -> usize {
         Blocks::of(grid).count()
     }
 
-    /// Number of blocks, done or not.
+    /// Returns the number of blocks of the store, done or not.
     #[must_use]
     pub fn block_count(&self) -> usize {
         self.blocks.count()
     }
 
-    /// Indices in the sweep of the whiskers of a block.
+    /// Returns the indices in the sweep of the whiskers of a block.
     #[must_use]
     pub fn whiskers(&self, block: usize) -> Range<usize> {
         self.blocks.whiskers(block)

@@ -1,4 +1,4 @@
-//! From panels to the files of a block.
+//! Packing and writing of panels as the files of a block.
 
 use super::array::ZarrArray;
 use super::files::write;
@@ -12,7 +12,7 @@ use serde_json::Map;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// The values of one panel as bytes of chunks: `[array][chunk][byte]`, in the order of the store's arrays.
+/// Values of one panel, packed: `[array][chunk][byte]`, in the order of the store's arrays.
 #[derive(Debug)]
 pub struct PackedPanel(Vec<Vec<Vec<u8>>>);
 
@@ -25,7 +25,7 @@ impl ZarrStore {
         PackedPanel(packed.collect())
     }
 
-    /// Packs `panels` of `scene`, and returns how many bytes they take without headers.
+    /// Packs `panels` of `scene`, and returns their size in bytes without headers.
     #[must_use]
     pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> u64 {
         let (nowhere, channels) = (Path::new(""), channels.with("regime"));
@@ -35,7 +35,7 @@ impl ZarrStore {
         chunks.map(|chunk| chunk.len() as u64).sum()
     }
 
-    /// Writes the panels of a block.
+    /// Writes the panels of a block into the store.
     ///
     /// # Errors
     /// The disk is full, the folder is not writable, or the store is no longer at its path.

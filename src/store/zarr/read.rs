@@ -1,4 +1,4 @@
-//! Reads the files of a block.
+//! Reading of the files of a block.
 
 use super::ZarrStore;
 use super::array::{ValueKind, ZarrArray};
@@ -11,7 +11,7 @@ use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 impl ZarrStore {
-    /// Number of cells of each regime in a block.
+    /// Reads the number of cells of each regime in a block, in the order of [`Regime::ALL`].
     ///
     /// # Errors
     /// The block is missing or damaged.
@@ -28,7 +28,7 @@ impl ZarrStore {
         Ok(regimes)
     }
 
-    /// A channel of one whisker: `[distance][push angle]`.
+    /// Reads a channel of one whisker of the store: `[distance][push angle]`.
     ///
     /// # Errors
     /// There is no such channel, or the whisker's block is missing or damaged.
@@ -61,7 +61,7 @@ impl ZarrStore {
         })
     }
 
-    /// The values of a block's file, as bytes.
+    /// Reads the values of the file of a block, as bytes.
     pub(super) fn read(&self, array: &ZarrArray, block: usize) -> Result<Vec<u8>, StoreError> {
         let path = self.file(array, block);
         let (expected, bytes) = self.read_file(array, &path)?;
@@ -69,7 +69,7 @@ impl ZarrStore {
         values.map_err(StoreError::at(&path, StoreError::Damaged))
     }
 
-    /// Reads a block's file and checks its structure and checksums.
+    /// Reads the file of a block and checks its structure and checksums.
     pub(super) fn read_file(
         &self,
         array: &ZarrArray,
@@ -88,7 +88,7 @@ impl ZarrStore {
         }
     }
 
-    /// The identity and sizes that the file `path` of an array must have.
+    /// Returns the identity and sizes that the file `path` of an array must have.
     pub(super) fn expected(&self, array: &ZarrArray, path: &Path) -> ExpectedFile {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         ExpectedFile {
@@ -99,7 +99,7 @@ impl ZarrStore {
     }
 }
 
-/// Opens a regular file: another one, such as a pipe, might never open.
+/// Opens a regular file of a store. It opens no other file, because a pipe, for example, might block forever.
 pub(super) fn open_regular(path: &Path) -> Result<File, StoreError> {
     let failed = |why: io::Error| match why.kind() {
         io::ErrorKind::NotFound => StoreError::NotComputed(path.to_owned()),

@@ -1,4 +1,4 @@
-//! A block's file, a shard of Zarr: identity, chunks without gaps, index, checksum of the index.
+//! Shards: the file of a block, with identity, chunks without gaps, index, and checksum of the index.
 //!
 //! The index has the position and the size of each chunk, as pairs of little-endian `u64`. Zarr readers find chunks by the index
 //! and ignore the identity.
@@ -20,7 +20,7 @@ const ENTRY: usize = 16;
 /// The most bytes by which packing makes a chunk larger.
 const OVERHEAD: u64 = (blosc::OVERHEAD + CHECKSUM) as u64;
 
-/// The pieces of a file with these chunks, in order.
+/// Returns the pieces of the file of a block with these chunks, in order.
 pub(super) fn assemble<'a>(
     identity: FileIdentity,
     chunks: impl Iterator<Item = &'a [u8]> + Clone,
@@ -47,14 +47,14 @@ pub(super) fn assemble<'a>(
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ExpectedFile {
     pub(super) identity: FileIdentity,
-    /// Chunks of the file.
+    /// Number of chunks that the file must have.
     pub(super) chunks: usize,
-    /// Bytes of a chunk's values.
+    /// Size in bytes of the values of a chunk of the file.
     pub(super) chunk_bytes: usize,
 }
 
 impl ExpectedFile {
-    /// The most bytes that the file can have.
+    /// Returns the largest size in bytes that the file can have.
     pub(super) fn most_bytes(&self) -> u64 {
         let chunks = self.chunks as u64 * (self.chunk_bytes as u64 + OVERHEAD);
         HEAD + chunks + self.index_bytes() as u64
@@ -64,7 +64,7 @@ impl ExpectedFile {
         self.chunks * ENTRY + CHECKSUM
     }
 
-    /// The fault of identity, length or index of a file. Chunks are not read.
+    /// Returns the fault of identity, length or index of a block's file; `None` without one. Chunks are not read.
     pub(super) fn structure_fault(
         &self,
         file: &mut (impl Read + Seek),
@@ -110,13 +110,13 @@ impl ExpectedFile {
         (identity != self.identity).then_some(why)
     }
 
-    /// The fault of the chunks of a whole file without a structure fault, by their checksums.
+    /// Returns the fault of the chunks of a whole block's file without a structure fault, by their checksums; `None` without one.
     pub(super) fn chunk_fault(&self, file: &[u8]) -> Option<String> {
         let damaged = self.chunks(file).position(|chunk| !has_checksum(chunk))?;
         Some(format!("chunk {damaged} does not have its checksum"))
     }
 
-    /// The chunks of a whole file without a fault, less their checksums.
+    /// Returns the chunks of a whole block's file without a fault, without their checksums.
     pub(super) fn frames<'a>(&self, file: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
         let chunks = self.chunks(file);
         chunks.map(|chunk| &chunk[..chunk.len().saturating_sub(CHECKSUM)])

@@ -1,4 +1,4 @@
-//! Roots of functions of one variable. A bracket holds two places at which the function has opposite signs.
+//! Roots of functions of one variable. A bracket holds two arguments at which the function has opposite signs.
 //!
 //! [`Bracket::newton`] is the root finder: Newton's method, Halley's or any other that proposes a next place, safeguarded by
 //! bisection. [`Bracket::bisect`] needs values alone, [`Bracket::halve`] signs alone. [`illinois`] is regula falsi, for
@@ -8,28 +8,28 @@
 /// Largest number of iterations: more than bisection needs between any two numbers of ordinary size.
 const MOST_ITERATIONS: usize = 200;
 
-/// Two places between which a function changes its sign. Either may be the smaller number.
+/// Two arguments between which a function changes its sign. Either may be the smaller number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bracket {
-    /// Place where the function is negative.
+    /// Argument at which the function is negative, in the unit of the search.
     pub below: f64,
-    /// Place where the function is not negative, or NaN.
+    /// Argument at which the function is not negative, or NaN, in the unit of the search.
     pub above: f64,
 }
 
-/// Result of a search for a root.
+/// Result of a root search: the root, the last step and the number of evaluations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root {
-    /// Place of the root, in the unit of the bracket.
+    /// Argument of the root, in the unit of the bracket.
     pub x: f64,
-    /// Last step toward the root, in the unit of the bracket.
+    /// Last step of the search toward the root, in the unit of the bracket.
     pub step: f64,
-    /// Number of evaluations of the function.
+    /// Number of evaluations of the function during the search.
     pub iterations: usize,
 }
 
 impl Bracket {
-    /// The bracket of two places. The place with the smaller of the two `values` is below.
+    /// Creates the bracket of two arguments. The argument with the smaller of the two `values` becomes [`Bracket::below`].
     #[must_use]
     pub fn new([a, b]: [f64; 2], values: [f64; 2]) -> Self {
         let [below, above] = if values[0] <= values[1] {
@@ -40,25 +40,25 @@ impl Bracket {
         Self { below, above }
     }
 
-    /// The point half way between the ends.
+    /// Returns the point half way between the ends of the bracket.
     #[must_use]
     pub fn middle(&self) -> f64 {
         0.5 * (self.below + self.above)
     }
 
-    /// Returns true if `x` lies between the ends or is one of them.
+    /// Returns true if `x` lies between the ends of the bracket or is one of them.
     #[must_use]
     pub fn contains(&self, x: f64) -> bool {
         (x - self.below) * (x - self.above) <= 0.0
     }
 
-    /// Returns true if `x` lies between the ends and is neither of them.
+    /// Returns true if `x` lies between the ends of the bracket and is neither of them.
     #[must_use]
     pub fn is_inside(&self, x: f64) -> bool {
         (x - self.below) * (x - self.above) < 0.0
     }
 
-    /// Moves one end to `x`, where the function has this `value`. NaN counts as above.
+    /// Moves one end of the bracket to `x`, where the function has this `value`. A NaN value counts as positive.
     pub fn shrink(&mut self, x: f64, value: f64) {
         if value < 0.0 {
             self.below = x;
@@ -67,8 +67,8 @@ impl Bracket {
         }
     }
 
-    /// Moves one end to `x` as [`Bracket::shrink`] does. Returns the next place to evaluate: `proposed` if the bracket contains
-    /// it, otherwise the middle.
+    /// Moves one end of the bracket to `x` as [`Bracket::shrink`] does. Returns the next argument to evaluate: `proposed` if the bracket
+    /// contains it, otherwise the middle.
     pub fn next(&mut self, x: f64, value: f64, proposed: f64) -> f64 {
         self.shrink(x, value);
         if self.is_inside(proposed) {
@@ -78,7 +78,7 @@ impl Bracket {
         }
     }
 
-    /// The root by bisection, to the last digit.
+    /// Returns the root of a function by bisection, to the last digit.
     pub fn bisect(self, mut value: impl FnMut(f64) -> f64) -> f64 {
         let iterate = |x| (value(x), f64::NAN);
         self.newton(self.middle(), |_| 0.0, iterate).x
@@ -107,9 +107,9 @@ impl Bracket {
         Ok(())
     }
 
-    /// The root by Newton's method, or by another method of its kind, from `start`. `iterate` returns the value at a place and
-    /// proposes the next place. The iteration ends with a proposed step inside the bracket of at most `last_step(x)`, where `x` is
-    /// the place at which the step begins.
+    /// Returns the root by Newton's method, or by another method of its kind, from `start`. `iterate` returns the value at an argument
+    /// and proposes the next one. The iteration ends with a proposed step inside the bracket of at most `last_step(x)`, where `x` is the
+    /// argument at which the step begins.
     pub fn newton(
         mut self,
         start: f64,
@@ -140,8 +140,8 @@ impl Bracket {
     }
 }
 
-/// The root by regula falsi with the Illinois weights, without slopes: it also finds a root that is an extremum. The two ends
-/// are `[place, value]`. The iteration ends at a value of at most `tolerance`. Returns `None` if `value` does.
+/// Returns the root by regula falsi with the Illinois weights, without slopes: it also finds a root that is an extremum. The two ends are
+/// `[argument, value]`. The iteration ends at a value of at most `tolerance`. Returns `None` if `value` does.
 pub fn illinois(
     [mut kept, mut last]: [[f64; 2]; 2],
     tolerance: f64,

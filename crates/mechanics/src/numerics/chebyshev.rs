@@ -10,14 +10,14 @@ use std::sync::LazyLock;
 /// Number of Chebyshev points: one for each lane.
 pub const CHEBYSHEV_COUNT: usize = WIDTH;
 
-/// The points of the second kind (Chebyshev-Lobatto), growing: the extrema of a Chebyshev polynomial, with both ends.
+/// Chebyshev points of the second kind (Chebyshev-Lobatto) on `[0, 1]`, growing: the extrema of a Chebyshev polynomial, with both ends.
 pub static LOBATTO_NODES: LazyLock<[f64; CHEBYSHEV_COUNT]> = LazyLock::new(|| {
     let node = |m: usize| libm::sin(FRAC_PI_2 * m as f64 / (CHEBYSHEV_COUNT - 1) as f64).powi(2);
     std::array::from_fn(node)
 });
 
-/// The points of the first kind, growing: the zeros of a Chebyshev polynomial. The ends of the interval are no points, so a function need
-/// not be known there.
+/// Chebyshev points of the first kind on `[0, 1]`, growing: the zeros of a Chebyshev polynomial. The ends of the interval are not among
+/// them, so a function may be unknown there.
 pub static CHEBYSHEV_POINTS: LazyLock<[f64; CHEBYSHEV_COUNT]> = LazyLock::new(|| {
     let angle = |j: usize| FRAC_PI_2 * (2 * j + 1) as f64 / (2 * CHEBYSHEV_COUNT) as f64;
     std::array::from_fn(|j| libm::sin(angle(j)).powi(2))
@@ -48,8 +48,8 @@ static TAYLOR_WEIGHTS: LazyLock<Vec<[[f64; CHEBYSHEV_COUNT]; CHEBYSHEV_COUNT]>> 
         weights
     });
 
-/// Taylor coefficients `[around][power][function]` around each of the [`CHEBYSHEV_POINTS`] of the polynomials through `values`
-/// `[point][function]` there. The `i`-th derivative over `i!` is the factor of the `i`-th power.
+/// Returns the Taylor coefficients `[around][power][function]` at each of the [`CHEBYSHEV_POINTS`], of the polynomials through `values`
+/// `[point][function]` there. The coefficient of the `i`-th power is the `i`-th derivative over `i!`.
 #[must_use]
 pub fn taylor_at_points<const D: usize, const P: usize>(
     values: &[[f64; D]; CHEBYSHEV_COUNT],

@@ -48,7 +48,7 @@ impl ChebyshevGrid {
     }
 }
 
-/// The `count` Chebyshev points of the first kind on `[0, 1]`, growing: `sin^2((2 j + 1) pi/(4 count))`.
+/// Returns the `count` Chebyshev points of the first kind on `[0, 1]`, growing: `sin^2((2 j + 1) pi/(4 count))`.
 ///
 /// # Panics
 ///
@@ -61,12 +61,12 @@ pub fn chebyshev_points(count: usize) -> &'static [f64] {
 /// Expansion of `D` functions on `[0, 1]` in Chebyshev polynomials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chebyshev<const D: usize> {
-    /// Coefficients `[k][function]` of the polynomials `T_k(2 x - 1)`.
+    /// Coefficients `[k][function]` of the polynomials `T_k(2 x - 1)` of a Chebyshev expansion, in the units of the functions.
     pub coefficients: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Chebyshev<D> {
-    /// The expansion through `values` `[point][function]` at the [`chebyshev_points`], one value for each point.
+    /// Creates the expansion through `values` `[point][function]` at the [`chebyshev_points`], one value for each point.
     ///
     /// # Panics
     ///
@@ -97,7 +97,7 @@ impl<const D: usize> Chebyshev<D> {
         tails
     }
 
-    /// Values of the functions at `x`.
+    /// Returns the values `[function]` of an expansion at `x` in `[0, 1]`.
     #[must_use]
     pub fn at(&self, x: f64) -> [f64; D] {
         self.values(0, x)
@@ -126,8 +126,8 @@ impl<const D: usize> Chebyshev<D> {
         later
     }
 
-    /// Taylor coefficients of one function around `x`, by Clenshaw's recurrence with truncated power series in place of
-    /// numbers.
+    /// Returns the Taylor coefficients `[power]` of one function of an expansion around `x`, by Clenshaw's recurrence with truncated
+    /// power series in place of numbers.
     #[inline(always)]
     pub(super) fn series<T: Real, const P: usize>(&self, function: usize, x: T) -> [T; P] {
         let (zero, two) = (T::of(0.0), T::of(2.0));

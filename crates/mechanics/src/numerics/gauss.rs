@@ -5,7 +5,7 @@ use crate::numerics::Real;
 /// Number of collocation nodes in a step.
 pub const NODES: usize = 5;
 
-/// The collocation nodes on `[0, 1]`.
+/// Collocation nodes of a step: the Gauss-Legendre nodes on `[0, 1]`.
 pub const AT: [f64; NODES] = [
     0.046_910_077_030_668,
     0.230_765_344_947_158_45,
@@ -20,7 +20,7 @@ pub type Integrals<T> = [[T; NODES]; NODES + 1];
 
 /// A weight function on `[0, 1]` for integrals.
 pub trait Weight<T> {
-    /// The value of the weight at `x` in `[0, 1]`.
+    /// Returns the value of the weight function at `x` in `[0, 1]`.
     fn at(&self, x: f64) -> T;
 }
 
@@ -74,7 +74,7 @@ const QUADRATURE_NODES: [[QuadratureNode; QUADRATURE.len()]; NODES + 1] = {
     nodes
 };
 
-/// The integrals with the weight 1.
+/// Collocation integrals with the weight 1.
 pub const FLAT: Integrals<f64> = {
     let mut flat = [[0.0; NODES]; NODES + 1];
     let mut sum = [0.0; NODES];
@@ -95,7 +95,7 @@ pub const FLAT: Integrals<f64> = {
     flat
 };
 
-/// The integrals with a `weight`.
+/// Returns the collocation integrals with a weight function.
 #[inline(always)]
 pub fn integrals<T: Real>(weight: &impl Weight<T>) -> Integrals<T> {
     let mut integrals = [[T::of(0.0); NODES]; NODES + 1];

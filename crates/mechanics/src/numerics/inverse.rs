@@ -24,25 +24,26 @@ struct InverseStart {
     root: f64,
 }
 
-/// Functions on `[0, 1]`, the first of which grows.
+/// Functions on `[0, 1]` with a table that inverts the first one, which grows.
 #[derive(Clone, Debug)]
 pub struct Inverse<const D: usize> {
-    /// The functions.
+    /// Expansion of the functions, the first of which is inverted.
     pub functions: Chebyshev<D>,
     starts: [InverseStart; INTERVALS + 1],
 }
 
-/// Values of the functions at the places of a block of targets.
+/// Arguments at which the first function has a block of target values, and all functions there.
 #[derive(Clone, Copy, Debug)]
 pub struct InverseBlock<const D: usize> {
-    /// Places in `[0, 1]`, one in each lane.
+    /// Arguments in `[0, 1]` found for the targets, one in each lane.
     pub places: [f64; WIDTH],
-    /// Values `[function][lane]`. Where the first differs from the target, the steps have not converged.
+    /// Values of the functions at the arguments found, `[function][lane]`. Where the first differs from the target, the steps have not
+    /// converged.
     pub values: [[f64; WIDTH]; D],
 }
 
 impl<const D: usize> Inverse<D> {
-    /// Tabulates the first function. Returns `None` if it does not grow from one start to the next.
+    /// Tabulates the first function of an expansion for its inversion. Returns `None` if it does not grow from one start to the next.
     #[must_use]
     pub fn new(functions: Chebyshev<D>) -> Option<Self> {
         let values = Unit::detect().run(Table(&functions));
@@ -73,7 +74,8 @@ impl<const D: usize> Inverse<D> {
         (*after as f64 + (from.root - root) / (from.root - to.root)) / INTERVALS as f64
     }
 
-    /// Calls `take` for each [`WIDTH`] of the growing `targets` with the index of the first of them, their number, and the values there.
+    /// Finds the arguments at which the first function has the growing `targets`. Calls `take` for each [`WIDTH`] of them with the index
+    /// of the first, their number, and the values there.
     pub fn solve(&self, targets: &[f64], mut take: impl FnMut(usize, usize, &InverseBlock<D>)) {
         let unit = Unit::detect();
         let mut after = 0;

@@ -1,4 +1,4 @@
-//! Numerics without a whisker: scalars and SIMD lanes, vectors, polynomials, roots.
+//! Numerics that is independent of whiskers: scalars and SIMD lanes, vectors, polynomials, roots.
 
 mod bracket;
 pub mod chebyshev;
@@ -20,7 +20,7 @@ pub use vector::Vector;
 
 use std::f64::consts::TAU;
 
-/// `angle` plus the number of full turns that brings it nearest to `near`, all in radians.
+/// Returns `angle` plus the number of full turns that brings it nearest to `near`, all in radians.
 #[must_use]
 pub fn nearest_turn(angle: f64, near: f64) -> f64 {
     angle + TAU * ((near - angle) / TAU).round()

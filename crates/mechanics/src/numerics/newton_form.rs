@@ -6,14 +6,14 @@ use crate::numerics::Bracket;
 /// A polynomial with `N` terms in Newton's form.
 #[derive(Clone, Copy, Debug)]
 pub struct Polynomial<const N: usize> {
-    /// Interpolation nodes. The term `i` is zero at the nodes before the node `i`.
+    /// Interpolation nodes of the polynomial, `[term]`. The term `i` is zero at the nodes before the node `i`.
     pub nodes: [f64; N],
-    /// Divided differences: the factors of the terms. They are 0 where there are fewer than `N` nodes.
+    /// Divided differences of the polynomial, `[term]`: the factors of its terms. They are 0 where there are fewer than `N` nodes.
     pub differences: [f64; N],
 }
 
 impl<const N: usize> Polynomial<N> {
-    /// The polynomial with these divided differences on the nodes 0, 1, ..., each repeated `each` times.
+    /// Creates the polynomial with these divided differences on the nodes 0, 1, ..., each repeated `each` times.
     #[must_use]
     pub const fn on_even_nodes(each: usize, differences: [f64; N]) -> Self {
         let mut nodes = [0.0; N];
@@ -25,7 +25,7 @@ impl<const N: usize> Polynomial<N> {
         Self { nodes, differences }
     }
 
-    /// The value and the slope at `t`.
+    /// Returns the value and the slope of the polynomial at `t`.
     #[must_use]
     #[inline]
     pub fn at(&self, t: f64) -> (f64, f64) {
@@ -38,8 +38,8 @@ impl<const N: usize> Polynomial<N> {
         (value, slope)
     }
 
-    /// The place where the polynomial has the target value, by Newton's method. The last step is at most `last_step`; the error
-    /// is about its square.
+    /// Returns the argument at which the polynomial has the target value, by Newton's method. The last step is at most `last_step`; the
+    /// error is about its square.
     #[must_use]
     pub fn solve(&self, problem: &RootProblem, last_step: f64) -> f64 {
         let RootProblem {
@@ -60,19 +60,19 @@ impl<const N: usize> Polynomial<N> {
     }
 }
 
-/// A target value of a polynomial, and where to search for it.
+/// A target value of a polynomial, and where the search for its argument starts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RootProblem {
-    /// Value that the polynomial is to have, in the unit of its values.
+    /// Target value of the polynomial, in the unit of its values.
     pub target: f64,
-    /// Argument to start from, if the bracket contains it, in the unit of the nodes.
+    /// Argument at which the search starts, if the bracket contains it, in the unit of the nodes.
     pub near: f64,
-    /// Two places between whose values the target lies.
+    /// Two arguments of the polynomial between whose values the target lies.
     pub bracket: Bracket,
 }
 
-/// The polynomials of `F` functions through at most `N` points `(node, values)` with growing nodes. The degree is less than the number
-/// of points. Points after the first `N` are ignored.
+/// Returns the polynomials of `F` functions through at most `N` points `(node, values)` with growing nodes. The degree is less than the
+/// number of points. Points after the first `N` are ignored.
 ///
 /// ```
 /// use whiskmap_mechanics::numerics::newton_form::through_nodes;
@@ -100,7 +100,7 @@ pub fn through_nodes<const N: usize, const F: usize>(
     })
 }
 
-/// Divided differences `[start][term][function]` of `F` functions with `values[node][function]` at the nodes 0, 1, ...
+/// Returns divided differences `[start][term][function]` of `F` functions with `values[node][function]` at the nodes 0, 1, ...
 ///
 /// The polynomials of `start` go through the nodes from `start` on: through `N` values or, with `slopes`, through `N / 2` values and
 /// slopes. With fewer nodes there is one start.
@@ -153,7 +153,7 @@ fn divide<const F: usize>(
     }
 }
 
-/// The first of the `around` nodes that surround the interval from `at` to `at + 1`, where there are `count` nodes in all.
+/// Returns the first of the `around` nodes that surround the interval from `at` to `at + 1`, where there are `count` nodes in all.
 #[must_use]
 pub fn stencil(at: usize, around: usize, count: usize) -> usize {
     at.saturating_sub(around / 2 - 1)

@@ -3,18 +3,18 @@
 use crate::numerics::newton_form::{Polynomial, RootProblem};
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 
-/// One number for each lane.
+/// Numbers of all lanes: `[lane]`.
 pub type LaneNumbers = [f64; WIDTH];
 
 /// Iterations of Newton's method. The last step of each lane shows if they suffice.
 const ITERATIONS: usize = 3;
 
-/// Divided differences of the polynomials in all lanes.
+/// Divided differences of polynomials in Newton's form in all lanes.
 #[derive(Clone, Copy, Debug)]
 pub enum Terms<'a, const N: usize> {
-    /// All lanes share one polynomial: `[term]`.
+    /// Divided differences of one polynomial for all lanes: `[term]`.
     Same(&'a [f64; N]),
-    /// Each lane has its own polynomial: `[term][lane]`.
+    /// Divided differences of a polynomial for each lane: `[term][lane]`.
     Each(&'a [LaneNumbers; N]),
 }
 
@@ -41,20 +41,20 @@ impl<const N: usize> Terms<'_, N> {
     }
 }
 
-/// Polynomials on common nodes: one to solve, and `M` others to evaluate at its root.
+/// Polynomials on common nodes in SIMD lanes: one to solve, and `M` others to evaluate at its root.
 #[derive(Clone, Copy, Debug)]
 pub struct SimdRoots<'a, const N: usize, const M: usize> {
     /// Interpolation nodes of all polynomials: `[term]`.
     pub nodes: &'a [f64; N],
-    /// The polynomial to solve.
+    /// Divided differences of the polynomial to solve.
     pub terms: Terms<'a, N>,
-    /// The polynomials to evaluate at the root: `[other]`.
+    /// Divided differences of the polynomials to evaluate at the root: `[other]`.
     pub others: [Terms<'a, N>; M],
 }
 
 impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
-    /// Values `[other][lane]` of the other polynomials at the roots of the `problems`, which belong to the lanes from `first` on.
-    /// A root that a few iterations side by side do not find is solved alone.
+    /// Returns the values `[other][lane]` of the other polynomials at the roots of the `problems`, which belong to the lanes from `first`
+    /// on. A root that a few iterations side by side do not find is solved alone.
     #[must_use]
     pub fn solve(
         &self,
@@ -95,7 +95,7 @@ impl<const N: usize, const M: usize> SimdRoots<'_, N, M> {
         others
     }
 
-    /// Values of the other polynomials at the root of one lane.
+    /// Returns the values `[other]` of the other polynomials at the root of one lane.
     #[must_use]
     pub fn solve_alone(&self, lane: usize, problem: &RootProblem, last_step: f64) -> [f64; M] {
         let polynomial = |terms: &Terms<N>| Polynomial {
@@ -148,7 +148,7 @@ impl<const N: usize, const M: usize> SimdTask for Newton<'_, N, M> {
     }
 }
 
-/// Lanes with the numbers from index `from` on.
+/// Loads lanes from an array of numbers, from index `from` on.
 #[inline(always)]
 pub fn pack<T: Lanes>(numbers: &LaneNumbers, from: usize) -> T {
     let mut lanes = [0.0; WIDTH];
@@ -156,7 +156,7 @@ pub fn pack<T: Lanes>(numbers: &LaneNumbers, from: usize) -> T {
     T::pack(lanes)
 }
 
-/// Stores `lanes` in the numbers from index `from` on.
+/// Stores lanes in an array of numbers, from index `from` on.
 #[inline(always)]
 pub fn keep<T: Lanes>(numbers: &mut LaneNumbers, from: usize, lanes: T) {
     numbers[from..from + T::LANES].copy_from_slice(&lanes.unpack()[..T::LANES]);

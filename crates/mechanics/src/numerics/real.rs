@@ -1,4 +1,4 @@
-//! The scalar type of all generic code, and elementary functions of small arguments by polynomials.
+//! The scalar type of generic code, and polynomials for elementary functions of small arguments.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -11,13 +11,13 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The constant `x`, in every lane.
+    /// Returns the constant `x`, in every lane.
     fn of(x: f64) -> Self;
 
-    /// `self * a + b`, rounded once where the processor does so at no cost.
+    /// Returns `self * a + b`, rounded once where the processor does so at no cost.
     fn mul_add(self, a: Self, b: Self) -> Self;
 
-    /// The square root.
+    /// Returns the square root of a number, or of each lane.
     fn sqrt(self) -> Self;
 }
 
@@ -81,8 +81,8 @@ const fn column<const N: usize>(terms: &[[f64; 2]; N], series: usize) -> [f64; N
     column
 }
 
-/// `odd = sinh(x)/x` and `even = (cosh(x) - 1)/x^2` for `|x| <= 0.4`, by their Taylor polynomials:
-/// `exp(x) = 1 + x (odd + x even)` and `exp(-x) = 1 - x (odd - x even)`.
+/// Returns `odd = sinh(x)/x` and `even = (cosh(x) - 1)/x^2` for `|x| <= 0.4`, by their Taylor polynomials: `exp(x) = 1 + x (odd + x
+/// even)` and `exp(-x) = 1 - x (odd - x even)`.
 #[inline(always)]
 pub fn hyperbolic_small<T: Real>(x: T) -> [T; 2] {
     let square = x * x;
@@ -95,7 +95,7 @@ pub fn hyperbolic_small<T: Real>(x: T) -> [T; 2] {
     [sum!(0), sum!(1)]
 }
 
-/// `(exp(x) - 1)/x` for `|x| <= 0.4`.
+/// Returns `(exp(x) - 1)/x` for `|x| <= 0.4`.
 #[inline(always)]
 pub fn expm1_over_small<T: Real>(x: T) -> T {
     let [odd, even] = hyperbolic_small(x);
@@ -115,7 +115,7 @@ const CIRCULAR: [[f64; 2]; 5] = {
     terms
 };
 
-/// The unit vector rotated by a small `angle` (radians), by the Taylor polynomials of sine and cosine.
+/// Returns the unit vector rotated by a small `angle` (radians), by the Taylor polynomials of sine and cosine.
 #[inline(always)]
 pub fn rotated_by_small<T: Real>([x, y]: [T; 2], angle: T) -> [T; 2] {
     let square = angle * angle;

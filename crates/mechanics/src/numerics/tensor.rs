@@ -10,12 +10,12 @@ use crate::numerics::{Lanes, SimdTask, Unit};
 /// Expansion of `D` functions of `(x, y)` on `[0, 1]^2`.
 #[derive(Clone, Debug)]
 pub struct ChebyshevTensor<const D: usize> {
-    /// Coefficients `[power in y]`, each an expansion in `x`.
+    /// Coefficients of the expansion in `x` and `y`: an expansion in `x` for each Chebyshev polynomial of `y`.
     pub in_y: Vec<Chebyshev<D>>,
 }
 
 impl<const D: usize> ChebyshevTensor<D> {
-    /// The expansion through `rows`: expansions in `y` at the Chebyshev points of `x`, all of one length.
+    /// Creates the expansion in `x` and `y` through `rows`: expansions in `y` at the Chebyshev points of `x`, all of one length.
     ///
     /// # Panics
     ///
@@ -32,7 +32,7 @@ impl<const D: usize> ChebyshevTensor<D> {
         }
     }
 
-    /// The expansion in `y` at `x`.
+    /// Returns the expansion in `y` at a fixed `x` in `[0, 1]`.
     #[must_use]
     pub fn at(&self, x: f64) -> Chebyshev<D> {
         let y = 2.0 * x - 1.0;

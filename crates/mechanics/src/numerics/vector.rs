@@ -4,11 +4,11 @@ use crate::numerics::Real;
 
 /// Vector operations that an integrator needs.
 pub trait Vector<T: Real>: Copy {
-    /// `self + h k`.
+    /// Returns `self + h k` for a vector `k` and a number `h`.
     #[must_use]
     fn plus(self, h: T, k: Self) -> Self;
 
-    /// `h self`.
+    /// Returns the vector multiplied by the number `h`.
     #[must_use]
     fn times(self, h: T) -> Self;
 }

@@ -1,4 +1,4 @@
-//! Demands of the pieces of a measured profile on an integrator. Most of many pieces hardly bend and need one step.
+//! Demands of the pieces of a measured profile: how many integration steps each needs. Most of many pieces hardly bend and need one step.
 //!
 //! A load bends a piece in proportion to its compliance and to its lever to the contact. Its share in the whole bending
 //! depends on the contact. Demands are therefore tabulated by reach: a range of contacts whose distances from the base are
@@ -15,18 +15,18 @@ const REACHES: u32 = 49;
 /// Farthest contact of a sheet beyond the tip, in whisker lengths from the base.
 const BEYOND_TIP: f64 = 1.5;
 
-/// Demand of one piece for contacts of one reach. It only counts steps, so `f32` suffices.
+/// Demand of one piece of a profile for contacts of one reach, dimensionless. It only counts steps, so `f32` suffices.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
-    /// Part of the bending to resolve: the root of the piece's share in the compliance times its share in the length to the
-    /// contact, and at least half of its share in the compliance. On a uniform rod it is about the share in the length.
+    /// Part of the bending to resolve, dimensionless. It is the root of the product of the piece's shares in the compliance and in the
+    /// length to the contact. It is at least half of its share in the compliance. On a uniform rod it is about the share in the length.
     pub bending: f32,
-    /// Roughness: the change of `ln radius` over the piece, times the fifth root of the product of its two shares. Collocation at
-    /// five nodes depends on the compliance to fifth order (`benches/NOTES.md`).
+    /// Roughness of the piece, dimensionless: the change of `ln radius` over the piece, times the fifth root of the product of its two
+    /// shares. Collocation at five nodes depends on the compliance to fifth order (`benches/NOTES.md`).
     pub roughness: f32,
 }
 
-/// Demands of all pieces of a profile, by reach.
+/// Demands of all pieces of a profile, for each reach of the contact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Demands {
     /// `[reach][piece]`, from the reach at the tip on.
@@ -35,7 +35,7 @@ pub struct Demands {
 }
 
 impl Demands {
-    /// The demands of the pieces of `profile`. Its cone has the radius 0 at the arclength `end`.
+    /// Computes the demands of the pieces of `profile`. Its cone has the radius 0 at the arclength `end`, in whisker lengths.
     pub(super) fn new(profile: &RadiusProfile, end: f64) -> Self {
         let pieces = profile.pieces.len();
         let mut by_reach = Vec::with_capacity(REACHES as usize * pieces);
@@ -74,13 +74,13 @@ impl Demands {
         Self { by_reach, pieces }
     }
 
-    /// The reach of contacts at arclength `s`, in whisker lengths.
+    /// Returns the reach of contacts at arclength `s`, in whisker lengths: an index.
     #[must_use]
     pub fn reach(s: f64) -> u32 {
         ((-REACHES_PER_OCTAVE * libm::log2(s)) as u32).min(REACHES - 1)
     }
 
-    /// The demand of the piece `k` for contacts of this `reach`.
+    /// Returns the demand of the piece `k` for contacts of this `reach`.
     #[must_use]
     pub fn of(&self, reach: u32, k: usize) -> Demand {
         self.by_reach[reach as usize * self.pieces + k]

@@ -1,4 +1,4 @@
-//! Sets of mechanical effects. Each set has kernels of its own.
+//! Sets of mechanical effects. Each set has its own kernels.
 
 use crate::rod::Rod;
 
@@ -6,18 +6,18 @@ use crate::rod::Rod;
 /// tip, so that the formula from the base's pose cancels (`benches/NOTES.md`).
 const SLENDER: f64 = 1.5;
 
-/// A set of mechanical effects of a whisker.
+/// Set of the mechanical effects of a whisker that its equations include.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Effects {
-    /// The stiffness falls toward the tip.
+    /// True if the whisker is tapered: its stiffness falls toward the tip.
     pub taper: bool,
-    /// The whisker is curved at rest, as a parabola.
+    /// True if the whisker is curved at rest, as a parabola.
     pub curvature: bool,
-    /// The whisker is an Euler spiral at rest.
+    /// True if the whisker is an Euler spiral at rest.
     pub spiral: bool,
-    /// The modulus changes along the whisker.
+    /// True if Young's modulus changes along the whisker.
     pub gradient: bool,
-    /// The radii follow a measured profile.
+    /// True if the whisker's radii follow a measured profile.
     pub profile: bool,
 }
 
@@ -28,14 +28,13 @@ impl Effects {
         self.taper || self.spiral || self.gradient || self.profile
     }
 
-    /// Returns true if all parts of the rod toward the base are similar but for their size: see
-    /// `shooting::sensitivity::similar`.
+    /// Returns true if all parts of the rod toward the base are similar except for their size: see `shooting::sensitivity::similar`.
     #[must_use]
     pub const fn similar(self) -> bool {
         !(self.curvature || self.spiral || self.gradient || self.profile)
     }
 
-    /// The effects of the kernel for a contact at `beta tau = taper_tau`. Beyond 1.5 on a straight cone, `gradient` is set: its
+    /// Returns the effects of the kernel for a contact at `beta tau = taper_tau`. Beyond 1.5 on a straight cone, `gradient` is set: its
     /// kernel carries all derivatives.
     #[must_use]
     pub fn reaching(self, taper_tau: f64) -> Self {
@@ -45,7 +44,7 @@ impl Effects {
         }
     }
 
-    /// The effects of at least one of `rods`.
+    /// Returns the effects that at least one of `rods` has.
     pub fn of<'a>(rods: impl IntoIterator<Item = &'a Rod>) -> Self {
         rods.into_iter().fold(Self::default(), |set, rod| Self {
             curvature: set.curvature || rod.bend != 0.0,
@@ -54,8 +53,8 @@ impl Effects {
         })
     }
 
-    /// These effects and all effects of `rod`. No kernel has two rest shapes: a parabola or spiral of `rod` replaces the rest shape of this
-    /// set.
+    /// Returns these effects and all effects of `rod`. No kernel has two rest shapes: a parabola or spiral of `rod` replaces the rest
+    /// shape of this set.
     #[inline]
     #[must_use]
     pub fn and(self, rod: &Rod) -> Self {

@@ -1,5 +1,5 @@
-//! Compliance of the pieces of a profile as the weight of collocation. All trajectories that cross a whole piece share its
-//! integrals, which are tabulated at their first use.
+//! Collocation weights of the pieces of a profile, from their compliance. All trajectories that cross a whole piece share its integrals,
+//! which are tabulated at their first use.
 
 use crate::numerics::gauss::{Integrals, Weight, integrals};
 use crate::rod::rod::arclength_at;
@@ -12,7 +12,7 @@ const TABULATED: usize = 8;
 /// Integrals of each step along a piece, from its far end on.
 type StepIntegrals = Box<[Integrals<f64>]>;
 
-/// Integrals of each piece, for each number of steps: `[piece][steps - 1]`.
+/// Collocation integrals of each piece of a profile, for each number of steps: `[piece][steps - 1]`.
 #[derive(Clone, Debug, Default)]
 pub struct PieceWeights(Vec<[OnceLock<StepIntegrals>; TABULATED]>);
 
@@ -38,14 +38,14 @@ impl Weight<f64> for PieceCompliance<'_> {
 }
 
 impl PieceWeights {
-    /// Empty tables for `pieces` pieces.
+    /// Creates empty tables of collocation integrals for `pieces` pieces.
     pub(super) fn new(pieces: usize) -> Self {
         Self(vec![[const { OnceLock::new() }; TABULATED]; pieces])
     }
 }
 
 impl RadiusProfile {
-    /// End of the piece `k` as `[tau, arclength]`; `None` for the piece beyond the last row.
+    /// Returns the end `[tau, arclength]` of the piece `k` of a profile; `None` for the piece beyond the last row.
     #[must_use]
     #[inline]
     pub fn end_of(&self, k: usize) -> Option<[f64; 2]> {
@@ -53,8 +53,8 @@ impl RadiusProfile {
         Some([next.tau, next.from])
     }
 
-    /// Collocation integrals over the arclength for each of `steps` steps along the whole piece `k`, from its end on. `None` if
-    /// they are not tabulated.
+    /// Returns the collocation integrals over the arclength for each of `steps` steps along the whole piece `k`, from its end on. `None`
+    /// if they are not tabulated.
     #[must_use]
     #[inline]
     pub fn weights(&self, k: usize, steps: u32) -> Option<&[Integrals<f64>]> {

@@ -9,19 +9,19 @@ use crate::rod::Demands;
 use crate::rod::piece_weights::PieceWeights;
 use crate::rod::rod::{arclength_at, pointed, tau_at};
 
-/// A cubic piece of a measured profile.
+/// A piece of a measured profile: the radius as a cubic polynomial of the arclength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// Arclength where the piece begins, in whisker lengths.
+    /// Arclength at the start of the piece, in whisker lengths.
     pub from: f64,
-    /// `tau` where the piece begins, on the cone from the first row to the last.
+    /// Coordinate `tau` at the start of the piece, dimensionless, on the cone from the first row to the last.
     pub tau: f64,
-    /// Coefficients of `radius = c0 + x (c1 + x (c2 + x c3))` with `x = s - from`, over the base radius.
+    /// Coefficients `[c0, c1, c2, c3]` of the radius over the base radius, as the polynomial `c0 + x (c1 + x (c2 + x c3))` with `x = s - from`.
     pub cubic: [f64; 4],
 }
 
 impl Piece {
-    /// Radius at arclength `s`, in whisker lengths, over the base radius.
+    /// Returns the radius over the base radius at arclength `s`, in whisker lengths, on one piece.
     #[must_use]
     pub fn radius(&self, s: f64) -> f64 {
         let x = s - self.from;
@@ -29,7 +29,7 @@ impl Piece {
         x.mul_add(x.mul_add(x.mul_add(c3, c2), c1), c0)
     }
 
-    /// Derivative of the radius over the base radius by the arclength, at arclength `s`. Arclengths are in whisker lengths.
+    /// Returns the derivative of the radius over the base radius by the arclength, at arclength `s`. Arclengths are in whisker lengths.
     #[must_use]
     pub fn slope(&self, s: f64) -> f64 {
         let x = s - self.from;
@@ -41,17 +41,18 @@ impl Piece {
 /// Measured radii along a whisker, over the base radius, by arclength in whisker lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadiusProfile {
-    /// Pieces from the base on. The last one lies beyond the last row, with the slope of the cone from the first row to the last.
+    /// Pieces of the profile, from the base on, `[piece]`. The last one lies beyond the last row, with the slope of the cone from the
+    /// first row to the last.
     pub pieces: Vec<Piece>,
-    /// Upper bound of the change of `ln radius` over each piece: its steepest slope by `tau` times its length.
+    /// Upper bounds of the change of `ln radius` over each piece, `[piece]`: its steepest slope by `tau` times its length.
     pub changes: Vec<f64>,
-    /// Length of each piece, in whisker lengths.
+    /// Lengths of the pieces in whisker lengths, `[piece]`.
     pub widths: Vec<f64>,
-    /// Demands of the pieces on an integrator.
+    /// Demands of the pieces of the profile on integration steps.
     pub demands: Demands,
-    /// Taper of the cone from the first row to the last.
+    /// Taper of the cone from the first row to the last, dimensionless.
     pub(super) taper: f64,
-    /// Tabulated compliances of the pieces.
+    /// Collocation integrals of the pieces, tabulated at their first use.
     pub(super) weights: PieceWeights,
     /// Number of parts, along `tau`, in the quadrature of each piece.
     parts: Vec<u32>,
@@ -64,7 +65,7 @@ pub struct RadiusProfile {
 const SLOPE_SAMPLES: u32 = 256;
 
 impl RadiusProfile {
-    /// The profile through `rows` of `[arclength, radius]`: the real arclength in whisker lengths, and the radius over the base
+    /// Creates the profile through `rows` of `[arclength, radius]`: the real arclength in whisker lengths, and the radius over the base
     /// radius. `stretch` is the real arclength over the arclength in the plane of contact, at least 1.
     #[must_use]
     pub fn new(rows: &[[f64; 2]], stretch: f64) -> Self {
@@ -127,8 +128,8 @@ impl RadiusProfile {
         profile
     }
 
-    /// Angle by which a small unit load at arclength `s` turns the whisker there: the integral of `(s - x) radius(x)^-4` from the
-    /// base to `s`, within a few percent.
+    /// Returns the compliance at arclength `s`: the rotation there by a small unit load. It is the integral of `(s - x) radius(x)^-4`
+    /// from the base to `s`, within a few percent.
     #[must_use]
     pub fn compliance(&self, s: f64) -> f64 {
         let k = self.piece(s);
@@ -136,7 +137,7 @@ impl RadiusProfile {
         s * flat - lever
     }
 
-    /// Share of each piece, from the base on, in the compliance at arclength `s`, in whisker lengths: `[piece]`. The sum is 1.
+    /// Returns the share of each piece in the compliance at arclength `s`, in whisker lengths: `[piece]`, from the base on. The sum is 1.
     pub(super) fn shares_at(&self, s: f64) -> impl Iterator<Item = f64> {
         let last = self.piece(s);
         let [flat, lever] = self.up_to(last, s);
@@ -169,7 +170,7 @@ impl RadiusProfile {
         })
     }
 
-    /// Index of the piece on which the arclength `s`, in whisker lengths, lies. A row belongs to the piece that it ends.
+    /// Returns the index of the piece on which the arclength `s`, in whisker lengths, lies. A row belongs to the piece that it ends.
     #[must_use]
     pub fn piece(&self, s: f64) -> usize {
         self.pieces
@@ -177,7 +178,7 @@ impl RadiusProfile {
             .saturating_sub(1)
     }
 
-    /// Radius at arclength `s`, in whisker lengths, over the base radius.
+    /// Returns the radius of the profile at arclength `s`, in whisker lengths, over the base radius.
     #[must_use]
     pub fn radius(&self, s: f64) -> f64 {
         self.pieces[self.piece(s)].radius(s)

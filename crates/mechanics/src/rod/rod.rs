@@ -15,16 +15,16 @@ pub enum Side {
 }
 
 impl Side {
-    /// Both sides, in the order of growing push angle.
+    /// Both whisker sides, in the order of growing push angle.
     pub const BOTH: [Self; 2] = [Self::Cf, Self::Cb];
 
-    /// The side of a push angle. First touch, the angle 0, belongs to CB.
+    /// Returns the whisker side of a push angle. First touch, the angle 0, belongs to CB.
     #[must_use]
     pub fn of_push(push: f64) -> Self {
         if push < 0.0 { Self::Cf } else { Self::Cb }
     }
 
-    /// Sign of push angles, loads and the pole's offset: +1 for CB, -1 for CF.
+    /// Returns the sign of push angles, loads and the pole's offset on a whisker side: +1 for CB, -1 for CF.
     #[must_use]
     pub const fn sign(self) -> f64 {
         match self {
@@ -45,37 +45,37 @@ impl Serialize for Side {
     }
 }
 
-/// One whisker on one side of one pole. Lengths are in whisker lengths.
+/// One whisker with a pole on one side, in dimensionless form. Lengths are in whisker lengths.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rod {
-    /// Taper `beta = 1 - r_tip/r_base` times the arc stretch, in `[0, 1]`: 0 is a cylinder, 1 a perfect cone.
+    /// Taper of the rod, `beta = 1 - r_tip/r_base` times the arc stretch, in `[0, 1]`: 0 is a cylinder, 1 a perfect cone.
     pub taper: f64,
-    /// Parabola coefficient `A* = A L_w`, at least 0.
+    /// Coefficient `A* = A L_w` of the parabola at rest, dimensionless, at least 0.
     pub bend: f64,
-    /// Slope `t0 = -2 A x0` of the parabola at the base, dimensionless.
+    /// Slope `t0 = -2 A x0` of the parabola at rest at the base, dimensionless.
     pub slope: f64,
     /// Pole radius in whisker lengths, with the sign of the side: the pole's centre is at `-pole e2` from the contact.
     pub pole: f64,
-    /// Gradient `g` of the modulus `E_base (1 + g s)` per whisker length, larger than -1.
+    /// Gradient `g` of Young's modulus `E_base (1 + g s)`, per whisker length, larger than -1.
     pub gradient: f64,
-    /// Coulomb's friction coefficient, friction over normal force, with the sign of the side.
+    /// Coulomb's friction coefficient of the contact, friction over normal force, with the sign of the side.
     pub friction: f64,
-    /// Coefficients `[k0, k1]` of an Euler spiral with curvature `k0 + k1 s` at rest, in radians per whisker length, in place of the
+    /// Coefficients `[k0, k1]` of an Euler spiral with curvature `k0 + k1 s` at rest, in radians per whisker length, instead of the
     /// parabola; `s` is in whisker lengths.
     pub spiral: Option<[f64; 2]>,
-    /// Measured radii in place of a linear taper. `taper` is then only the scale of the coordinates.
+    /// Measured radii instead of a linear taper. `taper` is then only the scale of the coordinates. `None` for a cone or cylinder.
     pub profile: Option<Arc<RadiusProfile>>,
 }
 
 /// Radius over the base radius at which a perfect cone is cut. Contacts beyond it are indistinguishable from the tip.
 pub const PERFECT_CONE_CUT: f64 = 1e-9;
 
-/// Arclength of the tip for this taper, in whisker lengths: 1, or slightly less for a perfect cone, which is cut.
+/// Returns the arclength of the tip for this taper, in whisker lengths: 1, or slightly less for a perfect cone, which is cut.
 pub(crate) fn pointed(taper: f64) -> f64 {
     ((1.0 - PERFECT_CONE_CUT) / taper).min(1.0)
 }
 
-/// `tau` at arclength `s` on a rod of this taper: see [`Rod::tau`].
+/// Returns `tau` at arclength `s`, in whisker lengths, on a rod of this taper: see [`Rod::tau`].
 pub(crate) fn tau_at(taper: f64, s: f64) -> f64 {
     if taper == 0.0 {
         s
@@ -84,13 +84,13 @@ pub(crate) fn tau_at(taper: f64, s: f64) -> f64 {
     }
 }
 
-/// Arclength at `tau`: `(1 - exp(-beta tau))/beta`, in whisker lengths, without cancellation.
+/// Returns the arclength of a rod at `tau`, `(1 - exp(-beta tau))/beta`, in whisker lengths, without cancellation.
 #[must_use]
 pub fn arclength(rod: &Rod, tau: f64) -> f64 {
     arclength_at(rod.taper, tau)
 }
 
-/// Arclength at `tau` on a rod of this taper: see [`arclength`].
+/// Returns the arclength at `tau` on a rod of this taper, in whisker lengths: see [`arclength`].
 pub(crate) fn arclength_at(taper: f64, tau: f64) -> f64 {
     if taper == 0.0 {
         tau
@@ -100,7 +100,7 @@ pub(crate) fn arclength_at(taper: f64, tau: f64) -> f64 {
 }
 
 impl Rod {
-    /// Bending stiffness at arclength `s`, in whisker lengths, over the bending stiffness at the base.
+    /// Returns the bending stiffness at arclength `s`, in whisker lengths, over the bending stiffness at the base.
     #[must_use]
     pub fn stiffness(&self, s: f64) -> f64 {
         let radius = match &self.profile {
@@ -117,14 +117,14 @@ impl Rod {
         self.profile.is_none() && self.gradient == 0.0
     }
 
-    /// Index of the piece of the profile on which the arclength `s` lies; 0 without a profile.
+    /// Returns the index of the piece of the profile on which the arclength `s`, in whisker lengths, lies; 0 without a profile.
     #[must_use]
     #[inline]
     pub fn piece(&self, s: f64) -> usize {
         self.profile.as_ref().map_or(0, |profile| profile.piece(s))
     }
 
-    /// Largest curvature of the whisker at rest, in radians per whisker length.
+    /// Returns the largest curvature of the whisker at rest, in radians per whisker length.
     #[must_use]
     pub fn sharpest_bend(&self) -> f64 {
         match self.spiral {
@@ -133,13 +133,13 @@ impl Rod {
         }
     }
 
-    /// Young's modulus at arclength `s`, in whisker lengths, over the modulus at the base.
+    /// Returns Young's modulus at arclength `s`, in whisker lengths, over the modulus at the base.
     #[must_use]
     pub fn modulus(&self, s: f64) -> f64 {
         1.0 + self.gradient * s
     }
 
-    /// The whisker's unit tangent at the contact, in axes whose second one is along the force.
+    /// Returns the whisker's unit tangent at the contact, in axes whose second one is along the force.
     ///
     /// Friction tilts the force from the normal by the angle whose tangent is the friction coefficient. In axes turned with the
     /// force, the equations are those without friction: the lever `X - friction Y` is the new `X` but for a factor, which the
@@ -149,26 +149,27 @@ impl Rod {
         DVec2::new(1.0, self.friction).normalize()
     }
 
-    /// Vector from the contact to the pole's centre, in whisker lengths and in the axes of [`Rod::contact_tangent`].
+    /// Returns the vector from the contact to the pole's centre, in whisker lengths and in the axes of [`Rod::contact_tangent`].
     #[must_use]
     pub fn to_pole(&self) -> DVec2 {
         -self.pole * self.contact_tangent().perp()
     }
 
-    /// `tau` at arclength `s`: `-ln(1 - beta s)/beta`, the coordinate in which a tapered rod is smooth.
+    /// Returns `tau` at arclength `s` (whisker lengths): `-ln(1 - beta s)/beta`, the dimensionless coordinate in which a tapered rod is
+    /// smooth.
     #[must_use]
     pub fn tau(&self, s: f64) -> f64 {
         tau_at(self.taper, s)
     }
 
-    /// `tau` at the tip. A perfect cone ends at [`PERFECT_CONE_CUT`].
+    /// Returns `tau` at the tip, dimensionless. A perfect cone ends at [`PERFECT_CONE_CUT`].
     #[must_use]
     pub fn tau_tip(&self) -> f64 {
         self.tau(pointed(self.taper))
     }
 
-    /// Rotation of the whisker at `tau` under a small load there, over the rotation of the cone with the same base and tip; 1
-    /// without a profile. Folds of all whiskers lie at similar `|load| s^2 softness`.
+    /// Returns the softness at `tau`, dimensionless: the whisker's rotation there under a small load, over that of the cone with the same
+    /// base and tip. It is 1 without a profile. Folds of all whiskers lie at similar `|load| s^2 softness`.
     #[must_use]
     pub fn softness(&self, tau: f64) -> f64 {
         self.profile.as_ref().map_or(1.0, |profile| {
@@ -179,7 +180,7 @@ impl Rod {
         })
     }
 
-    /// Scale of the coordinates at `tau`: the radius of the cone over the base radius.
+    /// Returns the scale of the coordinates at `tau`: the radius of the cone over the base radius.
     #[must_use]
     pub fn radius(&self, tau: f64) -> f64 {
         libm::exp(-self.taper * tau)

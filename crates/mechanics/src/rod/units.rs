@@ -1,8 +1,8 @@
-//! Units of one whisker.
+//! Physical units of one whisker's dimensionless numbers.
 
 use std::f64::consts::FRAC_PI_4;
 
-/// Units in which the quantities of one whisker are 1.
+/// Physical units in which the quantities of one whisker are 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
     /// Unit of length in millimetres: the whisker's length `L`.
@@ -14,7 +14,7 @@ pub struct Units {
 }
 
 impl Units {
-    /// The units of a whisker with this length, base radius and modulus at the base.
+    /// Returns the units of a whisker with this length, base radius and Young's modulus at the base.
     #[must_use]
     pub fn new(length_mm: f64, base_radius_um: f64, youngs_modulus_gpa: f64) -> Self {
         let stiffness = youngs_modulus_gpa * 1e9 * FRAC_PI_4 * (base_radius_um * 1e-6).powi(4);

@@ -1,30 +1,30 @@
-//! The contact, where every trajectory starts, in SIMD lanes. Exponential and inverse functions are computed by algebra, so
-//! that a block of contacts costs about as much as one contact with library functions.
+//! Contacts, at which trajectories start, in SIMD lanes. Exponential and inverse functions are computed by algebra, so that a block of
+//! contacts costs about as much as one contact with library functions.
 
 use crate::numerics::{Real, expm1_over_small};
 
 /// Start of a trajectory: radius, force, tangent, stiffness and curvature at the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<T> {
-    /// Radius over the base radius.
+    /// Radius at the contact over the base radius.
     pub radius: T,
-    /// Signed force `F L_w^2/(E I_base)`, with friction. Without friction it is the normal force.
+    /// Signed force at the contact, `F L_w^2/(E I_base)`, with friction. Without friction it is the normal force.
     pub force: T,
-    /// Unit tangent of the whisker, see [`Rod::contact_tangent`](crate::rod::Rod::contact_tangent).
+    /// Unit tangent `[x, y]` of the whisker at the contact, see [`Rod::contact_tangent`](crate::rod::Rod::contact_tangent).
     pub tangent: [T; 2],
-    /// Bending stiffness over the bending stiffness at the base.
+    /// Bending stiffness at the contact over the bending stiffness at the base.
     pub stiffness: T,
-    /// Curvature at rest, in radians per whisker length.
+    /// Curvature at rest at the contact, in radians per whisker length.
     pub curvature: T,
-    /// Derivative of the curvature at rest by the arclength, in radians per squared whisker length.
+    /// Derivative of the curvature at rest at the contact by the arclength, in radians per squared whisker length.
     pub curvature_slope: T,
 }
 
 /// Halvings of the exponent: `expm1_over_small` is valid up to 0.4, and `beta tau` of every whisker is at most 25.6.
 const HALVINGS: u32 = 6;
 
-/// Radius over the base radius and arclength at `tau`: `exp(-beta tau)` and `(1 - exp(-beta tau))/beta`, to within 32 times
-/// the rounding.
+/// Returns the radius over the base radius, `exp(-beta tau)`, and the arclength in whisker lengths, `(1 - exp(-beta tau))/beta`, at
+/// `tau`. Both are accurate to 32 times the rounding.
 #[inline(always)]
 pub fn radius_and_arclength<T: Real>(taper: T, tau: T) -> [T; 2] {
     let (one, half) = (T::of(1.0), T::of(0.5));
@@ -40,14 +40,14 @@ pub fn radius_and_arclength<T: Real>(taper: T, tau: T) -> [T; 2] {
     [radius, tau * growth]
 }
 
-/// The exponential of a number of magnitude 25.6 at most, to within 32 times the rounding.
+/// Returns the exponential of a number of magnitude 25.6 at most, to within 32 times the rounding.
 #[inline(always)]
 pub fn exp<T: Real>(x: T) -> T {
     let [exp, _] = radius_and_arclength(T::of(-1.0), x);
     exp
 }
 
-/// Unit tangent of the parabola `y = bend x^2 + slope x` at arclength `s`; `at_base` is the [`arc`] of `slope`.
+/// Returns the unit tangent of the parabola `y = bend x^2 + slope x` at arclength `s`; `at_base` is the [`arc`] of `slope`.
 #[inline(always)]
 pub fn parabola_tangent<T: Real>(bend: T, at_base: T, s: T) -> [T; 2] {
     let (one, half) = (T::of(1.0), T::of(0.5));
@@ -86,7 +86,7 @@ pub fn parabola_tangent<T: Real>(bend: T, at_base: T, s: T) -> [T; 2] {
 /// below 1e-16.
 const SERIES: u32 = 22;
 
-/// `t sqrt(1 + t^2) + asinh(t)`, by halving the argument of `asinh` three times.
+/// Returns `t sqrt(1 + t^2) + asinh(t)`, by halving the argument of `asinh` three times.
 #[inline(always)]
 pub fn arc<T: Real>(t: T) -> T {
     let (one, half) = (T::of(1.0), T::of(0.5));

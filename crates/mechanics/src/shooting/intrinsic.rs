@@ -3,25 +3,25 @@
 use crate::numerics::{Real, Vector, horner, rotated_by_small};
 use crate::shooting::Section;
 
-/// Curvature of the rod at rest.
+/// Curvature of the rod at rest, as the integrator evaluates it.
 pub trait Intrinsic<T: Real>: Copy {
     /// State that a trajectory carries to evaluate the rest shape.
     type State: Vector<T>;
 
-    /// Rest shape along one step, as known at the start of the step.
+    /// Rest shape along one step, computed at the start of the step.
     type Course;
 
-    /// `(rho kappa_i, dstate/dsigma)` at a cross-section.
+    /// Returns `rho kappa_i` and the derivative of the rest shape's state by `sigma`, at a cross-section.
     fn rhs(self, section: &Section<T>, state: Self::State) -> (T, Self::State);
 
-    /// The rest shape along a step that starts at the section `from`.
+    /// Returns the rest shape along a step that starts at the section `from`.
     fn course(self, from: &Section<T>, state: Self::State) -> Self::Course;
 
-    /// Rotation of the tangent at rest from the start of the step to `along`: the arclength toward the base over the radius at
-    /// the start. `None` if the rod is straight.
+    /// Returns the rotation of the tangent at rest, in radians, from the start of the step to `along`: the arclength toward the base over
+    /// the radius at the start. `None` if the rod is straight.
     fn turn(course: &Self::Course, along: T) -> Option<T>;
 
-    /// The state at `along`, see [`Intrinsic::turn`].
+    /// Returns the state of the rest shape at `along`, see [`Intrinsic::turn`].
     fn after(course: &Self::Course, along: T) -> Self::State;
 }
 
@@ -50,10 +50,10 @@ impl<T: Real> Intrinsic<T> for Straight {
     fn after((): &(), _: T) {}
 }
 
-/// A parabola at rest: `kappa_i = 2 A cos^3` (paper, Eq. 10). The state is the unit tangent at rest.
+/// A rod that is a parabola at rest: `kappa_i = 2 A cos^3` (paper, Eq. 10). The state is the unit tangent at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct Bent<T> {
-    /// Twice the parabola coefficient, `2 A*`.
+    /// Twice the coefficient of the parabola at rest, `2 A*`, dimensionless.
     pub twice_bend: T,
 }
 
@@ -61,8 +61,8 @@ pub struct Bent<T> {
 /// of a step that turns by 0.1, 0.2 or 0.4 radians is 1e-13, 1e-9 or 8e-6.
 pub const TERMS: usize = 12;
 
-/// Coefficients of the polynomials `P_n/n!`. With `k = 2 A cos^2(alpha)`, the derivatives of the tangent's angle along a
-/// parabola are `cos(alpha) k^n P_n(sin alpha)`, where `P_1 = 1` and `P_(n+1)(x) = (1 - x^2) P_n'(x) - (2n + 1) x P_n(x)`.
+/// Coefficients of the polynomials `P_n/n!` of a parabola's tangent. With `k = 2 A cos^2(alpha)`, the derivatives of the tangent's angle
+/// along it are `cos(alpha) k^n P_n(sin alpha)`. There `P_1 = 1` and `P_(n+1)(x) = (1 - x^2) P_n'(x) - (2n + 1) x P_n(x)`.
 pub const TANGENT: [[f64; TERMS]; TERMS] = {
     let mut rows = [[0.0; TERMS]; TERMS];
     rows[0][0] = 1.0;
@@ -147,12 +147,12 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     }
 }
 
-/// An Euler spiral at rest: `kappa_i = k0 + k1 s` (E. L. Starostin et al., Science Advances 6, eaax5145, 2020).
+/// A rod that is an Euler spiral at rest: `kappa_i = k0 + k1 s` (E. L. Starostin et al., Science Advances 6, eaax5145, 2020).
 #[derive(Clone, Copy, Debug)]
 pub struct Spiral<T> {
-    /// Curvature at the base, `k0`.
+    /// Curvature `k0` of the spiral at the base, in radians per whisker length.
     pub at_base: T,
-    /// Derivative of the curvature by the arclength, `k1`.
+    /// Derivative `k1` of the spiral's curvature by the arclength, in radians per squared whisker length.
     pub slope: T,
 }
 

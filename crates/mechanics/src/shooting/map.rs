@@ -1,14 +1,14 @@
-//! The shooting map: from the contact's `tau` and `load = f/rho^2` to the pole's distance `D` and direction `phi` in the frame
-//! of the base, with derivatives.
+//! The shooting map: from the contact's `tau` and `load = f/rho^2` to the pole's distance `D` and direction `phi` in the base's frame,
+//! with derivatives.
 
 use glam::DVec2;
 
-/// Longest Newton step, relative to the arclength `s` of the contact and to the load plus `1/s^2`, the load's scale on the
-/// sheet.
+/// Longest Newton step of the shooting map, relative to the contact's arclength `s` and to the load plus `1/s^2`. The latter is the
+/// load's scale on the sheet.
 pub const LONGEST_STEP: f64 = 0.25;
 
-/// `step` in `(tau, load)`, shortened as a whole to [`LONGEST_STEP`], and its relative length before. Near a fold the Jacobian
-/// is nearly singular, and the full step would leave the sheet.
+/// Shortens a Newton `step` in `(tau, load)` as a whole to [`LONGEST_STEP`]. Returns it with its relative length before. Near a fold the
+/// Jacobian is nearly singular, and the full step would leave the sheet.
 #[must_use]
 pub fn limited(step: DVec2, s: f64, load: f64) -> (DVec2, f64) {
     let length = (step.x.abs() / s).max(step.y.abs() / (load.abs() + 1.0 / (s * s)));
@@ -20,7 +20,7 @@ fn over(a: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(b.x, -b.y).rotate(a) / b.length_squared()
 }
 
-/// Position of the pole, and its derivatives by contact and load.
+/// Position of the pole, and its first derivatives by contact and load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShootingMap {
     /// Centre of the pole in the frame of the base, in whisker lengths.
@@ -32,13 +32,13 @@ pub struct ShootingMap {
 }
 
 impl ShootingMap {
-    /// Jacobian determinant `det d(ln D, phi)/d(tau, load)`: 0 at a fold.
+    /// Returns the Jacobian determinant `det d(ln D, phi)/d(tau, load)`: 0 at a fold.
     #[must_use]
     pub fn det(&self) -> f64 {
         self.by_tau.perp_dot(self.by_load)
     }
 
-    /// The step `(tau, load)` that cancels `residual = ln P_wanted/P` to first order.
+    /// Returns the step `(tau, load)` that cancels `residual = ln P_wanted/P` to first order.
     #[must_use]
     pub fn solve(&self, residual: DVec2) -> DVec2 {
         DVec2::new(
@@ -47,15 +47,15 @@ impl ShootingMap {
         ) / self.det()
     }
 
-    /// Newton's step `(tau, load)` toward the pole's centre `wanted`, in whisker lengths in the frame of the base. It is [`limited`]. The
-    /// iterate has its contact at arclength `s`, in whisker lengths, under the `load = f/rho^2`.
+    /// Returns Newton's step `(tau, load)` toward the pole's centre `wanted`, in whisker lengths in the frame of the base. It is
+    /// [`limited`]. The iterate has its contact at arclength `s`, in whisker lengths, under the `load = f/rho^2`.
     #[must_use]
     pub fn newton_step(&self, wanted: DVec2, s: f64, load: f64) -> DVec2 {
         limited(self.solve(self.residual(wanted)), s, load).0
     }
 
-    /// Residual `P_wanted/P - 1` as a complex number, dimensionless. Its length is the pole's distance from the place `wanted`, relative to
-    /// `D`. `wanted` is in whisker lengths in the frame of the base.
+    /// Returns the residual `P_wanted/P - 1` as a complex number, dimensionless. Its length is the pole's distance from the point
+    /// `wanted`, relative to `D`. `wanted` is in whisker lengths in the frame of the base.
     #[must_use]
     pub fn residual(&self, wanted: DVec2) -> DVec2 {
         over(wanted - self.pole, self.pole)
@@ -66,15 +66,15 @@ impl ShootingMap {
 /// along the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FullState {
-    /// Pole and first derivatives.
+    /// Pole of the state, and its first derivatives by contact and load.
     pub map: ShootingMap,
-    /// Unit tangent of the base.
+    /// Unit tangent of the base in the frame of the contact.
     pub tangent: DVec2,
-    /// Position of the base, in whisker lengths.
+    /// Position of the base in the frame of the contact, in whisker lengths.
     pub position: DVec2,
     /// Force at the contact, in `E I_base/L_w^2`.
     pub force: f64,
-    /// Bending energy in `E I_base/L_w`.
+    /// Bending energy of the state, in `E I_base/L_w`.
     pub energy: f64,
 }
 
@@ -82,29 +82,29 @@ pub struct FullState {
 /// field has the unit of the state's value per unit of the coordinate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateDerivative {
-    /// Derivative of the angle of the base's tangent, in radians.
+    /// Derivative of the angle of the base's tangent by `tau` or load, in radians.
     pub angle: f64,
-    /// Derivative of the position of the base, in whisker lengths.
+    /// Derivative of the position of the base by `tau` or load, in whisker lengths.
     pub position: DVec2,
-    /// Derivative of the force at the contact, in `E I_base/L_w^2`.
+    /// Derivative of the force at the contact by `tau` or load, in `E I_base/L_w^2`.
     pub force: f64,
-    /// Derivative of the bending energy, in `E I_base/L_w`.
+    /// Derivative of the bending energy by `tau` or load, in `E I_base/L_w`.
     pub energy: f64,
 }
 
 /// A state with its first derivatives by the contact coordinate `tau` and by the load `f/rho^2`, in the frame of [`FullState`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FirstVariation {
-    /// The state at `(tau, load)`.
+    /// State of the whisker at `(tau, load)`.
     pub full: FullState,
-    /// Derivative by `tau` at fixed load.
+    /// Derivative of the state by the contact's `tau` at fixed load.
     pub by_tau: StateDerivative,
-    /// Derivative by the load `f/rho^2` at fixed `tau`.
+    /// Derivative of the state by the load `f/rho^2` at fixed `tau`.
     pub by_load: StateDerivative,
 }
 
 impl FirstVariation {
-    /// The state at a distance `step` in `(tau, load)`, to first order.
+    /// Returns the state at a distance `step` in `(tau, load)`, to first order.
     #[must_use]
     pub fn extrapolated(&self, step: DVec2) -> FullState {
         let (full, tau, load) = (self.full, self.by_tau, self.by_load);
@@ -127,18 +127,18 @@ impl FirstVariation {
 /// A shooting map with the second derivatives of `(ln D, phi)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SecondVariation {
-    /// Pole and first derivatives.
+    /// Pole, and its first derivatives by contact and load.
     pub map: ShootingMap,
-    /// Second derivative of `(ln D, phi)` by `tau`.
+    /// Second derivative of `(ln D, phi)` by `tau`; `phi` in radians.
     pub by_tau_tau: DVec2,
-    /// Mixed derivative of `(ln D, phi)` by `tau` and load.
+    /// Mixed derivative of `(ln D, phi)` by `tau` and load; `phi` in radians.
     pub by_tau_load: DVec2,
-    /// Second derivative of `(ln D, phi)` by the load.
+    /// Second derivative of `(ln D, phi)` by the load; `phi` in radians.
     pub by_load_load: DVec2,
 }
 
 impl SecondVariation {
-    /// The variation at a distance `step` in `(tau, load)`: the pole to second order, its first derivatives to first order, the
+    /// Returns the variation at a distance `step` in `(tau, load)`: the pole to second order, its first derivatives to first order, the
     /// second derivatives unchanged.
     #[must_use]
     pub fn extrapolated(&self, step: DVec2) -> Self {
@@ -161,7 +161,7 @@ impl SecondVariation {
         }
     }
 
-    /// Gradient of [`ShootingMap::det`] in `(tau, load)`.
+    /// Returns the gradient of [`ShootingMap::det`] in `(tau, load)`.
     #[must_use]
     pub fn det_gradient(&self) -> DVec2 {
         let ShootingMap {

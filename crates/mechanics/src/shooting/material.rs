@@ -1,4 +1,4 @@
-//! Bending stiffness along the rod.
+//! Materials: the bending stiffness along the rod.
 
 use crate::numerics::Real;
 use crate::shooting::{Section, StepStage};
@@ -10,23 +10,23 @@ use crate::shooting::{Section, StepStage};
 /// [`Nystrom8`]: crate::shooting::Nystrom8
 #[derive(Clone, Copy, Debug)]
 pub struct Liouville<T> {
-    /// `m_0/m`, which turns `chi` back into an angle.
+    /// Factor `m_0/m`, which turns `chi` back into an angle, dimensionless.
     pub inverse_scale: T,
-    /// `(rho/m)/(rho_0/m_0)`, the factor of `cos(theta)`.
+    /// Factor `(rho/m)/(rho_0/m_0)` of `cos(theta)`, dimensionless.
     pub forcing: T,
-    /// `m''/m`, the factor of `chi`. `None` if it is 0.
+    /// Factor `m''/m` of `chi`, dimensionless. `None` if it is 0.
     pub potential: Option<T>,
 }
 
-/// Stiffness of the rod as a function of its cross-section.
+/// Material of the rod: its bending stiffness as a function of the cross-section.
 pub trait Material<T: Real>: Copy {
-    /// Compliance `rho/S` at a section: `dtheta/dtau` per moment.
+    /// Returns the compliance `rho/S` at a section: `dtheta/dtau` per moment.
     fn compliance(self, section: &Section<T>) -> T;
 
-    /// The coefficients at a stage of a step that starts at `from`, on a rod of this taper, if it tapers.
+    /// Returns Liouville's coefficients at a stage of a step that starts at `from`, on a rod of this taper, if it tapers.
     fn liouville(self, taper: Option<T>, from: &Section<T>, stage: &StepStage<T>) -> Liouville<T>;
 
-    /// `m'/m` and `m/m_0` at a stage, which turn `chi'` back into a lever. `None` if they are 0 and 1.
+    /// Returns `m'/m` and `m/m_0` at a stage, which turn `chi'` back into a lever. `None` if they are 0 and 1.
     fn liouville_scale(
         self,
         taper: Option<T>,
@@ -36,7 +36,7 @@ pub trait Material<T: Real>: Copy {
     ) -> Option<[T; 2]>;
 }
 
-/// A constant modulus: `S = rho^4`.
+/// Material with a constant modulus: its stiffness is `S = rho^4`.
 #[derive(Clone, Copy, Debug)]
 pub struct Uniform;
 
@@ -78,10 +78,10 @@ impl<T: Real> Material<T> for Uniform {
     }
 }
 
-/// A modulus that is linear in the arclength: `S = rho^4 (1 + g s)`.
+/// Material with a modulus that is linear in the arclength: its stiffness is `S = rho^4 (1 + g s)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Graded<T> {
-    /// Gradient `g` of the modulus.
+    /// Gradient `g` of Young's modulus, per whisker length.
     pub gradient: T,
 }
 
@@ -136,20 +136,20 @@ impl<T: Real> Material<T> for Graded<T> {
     }
 }
 
-/// Measured radii and a modulus that is linear in the arclength: `S = r(s)^4 (1 + g s)` on one cubic piece of `r`. It is too
-/// rough for Liouville's transformation: see [`collocate`](crate::shooting::collocate).
+/// Material with measured radii and a modulus that is linear in the arclength: `S = r(s)^4 (1 + g s)` on one cubic piece of `r`. It is
+/// too rough for Liouville's transformation: see [`collocate`](crate::shooting::collocate).
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<T> {
-    /// Arclength where the piece begins.
+    /// Arclength at the start of the cubic piece, in whisker lengths.
     pub from: T,
-    /// Coefficients of the radius by the arclength from there.
+    /// Coefficients `[power]` of the radius over the base radius, by the arclength from the start of the cubic piece.
     pub cubic: [T; 4],
-    /// Gradient `g` of the modulus. `None` if the modulus is constant.
+    /// Gradient `g` of Young's modulus, per whisker length. `None` if the modulus is constant.
     pub gradient: Option<T>,
 }
 
 impl<T: Real> Measured<T> {
-    /// Compliance `r^-4` at the arclength `s`, for a modulus of 1.
+    /// Returns the compliance `r^-4` at the arclength `s`, in whisker lengths, for a modulus of 1.
     #[inline(always)]
     pub fn compliance(&self, s: T) -> T {
         let x = s - self.from;

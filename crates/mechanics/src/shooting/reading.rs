@@ -1,12 +1,12 @@
-//! A state of the whisker in physical units.
+//! Readings: states of the whisker in physical units.
 
 use super::FullState;
 use crate::numerics::nearest_turn;
 use crate::rod::{Rest, Rod, Units, arclength_at};
 use glam::DVec2;
 
-/// A state of the whisker in physical units. The first axis of the base frame is the base's tangent. Force and moment are those
-/// that the pole exerts at the base.
+/// A reading: a state of the whisker in physical units. The first axis of the base frame is the base's tangent. Force and moment are
+/// those that the pole exerts at the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Arc length from the base to the contact, in millimetres.
@@ -15,16 +15,16 @@ pub struct Reading {
     pub contact_angle_deg: f64,
     /// Normal force between pole and whisker, in micronewtons.
     pub force_un: f64,
-    /// Force on the base in the base frame, in micronewtons.
+    /// Force `[x, y]` on the base, in the base frame, in micronewtons.
     pub base_force_un: DVec2,
-    /// Moment on the base in nanonewton metres, positive if it turns the base's tangent toward its normal.
+    /// Moment on the base, in nanonewton metres, positive if it turns the base's tangent toward its normal.
     pub base_moment_nnm: f64,
     /// Chord angle of the paper's Fig. 1D, in degrees: between the directions from the base to the contact and to the point of the
     /// resting whisker at the same distance.
     pub push_chord_deg: f64,
     /// Straight distance from the base to the contact, in millimetres.
     pub contact_distance_mm: f64,
-    /// Bending energy, in nanojoules.
+    /// Bending energy of the whisker, in nanojoules.
     pub energy_nj: f64,
 }
 
@@ -42,7 +42,7 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// The converter for the states of `rod` to `units`.
+    /// Creates the converter from states of `rod` to `units`.
     #[must_use]
     pub fn new(units: Units, rod: &Rod) -> Self {
         let tangent = rod.contact_tangent();
@@ -56,7 +56,7 @@ impl Reader {
         }
     }
 
-    /// Change of a reading for a change of 1 in each dimensionless number of a state: lengths in whisker lengths, angles in
+    /// Returns the change of a reading for a change of 1 in each dimensionless number of a state: lengths in whisker lengths, angles in
     /// radians, whole forces with the sign `side`.
     #[must_use]
     pub fn of_one(&self, side: f64) -> Reading {
@@ -74,7 +74,7 @@ impl Reader {
         }
     }
 
-    /// The reading at first touch: the resting whisker without a load. The contact is at arclength `contact`, in whisker lengths,
+    /// Returns the reading at first touch: the resting whisker without a load. The contact is at arclength `contact`, in whisker lengths,
     /// and the pole in the direction `touch`, in radians.
     #[must_use]
     pub fn at_first_touch(&self, contact: f64, touch: f64) -> Reading {
@@ -91,8 +91,8 @@ impl Reader {
         }
     }
 
-    /// The reading of the state `full` with the contact at `tau`, at the signed push angle `push` from first touch in the direction
-    /// `touch`. Both angles are in radians.
+    /// Returns the reading of the state `full` with the contact at `tau`, at the signed push angle `push` from first touch in the
+    /// direction `touch`. Both angles are in radians.
     #[must_use]
     pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
         let units = &self.units;

@@ -1,29 +1,28 @@
-//! Number of integration steps of a trajectory.
+//! Resolutions: numbers of integration steps of trajectories.
 
 use crate::rod::{Demands, RadiusProfile, Rod, arclength};
 
-/// Step sizes of trajectories: `least` steps at about the load of a cylinder's fold. Along one step, the radius of a cone
-/// changes at most by the factor `exp(longest)`, the modulus by `exp(2 longest)`, and the resting whisker turns at most by
-/// `0.6 longest` radians.
+/// Resolution of trajectories: `least` steps at about the load of a cylinder's fold. Along one step, the radius of a cone changes at most
+/// by the factor `exp(longest)`, the modulus by `exp(2 longest)`. The resting whisker turns at most by `0.6 longest` radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Steps of a straight whisker under `q = 8` with `beta tau = 1`.
+    /// Number of steps of a straight whisker under `q = 8` with `beta tau = 1`.
     pub least: u32,
-    /// Longest step in `beta tau`, in `3.2 A* tau` and in half the logarithm of the modulus, at most 0.4.
+    /// Longest integration step in `beta tau`, in `3.2 A* tau` and in half the logarithm of the modulus, at most 0.4.
     pub longest: f64,
-    /// Fewest steps along a piece of a profile: 1, or more where errors are estimated by doubling.
+    /// Fewest integration steps along a piece of a profile: 1, or more where errors are estimated by doubling.
     pub fewest: u32,
 }
 
 impl Resolution {
-    /// Default of maps and lines: errors of states are below 1e-11 whisker lengths for taper up to 0.99
+    /// Default resolution of maps and traces: errors of states are below 1e-11 whisker lengths for taper up to 0.99
     /// (`tests/mechanics/integrators.rs`).
     pub const FINE: Self = Self::of(20);
 
-    /// Resolution for signs and guesses: errors of states on the stable sheet are below 1e-6.
+    /// Resolution for signs and guesses: errors of states on the stable sheet are below 1e-6 whisker lengths.
     pub const COARSE: Self = Self::of(5);
 
-    /// Resolutions from cheap to exact. Errors of neighbours differ by factors of 6 to 26.
+    /// Ladder of resolutions from cheap to exact, `[rung]`. Errors of neighbours differ by factors of 6 to 26.
     pub const LADDER: [Self; 8] = [
         Self::of(3),
         Self::of(4),
@@ -35,7 +34,7 @@ impl Resolution {
         Self::of(30),
     ];
 
-    /// The resolution with `least` steps. No step is longer than the average of as many on a cone of taper 0.96.
+    /// Creates the resolution with `least` steps. No step is longer than the average of as many on a cone of taper 0.96.
     #[must_use]
     pub const fn of(least: u32) -> Self {
         let longest = 3.2 / least as f64;
@@ -46,7 +45,7 @@ impl Resolution {
         }
     }
 
-    /// The resolution with twice as many steps.
+    /// Returns the resolution with twice as many steps.
     #[must_use]
     pub const fn doubled(self) -> Self {
         Self {
@@ -56,8 +55,8 @@ impl Resolution {
         }
     }
 
-    /// Number of steps for a trajectory from `tau` under `load` on `rod`. With a profile it is the number for a piece that does
-    /// all the bending ([`PieceSteps`]).
+    /// Returns the number of steps of a trajectory from `tau` under `load` on `rod`. With a profile it is the number for a piece that
+    /// does all the bending ([`PieceSteps`]).
     ///
     /// The number grows mainly with the root of the load: a whisker that hardly bends takes a third of the steps. The weights were
     /// fitted to 20,000 random trajectories with errors of 1e-8, 1e-10 and 3e-12 (`benches/NOTES.md`).
@@ -66,7 +65,7 @@ impl Resolution {
         self.steps_from(rod, tau, load, arclength(rod, tau))
     }
 
-    /// Number of steps as from [`Resolution::steps`], for a contact at the known arclength `s`.
+    /// Returns the number of steps as [`Resolution::steps`] does, for a contact at the known arclength `s`, in whisker lengths.
     #[inline(always)]
     pub(super) fn steps_from(&self, rod: &Rod, tau: f64, load: f64, s: f64) -> u32 {
         let bend = rod.sharpest_bend();
@@ -87,7 +86,7 @@ impl Resolution {
         self.rounded(weight, fastest * tau)
     }
 
-    /// Steps along the pieces of the profile of `rod` for a trajectory from `tau` under `load`.
+    /// Returns the steps along the pieces of the profile of `rod` for a trajectory from `tau` under `load`.
     #[must_use]
     pub(super) fn of_pieces(&self, rod: &Rod, tau: f64, load: f64) -> PieceSteps {
         let s = arclength(rod, tau);
@@ -101,8 +100,8 @@ impl Resolution {
         }
     }
 
-    /// Number of steps on a rod with a constant modulus and no profile, from `tau`, load and arclength. It has no branch, so that a
-    /// compiler vectorises it.
+    /// Returns the number of steps on a rod with a constant modulus and no profile, from `tau`, load and arclength. It has no branch, so
+    /// that a compiler vectorises it.
     #[inline(always)]
     pub(super) fn steps_on_uniform(&self, taper: f64, bend: f64, [tau, load, s]: [f64; 3]) -> u32 {
         let weight = weight(load.abs() * s * s, bend * s) + weight_of_taper(taper * tau);
@@ -130,7 +129,7 @@ impl Resolution {
     }
 }
 
-/// Steps along the pieces of a profile for one trajectory.
+/// Numbers of steps along the pieces of a profile for one trajectory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PieceSteps {
     /// Steps of a piece that does all the bending.
@@ -146,7 +145,7 @@ pub struct PieceSteps {
 }
 
 impl PieceSteps {
-    /// Number of steps of the piece `k` of `profile`, by its share in the bending, its length, and the change of its radius.
+    /// Returns the number of steps of the piece `k` of `profile`, by its share in the bending, its length, and the change of its radius.
     #[inline(always)]
     pub(super) fn of(&self, profile: &RadiusProfile, k: usize) -> u32 {
         let demand = profile.demands.of(self.reach, k);

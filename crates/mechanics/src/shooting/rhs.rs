@@ -1,4 +1,4 @@
-//! The right-hand sides of the rod's equations in `sigma = tau_contact - tau`, from the contact (0) backward to the base.
+//! Right-hand sides of the rod's equations in `sigma = tau_contact - tau`, from the contact (0) backward to the base.
 //!
 //! With the radius `rho`, the stiffness `S` and `w = rho/S`, `d/dsigma = -rho d/da` turns `dtheta/da = kappa_i - f X/S` into
 //! `dtheta/dsigma = -(rho kappa_i - f X w)`. The unit tangent `(c, s)` replaces `theta`, so that no step needs trigonometry.
@@ -6,37 +6,38 @@
 use crate::numerics::{Real, Vector};
 use crate::shooting::{Intrinsic, Material};
 
-/// A cross-section of the rod.
+/// A cross-section of the rod: radius and arclength.
 #[derive(Clone, Copy, Debug)]
 pub struct Section<T> {
-    /// Radius over the base radius, `rho`.
+    /// Radius `rho` of the cross-section over the base radius.
     pub rho: T,
-    /// Inverse cube of the radius, `1/rho^3`.
+    /// Inverse cube `1/rho^3` of the cross-section's radius over the base radius.
     pub inverse_cube: T,
-    /// Arclength from the base, in whisker lengths.
+    /// Arclength of the cross-section from the base, in whisker lengths.
     pub arclength: T,
 }
 
-/// State of the rod: `c, s, X, Y`, and the angle by which bending has turned it since the contact, in radians.
+/// State of the rod at a cross-section, `[c, s, X, Y, bent]`: unit tangent, position in whisker lengths, and rotation by bending since
+/// the contact in radians.
 pub type Planar<T> = [T; 5];
 
 /// Derivatives that a trajectory carries beside the rod: of angles, of the levers that turn them, and of integrals.
 pub trait Sensitivity<T: Real>: 'static {
-    /// Derivatives of angles; as many derivatives of levers.
+    /// Derivatives of angles that a trajectory carries; it carries as many derivatives of levers.
     type Pairs: Vector<T>;
 
-    /// Integrals, on which no other equation depends.
+    /// Integrals that a trajectory carries, on which no other equation depends.
     type Sums: Vector<T>;
 
-    /// `dangles/dsigma` over the compliance under the force `f`: the derivatives of the moment `f X`.
+    /// Returns `dangles/dsigma` over the compliance under the force `f`: the derivatives of the moment `f X`.
     fn moments(f: T, x: T, levers: Self::Pairs) -> Self::Pairs;
 
-    /// `dlevers/dsigma` and `dsums/dsigma` over the radius: derivatives of `-cos theta` and `-sin theta` for the tangent `(c, s)`,
-    /// which bending has turned by `bent`.
+    /// Returns `dlevers/dsigma` and `dsums/dsigma` over the radius: derivatives of `-cos theta` and `-sin theta` for the tangent `(c,
+    /// s)`, which bending has turned by `bent`.
     fn pull(c: T, s: T, bent: T, angles: Self::Pairs) -> (Self::Pairs, Self::Sums);
 }
 
-/// The empty set of derivatives: the shape alone.
+/// Empty set of derivatives: a trajectory computes the shape alone.
 #[derive(Clone, Copy, Debug)]
 pub struct NoSensitivity;
 
@@ -53,28 +54,28 @@ impl<T: Real> Sensitivity<T> for NoSensitivity {
     }
 }
 
-/// Carried derivatives: angles, levers and sums.
+/// Derivatives that a trajectory carries: of angles, of levers, and sums.
 pub type Carried<T, S> = (
     <S as Sensitivity<T>>::Pairs,
     (<S as Sensitivity<T>>::Pairs, <S as Sensitivity<T>>::Sums),
 );
 
-/// State of a trajectory: rest shape, rod, derivatives.
+/// State of a trajectory: rest shape, rod and carried derivatives.
 pub type TrajectoryState<T, I, S> = (<I as Intrinsic<T>>::State, (Planar<T>, Carried<T, S>));
 
-/// Equations of the rod, its rest shape and its derivatives.
+/// Equations of the rod, its rest shape and the carried derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct RodSystem<T, I, C> {
     /// Signed force `f` at the contact, in `E I_base/L_w^2`.
     pub force: T,
-    /// Curvature at rest.
+    /// Rest shape of the rod, as its curvature.
     pub intrinsic: I,
-    /// Stiffness along the rod.
+    /// Material of the rod: its bending stiffness.
     pub material: C,
 }
 
 impl<T: Real, I: Intrinsic<T>, C: Material<T>> RodSystem<T, I, C> {
-    /// Right-hand side `dstate/dsigma`.
+    /// Returns the right-hand side `dstate/dsigma` of the rod's equations.
     #[inline(always)]
     pub fn rhs<S: Sensitivity<T>>(
         &self,

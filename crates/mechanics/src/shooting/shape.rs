@@ -1,4 +1,4 @@
-//! Points along a deflected whisker.
+//! Shapes of deflected whiskers, as points along them.
 
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{
@@ -7,24 +7,23 @@ use crate::shooting::{
 };
 use glam::DVec2;
 
-/// A point of the whisker. The frame's origin is the contact; its second axis is along the force. Lengths are in whisker
-/// lengths.
+/// A point of a deflected whisker. The frame's origin is the contact; its second axis is along the force. Lengths are in whisker lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RodPoint {
-    /// Arclength from the base, in whisker lengths.
+    /// Arclength of the point from the base, in whisker lengths.
     pub arclength: f64,
-    /// Position in the frame of the contact, in whisker lengths.
+    /// Position of the point in the frame of the contact, in whisker lengths.
     pub position: DVec2,
-    /// Unit tangent in the frame of the contact.
+    /// Unit tangent of the whisker at the point, in the frame of the contact.
     pub tangent: DVec2,
-    /// Curvature `dtheta/ds`, in radians per whisker length.
+    /// Curvature `dtheta/ds` of the whisker at the point, in radians per whisker length.
     pub curvature: f64,
-    /// Bending moment in `E I_base/L_w`, 0 beyond the contact.
+    /// Bending moment at the point, in `E I_base/L_w`; 0 beyond the contact.
     pub moment: f64,
 }
 
-/// The points at the growing arclengths `at` of the whisker with the contact at `tau` under `load`. Beyond the contact the
-/// whisker keeps its rest shape.
+/// Returns the points at the growing arclengths `at` (whisker lengths) of the whisker with the contact at `tau` under `load`. Beyond the
+/// contact the whisker keeps its rest shape.
 #[must_use]
 pub fn profile(
     rod: &Rod,

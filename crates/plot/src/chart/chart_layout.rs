@@ -1,4 +1,4 @@
-//! The layout of a chart: title, caption, and plots in rows.
+//! Layout of a chart, in pixels: title, caption, and plots in rows.
 
 use super::Chart;
 use super::plot_layout::PlotLayout;
@@ -9,14 +9,14 @@ use crate::picture::{Anchor, Area, Picture};
 
 /// Size of the body of a plot among several.
 const AMONG: [f64; 2] = [760.0, 520.0];
-/// Least room to the left and right of a plot among several.
+/// Least space to the left and right of a plot among several, in pixels.
 const SIDES_AMONG: [f64; 2] = [116.0, 40.0];
 /// Room above where the chart has no title.
 const ABOVE: f64 = 24.0;
-/// From one line of the caption to the next.
+/// Distance between lines of the caption, in pixels.
 const CAPTION_LINE: f64 = 28.0;
 
-/// A chart laid out.
+/// A chart with the positions of its title, caption and plots, in pixels.
 pub struct ChartLayout<'a> {
     title: FittedText,
     /// Lines of the caption, each with the middle of its line.
@@ -30,7 +30,7 @@ pub struct ChartLayout<'a> {
 }
 
 impl<'a> ChartLayout<'a> {
-    /// Lays the chart out. Bodies have equal sizes and stand in line, with room for the widest labels.
+    /// Lays a chart out: plots have bodies of equal size in straight rows, with space for the widest labels.
     pub fn plan(chart: &'a Chart) -> Self {
         let columns = chart.columns.clamp(1, chart.plots.len().max(1));
         let ([width, height], least) = if chart.plots.len() > 1 {

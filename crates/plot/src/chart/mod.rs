@@ -1,7 +1,7 @@
-//! Charts: curves over axes that fit them, one plot or several.
+//! Charts: curves over axes that fit them, in one plot or several.
 //!
-//! Invariant: every finite point of the data lies inside the frame of its plot. Nothing is clipped except in insets, which show a
-//! part once more.
+//! Invariant: every finite point of the data lies inside the frame of its plot. Nothing is clipped except in insets, which enlarge a part
+//! of a plot.
 
 mod chart_layout;
 mod plot_layout;
@@ -10,44 +10,44 @@ mod window;
 
 use crate::picture::Picture;
 
-/// The colour of a line or a dot.
+/// The colour of a line, a dot or an arrow of a chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ink {
-    /// Black.
+    /// Black ink.
     #[default]
     Black,
-    /// Blue, for a second kind of data.
+    /// Blue ink, for a second kind of data.
     Blue,
-    /// Grey, for what stays in the background.
+    /// Grey ink, for lines in the background.
     Grey,
 }
 
-/// Whether a line is solid or dashed.
+/// The dash pattern of a line of a chart: solid or dashed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stroke {
-    /// Without gaps.
+    /// A line without gaps.
     #[default]
     Solid,
-    /// Equal dashes along the whole line, however many points it has.
+    /// A line of equal dashes; their length does not depend on the spacing of its points.
     Dashed,
 }
 
-/// A curve through points.
+/// A line of a plot: a curve through points, with colour, stroke and name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
-    /// Points `[x, y]` in data units. A point that is not finite, or beyond 1e300, breaks the line; a point between two breaks is
-    /// drawn as a small dot.
+    /// Points `[x, y]` of the line, in data units. A point that is not finite, or beyond 1e300, breaks the line; a point between two
+    /// breaks is drawn as a small dot.
     pub points: Vec<[f64; 2]>,
     /// Colour of the line.
     pub ink: Ink,
-    /// Solid or dashed.
+    /// Dash pattern of the line: solid or dashed.
     pub stroke: Stroke,
-    /// Name in the legend, which shows equal names once; a line without a name is not in the legend.
+    /// Name of the line in the legend, which shows equal names once. `None` keeps the line out of the legend.
     pub name: Option<String>,
 }
 
 impl Line {
-    /// A line without a name.
+    /// Creates a line through `points` `[x, y]`, in data units, without a name.
     #[must_use]
     pub const fn new(points: Vec<[f64; 2]>, ink: Ink, stroke: Stroke) -> Self {
         Self {
@@ -58,7 +58,7 @@ impl Line {
         }
     }
 
-    /// Sets the name in the legend.
+    /// Sets the name of the line in the legend.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = Some(name.into());
@@ -66,45 +66,45 @@ impl Line {
     }
 }
 
-/// A point that stands out, such as a maximum.
+/// A dot of a plot: one marked point, such as a maximum.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dot {
-    /// Point `[x, y]` in data units; not drawn unless finite.
+    /// Position `[x, y]` of the dot, in data units; a dot is not drawn unless both are finite.
     pub at: [f64; 2],
     /// Colour of the dot.
     pub ink: Ink,
-    /// Whether only the rim is inked.
+    /// True if the dot is an empty ring, false if it is filled.
     pub open: bool,
-    /// Name in the legend, as in [`Line::name`].
+    /// Name of the dot in the legend, as in [`Line::name`].
     pub name: Option<String>,
 }
 
-/// A circular body of known size, for plots with [`Plot::equal_axes`]. On other axes its size is right along the coarser axis.
+/// A circular body of known size, for plots with [`Plot::equal_axes`]. On other axes its size is correct along the coarser axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Disc {
-    /// Centre `[x, y]` in data units; not drawn unless finite.
+    /// Centre `[x, y]` of the disc, in data units; a disc is not drawn unless both are finite.
     pub centre: [f64; 2],
-    /// Radius in data units; a disc is drawn with at least 3 pixels.
+    /// Radius of the disc, in data units; a disc is drawn with at least 3 pixels.
     pub radius: f64,
-    /// Whether the disc is dark grey instead of light grey.
+    /// True if the disc is dark grey, false if it is light grey.
     pub dark: bool,
 }
 
-/// A text above a point, an arrow from the point, or an arrow with a text at its beginning.
+/// A note in a plot: a text above a point, an arrow from the point, or an arrow with a text at its start.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Note {
-    /// Point `[x, y]` in data units; not drawn unless finite.
+    /// Point `[x, y]` of the note, in data units; a note is not drawn unless both are finite.
     pub at: [f64; 2],
-    /// Text; may be empty.
+    /// Text of the note; may be empty.
     pub text: String,
-    /// End of the arrow in data units; `None` for a text alone.
+    /// End `[x, y]` of the note's arrow, in data units; `None` for a text alone.
     pub to: Option<[f64; 2]>,
-    /// Colour of the arrow.
+    /// Colour of the note's arrow.
     pub ink: Ink,
 }
 
 impl Note {
-    /// A text above a point.
+    /// Creates a note with a text above the point `at` `[x, y]`, in data units.
     #[must_use]
     pub fn text(at: [f64; 2], text: impl Into<String>) -> Self {
         Self {
@@ -114,7 +114,7 @@ impl Note {
         }
     }
 
-    /// An arrow between two points, with a text at its beginning.
+    /// Creates a note with an arrow between two points `[x, y]`, in data units, and a text at the arrow's start.
     #[must_use]
     pub fn arrow(from: [f64; 2], to: [f64; 2], text: impl Into<String>, ink: Ink) -> Self {
         Self {
@@ -125,70 +125,71 @@ impl Note {
     }
 }
 
-/// A square of a plot on equal axes, drawn a second time and larger. It shows the plot's lines, and the discs that lie inside.
+/// An enlarged square of a plot on equal axes. It shows the plot's lines in the square, and the discs that lie inside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inset {
-    /// Centre `[x, y]` of the square in data units.
+    /// Centre `[x, y]` of the enlarged square, in data units.
     pub centre: [f64; 2],
-    /// Half the side of the square in data units; nothing is drawn unless it is more than 0.
+    /// Half the side of the square that an inset enlarges, in data units; nothing is drawn unless it is positive.
     pub half: f64,
-    /// Centre of the larger square, as fractions of the plot's body from the left and from below.
+    /// Centre of the inset in the plot, as fractions `[x, y]` of the plot's width from the left and its height from below.
     pub place: [f64; 2],
-    /// Lines that are drawn in the inset only.
+    /// Lines that are drawn in the inset only, in data units.
     pub lines: Vec<Line>,
-    /// Notes that are drawn in the inset only.
+    /// Notes that are drawn in the inset only, in data units.
     pub notes: Vec<Note>,
 }
 
-/// How dark a band is.
+/// The grey of a band of a plot: light or dark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shade {
-    /// For the wider of two bands.
+    /// Light grey, for the wider of two bands.
     #[default]
     Light,
-    /// For the narrower of two bands.
+    /// Dark grey, for the narrower of two bands.
     Dark,
 }
 
-/// The area between two curves.
+/// A band of a plot: the shaded area between two curves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
-    /// Points `[x, y_of_one_curve, y_of_the_other]` in data units. A point that is not finite, or beyond 1e300, breaks the band.
+    /// Points `[x, y_of_one_curve, y_of_the_other]` of the band, in data units. A point that is not finite, or beyond 1e300, breaks the
+    /// band.
     pub points: Vec<[f64; 3]>,
-    /// How dark the band is.
+    /// Grey of the band: light or dark.
     pub shade: Shade,
-    /// Name in the legend, as in [`Line::name`].
+    /// Name of the band in the legend, as in [`Line::name`].
     pub name: Option<String>,
 }
 
-/// Curves over one pair of axes.
+/// A plot: lines, bands, dots, discs and notes over one pair of axes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
-    /// Letter of the plot in a chart, such as `A`.
+    /// Letter of the plot in a chart, such as `A`; `None` for no letter.
     pub letter: Option<String>,
-    /// Title; may be empty.
+    /// Title of the plot; may be empty.
     pub title: String,
-    /// Label of the horizontal axis, with its unit.
+    /// Label of the plot's horizontal axis, with its unit.
     pub x_label: String,
-    /// Label of the upright axis, with its unit.
+    /// Label of the plot's vertical axis, with its unit.
     pub y_label: String,
-    /// Bands, drawn first.
+    /// Bands of the plot, drawn first.
     pub bands: Vec<Band>,
-    /// Lines, drawn over bands and discs.
+    /// Lines of the plot, drawn over bands and discs.
     pub lines: Vec<Line>,
-    /// Dots, drawn over the lines.
+    /// Dots of the plot, drawn over its lines.
     pub dots: Vec<Dot>,
-    /// Discs, drawn over the bands.
+    /// Discs of the plot, drawn over its bands.
     pub discs: Vec<Disc>,
-    /// Notes, drawn last.
+    /// Notes of the plot, drawn last.
     pub notes: Vec<Note>,
-    /// A part of the plot, enlarged.
+    /// Enlarged square of the plot; `None` for no inset.
     pub inset: Option<Inset>,
-    /// Whether a data unit has the same length on both axes.
+    /// True if a data unit has the same length on both axes of the plot.
     pub equal_axes: bool,
-    /// Whether both axes are logarithmic. Numbers that are not positive are not drawn, and neither are discs and insets.
+    /// True if both axes of the plot are logarithmic. Numbers that are not positive are not drawn, and neither are discs and insets.
     pub logarithmic: bool,
-    /// Whether frame, ticks and labels are left out.
+    /// True if the plot is drawn without frame, ticks and labels.
     pub bare: bool,
 }
 
@@ -219,21 +220,21 @@ impl Plot {
     }
 }
 
-/// Plots in rows, below a title and a caption.
+/// A chart: plots in rows below a title and a caption.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
-    /// Title; may be empty.
+    /// Title of the chart; may be empty.
     pub title: String,
-    /// Lines of text below the title.
+    /// Caption of the chart, `[line]`: lines of text below the title.
     pub caption: Vec<String>,
-    /// Plots from left to right, then downwards.
+    /// Plots of the chart, from left to right, then downwards, `[plot]`.
     pub plots: Vec<Plot>,
-    /// Plots per row; 0 counts as 1.
+    /// Number of plots in a row of the chart; 0 counts as 1.
     pub columns: usize,
 }
 
 impl Chart {
-    /// A chart of one plot.
+    /// Creates a chart of one plot.
     #[must_use]
     pub fn single(title: impl Into<String>, plot: Plot) -> Self {
         Self {
@@ -243,7 +244,7 @@ impl Chart {
         }
     }
 
-    /// Lays the chart out; equal charts give equal pictures.
+    /// Lays the chart out as a picture; equal charts give equal pictures.
     #[must_use]
     pub fn picture(&self) -> Picture {
         chart_layout::ChartLayout::plan(self).draw()

@@ -1,4 +1,4 @@
-//! One plot: frame, ticks and contents.
+//! Layout of one plot of a chart: frame, ticks and contents.
 
 use super::viewport::{Viewport, colour, pen};
 use super::window::{Window, drawable, drawable_disc, drawable_span};
@@ -26,7 +26,7 @@ const fn rim(dot: &Dot) -> Pen {
     Pen::solid(LINE, colour(dot.ink))
 }
 
-/// A plot laid out for a body of a size.
+/// A plot with the ranges, units and ticks chosen for a body of known size.
 pub struct PlotLayout<'a> {
     /// The plot, with all numbers replaced by their logarithms on logarithmic axes.
     plot: Cow<'a, Plot>,
@@ -35,7 +35,7 @@ pub struct PlotLayout<'a> {
 }
 
 impl<'a> PlotLayout<'a> {
-    /// Chooses ranges, units and ticks for a body of this width and height.
+    /// Chooses ranges, units and ticks of a plot for a body of this `size`, `[width, height]` in pixels.
     pub fn plan(plot: &'a Plot, size: [f64; 2]) -> Self {
         let plot = match plot.logarithmic {
             true => Cow::Owned(plot.logarithms()),
@@ -55,13 +55,13 @@ impl<'a> PlotLayout<'a> {
         Self { plot, window, axes }
     }
 
-    /// Lays out letter, title and legend for a body of this width with `left` pixels of room beside it.
+    /// Lays out the plot's letter, title and legend. The body is `width` pixels wide, with `left` pixels of space to its left.
     pub fn heading(&self, left: f64, width: f64) -> Heading {
         let letter = self.plot.letter.as_deref().unwrap_or_default();
         Heading::plan([letter, &self.plot.title], self.legend(), [left, width])
     }
 
-    /// Draws the plot into `body`, with `left` pixels of room beside it.
+    /// Draws the plot into `body`, with `left` pixels of space to its left.
     pub fn draw(&self, picture: &mut Picture, body: Area, left: f64) {
         let plot = &*self.plot;
         let window = self.window;

@@ -8,17 +8,21 @@ use crate::picture::palette::{BLANK, BLUE, GREY, INK, Rgb};
 use crate::picture::{Anchor, Area, Pen, Picture, font};
 use glam::DVec2;
 
-/// Radius of a point of a line that has no neighbour, and of the smallest disc.
+/// Radius of a point of a line that has no neighbour, in pixels.
 const POINT: f64 = 5.0;
+/// Radius of the smallest disc, in pixels.
 const DISC: f64 = 3.0;
 /// Side of an inset, as a fraction of the height of the body.
 const INSET: f64 = 0.5;
-/// From a point to the middle of the text above it, and from an arrow to the text behind it.
+/// Distance of a text's middle above its point, in pixels.
 const ABOVE: f64 = 20.0;
+/// Distance of a text behind its arrow, in pixels.
 const BEHIND: f64 = 6.0;
-/// Width of arrows, length of their heads, and half the angle between the strokes of a head.
+/// Width of arrows, in pixels.
 const ARROW: f64 = 2.5;
+/// Length of the heads of arrows, in pixels.
 const HEAD: f64 = 13.0;
+/// Half the angle between the strokes of an arrow's head, in radians.
 const HALF_ANGLE: f64 = 0.45;
 
 pub const fn colour(ink: Ink) -> Rgb {
@@ -29,7 +33,7 @@ pub const fn colour(ink: Ink) -> Rgb {
     }
 }
 
-/// The pen of a line.
+/// Returns the pen that draws a line of a chart.
 pub fn pen(line: &Line) -> Pen {
     Pen {
         width: LINE,
@@ -38,7 +42,7 @@ pub fn pen(line: &Line) -> Pen {
     }
 }
 
-/// A range of both axes, and the area of the picture that shows it.
+/// A window of data, and the area of the picture that shows it.
 #[derive(Clone, Copy)]
 pub struct Viewport {
     pub body: Area,
@@ -46,7 +50,7 @@ pub struct Viewport {
 }
 
 impl Viewport {
-    /// Converts a point in data units to the picture.
+    /// Converts a point `[x, y]` from data units to the picture's units.
     pub fn place(&self, point: [f64; 2]) -> [f64; 2] {
         self.window.place(self.body, point)
     }
@@ -58,7 +62,7 @@ impl Viewport {
         picture.circle(self.place(disc.centre), radius, fill, Some(rim));
     }
 
-    /// Draws the stretches of a line between points that cannot be drawn, or only their parts inside the window.
+    /// Draws the parts of a line between its breaks; if `clipped`, only what lies inside the window.
     pub fn line(&self, picture: &mut Picture, line: &Line, clipped: bool) {
         for stretch in line.points.split(|point| !drawable(*point)) {
             if clipped {
@@ -82,7 +86,7 @@ impl Viewport {
         }
     }
 
-    /// Draws the notes that lie inside the window.
+    /// Draws the notes that lie inside the window of data.
     pub fn notes(&self, picture: &mut Picture, notes: &[Note]) {
         for note in notes.iter().filter(|note| self.window.holds(note.at)) {
             let at = self.place(note.at);
@@ -96,7 +100,7 @@ impl Viewport {
         }
     }
 
-    /// Draws a square of `plot` a second time and larger.
+    /// Draws an inset: a square of `plot`, enlarged.
     pub fn inset(&self, picture: &mut Picture, plot: &Plot, inset: &Inset) {
         let square = self.window.square(inset.centre, inset.half);
         if !(inset.half > 0.0 && square.is_open()) {

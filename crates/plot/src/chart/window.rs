@@ -1,4 +1,4 @@
-//! The ranges that the axes of a plot show.
+//! The window of a plot: the ranges that its two axes show.
 
 use super::{Disc, Plot};
 use crate::frame::ticks::fraction;
@@ -13,17 +13,17 @@ const TINY: f64 = 1e-290;
 /// Numbers that differ by less, relative to the largest, are shown as equal.
 const EQUAL: f64 = 1e-9;
 
-/// The ranges of both axes, in data units.
+/// The ranges of both axes of a plot, in data units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     pub x: [f64; 2],
     pub y: [f64; 2],
-    /// Largest magnitude on each axis; equal axes share the larger one.
+    /// Largest magnitude of the data on each axis, in data units: `[x, y]`. Equal axes share the larger one.
     pub largest: [f64; 2],
 }
 
 impl Window {
-    /// Chooses ranges that show everything in a plot, for a body of this width and height.
+    /// Chooses ranges that show all contents of a plot, for a body of `pixels` `[width, height]`.
     pub fn of(plot: &Plot, pixels: [f64; 2]) -> Self {
         let extents = [0, 1].map(|axis| extent(plot, axis));
         let [x, y] = if plot.equal_axes {
@@ -38,7 +38,7 @@ impl Window {
         Self { x, y, largest }
     }
 
-    /// A square around a point, with `half` its side.
+    /// Creates a square window around the point `[x, y]` with half the side `half`, all in data units.
     pub fn square(&self, [x, y]: [f64; 2], half: f64) -> Self {
         Self {
             x: [x - half, x + half],
@@ -52,14 +52,14 @@ impl Window {
         body.point(fraction(self.x, x), fraction(self.y, y))
     }
 
-    /// The length in pixels of a length along the coarser axis.
+    /// Converts a length along the coarser axis from data units to pixels.
     pub fn pixels(&self, body: Area, length: f64) -> f64 {
         let across = body.width / (self.x[1] - self.x[0]);
         let upwards = body.height / (self.y[1] - self.y[0]);
         length * across.min(upwards)
     }
 
-    /// Whether the ranges are wide enough to be drawn.
+    /// Returns true if both ranges are wide enough to be drawn.
     pub fn is_open(&self) -> bool {
         let size = magnitude(self.x).max(magnitude(self.y));
         size <= HUGE && self.x[1] - self.x[0] > EQUAL * size.max(TINY)
@@ -74,7 +74,7 @@ impl Window {
         corners(disc).into_iter().all(|corner| self.holds(corner))
     }
 
-    /// The parts of a polyline inside the window, in data units: `[part][point]`.
+    /// Returns the parts of a polyline inside the window, in data units: points `[x, y]` as `[part][point]`.
     pub fn clipped(&self, points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
         let mut parts: Vec<Vec<[f64; 2]>> = Vec::new();
         for pair in points.windows(2) {
@@ -113,12 +113,12 @@ impl Window {
     }
 }
 
-/// Whether a point is drawn at all.
+/// Returns true if a point `[x, y]` in data units can be drawn: finite and at most 1e300.
 pub fn drawable(point: [f64; 2]) -> bool {
     point.iter().all(|at| at.abs() <= HUGE)
 }
 
-/// Whether both ends of a band are drawn at a point of it.
+/// Returns true if both edges of a band can be drawn at the point `[x, y_of_one_curve, y_of_the_other]`.
 pub fn drawable_span([x, from, to]: [f64; 3]) -> bool {
     drawable([x, from]) && drawable([x, to])
 }
@@ -128,7 +128,7 @@ fn corners(disc: &Disc) -> [[f64; 2]; 2] {
     [-disc.radius, disc.radius].map(|radius| disc.centre.map(|at| at + radius))
 }
 
-/// Whether a disc is drawn at all.
+/// Returns true if the centre and the radius of a disc can be drawn.
 pub fn drawable_disc(disc: &Disc) -> bool {
     corners(disc).into_iter().all(drawable)
 }
@@ -166,7 +166,7 @@ fn room(size: f64) -> f64 {
     if size < TINY { 1.0 } else { 0.1 * size }
 }
 
-/// Adds room to a range, which is never empty afterwards. Equal decimal logarithms get a decade on each side.
+/// Widens a range, which is never empty afterwards. Equal decimal logarithms get a decade on each side.
 fn widened([low, high]: [f64; 2], logarithmic: bool) -> [f64; 2] {
     let size = magnitude([low, high]);
     let (size, least) = match logarithmic {
@@ -180,7 +180,7 @@ fn widened([low, high]: [f64; 2], logarithmic: bool) -> [f64; 2] {
     [low - margin, high + margin]
 }
 
-/// Adds room to both ranges so that a data unit has the same length on both axes.
+/// Widens the ranges so that a data unit has the same length on both axes.
 fn equal_units(extents: [[f64; 2]; 2], pixels: [f64; 2]) -> [[f64; 2]; 2] {
     let needed = |axis: usize| {
         let [low, high] = extents[axis];

@@ -8,13 +8,14 @@ use crate::picture::{Anchor, Area, Pen, Picture};
 
 /// Width of the lines of frames and ticks, in pixels.
 pub const FRAME: f64 = 1.5;
-/// Height of the room below a body for ticks and label, in pixels.
+/// Height of the space below a body for ticks and axis label, in pixels.
 pub const BELOW: f64 = 112.0;
-/// From the frame to the middle of the lower label, and from the left end of the room to the middle of the upright label.
+/// Distance of the middle of the horizontal axis' label from the frame, in pixels.
 const X_LABEL: f64 = 76.0;
+/// Distance of the middle of the vertical axis' label from the left end of the space, in pixels.
 const Y_LABEL: f64 = 34.0;
 
-/// The axes of a body.
+/// Ticks and labels of the two axes of a plot or a heat map.
 pub struct Axes {
     x_ticks: Vec<Tick>,
     y_ticks: Vec<Tick>,
@@ -23,7 +24,7 @@ pub struct Axes {
 }
 
 impl Axes {
-    /// Lays out the ticks and the label of both axes, x first, for a body of this width and height. Labels may be empty.
+    /// Lays out the ticks and the label of both axes, x first, for a body of this width and height in pixels. Labels may be empty.
     pub fn new(
         [(x_ticks, x_label), (y_ticks, y_label)]: [(Vec<Tick>, &str); 2],
         [width, height]: [f64; 2],
@@ -36,7 +37,7 @@ impl Axes {
         }
     }
 
-    /// Room that the labels take beside the body, in pixels: `[left, right]`.
+    /// Returns the width that tick labels take to the left and right of the body, in pixels: `[left, right]`.
     pub fn sides(&self) -> [f64; 2] {
         let widest = self.y_ticks.iter().map(|tick| tick.width);
         let widest = widest.fold(0.0, f64::max);
@@ -46,7 +47,7 @@ impl Axes {
         [beside + widest + 15.0, end + 8.0]
     }
 
-    /// Draws the axes around `body`, with `left` pixels of room beside it. Labels that would overlap are left out.
+    /// Draws the axes around `body`, with `left` pixels of space to its left. Labels that would overlap are left out.
     pub fn draw(&self, picture: &mut Picture, body: Area, left: f64) {
         let pen = Pen::solid(FRAME, INK);
         let mut free = f64::NEG_INFINITY;

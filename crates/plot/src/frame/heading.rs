@@ -1,44 +1,51 @@
-//! What stands above a plot or a heat map: letter, title and legend.
+//! The heading above a plot or a heat map: letter, title and legend.
 
 use crate::picture::font::{self, FittedText, fitted};
 use crate::picture::palette::{Fill, INK, Rgb, WHITE};
 use crate::picture::{Anchor, Area, DASHES, Pen, Picture};
 
-/// Font sizes in pixels: of titles, labels, ticks and names in a legend.
+/// Font size of titles, in pixels.
 pub const TITLE: f64 = 31.0;
+/// Font size of axis labels, in pixels.
 pub const LABEL: f64 = 23.0;
+/// Font size of tick labels, in pixels.
 pub const TICK: f64 = 20.0;
+/// Font size of names in a legend, in pixels.
 pub const NAME: f64 = 18.0;
 
-/// Width and height of the body of a plot or a heat map that stands alone, in pixels. Then the least room to its left and right.
+/// Size `[width, height]` of the body of a single plot or heat map, in pixels.
 pub const ALONE: [f64; 2] = [1280.0, 880.0];
+/// Least space `[left, right]` beside the body of a single plot or heat map, in pixels.
 pub const SIDES: [f64; 2] = [136.0, 48.0];
-/// Height of a picture's title, and the middle of its line, in pixels.
+/// Height of the space for a picture's title, in pixels.
 pub const HEAD_ROOM: f64 = 74.0;
+/// Distance of the title's middle from the top of a picture, in pixels.
 pub const TITLE_LINE: f64 = 46.0;
 
-/// Width of the lines of charts, and radius of their dots, in pixels.
+/// Width of the lines of charts, in pixels.
 pub const LINE: f64 = 3.0;
+/// Radius of the dots of charts, in pixels.
 pub const DOT: f64 = 8.0;
 /// Height of the line of letter and title.
 const HEAD: f64 = 46.0;
-/// From one line of the legend to the next.
+/// Distance between lines of the legend, in pixels.
 const LEGEND_LINE: f64 = 38.0;
-/// Room below the legend.
+/// Space below the legend, in pixels.
 const BELOW: f64 = 18.0;
-/// Between a symbol and its name, and from there to the next symbol.
+/// Space between a symbol and its name, in pixels.
 const GAP: f64 = 12.0;
+/// Space between a name and the next symbol, in pixels.
 const NEXT: f64 = 26.0;
-/// From the left end of the plot's room to the letter.
+/// Distance of the letter from the left end of the plot's space, in pixels.
 const LETTER: f64 = 18.0;
 
-/// What stands before a name in the legend.
+/// The symbol before a name in a legend, such as a line or a swatch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LegendSymbol {
     Swatch(Fill),
     Line(Pen),
     Dot(Rgb),
-    /// The rim of a dot.
+    /// An empty ring, the symbol of an open dot.
     Ring(Pen),
 }
 
@@ -68,7 +75,7 @@ impl LegendSymbol {
     }
 }
 
-/// A symbol and its name in the legend of a heat map.
+/// An entry of a heat map's legend: a symbol and its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LegendEntry {
     pub(crate) symbol: LegendSymbol,
@@ -76,13 +83,13 @@ pub struct LegendEntry {
 }
 
 impl LegendEntry {
-    /// An entry for cells with this fill.
+    /// Creates a legend entry for cells with this fill.
     #[must_use]
     pub fn swatch(fill: Fill, name: impl Into<String>) -> Self {
         Self::new(LegendSymbol::Swatch(fill), name)
     }
 
-    /// An entry for the black curves of a heat map.
+    /// Creates a legend entry for the black curves of a heat map.
     #[must_use]
     pub fn curve(name: impl Into<String>) -> Self {
         Self::new(LegendSymbol::Line(Pen::solid(LINE, INK)), name)
@@ -94,7 +101,7 @@ impl LegendEntry {
     }
 }
 
-/// Letter, title and legend, laid out for a width.
+/// Letter, title and legend of a plot or a heat map, laid out for a width.
 pub struct Heading {
     letter: FittedText,
     title: FittedText,
@@ -102,12 +109,12 @@ pub struct Heading {
     entries: Vec<(LegendEntry, usize, f64)>,
     /// Height of the line of letter and title.
     head: f64,
-    /// Height of the heading with the room below, in pixels.
+    /// Height of the heading including the space below it, in pixels.
     pub height: f64,
 }
 
 impl Heading {
-    /// Lays the heading out above a body of this width with `left` pixels of room beside it. Letter and title may be empty.
+    /// Lays the heading out above a body of this width with `left` pixels of space to its left. Letter and title may be empty.
     pub fn plan(
         [letter, title]: [&str; 2],
         legend: Vec<LegendEntry>,
@@ -136,7 +143,7 @@ impl Heading {
         }
     }
 
-    /// Draws the heading from `top` downwards, above a body that begins at `body_left` with `left` pixels of room beside it.
+    /// Draws the heading from `top` downwards, above a body that begins at `body_left` with `left` pixels of space to its left.
     pub fn draw(&self, picture: &mut Picture, [body_left, top]: [f64; 2], left: f64) {
         let middle = top + 0.5 * HEAD;
         let beside = body_left - left + LETTER;

@@ -1,4 +1,4 @@
-//! What stands around the body of a plot or a heat map: heading, axes, ticks and units.
+//! The frame of a plot or a heat map: heading, axes, ticks and units.
 
 pub mod axes;
 pub mod heading;

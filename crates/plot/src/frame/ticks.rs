@@ -3,16 +3,16 @@
 use super::heading::TICK;
 use crate::picture::font;
 
-/// Least room between two labels, in pixels.
+/// Least space between two labels, in pixels.
 const APART: f64 = 18.0;
 
-/// A labelled value.
+/// A tick of an axis or a colour bar: a position and a label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// The fraction of the axis below the value.
+    /// Position of the tick, as the fraction of the axis below it, from 0 to 1.
     pub at: f64,
     pub label: String,
-    /// Width of the label in pixels.
+    /// Width of the tick's label, in pixels.
     pub width: f64,
 }
 
@@ -22,18 +22,18 @@ impl Tick {
         Self { at, label, width }
     }
 
-    /// A tick of a logarithmic axis. It is labelled on its own: common labels would all have the decimals of the smallest value.
+    /// Creates a tick of a logarithmic axis. Its label has its own decimals: common labels would all have those of the smallest value.
     pub fn of_power(at: f64, value: f64) -> Self {
         Self::new(at, labels(&[value]).concat())
     }
 }
 
-/// The fraction of a range below a value.
+/// Returns the fraction of the range `[low, high]` below `value`, from 0 to 1 inside the range.
 pub fn fraction([low, high]: [f64; 2], value: f64) -> f64 {
     (value - low) / (high - low)
 }
 
-/// Ticks at values, with equally precise labels.
+/// Creates ticks at `values` of a range, with equally precise labels.
 pub fn at(values: &[f64], range: [f64; 2]) -> Vec<Tick> {
     let ticks = values.iter().zip(labels(values));
     ticks
@@ -41,15 +41,15 @@ pub fn at(values: &[f64], range: [f64; 2]) -> Vec<Tick> {
         .collect()
 }
 
-/// Chooses the ticks of a range, given about how many are wanted.
+/// A function that chooses the ticks of a range `[low, high]`, given about how many are wanted.
 pub type TickChooser = fn([f64; 2], f64) -> Vec<Tick>;
 
-/// About `wanted` ticks of a linear range.
+/// Chooses about `wanted` ticks of a linear range.
 pub fn of_numbers(range: [f64; 2], wanted: f64) -> Vec<Tick> {
     at(&round(range, wanted), range)
 }
 
-/// About `wanted` ticks of a range of decimal logarithms, labelled with the numbers themselves.
+/// Chooses about `wanted` ticks of a range of decimal logarithms. Labels show the numbers themselves.
 pub fn of_logarithms(range: [f64; 2], wanted: f64) -> Vec<Tick> {
     // The ends of an axis may be powers that no number reaches.
     let ends = range.map(|end| 10_f64.powf(end.clamp(-300.0, 300.0)));
@@ -58,7 +58,7 @@ pub fn of_logarithms(range: [f64; 2], wanted: f64) -> Vec<Tick> {
     values.iter().map(tick).collect()
 }
 
-/// As many ticks as fit beside each other on a horizontal axis of this length.
+/// Chooses as many ticks as fit on a horizontal axis of this length in pixels.
 pub fn across(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     let mut wanted = (length / 90.0).clamp(1.0, 10.0);
     loop {
@@ -74,12 +74,12 @@ pub fn across(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     }
 }
 
-/// Ticks of an upright axis of this length.
+/// Chooses the ticks of a vertical axis of this length in pixels.
 pub fn upwards(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     choose(range, (length / 80.0).clamp(1.0, 10.0))
 }
 
-/// About `wanted` multiples of 1, 2 or 5 times a power of ten within a range.
+/// Returns about `wanted` round values in the range `[low, high]`: multiples of 1, 2 or 5 times a power of ten.
 pub fn round([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     let rough = (high - low) / wanted;
     let power = 10_f64.powf(rough.log10().floor());
@@ -94,8 +94,8 @@ pub fn round([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     multiples.map(|multiple| multiple as f64 * step).collect()
 }
 
-/// At most `wanted` powers of ten within a range of positive numbers; where there are few, also their multiples by 2 and 5. The
-/// search begins at the smallest normal number.
+/// Returns at most `wanted` powers of ten in a range of positive numbers, `[value]`; where there are few, also their multiples by 2 and
+/// 5. The search begins at the smallest normal number.
 pub fn logarithmic([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     let low = low.max(f64::MIN_POSITIVE);
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
@@ -116,7 +116,7 @@ pub fn logarithmic([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     round([low, high], wanted)
 }
 
-/// Writes values with equally many decimals, as few as keep them apart.
+/// Writes values with equally many decimals, as few as make all of them different.
 pub fn labels(values: &[f64]) -> Vec<String> {
     let largest = values
         .iter()

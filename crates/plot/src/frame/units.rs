@@ -1,4 +1,4 @@
-//! The unit in which numbers read best.
+//! Choice of the unit of an axis label: the one in which the numbers read best.
 
 /// Units of length, force, moment and energy, each with its power of ten.
 const LADDERS: [&[(&str, i32)]; 4] = [
@@ -8,8 +8,8 @@ const LADDERS: [&[(&str, i32)]; 4] = [
     &[("nJ", -9), ("\u{b5}J", -6), ("mJ", -3), ("J", 0)],
 ];
 
-/// Replaces the unit in a label such as `force (µN)` by the largest unit that does not exceed `largest`. Returns the label, and the
-/// new unit in old units. A label without a known unit stays as it is, and so does the label of numbers that are all 0.
+/// Replaces the unit in a label such as `force (µN)` by the largest unit that does not exceed `largest`. Returns the label, and the new
+/// unit in old units. A label without a known unit stays as it is, and so does the label of numbers that are all 0.
 pub fn readable(label: &str, largest: f64) -> (String, f64) {
     let old = LADDERS.iter().find_map(|ladder| {
         let within = |(unit, _): &&(&str, i32)| label.contains(&format!("({unit})"));

@@ -1,9 +1,9 @@
-//! The axis of a heat map, and which cell lies where.
+//! An axis of a heat map, and the conversion between values and cells.
 
 use crate::frame::ticks::{self, Tick};
 use crate::frame::units;
 
-/// An axis of cells. Each value owns the stretch between the midpoints to its neighbours.
+/// An axis of a heat map with one cell for each value. A cell ends half way to the neighbouring values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellAxis {
     label: String,
@@ -13,8 +13,8 @@ pub struct CellAxis {
 }
 
 impl CellAxis {
-    /// An axis with a cell for each of some increasing values. A label that ends in a known unit changes to the unit in which the
-    /// values read best.
+    /// Creates an axis with one cell for each of the increasing `values`. A label that ends in a known unit changes to the unit in which
+    /// the values read best.
     #[must_use]
     pub fn new(label: impl Into<String>, values: &[f64]) -> Self {
         let between = values.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
@@ -32,7 +32,7 @@ impl CellAxis {
         }
     }
 
-    /// Returns the lower end of the first cell and the upper end of the last cell.
+    /// Returns the lower end of the axis' first cell and the upper end of its last cell, in the unit of the values.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
         [self.edges[0], self.edges[self.edges.len() - 1]]
@@ -42,12 +42,12 @@ impl CellAxis {
         self.values.len()
     }
 
-    /// The fraction of the axis below a value.
+    /// Returns the fraction of the axis below a value, from 0 to 1.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         ticks::fraction(self.range(), value)
     }
 
-    /// The cell at a fraction of the axis.
+    /// Returns the index of the cell at a fraction of the axis, from 0 to 1.
     pub(crate) fn cell(&self, fraction: f64) -> usize {
         let [low, high] = self.range();
         let value = low + fraction * (high - low);
@@ -61,7 +61,7 @@ impl CellAxis {
         units::readable(&self.label, largest)
     }
 
-    /// The label, and ticks at all values when they are few, else at round ones.
+    /// Returns the ticks and the label of the axis: ticks at all values if they are few, else at round ones.
     pub(crate) fn ticks(&self) -> (Vec<Tick>, String) {
         let (label, unit) = self.readable();
         let range = self.range().map(|end| end / unit);
@@ -72,7 +72,7 @@ impl CellAxis {
         (ticks::at(&values, range), label)
     }
 
-    /// The label with the first and the last value.
+    /// Returns the label of the axis with its first and last value.
     pub(crate) fn summary(&self) -> String {
         let (label, unit) = self.readable();
         let ends = self.values.first().into_iter().chain(self.values.last());

@@ -1,4 +1,4 @@
-//! Colours of quantities, and the colour bar.
+//! Colour scales of heat maps, and the colour bar.
 
 use super::summary::ValueSummary;
 use crate::frame::axes::FRAME;
@@ -8,37 +8,37 @@ use crate::frame::units;
 use crate::picture::palette::{self, Fill, INK};
 use crate::picture::{Anchor, Area, Pen, Picture};
 
-/// Width of the room for the colour bar, to the right of the picture's body, in pixels.
+/// Width of the space for the colour bar, to the right of the picture's body, in pixels.
 pub const BAR_ROOM: f64 = 190.0;
 
-/// How quantities become colours.
+/// Options of a colour scale: label, range, and linear or logarithmic.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScaleOptions {
     /// Label of the colour bar. A label that ends in a known unit changes to the unit in which the values read best.
     pub label: String,
     /// Name in the legend of cells whose value is not finite.
     pub blank: String,
-    /// Whether the scale is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the 1st
+    /// True if the colour scale is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the 1st
     /// percentile of the positive values.
     pub log: bool,
-    /// Ends of the colour bar, in the unit of the values; values beyond them take the colours of the ends. `None` for the extent
-    /// of the values.
+    /// Ends `[low, high]` of the colour bar, in the unit of the values; values beyond them take the colours of the ends. `None` for the
+    /// extent of the values.
     pub range: Option<[f64; 2]>,
-    /// Whether the values are counts, so that ticks are at whole numbers only.
+    /// True if the values are counts, so that ticks of the colour bar are at whole numbers only.
     pub whole: bool,
 }
 
-/// A colour scale that is impossible; the message says what is allowed.
+/// The reason why a colour scale is impossible; the message says what is allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScaleError {
-    /// The ends of the range are not finite, or not in increasing order.
+    /// The ends of the colour bar are not finite, or not in increasing order.
     #[error("range {}: must be two finite numbers, the smaller one first", ends(.0))]
     Range([f64; 2]),
-    /// The range of a logarithmic scale begins at or below 0.
+    /// The range of a logarithmic colour scale begins at or below 0.
     #[error("range {}: must begin above 0 on a logarithmic scale", ends(.0))]
     LogarithmicRange([f64; 2]),
-    /// The scale is logarithmic, and no value is above 0.
+    /// The colour scale is logarithmic, and no value is above 0.
     #[error("no cell has a value above 0 for a logarithmic scale; choose a linear one")]
     NoPositiveValue,
 }
@@ -49,21 +49,21 @@ fn ends(range: &[f64; 2]) -> String {
     range.each_ref().map(digits).join(",")
 }
 
-/// The colours of quantities, common to all panels of a heat map.
+/// A colour scale, common to all panels of a heat map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourScale {
-    /// Ends of the colour bar; `None` if no cell has a value.
+    /// Ends `[low, high]` of the colour bar, in the unit of the values; `None` if no cell has a value.
     pub(super) range: Option<[f64; 2]>,
-    /// Cells whose colour the bar does not explain.
+    /// Legend entries for cells whose colour is not on the colour bar, `[entry]`.
     pub(super) legend: Vec<LegendEntry>,
     options: ScaleOptions,
 }
 
 impl ColourScale {
-    /// Chooses a scale for the summarised values.
+    /// Chooses a colour scale for the summarised values.
     ///
     /// # Errors
-    /// The range is not two finite numbers in increasing order, or the scale is logarithmic and its range begins at or below 0, or no
+    /// The range is not two finite numbers in increasing order. Or the scale is logarithmic, and its range begins at or below 0, or no
     /// value is above 0.
     pub fn new(summary: &ValueSummary, options: ScaleOptions) -> Result<Self, ScaleError> {
         let log = options.log;
@@ -140,7 +140,7 @@ impl ColourScale {
         ticks::at(&values, shown)
     }
 
-    /// Draws the colour bar to the right of `body`.
+    /// Draws the colour bar of the scale to the right of `body`.
     pub(super) fn draw_bar(&self, picture: &mut Picture, body: Area) {
         let Some(range) = self.range else {
             return;

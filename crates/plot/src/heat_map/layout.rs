@@ -1,4 +1,4 @@
-//! The layout of a heat map: one panel, or a contact sheet of many.
+//! Layout of a heat map: one panel, or a contact sheet of many.
 
 use super::colour_scale::BAR_ROOM;
 use super::{HeatMap, PanelAxis, PanelCells, Shading};
@@ -8,21 +8,22 @@ use crate::frame::ticks::{self, Tick};
 use crate::picture::font::{self, fitted};
 use crate::picture::{Anchor, Area, Picture};
 
-/// Largest width and height of all panels of a contact sheet together.
+/// Largest width and height of all panels of a contact sheet together, in pixels.
 const SHEET: [f64; 2] = [1720.0, 1500.0];
-/// Largest width and height of a panel of a contact sheet.
+/// Largest width and height of a panel of a contact sheet, in pixels.
 const PANEL: f64 = 560.0;
-/// From one note to the next.
+/// Distance between notes, in pixels.
 const NOTE: f64 = 34.0;
 
-/// The panels of a heat map laid out.
+/// A heat map with the positions of its panels, in pixels.
 pub struct HeatMapLayout {
     /// Columns and rows of panels.
     counts: [usize; 2],
     /// Width and height of all panels together.
     size: [f64; 2],
-    /// From one panel to the next, and the gap between them.
+    /// Distance from one panel to the next along x and y, in pixels.
     pitch: [f64; 2],
+    /// Gap between panels, in pixels.
     gap: f64,
     axes: Axes,
     /// Notes on the axes of the panels, where the axes of the picture are those of the contact sheet.
@@ -85,7 +86,7 @@ impl HeatMapLayout {
         }
     }
 
-    /// Draws all panels, one by one, and what stands around them.
+    /// Draws all panels of the heat map, one by one, then headings, axes and the colour bar.
     pub fn draw<E>(
         &self,
         map: &HeatMap,

@@ -1,4 +1,4 @@
-//! Heat maps: cells over two axes, one panel or a contact sheet of panels.
+//! Heat maps: cells over two axes, in one panel or a contact sheet of panels.
 //!
 //! Invariant: a pixel has the colour of the cell that it lies in. Nothing is smoothed.
 
@@ -41,53 +41,53 @@ use std::collections::BTreeMap;
 /// ```
 #[derive(Clone, Debug)]
 pub struct HeatMap {
-    /// Title of the picture; may be empty.
+    /// Title of the heat map; may be empty.
     pub title: String,
-    /// Horizontal axis of each panel. A white line marks 0.
+    /// Horizontal axis of each panel of the heat map. A white line marks the value 0.
     pub x: CellAxis,
-    /// Upright axis of each panel.
+    /// Vertical axis of each panel of the heat map.
     pub y: CellAxis,
-    /// Axes `[x, y]` along which panels differ: from column to column and from row to row; `None` for a single column or row.
+    /// Axes `[x, y]` along which the panels of the heat map differ: between columns and between rows. `None` for a single column or row.
     pub panel_axes: [Option<PanelAxis>; 2],
-    /// How cells are coloured.
+    /// Colouring of the cells of the heat map: by codes, or by a colour scale.
     pub shading: Shading,
-    /// Legend; the entries of a [`ColourScale`] come before it.
+    /// Legend of the heat map, `[entry]`; the entries of a [`ColourScale`] come before it.
     pub legend: Vec<LegendEntry>,
-    /// Width in pixels; `None` for the width at which all text can be read.
+    /// Width of the heat map in pixels; `None` for the width at which all text can be read.
     pub width: Option<u32>,
 }
 
 /// An axis along which the panels of a heat map differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanelAxis {
-    /// Name of the axis, with its unit.
+    /// Name of the panel axis, with its unit.
     pub label: String,
-    /// Values on the axis, in the unit of `label`: one for each column of panels from the left, or for each row from below.
+    /// Values on the panel axis, in the unit of `label`: one for each column of panels from the left, or for each row from below.
     pub values: Vec<f64>,
 }
 
-/// The contents of one panel.
+/// The contents of one panel of a heat map: values, hatching and curves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PanelCells {
-    /// Values or codes, `[y][x]`. Cells without a finite value are blank on a colour scale.
+    /// Values or codes of the panel's cells, row by row, `[y][x]`. Cells without a finite value are blank on a colour scale.
     pub values: Vec<f64>,
-    /// Whether each cell is hatched, `[y][x]`; empty for no cell.
+    /// Hatching of the panel's cells, `[y][x]`: true for a hatched cell. Empty if no cell is hatched.
     pub hatched: Vec<bool>,
-    /// Black curves over the cells, through points `[x, y]` in the units of the axes.
+    /// Black curves over the panel's cells, through points `[x, y]` in the units of the axes: `[curve][point]`.
     pub curves: Vec<Vec<[f64; 2]>>,
 }
 
-/// How the cells of a heat map are coloured.
+/// Colouring of the cells of a heat map: codes or quantities.
 #[derive(Clone, Debug)]
 pub enum Shading {
-    /// Codes: whole numbers from 0.
+    /// Cells contain codes: whole numbers from 0, each with its fill.
     Codes {
-        /// Fill of each code.
+        /// Fill of each code of a heat map.
         fills: BTreeMap<u32, Fill>,
-        /// Fill of all other values.
+        /// Fill of cells whose value has no fill of its own.
         other: Fill,
     },
-    /// Quantities, with a colour bar.
+    /// Cells contain quantities, coloured by a scale with a colour bar.
     Quantities(ColourScale),
 }
 

@@ -1,4 +1,4 @@
-//! What a colour scale must know of all values of a heat map, gathered in one pass and little memory.
+//! Summary of all values of a heat map for its colour scale, gathered in one pass and little memory.
 
 /// Fraction of the positive values below the start of a logarithmic scale: small values may span many powers of ten.
 const BELOW_START: f64 = 0.01;
@@ -9,13 +9,13 @@ const WITHIN_BIN: u32 = 16;
 /// Extent and distribution of the values of a heat map. [`Extend`] adds values.
 #[derive(Clone, Debug)]
 pub struct ValueSummary {
-    /// Smallest and largest finite value.
+    /// Smallest and largest finite value of the heat map, in the unit of the values; `None` without finite values.
     pub(super) extent: Option<[f64; 2]>,
-    /// Smallest and largest finite value above 0.
+    /// Smallest and largest finite value above 0 of the heat map; `None` without positive values.
     pub(super) positive: Option<[f64; 2]>,
-    /// Number of finite values that are at most 0.
+    /// Number of finite values of the heat map that are at most 0.
     pub(super) not_positive: u64,
-    /// Whether there are values that are not finite.
+    /// True if the heat map has values that are not finite.
     pub(super) has_blanks: bool,
     /// Positive values by their leading bits.
     bins: Vec<u64>,
@@ -59,7 +59,7 @@ fn widen(extent: &mut Option<[f64; 2]>, value: f64) {
 }
 
 impl ValueSummary {
-    /// The 1st percentile of the positive values, rounded down by less than 1 %, and how many values are below it; 0 if there are
+    /// Returns the 1st percentile of the positive values, rounded down by less than 1 %, and how many values are below it; 0 if there are
     /// none.
     pub(super) fn positive_start(&self) -> (f64, u64) {
         let all: u64 = self.bins.iter().sum();

@@ -1,4 +1,4 @@
-//! Pictures as PNG files.
+//! Encoding of pictures as PNG files.
 
 use super::coverage::{Coverage, dashes, polygon};
 use super::font::{self, CAPITALS};
@@ -31,7 +31,7 @@ pub fn file(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     encode(picture.pixels(), &draw(picture), compression)
 }
 
-/// Encodes pixels, row by row, as PNG.
+/// Encodes the pixels of an image, row by row, as PNG.
 pub fn encode(
     [width, height]: [usize; 2],
     pixels: &[Rgb],

@@ -1,10 +1,10 @@
-//! How much of each pixel strokes and polygons cover, and where dashes begin and end.
+//! Coverage of pixels by strokes and polygons, and the dashes of dashed lines.
 
 use super::DASHES;
 use glam::DVec2;
 use std::ops::Range;
 
-/// How much of each pixel a stroke covers. One buffer serves all strokes of a picture.
+/// The fraction of each pixel that a stroke covers. One buffer serves all strokes of a picture.
 pub struct Coverage {
     size: [usize; 2],
     parts: Vec<f32>,
@@ -13,7 +13,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// A buffer for a picture of `size` pixels.
+    /// Creates a coverage buffer for a picture of `size` pixels, `[width, height]`.
     pub fn new(size: [usize; 2]) -> Self {
         Self {
             size,
@@ -22,8 +22,8 @@ impl Coverage {
         }
     }
 
-    /// The pixels that a polyline with round ends and corners touches, each once, with the fraction covered. A single point is
-    /// a disc.
+    /// Returns the pixels `[x, y]` that a polyline with round ends and corners touches, each once, with the fraction covered. A single
+    /// point is a disc.
     pub fn of(
         &mut self,
         points: &[[f64; 2]],
@@ -105,7 +105,8 @@ pub fn dashes(points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
 /// Scan lines per row of pixels in [`polygon`].
 const SCAN_LINES: usize = 4;
 
-/// The pixels that the inside of a polygon (even-odd) touches on a picture of `size` pixels, each with the fraction covered.
+/// Returns the pixels `[x, y]` that the inside of a polygon (even-odd) touches on a picture of `size` pixels, each with the fraction
+/// covered.
 pub fn polygon(corners: &[[f64; 2]], [width, height]: [usize; 2]) -> Vec<([usize; 2], f64)> {
     let heights = corners.iter().map(|[_, y]| *y);
     let top = heights.clone().fold(f64::INFINITY, f64::min);
@@ -127,7 +128,7 @@ pub fn polygon(corners: &[[f64; 2]], [width, height]: [usize; 2]) -> Vec<([usize
     pixels
 }
 
-/// Where the sides of a polygon cross a horizontal line, from left to right.
+/// Points at which the sides of a polygon cross a horizontal line, from left to right.
 fn crossings(corners: &[[f64; 2]], at: f64) -> Vec<f64> {
     let next = corners.iter().cycle().skip(1);
     let sides = corners.iter().zip(next);

@@ -1,9 +1,9 @@
-//! The built-in font, DejaVu Sans. Sizes are the height of an em in pixels.
+//! The built-in font, DejaVu Sans. A font size is the height of an em in pixels.
 
 use ab_glyph::{Font, FontRef, OutlinedGlyph, PxScale, PxScaleFont, ScaleFont, point};
 use std::sync::LazyLock;
 
-/// The height of capitals in ems.
+/// Height of capital letters of the built-in font, in ems.
 pub const CAPITALS: f64 = 0.729;
 
 #[allow(clippy::expect_used, reason = "the font file is a part of the crate")]
@@ -11,7 +11,7 @@ static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
     FontRef::try_from_slice(include_bytes!("../../fonts/DejaVuSans.ttf")).expect("DejaVu Sans")
 });
 
-/// A text that fits its room, and its font size in pixels.
+/// A text cut to its space, and its font size in pixels.
 pub type FittedText = (String, f64);
 
 /// The font with an em of this many pixels.
@@ -21,7 +21,7 @@ fn sized(size: f64) -> PxScaleFont<&'static FontRef<'static>> {
     FONT.as_scaled(PxScale::from(size as f32 * ems))
 }
 
-/// The width of a text in pixels.
+/// Returns the width of a text of font size `size`, in pixels.
 pub fn width(text: &str, size: f64) -> f64 {
     let font = sized(size);
     text.chars()
@@ -29,7 +29,7 @@ pub fn width(text: &str, size: f64) -> f64 {
         .sum()
 }
 
-/// The outlines of a text that begins at the origin, with y downwards from its baseline.
+/// Returns the outlines of a text in pixels, `[glyph]`. It begins at the origin, with y downwards from its baseline.
 pub fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
     let font = sized(size);
     let mut x = 0.0;
@@ -45,7 +45,7 @@ pub fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
 /// The end of a text that is cut.
 const ELLIPSIS: &str = "\u{2026}";
 
-/// Fits a text into `room` pixels: shrinks it to no less than 0.6 of `largest`, and cuts it if that does not suffice.
+/// Fits a text into `room` pixels: shrinks the font to no less than 0.6 of `largest`, and cuts the text if that does not suffice.
 pub fn fitted(text: &str, largest: f64, room: f64) -> FittedText {
     let whole = width(text, largest).max(1.0);
     let size = largest * (room / whole).clamp(0.6, 1.0);

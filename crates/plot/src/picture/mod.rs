@@ -10,10 +10,11 @@ use font::FittedText;
 use palette::{Fill, INK, Rgb};
 use std::path::Path;
 
-/// Lengths of a dash and of a gap, in pixels along the middle of the line. The round ends of a dash cover one line width of each gap.
+/// Lengths of a dash and of a gap of dashed lines, in pixels along the middle of the line. The round ends of a dash cover one line width
+/// of each gap.
 pub const DASHES: [f64; 2] = [14.0, 10.0];
 
-/// A rectangle of the picture.
+/// A rectangle of the picture, in the picture's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Area {
     pub left: f64,
@@ -40,18 +41,18 @@ impl Area {
         self.top + self.height
     }
 
-    /// The point at fractions `x` from the left and `y` from the bottom.
+    /// Returns the point `[x, y]` of the rectangle at the fraction `x` from its left and the fraction `y` from its bottom.
     pub fn point(&self, x: f64, y: f64) -> [f64; 2] {
         [self.left + x * self.width, self.bottom() - y * self.height]
     }
 }
 
-/// What a line is drawn with; its ends and corners are round.
+/// The pen of a line: colour, width in pixels, and dashes. Ends and corners are round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pen {
     pub width: f64,
     pub colour: Rgb,
-    /// Whether the line has [`DASHES`]; it begins with a whole dash.
+    /// True if the pen draws [`DASHES`]; a line begins with a whole dash.
     pub dashed: bool,
 }
 
@@ -65,28 +66,28 @@ impl Pen {
     }
 }
 
-/// Where a text stands relative to its point. Its capitals are centred on the point across the line of writing.
+/// The position of a text relative to its point. Capital letters are centred on the point across the line of writing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Anchor {
     Left,
     Centre,
     Right,
-    /// Centred, running upwards.
+    /// The text runs upwards, with its middle at the point.
     Upwards,
 }
 
-/// Something drawn. Coordinates and sizes of all but rasters are in the picture's own units.
+/// A drawn element of a picture. Coordinates and sizes, except those of rasters, are in the picture's units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Primitive {
-    /// Points `[x, y]` of a line, and its pen.
+    /// A line through points `[x, y]`, and its pen.
     Polyline(Vec<[f64; 2]>, Pen),
-    /// Corners `[x, y]` of an area, and its fill.
+    /// A filled polygon with corners `[x, y]`, and its colour.
     Polygon(Vec<[f64; 2]>, Rgb),
-    /// Centre `[x, y]`, radius and fill of a circle, and an outline about its edge.
+    /// A filled circle: centre `[x, y]`, radius and colour, and the pen of its outline; `None` without an outline.
     Circle([f64; 2], f64, Rgb, Option<Pen>),
-    /// A line of text, its point `[x, y]`, the size of its font, and its anchor.
+    /// A text of one line: its point `[x, y]`, its font size, and its anchor.
     Text(String, [f64; 2], f64, Anchor),
-    /// Upper left corner and size in pixels, all of them inside the picture, and their colours row by row.
+    /// A raster of pixels: upper left corner and size in pixels, all inside the picture, and their colours row by row.
     Raster([usize; 2], [usize; 2], Vec<Rgb>),
 }
 
@@ -94,9 +95,9 @@ pub enum Primitive {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PictureFormat {
-    /// PNG: pixels.
+    /// The PNG format, which stores a picture as pixels.
     Png,
-    /// SVG 1.1: lines and text as vectors, the cells of heat maps as pixels.
+    /// The SVG 1.1 format: lines and text as vectors, the cells of heat maps as pixels.
     Svg,
 }
 
@@ -112,12 +113,12 @@ impl PictureFormat {
     }
 }
 
-/// The PNG encoder refused the pixels of a picture.
+/// The error of a picture whose pixels cannot be encoded as PNG.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot encode the picture as PNG: {0}")]
 pub struct EncodeError(#[from] png::EncodingError);
 
-/// A picture that has been laid out, to be encoded in any format.
+/// A picture that has been laid out and can be encoded in any format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Width and height in units: pixels of a picture in its natural size.
@@ -128,7 +129,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// An empty white picture of a natural size, enlarged to `width` pixels.
+    /// Creates an empty white picture of `size` pixels, `[width, height]`, enlarged to `width` pixels if given.
     pub(crate) fn new(size: [f64; 2], width: Option<u32>) -> Self {
         let size = size.map(f64::ceil);
         Self {
@@ -149,14 +150,15 @@ impl Picture {
         })
     }
 
-    /// Returns the width and height in pixels.
+    /// Returns the size of the picture in pixels: `[width, height]`.
     #[must_use]
     pub fn pixels(&self) -> [usize; 2] {
         self.size
             .map(|length| (length * self.scale).round().max(1.0) as usize)
     }
 
-    /// Returns the characters that the built-in font lacks, each once. A PNG shows them as boxes; an SVG has them as text.
+    /// Returns the characters of the picture's texts that the built-in font lacks, each once. A PNG shows them as boxes; an SVG has them
+    /// as text.
     #[must_use]
     pub fn missing_glyphs(&self) -> Vec<char> {
         let texts = self
@@ -174,14 +176,14 @@ impl Picture {
         self.primitives.push(line);
     }
 
-    /// Draws the outline of an area.
+    /// Draws the outline of a rectangle, `width` pixels wide.
     pub(crate) fn frame(&mut self, area: Area, width: f64) {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
         let corners = corners.map(|(x, y)| area.point(x, y));
         self.polyline(&corners, Pen::solid(width, INK));
     }
 
-    /// Fills a polygon; fewer than three corners draw nothing.
+    /// Fills a polygon with corners `[x, y]`; fewer than three corners draw nothing.
     pub(crate) fn polygon(&mut self, corners: Vec<[f64; 2]>, fill: Rgb) {
         if corners.len() > 2 {
             self.primitives.push(Primitive::Polygon(corners, fill));
@@ -206,7 +208,7 @@ impl Picture {
         self.text(text, at, *size, anchor);
     }
 
-    /// Fills an area pixel by pixel; `fill` gets the pixel's fractions from the left and from the bottom.
+    /// Fills a rectangle pixel by pixel; `fill` gets the pixel's fractions from the left and from the bottom.
     pub(crate) fn raster(&mut self, area: Area, fill: impl Fn(f64, f64) -> Fill) {
         let ends = [[area.left, area.right()], [area.top, area.bottom()]];
         let limits = self.pixels();

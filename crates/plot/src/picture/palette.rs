@@ -1,4 +1,4 @@
-//! Colours that people with any colour vision can tell apart.
+//! Colours of charts and heat maps that people with any colour vision can tell apart.
 
 /// Red, green and blue of an sRGB colour, each from 0 to 255.
 pub type Rgb = [u8; 3];
@@ -10,14 +10,14 @@ const fn rgb(number: u32) -> Rgb {
 }
 
 pub const WHITE: Rgb = rgb(0xffffff);
-/// Text, frames, and black lines of charts.
+/// Colour of text, frames, and black lines of charts.
 pub const INK: Rgb = rgb(0x222b33);
 pub const BLUE: Rgb = rgb(0x1c6cc4);
-/// Grey ink of charts, squares that an inset enlarges, and dark discs.
+/// Colour of grey lines of charts, of squares that an inset enlarges, and of dark discs.
 pub const GREY: Rgb = rgb(0x9aa1a8);
 pub const SHADE_LIGHT: Rgb = rgb(0xdbe4ee);
 pub const SHADE_DARK: Rgb = rgb(0xa9bdd2);
-/// Cells without a value, and light discs of charts.
+/// Colour of cells without a value, and of light discs of charts.
 pub const BLANK: Rgb = rgb(0xdcddde);
 
 /// The fill of a cell or a legend's swatch: one colour, or stripes of two.
@@ -31,19 +31,19 @@ impl Fill {
     /// The grey fill of cells without a value.
     pub const BLANK: Self = Self::plain(BLANK);
 
-    /// A fill of one colour.
+    /// Creates a fill of one colour.
     #[must_use]
     pub const fn plain(colour: Rgb) -> Self {
         Self::striped(colour, colour)
     }
 
-    /// A fill of one colour with stripes of another.
+    /// Creates a fill of the colour `ground` with stripes of another colour.
     #[must_use]
     pub const fn striped(ground: Rgb, stripes: Rgb) -> Self {
         Self { ground, stripes }
     }
 
-    /// Returns the ground colour with black or white stripes, whichever contrast more.
+    /// Returns the fill's ground colour with black or white stripes, whichever contrast more.
     #[must_use]
     pub fn hatched(self) -> Self {
         let [red, green, blue] = self.ground.map(f64::from);
@@ -62,7 +62,7 @@ impl Fill {
         Self::plain(rgb(COLOURS[index % COLOURS.len()]))
     }
 
-    /// The colour where `x + y` is `sum`: stripes run from the lower left to the upper right.
+    /// Returns the colour of the fill at pixels where `x + y` is `sum`: stripes run from the lower left to the upper right.
     pub(crate) fn at(self, sum: f64) -> Rgb {
         if sum % 10.0 < 3.0 {
             self.stripes
@@ -72,7 +72,8 @@ impl Fill {
     }
 }
 
-/// From dark blue at 0 through green to yellow at 1 (viridis by S. van der Walt and N. Smith, at each ninth).
+/// Returns the colour at a fraction of a sequential scale: dark blue at 0, green, yellow at 1 (viridis by S. van der Walt and N. Smith,
+/// at each ninth).
 pub fn sequential(at: f64) -> Rgb {
     const STOPS: [u32; 10] = [
         0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e, 0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b,
@@ -81,7 +82,7 @@ pub fn sequential(at: f64) -> Rgb {
     between(&STOPS, at)
 }
 
-/// From blue at 0 through white to red at 1 (ColorBrewer, RdBu).
+/// Returns the colour at a fraction of a diverging scale: blue at 0, white, red at 1 (ColorBrewer, RdBu).
 pub fn diverging(at: f64) -> Rgb {
     const STOPS: [u32; 7] = [
         0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b,

@@ -1,4 +1,4 @@
-//! Pictures as SVG documents with native lines, circles and text. Rasters are embedded as PNG.
+//! Encoding of pictures as SVG documents with native lines, circles and text. Rasters are embedded as PNG.
 
 use super::bitmap;
 use super::font::CAPITALS;

@@ -1,4 +1,4 @@
-//! Fig. 1: definitions, drawn from computed states.
+//! Fig. 1 of the paper: definitions, drawn from computed states.
 
 mod pushed;
 

@@ -1,4 +1,4 @@
-//! Panels B and D of Fig. 1: the whisker pushed into the pole.
+//! Panels B and D of the paper's Fig. 1: the whisker pushed into the pole.
 
 use super::{POINTS, TOUCH_MM, drawing, whisker_points};
 use crate::paper::figures::FigurePanel;
@@ -58,7 +58,7 @@ fn from([x, y]: [f64; 2], length: f64, angle: f64) -> [f64; 2] {
     [length.mul_add(cosine, x), length.mul_add(sine, y)]
 }
 
-/// B: base, contact, angles and force, with the contact in the inset.
+/// Draws panel B of Fig. 1: base, contact, angles and force, with the contact in the inset.
 pub fn contact() -> Result<FigurePanel, NoState> {
     let pushed = PushedWhisker::new()?;
     let (base, at) = ([0.0, 0.0], [pushed.contact.x_mm, pushed.contact.y_mm]);
@@ -119,7 +119,7 @@ fn arc_at([x, y]: [f64; 2], radius: f64, ends: [f64; 2]) -> Vec<[f64; 2]> {
     points.map(|[across, up]| [x + across, y + up]).collect()
 }
 
-/// D: the push angle, between the contacts of the real and the virtual whisker.
+/// Draws panel D of Fig. 1: the push angle, between the contacts of the real and the virtual whisker.
 pub fn push_angle() -> Result<FigurePanel, NoState> {
     let pushed = PushedWhisker::new()?;
     let rest = Rest::new(&CONE.rod(&POLE, Side::Cb));

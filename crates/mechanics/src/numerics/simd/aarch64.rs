@@ -1,4 +1,4 @@
-//! The vector unit of aarch64. It has as many lanes as AVX2: four registers of two numbers in place of two of four.
+//! The vector unit of aarch64. It has as many lanes as AVX2: four registers of two numbers instead of two of four.
 #![allow(
     unsafe_code,
     reason = "vector instructions may run only where the unit exists, which a token proves; see `registers`"

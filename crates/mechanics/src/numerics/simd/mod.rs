@@ -18,35 +18,35 @@ use std::fmt;
 #[cfg(target_arch = "x86_64")]
 use x86::{Avx2, Avx512};
 
-/// Largest number of lanes of any unit.
+/// Largest number of SIMD lanes of any unit.
 pub const WIDTH: usize = 16;
 
 /// Several numbers on which each operation acts at once, or a single number.
 pub trait Lanes: Real {
-    /// Half as many lanes of the unit, in one register: faster where the values in flight do not fit into all registers.
+    /// Half as many lanes of the same unit, in one register: faster where the values in flight do not fit into all registers.
     type Narrow: Lanes;
 
-    /// Number of lanes.
+    /// Number of lanes of the SIMD type.
     const LANES: usize;
 
-    /// The first numbers of an array, as lanes.
+    /// Loads the first numbers of an array into the lanes.
     fn pack(lanes: [f64; WIDTH]) -> Self;
-    /// An array that begins with the lanes.
+    /// Returns an array that begins with the numbers of the lanes.
     fn unpack(self) -> [f64; WIDTH];
 
-    /// Runs `task` in a function of its own: one large function takes a compiler longer than many small ones.
+    /// Runs `task` in a separate function: a compiler is faster with many small functions than with one large function.
     #[inline(never)]
     fn outlined<K: LanesTask<Self>>(task: K) -> K::Output {
         task.run()
     }
 }
 
-/// Arithmetic in lanes of type `T`.
+/// A computation in lanes of type `T`.
 pub trait LanesTask<T: Lanes> {
-    /// The result.
+    /// Result of the computation in lanes.
     type Output;
 
-    /// Runs the task. It is to be inlined into a function that is compiled for the unit of these lanes.
+    /// Runs the computation. It is inlined into a function that is compiled for the unit of these lanes.
     fn run(self) -> Self::Output;
 }
 
@@ -66,32 +66,32 @@ impl Lanes for f64 {
     }
 }
 
-/// Arithmetic in lanes of any type.
+/// A computation in lanes of any type.
 pub trait SimdTask {
-    /// The result.
+    /// Result of the computation.
     type Output;
 
-    /// Runs the task in the lanes of one unit. It is to be inlined into a function that is compiled for that unit.
+    /// Runs the computation in the lanes of one unit. It is inlined into a function that is compiled for that unit.
     fn run<T: Lanes>(self) -> Self::Output;
 }
 
-/// The rounding of `a * b + c`. All units of one class give results with equal bits.
+/// The rounding of `a * b + c` on a processor. All units of one class give results with equal bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArithmeticClass {
-    /// Fused: one rounding, of the sum.
+    /// Fused multiply-add: only the sum is rounded.
     Fma,
-    /// Not fused: the product is rounded, then the sum.
+    /// Separate multiplication and addition: the product is rounded, then the sum.
     NoFma,
 }
 
 impl ArithmeticClass {
-    /// The class of the widest unit of this processor, which [`Unit::detect`] returns.
+    /// Returns the arithmetic class of the widest unit of this processor, which [`Unit::detect`] returns.
     #[must_use]
     pub fn detect() -> Self {
         Unit::detect().arithmetic()
     }
 
-    /// The name in stores and messages: `fma` or `no-fma`.
+    /// Returns the name of the arithmetic class in stores and messages: `fma` or `no-fma`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -139,7 +139,7 @@ impl fmt::Display for Unit {
 }
 
 impl Unit {
-    /// The units of this processor, from the widest to the scalar one.
+    /// Returns the SIMD units of this processor, from the widest to the scalar one.
     pub fn all() -> impl Iterator<Item = Self> {
         let units = [
             #[cfg(target_arch = "x86_64")]
@@ -153,19 +153,19 @@ impl Unit {
         units.into_iter().flatten().map(Self)
     }
 
-    /// The widest unit of this processor.
+    /// Returns the widest SIMD unit of this processor.
     #[must_use]
     pub fn detect() -> Self {
         Self::all().next().unwrap_or(Self::scalar())
     }
 
-    /// Plain numbers without fused products: the unit of processors without AVX2 and NEON, and the reference of tests.
+    /// Returns the unit of plain numbers without fused products: for processors without AVX2 and NEON, and for comparison in tests.
     #[must_use]
     pub const fn scalar() -> Self {
         Self(Instructions::Scalar)
     }
 
-    /// The rounding of `mul_add` in lanes of this unit.
+    /// Returns the rounding of `mul_add` in lanes of this unit.
     #[must_use]
     pub const fn arithmetic(self) -> ArithmeticClass {
         match self.0 {
@@ -177,7 +177,7 @@ impl Unit {
         }
     }
 
-    /// Runs `task` in lanes of this unit.
+    /// Runs a computation in lanes of this unit.
     #[must_use]
     pub fn run<K: SimdTask>(self, task: K) -> K::Output {
         match self.0 {

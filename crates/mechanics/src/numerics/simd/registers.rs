@@ -1,10 +1,9 @@
 //! Macros that make a vector unit from its token, its registers and the names of its instructions.
 //!
-//! Why the instructions are safe: the vector types of a unit are private to the unit's file, so that only generic code makes
-//! vectors, and only where [`SimdTask::run`](super::SimdTask::run) is called with such a type. That call is in a function that
-//! enables the unit's features, and only the unit's token calls it. Only `detect` makes a token, after it has tested the
-//! processor. Vectors cannot outlive the call: neither the task nor its output can name their type, which nothing declares
-//! `'static`.
+//! Why the instructions are safe: the vector types of a unit are private to the unit's file. So only generic code makes vectors, and only
+//! where [`SimdTask::run`](super::SimdTask::run) is called with such a type. That call is in a function that enables the unit's features,
+//! and only the unit's token calls it. Only `detect` makes a token, after it has tested the processor. Vectors cannot outlive the call:
+//! neither the task nor its output can name their type, which nothing declares `'static`.
 
 /// Runs `$body` in a function that is compiled for a unit.
 ///
@@ -132,12 +131,12 @@ macro_rules! unit {
         pub struct $token(());
 
         impl $token {
-            /// The token, where the processor has all features of the unit.
+            /// Returns the token of the SIMD unit if the processor has all its features, otherwise `None`.
             pub fn detect() -> Option<Self> {
                 ($($detected!($feature))&&+).then_some(Self(()))
             }
 
-            /// Runs `task` in lanes of this unit.
+            /// Runs a computation in lanes of this SIMD unit.
             pub fn run<K: SimdTask>(self, task: K) -> K::Output {
                 #[target_feature(enable = $enabled)]
                 fn run<K: SimdTask>(task: K) -> K::Output {

@@ -26,7 +26,7 @@ enum Form {
 }
 
 impl Rest {
-    /// The rest shape of `rod`.
+    /// Computes the rest shape of `rod`.
     #[must_use]
     pub fn new(rod: &Rod) -> Self {
         Self {
@@ -39,13 +39,13 @@ impl Rest {
         }
     }
 
-    /// Arclength of the tip, in whisker lengths: 1, or slightly less for a perfect cone, which is cut.
+    /// Returns the arclength of the tip, in whisker lengths: 1, or slightly less for a perfect cone, which is cut.
     #[must_use]
     pub const fn end(&self) -> f64 {
         self.end
     }
 
-    /// Unit tangent of the parabola of `rod` at arclength `s`, in the frame of the parabola.
+    /// Returns the unit tangent of the parabola of `rod` at arclength `s`, in whisker lengths, in the frame of the parabola.
     #[must_use]
     #[inline(always)]
     pub fn parabola_tangent(rod: &Rod, s: f64) -> DVec2 {
@@ -58,7 +58,7 @@ impl Rest {
         DVec2::new(cos, slope * cos)
     }
 
-    /// Curvature at arclength `s`, in radians per whisker length.
+    /// Returns the curvature of the whisker at rest at arclength `s` (whisker lengths), in radians per whisker length.
     #[must_use]
     pub fn curvature(&self, s: f64) -> f64 {
         match &self.form {
@@ -67,7 +67,7 @@ impl Rest {
         }
     }
 
-    /// Point and unit tangent at arclength `s`, in whisker lengths, in the frame of the base.
+    /// Returns point and unit tangent of the whisker at rest at arclength `s`, in whisker lengths, in the frame of the base.
     #[must_use]
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         match &self.form {
@@ -91,7 +91,8 @@ impl Rest {
         (s, point, tangent)
     }
 
-    /// Point of the whisker at rest at the straight `distance` from the base, both in whisker lengths, in the frame of the base.
+    /// Returns the point of the whisker at rest at the straight `distance` from the base, both in whisker lengths, in the frame of the
+    /// base.
     #[must_use]
     pub fn point_at_distance(&self, distance: f64) -> DVec2 {
         match &self.form {
@@ -100,22 +101,23 @@ impl Rest {
         }
     }
 
-    /// Arclength of the contact and centre of the pole when it first touches the whisker at `distance` from the base: all in whisker
-    /// lengths, the centre in the frame of the base.
+    /// Returns the arclength of the contact, and the pole's centre when it first touches the whisker at `distance` from the base. All are
+    /// in whisker lengths, the centre in the frame of the base.
     #[must_use]
     pub fn touch_at_distance(&self, distance: f64) -> (f64, DVec2) {
         let (s, point, tangent) = self.at_distance(distance);
         (s, point - self.pole * tangent.perp())
     }
 
-    /// Centre of the pole when it first touches the whisker at `distance` from the base, both in whisker lengths, in the frame of the base.
+    /// Returns the centre of the pole when it first touches the whisker at `distance` from the base. Both are in whisker lengths, the
+    /// centre in the frame of the base.
     #[must_use]
     pub fn pole_at_distance(&self, distance: f64) -> DVec2 {
         self.touch_at_distance(distance).1
     }
 
-    /// Distance of the first touch from the base when the pole's centre is `pole_distance` from the base, both in whisker lengths. It is
-    /// the inverse of the length of [`Rest::pole_at_distance`], which grows with the distance in every valid scene.
+    /// Returns the distance of the first touch from the base when the pole's centre is `pole_distance` from the base, both in whisker
+    /// lengths. It is the inverse of the length of [`Rest::pole_at_distance`], which grows with the distance in every valid scene.
     #[must_use]
     pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
         let radius = self.pole.abs();

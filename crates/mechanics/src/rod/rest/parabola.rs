@@ -1,4 +1,4 @@
-//! The parabola `y = A (x - x0)^2` (paper, Eqs 7 and 10), or a straight line.
+//! Parabola at rest, `y = A (x - x0)^2` (paper, Eqs 7 and 10), or a straight line.
 
 use crate::numerics::Bracket;
 use crate::rod::Rod;
@@ -17,7 +17,7 @@ fn arc(t: f64) -> f64 {
 /// Largest last Halley step, relative to the abscissa: the error is its cube, which is below rounding.
 const LAST_HALLEY_STEP: f64 = 5e-6;
 
-/// A parabola in the frame of the base.
+/// Parabola at rest in the frame of the base.
 #[derive(Clone, Copy, Debug)]
 pub struct Parabola {
     bend: f64,
@@ -27,7 +27,7 @@ pub struct Parabola {
 }
 
 impl Parabola {
-    /// The parabola of `rod`.
+    /// Computes the parabola at rest of `rod`.
     pub fn new(rod: &Rod) -> Self {
         Self {
             bend: rod.bend,
@@ -36,7 +36,7 @@ impl Parabola {
         }
     }
 
-    /// Slope of the parabola in its own frame at arclength `s`.
+    /// Returns the slope of the parabola in its own frame at arclength `s` (whisker lengths), dimensionless.
     #[inline(always)]
     pub fn slope_at(&self, s: f64) -> f64 {
         if self.bend == 0.0 {
@@ -65,12 +65,12 @@ impl Parabola {
         t + d * (1.0 + e * tail)
     }
 
-    /// Curvature `2 A cos^3` at arclength `s` (whisker lengths), in radians per whisker length.
+    /// Returns the curvature `2 A cos^3` of the parabola at arclength `s` (whisker lengths), in radians per whisker length.
     pub fn curvature(&self, s: f64) -> f64 {
         2.0 * self.bend / (1.0 + self.slope_at(s).powi(2)).sqrt().powi(3)
     }
 
-    /// Arclength at the abscissa `x` of the parabola, both in whisker lengths from the base.
+    /// Returns the arclength at the abscissa `x` of the parabola, both in whisker lengths from the base.
     pub fn arclength_at(&self, x: f64) -> f64 {
         if self.bend == 0.0 {
             return x * (1.0 + self.slope * self.slope).sqrt();
@@ -79,7 +79,7 @@ impl Parabola {
         (arc(t) - arc(self.slope)) / (4.0 * self.bend)
     }
 
-    /// Point and unit tangent at the abscissa `x` of the parabola, in the frame of the base.
+    /// Returns point and unit tangent at the abscissa `x` of the parabola, in whisker lengths, in the frame of the base.
     pub fn at(&self, x: f64) -> (DVec2, DVec2) {
         let t = (2.0 * self.bend).mul_add(x, self.slope);
         let point = DVec2::new(x, x * self.bend.mul_add(x, self.slope));
@@ -88,7 +88,7 @@ impl Parabola {
         (to_base.rotate(point), to_base.rotate(tangent))
     }
 
-    /// Point and unit tangent at arclength `s`.
+    /// Returns point and unit tangent of the parabola at arclength `s`, in whisker lengths, in the frame of the base.
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         let x = if self.bend == 0.0 {
             s / (1.0 + self.slope * self.slope).sqrt()
@@ -98,9 +98,9 @@ impl Parabola {
         self.at(x)
     }
 
-    /// Abscissa of the parabola at which the chord from the base is `chord`: the root of `x^2 (1 + (A x + t0)^2) = chord^2`. The
-    /// left side grows with `x` in every valid scene. With the vertex at the base the equation is quadratic in `x^2`; otherwise
-    /// Halley's method solves it.
+    /// Returns the abscissa of the parabola at which the chord from the base is `chord`, both in whisker lengths. It is the root of `x^2
+    /// (1 + (A x + t0)^2) = chord^2`, whose left side grows with `x` in every valid scene. With the vertex at the base the equation is
+    /// quadratic in `x^2`; otherwise Halley's method solves it.
     pub fn x_of_chord(&self, chord: f64) -> f64 {
         if self.slope == 0.0 {
             let rise = 2.0 * self.bend * chord;

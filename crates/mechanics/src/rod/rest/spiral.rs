@@ -1,4 +1,4 @@
-//! The Euler spiral `kappa = k0 + k1 s`, straight beyond the tip.
+//! Euler spiral at rest, with curvature `k0 + k1 s`, straight beyond the tip.
 
 use crate::numerics::Bracket;
 use glam::DVec2;
@@ -18,7 +18,7 @@ const GAUSS: [(f64, f64); 8] = [
 /// Largest rotation of the spiral per panel of the rule, in radians: the rule is then exact to rounding.
 const TURN_PER_PANEL: f64 = 1.0;
 
-/// An Euler spiral in the frame of the base.
+/// Euler spiral at rest in the frame of the base.
 #[derive(Clone, Copy, Debug)]
 pub struct SpiralRest {
     k0: f64,
@@ -26,12 +26,12 @@ pub struct SpiralRest {
 }
 
 impl SpiralRest {
-    /// The spiral whose curvature is `k0 + k1 s` at arclength `s` (whisker lengths), in radians per whisker length.
+    /// Creates the spiral whose curvature is `k0 + k1 s` at arclength `s` (whisker lengths), in radians per whisker length.
     pub fn new([k0, k1]: [f64; 2]) -> Self {
         Self { k0, k1 }
     }
 
-    /// Curvature at arclength `s` (whisker lengths), in radians per whisker length; 0 beyond the tip.
+    /// Returns the curvature of the spiral at arclength `s` (whisker lengths), in radians per whisker length; 0 beyond the tip.
     pub fn curvature(&self, s: f64) -> f64 {
         if s > 1.0 {
             0.0
@@ -45,7 +45,7 @@ impl SpiralRest {
         s * (0.5 * self.k1).mul_add(s, self.k0)
     }
 
-    /// Point and unit tangent at arclength `s`.
+    /// Returns point and unit tangent of the spiral at arclength `s`, in whisker lengths, in the frame of the base.
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         let bent = s.min(1.0);
         let most = self.k0.abs().max((self.k0 + self.k1).abs());
@@ -66,8 +66,8 @@ impl SpiralRest {
         (point + (s - bent) * tangent, tangent)
     }
 
-    /// Arclength at which the chord from the base is `chord`, both in whisker lengths. The chord grows along the spiral in
-    /// every valid scene.
+    /// Returns the arclength at which the spiral's chord from the base is `chord`, both in whisker lengths. The chord grows along the
+    /// spiral in every valid scene.
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
         let reach = self.at_arclength(1.0).0.length();
         // The function is the chord less the length, which falls.

@@ -4,20 +4,20 @@ use super::{InitialCondition, Method};
 use crate::rod::Effects;
 use std::sync::Arc;
 
-/// Common properties of the trajectories of a block.
+/// Properties that all trajectories of a block have in common.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlockKey {
-    /// Effects of the kernel: those of the method and of the rod. A profile counts only if it is the rod's own. Beyond `beta tau = 1.5` on
-    /// a straight cone, [`Effects::reaching`] adds `gradient`.
+    /// Effects of the block's kernel: those of the method and of the rod. A profile counts only if it is the rod's own. Beyond `beta tau
+    /// = 1.5` on a straight cone, [`Effects::reaching`] adds `gradient`.
     pub effects: Effects,
     /// Address of the profile; 0 without one.
     profile: usize,
-    /// Number of steps of each trajectory; 0 with a profile, along which each lane takes its own steps.
+    /// Number of steps of each trajectory of the block; 0 with a profile, along which each lane takes its own steps.
     pub steps: u32,
 }
 
 impl BlockKey {
-    /// The key of a condition whose trajectory takes `steps` steps.
+    /// Returns the block key of an initial condition whose trajectory takes `steps` steps.
     #[inline]
     pub fn new(
         method: Method,
@@ -36,16 +36,16 @@ impl BlockKey {
         }
     }
 
-    /// Returns true if both can share a padded block, whatever their numbers of steps.
+    /// Returns true if trajectories with both keys can share a padded block, whatever their numbers of steps.
     pub fn may_pad(&self, other: &Self) -> bool {
         let but_steps = |key: &Self| (key.effects, key.profile);
         but_steps(self) == but_steps(other)
     }
 }
 
-/// The different keys of a batch.
+/// List of the different block keys of a batch.
 pub struct BlockKeys {
-    /// Each key once, in the order of appearance.
+    /// Block keys of the batch, each once, in the order of appearance.
     pub all: Vec<BlockKey>,
     /// `[steps modulo 64]`: the index of the last key with such a number of steps.
     likely: [usize; 64],
@@ -61,7 +61,7 @@ impl Default for BlockKeys {
 }
 
 impl BlockKeys {
-    /// Index of `key` in [`BlockKeys::all`]. A new key is appended.
+    /// Returns the index of `key` in [`BlockKeys::all`]. A new key is appended.
     #[inline]
     pub fn index(&mut self, key: BlockKey) -> usize {
         let likely = &mut self.likely[key.steps as usize % 64];

@@ -1,4 +1,4 @@
-//! Floating-point operations of a trajectory: the integrator's own step, run with numbers that only count.
+//! Counts of the floating-point operations of a trajectory: the integrator's own step runs with numbers that only count.
 
 use crate::numerics::Real;
 use crate::numerics::gauss::NODES;
@@ -63,9 +63,9 @@ impl Real for Counted<'_> {
     }
 }
 
-/// Operations of one trajectory with first derivatives on its way from the contact to the base, in `steps` steps of
-/// [`Nystrom8`], or in the steps that the pieces of a measured profile need at [`Resolution::of`] `steps`. Stages whose
-/// results nothing needs are counted as well. The start and the end of a trajectory, a few percent, are not.
+/// Returns the number of operations of one trajectory with first derivatives on its way from the contact to the base. It takes `steps`
+/// steps of [`Nystrom8`], or along a measured profile those of [`Resolution::of`] `steps`. Stages whose results are not needed are
+/// counted as well. The start and the end of a trajectory, a few percent, are not.
 #[must_use]
 pub fn flops_of_nystrom8(effects: Effects, steps: u32, condition: &InitialCondition) -> u64 {
     let resolution = Resolution::of(steps);

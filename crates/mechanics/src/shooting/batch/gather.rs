@@ -11,7 +11,7 @@ use crate::shooting::{
 /// One initial condition for each lane.
 pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
-/// One number of each condition. (`map` of an array is not inlined into functions for a SIMD unit.)
+/// Returns one number of each initial condition: `[lane]`. (`map` of an array is not inlined into functions for a SIMD unit.)
 #[inline(always)]
 pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> [f64; WIDTH] {
     let mut numbers = [0.0; WIDTH];
@@ -21,38 +21,39 @@ pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f6
     numbers
 }
 
-/// One number of each condition, in lanes.
+/// Returns one number of each initial condition, in lanes.
 #[inline(always)]
 pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> T {
     T::pack(numbers(conditions, number))
 }
 
-/// The contacts of a block, in lanes.
+/// Contacts at which the trajectories of a block start, in lanes.
 pub struct Contacts<'a, T> {
-    /// Initial conditions of the trajectories.
+    /// Initial conditions of the trajectories, one for each lane.
     pub conditions: &'a Conditions<'a>,
-    /// Resolution of the integration.
+    /// Resolution of the integration from the contacts.
     pub resolution: Resolution,
-    /// Number of steps; 0 along a profile.
+    /// Number of steps from each contact to its base; 0 along a profile.
     pub steps: u32,
-    /// Taper `beta` of the rods.
+    /// Taper `beta` of the rods in each lane, dimensionless.
     pub taper: T,
-    /// `tau` of the contacts.
+    /// Coordinate `tau` of the contacts in each lane, dimensionless.
     pub tau: T,
-    /// Scale of the coordinates at the contacts.
+    /// Scale of the coordinates at the contacts: the cone's radius over the base radius.
     pub radius: T,
-    /// Arclength of the contacts from the base.
+    /// Arclength of the contacts from the base, in whisker lengths.
     pub s: T,
-    /// Signed forces, with friction.
+    /// Signed forces at the contacts with friction, in `E I_base/L_w^2`.
     pub force: T,
 }
 
 /// A material that can be gathered from the rods of a block, with the integration along it.
 pub trait GatherMaterial<T: Lanes> {
-    /// Bending stiffness at the contacts over the stiffness at the base. `radius` and `s` are those of the contacts.
+    /// Returns the bending stiffness at the contacts over the stiffness at the base. `radius` and `s` are those of the contacts.
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T;
 
-    /// The state at the base after `state` at the `contacts`. `ADVANCES` is true for rods that change along their length.
+    /// Returns the state of the trajectories at the base, from their `state` at the `contacts`. `ADVANCES` is true for rods that change
+    /// along their length.
     fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
@@ -131,10 +132,10 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
 
 /// A rest shape that can be gathered from the rods of a block.
 pub trait Gather<T: Lanes>: Intrinsic<T> {
-    /// The rest shape, and at the arclengths `s`: its state, and its curvature with the derivative by the arclength.
+    /// Gathers the rest shape of the rods and, at the arclengths `s`: its state, and its curvature with the derivative by the arclength.
     fn gather(conditions: &Conditions, s: T) -> (Self, Self::State, [T; 2]);
 
-    /// Unit tangent at rest in the frame of a parabola; the first axis for other rest shapes.
+    /// Returns the unit tangent at rest in the frame of a parabola; the first axis for other rest shapes.
     #[inline(always)]
     fn tangent(_: Self::State) -> [T; 2] {
         [T::of(1.0), T::of(0.0)]

@@ -10,7 +10,7 @@ use crate::shooting::sensitivity::{Arrival, SensitivitySet};
 use crate::shooting::{Bent, Graded, Integrator, Measured, Nystrom8, Spiral, Straight, Uniform};
 use std::marker::PhantomData;
 
-/// Initial conditions of trajectories that are integrated together, at most as many as there are lanes.
+/// Block of initial conditions of trajectories that are integrated together, at most as many as there are lanes.
 pub struct Block<'a> {
     method: Method,
     /// The lanes after the last condition repeat it.
@@ -19,7 +19,7 @@ pub struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// The first `count` conditions, at least 1, by `method`.
+    /// Creates a block of the first `count` conditions, at least 1, to integrate by `method`.
     pub fn new(
         method: Method,
         count: usize,
@@ -63,7 +63,7 @@ pub struct Trajectories<'a, O> {
 }
 
 impl<'a, O> Trajectories<'a, O> {
-    /// The trajectories of `block`, whose conditions all have this `key`.
+    /// Creates the task for the trajectories of `block`, whose conditions all have this `key`.
     pub const fn new(key: BlockKey, block: &'a Block<'a>) -> Self {
         Self {
             key,
@@ -100,7 +100,7 @@ impl<O> Trajectories<'_, O> {
     }
 }
 
-/// Task that computes the number of steps of each trajectory of a block; 0 along a profile.
+/// Task that computes the number of steps of each trajectory of a block: `[lane]`; 0 along a profile.
 pub struct StepCounts<'a>(pub &'a Block<'a>);
 
 impl SimdTask for StepCounts<'_> {

@@ -86,8 +86,8 @@ impl PieceSpan {
         takes
     }
 
-    /// Collocation integrals of the step `i`: from the table of the piece `k` in lanes that cross the whole piece, `computed` in
-    /// others, and 0 in lanes that do not take the step.
+    /// Collocation integrals of the step `i`. In lanes that cross the whole piece `k` they come from its table, in others they are
+    /// `computed`. They are 0 in lanes that do not take the step.
     #[inline(always)]
     fn weights<T: Lanes>(
         &self,

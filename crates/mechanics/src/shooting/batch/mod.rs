@@ -26,25 +26,25 @@ use rayon::prelude::*;
 /// Initial condition of a trajectory: a rod, its contact at `tau`, and the `load = f/radius^2` there.
 #[derive(Clone, Copy, Debug)]
 pub struct InitialCondition<'a> {
-    /// The rod.
+    /// Whisker and pole of the trajectory.
     pub rod: &'a Rod,
-    /// `tau` of the contact.
+    /// Contact coordinate `tau` at which the trajectory starts, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2` at the contact, dimensionless.
+    /// Signed load `f/rho^2` at the contact of the trajectory, dimensionless.
     pub load: f64,
 }
 
-/// Method of integration: the resolution, and effects that every kernel has.
+/// Integration method of trajectories: the resolution, and effects that every kernel has.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    /// Resolution of the integration.
+    /// Resolution of the method: it determines the integration steps.
     pub resolution: Resolution,
-    /// Effects of every kernel beside the rod's own.
+    /// Effects that every kernel has beside those of the rod.
     pub effects: Effects,
 }
 
 impl Method {
-    /// The method at `resolution`, in which every rod has the kernel for its own effects.
+    /// Creates the method at `resolution`, in which every rod has the kernel for its own effects.
     #[must_use]
     pub fn new(resolution: Resolution) -> Self {
         let effects = Effects::default();
@@ -54,27 +54,27 @@ impl Method {
         }
     }
 
-    /// The method at [`Resolution::FINE`].
+    /// Returns the method at [`Resolution::FINE`].
     #[must_use]
     pub fn fine() -> Self {
         Self::new(Resolution::FINE)
     }
 
-    /// The method whose kernels have at least these `effects`. With the effects of all rods of a scene, its rods share kernels, and
-    /// their rounding.
+    /// Returns the method whose kernels have at least these `effects`. With the effects of all rods of a scene, its rods share kernels,
+    /// and their rounding.
     #[must_use]
     pub const fn with_effects(self, effects: Effects) -> Self {
         Self { effects, ..self }
     }
 
-    /// The method with twice as many steps.
+    /// Returns the method with twice as many integration steps.
     #[must_use]
     pub const fn doubled(self) -> Self {
         let resolution = self.resolution.doubled();
         Self { resolution, ..self }
     }
 
-    /// The method at [`Resolution::COARSE`].
+    /// Returns the method at [`Resolution::COARSE`].
     #[must_use]
     pub const fn coarsely(self) -> Self {
         let resolution = Resolution::COARSE;
@@ -82,7 +82,7 @@ impl Method {
     }
 }
 
-/// Integrates many trajectories at once.
+/// Batch integrator: integrates many trajectories at once.
 ///
 /// ```
 /// use whiskmap_mechanics::rod::Rod;
@@ -107,7 +107,7 @@ const SMALLEST_CHUNK: usize = 1024;
 /// Chunks of a batch per thread, so that threads finish together.
 const CHUNKS_OF_A_THREAD: usize = 4;
 
-/// Size of the chunks into which a batch of `count` conditions is divided for the threads of the current pool.
+/// Returns the number of conditions in each chunk into which a batch of `count` is divided for the threads of the current pool.
 #[must_use]
 pub fn chunk_size(count: usize) -> usize {
     let threads = rayon::current_num_threads();
@@ -120,7 +120,8 @@ pub fn chunk_size(count: usize) -> usize {
 }
 
 impl Batch {
-    /// A batch by `method` on the widest unit of this processor. Each output is independent of the rest of the batch.
+    /// Creates a batch integrator with `method` on the widest unit of this processor. Each output is independent of the rest of the
+    /// batch.
     #[must_use]
     pub fn new(method: Method) -> Self {
         Self {
@@ -130,14 +131,15 @@ impl Batch {
         }
     }
 
-    /// The batch on another unit.
+    /// Returns the batch integrator for another SIMD unit.
     #[must_use]
     pub const fn on(self, unit: Unit) -> Self {
         Self { unit, ..self }
     }
 
-    /// The batch with padded blocks: trajectories with different numbers of steps share a block, and all take the largest number. An
-    /// output depends on the whole batch by less than its error. Padding pays for small batches, such as those of a sheet.
+    /// Returns the batch integrator with padded blocks: trajectories with different numbers of steps share a block, and all take the
+    /// largest number. An output depends on the whole batch by less than its error. Padding pays for small batches, such as those of a
+    /// sheet.
     #[must_use]
     pub const fn padded(self) -> Self {
         Self {
@@ -146,7 +148,8 @@ impl Batch {
         }
     }
 
-    /// The outputs of all conditions, in their order, on all threads of the current pool.
+    /// Integrates the trajectories of all `conditions` on all threads of the current pool. Returns their outputs in the same order,
+    /// `[condition]`.
     #[must_use]
     pub fn shoot<O: OutputSet>(&self, conditions: &[InitialCondition]) -> Vec<O> {
         let mut outputs = vec![O::default(); conditions.len()];
@@ -166,7 +169,7 @@ impl Batch {
         outputs
     }
 
-    /// The outputs of one rod at `points` `(tau, load)`, in their order.
+    /// Integrates trajectories of one rod from `points` `(tau, load)`. Returns their outputs in the same order, `[point]`.
     #[must_use]
     pub fn shoot_at<O: OutputSet>(
         &self,
@@ -183,8 +186,8 @@ impl Batch {
         self.for_each(conditions.iter().copied(), |i, output| outputs[i] = *output);
     }
 
-    /// Integrates the trajectories of `conditions` on this thread. Calls `take` with the index and the outputs of each, in any
-    /// order. Blocks are never padded.
+    /// Integrates the trajectories of `conditions` on this thread. Calls `take` with the index and the outputs of each, in any order.
+    /// Blocks are never padded.
     pub fn for_each<'a, O: OutputSet>(
         &self,
         conditions: impl Iterator<Item = InitialCondition<'a>>,

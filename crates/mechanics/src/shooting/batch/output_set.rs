@@ -1,4 +1,4 @@
-//! Outputs of a batch for each trajectory, computed in lanes.
+//! Sets of outputs that a batch computes for each trajectory, in lanes.
 
 use super::block_key::BlockKey;
 use super::kernel::{Block, Trajectories};
@@ -12,26 +12,26 @@ use crate::shooting::sensitivity::{
 use crate::shooting::{FirstVariation, FullState, SecondVariation, ShootingMap, StateDerivative};
 use glam::DVec2;
 
-/// Outputs of a batch for each trajectory: the derivatives to carry, and the outputs from their values at the base.
+/// A set of outputs that a batch computes for each trajectory: the derivatives to carry, and the outputs from their values at the base.
 pub trait OutputSet: Copy + Default + Send + 'static {
-    /// The set whose kernels compute this set on processors without a SIMD unit. There, few kernels matter more than fast ones:
+    /// The output set whose kernels compute this set on processors without a SIMD unit. There, few kernels matter more than fast ones:
     /// each takes long to compile.
     type OnOneLane: OutputSet + Into<Self>;
 
-    /// Derivatives to carry on any rod.
+    /// Derivatives that trajectories carry for this output set on any rod.
     type General<T: Lanes>: SensitivitySet<T>;
-    /// Derivatives to carry on straight cones and cylinders with a constant modulus.
+    /// Derivatives that trajectories carry for this output set on straight cones and cylinders with a constant modulus.
     type Similar<T: Lanes>: SensitivitySet<T, AtBase = <Self::General<T> as SensitivitySet<T>>::AtBase>;
 
-    /// The outputs of each lane. `pole` is the vector from the contact to the pole's centre.
+    /// Returns the outputs of each lane. `pole` is the vector from the contact to the pole's centre.
     fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         at_base: <Self::General<T> as SensitivitySet<T>>::AtBase,
     ) -> [Self; WIDTH];
 
-    /// `unit.run(Trajectories::new(key, block))`. Each set writes it out, so that its kernels are compiled in this crate and not
-    /// wherever a batch is integrated.
+    /// Runs `Trajectories::new(key, block)` on a SIMD `unit`. Each output set implements it, so that its kernels are compiled in this
+    /// crate and not wherever a batch is integrated.
     #[doc(hidden)]
     fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH];
 }

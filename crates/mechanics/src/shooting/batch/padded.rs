@@ -9,7 +9,7 @@ use super::{InitialCondition, Method, OutputSet, SMALLEST_CHUNK};
 use crate::numerics::{Unit, WIDTH};
 use rayon::prelude::*;
 
-/// Computes the `outputs` of `conditions`, each in at least the number of steps that it takes alone.
+/// Computes the `outputs` of `conditions`, `[condition]`, each in at least the number of steps that it takes alone.
 pub fn shoot<O: OutputSet>(
     unit: Unit,
     method: Method,

@@ -1,8 +1,8 @@
 //! Position of the pole in the frame of the base, with derivatives, in lanes.
 //!
-//! Let the complex number `w` be the vector from the base to the pole's centre in the axes of the contact, and `theta` the angle of
-//! the base's tangent. `G = ln w - i theta` has the real part `ln D` and the imaginary part `phi`. Its derivatives need no
-//! trigonometry: `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
+//! Let the complex number `w` be the vector from the base to the pole's centre in the axes of the contact. Let `theta` be the angle of
+//! the base's tangent. `G = ln w - i theta` has the real part `ln D` and the imaginary part `phi`. Its derivatives need no trigonometry:
+//! `G_i = w_i/w - i theta_i`, `G_ij = w_ij/w - w_i w_j/w^2 - i theta_ij`.
 
 use crate::numerics::{Lanes, Real, WIDTH};
 use crate::shooting::ShootingMap;
@@ -42,7 +42,7 @@ impl<T: Real> Complex<T> {
     }
 }
 
-/// The pole's centre relative to the base.
+/// Centre of the pole relative to the base, in lanes.
 pub struct PoleCentre<T> {
     /// In the frame of the base.
     pole: Complex<T>,
@@ -60,26 +60,26 @@ impl<T: Lanes> PoleCentre<T> {
         }
     }
 
-    /// `w_i/w` for the derivatives `[theta_i, x_i, y_i]` of the base.
+    /// Returns `w_i/w` for the derivatives `[theta_i, x_i, y_i]` of the base.
     #[inline(always)]
     pub fn moved(&self, [_, x, y]: Triple<T>) -> Complex<T> {
         Complex::new(-x, -y).times(self.inverse)
     }
 
-    /// `G_i` for the derivatives `[theta_i, x_i, y_i]` of the base.
+    /// Returns `G_i` for the derivatives `[theta_i, x_i, y_i]` of the base.
     #[inline(always)]
     pub fn ln_pole_by(&self, of: Triple<T>) -> Complex<T> {
         let moved = self.moved(of);
         Complex::new(moved.re, moved.im - of[0])
     }
 
-    /// `G_ij` for the second derivatives `of` the base; `by` and `and` are `w_i/w` and `w_j/w`.
+    /// Returns `G_ij` for the second derivatives `of` the base; `by` and `and` are `w_i/w` and `w_j/w`.
     #[inline(always)]
     pub fn ln_pole_by_twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
         self.ln_pole_by(of).minus(by.times(and))
     }
 
-    /// The shooting map of each lane.
+    /// Returns the shooting map of each lane, `[lane]`.
     #[inline(always)]
     pub fn maps(&self, first: &BaseDerivatives<T>) -> [ShootingMap; WIDTH] {
         let tau = self.ln_pole_by(first.by_tau);
@@ -110,7 +110,7 @@ fn transposed<A: Copy + Default, const N: usize>(
     answers
 }
 
-/// The result of `answer` for the index and the numbers of each lane.
+/// Returns the results of `answer` for the index and the numbers of each lane, `[lane]`.
 #[inline(always)]
 pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
     numbers: [T; N],

@@ -1,4 +1,4 @@
-//! StepStarts of the integration steps of trajectories, beside which a shader integrates neighbouring trajectories.
+//! Starts of the integration steps of trajectories, relative to which a shader integrates neighbouring trajectories.
 
 use super::InitialCondition;
 use super::gather::{Conditions, Gather, lanes};
@@ -14,23 +14,23 @@ use std::marker::PhantomData;
 /// State of the whisker where a step starts. The frame's origin is the contact; its second axis is along the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepStart {
-    /// Radius over the base radius.
+    /// Radius at the start of the step over the base radius.
     pub radius: f64,
-    /// Arclength from the base, in whisker lengths.
+    /// Arclength of the start of the step from the base, in whisker lengths.
     pub arclength: f64,
-    /// Unit tangent.
+    /// Unit tangent of the rod at the start of the step, in the frame of the contact.
     pub tangent: DVec2,
-    /// Position along the first axis, across the force, from the contact, in whisker lengths.
+    /// Position of the start of the step along the first axis, across the force, from the contact, in whisker lengths.
     pub across: f64,
-    /// Angle by which bending has turned the rod since the contact, in radians.
+    /// Rotation of the rod by bending from the contact to the start of the step, in radians.
     pub bent: f64,
     /// Unit tangent of a parabola at rest in its own frame; the first axis for other rest shapes.
     pub rest: DVec2,
 }
 
-/// Starts of the steps of each trajectory, one trajectory after the other, and the angle by which bending has turned each base. Angles
-/// are in radians: `[trajectory]`. The trajectory `i` starts at `conditions[i]` and takes `steps[i]` steps. The rods are cones with a
-/// constant modulus.
+/// Returns the starts of the steps of each trajectory, one trajectory after the other, and the rotation of each base by bending, in
+/// radians: `[trajectory]`. The trajectory `i` starts at `conditions[i]` and takes `steps[i]` steps. The rods are cones with a constant
+/// modulus.
 #[must_use]
 pub fn step_starts(conditions: &[InitialCondition], steps: &[u32]) -> (Vec<StepStart>, Vec<f64>) {
     let unit = Unit::detect();

@@ -1,12 +1,12 @@
-//! Streams of conditions, sorted into blocks, each of which is computed as soon as it is full.
+//! Streams of initial conditions, sorted into blocks, each of which is computed as soon as it is full.
 
 use super::block_key::{BlockKey, BlockKeys};
 use super::kernel::{Block, StepCounts};
 use super::{InitialCondition, Method, OutputSet};
 use crate::numerics::{Unit, WIDTH};
 
-/// Integrates the trajectories of `conditions` on this thread. Calls `take` with the index and the outputs of each, in any order.
-/// Only trajectories with equal keys share a block, so that each output is as if computed alone.
+/// Integrates the trajectories of `conditions` on this thread. Calls `take` with the index and the outputs of each, in any order. Only
+/// trajectories with equal keys share a block, so that each output is as if computed alone.
 pub fn shoot<'a, O: OutputSet>(
     unit: Unit,
     method: Method,

@@ -21,11 +21,11 @@ const ITERATIONS: usize = 2;
 
 /// Compliance of a material from an arclength toward the base, as a weight.
 pub struct BackwardCompliance<'a, T> {
-    /// The material.
+    /// Material whose compliance is the weight.
     pub material: &'a Measured<T>,
-    /// Arclength where the step begins, in whisker lengths.
+    /// Arclength at the start of the step, in whisker lengths.
     pub from: T,
-    /// Length of the step, in whisker lengths.
+    /// Length of the step along the rod, in whisker lengths.
     pub length: T,
 }
 
@@ -37,7 +37,7 @@ impl<T: Real> Weight<T> for BackwardCompliance<'_, T> {
 }
 
 impl<T: Real> BackwardCompliance<'_, T> {
-    /// Collocation integrals with the compliance as their weight, over the arclength.
+    /// Returns the collocation integrals with the compliance as their weight, over the arclength in whisker lengths.
     #[inline(always)]
     pub fn weights(&self) -> Integrals<T> {
         let mut weights = integrals(self);
@@ -50,7 +50,8 @@ impl<T: Real> BackwardCompliance<'_, T> {
     }
 }
 
-/// One step of `system` from the section `from` to the stage `end`. `weights` are the collocation integrals with the compliance.
+/// Takes one collocation step of `system` from the section `from` to the stage `end`. `weights` are the collocation integrals with the
+/// compliance.
 #[inline(always)]
 pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, Measured<T>>,

@@ -11,12 +11,12 @@ use crate::shooting::{
     Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, TrajectoryState,
 };
 
-/// An explicit one-step method with fixed steps.
+/// An explicit one-step integration method with fixed steps.
 pub trait Integrator: Copy + Send + Sync + 'static {
-    /// Places of the stages in the unit step. The last ones are its end.
+    /// Nodes of the method's stages in the unit step, `[stage]`. The last ones are at its end.
     const NODES: [f64; STAGES];
 
-    /// The state one step after `state` at the section `from`.
+    /// Returns the state of the rod one integration step after `state` at the section `from`.
     fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
@@ -28,34 +28,34 @@ pub trait Integrator: Copy + Send + Sync + 'static {
 /// Quantities that turn angles: `X` and the levers of the derivatives.
 type Levers<T, S> = ([T; 1], <S as Sensitivity<T>>::Pairs);
 
-/// Number of stages of the largest method.
+/// Number of stages of the integration method with the most stages.
 pub const STAGES: usize = 8;
 
 /// Changes of the cross-section from the start of a step to one of its stages.
 #[derive(Clone, Copy, Debug)]
 pub struct StepStage<T> {
-    /// `sigma` from the start of the step.
+    /// Coordinate `sigma` from the start of the step to the stage, dimensionless.
     pub sigma: T,
-    /// Arclength toward the base, over the radius at the start of the step.
+    /// Arclength from the start of the step to the stage, toward the base, over the radius at the start.
     pub along: T,
-    /// Factor of the radius, `exp(taper sigma)`.
+    /// Radius at the stage over the radius at the start of the step, `exp(taper sigma)`.
     pub grown: T,
-    /// Factor of the radius' inverse cube, `exp(-3 taper sigma)`.
+    /// Inverse cube of the radius at the stage, over that at the start of the step: `exp(-3 taper sigma)`.
     pub inverse_cube: T,
-    /// Factor of the radius' inverse square root, `exp(-taper sigma/2)`.
+    /// Inverse square root of the radius at the stage, over that at the start of the step: `exp(-taper sigma/2)`.
     pub shrunk: T,
 }
 
-/// The stages of a step, which all steps of a trajectory share.
+/// Stages of an integration step, which all steps of a trajectory share.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales<T> {
     stages: [StepStage<T>; STAGES],
-    /// Taper of the rod. `None` for a cylinder.
+    /// Taper of the rod, dimensionless. `None` for a cylinder.
     pub taper: Option<T>,
 }
 
 impl<T: Real> Scales<T> {
-    /// Stages of steps of length `h` on a rod of this `taper`. `taper h` is at most 0.8.
+    /// Computes the stages of steps of length `h` in `sigma` on a rod of this `taper`. `taper h` is at most 0.8.
     #[inline(always)]
     pub fn tapered<M: Integrator>(taper: T, h: T) -> Self {
         let mut scales = Self::cylinder::<M>(h);
@@ -80,7 +80,7 @@ impl<T: Real> Scales<T> {
         scales
     }
 
-    /// Stages of steps of length `h` on a cylinder.
+    /// Computes the stages of steps of length `h` in `sigma` on a cylinder.
     #[inline(always)]
     pub fn cylinder<M: Integrator>(h: T) -> Self {
         let one = T::of(1.0);
@@ -102,13 +102,13 @@ impl<T: Real> Scales<T> {
         }
     }
 
-    /// The stage `i`.
+    /// Returns the stage with index `i` of a step.
     #[inline(always)]
     pub fn stage(&self, i: usize) -> &StepStage<T> {
         &self.stages[i]
     }
 
-    /// The end of the step.
+    /// Returns the stage at the end of a step.
     #[inline(always)]
     pub fn end(&self) -> &StepStage<T> {
         &self.stages[STAGES - 1]
@@ -116,7 +116,7 @@ impl<T: Real> Scales<T> {
 }
 
 impl<T: Real> Section<T> {
-    /// The section at a stage of a step that starts at this section.
+    /// Returns the section at a stage of a step that starts at this section.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, stage: &StepStage<T>) -> Self {
@@ -128,7 +128,7 @@ impl<T: Real> Section<T> {
     }
 }
 
-/// The state after `steps` steps of `system` from `state` at the section `from`.
+/// Returns the state after `steps` integration steps of `system` from `state` at the section `from`.
 #[inline(always)]
 pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, C>,

@@ -28,10 +28,10 @@ const fn ratio(a: i64, b: i64) -> f64 {
 /// Stage `i` evaluates `k[i] = g(NODES[i], chi + NODES[i] chi' + sum over j < i of STAGE_WEIGHTS[i][j] k[j])`. At the end of
 /// the step `chi` grows by `chi' + sum of POSITION_WEIGHTS[j] k[j]` and `chi'` by the sum of `SPEED_WEIGHTS[j] k[j]`.
 impl Nystrom8 {
-    /// Places of the stages in the unit step, in `[0, 1]`.
+    /// Nodes of Nystrom's stages in the unit step, in `[0, 1]`: `[stage]`.
     pub const NODES: [f64; STAGES] = [0.0, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0];
 
-    /// Weights of the stages `j` in the argument of the stage `i`: `[i][j]`, 0 for `j >= i`.
+    /// Nystrom weights of the stages `j` in the argument of the stage `i`: `[i][j]`, 0 for `j >= i`.
     #[rustfmt::skip]
     pub const STAGE_WEIGHTS: [[f64; STAGES]; STAGES] = [
         [0.0; STAGES],
@@ -47,7 +47,7 @@ impl Nystrom8 {
             ratio(-33_213_845, 39_119_552), ratio(13335, 28544), ratio(-705, 14272), ratio(1645, 57088), 0.0],
     ];
 
-    /// Weights of the stages in `chi` at the end of a step.
+    /// Nystrom weights of the stages in `chi` at the end of a step: `[stage]`.
     pub const POSITION_WEIGHTS: [f64; STAGES] = [
         ratio(223, 7938),
         0.0,
@@ -59,7 +59,7 @@ impl Nystrom8 {
         0.0,
     ];
 
-    /// Weights of the stages in `chi'` at the end of a step, and of an integrand in its integral over a step.
+    /// Nystrom weights of the stages in `chi'` at the end of a step, and of an integrand in its integral over a step: `[stage]`.
     pub const SPEED_WEIGHTS: [f64; STAGES] = [
         ratio(223, 7938),
         0.0,

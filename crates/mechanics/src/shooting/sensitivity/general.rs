@@ -1,4 +1,4 @@
-//! Derivatives on any rod.
+//! First and second derivatives that trajectories carry on any rod.
 //!
 //! The rod is a Hamiltonian system with the pairs `theta`, `f X` and `Y`, `f`. The symplectic product of the derivatives by
 //! force and by arclength is therefore equal at base and contact: `Y_s = theta_s (X + f X_f) - f theta_f X_s + const`. A
@@ -11,11 +11,11 @@ use crate::shooting::sensitivity::{
 };
 use crate::shooting::{Carried, Sensitivity};
 
-/// First derivatives. A trajectory carries those of `theta, X` by force and arclength, and `Y_f`.
+/// First derivatives on any rod. A trajectory carries those of `theta, X` by force and arclength, and `Y_f`.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralFirst;
 
-/// First and second derivatives. A trajectory also carries `ff`, `fs` and `ss` of `theta, X` and `ff` of `Y`.
+/// First and second derivatives on any rod. A trajectory also carries `ff`, `fs` and `ss` of `theta, X` and `ff` of `Y`.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralSecond;
 

@@ -1,5 +1,5 @@
-//! Derivatives that a trajectory carries, and those that follow from them at the base. They are written by hand; tests compare
-//! them with `num-dual`.
+//! Derivatives of the base: some are carried by a trajectory, the others follow from them at the base. They are written by hand; tests
+//! compare them with `num-dual`.
 //!
 //! In names, `f` and `s` are the force and the arclength of the contact. The rod starts at the origin with a fixed tilt for
 //! every contact, so that derivatives start with `y_s = -y'`.
@@ -18,15 +18,15 @@ use std::marker::PhantomData;
 /// Derivatives of `[theta, X, Y]`: the angle of the tangent in radians, and the position in whisker lengths.
 pub type Triple<T> = [T; 3];
 
-/// A set of derivatives: its start values, and its results at the base.
+/// A set of carried derivatives: its start values at the contact, and its results at the base.
 pub trait SensitivitySet<T: Real>: Sensitivity<T> + Sized {
     /// Derivatives of the base by the coordinates of the sheet.
     type AtBase;
 
-    /// Start values at the contact.
+    /// Returns the start values of the carried derivatives at the contact.
     fn start(contact: &Contact<T>) -> Carried<T, Self>;
 
-    /// Derivatives of the base from the carried values there.
+    /// Returns the derivatives of the base from the values that a trajectory carries there.
     fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::AtBase;
 }
 
@@ -35,31 +35,31 @@ pub trait SensitivitySet<T: Real>: Sensitivity<T> + Sized {
 pub struct Arrival<T> {
     /// Contact where the trajectory starts.
     pub contact: Contact<T>,
-    /// Taper `beta` of the rod.
+    /// Taper `beta` of the rod, dimensionless.
     pub taper: T,
-    /// State of the rod at the base.
+    /// State of the rod at the base, where the trajectory ends.
     pub rod: Planar<T>,
 }
 
 /// First derivatives of the base by the coordinates of the sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct BaseDerivatives<T> {
-    /// Derivatives by `tau` of the contact at fixed load.
+    /// Derivatives of the base by `tau` of the contact at fixed load.
     pub by_tau: Triple<T>,
-    /// Derivatives by the load at fixed `tau`.
+    /// Derivatives of the base by the load at fixed `tau`.
     pub by_load: Triple<T>,
 }
 
 /// First and second derivatives of the base by the coordinates of the sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondBaseDerivatives<T> {
-    /// First derivatives.
+    /// First derivatives of the base by `tau` and load.
     pub first: BaseDerivatives<T>,
-    /// Second derivatives by `tau`.
+    /// Second derivatives of the base by `tau`.
     pub by_tau_tau: Triple<T>,
-    /// Mixed derivatives by `tau` and load.
+    /// Mixed derivatives of the base by `tau` and load.
     pub by_tau_load: Triple<T>,
-    /// Second derivatives by the load.
+    /// Second derivatives of the base by the load.
     pub by_load_load: Triple<T>,
 }
 
@@ -70,8 +70,8 @@ fn twice<T: Real>(c: T, s: T, turns: T, angle: T) -> (T, T) {
     (s.mul_add(angle, c * turns), s * turns - c * angle)
 }
 
-/// A set of derivatives, and the bending energy in `E I_base/L_w`. The energy's relative error grows with the inverse of the
-/// radius at the contact over the base radius: it is 2e-8 for a ratio of 1e-6.
+/// A set of carried derivatives together with the bending energy in `E I_base/L_w`. The energy's relative error grows with the inverse of
+/// the radius at the contact over the base radius: it is 2e-8 for a ratio of 1e-6.
 #[derive(Clone, Copy, Debug)]
 pub struct Energetic<S>(PhantomData<S>);
 

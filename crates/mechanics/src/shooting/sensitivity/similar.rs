@@ -1,5 +1,5 @@
-//! Derivatives on rods whose parts toward the base are similar but for their size: straight at rest, with a radius that falls
-//! linearly or is constant, and a constant modulus.
+//! Derivatives on rods whose parts toward the base are similar except for their size. They are straight at rest, with a constant modulus
+//! and a radius that falls linearly or is constant.
 //!
 //! On such a rod, the trajectory in units of the radius at the contact depends on the load alone; only its length depends on the
 //! contact. Derivatives by `tau` are therefore right-hand sides at the base: `theta_tau = f X`, `X_tau = -beta X - c`,
@@ -12,11 +12,11 @@ use crate::shooting::sensitivity::{
 };
 use crate::shooting::{Carried, Sensitivity};
 
-/// First derivatives. A trajectory carries those by the force.
+/// First derivatives on straight cones and cylinders. A trajectory carries those by the force.
 #[derive(Clone, Copy, Debug)]
 pub struct SimilarFirst;
 
-/// First and second derivatives. A trajectory carries those by the force.
+/// First and second derivatives on straight cones and cylinders. A trajectory carries those by the force.
 #[derive(Clone, Copy, Debug)]
 pub struct SimilarSecond;
 
