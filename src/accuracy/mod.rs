@@ -52,3 +52,22 @@ pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Acc
     }
     Err(tried)
 }
+
+/// Returns the bound on push-angle errors in degrees for an engine with the residual bound `goal`, at the nearest distance.
+#[must_use]
+pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
+    let distances = scene.grid.distance_mm.iter();
+    let nearest = distances.copied().fold(f64::INFINITY, f64::min);
+    let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
+    let longest = lengths.fold(0.0, f64::max);
+    (goal * longest / nearest).to_degrees()
+}
+
+/// Largest bound on the residual of the spectral engine, in whisker lengths: the smallest patches keep it.
+const LARGEST_BOUND: f64 = 1e-5;
+
+/// Returns the bound on the residual of the spectral engine, in whisker lengths, with which push angles are within `tolerance_deg`.
+#[must_use]
+pub fn spectral_bound(scene: &Scene, tolerance_deg: f64) -> f64 {
+    (tolerance_deg / bound_deg(scene, 1.0)).min(LARGEST_BOUND)
+}

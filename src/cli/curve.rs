@@ -88,7 +88,8 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let draws = args.sampling.draw(&scene)?;
     let mut outputs = args.outputs.open(files)?;
-    let accuracy = args.tolerance.choose(&scene, &Side::BOTH)?;
+    let accuracy = args.tolerance.find(&scene, &Side::BOTH)?;
+    args.tolerance.report(accuracy);
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {
         let curve = || scene_curve(&scene, resolution, AXES);

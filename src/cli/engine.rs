@@ -4,14 +4,16 @@ use super::estimate::{compare, estimate};
 use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
 use std::env;
+use whiskmap::accuracy::{bound_deg, spectral_bound};
 use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
 use whiskmap::engine::{Engine, EngineDescription, EngineError, Spectral, on_gpu};
-use whiskmap::plan::Plan;
+use whiskmap::plan::{ExpansionCount, Plan};
+use whiskmap::refine::GOAL;
 use whiskmap::scene::Scene;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum EngineChoice {
-    /// The faster engine on a sample of the scene
+    /// Spectral or CPU by their counts of trajectories, or the GPU if it is faster on a sample of the scene
     Auto,
     /// f64 on all cores: a trajectory for each cell
     Cpu,
@@ -59,7 +61,7 @@ impl EngineArgs {
                 "--precision f32: the CPU computes in f64; allowed with --engine gpu".to_owned()
             }
             (EngineChoice::Auto, Some(Precision::F32), _) => {
-                "--precision f32: --engine auto may select the CPU engine, which computes in f64; allowed with --engine gpu"
+                "--precision f32: --engine auto may select the CPU, which computes in f64; allowed with --engine gpu"
                     .to_owned()
             }
             (EngineChoice::Cpu | EngineChoice::Spectral, _, Some(adapter)) => {
@@ -75,7 +77,7 @@ impl EngineArgs {
                         "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell",
                     );
                 }
-                let spectral = Box::new(Spectral::default());
+                let spectral = spectral(scene, tolerance_deg);
                 return Ok((Some(spectral), "selected by --engine".to_owned()));
             }
             (EngineChoice::Gpu | EngineChoice::Auto, ..) => {
@@ -96,8 +98,8 @@ impl EngineArgs {
             self.adapter()?;
         }
         match (self.engine, self.refusal(scene, plan, tolerance_deg)) {
-            (EngineChoice::Auto, Some(why)) => Ok((None, format!("auto: {why}"))),
-            (EngineChoice::Auto, None) => self.faster(scene, plan),
+            (EngineChoice::Auto, Some(_)) => Ok(without_gpu(scene, plan, tolerance_deg)),
+            (EngineChoice::Auto, None) => self.faster(scene, plan, tolerance_deg),
             (_, Some(why)) => Ok((None, format!("--engine gpu is not possible: {why}"))),
             (_, None) => {
                 let adapter = self.adapter()?.map(|(index, _)| index);
@@ -141,38 +143,61 @@ impl EngineArgs {
     }
 
     /// Opens the engine that is faster for `plan`, as estimated from samples of `scene`.
-    fn faster(&self, scene: &Scene, plan: &Plan) -> Result<OpenEngine, Failure> {
+    fn faster(
+        &self,
+        scene: &Scene,
+        plan: &Plan,
+        tolerance_deg: Option<f64>,
+    ) -> Result<OpenEngine, Failure> {
+        let (mut host, why) = without_gpu(scene, plan, tolerance_deg);
         if estimate(scene, plan, FIRST_LOOK)?.seconds < OPENING {
-            let why = "auto: the CPU is done before a GPU has started";
-            return Ok((None, why.to_owned()));
+            return Ok((host, why));
         }
         let (index, name) = self.adapter()?.unzip();
         let gpu = match self.gpu(index) {
             Ok(gpu) => gpu,
-            Err(error) => return Ok((None, format!("auto: {error}"))),
+            Err(error) => return Ok((host, format!("{why}; {error}"))),
         };
         let gpu_name = format!("{} on {}", gpu.describe().engine, name.unwrap_or_default());
-        let mut engine = Some(gpu);
-        match compare(scene, plan, &mut engine, COMPARISON) {
-            Ok([cpu, gpu]) if gpu < cpu => {
-                let alone = EngineDescription::of(None);
-                let alone = format!("{} on {}", alone.engine, alone.adapter);
-                Ok((engine, format!("auto: {:.1} times {alone}", cpu / gpu)))
+        let mut gpu = Some(gpu);
+        match compare(scene, plan, [&mut host, &mut gpu], COMPARISON) {
+            Ok([on_host, on_gpu]) if on_gpu < on_host => {
+                let other = EngineDescription::of(host.as_deref());
+                let other = format!("{} on {}", other.engine, other.adapter);
+                Ok((gpu, format!("auto: {:.1} times {other}", on_host / on_gpu)))
             }
-            Ok([cpu, gpu]) => Ok((None, format!("auto: {:.1} times {gpu_name}", gpu / cpu))),
-            Err(Failure::Engine(error)) => Ok((None, format!("auto: {error}"))),
+            Ok([on_host, on_gpu]) => {
+                let times = format!("{:.1} times {gpu_name}", on_gpu / on_host);
+                Ok((host, format!("{why}; {times}")))
+            }
+            Err(Failure::Engine(error)) => Ok((host, format!("{why}; {error}"))),
             Err(failure) => Err(failure),
         }
     }
 }
 
-/// Returns the bound on push-angle errors in degrees for an engine with the residual bound `goal`, at the nearest distance.
-pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
-    let distances = scene.grid.distance_mm.iter();
-    let nearest = distances.copied().fold(f64::INFINITY, f64::min);
-    let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
-    let longest = lengths.fold(0.0, f64::max);
-    (goal * longest / nearest).to_degrees()
+/// Returns the spectral engine, or the CPU engine where its trajectories take less time than expansions, as counted by `plan`.
+fn without_gpu(scene: &Scene, plan: &Plan, tolerance_deg: Option<f64>) -> OpenEngine {
+    let why = format!("auto: {}", expansions(scene, plan));
+    let spectral = spectral(scene, tolerance_deg);
+    let pays = plan.expansions(scene).is_some_and(|count| count.pays());
+    let is_possible = spectral.residual_bound() >= GOAL;
+    ((pays && is_possible).then_some(spectral), why)
+}
+
+/// Returns why expansions pay for `scene`, or why they do not, in one line.
+pub fn expansions(scene: &Scene, plan: &Plan) -> String {
+    let Some(count) = plan.expansions(scene) else {
+        return "measured radii have no expansions".to_owned();
+    };
+    let ExpansionCount { cells, cost } = count;
+    format!("expanding a whisker side costs as much as {cost} cells, and it has {cells}")
+}
+
+/// Opens the spectral engine, with push angles exact to `tolerance_deg`, if given.
+fn spectral(scene: &Scene, tolerance_deg: Option<f64>) -> Box<dyn Engine> {
+    let bound = tolerance_deg.map(|tolerance| spectral_bound(scene, tolerance));
+    Box::new(bound.map_or_else(Spectral::default, Spectral::new))
 }
 
 /// Environment variable that also other programs with wgpu use to select an adapter.

@@ -130,28 +130,30 @@ const WIDE: usize = 2048;
 /// Timed rounds of [`compare`]: a single one may be disturbed.
 const ROUNDS: f64 = 3.0;
 
-/// Estimates the seconds of `plan`, scaled by cells: `[on the CPU alone, with engine]`.
+/// Estimates the seconds of `plan` by each of two `engines`, scaled by cells: `[engine]`.
 ///
-/// Samples are timed in turn, as dense as `seconds` in all allow; the fastest of each counts. A first sample, in which `engine`
+/// Samples are timed in turn, as dense as `seconds` in all allow; the fastest of each counts. A first sample, in which the second engine
 /// compiles, does not count.
 ///
 /// # Errors
-/// If the engine fails.
+/// If an engine fails.
 pub fn compare(
     scene: &Scene,
     plan: &Plan,
-    engine: &mut Option<Box<dyn Engine>>,
+    engines: [&mut Option<Box<dyn Engine>>; 2],
     seconds: f64,
 ) -> Result<[f64; 2], Failure> {
-    MapSample::measure(scene, plan, engine, [WIDE, FIRST_LINES])?;
+    let [first, second] = engines;
+    MapSample::measure(scene, plan, second, [WIDE, FIRST_LINES])?;
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     let mut fastest = [f64::INFINITY; 2];
     loop {
         let start = Instant::now();
-        let cpu = MapSample::measure(scene, plan, &mut None, [WIDE, lines])?;
-        let with_engine = MapSample::measure(scene, plan, engine, [WIDE, lines])?;
-        let seconds =
-            [cpu, with_engine].map(|sample| sample.summary.wall_seconds * sample.by_cells(plan));
+        let samples = [
+            MapSample::measure(scene, plan, first, [WIDE, lines])?,
+            MapSample::measure(scene, plan, second, [WIDE, lines])?,
+        ];
+        let seconds = samples.map(|sample| sample.summary.wall_seconds * sample.by_cells(plan));
         fastest = [0, 1].map(|i| f64::min(fastest[i], seconds[i]));
         let last = start.elapsed().as_secs_f64();
         left -= last;

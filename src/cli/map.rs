@@ -2,7 +2,7 @@
 
 use super::arguments::whole;
 use super::disk;
-use super::engine::{EngineArgs, bound_deg};
+use super::engine::EngineArgs;
 use super::estimate::MapFormat;
 use super::failure::{Failure, message};
 use super::files::{Files, OutputFile, unwritten};
@@ -14,8 +14,8 @@ use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
-use whiskmap::accuracy::{Accuracy, BOUNDED};
-use whiskmap::engine::{Engine, EngineDescription};
+use whiskmap::accuracy::{Accuracy, BOUNDED, bound_deg};
+use whiskmap::engine::{Engine, EngineDescription, EngineInput};
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
@@ -68,7 +68,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&args.scene)?;
     args.check(&scene)?;
     let mut plan = Plan::new(&scene)?;
-    let accuracy = args.tolerance.choose(&scene, &plan.sides)?;
+    let accuracy = args.tolerance.find(&scene, &plan.sides)?;
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;
     }
@@ -78,6 +78,16 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let channels = args.channels.unwrap_or(Channels::ALL);
     plan.channels = channels.with_marks(scene.has_friction());
     let mut engine = args.engine.open(&scene, &plan, left_deg)?;
+    let input = engine
+        .0
+        .as_ref()
+        .map(|own| own.input(plan.method.resolution));
+    match (input, left_deg) {
+        (Some(EngineInput::SpectralSheets(most)), Some(_)) => message(&format!(
+            "accuracy: residuals of at most {most:.1e} of the length"
+        )),
+        _ => args.tolerance.report(accuracy),
+    }
     let solver = EngineDescription::of(engine.0.as_deref());
     let about = MapDescription {
         scene: &scene,

@@ -1,5 +1,6 @@
 //! Command `whiskmap plan`.
 
+use super::engine::expansions;
 use super::estimate::{FileCost, MapCost, MapFormat, estimate, files};
 use super::failure::Failure;
 use super::files::read_scene;
@@ -80,6 +81,9 @@ fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std:
         out,
         "trajectories  about {most:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm"
     )?;
+    let pays = plan.expansions(scene).is_some_and(|count| count.pays());
+    let engine = if pays { "spectral" } else { "cpu" };
+    writeln!(out, "engine        {engine}: {}", expansions(scene, plan))?;
     match on_gpu(plan.method.effects) {
         Ok(()) => writeln!(
             out,

@@ -37,8 +37,8 @@ impl ToleranceArgs {
         self.tolerance
     }
 
-    /// Chooses and prints the accuracy that meets the tolerance on `sides` of the scene; `None` without a tolerance.
-    pub fn choose(&self, scene: &Scene, sides: &[Side]) -> Result<Option<Accuracy>, Failure> {
+    /// Returns the accuracy that meets the tolerance on `sides` of the scene; `None` without a tolerance.
+    pub fn find(&self, scene: &Scene, sides: &[Side]) -> Result<Option<Accuracy>, Failure> {
         let Some(tolerance_deg) = self.tolerance else {
             return Ok(None);
         };
@@ -49,11 +49,17 @@ impl ToleranceArgs {
                 ROUNDED_UP * finest.error_deg
             ))
         })?;
-        message(&format!(
-            "accuracy: {} steps of order 8 at the fold, fewer below; estimated error {:.1e} deg of {tolerance_deg:.1e} allowed \
-             in {BOUNDED}",
-            found.resolution.least, found.error_deg
-        ));
         Ok(Some(found))
+    }
+
+    /// Prints the accuracy that was found.
+    pub fn report(&self, found: Option<Accuracy>) {
+        if let Some((tolerance_deg, found)) = self.tolerance.zip(found) {
+            message(&format!(
+                "accuracy: {} steps of order 8 at the fold, fewer below; estimated error {:.1e} deg of {tolerance_deg:.1e} \
+                 allowed in {BOUNDED}",
+                found.resolution.least, found.error_deg
+            ));
+        }
     }
 }

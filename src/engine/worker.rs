@@ -37,6 +37,8 @@ pub struct Worker<'e> {
     connection: Option<Connection<'e>>,
     /// The batches submitted and not collected.
     submitted: VecDeque<Arc<RowBatch>>,
+    /// Maximum residual bound of a cell that the engine solves, in whisker lengths; 0 without an engine.
+    pub residual_bound: f64,
     /// Failure for which the engine is disabled; `None` if it has not failed.
     pub failure: Option<EngineError>,
     /// Wall time in which the engine worked on batches, summed over all responses.
@@ -51,8 +53,10 @@ impl<'e> Worker<'e> {
         has_thread: bool,
         work: impl FnOnce(Self) -> R,
     ) -> R {
+        let residual_bound = engine.as_ref().map_or(0.0, |own| own.residual_bound());
         let worker = |connection| Self {
             connection,
+            residual_bound,
             submitted: VecDeque::new(),
             failure: None,
             busy: Duration::ZERO,

@@ -1,6 +1,7 @@
 //! Regime maps, computed in memory.
 
-use super::{Error, MapEngine, Options, resolution};
+use super::{Error, MapEngine, Options, accuracy};
+use crate::accuracy::spectral_bound;
 use crate::classify::Regime;
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
@@ -197,10 +198,21 @@ fn run<E: From<Error> + Send>(
     options: Options,
     mut each: impl FnMut(usize, Panel) -> Result<(), E> + Send,
 ) -> Result<Summary, E> {
-    plan.method.resolution = resolution(scene, &options, &plan.sides)?;
+    let accuracy = accuracy(scene, &options, &plan.sides)?;
+    if let Some(accuracy) = &accuracy {
+        plan.method.resolution = accuracy.resolution;
+    }
+    // The part of the tolerance that the steps leave to the engine.
+    let left_deg = options.tolerance_deg.zip(accuracy);
+    let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
     let mut engine: Option<Box<dyn Engine>> = match options.engine {
         MapEngine::Cpu => None,
-        MapEngine::Spectral => Some(Box::new(Spectral::default())),
+        MapEngine::Spectral => {
+            let bound = left_deg.map(|left| spectral_bound(scene, left));
+            Some(Box::new(
+                bound.map_or_else(Spectral::default, Spectral::new),
+            ))
+        }
         MapEngine::Gpu(precision) => Some(open(precision).map_err(Error::from)?),
     };
     let engine = engine.as_mut().map(|engine| &mut **engine as _);

@@ -8,7 +8,7 @@ pub use map::{Map, MapCell, for_each_panel, map};
 pub use traces::fit;
 pub use traces::{branch, curve, shape};
 
-use crate::accuracy::cheapest;
+use crate::accuracy::{Accuracy, cheapest};
 use crate::engine::{EngineError, Precision};
 use crate::plan::PlanError;
 use crate::rod::Side;
@@ -77,14 +77,19 @@ pub enum Error {
     },
 }
 
-/// The cheapest resolution that keeps the tolerance of `options`, or the finest without one.
+/// Returns the cheapest steps that keep the tolerance of `options`, with their estimated error; `None` without a tolerance.
+fn accuracy(scene: &Scene, options: &Options, sides: &[Side]) -> Result<Option<Accuracy>, Error> {
+    let accuracy = options.tolerance_deg.map(|tolerance_deg| {
+        cheapest(scene, sides, tolerance_deg).map_err(|finest| Error::Tolerance {
+            tolerance_deg,
+            least: finest.error_deg,
+        })
+    });
+    accuracy.transpose()
+}
+
+/// Returns the steps of trajectories that keep the tolerance of `options`: the finest without one.
 fn resolution(scene: &Scene, options: &Options, sides: &[Side]) -> Result<Resolution, Error> {
-    let Some(tolerance_deg) = options.tolerance_deg else {
-        return Ok(Resolution::FINE);
-    };
-    let accuracy = cheapest(scene, sides, tolerance_deg).map_err(|finest| Error::Tolerance {
-        tolerance_deg,
-        least: finest.error_deg,
-    })?;
-    Ok(accuracy.resolution)
+    let accuracy = accuracy(scene, options, sides)?;
+    Ok(accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution))
 }

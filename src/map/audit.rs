@@ -14,9 +14,6 @@ const AT_LEAST: u64 = 64;
 /// Maximum difference of a value, as a part of the largest along the row or of a radian.
 const TOLERANCE: f64 = 3e-6;
 
-/// Maximum residual bound that an engine may certify, in whisker lengths.
-const LARGEST_MISS: f64 = 1e-7;
-
 /// The audited cells of a row: the same in every run, one of each `one_in`.
 pub struct AuditSample {
     seed: u64,
@@ -67,8 +64,21 @@ fn mixed(z: u64) -> u64 {
 /// with the distance. Measured at most 1.5 on 2,000 random whiskers.
 const BY_DISTANCE: f64 = 4.0;
 
+/// Largest error of a value by expansions, as a part of its size, over the bound on the residual in whisker lengths: what their certificate
+/// allows.
+const VALUES_PER_MISS: f64 = 10.0;
+
+/// Relative error of a residual that is rounded to `f32`.
+const ROUNDED: f64 = f32::EPSILON as f64;
+
 /// Compares the solved `cells` of an engine with those of the `rest` that the CPU `found`.
-pub fn compare(batch: &RowBatch, cells: &Cells, rest: &RowBatch, found: &Cells) -> Audit {
+pub fn compare(
+    batch: &RowBatch,
+    cells: &Cells,
+    residual_bound: f64,
+    rest: &RowBatch,
+    found: &Cells,
+) -> Audit {
     let mut audit = Audit::default();
     let rows = batch.rows.iter().zip(&rest.rows);
     let rows = rows.flat_map(|(row, part)| part.each().map(move |cell| (row, cell)));
@@ -76,7 +86,9 @@ pub fn compare(batch: &RowBatch, cells: &Cells, rest: &RowBatch, found: &Cells) 
         let holds = match (cells.outcome[index], found.outcome[from]) {
             (Outcome::OffSheet, ours) => !matches!(ours, Outcome::Solved | Outcome::AtTip),
             (Outcome::Solved, ours) if ours != Outcome::OffSheet => {
-                holds(batch, row, cell, &cells.get(index), &found.get(from))
+                let theirs = cells.get(index);
+                f64::from(theirs.residual) <= (1.0 + ROUNDED) * residual_bound
+                    && holds(batch, row, cell, &theirs, &found.get(from))
             }
             _ => continue,
         };
@@ -106,12 +118,12 @@ fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Ce
         .map(|end| side.sizes(end));
     let values = of_row.iter().map(|base| base.trajectory.values);
     let sizes = sizes(side, values.chain(at_end).chain([ours]));
-    let miss = f64::from(theirs.residual).min(LARGEST_MISS);
+    let miss = f64::from(theirs.residual);
     let miss_angle = miss / side.sheet.rows[row.row].pole_distance;
     let column = side.columns.first + cell as u32;
     let base = of_row.iter().find(|base| base.cells.contains(&column));
     (0..ours.len()).all(|i| {
-        let by_miss = base.map_or(0.0, |base| {
+        let by_miss = base.map_or(VALUES_PER_MISS * miss * sizes[i], |base| {
             let part_of_turn = (miss_angle / (push - base.push).abs()).min(1.0);
             BY_DISTANCE * part_of_turn * (ours[i] - base.trajectory.values[i]).abs()
         });

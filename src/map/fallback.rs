@@ -10,16 +10,16 @@ use std::ops::Range;
 /// engine (`has_failed`), those without a base point count as solved by the CPU instead. Returns all cells and the result of the audit.
 pub fn complete(
     batch: &RowBatch,
-    cells: Option<Cells>,
+    cells: Option<(Cells, f64)>,
     has_failed: bool,
     cpu: &mut Cpu,
     counts: &mut EngineCells,
 ) -> (Cells, Audit) {
     let mut audit = Audit::default();
-    if let Some(mut cells) = cells {
+    if let Some((mut cells, residual_bound)) = cells {
         let rest = rest(batch, &cells);
         let found = cpu.solve(&rest);
-        audit = audit::compare(batch, &cells, &rest, &found);
+        audit = audit::compare(batch, &cells, residual_bound, &rest, &found);
         if audit.differing == 0 {
             for outcome in &cells.outcome {
                 counts.count(*outcome);

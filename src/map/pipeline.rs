@@ -13,6 +13,7 @@ use crate::engine::{Cells, Cpu, EngineInput, RowBatch, SideColumns, WhiskerSide,
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, SweptWhisker};
 use crate::sheet::Sheet;
+use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
@@ -29,6 +30,8 @@ const AHEAD: usize = 2;
 pub struct Pipeline<'a, 'e> {
     scene: &'a Scene,
     plan: &'a Plan,
+    /// Effects of the plan and steps of trajectories.
+    method: Method,
     rows_at_once: usize,
     columns: Vec<Arc<SideColumns>>,
     /// Signed push angles of the columns of all sides, in radians.
@@ -64,9 +67,15 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             pushes.extend(side.columns.iter().map(|column| column.push));
             Arc::new(side)
         });
+        let mut method = plan.method;
+        if let Some(EngineInput::SpectralSheets(_)) = input {
+            // Coarser steps are so few that their number changes along a row: states would not be analytic.
+            method.resolution = method.resolution.at_least_fine();
+        }
         Self {
             scene,
             plan,
+            method,
             rows_at_once: match input {
                 // After a failed audit, the bytes depend on where a batch ends.
                 Some(_) => plan.rows_at_once,
@@ -167,7 +176,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 (sides, 0)
             }
         };
-        let method = self.plan.method;
+        let method = self.method;
         let height = self.scene.grid.distance_mm.len();
         let all = sides.len() * height;
         let to = all.min(from + self.rows_at_once);
@@ -191,7 +200,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let of_whisker = |swept| self.columns.iter().map(move |columns| (swept, columns));
         let pairs: Vec<(&SweptWhisker, &Arc<SideColumns>)> =
             whiskers.iter().flat_map(of_whisker).collect();
-        let (grid, method) = (&self.scene.grid, self.plan.method);
+        let (grid, method) = (&self.scene.grid, self.method);
         let input = self.input.filter(|_| self.worker.is_working());
         let sides = pairs.into_par_iter().map(|(swept, columns)| {
             let rod = swept.rod(columns.side);
@@ -218,6 +227,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let summary = &mut self.summary;
         let has_failed = self.worker.failure.is_some();
         let counts = &mut summary.engine_cells;
+        let cells = cells.map(|cells| (cells, self.worker.residual_bound));
         let (cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;
         let fill = || rows::fill(batch, &cells, sides, width, panels);

@@ -2,9 +2,11 @@
 
 mod channels;
 mod effects;
+mod expansions;
 
 pub use channels::{Channel, Channels, STATE_CHANNELS};
 pub use effects::{Cost, Effect, effects};
+pub use expansions::{ExpansionCount, STATES_OF_ROW, USUAL_PATCH, expansion_cost};
 
 use crate::rod::{Effects, Rod, Side};
 use crate::scene::Scene;
@@ -179,6 +181,22 @@ impl Plan {
         let pushes = &scene.grid.push_angle_deg;
         let is_wanted = |side: &Side| pushes.iter().any(|push| Side::of_push(*push) == *side);
         Side::BOTH.into_iter().filter(is_wanted).collect()
+    }
+
+    /// Returns the count of cells and of expansions for the whisker side with the most push angles; `None` with measured radii, which have no
+    /// expansions.
+    #[must_use]
+    pub fn expansions(&self, scene: &Scene) -> Option<ExpansionCount> {
+        let pushes = &scene.grid.push_angle_deg;
+        let columns = |side: &Side| {
+            pushes
+                .iter()
+                .filter(|push| Side::of_push(**push) == *side)
+                .count()
+        };
+        let most = self.sides.iter().map(columns).max().unwrap_or(0);
+        let count = ExpansionCount::new(scene.grid.distance_mm.len(), most);
+        (!self.method.effects.profile).then_some(count)
     }
 
     /// Returns the groups of whiskers that are computed together, in order.

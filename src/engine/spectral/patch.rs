@@ -10,6 +10,7 @@ use super::row::{
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::{Chebyshev, MOST_POINTS, TAIL, chebyshev_points};
 use crate::numerics::tensor::ChebyshevTensor;
+use crate::plan::USUAL_PATCH;
 use crate::rod::{Rest, arclength};
 use crate::sheet::{Edge, Row, Sheet};
 use crate::shooting::ShootingMap;
@@ -39,8 +40,8 @@ impl PatchSize {
 
     /// Size of most certified patches.
     pub const USUAL: Self = Self {
-        rows: 24,
-        states: 28,
+        rows: USUAL_PATCH[0],
+        states: USUAL_PATCH[1],
     };
 
     /// Number of states.
@@ -165,7 +166,7 @@ impl Patch {
         let starts = smaller.map_or(StateStarts::Spans, |smaller| {
             StateStarts::Expansions(&expansions, smaller.error)
         });
-        let found = ExactRow::all(method, &sheet, &all, size.states, starts);
+        let found = ExactRow::all(method, &sheet, &all, size.states, most, starts);
         let found: Option<Vec<ExactRow>> = found.into_iter().collect();
         let found = found.ok_or(None)?;
         let is_apart = |row: &ExactRow| row.end.edge != interval.edge;

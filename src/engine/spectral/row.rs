@@ -6,7 +6,7 @@ use crate::numerics::expansion::{Chebyshev, MOST_POINTS, TAIL, chebyshev_points}
 use crate::numerics::inverse::Inverse;
 use crate::numerics::nearest_turn;
 use crate::plan::STATE_CHANNELS;
-use crate::refine::{ExactState, RowState, RowStateGoal, SpanFromTouch, row_states};
+use crate::refine::{ExactState, LEFT_BY_STEP, RowState, RowStateGoal, SpanFromTouch, row_states};
 use crate::sheet::{Crossing, Edge, Row, Sheet};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
@@ -49,18 +49,18 @@ pub enum StateStarts<'a> {
     Expansions(&'a [Chebyshev<FUNCTIONS>], f64),
 }
 
-/// Longest Newton step of a state whose end is extrapolated: it leaves an error of 5e-12 ([`LEFT_BY_STEP`](crate::refine::LEFT_BY_STEP)),
-/// a twentieth of the bound that expansions must keep.
-const LONGEST_STEP: f64 = 5e-7;
+/// Part of the bound on the residual that the extrapolated Newton step of a state may take.
+const STATE_ERROR: f64 = 0.05;
 
 impl ExactRow {
-    /// Computes `count` states of each row of `sheet` from `starts`. An entry is `None` for a row without a simple span from first touch,
+    /// Computes `count` states of each row of `sheet` from `starts`, for expansions with a residual of at most `most` whisker lengths. An entry is `None` for a row without a simple span from first touch,
     /// or if Newton's method fails for a state.
     pub fn all(
         method: Method,
         sheet: &Sheet,
         rows: &[usize],
         count: usize,
+        most: f64,
         starts: StateStarts,
     ) -> Vec<Option<Self>> {
         let points = chebyshev_points(count);
@@ -79,11 +79,12 @@ impl ExactRow {
             }
         });
         let spans: Vec<Option<Vec<RowState>>> = spans.collect();
+        let longest_step = (STATE_ERROR * most / LEFT_BY_STEP).sqrt();
         let goal = RowStateGoal {
-            longest_step: LONGEST_STEP,
+            longest_step,
             is_coarse_first: match starts {
                 StateStarts::Spans => true,
-                StateStarts::Expansions(_, error) => error > LONGEST_STEP,
+                StateStarts::Expansions(_, error) => error > longest_step,
             },
         };
         let flat: Vec<RowState> = spans.iter().flatten().flatten().copied().collect();

@@ -5,18 +5,13 @@ use super::patch::{Patch, PatchSize, RowInterval};
 use super::row::{ExactRow, ExpansionTail, FUNCTIONS, RowExpansion, StateStarts, Weights};
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::Chebyshev;
+use crate::plan::{STATES_OF_ROW, expansion_cost};
+use crate::refine::GOAL;
 use crate::sheet::Edge;
 use crate::shooting::batch::Method;
 
 /// Maximum bound on the residual of an expanded state, in whisker lengths, where no tolerance is given.
 pub const MOST: f64 = 1e-10;
-
-/// Cells whose refinement takes as long as a state of a patch, with its trajectories, its expansions and the attempts that fail. Measured on
-/// `scenes/morphology.toml`: 0.86 ms for a certified patch of 750 states, 0.48 us for a cell (two shared cores of an AMD EPYC).
-const CELLS_PER_STATE: usize = 3;
-
-/// Cells whose refinement takes as long as the expansions of a row from its patch. Measured on the same sweep: about 4 us.
-const CELLS_PER_ROW: usize = 8;
 
 /// Number of times that an interval of rows is halved.
 const HALVINGS: u32 = 3;
@@ -56,7 +51,7 @@ struct PlacedRow {
 impl SpectralSheet {
     /// Expands the rows of `side` up to a residual of `most` whisker lengths where that takes fewer trajectories than their cells; no row
     /// with measured radii. States are not analytic where the contact passes from one measured radius to the next, so the decay of
-    /// coefficients bounds no error there. `None` without an expanded row.
+    /// coefficients bounds no error there. `None` without an expanded row, as where `most` is below the residual of refined states.
     #[must_use]
     pub fn new(method: Method, side: &WhiskerSide, most: f64) -> Option<Self> {
         let count = side.sheet.rows.len();
@@ -65,7 +60,7 @@ impl SpectralSheet {
             rows: vec![RowSource::Missing; count],
             most,
         };
-        if method.effects.profile {
+        if method.effects.profile || most < GOAL {
             return None;
         }
         for edge in [Edge::Fold, Edge::Tip] {
@@ -79,8 +74,7 @@ impl SpectralSheet {
         }
         let is_missing = |source: &RowSource| matches!(source, RowSource::Missing);
         let alone = |row: &usize| {
-            is_missing(&sheet.rows[*row])
-                && cost(STATES[0] + ROW_CHECKS.len(), 1) < cells(side, *row)
+            is_missing(&sheet.rows[*row]) && expansion_cost(STATES_OF_ROW, 1) < cells(side, *row)
         };
         let mut alone: Vec<usize> = (0..count).filter(alone).collect();
         for states in STATES {
@@ -109,8 +103,9 @@ impl SpectralSheet {
             ends: [first.coordinate, last.coordinate],
         };
         let cells: usize = rows.iter().map(|own| cells(side, own.row)).sum();
-        let pays =
-            |size: PatchSize| size.rows < rows.len() && cost(size.count(), rows.len()) < cells;
+        let pays = |size: PatchSize| {
+            size.rows < rows.len() && expansion_cost(size.count(), rows.len()) < cells
+        };
         let is_wide = interval.ends[0] < interval.ends[1];
         if !pays(PatchSize::USUAL) || !is_wide {
             return;
@@ -137,11 +132,6 @@ impl SpectralSheet {
             RowSource::Missing => None,
         }
     }
-}
-
-/// Number of cells whose refinement takes as long as some `states` and the expansions of `rows`.
-const fn cost(states: usize, rows: usize) -> usize {
-    CELLS_PER_STATE * states + CELLS_PER_ROW * rows
 }
 
 /// Sizes of patches that are tried over an interval: the first, and two that are expected to be enough. If they are not, states are too
@@ -186,7 +176,7 @@ fn expand(
     states: usize,
     most: f64,
 ) -> Vec<Option<RowExpansion>> {
-    let exact = ExactRow::all(method, &side.sheet, rows, states, StateStarts::Spans);
+    let exact = ExactRow::all(method, &side.sheet, rows, states, most, StateStarts::Spans);
     let found: Vec<&ExactRow> = exact.iter().flatten().collect();
     let functions: Vec<Chebyshev<FUNCTIONS>> =
         found.iter().map(|row| row.expansion(side)).collect();

@@ -45,6 +45,16 @@ impl Resolution {
         }
     }
 
+    /// Returns the finer of this resolution and [`Resolution::FINE`].
+    #[must_use]
+    pub const fn at_least_fine(self) -> Self {
+        if self.least < Self::FINE.least {
+            Self::FINE
+        } else {
+            self
+        }
+    }
+
     /// Returns the resolution with twice as many steps.
     #[must_use]
     pub const fn doubled(self) -> Self {
