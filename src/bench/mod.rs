@@ -7,13 +7,16 @@ mod cpu;
 mod detachment;
 mod gpu;
 mod peak;
+mod request;
 mod solver;
+mod spectral;
 mod task;
 mod timing;
 mod whole;
 
 pub use detachment::Detachments;
 pub use solver::Solver;
+pub use spectral::Expansions;
 pub use task::{Errors, Spread};
 pub use timing::{NOISY, Timing};
 pub use whole::{Verdict, WholeMap};
@@ -99,9 +102,9 @@ const STAGES: [&str; 4] = ["upload", "dispatch", "waiting", "readback"];
 /// Integrator and steps of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rung {
-    /// The integrator of the engine.
+    /// The integrator of the engine; `chebyshev` for expansions of rows.
     pub integrator: &'static str,
-    /// Steps of a trajectory at the fold of a cylinder; fewer under less load.
+    /// Steps of a trajectory at the fold of a cylinder, fewer under less load; of expansions, states along a row.
     pub steps: u32,
 }
 
@@ -148,6 +151,8 @@ pub struct Report {
     pub engines: Vec<BenchEngine>,
     /// Measurements, engine by engine.
     pub rows: Vec<Measurement>,
+    /// Expansions of the spectral engine, from coarse to fine bounds.
+    pub expansions: Vec<Expansions>,
     /// Detachment curves, from coarse to fine steps.
     pub detachments: Vec<Detachments>,
     /// Number of cells of each whole map.
@@ -163,8 +168,8 @@ pub struct Report {
 /// Size of the sample, and number of runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Push angles, and distances, of the sample.
-    pub lines: usize,
+    /// Maximum number of push angles, and of distances, of the sample. Engines share work along a row, so rows are as long as in maps.
+    pub sample: [usize; 2],
     /// Maximum number of push angles, and of distances, of whole maps.
     pub map_lines: usize,
     /// Timed runs of each row.
@@ -174,14 +179,14 @@ pub struct Effort {
 impl Effort {
     /// Effort for numbers to be quoted.
     pub const FULL: Self = Self {
-        lines: 128,
+        sample: [512, 64],
         map_lines: 1024,
         runs: 7,
     };
 
     /// Effort for a first look.
     pub const QUICK: Self = Self {
-        lines: 48,
+        sample: [256, 24],
         map_lines: 256,
         runs: 5,
     };
@@ -198,7 +203,7 @@ pub fn run(
     on_step: &mut dyn FnMut(&str),
 ) -> Result<Option<Report>, EngineError> {
     let of_maps = scene.thinned(effort.map_lines, SAMPLE_VALUES);
-    let scene = scene.thinned(effort.lines, SAMPLE_VALUES);
+    let scene = scene.thinned_to(effort.sample, SAMPLE_VALUES);
     on_step("the exact states");
     let task = Task::new(&scene);
     if task.targets.is_empty() {
@@ -211,6 +216,7 @@ pub fn run(
         ..Report::default()
     };
     cpu::measure(&task, effort.runs, &mut report, on_step)?;
+    spectral::measure(&scene, &task, effort.runs, &mut report, on_step)?;
     gpu::measure(&scene, &task, effort.runs, &mut report, on_step);
     on_step("detachments");
     report.detachments = detachment::measure(&scene, effort.runs);

@@ -44,10 +44,10 @@ impl WhiskerSide {
         }
     }
 
-    /// This side with the spectral sheet by `method`.
+    /// This side with the spectral sheet by `method`, with bounds of at most `most` whisker lengths.
     #[must_use]
-    pub fn with_spectral_sheet(self, method: Method) -> Self {
-        let spectral = Some(SpectralSheet::new(method, &self));
+    pub fn with_spectral_sheet(self, method: Method, most: f64) -> Self {
+        let spectral = Some(SpectralSheet::new(method, &self, most));
         Self { spectral, ..self }
     }
 

@@ -8,7 +8,9 @@ use super::panel::Panel;
 use super::rows;
 use super::stages::Stage;
 use super::summary::{EngineCells, Summary};
-use crate::engine::{Cells, Cpu, EngineInput, RowBatch, SideColumns, WhiskerSide, Worker, on_gpu};
+use crate::engine::{
+    Cells, Cpu, EngineInput, RowBatch, SideColumns, Spectral, WhiskerSide, Worker, on_gpu,
+};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, SweptWhisker};
 use crate::sheet::Sheet;
@@ -199,7 +201,9 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             let sheet = Sheet::new(method, &rod, columns.side, &distances);
             let side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
             match input {
-                Some(EngineInput::SpectralSheets) => side.with_spectral_sheet(method),
+                Some(EngineInput::SpectralSheets) => {
+                    side.with_spectral_sheet(method, Spectral::MOST)
+                }
                 _ => side,
             }
         });

@@ -9,7 +9,7 @@ use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 
 /// Factor by which a bound exceeds the largest error seen: the error between a few places may be larger than there.
-const MARGIN: f64 = 4.0;
+pub const MARGIN: f64 = 4.0;
 
 /// Places of a row between its points, and the expansions there.
 pub struct Check<'a> {

@@ -32,6 +32,9 @@ pub struct Spectral {
 }
 
 impl Spectral {
+    /// Maximum bound on the residuals of maps, in whisker lengths.
+    pub const MOST: f64 = sheet::MOST;
+
     /// Solves the cells of `batch` whose side has a [`SpectralSheet`].
     #[must_use]
     pub fn solve(batch: &RowBatch) -> Cells {
@@ -39,17 +42,18 @@ impl Spectral {
         let rows: Vec<_> = batch.rows.iter().zip(cells.rows_mut(batch)).collect();
         rows.into_par_iter().for_each(|(row, into)| {
             let side = &batch.sides[row.side];
-            let sheet = side.spectral.as_ref();
-            if let Some(expansion) = sheet.and_then(|sheet| sheet.row(side, row.row)) {
-                write(side, row, &expansion, into);
+            if let Some(sheet) = &side.spectral
+                && let Some(expansion) = sheet.row(side, row.row)
+            {
+                write(side, row, &expansion, sheet.most, into);
             }
         });
         cells
     }
 }
 
-/// Writes the cells of `row` before its end.
-fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, into: CellsMut) {
+/// Writes the cells of `row` before its end, certified to at most `most` whisker lengths.
+fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64, into: CellsMut) {
     let sheet = &side.sheet;
     let end = sheet.crossings[row.row][0].push;
     let distance = sheet.rows[row.row].pole_distance;
@@ -71,7 +75,7 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, into: Cel
                 let bound = expansion.residual + miss;
                 // NaN is not below any bound.
                 let is_inside = (-OUTSIDE..=1.0 + OUTSIDE).contains(&block.places[lane]);
-                let is_certified = is_inside && bound <= sheet::MOST;
+                let is_certified = is_inside && bound <= most;
                 outcome[from + lane] = match sheet.is_at_tip(tau[lane], bound) {
                     _ if !is_certified => Outcome::Missed,
                     true => Outcome::NearEdge,
@@ -100,7 +104,7 @@ impl Engine for Spectral {
     }
 
     fn residual_bound(&self) -> f64 {
-        sheet::MOST
+        Self::MOST
     }
 
     fn input(&self, _: Resolution) -> EngineInput {

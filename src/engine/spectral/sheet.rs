@@ -1,40 +1,45 @@
 //! The spectral sheet of a whisker side: which row is expanded through its own states, and which belongs to a patch.
 
-use super::certificate::{Check, bounds};
+use super::certificate::{Check, MARGIN, bounds};
 use super::patch::{Patch, PatchSize, RowInterval};
 use super::row::{ExactRow, FUNCTIONS, RowExpansion, Weights, largest};
 use crate::engine::WhiskerSide;
-use crate::numerics::expansion::Chebyshev;
+use crate::numerics::expansion::{Chebyshev, MOST_POINTS};
 use crate::sheet::Edge;
 use crate::shooting::batch::Method;
 
-/// Maximum bound on the residual of an expanded state, in whisker lengths.
+/// Maximum bound on the residual of a state that is expanded as accurately as maps need, in whisker lengths.
 pub const MOST: f64 = 1e-10;
 
-/// Size of the first patch over an interval: enough for most whiskers.
-const USUAL: PatchSize = PatchSize {
-    rows: 24,
-    states: 32,
-};
+/// Rows, and states along each, by which the error of a patch falls to a tenth: measured on the paper's cone.
+const PER_DIGIT: [f64; 2] = [1.5, 2.0];
 
-/// Size of the patch that follows a usual one whose coefficients nearly decay.
-const LARGE: PatchSize = PatchSize {
-    rows: 40,
-    states: 40,
-};
-
-/// Expected error of a usual patch from row to row, in whisker lengths, above which the interval is halved at once: 16 more rows divide the
-/// error by less than this over [`MOST`].
-const HOPELESS: f64 = 1e-6;
+/// Expected error of a usual patch from row to row, over the maximum bound, above which the interval is halved at once.
+const HOPELESS: f64 = 1e4;
 
 /// Number of times that an interval of rows is halved.
 const HALVINGS: u32 = 3;
 
-/// Numbers of states of a row that is expanded alone.
-const STATES: [usize; 2] = [32, 40];
-
 /// Places at which a row that is expanded alone is checked.
 const ROW_CHECKS: [f64; 2] = [0.237, 0.761];
+
+/// Size of the first patch over an interval, enough for most whiskers: 26 rows of 32 states for a bound `most` of 1e-10 whisker lengths.
+fn usual(most: f64) -> PatchSize {
+    let digits = libm::log10(MOST / most);
+    let [rows, states] = [26.0 + PER_DIGIT[0] * digits, 32.0 + PER_DIGIT[1] * digits]
+        .map(|points| points.round().clamp(1.0, MOST_POINTS as f64) as usize);
+    PatchSize { rows, states }
+}
+
+/// Size of the patch that follows one of `size` whose expected error from row to row is `by_rows`.
+fn larger(size: PatchSize, by_rows: f64, most: f64) -> PatchSize {
+    let digits = libm::log10(MARGIN * by_rows / most).max(0.0);
+    let more = (PER_DIGIT[0] * digits).ceil() as usize + 1;
+    PatchSize {
+        rows: MOST_POINTS.min(size.rows + more),
+        states: MOST_POINTS,
+    }
+}
 
 /// Where the expansions of a row are.
 #[derive(Clone, Debug)]
@@ -50,6 +55,8 @@ enum RowSource {
 /// Certified expansions of the rows of a whisker side.
 #[derive(Clone, Debug)]
 pub struct SpectralSheet {
+    /// Maximum bound on the residual of a state, in whisker lengths.
+    pub most: f64,
     patches: Vec<Patch>,
     rows: Vec<RowSource>,
 }
@@ -61,12 +68,14 @@ struct PlacedRow {
 }
 
 impl SpectralSheet {
-    /// Expands the rows of `side` where that takes fewer states than their cells; no row with measured radii. States are not analytic where
-    /// the contact passes from one measured radius to the next, so the decay of coefficients bounds no error there.
+    /// Expands the rows of `side` with a bound of at most `most` whisker lengths, where that takes fewer states than their cells; no row with
+    /// measured radii. States are not analytic where the contact passes from one measured radius to the next, so the decay of coefficients
+    /// bounds no error there.
     #[must_use]
-    pub fn new(method: Method, side: &WhiskerSide) -> Self {
+    pub fn new(method: Method, side: &WhiskerSide, most: f64) -> Self {
         let count = side.sheet.rows.len();
         let mut sheet = Self {
+            most,
             patches: Vec::new(),
             rows: vec![RowSource::Missing; count],
         };
@@ -82,19 +91,26 @@ impl SpectralSheet {
             places.sort_by(|a, b| a.coordinate.total_cmp(&b.coordinate));
             sheet.cover(method, side, edge, &places, HALVINGS);
         }
+        let states = usual(most).states;
         let alone = |row: &usize| {
             matches!(sheet.rows[*row], RowSource::Missing)
-                && cells(side, *row) > STATES[0] + ROW_CHECKS.len()
+                && cells(side, *row) > states + ROW_CHECKS.len()
         };
         let mut alone: Vec<usize> = (0..count).filter(alone).collect();
-        for states in STATES {
-            for (row, found) in alone.iter().zip(expand(method, side, &alone, states)) {
+        for states in [states, MOST_POINTS] {
+            for (row, found) in alone.iter().zip(expand(method, side, &alone, states, most)) {
                 sheet.rows[*row] =
                     found.map_or(RowSource::Missing, |found| RowSource::Own(Box::new(found)));
             }
             alone.retain(|row| matches!(sheet.rows[*row], RowSource::Missing));
         }
         sheet
+    }
+
+    /// Number of states along a row of the first patch, for a bound of `most` whisker lengths.
+    #[must_use]
+    pub fn states(most: f64) -> usize {
+        usual(most).states
     }
 
     /// Covers neighbouring rows with patches.
@@ -114,12 +130,18 @@ impl SpectralSheet {
         let cells: usize = rows.iter().map(|own| cells(side, own.row)).sum();
         let pays = |size: PatchSize| size.rows < rows.len() && size.rows * size.states < cells;
         let is_wide = interval.ends[0] < interval.ends[1];
-        if !pays(USUAL) || !is_wide {
+        let (most, usual) = (self.most, usual(self.most));
+        if !pays(usual) || !is_wide {
             return;
         }
-        let mut found = Patch::new(method, side, interval, USUAL, MOST);
-        if matches!(found, Err(by_rows) if by_rows < HOPELESS) && pays(LARGE) {
-            found = Patch::new(method, side, interval, LARGE, MOST);
+        let mut found = Patch::new(method, side, interval, usual, most);
+        if let Err(by_rows) = found
+            && by_rows < HOPELESS * most
+        {
+            let size = larger(usual, by_rows, most);
+            if pays(size) {
+                found = Patch::new(method, side, interval, size, most);
+            }
         }
         if let Ok(patch) = found {
             for own in rows {
@@ -156,12 +178,13 @@ fn cells(side: &WhiskerSide, row: usize) -> usize {
     side.columns.magnitudes.partition_point(|push| *push < end)
 }
 
-/// Expands rows through `states` of their own.
+/// Expands rows through `states` of their own, with a bound of at most `most` whisker lengths.
 fn expand(
     method: Method,
     side: &WhiskerSide,
     rows: &[usize],
     states: usize,
+    most: f64,
 ) -> Vec<Option<RowExpansion>> {
     let exact = ExactRow::all(method, &side.sheet, rows, states);
     let found: Vec<&ExactRow> = exact.iter().flatten().collect();
@@ -187,7 +210,7 @@ fn expand(
     );
     let mut certified = found.iter().zip(functions).zip(weights).zip(bounds).map(
         |(((row, functions), weights), bound)| {
-            (bound <= MOST)
+            (bound <= most)
                 .then(|| RowExpansion::new(functions, &weights, bound, &row.row, &row.end))?
         },
     );
