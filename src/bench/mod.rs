@@ -6,7 +6,9 @@
 mod cpu;
 mod detachment;
 mod gpu;
+mod model;
 mod peak;
+mod peers;
 mod request;
 mod solver;
 mod spectral;
@@ -15,6 +17,8 @@ mod timing;
 mod whole;
 
 pub use detachment::Detachments;
+pub use model::{CELLS, CellWork, ComputedMap, MACHINES, Machine, MapParts, SolvedOn};
+pub use peers::{Peer, Peers, PeersError};
 pub use solver::Solver;
 pub use spectral::Expansions;
 pub use task::{Errors, Spread};
@@ -157,10 +161,12 @@ pub struct Report {
     pub detachments: Vec<Detachments>,
     /// Number of cells of each whole map.
     pub map_cells: usize,
-    /// Whole maps: of the CPU engine on all threads, then of each GPU engine.
+    /// Whole maps on all threads: of the CPU engine, of the spectral engine, then of each GPU engine.
     pub maps: Vec<WholeMap>,
-    /// Comparison of the CPU engine with the fastest GPU engine, if there is one.
+    /// Comparison of the CPU engine with the fastest other engine, if there is one.
     pub verdict: Option<Verdict>,
+    /// Large maps on other machines: computed, not measured.
+    pub computed: Vec<ComputedMap>,
     /// Engines that could not be measured, and why.
     pub failures: Vec<String>,
 }
@@ -222,6 +228,10 @@ pub fn run(
     report.detachments = detachment::measure(&scene, effort.runs);
     mark_pareto(&mut report.rows);
     whole::measure(&of_maps, effort.runs, &mut report, on_step)?;
+    let cells =
+        scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len() * scene.whisker_count();
+    let states = task.targets.len() as f64 / cells as f64;
+    report.computed = model::computed(&task, states, rayon::current_num_threads(), &report);
     Ok(Some(report))
 }
 

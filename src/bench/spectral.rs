@@ -13,6 +13,9 @@ use std::convert::Infallible;
 use std::hint::black_box;
 use std::time::Instant;
 
+/// Name of the engine in rows and maps.
+pub const SPECTRAL: &str = "spectral";
+
 /// Maximum bounds on the residual in whisker lengths, from coarse to the smallest that refined states allow.
 const BOUNDS: [f64; 5] = [1e-1, 1e-3, 1e-5, 1e-8, 1e-11];
 
@@ -55,7 +58,7 @@ pub fn measure(
     let mut engines = vec![1];
     engines.extend((all > 1).then_some(all));
     for threads in engines {
-        let name = format!("spectral {}", Unit::detect());
+        let name = SPECTRAL.to_owned();
         on_step(&format!("{name}, {threads} threads"));
         let pool = pool(threads)?;
         let mut engine = BenchEngine {
@@ -82,7 +85,7 @@ pub fn measure(
             rows.push(row);
         }
         if rows.is_empty() {
-            let few = "spectral: no whisker side of the sample has enough cells for expansions";
+            let few = "spectral: no whisker side has enough cells for expansions";
             report.failures.push(few.to_owned());
             return Ok(());
         }
