@@ -1,7 +1,8 @@
-//! Error against time for every engine of this machine, on the states of a scene; and times of whole maps.
+//! Error against time for every engine of this machine, on the states of a scene; times of whole maps, measured here and computed for
+//! other machines.
 //!
-//! The CPU solves targets from the guesses of the lattice. A GPU solves those of the same cells whose rows have base points, which are
-//! found beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
+//! The CPU solves targets from the guesses of the lattice. A GPU solves those of the same cells whose rows have base points, and the spectral
+//! engine those whose rows have expansions, both of which are found beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
 
 mod cpu;
 mod detachment;
@@ -185,14 +186,14 @@ pub struct Effort {
 impl Effort {
     /// Effort for numbers to be quoted.
     pub const FULL: Self = Self {
-        sample: [512, 64],
+        sample: [512, 128],
         map_lines: 1024,
         runs: 7,
     };
 
     /// Effort for a first look.
     pub const QUICK: Self = Self {
-        sample: [256, 24],
+        sample: [256, 64],
         map_lines: 256,
         runs: 5,
     };

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-/// Error of AUTO's push angles in radians below which its 11 digits show none.
+/// Error in radians below which the 11 digits of AUTO's push angles show none.
 const LAST_DIGIT: f64 = 1e-11;
 
 /// Other programs on one machine.
@@ -78,14 +78,13 @@ impl Peers {
             .map_err(|cause| format!("must be as benches/peers/run.sh writes it: {cause}"))?;
         let rows = |rows: Option<PeerRows>| rows.map(|own| own.rows);
         let programs = [
-            ("heyoka", file.heyoka),
-            ("AUTO-07p", rows(file.auto)),
-            ("solve_bvp", rows(file.solve_bvp)),
+            ("heyoka", file.heyoka, 0.0),
+            ("AUTO-07p", rows(file.auto), LAST_DIGIT),
+            ("solve_bvp", rows(file.solve_bvp), 0.0),
         ];
-        let measured = programs
-            .into_iter()
-            .filter_map(|(name, rows)| Some((name, rows?)));
-        let programs = measured.map(|(name, rows)| Peer::new(name, rows));
+        let measured = programs.into_iter();
+        let programs =
+            measured.filter_map(|(name, rows, least)| Some(Peer::new(name, rows?, least)));
         let programs = programs.collect::<Result<Vec<Peer>, String>>()?;
         if programs.iter().all(|peer| peer.points.is_empty()) {
             return Err("has no program; measure one with benches/peers/run.sh".to_owned());
@@ -98,7 +97,8 @@ impl Peers {
 }
 
 impl Peer {
-    fn new(name: &'static str, rows: Vec<PeerRow>) -> Result<Self, String> {
+    /// Selects the settings among `rows` that no other one beats. Errors below `least` count as much.
+    fn new(name: &'static str, rows: Vec<PeerRow>, least: f64) -> Result<Self, String> {
         let mut points = Vec::new();
         for (index, row) in rows.iter().enumerate() {
             for (key, number, is_valid) in [
@@ -114,14 +114,14 @@ impl Peer {
             }
             let is_single = row.threads.unwrap_or(1) == 1;
             let is_state = row.kind.as_deref().is_none_or(|kind| kind == "equilibrium");
-            let error = row.error_max.max(LAST_DIGIT).to_degrees();
+            let error = row.error_max.max(least).to_degrees();
             points.extend((is_single && is_state).then_some([row.microseconds, error]));
         }
         points.sort_by(|a: &[f64; 2], b| a[0].total_cmp(&b[0]));
-        let mut least = f64::INFINITY;
+        let mut best = f64::INFINITY;
         points.retain(|[_, error]| {
-            let is_better = *error < least;
-            least = least.min(*error);
+            let is_better = *error < best;
+            best = best.min(*error);
             is_better
         });
         Ok(Self { name, points })

@@ -20,7 +20,7 @@ Examples:
   whiskmap bench scenes/cone.toml --quick --json bench.json --plot bench.svg
   whiskmap bench scenes/cone.toml --plot bench.svg --peers outputs/peers.json
 
-Every engine solves a sample of the scene's states: at most 512 push angles, 64 distances (--quick: 256 and 24) and two values per sweep \
+Every engine solves a sample of the scene's states: at most 512 push angles, 128 distances (--quick: 256 and 64) and two values per sweep \
 axis. The CPU computes scalars, vectors on one thread and vectors on all threads, with 3 to 30 steps of order 8 at the fold, fewer \
 below. The spectral engine evaluates expansions with five bounds on the residual. Their one-time cost has a table of its own, with the number \
 of states per whisker side from which on it pays. Each GPU adapter computes in f32 and, if supported, in f64, as differences from exact base points along each row. The time for base \
