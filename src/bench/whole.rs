@@ -103,6 +103,9 @@ struct MapRun {
     packed_bytes: u64,
 }
 
+/// Name of an engine, the engine unless it is the CPU's, and its runs.
+type MeasuredEngine = (String, Option<Box<dyn Engine>>, Vec<MapRun>);
+
 /// Adds maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is one for all.
 pub fn measure(
     scene: &Scene,
@@ -121,8 +124,7 @@ pub fn measure(
     let pool = pool(threads)?;
     report.map_cells = plan.cells;
     let cpu = named(&format!("cpu {}", Unit::detect()), Some(threads));
-    let mut engines: Vec<(String, Option<Box<dyn Engine>>, Vec<MapRun>)> =
-        vec![(cpu, None, Vec::new())];
+    let mut engines: Vec<MeasuredEngine> = vec![(cpu, None, Vec::new())];
     if !plan.method.effects.profile {
         let spectral = named(SPECTRAL, Some(threads));
         engines.push((spectral, Some(Box::new(Spectral::default())), Vec::new()));
