@@ -1,14 +1,12 @@
 //! Measurements of every GPU adapter, in `f32` and, if supported, in `f64`.
 
-use super::task::{Task, whisker_sides};
+use super::request::{Points, Request};
+use super::task::Task;
 use super::timing::{median, timed};
 use super::{BenchEngine, Measurement, Report, Rung};
 use crate::engine::gpu::{Gpu, Precision, adapters};
-use crate::engine::{
-    Engine as _, EngineError, Outcome, RowBatch, SideColumns, WhiskerSide, on_gpu,
-};
+use crate::engine::{Cells, Engine as _, EngineError, RowBatch, on_gpu};
 use crate::scene::Scene;
-use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -55,7 +53,7 @@ pub fn measure(
         report.failures.push(format!("GPU: {why}"));
         return;
     }
-    let requests = Request::all(scene, task);
+    let requests = Request::all(scene, task, |_, side| side);
     let all = adapters();
     let without = all.iter().filter(|adapter| !adapter.shader_f64);
     let without = without.map(|adapter| format!("{}: no f64 in shaders", adapter.info.name));
@@ -70,61 +68,21 @@ pub fn measure(
     }
 }
 
-/// The cells of a whisker side.
-struct Request {
-    batch: RowBatch,
-    /// Index of the target of each cell, if it has one.
-    targets: Vec<Option<usize>>,
+/// Solves `batch`, the cells of a request with base points. Returns the cells and the milliseconds of the stages.
+fn solve(gpu: &mut Gpu, batch: &RowBatch) -> Result<(Cells, [f64; 4]), EngineError> {
+    let begun = Instant::now();
+    let mut batch = batch.clone();
+    let base_points = std::mem::take(&mut batch.base_points);
+    batch.set_base_points(base_points, gpu.resolution(batch.method.resolution));
+    let trajectories = begun.elapsed();
+    gpu.submit(Arc::new(batch))?;
+    let cells = gpu.collect()?;
+    let times = std::mem::take(&mut gpu.times);
+    let upload = trajectories + times.upload;
+    let stages = [upload, times.dispatch, times.waiting, times.readback];
+    let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
+    Ok((cells, stages.map(ms)))
 }
-
-impl Request {
-    /// The cells of all whisker sides of `scene`.
-    fn all(scene: &Scene, task: &Task) -> Vec<Self> {
-        let method = Method::fine().with_effects(task.effects);
-        let sides = whisker_sides(scene).into_iter().zip(&task.rods).enumerate();
-        let requests = sides.map(|(index, ((own, side), rod))| {
-            let distances = scene.grid.distance_mm.iter();
-            let distances: Vec<f64> = distances.map(|d| d / own.whisker.length_mm).collect();
-            let sheet = Sheet::new(method, rod, side, &distances);
-            let columns = SideColumns::new(&scene.grid.push_angle_deg, side, 0);
-            let pushes: Vec<f64> = columns.columns.iter().map(|own| own.push).collect();
-            let rows = sheet.rows.iter();
-            let poles = rows.flat_map(|row| pushes.iter().map(|push| row.pole(*push)));
-            let targets = poles.map(|pole| task.target(index as u32, pole)).collect();
-            let rows = (0..distances.len()).map(|row| (0, row));
-            let side = WhiskerSide::new(Arc::new(columns), own.whisker.units(), sheet);
-            let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
-            batch.has_points = true;
-            Self { batch, targets }
-        });
-        requests.collect()
-    }
-
-    /// Solves `batch`, these cells with base points. Returns the index of each target solved with `(tau, load)`, and the milliseconds of
-    /// the stages.
-    fn solve(&self, gpu: &mut Gpu, batch: &RowBatch) -> Result<(Points, [f64; 4]), EngineError> {
-        let begun = Instant::now();
-        let mut batch = batch.clone();
-        let base_points = std::mem::take(&mut batch.base_points);
-        batch.set_base_points(base_points, gpu.resolution(batch.method.resolution));
-        let trajectories = begun.elapsed();
-        gpu.submit(Arc::new(batch))?;
-        let cells = gpu.collect()?;
-        let times = std::mem::take(&mut gpu.times);
-        let upload = trajectories + times.upload;
-        let stages = [upload, times.dispatch, times.waiting, times.readback];
-        let found = cells.outcome.iter().zip(&cells.points).zip(&self.targets);
-        let points = found.filter_map(|((outcome, point), target)| {
-            let target = target.filter(|_| *outcome == Outcome::Solved)?;
-            Some((target, (point.x, point.y)))
-        });
-        let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
-        Ok((points.collect(), stages.map(ms)))
-    }
-}
-
-/// Index of a target, and `(tau, load)` of its state.
-type Points = Vec<(usize, (f64, f64))>;
 
 fn measure_one(
     requests: &[Request],
@@ -144,10 +102,10 @@ fn measure_one(
     let mut first_result_s = None;
     let mut of_runs: [Vec<f64>; 4] = Default::default();
     let mut run = || {
-        let (mut points, mut stages) = (Vec::new(), [0.0; 4]);
+        let (mut points, mut stages) = (Points::new(), [0.0; 4]);
         for (request, batch) in requests.iter().zip(&batches) {
-            let (more, ms) = request.solve(&mut gpu, batch)?;
-            points.extend(more);
+            let (cells, ms) = solve(&mut gpu, batch)?;
+            points.extend(request.solved(&cells));
             stages = std::array::from_fn(|i| stages[i] + ms[i]);
         }
         first_result_s.get_or_insert(start.elapsed().as_secs_f64());

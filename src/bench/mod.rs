@@ -1,19 +1,27 @@
-//! Error against time for every engine of this machine, on the states of a scene; and times of whole maps.
+//! Error against time for every engine of this machine, on the states of a scene; times of whole maps, measured here and computed for
+//! other machines.
 //!
-//! The CPU solves targets from the guesses of the lattice. A GPU solves those of the same cells whose rows have base points, which are
-//! found beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
+//! The CPU solves targets from the guesses of the lattice. A GPU solves those of the same cells whose rows have base points, and the spectral
+//! engine those whose rows have expansions, both of which are found beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
 
 mod cpu;
 mod detachment;
 mod gpu;
+mod model;
 mod peak;
+mod peers;
+mod request;
 mod solver;
+mod spectral;
 mod task;
 mod timing;
 mod whole;
 
 pub use detachment::Detachments;
+pub use model::{CELLS, CellWork, ComputedMap, MACHINES, Machine, MapParts, SolvedOn};
+pub use peers::{Peer, Peers, PeersError};
 pub use solver::Solver;
+pub use spectral::Expansions;
 pub use task::{Errors, Spread};
 pub use timing::{NOISY, Timing};
 pub use whole::{Verdict, WholeMap};
@@ -100,9 +108,9 @@ const STAGES: [&str; 4] = ["upload", "dispatch", "waiting", "readback"];
 /// Integrator of a measurement, and its number of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rung {
-    /// Name of the engine's integrator.
+    /// The integrator of the engine; `chebyshev` for expansions of rows.
     pub integrator: &'static str,
-    /// Number of steps of a trajectory at the fold of a cylinder; fewer under less load.
+    /// Steps of a trajectory at the fold of a cylinder, fewer under less load; of expansions, states along a row.
     pub steps: u32,
 }
 
@@ -149,23 +157,27 @@ pub struct Report {
     pub engines: Vec<BenchEngine>,
     /// Measurements of the report, engine by engine, `[measurement]`.
     pub rows: Vec<Measurement>,
-    /// Measurements of detachment curves, from coarse to fine steps, `[rung]`.
+    /// Expansions of the spectral engine, from coarse to fine bounds.
+    pub expansions: Vec<Expansions>,
+    /// Detachment curves, from coarse to fine steps.
     pub detachments: Vec<Detachments>,
     /// Number of cells of each whole map.
     pub map_cells: usize,
-    /// Measurements of whole maps: of the CPU engine on all threads, then of each GPU engine.
+    /// Whole maps on all threads: of the CPU engine, of the spectral engine, then of each GPU engine.
     pub maps: Vec<WholeMap>,
-    /// Comparison of the CPU engine with the fastest GPU engine; `None` without a GPU.
+    /// Comparison of the CPU engine with the fastest other engine, if there is one.
     pub verdict: Option<Verdict>,
-    /// Engines that could not be measured, with the reason of each.
+    /// Large maps on other machines: computed, not measured.
+    pub computed: Vec<ComputedMap>,
+    /// Engines that could not be measured, and why.
     pub failures: Vec<String>,
 }
 
 /// Effort of a measurement: size of the sample, and number of runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Number of push angles, and of distances, of the sample.
-    pub lines: usize,
+    /// Maximum number of push angles, and of distances, of the sample. Engines share work along a row, so rows are as long as in maps.
+    pub sample: [usize; 2],
     /// Maximum number of push angles, and of distances, of whole maps.
     pub map_lines: usize,
     /// Number of timed runs of each measurement.
@@ -175,14 +187,14 @@ pub struct Effort {
 impl Effort {
     /// Effort of measurements whose numbers are quoted.
     pub const FULL: Self = Self {
-        lines: 128,
+        sample: [512, 128],
         map_lines: 1024,
         runs: 7,
     };
 
     /// Effort of quick measurements.
     pub const QUICK: Self = Self {
-        lines: 48,
+        sample: [256, 64],
         map_lines: 256,
         runs: 5,
     };
@@ -199,7 +211,7 @@ pub fn run(
     on_step: &mut dyn FnMut(&str),
 ) -> Result<Option<Report>, EngineError> {
     let of_maps = scene.thinned(effort.map_lines, SAMPLE_VALUES);
-    let scene = scene.thinned(effort.lines, SAMPLE_VALUES);
+    let scene = scene.thinned_to(effort.sample, SAMPLE_VALUES);
     on_step("the exact states");
     let task = Task::new(&scene);
     if task.targets.is_empty() {
@@ -212,11 +224,16 @@ pub fn run(
         ..Report::default()
     };
     cpu::measure(&task, effort.runs, &mut report, on_step)?;
+    spectral::measure(&scene, &task, effort.runs, &mut report, on_step)?;
     gpu::measure(&scene, &task, effort.runs, &mut report, on_step);
     on_step("detachments");
     report.detachments = detachment::measure(&scene, effort.runs);
     mark_pareto(&mut report.rows);
     whole::measure(&of_maps, effort.runs, &mut report, on_step)?;
+    let cells =
+        scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len() * scene.whisker_count();
+    let states = task.targets.len() as f64 / cells as f64;
+    report.computed = model::computed(&task, states, rayon::current_num_threads(), &report);
     Ok(Some(report))
 }
 

@@ -189,6 +189,13 @@ impl Task {
         }
     }
 
+    /// Mean number of steps of the states' trajectories.
+    pub fn mean_steps(&self, resolution: Resolution) -> f64 {
+        let steps = self.conditions(&self.exact).into_iter();
+        let steps = steps.map(|own| f64::from(resolution.steps(own.rod, own.tau, own.load)));
+        steps.sum::<f64>() / self.targets.len() as f64
+    }
+
     /// Returns the errors of the `points`, `(tau, load)` of every target.
     pub fn errors(&self, points: &[(f64, f64)]) -> Errors {
         let [found, exact] = [points, &self.exact].map(|points| self.conditions(points));

@@ -1,10 +1,11 @@
 //! Measurements of whole maps by engine and stage, and a verdict on the faster engine.
 
 use super::gpu::{Candidate, candidates};
+use super::spectral::SPECTRAL;
 use super::timing::{Timing, median};
 use super::{Report, StageTimes, medians, named, pool};
 use crate::engine::gpu::Gpu;
-use crate::engine::{Engine, EngineError, on_gpu};
+use crate::engine::{Engine, EngineError, Spectral, on_gpu};
 use crate::map::{self, Panel, Stage};
 use crate::numerics::Unit;
 use crate::plan::Plan;
@@ -13,13 +14,12 @@ use crate::store::MapWriter;
 use serde::Serialize;
 use std::convert::Infallible;
 use std::fmt;
-use std::hint::black_box;
 use std::ops::ControlFlow;
 
 /// Measurement of a whole map by one engine, packed but not written.
 #[derive(Clone, Debug, Serialize)]
 pub struct WholeMap {
-    /// Name of the map's engine, with the number of threads for the CPU engine.
+    /// Name of the engine, with its threads unless it is a GPU.
     pub engine: String,
     /// Times from the plan to the last panel packed, in seconds.
     pub seconds: Timing,
@@ -33,12 +33,14 @@ pub struct WholeMap {
     pub device_can_take: f64,
     /// Number of cells of the map that fell back to the CPU.
     pub fallback: u64,
+    /// Bytes of a packed cell, with all channels.
+    pub packed_bytes_per_cell: f64,
 }
 
 /// Comparison of engines by their times for whole maps.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
-    /// Name of the faster one of the CPU engine and the fastest GPU engine.
+    /// Name of the faster one of the CPU engine and the fastest other engine.
     pub faster: String,
     /// Name of the slower one of the CPU engine and the fastest GPU engine.
     pub slower: String,
@@ -76,12 +78,12 @@ impl fmt::Display for Verdict {
 impl Verdict {
     /// Returns the verdict on whole maps: compares the CPU engine, which is first, with the fastest of the others; `None` without others.
     pub fn of(maps: &[WholeMap]) -> Option<Self> {
-        let (cpu, gpus) = maps.split_first()?;
+        let (cpu, others) = maps.split_first()?;
         let by_time = |a: &&WholeMap, b: &&WholeMap| a.seconds.median.total_cmp(&b.seconds.median);
-        let gpu = gpus.iter().min_by(by_time)?;
-        let (faster, slower) = match by_time(&cpu, &gpu).is_le() {
-            true => (cpu, gpu),
-            false => (gpu, cpu),
+        let other = others.iter().min_by(by_time)?;
+        let (faster, slower) = match by_time(&cpu, &other).is_le() {
+            true => (cpu, other),
+            false => (other, cpu),
         };
         Some(Self {
             faster: faster.engine.clone(),
@@ -99,10 +101,13 @@ struct MapRun {
     host: f64,
     stages_ms: StageTimes,
     fallback: u64,
+    packed_bytes: u64,
 }
 
-/// Adds measurements of maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is
-/// one for all.
+/// Name of an engine, the engine unless it is the CPU's, and its runs.
+type MeasuredEngine = (String, Option<Box<dyn Engine>>, Vec<MapRun>);
+
+/// Adds maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is one for all.
 pub fn measure(
     scene: &Scene,
     runs: usize,
@@ -120,12 +125,16 @@ pub fn measure(
     let pool = pool(threads)?;
     report.map_cells = plan.cells;
     let cpu = named(&format!("cpu {}", Unit::detect()), Some(threads));
-    let mut engines: Vec<(String, Option<Gpu>, Vec<MapRun>)> = vec![(cpu, None, Vec::new())];
+    let mut engines: Vec<MeasuredEngine> = vec![(cpu, None, Vec::new())];
+    if !plan.method.effects.profile {
+        let spectral = named(SPECTRAL, Some(threads));
+        engines.push((spectral, Some(Box::new(Spectral::default())), Vec::new()));
+    }
     if on_gpu(plan.method.effects).is_ok() {
         let measured = |one: &Candidate| report.engines.iter().any(|own| own.name == one.name);
         for one in candidates().into_iter().filter(measured) {
             match Gpu::open(Some(one.adapter), one.precision) {
-                Ok(gpu) => engines.push((one.name, Some(gpu), Vec::new())),
+                Ok(gpu) => engines.push((one.name, Some(Box::new(gpu)), Vec::new())),
                 Err(why) => report.failures.push(format!("map by {}: {why}", one.name)),
             }
         }
@@ -133,13 +142,16 @@ pub fn measure(
     // The first round warms up.
     for round in 0..=runs {
         let mut working = Vec::new();
-        for (name, mut gpu, mut samples) in engines {
+        for (name, mut engine, mut samples) in engines {
             on_step(&format!("map {round} of {runs} by {name}"));
-            let sample = pool.install(|| run(scene, &plan, gpu.as_mut()));
+            let sample = pool.install(|| {
+                let engine = engine.as_mut().map(|own| own.as_mut() as &mut dyn Engine);
+                run(scene, &plan, engine)
+            });
             match sample {
                 Ok(sample) => {
                     samples.extend((round > 0).then_some(sample));
-                    working.push((name, gpu, samples));
+                    working.push((name, engine, samples));
                 }
                 Err(why) => report.failures.push(format!("map by {name}: {why}")),
             }
@@ -154,10 +166,10 @@ pub fn measure(
 }
 
 /// Computes one map.
-fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<MapRun, EngineError> {
-    let engine = gpu.map(|gpu| gpu as &mut dyn Engine);
+fn run(scene: &Scene, plan: &Plan, engine: Option<&mut dyn Engine>) -> Result<MapRun, EngineError> {
+    let mut packed_bytes = 0;
     let mut keep = |panels: Vec<Panel>| {
-        black_box(MapWriter::sample(&scene.grid, plan.channels, &panels));
+        packed_bytes += MapWriter::sample(&scene.grid, plan.channels, &panels);
         Ok::<(), Infallible>(())
     };
     let Ok(summary) = map::run(
@@ -183,6 +195,7 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<MapRun, Engi
             .map(|(name, s)| (name.replace(' ', "_"), 1e3 * s))
             .collect(),
         fallback: summary.engine_cells.fallback(),
+        packed_bytes,
     })
 }
 
@@ -204,6 +217,9 @@ fn summed_up(engine: String, cells: usize, samples: &[MapRun]) -> WholeMap {
         host_us_per_cell: 1e6 * median(samples.iter().map(|run| run.host)) / cells as f64,
         device_can_take: for_devices / (for_devices + for_cpus),
         fallback: samples.last().map_or(0, |run| run.fallback),
+        packed_bytes_per_cell: samples
+            .last()
+            .map_or(0.0, |run| run.packed_bytes as f64 / cells as f64),
         stages_ms,
     }
 }
@@ -220,11 +236,12 @@ mod tests {
             host_us_per_cell: 0.0,
             device_can_take: 0.0,
             fallback: 0,
+            packed_bytes_per_cell: 0.0,
         }
     }
 
     #[test]
-    fn the_verdict_is_on_the_cpu_and_the_fastest_gpu() {
+    fn the_verdict_is_on_the_cpu_and_the_fastest_other_engine() {
         let [cpu, fast, slow] = [
             map("cpu", &[1.9, 2.0, 2.1]),
             map("fast", &[0.9, 1.0, 1.1]),

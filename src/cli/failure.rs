@@ -3,6 +3,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use whiskmap::bench::PeersError;
 use whiskmap::engine::EngineError;
 use whiskmap::engine::gpu::DRIVER_CALL;
 use whiskmap::fit;
@@ -30,6 +31,8 @@ pub enum Failure {
     /// An argument is invalid, alone or with this machine or these files.
     #[error("{0}")]
     Input(String),
+    #[error(transparent)]
+    Peers(#[from] PeersError),
     #[error(transparent)]
     Engine(#[from] EngineError),
     #[error(transparent)]
@@ -73,7 +76,9 @@ pub enum Failure {
 impl Failure {
     fn code(&self) -> u8 {
         let is_input = match self {
-            Self::Scene(_) | Self::Points(_) | Self::Plan(_) | Self::Input(_) => true,
+            Self::Scene(_) | Self::Points(_) | Self::Plan(_) | Self::Peers(_) | Self::Input(_) => {
+                true
+            }
             Self::Fit(error) => !matches!(error, fit::FitError::NotConverged(_)),
             Self::Store(store::StoreError::Encode(..))
             | Self::Render(

@@ -6,7 +6,7 @@ use crate::random_rods::{Random, rod};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-use whiskmap::engine::{Cells, Engine, EngineInput, RowBatch, SideColumns, WhiskerSide};
+use whiskmap::engine::{Cells, Engine, EngineInput, RowBatch, SideColumns, Spectral, WhiskerSide};
 use whiskmap::rod::{Effects, Rod, Side, Units};
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::Method;
@@ -78,7 +78,8 @@ impl RandomRows {
             let is_ours = |columns: &&Arc<SideColumns>| columns.side.sign() == rod.pole.signum();
             let columns = columns.iter().find(is_ours).unwrap();
             let sheet = Sheet::new(method, rod, columns.side, distances);
-            WhiskerSide::new(Arc::clone(columns), NO_UNITS, sheet).with_spectral_sheet(method)
+            WhiskerSide::new(Arc::clone(columns), NO_UNITS, sheet)
+                .with_spectral_sheet(method, Spectral::MOST)
         });
         Self {
             method,

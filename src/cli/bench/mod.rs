@@ -7,31 +7,36 @@ use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::open;
 use clap::Args;
-use plot::plot;
+use plot::chart;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use tables::tables;
-use whiskmap::bench::{self, Effort};
+use whiskmap::bench::{self, Effort, Peers};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   whiskmap bench scenes/cone.toml
   whiskmap bench scenes/cone.toml --quick --json bench.json --plot bench.svg
+  whiskmap bench scenes/cone.toml --plot bench.svg --peers outputs/peers.json
 
-Every engine solves a sample of the scene's states: at most 128 x 128 cells and two values per sweep axis. The CPU computes \
-scalars, vectors on one thread and vectors on all threads, with 3 to 30 steps of order 8 at the fold, fewer below. Each GPU \
-adapter computes in f32 and, if supported, in f64, as differences from exact base points along each row. The time for base \
-points and cells that the GPU cannot certify do not count. Errors are differences from four times the default steps: of the \
+Every engine solves a sample of the scene's states: at most 512 push angles, 128 distances (--quick: 256 and 64) and two values per sweep \
+axis. The CPU computes scalars, vectors on one thread and vectors on all threads, with 3 to 30 steps of order 8 at the fold, fewer \
+below. The spectral engine evaluates expansions with five bounds on the residual. Their one-time cost has a table of its own, with the number \
+of states per whisker side from which on it pays. Each GPU adapter computes in f32 and, if supported, in f64, as differences from exact base points along each row. The time for base \
+points, and cells that an engine cannot certify, do not count. Errors are differences from four times the default steps: of the \
 push angle, of the contact's arclength in whisker lengths, and of its force. * marks rows that no other row beats in time and \
 worst push-angle error. Times are medians of at least 5 runs after one that does not count. +- is the difference of the slowest \
 and the fastest run; ! marks rows in which it is more than 20 %.
 
-Then the CPU engine and the GPUs compute whole maps in turn, packed but not written: at most 1024 x 1024 cells (--quick: 256 x 256) and two \
+Then the CPU engine, the spectral engine and the GPUs compute whole maps in turn, packed but not written: at most 1024 x 1024 cells (--quick: 256 x 256) and two \
 values per sweep axis. host is the CPU time per cell of all threads, including those of a software adapter. for devices is the \
 part of the stages, guesses and refinement, that a device could still compute. Stages are wall milliseconds. points are the base \
 points of rows, which only a GPU engine needs. device and packing overlap the other stages; waiting is for the device. The \
-verdict compares the CPU engine with the fastest GPU engine.")]
+verdict compares the CPU engine with the fastest other engine.
+
+The last table has seconds for 10^9 cells: computed for machines that are not here, from counted operations and bytes, published peak rates, \
+and this machine's time for the host's stages; and as the whole maps took here. Parts overlap, but host and packing share the cores.")]
 pub struct BenchArgs {
     /// Scene file; - is standard input
     scene: PathBuf,
@@ -41,6 +46,9 @@ pub struct BenchArgs {
     /// Plot error against time to FILE; the ending selects PNG or SVG
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// Plot the programs of FILE as well, which benches/peers/run.sh writes
+    #[arg(long, value_name = "FILE", requires = "plot")]
+    peers: Option<PathBuf>,
     /// Use a smaller sample and fewer runs
     #[arg(long)]
     quick: bool,
@@ -48,6 +56,9 @@ pub struct BenchArgs {
 
 pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&args.scene)?;
+    let peers = args.peers.as_deref();
+    peers.inspect(|path| files.input(path));
+    let peers = peers.map(Peers::read).transpose()?;
     let json = args.json.as_deref();
     let (output, picture) = open(files, "--json", json, args.plot.as_deref())?;
     let effort = if args.quick {
@@ -71,8 +82,8 @@ pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
         file.write(text.as_bytes())?;
     }
     if let Some(picture) = picture {
-        let title = format!("What accuracy costs: {}", report.scene);
-        picture.plot(title, plot(&report.rows))?;
+        let chart = chart(&report.scene, &report.rows, peers.as_ref());
+        picture.write(&chart.picture())?;
     }
     if json != Some(Path::new(STDOUT)) {
         tables(&report)?;

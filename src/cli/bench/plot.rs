@@ -1,36 +1,72 @@
 //! Plot of the command `whiskmap bench`.
 
-use whiskmap::bench::{Measurement, NOISY, named};
-use whiskmap::render::{Dot, Ink, Line, Plot, Stroke};
+use whiskmap::bench::{Measurement, NOISY, Peers, named};
+use whiskmap::render::{Chart, Dot, Ink, Line, Note, Plot, Stroke};
 
-/// Plots error against time of all measurements, with one line per engine and integrator.
-pub fn plot(rows: &[Measurement]) -> Plot {
-    let looks = [
-        (Ink::Grey, Stroke::Solid),
-        (Ink::Black, Stroke::Solid),
-        (Ink::Black, Stroke::Dashed),
-        (Ink::Grey, Stroke::Dashed),
-        (Ink::Blue, Stroke::Solid),
-        (Ink::Blue, Stroke::Dashed),
-    ];
+/// Draws error against time of engines, and of other programs if there are some.
+pub fn chart(scene: &str, rows: &[Measurement], peers: Option<&Peers>) -> Chart {
+    let caption = peers.map(|peers| {
+        format!(
+            "Grey with names: other programs, on one thread of {}. States are of the map; heyoka's are trajectories.",
+            peers.machine
+        )
+    });
+    Chart {
+        caption: caption.into_iter().collect(),
+        ..Chart::single(format!("What accuracy costs: {scene}"), plot(rows, peers))
+    }
+}
+
+/// Plots error against time, with one line per engine and integrator, and a named one per peer. A single row is a dot with a name.
+fn plot(rows: &[Measurement], peers: Option<&Peers>) -> Plot {
     let kind = |row: &Measurement| (row.engine.clone(), row.threads, row.rung.integrator);
     let engines = rows.chunk_by(|a, b| kind(a) == kind(b));
-    let (mut lines, mut dots) = (Vec::new(), Vec::new());
-    for (rows, &(ink, stroke)) in engines.zip(looks.iter().cycle()) {
-        let engine = named(&rows[0].engine, rows[0].threads);
-        let name = format!("{engine}, {}", rows[0].rung.integrator);
-        let points = rows.iter().map(point).collect();
-        lines.push(Line::new(points, ink, stroke).named(name));
-        dots.extend(rows.iter().filter_map(|row| dot(row, ink)));
-    }
-    Plot {
+    let mut plot = Plot {
         x_label: "time per state (\u{b5}s)".to_owned(),
         y_label: "worst error of the push angle (deg)".to_owned(),
-        lines,
-        dots,
         logarithmic: true,
         ..Plot::default()
+    };
+    for rows in engines {
+        let engine = named(&rows[0].engine, rows[0].threads);
+        let (ink, stroke) = look(&rows[0]);
+        let points: Vec<[f64; 2]> = rows.iter().map(point).collect();
+        if let [only] = points[..] {
+            plot.notes.push(Note::text(only, engine));
+        } else {
+            let name = format!("{engine}, {}", rows[0].rung.integrator);
+            plot.lines.push(Line::new(points, ink, stroke).named(name));
+        }
+        plot.dots
+            .extend(rows.iter().filter_map(|row| dot(row, ink, rows.len() == 1)));
     }
+    for peer in peers.iter().flat_map(|peers| &peers.programs) {
+        plot.notes
+            .extend(peer.points.first().map(|at| Note::text(*at, peer.name)));
+        let dots = peer.points.iter().map(|at| Dot {
+            at: *at,
+            ink: Ink::Grey,
+            ..Dot::default()
+        });
+        plot.dots.extend(dots);
+        plot.lines
+            .push(Line::new(peer.points.clone(), Ink::Grey, Stroke::Dashed));
+    }
+    plot
+}
+
+/// Colour and stroke of an engine: trajectories on one scalar, on vectors and on threads, expansions, and GPUs.
+fn look(row: &Measurement) -> (Ink, Stroke) {
+    let ink = match &*row.engine {
+        "cpu scalar" => Ink::Grey,
+        "spectral" => Ink::Blue,
+        _ => Ink::Black,
+    };
+    let stroke = match row.threads {
+        None | Some(1) => Stroke::Solid,
+        Some(_) => Stroke::Dashed,
+    };
+    (ink, stroke)
 }
 
 /// Time per state in microseconds, and worst push-angle error in degrees.
@@ -38,35 +74,22 @@ fn point(row: &Measurement) -> [f64; 2] {
     [row.us_per_state, row.errors.angle_deg.worst]
 }
 
-/// Returns the dot of a row, if it has one: open and in the `ink` of its line if the row is noisy, black if no other row beats it.
-fn dot(row: &Measurement, ink: Ink) -> Option<Dot> {
-    let (ink, name) = match (row.pareto, row.seconds.is_noisy) {
-        (true, false) => (
-            Ink::Black,
-            "no other is faster and more accurate".to_owned(),
-        ),
-        (true, true) => (
-            ink,
-            "no other is faster and more accurate, but noisy".to_owned(),
-        ),
-        (false, true) => {
-            let most = 100.0 * NOISY;
-            (ink, format!("noisy: runs more than {most:.0} % apart"))
-        }
-        (false, false) => return None,
-    };
-    Some(Dot {
+/// Returns the dot of a row in the `ink` of its engine, open if the row is noisy; a row in a line has one only if it is noisy.
+fn dot(row: &Measurement, ink: Ink, is_single: bool) -> Option<Dot> {
+    let most = 100.0 * NOISY;
+    let is_noisy = row.seconds.is_noisy;
+    (is_noisy || is_single).then(|| Dot {
         at: point(row),
         ink,
-        open: row.seconds.is_noisy,
-        name: Some(name),
+        open: is_noisy,
+        name: is_noisy.then(|| format!("noisy: runs more than {most:.0} % apart")),
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::plot;
-    use whiskmap::bench::{Errors, Measurement, Rung, Spread, StageTimes, Timing};
+    use whiskmap::bench::{Errors, Measurement, Peer, Peers, Rung, Spread, StageTimes, Timing};
     use whiskmap::render::Ink;
 
     const EXACT: Spread = Spread {
@@ -74,7 +97,7 @@ mod tests {
         p99: 0.0,
     };
 
-    fn row(engine: &str, pareto: bool, is_noisy: bool) -> Measurement {
+    fn row(engine: &str, is_noisy: bool) -> Measurement {
         Measurement {
             engine: engine.to_owned(),
             threads: None,
@@ -101,21 +124,37 @@ mod tests {
                 arc_length: EXACT,
                 force: EXACT,
             },
-            pareto,
+            pareto: false,
         }
     }
 
     #[test]
     fn a_noisy_point_keeps_the_colour_of_its_engine() {
-        let engines = ["scalar", "one thread", "all threads", "gpu f32", "gpu f64"];
-        let kinds = [(false, true), (true, true), (true, false), (false, false)];
-        let rows = engines.map(|engine| kinds.map(|(pareto, noisy)| row(engine, pareto, noisy)));
-        let plot = plot(&rows.concat());
-        assert_eq!(plot.lines.len(), engines.len());
-        for (line, dots) in plot.lines.iter().zip(plot.dots.chunks(3)) {
-            let found: Vec<_> = dots.iter().map(|dot| (dot.ink, dot.open)).collect();
-            let wanted = [(line.ink, true), (line.ink, true), (Ink::Black, false)];
-            assert_eq!(found, wanted, "{:?}", line.name);
-        }
+        let engines = ["cpu scalar", "spectral", "cpu AVX2", "gpu f32"];
+        let inks = [Ink::Grey, Ink::Blue, Ink::Black, Ink::Black];
+        let rows = engines.map(|engine| [true, false].map(|noisy| row(engine, noisy)));
+        let plot = plot(&rows.concat(), None);
+        assert_eq!(
+            plot.lines.iter().map(|line| line.ink).collect::<Vec<_>>(),
+            inks
+        );
+        let dots = plot.dots.iter().map(|dot| (dot.ink, dot.open));
+        assert_eq!(dots.collect::<Vec<_>>(), inks.map(|ink| (ink, true)));
+    }
+
+    #[test]
+    fn a_single_row_and_each_peer_have_a_dot_and_a_name() {
+        let peers = Peers {
+            machine: "M".to_owned(),
+            programs: vec![Peer {
+                name: "AUTO-07p",
+                points: vec![[300.0, 1e-9], [500.0, 1e-10]],
+            }],
+        };
+        let plot = plot(&[row("gpu f32", false)], Some(&peers));
+        assert_eq!(plot.dots.len(), 3);
+        assert_eq!(plot.lines.len(), 1);
+        let notes: Vec<&str> = plot.notes.iter().map(|note| &*note.text).collect();
+        assert_eq!(notes, ["gpu f32", "AUTO-07p"]);
     }
 }

@@ -1,7 +1,7 @@
 //! Tables of the command `whiskmap bench`.
 
 use std::io::{self, Write};
-use whiskmap::bench::{NOISY, Report, Timing, named};
+use whiskmap::bench::{CELLS, NOISY, Report, Timing, named};
 
 /// Prints all measurements in at most 80 columns, except the names of adapters.
 pub fn tables(report: &Report) -> io::Result<()> {
@@ -46,6 +46,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
     for failure in &report.failures {
         writeln!(out, "not measured: {failure}")?;
     }
+    expansions(&mut out, report)?;
     let staged = || report.rows.iter().filter(|row| row.threads.is_none());
     if staged().next().is_some() {
         writeln!(
@@ -82,6 +83,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
         )?;
     }
     maps(&mut out, report)?;
+    computed(&mut out, report)?;
     let rows = report.rows.iter().map(|row| &row.seconds);
     let ends = report.detachments.iter().map(|row| &row.seconds);
     let maps = report.maps.iter().map(|map| &map.seconds);
@@ -90,6 +92,72 @@ pub fn tables(report: &Report) -> io::Result<()> {
         writeln!(
             out,
             "\n! noisy: the slowest and the fastest run are more than {most:.0} % apart"
+        )?;
+    }
+    Ok(())
+}
+
+/// Prints the one-time cost of expansions, if some were measured.
+fn expansions(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    if report.expansions.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "\nexpansions, one thread\n  bound  states  certified  ms a side  +-%  us a state  trajectories  pays from"
+    )?;
+    for own in &report.expansions {
+        let from = own
+            .pays_from
+            .map_or_else(|| "-".to_owned(), |from| format!("{from:.0}"));
+        writeln!(
+            out,
+            "{:7.0e} {:7} {:9.2}% {:10.2} {} {:11.3} {:13.3} {from:>10}",
+            own.bound,
+            own.states,
+            100.0 * own.certified,
+            own.ms_per_side,
+            spread(&own.seconds),
+            own.us_per_state,
+            own.us_by_trajectories,
+        )?;
+    }
+    writeln!(
+        out,
+        "pays from: states of a whisker side; trajectories: us of the cheapest as accurate ones"
+    )
+}
+
+/// Prints computed seconds of large maps beside those of the whole maps here.
+fn computed(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    writeln!(
+        out,
+        "\nseconds for {CELLS:.0e} cells, COMPUTED, not measured\n{:25} compute memory   bus  host  pack  disk   all bound by",
+        ""
+    )?;
+    for map in &report.computed {
+        let parts = &map.parts;
+        let machine = format!("{}, {}", map.machine, map.engine);
+        write!(out, "{machine:26}")?;
+        for seconds in [
+            parts.compute,
+            parts.memory,
+            parts.bus,
+            parts.host,
+            parts.packing,
+            parts.disk,
+            map.seconds,
+        ] {
+            write!(out, "{seconds:6.1}")?;
+        }
+        writeln!(out, " {}", map.bound_by)?;
+    }
+    for map in &report.maps {
+        let seconds = map.seconds.median * CELLS / report.map_cells as f64;
+        writeln!(
+            out,
+            "{:62}{seconds:6.1} MEASURED",
+            format!("this machine, {}", map.engine)
         )?;
     }
     Ok(())
@@ -105,13 +173,13 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     for map in &report.maps {
         writeln!(
             out,
-            "{:20} {:7.1} {} {:13.3} {:11.0}% {:12}",
+            "{:20} {:7.1} {} {:13.3} {:11.0}% {:10.2}%",
             map.engine,
             1e3 * map.seconds.median,
             spread(&map.seconds),
             map.host_us_per_cell,
             100.0 * map.device_can_take,
-            map.fallback
+            100.0 * map.fallback as f64 / report.map_cells as f64
         )?;
     }
     writeln!(
@@ -140,7 +208,7 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
          waiting: for the GPU; device and packing run beside the other stages"
     )?;
     match &report.verdict {
-        None => writeln!(out, "verdict: no GPU engine was measured"),
+        None => writeln!(out, "verdict: no other engine was measured"),
         Some(verdict) => writeln!(out, "verdict: {verdict}"),
     }
 }

@@ -230,6 +230,11 @@ impl Patch {
         bounds.into_iter().fold(0.0, larger)
     }
 
+    /// Returns the number of states along a row.
+    pub const fn states(&self) -> usize {
+        self.tensor.in_y.len()
+    }
+
     /// Returns the expansions of `row` of `side` in the patch. `None` if the row is outside the interval, contradicts its end, or has
     /// values so small that the bound is too large for them. At the ends of the interval there is no row with states.
     pub fn row(&self, side: &WhiskerSide, row: usize) -> Option<RowExpansion> {

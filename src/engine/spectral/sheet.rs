@@ -88,6 +88,17 @@ impl SpectralSheet {
         (!is_empty).then_some(sheet)
     }
 
+    /// Returns the largest number of states along an expanded row.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        let own = self.rows.iter().map(|source| match source {
+            RowSource::Patch(patch) => self.patches[*patch].states(),
+            RowSource::Own(own) => own.inverse.functions.coefficients.len(),
+            RowSource::Missing => 0,
+        });
+        own.max().unwrap_or(0)
+    }
+
     /// Covers neighbouring rows with patches.
     fn cover(
         &mut self,

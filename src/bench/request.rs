@@ -1,0 +1,57 @@
+//! The cells of whisker sides as requests to an engine, with the targets of their states.
+
+use super::task::{Task, whisker_sides};
+use crate::engine::{Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
+use crate::scene::Scene;
+use crate::sheet::Sheet;
+use crate::shooting::batch::Method;
+use std::sync::Arc;
+
+/// The cells of a whisker side.
+pub struct Request {
+    pub batch: RowBatch,
+    /// Index of the target of each cell, if it has one.
+    targets: Vec<Option<usize>>,
+}
+
+/// Index of a target, and `(tau, load)` of its state.
+pub type Points = Vec<(usize, (f64, f64))>;
+
+impl Request {
+    /// The cells of all whisker sides of `scene`, each with the expansions that `expand` adds to it.
+    pub fn all(
+        scene: &Scene,
+        task: &Task,
+        expand: impl Fn(Method, WhiskerSide) -> WhiskerSide,
+    ) -> Vec<Self> {
+        let method = Method::fine().with_effects(task.effects);
+        let sides = whisker_sides(scene).into_iter().zip(&task.rods).enumerate();
+        let requests = sides.map(|(index, ((own, side), rod))| {
+            let distances = scene.grid.distance_mm.iter();
+            let distances: Vec<f64> = distances.map(|d| d / own.whisker.length_mm).collect();
+            let sheet = Sheet::new(method, rod, side, &distances);
+            let columns = SideColumns::new(&scene.grid.push_angle_deg, side, 0);
+            let pushes: Vec<f64> = columns.columns.iter().map(|own| own.push).collect();
+            let rows = sheet.rows.iter();
+            let poles = rows.flat_map(|row| pushes.iter().map(|push| row.pole(*push)));
+            let targets = poles.map(|pole| task.target(index as u32, pole)).collect();
+            let rows = (0..distances.len()).map(|row| (0, row));
+            let side = WhiskerSide::new(Arc::new(columns), own.whisker.units(), sheet);
+            let side = expand(method, side);
+            let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
+            batch.has_points = true;
+            Self { batch, targets }
+        });
+        requests.collect()
+    }
+
+    /// The targets that `cells` of the request solve.
+    pub fn solved(&self, cells: &Cells) -> Points {
+        let found = cells.outcome.iter().zip(&cells.points).zip(&self.targets);
+        let points = found.filter_map(|((outcome, point), target)| {
+            let target = target.filter(|_| *outcome == Outcome::Solved)?;
+            Some((target, (point.x, point.y)))
+        });
+        points.collect()
+    }
+}
