@@ -28,6 +28,9 @@ pub struct WholeMap {
     pub stages_ms: StageTimes,
     /// CPU microseconds of the process per cell; 0 where the system has no such clock. A software adapter's threads are included.
     pub host_us_per_cell: f64,
+    /// CPU seconds of the host's own stages over those of the CPU engine: one thread, from the sheets to the classification, without packing
+    /// and without the engine; 0 where the system has no such clock.
+    pub host_share: f64,
     /// Stage times of guesses and refinement over the sum of all stage times, from 0 to 1: the part that an engine can take over.
     pub device_can_take: f64,
     /// Cells that fell back to the CPU.
@@ -96,6 +99,8 @@ impl Verdict {
 struct MapRun {
     seconds: f64,
     host: f64,
+    /// CPU seconds of the host's own stages on one thread.
+    own: f64,
     stages_ms: StageTimes,
     fallback: u64,
 }
@@ -115,7 +120,7 @@ pub fn measure(
         }
     };
     let threads = rayon::current_num_threads();
-    let pool = pool(threads)?;
+    let (one, pool) = (pool(1)?, pool(threads)?);
     report.map_cells = plan.cells;
     let cpu = named(&format!("cpu {}", Unit::detect()), Some(threads));
     let mut engines: Vec<(String, Option<Gpu>, Vec<MapRun>)> = vec![(cpu, None, Vec::new())];
@@ -134,6 +139,10 @@ pub fn measure(
         for (name, mut gpu, mut samples) in engines {
             on_step(&format!("map {round} of {runs} by {name}"));
             let sample = pool.install(|| run(scene, &plan, gpu.as_mut()));
+            let sample = sample.and_then(|sample| {
+                let own = one.install(|| own_seconds(scene, &plan, gpu.as_mut()))?;
+                Ok(MapRun { own, ..sample })
+            });
             match sample {
                 Ok(sample) => {
                     samples.extend((round > 0).then_some(sample));
@@ -147,8 +156,28 @@ pub fn measure(
     let maps = engines.into_iter();
     let maps = maps.map(|(name, _, samples)| summed_up(name, plan.cells, &samples));
     report.maps = maps.collect();
+    if let Some(cpu) = report.maps.first().map(|cpu| cpu.host_share) {
+        for map in &mut report.maps {
+            map.host_share = if cpu > 0.0 { map.host_share / cpu } else { 0.0 };
+        }
+    }
     report.verdict = Verdict::of(&report.maps);
     Ok(())
+}
+
+/// CPU seconds of this thread, the only one of its pool, for one map that is not packed.
+fn own_seconds(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<f64, EngineError> {
+    let begun = map::thread_seconds();
+    let Ok(summary) = map::run(
+        scene,
+        plan,
+        gpu.map(|gpu| gpu as &mut dyn Engine),
+        &mut |_| ControlFlow::Continue(()),
+        &mut |_| Ok::<(), Infallible>(()),
+    );
+    let ended = map::thread_seconds();
+    let seconds = ended.zip(begun).map_or(0.0, |(ended, begun)| ended - begun);
+    summary.engine_failure.map_or(Ok(seconds), Err)
 }
 
 /// Computes one map.
@@ -177,6 +206,7 @@ fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<MapRun, Engi
     Ok(MapRun {
         seconds: summary.wall_seconds,
         host: summary.cpu_seconds.unwrap_or_default(),
+        own: 0.0,
         stages_ms: stages
             .map(|(name, s)| (name.replace(' ', "_"), 1e3 * s))
             .collect(),
@@ -200,6 +230,7 @@ fn summed_up(engine: String, cells: usize, samples: &[MapRun]) -> WholeMap {
         engine,
         seconds: Timing::of(samples.iter().map(|run| run.seconds)),
         host_us_per_cell: 1e6 * median(samples.iter().map(|run| run.host)) / cells as f64,
+        host_share: median(samples.iter().map(|run| run.own)),
         device_can_take: for_devices / (for_devices + for_cpus),
         fallback: samples.last().map_or(0, |run| run.fallback),
         stages_ms,
@@ -216,6 +247,7 @@ mod tests {
             seconds: Timing::of(seconds.iter().copied()),
             stages_ms: StageTimes::new(),
             host_us_per_cell: 0.0,
+            host_share: 0.0,
             device_can_take: 0.0,
             fallback: 0,
         }

@@ -4,7 +4,7 @@
 //! fold, so the Jacobian is regular there, too.
 
 use super::newton::verdict;
-use super::{ContactState, RefineOutcome};
+use super::{ContactState, LEFT_BY_STEP, RefineOutcome};
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::rod::{Rod, arclength};
 use crate::sheet::{Guess, Sheet};
@@ -35,10 +35,11 @@ pub struct ExactState {
     pub load: f64,
     /// State, with the derivatives of the last trajectory.
     pub variation: FirstVariation,
+    /// Bound on the distance of the pole from the row, in whisker lengths, that the last Newton step leaves.
+    pub residual: f64,
+    /// Bound on the change of the Jacobian along the last Newton step, for steps in units of the contact's arclength and of the load's scale.
+    pub jacobian_error: f64,
 }
-
-/// Longest Newton step whose end is extrapolated. The error it leaves is below rounding: all cells of a base point inherit it.
-const EXTRAPOLATED_ROW_STEP: f64 = 3e-8;
 
 /// Maximum number of trajectories for each state.
 const ROW_STATE_TRAJECTORIES: u32 = 8;
@@ -46,7 +47,11 @@ const ROW_STATE_TRAJECTORIES: u32 = 8;
 struct RowProblem<'a> {
     state: RowState<'a>,
     ln_distance: f64,
+    /// Longest Newton step whose end is extrapolated.
+    longest: f64,
     derivatives: FirstVariation,
+    /// Length of the last Newton step.
+    last: f64,
 }
 
 impl<'a> NewtonProblem<'a> for RowProblem<'a> {
@@ -70,7 +75,8 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
         let step = DVec2::new(miss.perp_dot(by_load), by_tau.perp_dot(miss));
         let step = step / by_tau.perp_dot(by_load);
         let (step, length) = limited(step, arclength(self.rod(), at.x), at.y);
-        if length <= EXTRAPOLATED_ROW_STEP {
+        self.last = length;
+        if length <= self.longest {
             NewtonStep::Extrapolate(step)
         } else {
             NewtonStep::Shoot(at + step)
@@ -78,19 +84,22 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
     }
 }
 
-/// Finds the `states`, one result for each. A result is `None` where Newton's method fails, or leads off the stable sheet.
-pub fn row_states(method: Method, states: &[RowState]) -> Vec<Option<ExactState>> {
+/// Finds the `states`, one result for each. A Newton step of at most `longest`, as [`limited`] measures it, is extrapolated. A result is
+/// `None` where Newton's method fails, or leads off the stable sheet.
+pub fn row_states(method: Method, states: &[RowState], longest: f64) -> Vec<Option<ExactState>> {
     let chunks = states.par_chunks(chunk_size(states.len()));
     chunks
-        .flat_map_iter(|states| solve(method, states))
+        .flat_map_iter(|states| solve(method, states, longest))
         .collect()
 }
 
-fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>> {
+fn solve<'a>(method: Method, states: &[RowState<'a>], longest: f64) -> Vec<Option<ExactState>> {
     let problem = |state: &RowState<'a>| RowProblem {
         ln_distance: libm::log(state.sheet.rows[state.row].pole_distance),
         state: *state,
+        longest,
         derivatives: FirstVariation::default(),
+        last: 0.0,
     };
     let mut problems: Vec<RowProblem> = states.iter().map(problem).collect();
     let start = |state: &RowState| DVec2::new(state.tau, state.w / (state.tau * state.tau));
@@ -108,6 +117,7 @@ fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>>
         let guess = Guess { tau, load };
         let is_solved = iterate.outcome == NewtonOutcome::Converged
             && verdict(state.sheet, guess, &reached) == RefineOutcome::Solved;
+        let s = arclength(&state.sheet.rod, reached.tau);
         is_solved.then_some(ExactState {
             tau: reached.tau,
             load: reached.load,
@@ -115,6 +125,11 @@ fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>>
                 full: reached.full,
                 ..problem.derivatives
             },
+            residual: LEFT_BY_STEP
+                * problem.last
+                * problem.last
+                * (s + reached.full.map.pole.length()),
+            jacobian_error: 2.0 * LEFT_BY_STEP * problem.last,
         })
     });
     exact.collect()

@@ -100,7 +100,7 @@ impl RandomRows {
         let mut batch = RowBatch::new(self.method, sides, pushes, rows);
         batch.has_points = true;
         match engine.input(self.method.resolution) {
-            EngineInput::BasePoints(resolution) => batch.with_base_points(resolution),
+            EngineInput::BasePoints(accuracy) => batch.with_base_points(accuracy),
             _ => batch,
         }
     }

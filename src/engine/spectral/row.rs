@@ -27,6 +27,9 @@ const VALUE_WEIGHT: f64 = 0.1;
 /// Weighted coefficient below which an expansion ends: below the rounding of the states.
 const ROUNDING: f64 = 1e-15;
 
+/// Longest Newton step to a state whose end is extrapolated: the error that it leaves is below rounding.
+const EXTRAPOLATED: f64 = 3e-8;
+
 /// Exact states of a row at the Chebyshev points of its row parameter.
 #[derive(Clone, Debug)]
 pub struct ExactRow {
@@ -48,7 +51,7 @@ impl ExactRow {
             .iter()
             .flatten()
             .flat_map(|span| span.states(chebyshev_points(count)));
-        let found = row_states(method, &states.collect::<Vec<_>>());
+        let found = row_states(method, &states.collect::<Vec<_>>(), EXTRAPOLATED);
         let mut found = found.chunks(count);
         let rows = rows.iter().zip(&spans).map(|(row, span)| {
             span.as_ref()?;
