@@ -29,7 +29,10 @@ pub struct WholeMap {
     /// CPU time of the process for one cell, in microseconds; 0 where the system has no such clock. A software adapter's threads are
     /// included.
     pub host_us_per_cell: f64,
-    /// Part of the run that an engine can take over, from 0 to 1: stage times of guesses and refinement over the sum of all stage times.
+    /// CPU seconds of the host's own stages over those of the CPU engine: one thread, from the sheets to the classification, without packing
+    /// and without the engine; 0 where the system has no such clock.
+    pub host_share: f64,
+    /// Stage times of guesses and refinement over the sum of all stage times, from 0 to 1: the part that an engine can take over.
     pub device_can_take: f64,
     /// Number of cells of the map that fell back to the CPU.
     pub fallback: u64,
@@ -99,6 +102,8 @@ impl Verdict {
 struct MapRun {
     seconds: f64,
     host: f64,
+    /// CPU seconds of the host's own stages on one thread.
+    own: f64,
     stages_ms: StageTimes,
     fallback: u64,
     packed_bytes: u64,
@@ -122,7 +127,7 @@ pub fn measure(
         }
     };
     let threads = rayon::current_num_threads();
-    let pool = pool(threads)?;
+    let (one, pool) = (pool(1)?, pool(threads)?);
     report.map_cells = plan.cells;
     let cpu = named(&format!("cpu {}", Unit::detect()), Some(threads));
     let mut engines: Vec<MeasuredEngine> = vec![(cpu, None, Vec::new())];
@@ -144,9 +149,10 @@ pub fn measure(
         let mut working = Vec::new();
         for (name, mut engine, mut samples) in engines {
             on_step(&format!("map {round} of {runs} by {name}"));
-            let sample = pool.install(|| {
-                let engine = engine.as_mut().map(|own| own.as_mut() as &mut dyn Engine);
-                run(scene, &plan, engine)
+            let sample = pool.install(|| run(scene, &plan, borrowed(&mut engine)));
+            let sample = sample.and_then(|sample| {
+                let own = one.install(|| own_seconds(scene, &plan, borrowed(&mut engine)))?;
+                Ok(MapRun { own, ..sample })
             });
             match sample {
                 Ok(sample) => {
@@ -161,8 +167,37 @@ pub fn measure(
     let maps = engines.into_iter();
     let maps = maps.map(|(name, _, samples)| summed_up(name, plan.cells, &samples));
     report.maps = maps.collect();
+    if let Some(cpu) = report.maps.first().map(|cpu| cpu.host_share) {
+        for map in &mut report.maps {
+            map.host_share = if cpu > 0.0 { map.host_share / cpu } else { 0.0 };
+        }
+    }
     report.verdict = Verdict::of(&report.maps);
     Ok(())
+}
+
+/// Borrows the engine of a run.
+fn borrowed(engine: &mut Option<Box<dyn Engine>>) -> Option<&mut dyn Engine> {
+    engine.as_mut().map(|own| own.as_mut() as &mut dyn Engine)
+}
+
+/// CPU seconds of this thread, the only one of its pool, for one map that is not packed.
+fn own_seconds(
+    scene: &Scene,
+    plan: &Plan,
+    engine: Option<&mut dyn Engine>,
+) -> Result<f64, EngineError> {
+    let begun = map::thread_seconds();
+    let Ok(summary) = map::run(
+        scene,
+        plan,
+        engine,
+        &mut |_| ControlFlow::Continue(()),
+        &mut |_| Ok::<(), Infallible>(()),
+    );
+    let ended = map::thread_seconds();
+    let seconds = ended.zip(begun).map_or(0.0, |(ended, begun)| ended - begun);
+    summary.engine_failure.map_or(Ok(seconds), Err)
 }
 
 /// Computes one map.
@@ -191,6 +226,7 @@ fn run(scene: &Scene, plan: &Plan, engine: Option<&mut dyn Engine>) -> Result<Ma
     Ok(MapRun {
         seconds: summary.wall_seconds,
         host: summary.cpu_seconds.unwrap_or_default(),
+        own: 0.0,
         stages_ms: stages
             .map(|(name, s)| (name.replace(' ', "_"), 1e3 * s))
             .collect(),
@@ -215,6 +251,7 @@ fn summed_up(engine: String, cells: usize, samples: &[MapRun]) -> WholeMap {
         engine,
         seconds: Timing::of(samples.iter().map(|run| run.seconds)),
         host_us_per_cell: 1e6 * median(samples.iter().map(|run| run.host)) / cells as f64,
+        host_share: median(samples.iter().map(|run| run.own)),
         device_can_take: for_devices / (for_devices + for_cpus),
         fallback: samples.last().map_or(0, |run| run.fallback),
         packed_bytes_per_cell: samples
@@ -234,6 +271,7 @@ mod tests {
             seconds: Timing::of(seconds.iter().copied()),
             stages_ms: StageTimes::new(),
             host_us_per_cell: 0.0,
+            host_share: 0.0,
             device_can_take: 0.0,
             fallback: 0,
             packed_bytes_per_cell: 0.0,

@@ -16,7 +16,7 @@ pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
 pub use panel::Panel;
 use pipeline::Pipeline;
-pub use stages::Stage;
+pub use stages::{Stage, thread_seconds};
 use stages::{StageTimes, process_seconds};
 use std::ops::ControlFlow;
 use std::time::Instant;

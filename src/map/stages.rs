@@ -52,10 +52,22 @@ impl StageTimes {
 /// Returns the CPU seconds of this process since it started; `None` if the system has no such clock.
 pub(super) fn process_seconds() -> Option<f64> {
     #[cfg(unix)]
-    {
-        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
-        Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
-    }
+    return Some(seconds(rustix::time::ClockId::ProcessCPUTime));
     #[cfg(not(unix))]
     None
+}
+
+/// CPU seconds of this thread since it started; `None` where the system has no such clock.
+#[must_use]
+pub fn thread_seconds() -> Option<f64> {
+    #[cfg(unix)]
+    return Some(seconds(rustix::time::ClockId::ThreadCPUTime));
+    #[cfg(not(unix))]
+    None
+}
+
+#[cfg(unix)]
+fn seconds(clock: rustix::time::ClockId) -> f64 {
+    let time = rustix::time::clock_gettime(clock);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }

@@ -79,7 +79,7 @@ impl RandomRows {
             let columns = columns.iter().find(is_ours).unwrap();
             let sheet = Sheet::new(method, rod, columns.side, distances);
             WhiskerSide::new(Arc::clone(columns), NO_UNITS, sheet)
-                .with_spectral_sheet(method, Spectral::MOST)
+                .with_spectral_sheet(method, Spectral::default().residual_bound())
         });
         Self {
             method,
@@ -101,7 +101,7 @@ impl RandomRows {
         let mut batch = RowBatch::new(self.method, sides, pushes, rows);
         batch.has_points = true;
         match engine.input(self.method.resolution) {
-            EngineInput::BasePoints(resolution) => batch.with_base_points(resolution),
+            EngineInput::BasePoints(accuracy) => batch.with_base_points(accuracy),
             _ => batch,
         }
     }

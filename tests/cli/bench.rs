@@ -136,6 +136,9 @@ fn maps_hang_together(maps: &[Value], verdict: &Value) {
     }
     let host = numbers(maps, "/host_us_per_cell");
     assert!(host.iter().all(|us| *us > 0.0), "{host:?}");
+    let shares = numbers(maps, "/host_share");
+    assert_eq!(shares[0], 1.0);
+    assert!(shares.iter().all(|share| *share > 0.0), "{shares:?}");
     let is_cpu = |map: &Value| map["engine"].as_str().unwrap().starts_with("cpu");
     for map in maps {
         let device = map.pointer("/stages_ms/device").and_then(Value::as_f64);

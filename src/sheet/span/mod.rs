@@ -150,21 +150,26 @@ impl RowSpan {
         self.ends.iter().any(reaches)
     }
 
-    /// Returns `[push angle in radians, tau]` of the row span at the row parameter `w`.
-    pub fn at(&self, w: f64) -> [f64; 2] {
-        let is_before = |node: &SpanNode| node.w <= w;
-        let after = match self.nodes.first().zip(self.nodes.last()) {
-            Some((first, last)) if first.w > last.w => {
-                self.nodes.partition_point(|n| !is_before(n))
-            }
-            _ => self.nodes.partition_point(is_before),
-        };
-        let before = after.saturating_sub(1);
+    /// Returns `[push angle in radians, tau]` at each of the row parameters `ws`.
+    pub fn at(&self, ws: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
         if self.nodes.len() == WIDTH {
-            self.polynomials::<WIDTH>(0)
-                .map(|polynomial| polynomial.at(w).0)
-        } else {
-            self.around(before).map(|polynomial| polynomial.at(w).0)
+            let whole = self.polynomials::<WIDTH>(0);
+            return ws
+                .map(|w| whole.each_ref().map(|own| own.at(w).0))
+                .collect();
         }
+        let ends = self.nodes.first().zip(self.nodes.last());
+        let falls = ends.is_some_and(|(first, last)| first.w > last.w);
+        let mut used: Option<(usize, [Polynomial<AROUND>; 2])> = None;
+        let values = ws.map(|w| {
+            let after = self.nodes.partition_point(|node| falls != (node.w <= w));
+            let from = stencil(after.saturating_sub(1), AROUND, self.nodes.len());
+            let (_, polynomials) = match &used {
+                Some(used) if used.0 == from => used,
+                _ => used.insert((from, self.polynomials(from))),
+            };
+            polynomials.each_ref().map(|own| own.at(w).0)
+        });
+        values.collect()
     }
 }
