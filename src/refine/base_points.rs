@@ -2,13 +2,14 @@
 //!
 //! Between them, base and pole move by about equal distances, as many as the rounding of the engine allows. The row's span gives push
 //! angle and contact as functions of the row parameter `w`, and so the guesses of cells; each base point carries them as Taylor
-//! polynomials around itself. A polynomial through the nearest base points gives the Jacobian for the one Newton step of each cell.
+//! polynomials around itself. A polynomial through the nearest base points corrects them, and gives the Jacobian for the one Newton step
+//! of each cell.
 
 use super::LEFT_BY_STEP;
 use super::row_states::{ExactState, RowState, RowStateGoal, row_states};
 use crate::engine::{
-    BasePoint, BasePointAccuracy, BaseTrajectory, BatchRow, JACOBIAN_POWERS, JacobianTerms,
-    MOST_TRAJECTORY_STEPS, POWERS, RESTING_POWERS, RowBatch, RowTerms, WhiskerSide,
+    BasePoint, BasePointAccuracy, BaseTrajectory, BatchRow, JACOBIAN_POWERS, MOST_TRAJECTORY_STEPS,
+    POWERS, RESTING_POWERS, RowBatch, RowTerms, WhiskerSide,
 };
 use crate::numerics::expansion::{Chebyshev, chebyshev_points};
 use crate::numerics::nearest_turn;
@@ -180,8 +181,16 @@ impl<'a> RowCurve<'a> {
         let sign = sheet.side.sign();
         let parts = &self.parts;
         let curves: Vec<[RowTerms; POWERS]> = self.curve.taylor(parts);
+        let values = found.iter().zip(&curves).map(|(state, curve)| {
+            let [push, tau] = [sign * curve[0][0], curve[0][1]];
+            let map = &state.variation.full.map;
+            let exact = nearest_turn(map.pole.to_angle() - row.touch, push);
+            let [[a, b], [c, d]] = [map.by_tau, map.by_load].map(|by| by.to_array());
+            [exact - push, state.tau - tau, a, b, c, d]
+        });
+        let values: Vec<LocalTerms> = values.collect();
         let resting = RestingDirection::new(&sheet.rod, row.pole_distance);
-        let mut base_points = Vec::with_capacity(found.len());
+        let mut base_points = Vec::with_capacity(values.len());
         let (mut from, mut start) = (0, 0.0);
         for (m, state) in found.iter().enumerate() {
             let (stop, until) = match parts.get(m + 1) {
@@ -205,11 +214,12 @@ impl<'a> RowCurve<'a> {
                 variation,
                 ..
             } = *state;
-            let full = &variation.full;
+            let (local, errors) = through_nearest(parts, &values, m, farthest);
             let mut curve = curves[m].map(|[push, tau]| [sign * push, tau]);
-            let push = nearest_turn(full.map.pole.to_angle() - row.touch, curve[0][0]);
-            curve[0] = [push, tau];
-            let (jacobian, jacobian_error) = jacobian(&sheet.rod, parts, found, m, farthest);
+            for (own, [push, tau, ..]) in curve.iter_mut().zip(&local) {
+                *own = [own[0] + push, own[1] + tau];
+            }
+            let [push, _] = curve[0];
             base_points.push(BasePoint {
                 // Sides of a group are few.
                 rod: self.row.side as u32,
@@ -220,9 +230,9 @@ impl<'a> RowCurve<'a> {
                 state: variation,
                 load_per_w: self.w_end / (tau * tau),
                 row: curve,
-                jacobian,
-                jacobian_error,
-                resting: resting.around(full.position.length()),
+                jacobian: local.map(|[_, _, jacobian @ ..]| jacobian),
+                jacobian_error: jacobian_error(&sheet.rod, state, errors),
+                resting: resting.around(variation.full.position.length()),
                 distance_unit: resting.unit,
                 cells,
                 trajectory: BaseTrajectory::default(),
@@ -253,27 +263,24 @@ fn parts(count: usize) -> Vec<f64> {
     (0..count).map(part).collect()
 }
 
-/// Taylor polynomial of the Jacobian around the base point `m` of those at `parts`, through the nearest ones of the states `found`, and a
-/// bound on its error up to `farthest` from there, for steps in units of the contact's arclength and of the load's scale.
-fn jacobian(
-    rod: &Rod,
+/// Numbers that are interpolated between base points: corrections of push angle and `tau` of the curve, and the Jacobian.
+type LocalTerms = [f64; 6];
+
+/// Taylor polynomial around the base point `m` of those at `parts`, through the `values` at the nearest ones, and the size of its last
+/// term in Newton's form up to `farthest` from there.
+fn through_nearest(
     parts: &[f64],
-    found: &[ExactState],
+    values: &[LocalTerms],
     m: usize,
     farthest: f64,
-) -> ([JacobianTerms; JACOBIAN_POWERS], f64) {
-    let from = stencil(m, JACOBIAN_POWERS, found.len());
-    let count = JACOBIAN_POWERS.min(found.len());
+) -> ([LocalTerms; JACOBIAN_POWERS], LocalTerms) {
+    let from = stencil(m, JACOBIAN_POWERS, values.len());
+    let count = JACOBIAN_POWERS.min(values.len());
     let mut nearest: [usize; JACOBIAN_POWERS] = std::array::from_fn(|i| from + i);
     let apart = |i: &usize| (parts[*i] - parts[m]).abs();
     nearest[..count].sort_unstable_by(|a, b| apart(a).total_cmp(&apart(b)));
     let nodes = nearest.map(|i| parts.get(i).map_or(0.0, |part| part - parts[m]));
-    let mut differences = nearest.map(|i| {
-        let map = found.get(i).map(|state| &state.variation.full.map);
-        map.map_or(JacobianTerms::default(), |map| {
-            [map.by_tau.x, map.by_tau.y, map.by_load.x, map.by_load.y]
-        })
-    });
+    let mut differences = nearest.map(|i| values.get(i).copied().unwrap_or_default());
     for level in 1..count {
         for i in (level..count).rev() {
             let apart = nodes[i] - nodes[i - level];
@@ -282,7 +289,7 @@ fn jacobian(
             });
         }
     }
-    let mut terms = [JacobianTerms::default(); JACOBIAN_POWERS];
+    let mut terms = [LocalTerms::default(); JACOBIAN_POWERS];
     for i in (0..count).rev() {
         for power in (0..count).rev() {
             let lower = power.checked_sub(1).map(|lower| terms[lower]);
@@ -292,16 +299,20 @@ fn jacobian(
             }
         }
     }
-    // The last term of Newton's form.
     let product = nodes[..count - 1].iter().map(|node| farthest + node.abs());
     let product: f64 = product.product();
     let last = differences[count - 1].map(|difference| (difference * product).abs());
-    let state = &found[m];
+    (terms, last)
+}
+
+/// Bound on the error of the Jacobian from the errors of its derivatives beside `state` on `rod`, for steps in units of the contact's
+/// arclength and of the load's scale.
+fn jacobian_error(rod: &Rod, state: &ExactState, errors: LocalTerms) -> f64 {
     let s = arclength(rod, state.tau);
     let per_load = state.load.abs() + 1.0 / (s * s);
-    let [tau_x, tau_y, load_x, load_y] = last;
+    let [_, _, tau_x, tau_y, load_x, load_y] = errors;
     let between = s * tau_x.hypot(tau_y) + per_load * load_x.hypot(load_y);
-    (terms, between + state.jacobian_error)
+    between + state.jacobian_error
 }
 
 /// Least half interval of distances, in distances of the pole.
