@@ -150,21 +150,15 @@ impl RowSpan {
         self.ends.iter().any(reaches)
     }
 
-    /// Returns `[push angle in radians, tau]` at the row parameter `w`.
+    /// Returns `[push angle in radians, tau]` at the row parameter `w` of a span that begins at first touch.
     pub fn at(&self, w: f64) -> [f64; 2] {
-        let is_before = |node: &SpanNode| node.w <= w;
-        let after = match self.nodes.first().zip(self.nodes.last()) {
-            Some((first, last)) if first.w > last.w => {
-                self.nodes.partition_point(|n| !is_before(n))
-            }
-            _ => self.nodes.partition_point(is_before),
-        };
-        let before = after.saturating_sub(1);
         if self.nodes.len() == WIDTH {
             self.polynomials::<WIDTH>(0)
                 .map(|polynomial| polynomial.at(w).0)
         } else {
-            self.around(before).map(|polynomial| polynomial.at(w).0)
+            let after = self.nodes.partition_point(|node| node.w <= w);
+            self.around(after.saturating_sub(1))
+                .map(|polynomial| polynomial.at(w).0)
         }
     }
 }
