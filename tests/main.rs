@@ -26,6 +26,7 @@ mod scene;
 mod sealed;
 mod shaders;
 mod store;
+mod ties;
 mod traces;
 mod uncertainty;
 mod variations;

@@ -35,9 +35,6 @@ impl Sliding {
     /// without friction.
     #[must_use]
     pub fn at(method: Method, rod: &Rod, points: &[DVec2]) -> Vec<Option<Self>> {
-        if rod.friction == 0.0 {
-            return vec![None; points.len()];
-        }
         let shot = Batch::new(method).shoot_at(rod, points.iter().copied());
         let states = shot.iter().zip(points);
         let states = states.map(|(variation, point)| Self::of(variation, rod, point.x));

@@ -108,6 +108,10 @@ fn a_slice_is_what_the_store_has_there() {
             "--at distance_mm: 150 mm is more than half a step beyond the axis, which goes from 2 mm to 20 mm",
         ),
         (
+            &["--at=distance_mm=1", "-o", "s.csv"],
+            "--at distance_mm: 1 mm is more than half a step beyond the axis",
+        ),
+        (
             &["--at=distance_mm=3cm", "-o", "s.csv"],
             "--at distance_mm: 30 mm is more than half a step beyond the axis",
         ),

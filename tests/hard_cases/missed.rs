@@ -1,10 +1,12 @@
 //! Ends that sheet samples can miss or at which continuation can fail. Each case once gave a wrong end or none.
 
-use super::case::Case;
+use super::case::{Case, compute};
 use super::ends::agree;
 use whiskmap::Options;
-use whiskmap::rod::{Rod, Side};
-use whiskmap::sheet::Sheet;
+use whiskmap::classify::Regime;
+use whiskmap::rod::{Rest, Rod, Side};
+use whiskmap::scene::Parameter;
+use whiskmap::sheet::{Row, Sheet};
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::trace::DetachmentKind;
@@ -113,10 +115,7 @@ fn close_folds_are_not_missed() {
                 .to_vec(),
         };
         let vertex_mm = -slope / (2.0 * bend) * case.length_mm;
-        let scene = case
-            .scene()
-            .with(whiskmap::scene::Parameter::VertexMm, vertex_mm)
-            .unwrap();
+        let scene = case.scene().with(Parameter::VertexMm, vertex_mm).unwrap();
         let apart = between_folds(&scene.first_whisker().rod(Side::Cb), contact);
         assert!((0.1..1.6).contains(&apart), "{apart}");
         let mut ends = 0;
@@ -132,6 +131,45 @@ fn close_folds_are_not_missed() {
         }
         assert!(ends > 8, "{ends}");
     }
+}
+
+/// Push angle of `rod` in degrees on the CB side, in front of the pole of `row` with the contact at the arclength `s`, on its stable side:
+/// `det` is positive at this load and at all smaller ones. Plain sampling along the load, with twice the steps.
+fn stable_push_deg(rod: &Rod, row: &Row, s: f64) -> f64 {
+    const STEP: f64 = 0.005;
+    let condition = |i: i32| InitialCondition {
+        rod,
+        tau: rod.tau(s),
+        load: STEP * f64::from(i) / (s * s),
+    };
+    let conditions: Vec<InitialCondition> = (0..3000).map(condition).collect();
+    let maps = Batch::new(Method::fine().doubled()).shoot::<ShootingMap>(&conditions);
+    let stable: Vec<_> = maps.iter().take_while(|map| map.det() > 0.0).collect();
+    let miss = |map: &ShootingMap| map.pole.length() - row.pole_distance;
+    let pair = stable.windows(2).find(|w| miss(w[0]) * miss(w[1]) <= 0.0);
+    (pair.unwrap()[0].pole.to_angle() - row.touch).to_degrees()
+}
+
+/// A cone whose fold leaps between two samples. Rows in between have a second piece that no sample shows: its states lie beyond the
+/// detachment of the push from first touch. With a `SLOPE_TOLERANCE` of 0.75 in place of 0.25 they are lost.
+#[test]
+fn a_piece_between_samples_of_the_fold_is_not_missed() {
+    let (bend, slope) = (3.388, -1.5577);
+    let case = Case {
+        taper: 1.0,
+        pole: 0.097,
+        ..cylinder(bend, 0.0, 0.23, 0.2772)
+    };
+    let vertex_mm = -slope / (2.0 * bend) * case.length_mm;
+    let scene = case.scene().with(Parameter::VertexMm, vertex_mm).unwrap();
+    let rod = scene.first_whisker().rod(Side::Cb);
+    let row = Row::new(&Rest::new(&rod), 0.2772);
+    let pushes = [0.5, 0.51, 0.53].map(|s| stable_push_deg(&rod, &row, s));
+    assert!(pushes.is_sorted() && pushes[0] > 45.0, "{pushes:?}");
+    let scene = scene.to_builder().push_angle_deg(pushes).build().unwrap();
+    let (summary, panel) = compute(&scene, None);
+    assert_eq!((summary.unresolved(), summary.disagreements), (0, 0));
+    assert_eq!(panel.regime, [Regime::Unreachable.code(); 3]);
 }
 
 /// A cylinder that is pushed by a whole turn: with nodes that are on the curve only to 1e-8, the continuation fails.

@@ -223,6 +223,38 @@ fn files_that_are_cut_or_grown_are_damaged_without_reading_them() {
     }
 }
 
+/// A writer with a fault: the index has its checksum, but not the places and sizes of the chunks.
+#[test]
+fn an_index_must_fit_the_chunks() {
+    const ENTRY: usize = 16;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.zarr");
+    let store = store(&path, SCENE);
+    let file = path.join("force_un/c.1.0.0");
+    let whole = fs::read(&file).unwrap();
+    let (sealed, checksum) = whole.split_last_chunk::<4>().unwrap();
+    let is_index = |begin: &usize| crc32c::crc32c(&sealed[*begin..]).to_le_bytes() == *checksum;
+    let mut begins = (1..).map(|entries| sealed.len() - entries * ENTRY);
+    let index = begins.find(is_index).unwrap();
+    for (place, by) in [(0, 1), (8, 1), (sealed.len() - index - 8, u8::MAX)] {
+        let mut forged = sealed.to_vec();
+        forged[index + place] = forged[index + place].wrapping_add(by);
+        let checksum = crc32c::crc32c(&forged[index..]).to_le_bytes();
+        fs::write(&file, [&forged[..], &checksum].concat()).unwrap();
+        let faults = damaged(&store, CheckDepth::Structure);
+        let why = "the index does not fit the file's length";
+        assert!(faults.len() == 1 && faults[0].contains(why), "{faults:?}");
+        assert!(store.read_panel("force_un", 3).is_err());
+    }
+    let short = vec![0; sealed.len() - index + 4];
+    let long = [&whole[..], &vec![0; 1 << 20]].concat();
+    for (damage, why) in [(short, "bytes are too few"), (long, "bytes are too many")] {
+        fs::write(&file, damage).unwrap();
+        let faults = damaged(&store, CheckDepth::Structure);
+        assert!(faults.len() == 1 && faults[0].contains(why), "{faults:?}");
+    }
+}
+
 #[test]
 fn blocks_of_other_stores_and_places_are_damaged() {
     let folder = tempfile::tempdir().unwrap();

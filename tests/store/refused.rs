@@ -6,7 +6,8 @@ use serde_json::json;
 use std::fs;
 use std::path::Path;
 use whiskmap::store::{
-    Audit, EngineCells, MapWriter, Panel, StoreError, StoredMap, TemporaryFiles,
+    Audit, EngineCells, MapSlice, MapSource, MapWriter, Panel, StoreError, StoredMap,
+    TemporaryFiles,
 };
 
 fn listing(folder: &Path) -> Vec<String> {
@@ -116,6 +117,27 @@ fn an_unknown_channel_is_refused_with_the_known_ones() {
     }
     let error = map.read_panel("regime", 1).unwrap_err().to_string();
     assert_eq!(error, "there is no panel 1; the map has 1");
+}
+
+/// A part of a map has fewer panels than the map.
+#[test]
+fn a_part_has_its_own_panels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    write(&path, &scene(2, 2, Some(vec![0.5, 0.9]), None));
+    let part = |wanted: &[&str]| {
+        let wanted: Vec<_> = wanted.iter().map(|at| at.parse().unwrap()).collect();
+        MapSlice::new(MapSource::open(&path).unwrap(), &wanted, true)
+    };
+    let second = part(&["taper=0.9"]).unwrap();
+    assert_eq!(second.shape(), [2, 2]);
+    assert!(second.read_panel("regime", 0).is_ok());
+    let error = second.read_panel("regime", 1).unwrap_err().to_string();
+    assert_eq!(error, "there is no panel 1; the map has 1");
+    let row = part(&["distance_mm=3", "taper=0.5"]).unwrap();
+    assert_eq!(row.shape(), [2]);
+    let error = part(&["taper=0.5", "taper=0.9"]).unwrap_err().to_string();
+    assert_eq!(error, "taper: is given twice");
 }
 
 #[test]

@@ -150,7 +150,7 @@ impl RowSpan {
         self.ends.iter().any(reaches)
     }
 
-    /// Returns `[push angle in radians, tau]` at each of the row parameters `ws`.
+    /// Returns `[push angle in radians, tau]` at each of the row parameters `ws` of a span that begins at first touch.
     pub fn at(&self, ws: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
         if self.nodes.len() == WIDTH {
             let whole = self.polynomials::<WIDTH>(0);
@@ -158,11 +158,9 @@ impl RowSpan {
                 .map(|w| whole.each_ref().map(|own| own.at(w).0))
                 .collect();
         }
-        let ends = self.nodes.first().zip(self.nodes.last());
-        let falls = ends.is_some_and(|(first, last)| first.w > last.w);
         let mut used: Option<(usize, [Polynomial<AROUND>; 2])> = None;
         let values = ws.map(|w| {
-            let after = self.nodes.partition_point(|node| falls != (node.w <= w));
+            let after = self.nodes.partition_point(|node| node.w <= w);
             let from = stencil(after.saturating_sub(1), AROUND, self.nodes.len());
             let (_, polynomials) = match &used {
                 Some(used) if used.0 == from => used,
