@@ -61,7 +61,7 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::new(&scene).unwrap();
     let mut engine = Counting::default();
-    let discard = &mut |_| Ok::<(), Infallible>(());
+    let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
     let Ok(summary) = map::run(
         &scene,
         &plan,

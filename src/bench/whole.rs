@@ -154,8 +154,8 @@ pub fn measure(
 /// Computes one map.
 fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<MapRun, EngineError> {
     let engine = gpu.map(|gpu| gpu as &mut dyn Engine);
-    let mut keep = |panels: Vec<Panel>| {
-        black_box(MapWriter::sample(&scene.grid, plan.channels, &panels));
+    let mut keep = |panels: &mut Vec<Panel>| {
+        black_box(MapWriter::sample(&scene.grid, plan.channels, panels));
         Ok::<(), Infallible>(())
     };
     let Ok(summary) = map::run(
