@@ -88,7 +88,7 @@ impl AtlasLayout {
     pub(super) fn expected_cells(&self, begun: usize, cells: usize) -> usize {
         let block = self.block_height() * self.push_angles;
         let left = self.cells() - begun * block;
-        match cells > 0 && cells < left && cells % block == 0 {
+        match cells > 0 && cells < left && cells.is_multiple_of(block) {
             true => cells,
             false => left,
         }
@@ -188,3 +188,13 @@ pub(super) fn sample_type(name: &str) -> SampleType {
 
 /// Bytes of one sample; every channel is 32 bits wide.
 pub(super) const SAMPLE_BYTES: usize = 4;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_of_rows_are_whole_blocks() {
+        assert_eq!(COMPRESSION.scan_lines_per_block(), BLOCK_ROWS);
+    }
+}

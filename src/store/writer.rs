@@ -132,11 +132,11 @@ impl MapWriter {
             .collect::<exr::error::Result<_>>()
             .map_err(StoreError::at(&self.path, StoreError::Encode))?;
         let blocks = self.layout.blocks_per_panel();
-        let (mut chunks, mut tasks) = (chunks.into_iter(), tasks.chunk_by(|a, b| a[0] == b[0]));
+        let mut chunks = chunks.into_iter();
         let mut ready: Vec<Vec<u8>> = Vec::new();
         let mut offsets = vec![Vec::new(); self.tables.len()];
         let mut position = self.position;
-        while let Some(of_panel) = tasks.next() {
+        for of_panel in tasks.chunk_by(|a, b| a[0] == b[0]) {
             for ([_, part, _], chunk) in of_panel.iter().zip(&mut chunks) {
                 self.packed[*part].push(chunk);
             }
