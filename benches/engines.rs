@@ -139,7 +139,7 @@ fn files(criterion: &mut Criterion) {
         None,
         &mut |_| ControlFlow::Continue(()),
         &mut |panels| {
-            kept = panels.into_iter().next();
+            kept = panels.pop();
             Ok::<(), Infallible>(())
         },
     );

@@ -8,7 +8,7 @@
 
 use std::convert::Infallible;
 use std::ops::ControlFlow;
-use whiskmap::map::{self, Stage};
+use whiskmap::map::{self, Panel, Stage};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
@@ -80,7 +80,7 @@ impl Map {
         let repeats = CELLS.div_ceil(self.plan.cells);
         let mut seconds = [0.0; Stage::ALL.len()];
         for _ in 0..repeats {
-            let discard = &mut |_| Ok::<(), Infallible>(());
+            let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
             let Ok(summary) = map::run(
                 &self.scene,
                 &self.plan,

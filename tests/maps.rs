@@ -4,8 +4,12 @@
 use crate::compute;
 
 use compute::{compute, shipped};
+use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::sync::Arc;
-use whiskmap::map::{Panel, STATE_CHANNELS};
+use whiskmap::engine::Spectral;
+use whiskmap::map::{self, Channels, Panel, STATE_CHANNELS};
+use whiskmap::plan::Plan;
 use whiskmap::refine::TOLERANCE;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::{Channel, Error, MapEngine, Options};
@@ -34,6 +38,55 @@ fn shipped_scenes_have_no_doubtful_cell() {
                 assert_eq!(contact, complete, "{} cell {cell}", scene.title);
             }
         }
+    }
+}
+
+/// Appends the cells of `more` to `panel`.
+fn append(panel: &mut Panel, more: &Panel) {
+    panel.regime.extend(&more.regime);
+    panel.status.extend(&more.status);
+    panel.newton_steps.extend(&more.newton_steps);
+    panel.residual.extend(&more.residual);
+    panel.margin_deg.extend(&more.margin_deg);
+    for (own, more) in panel.state.iter_mut().zip(&more.state) {
+        own.extend(more);
+    }
+}
+
+/// Bands of rows hold the cells of the whole panel, also where the memory of a panel is used again.
+#[test]
+fn bands_are_the_rows_of_a_panel() {
+    for (name, is_spectral) in [("cone", false), ("cone", true), ("robot", false)] {
+        let scene = Scene::read(&format!("scenes/{name}.toml")).unwrap();
+        let scene = scene.thinned(8, 1);
+        let whole = compute(&scene, None).1.remove(0);
+        let whole = match is_spectral {
+            true => compute(&scene, Some(&mut Spectral::default())).1.remove(0),
+            false => whole,
+        };
+        let mut plan = Plan::new(&scene).unwrap();
+        plan.band_rows = 10;
+        let mut spectral = Spectral::default();
+        let mut joined = Panel::unresolved(0, Channels::ALL);
+        let mut bands = Vec::new();
+        let Ok(_) = map::run(
+            &scene,
+            &plan,
+            is_spectral.then_some(&mut spectral as _),
+            &mut |_| ControlFlow::Continue(()),
+            &mut |panels| {
+                for panel in panels {
+                    append(&mut joined, panel);
+                    bands.push(panel.regime.len() / scene.grid.push_angle_deg.len());
+                    // The next band in this memory must overwrite all of it.
+                    *panel = Panel::unresolved(7, Channels::ALL);
+                    panel.newton_steps.fill(9);
+                }
+                Ok::<(), Infallible>(())
+            },
+        );
+        assert_eq!(bands, [10, 10, 10, 10, 10, 10, 4], "{name}");
+        compute::assert_identical(&[whole], &[joined]);
     }
 }
 

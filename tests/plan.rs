@@ -59,9 +59,9 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
         tip(3.0, more)
     );
     let scene = Scene::parse(&text, "scene").unwrap();
-    let plan = Plan::new(&scene).unwrap();
+    let plan = Plan::in_bands(&scene).unwrap();
     let mut engine = Counting::default();
-    let discard = &mut |_| Ok::<(), Infallible>(());
+    let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
     let Ok(summary) = map::run(
         &scene,
         &plan,
@@ -88,8 +88,8 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     (groups, plan.engine_calls)
 }
 
-/// A panel is kept twice, those of a sweep four times, with 4 bytes a channel: the state's, and `regime`, `status`,
-/// `residual`, `margin_deg`, `newton_steps`.
+/// A panel takes 4 bytes a channel and cell as computed (the state's, and `regime`, `status`, `residual`, `margin_deg`, `newton_steps`), and
+/// 32 bytes a cell as packed. Panels of one group are computed once; those of several groups, twice.
 #[test]
 fn memory_is_that_of_the_channels_there_are() {
     let bytes = |count: usize, axis: &str| {
@@ -102,11 +102,16 @@ fn memory_is_that_of_the_channels_there_are() {
         Plan::new(&scene).unwrap().bytes
     };
     let channels = STATE_CHANNELS.len() as u64 + 5;
-    assert_eq!(bytes(300, "") - bytes(100, ""), 400 * 2 * 4 * channels);
+    assert_eq!(bytes(300, "") - bytes(100, ""), 400 * (4 * channels + 32));
     let sweep = "friction = [0, 0.1, 0.2]\n";
     assert_eq!(
         bytes(300, sweep) - bytes(100, sweep),
-        3 * 400 * 4 * 4 * channels
+        3 * 400 * (4 * channels + 32)
+    );
+    let sweep = "friction = { from = 0, to = 1, count = 70 }\n";
+    assert_eq!(
+        bytes(300, sweep) - bytes(100, sweep),
+        400 * (70 * 4 * channels + 64 * 32)
     );
 }
 
@@ -119,6 +124,9 @@ fn engine_calls_and_cells_are_counted_before_they_are_made() {
     assert_eq!(kept(many, rows, ""), (1, 2));
     let one_side = "{ from = 0, to = 60, count = 3000 }";
     assert_eq!(kept(one_side, rows, ""), (1, 1));
+    // Bands of 32 and 8 rows on two sides are 64 and 16 rows, of which 14 are in flight together.
+    let wider = "{ from = -60, to = 60, count = 9000 }";
+    assert_eq!(kept(wider, "{ from = 3, to = 15, count = 40 }", ""), (1, 7));
     // At most 64 whiskers are computed together.
     let sweep = "taper = { from = 0, to = 0.9, count = 70 }";
     assert_eq!(kept("[-5, 5]", "[5, 9]", sweep), (2, 2));
@@ -234,7 +242,7 @@ fn a_map_in_memory_is_limited_by_all_its_panels() {
     let refused = whiskmap::map(&large, whiskmap::Options::default()).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "grid: 400 panels of 250000 cells take 5546 MiB in memory: must be at most 4096 MiB; \
+        "grid: 400 panels of 250000 cells take 5376 MiB in memory: must be at most 4096 MiB; \
          take one panel at a time with `for_each_panel`, or lower the counts of the axes"
     );
     let one = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml").unwrap();

@@ -203,8 +203,8 @@ fn own_seconds(
 /// Computes one map.
 fn run(scene: &Scene, plan: &Plan, engine: Option<&mut dyn Engine>) -> Result<MapRun, EngineError> {
     let mut packed_bytes = 0;
-    let mut keep = |panels: Vec<Panel>| {
-        packed_bytes += MapWriter::sample(&scene.grid, plan.channels, &panels);
+    let mut keep = |panels: &mut Vec<Panel>| {
+        packed_bytes += MapWriter::sample(&scene.grid, plan.channels, panels);
         Ok::<(), Infallible>(())
     };
     let Ok(summary) = map::run(

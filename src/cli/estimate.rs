@@ -62,8 +62,8 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[MapFormat]) -> Result<Vec<Fi
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
     let (small, small_plan) = thinned(scene, plan, [lines, lines])?;
     let mut groups: Vec<Vec<Panel>> = Vec::new();
-    let mut keep = |panels| {
-        groups.push(panels);
+    let mut keep = |panels: &mut Vec<Panel>| {
+        groups.push(std::mem::take(panels));
         Ok::<(), Infallible>(())
     };
     let Ok(_) = map::run(
@@ -188,7 +188,7 @@ impl MapSample {
     ) -> Result<Self, Failure> {
         let (scene, plan) = thinned(scene, plan, lines)?;
         let engine = engine.as_mut().map(|engine| &mut **engine as _);
-        let discard = &mut |_| Ok::<(), Infallible>(());
+        let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
         let Ok(summary) = map::run(
             &scene,
             &plan,

@@ -67,7 +67,10 @@ pub struct MapArgs {
 pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&args.scene)?;
     args.check(&scene)?;
-    let mut plan = Plan::new(&scene)?;
+    let mut plan = match args.format {
+        MapFormat::Exr => Plan::in_bands(&scene)?,
+        MapFormat::Zarr => Plan::new(&scene)?,
+    };
     let accuracy = args.tolerance.find(&scene, &plan.sides)?;
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;
@@ -123,7 +126,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let start = Instant::now();
     let mut writer = MapWriter::create(&file, &about, files.temporary())?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let keep = |panels: Vec<_>| writer.write_panels(&panels);
+    let keep = |panels: &mut Vec<_>| writer.write_panels(panels);
     let summary = compute(&scene, &plan, engine, plan.cells, keep)?;
     writer.finish(summary.engine_cells, summary.audit)?;
     let mut written = vec![file];

@@ -9,7 +9,7 @@ use indicatif::DecimalBytes;
 use std::io::Write;
 use std::path::PathBuf;
 use whiskmap::engine::on_gpu;
-use whiskmap::plan::{Cost, Plan, ROD_STATES, effects};
+use whiskmap::plan::{BYTES_PER_THREAD, Cost, Plan, ROD_STATES, effects};
 use whiskmap::scene::Scene;
 
 #[derive(Debug, Args)]
@@ -38,7 +38,7 @@ const SAMPLE_SECONDS: f64 = 2.0;
 
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let scene = read_scene(&args.scene)?;
-    let plan = Plan::new(&scene)?;
+    let plan = Plan::in_bands(&scene)?;
     let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
     let files = files(&scene, &plan, &MapFormat::of(&scene))?;
     print(&scene, &plan, &estimate, &files)?;
@@ -96,12 +96,13 @@ fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std:
         )?,
         Err(why) => writeln!(out, "GPU calls     none: {why}")?,
     }
-    let mib = plan.bytes.div_ceil(1 << 20);
+    let (seconds, threads) = (two_digits(cost.seconds), rayon::current_num_threads());
+    let bytes = plan.bytes + threads as u64 * BYTES_PER_THREAD;
+    let [mib, of_gpu] = [bytes, plan.gpu_bytes].map(|bytes| bytes.div_ceil(1 << 20));
     writeln!(
         out,
-        "memory        at most {mib} MiB for panels and cells in flight"
+        "memory        at most {mib} MiB for panels and cells in flight; with a GPU, {of_gpu} MiB more"
     )?;
-    let (seconds, threads) = (two_digits(cost.seconds), rayon::current_num_threads());
     let threads = counted(threads, "thread");
     writeln!(
         out,

@@ -108,7 +108,7 @@ pub fn fill(
         .map(|block| (*block, store.whiskers(*block).len()));
     let mut next = due.next();
     let mut packed: Vec<PackedPanel> = Vec::new();
-    let keep = |panels: Vec<Panel>| {
+    let keep = |panels: &mut Vec<Panel>| {
         let panels = panels.par_iter();
         let panels = panels.map(|panel| store.pack(panel));
         packed.par_extend(panels);

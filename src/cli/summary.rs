@@ -19,7 +19,7 @@ pub fn compute(
     plan: &Plan,
     engine: Option<&mut dyn Engine>,
     cells: usize,
-    mut keep: impl FnMut(Vec<Panel>) -> Result<(), StoreError> + Send,
+    mut keep: impl FnMut(&mut Vec<Panel>) -> Result<(), StoreError> + Send,
 ) -> Result<Summary, Failure> {
     let bar = Progress::over(cells, "cells");
     let mut on_progress = |cells| {

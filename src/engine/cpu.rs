@@ -2,7 +2,7 @@
 
 use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
 use crate::numerics::Unit;
-use crate::refine::{CellTarget, RefineOutcome, Refined, TOLERANCE, refine};
+use crate::refine::{CellTarget, RefineOutcome, Refined, TOLERANCE, refine_into};
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -12,7 +12,11 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Default)]
 pub struct Cpu {
     submitted: VecDeque<Arc<RowBatch>>,
-    /// Wall time that the CPU engine spent on guesses, summed over all batches.
+    /// Targets of the last batch, whose memory the next one reuses.
+    targets: Vec<CellTarget>,
+    /// Refined cells of the last batch, whose memory the next one reuses.
+    refined: Vec<Refined>,
+    /// Wall time spent on guesses, summed over all batches.
     pub guesses: Duration,
     /// Wall time that the CPU engine spent on Newton's method, summed over all batches.
     pub refinement: Duration,
@@ -26,10 +30,12 @@ impl Cpu {
         let targets: Vec<Vec<Option<CellTarget>>> = rows.map(|row| targets(batch, row)).collect();
         self.guesses += begun.elapsed();
         let begun = Instant::now();
-        let flat: Vec<CellTarget> = targets.iter().flatten().flatten().copied().collect();
-        let refined = refine(batch.method, &batch.sheets(), &flat);
+        self.targets.clear();
+        self.targets.extend(targets.iter().flatten().flatten());
+        let sheets = batch.sheets();
+        refine_into(batch.method, &sheets, &self.targets, &mut self.refined);
         let mut cells = Cells::new(batch, Outcome::OffSheet);
-        let mut rest = refined.as_slice();
+        let mut rest = self.refined.as_slice();
         let rows = batch.rows.iter().zip(&targets).zip(cells.rows_mut(batch));
         let rows = rows.map(|((row, targets), into)| {
             let count = targets.iter().flatten().count();

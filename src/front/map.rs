@@ -229,8 +229,8 @@ fn run<E: From<Error> + Send>(
         }
     };
     let mut whiskers = 0..plan.whiskers;
-    let mut keep = |panels: Vec<Panel>| {
-        let mut numbered = panels.into_iter().zip(&mut whiskers);
+    let mut keep = |panels: &mut Vec<Panel>| {
+        let mut numbered = panels.drain(..).zip(&mut whiskers);
         numbered.try_for_each(|(panel, whisker)| each(whisker, panel))
     };
     let summary = stages::run(scene, &plan, engine, &mut on_progress, &mut keep)?;

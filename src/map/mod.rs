@@ -28,7 +28,8 @@ pub use summary::{Audit, EngineCells, Summary};
 /// `engine` solves cells, a GPU's on a thread of its own, some batches ahead; the CPU engine solves all others, and everything after a failure.
 /// `on_progress(n)` is called after `n` more cells are finished; if it breaks, the run ends there and
 /// [`Summary::is_cancelled`] is set. `keep` gets the finished panels in the order of the sweep, while the
-/// next ones are computed: it holds at most one group of them.
+/// next ones are computed: it holds at most one group of them. If [`Plan::band_rows`] is less than the distances, it gets one band of rows
+/// of a panel at a time instead, as a panel of these rows. The panels that it leaves are written again.
 ///
 /// # Errors
 /// The first error of `keep`, which ends the run. An unresolved cell is no error.
@@ -37,7 +38,7 @@ pub fn run<E: Send>(
     plan: &Plan,
     engine: Option<&mut dyn Engine>,
     on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
-    keep: &mut (dyn FnMut(Vec<Panel>) -> Result<(), E> + Send),
+    keep: &mut (dyn FnMut(&mut Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
     let (start, cpu_start) = (Instant::now(), process_seconds());
     let input = engine.as_ref();
@@ -46,20 +47,22 @@ pub fn run<E: Send>(
     let mut packing = StageTimes::default();
     let mut summary = Worker::with(engine, has_thread, |worker| {
         let mut pipeline = Pipeline::new(scene, plan, worker, input);
-        let mut keep = |panels| packing.time(Stage::Packing, || keep(panels));
-        let mut finished: Option<Vec<Panel>> = None;
-        for _ in plan.groups() {
-            let (before, mut kept) = (finished.take(), Ok(()));
+        let mut finished: Vec<Panel> = Vec::new();
+        let mut is_open = true;
+        while is_open {
+            let (mut before, mut kept) = (finished, Ok(()));
+            let mut next = None;
             rayon::in_place_scope(|scope| {
-                scope.spawn(|_| kept = before.map_or(Ok(()), &mut keep));
-                finished = pipeline.panels(on_progress);
+                if !before.is_empty() {
+                    scope.spawn(|_| kept = packing.time(Stage::Packing, || keep(&mut before)));
+                }
+                next = pipeline.panels(on_progress);
             });
             kept?;
-            if finished.is_none() {
-                break;
-            }
+            pipeline.spare = before;
+            is_open = next.is_some();
+            finished = next.unwrap_or_default();
         }
-        finished.map_or(Ok(()), keep)?;
         Ok(pipeline.finish())
     })?;
     let packing = packing.0[Stage::Packing as usize];

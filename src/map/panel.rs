@@ -39,6 +39,21 @@ impl Panel {
         panel
     }
 
+    /// Changes the number of cells and the channels. Every cell must be written afterwards.
+    pub(super) fn resized(mut self, cells: usize, channels: Channels) -> Self {
+        for codes in [&mut self.regime, &mut self.status, &mut self.newton_steps] {
+            codes.resize(cells, 0);
+        }
+        for numbers in [&mut self.residual, &mut self.margin_deg] {
+            numbers.resize(cells, 0.0);
+        }
+        for (name, numbers) in STATE_CHANNELS.iter().zip(&mut self.state) {
+            let cells = if channels.contains(name) { cells } else { 0 };
+            numbers.resize(cells, 0.0);
+        }
+        self
+    }
+
     /// Creates a panel of zeros, of which every cell must be written. Zeroed memory costs nothing until it is written, on all threads.
     pub(super) fn unwritten(cells: usize, channels: Channels) -> Self {
         let of_state = STATE_CHANNELS.map(|name| {

@@ -23,6 +23,9 @@ use std::time::Instant;
 /// Cells per thread in a batch for the CPU alone: nearly all blocks of the refinement are full, and little memory is new.
 const CELLS_PER_THREAD: usize = 8192;
 
+/// Cells of a batch for expansions: many rows for the threads, in little memory.
+const EXPANDED_CELLS: usize = 1 << 15;
+
 /// Batches submitted ahead of the one that is completed: one that the engine solves, and one that waits.
 const AHEAD: usize = 2;
 
@@ -33,14 +36,16 @@ pub struct Pipeline<'a, 'e> {
     /// Effects of the plan and steps of trajectories.
     method: Method,
     rows_at_once: usize,
+    /// Panels to be written again.
+    pub spare: Vec<Panel>,
     columns: Vec<Arc<SideColumns>>,
     /// Signed push angles of the columns of all sides, in radians.
     pushes: Arc<[f64]>,
     /// The whiskers of each group of panels whose batches are still to be made.
     groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
-    /// The sides of the group of the last batch, and the number of their rows in batches.
+    /// The sides of the group of the last batch, and the number of their rows in batches: band by band, and in a band side by side.
     begun: Option<(Arc<[WhiskerSide]>, usize)>,
-    /// The batches made and not completed, each with whether it is the last one of its group.
+    /// The batches made and not completed, each with whether it is the last one of its band.
     queue: VecDeque<(Arc<RowBatch>, bool)>,
     worker: Worker<'e>,
     cpu: Cpu,
@@ -58,8 +63,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         input: Option<EngineInput>,
     ) -> Self {
         let push_angle_deg = &scene.grid.push_angle_deg;
+        let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
         let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
-        let rows_on_cpu = (cells / push_angle_deg.len()).max(1);
         let mut pushes: Vec<f64> = Vec::new();
         let columns = plan.sides.iter().map(|side| {
             // A row has fewer columns than `u32` can count.
@@ -78,9 +83,11 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             method,
             rows_at_once: match input {
                 // After a failed audit, the bytes depend on where a batch ends.
+                Some(EngineInput::SpectralSheets(_)) => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
                 Some(_) => plan.rows_at_once,
-                None => rows_on_cpu,
+                None => rows(cells),
             },
+            spare: Vec::new(),
             columns: columns.collect(),
             pushes: pushes.into(),
             groups: Box::new(plan.groups()),
@@ -93,7 +100,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         }
     }
 
-    /// Computes the panels of the next group of whiskers, `[whisker]`; `None` if the run is cancelled.
+    /// Computes the panels of the next group, or the next band of rows of its panel; `None` after the last one, and if the run is cancelled.
     pub fn panels(
         &mut self,
         on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
@@ -105,7 +112,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 break;
             }
         }
-        if self.summary.is_cancelled {
+        if self.summary.is_cancelled || panels.is_empty() {
             return None;
         }
         let mut times = self.summary.stages;
@@ -164,7 +171,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         Some((batch.cells(), is_last))
     }
 
-    /// Makes the next batch, with base points if the engine may solve it. Returns it with whether it is the last one of its group.
+    /// Makes the next batch, with base points if the engine may solve it. Returns it with whether it is the last one of its band.
     fn next_batch(&mut self) -> Option<(RowBatch, bool)> {
         let (sides, from) = match self.begun.take() {
             Some(begun) => begun,
@@ -179,8 +186,14 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let method = self.method;
         let height = self.scene.grid.distance_mm.len();
         let all = sides.len() * height;
-        let to = all.min(from + self.rows_at_once);
-        let rows = (from..to).map(|i| (i / height, i % height));
+        // The rows of a band follow one another on each side.
+        let band = self.band(from / sides.len());
+        let end = band.end * sides.len();
+        let to = end.min(from + self.rows_at_once);
+        let rows = (from..to).map(|i| {
+            let i = i - band.start * sides.len();
+            (i / band.len(), band.start + i % band.len())
+        });
         let mut batch = RowBatch::new(method, Arc::clone(&sides), Arc::clone(&self.pushes), rows);
         batch.has_values = self.plan.channels.has_state();
         let is_for_engine = self.worker.is_working() && on_gpu(method.effects).is_ok();
@@ -191,7 +204,14 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             batch = times.time(Stage::BasePoints, || batch.with_base_points(accuracy));
         }
         self.begun = (to < all).then_some((sides, to));
-        Some((batch, to == all))
+        Some((batch, to == end))
+    }
+
+    /// The rows of the band that has `row`.
+    fn band(&self, row: usize) -> Range<usize> {
+        let (height, rows) = (self.scene.grid.distance_mm.len(), self.plan.band_rows);
+        let first = row / rows * rows;
+        first..height.min(first + rows)
     }
 
     /// Every side of some of the whiskers, in order.
@@ -216,13 +236,16 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         sides.collect::<Vec<_>>().into()
     }
 
-    /// Completes the `cells` of an engine and writes them into `panels`, which are made if there are none.
+    /// Completes the `cells` of an engine and writes them into `panels`, which are taken from the spare ones or made if there are none.
     fn complete(&mut self, batch: &RowBatch, cells: Option<Cells>, panels: &mut Vec<Panel>) {
         let (width, sides) = (self.scene.grid.push_angle_deg.len(), self.columns.len());
+        let band = self.band(batch.rows[0].row);
         if panels.is_empty() {
-            let cells = width * self.scene.grid.distance_mm.len();
-            let panel = |_| Panel::unwritten(cells, self.plan.channels);
-            *panels = (0..batch.sides.len() / sides).map(panel).collect();
+            let (cells, channels) = (width * band.len(), self.plan.channels);
+            let spare = std::mem::take(&mut self.spare).into_iter();
+            let spare = spare.map(|panel| panel.resized(cells, channels));
+            let new = std::iter::repeat_with(|| Panel::unwritten(cells, channels));
+            *panels = spare.chain(new).take(batch.sides.len() / sides).collect();
         }
         let summary = &mut self.summary;
         let has_failed = self.worker.failure.is_some();
@@ -230,7 +253,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let cells = cells.map(|cells| (cells, self.worker.residual_bound));
         let (cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;
-        let fill = || rows::fill(batch, &cells, sides, width, panels);
+        let fill = || rows::fill(batch, &cells, sides, [width, band.start], panels);
         summary.stages.time(Stage::Classification, fill);
         if audit.differing > 0 {
             self.worker.fail_audit(audit.differing, audit.cells);

@@ -7,13 +7,13 @@ use crate::classify::{Regime, RowBoundary, Status, TIE};
 use crate::engine::{Cell, CellRun, Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
 use rayon::prelude::*;
 
-/// Classifies the `cells` of a batch of whole rows and writes them into `panels`, which are `width` cells wide; each panel has
-/// `sides_per_panel` sides.
+/// Classifies the `cells` of a batch of whole rows and writes them into `panels`, which are `width` cells wide and begin with the row
+/// `first_row` of their whiskers; each panel has `sides_per_panel` sides.
 pub fn fill(
     batch: &RowBatch,
     cells: &Cells,
     sides_per_panel: usize,
-    width: usize,
+    [width, first_row]: [usize; 2],
     panels: &mut [Panel],
 ) {
     let panels = panels.par_iter_mut().enumerate();
@@ -24,7 +24,8 @@ pub fn fill(
                 [side, side + 1].map(|side| batch.rows.partition_point(|row| row.side < side));
             let rows = &batch.rows[from..to];
             let Some(first) = rows.first() else { continue };
-            let into = panel.rows_mut(width, first.row..first.row + rows.len());
+            let from = first.row - first_row;
+            let into = panel.rows_mut(width, from..from + rows.len());
             let side = &batch.sides[side];
             let found = into.into_par_iter().zip(rows).map(|(into, row)| {
                 let crossings = &side.sheet.crossings[row.row];
@@ -39,7 +40,7 @@ pub fn fill(
                 writer.write(cells, row.first)
             });
             let found: Vec<FoundRow> = found.flatten_iter().collect();
-            sliding::mark(side, &found, width, &mut panel.status);
+            sliding::mark(side, &found, [width, first_row], &mut panel.status);
         }
     });
 }

@@ -49,14 +49,20 @@ impl FoundRow {
     }
 }
 
-/// Writes the statuses of the states of `rows` of `side` into the `status` of a panel that is `width` cells wide.
-pub fn mark(side: &WhiskerSide, rows: &[FoundRow], width: usize, status: &mut [u32]) {
+/// Writes the statuses of the states of `rows` of `side` into the `status` of a panel that is `width` cells wide and begins with the row
+/// `first_row`.
+pub fn mark(
+    side: &WhiskerSide,
+    rows: &[FoundRow],
+    [width, first_row]: [usize; 2],
+    status: &mut [u32],
+) {
     let marks = rows.par_chunks(rows_per_batch(rows.len())).map(|rows| {
         let levels: Vec<LevelCurve> = rows.iter().map(|row| side.sheet.level(row.row)).collect();
         let histories = ContactHistory::of(&levels).into_iter();
         rows.iter().zip(histories).flat_map(|(row, history)| {
             let marks = row.marks(side, history.as_ref()).into_iter();
-            marks.map(|(column, status)| (row.row * width + column, status))
+            marks.map(|(column, status)| ((row.row - first_row) * width + column, status))
         })
     });
     let marks: Vec<(usize, Status)> = marks.flatten_iter().collect();

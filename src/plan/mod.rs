@@ -19,8 +19,23 @@ pub const MEMORY_LIMIT: u64 = 4 << 30;
 /// Bytes per cell of a panel: 14 channels of 4 bytes.
 const BYTES_PER_CELL: u64 = 14 * 4;
 
-/// Bytes per cell in flight: targets and states of the refinement, and with an engine the base points of three row batches.
-const BYTES_IN_FLIGHT: u64 = 1536;
+/// Bytes per cell of a packed panel. The shipped scenes take 21 to 32.
+const PACKED_BYTES_PER_CELL: u64 = 32;
+
+/// Bytes of a whisker side: its sheet, and the expansions of a spectral engine.
+const SIDE_BYTES: u64 = 256 << 10;
+
+/// Bytes of a whisker side with measured radii: a spectral engine has expansions for each piece of the whisker.
+const MEASURED_SIDE_BYTES: u64 = 12 << 20;
+
+/// Bytes of the cells in flight on a thread: targets, states and results.
+pub const BYTES_PER_THREAD: u64 = 4 << 20;
+
+/// Threads beyond which cells in flight take no more memory: [`CELLS_IN_FLIGHT`] are shared by all.
+const THREADS_IN_FLIGHT: u64 = 16;
+
+/// Bytes per cell in flight with a GPU: the base points of three row batches.
+const BYTES_ON_GPU: u64 = 1536;
 
 /// Maximum number of cells of a row batch: enough for every lane of a GPU, in little memory.
 pub const CELLS_IN_FLIGHT: usize = 1 << 17;
@@ -30,6 +45,9 @@ const ROWS_IN_FLIGHT: usize = 1 << 10;
 
 /// Cells of the panels computed and packed together: enough for several threads, in little memory.
 const CELLS_OF_PANELS: usize = 1 << 18;
+
+/// Rows of a block of an EXR file of one panel.
+pub const BLOCK_ROWS: usize = 16;
 
 /// Maximum number of panels computed together: each has two sheets of about 100 KiB.
 const MOST_PANELS: usize = 64;
@@ -45,7 +63,12 @@ pub const SAMPLE_VALUES: usize = 2;
 /// Number of states that a trajectory carries for the rod: cos and sin of its tilt, and two coordinates.
 pub const ROD_STATES: usize = 4;
 
-/// Plan of a run: its sizes and effects.
+/// Returns true if a run with `bytes` for panels and `gpu_bytes` for a GPU takes at most [`MEMORY_LIMIT`], on any number of threads.
+const fn fits(bytes: u64, gpu_bytes: u64) -> bool {
+    bytes + THREADS_IN_FLIGHT * BYTES_PER_THREAD + gpu_bytes <= MEMORY_LIMIT
+}
+
+/// The sizes and effects of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Number of whiskers of the sweep.
@@ -62,12 +85,16 @@ pub struct Plan {
     pub channels: Channels,
     /// Number of panels computed together, so that small panels fill an engine.
     pub panels_at_once: usize,
+    /// Rows of a panel that are finished together, a band; all of them unless there is one panel, in bands.
+    pub band_rows: usize,
     /// Maximum number of rows of a batch for an engine.
     pub rows_at_once: usize,
     /// Maximum number of batches for an engine.
     pub engine_calls: usize,
-    /// Maximum memory of panels and cells in flight in the run, in bytes.
+    /// Memory of panels, computed and packed, and of sheets, in bytes. Each thread adds [`BYTES_PER_THREAD`].
     pub bytes: u64,
+    /// Memory of a GPU's base points, in bytes.
+    pub gpu_bytes: u64,
 }
 
 /// Error of a run that takes more than [`MEMORY_LIMIT`].
@@ -105,17 +132,32 @@ pub enum PlanError {
     },
 }
 
-/// Returns the memory of cells in flight, in bytes.
-fn bytes_in_flight(scene: &Scene) -> u64 {
-    CELLS_IN_FLIGHT.max(scene.grid.push_angle_deg.len()) as u64 * BYTES_IN_FLIGHT
-}
-
 impl Plan {
     /// Creates the plan of a run for `scene`.
     ///
     /// # Errors
     /// When one panel takes more than [`MEMORY_LIMIT`].
     pub fn new(scene: &Scene) -> Result<Self, PlanError> {
+        Self::with_band(scene, scene.grid.distance_mm.len())
+    }
+
+    /// Returns the plan for a run of `scene` that keeps bands of rows: a single panel is never in memory as a whole, except as packed.
+    ///
+    /// # Errors
+    /// When one panel takes more than [`MEMORY_LIMIT`].
+    pub fn in_bands(scene: &Scene) -> Result<Self, PlanError> {
+        let [rows, push_angles] =
+            [&scene.grid.distance_mm, &scene.grid.push_angle_deg].map(Vec::len);
+        match scene.whisker_count() {
+            1 => {
+                let band = (CELLS_OF_PANELS / push_angles).max(1);
+                Self::with_band(scene, band.next_multiple_of(BLOCK_ROWS).min(rows))
+            }
+            _ => Self::new(scene),
+        }
+    }
+
+    fn with_band(scene: &Scene, band_rows: usize) -> Result<Self, PlanError> {
         let push_angles = scene.grid.push_angle_deg.len();
         let distances = scene.grid.distance_mm.len();
         let cells = push_angles * distances;
@@ -123,11 +165,22 @@ impl Plan {
         let panels_at_once = (CELLS_OF_PANELS / cells)
             .clamp(1, MOST_PANELS)
             .min(whiskers);
-        // As computed and as packed; in a sweep, where a panel is one block, also rearranged, and some are computed meanwhile.
-        let copies = if whiskers > 1 { 4 } else { 2 };
-        let panels = (copies * cells * panels_at_once) as u64;
-        let bytes = panels * BYTES_PER_CELL + bytes_in_flight(scene);
-        if bytes > MEMORY_LIMIT {
+        let sides = Self::sides(scene);
+        // Some are packed while the next ones are computed.
+        let rows = whiskers * distances;
+        let computed = rows.min(2 * panels_at_once * band_rows) * push_angles;
+        let packed = cells * panels_at_once;
+        let is_measured = scene.whisker.profile.is_some();
+        let of_side = if is_measured {
+            MEASURED_SIDE_BYTES
+        } else {
+            SIDE_BYTES
+        };
+        let bytes = computed as u64 * BYTES_PER_CELL
+            + packed as u64 * PACKED_BYTES_PER_CELL
+            + (panels_at_once * sides.len()) as u64 * of_side;
+        let gpu_bytes = CELLS_IN_FLIGHT.max(push_angles) as u64 * BYTES_ON_GPU;
+        if !fits(bytes, gpu_bytes) {
             return Err(PlanError::Panel {
                 push_angles,
                 distances,
@@ -138,9 +191,12 @@ impl Plan {
             .corner_whiskers()
             .map(|own| own.rod(Side::Cb))
             .collect();
-        let sides = Self::sides(scene);
         let rows_at_once = (CELLS_IN_FLIGHT / push_angles).clamp(1, ROWS_IN_FLIGHT);
-        let calls = |group: usize| (group * sides.len() * distances).div_ceil(rows_at_once);
+        let of_rows = |rows: usize| (rows * sides.len()).div_ceil(rows_at_once);
+        let calls = |group: usize| {
+            let bands = distances / band_rows * of_rows(group * band_rows);
+            bands + of_rows(group * (distances % band_rows))
+        };
         Ok(Self {
             method: Method::fine().with_effects(Effects::of(&corners)),
             engine_calls: whiskers / panels_at_once * calls(panels_at_once)
@@ -150,8 +206,10 @@ impl Plan {
             channels: Channels::ALL,
             sides,
             panels_at_once,
+            band_rows,
             rows_at_once,
             bytes,
+            gpu_bytes,
             whiskers,
         })
     }
@@ -163,9 +221,8 @@ impl Plan {
     pub fn in_memory(scene: &Scene) -> Result<Self, PlanError> {
         let plan = Self::new(scene)?;
         let cells = plan.cells / plan.whiskers;
-        let panels = (plan.cells + cells * plan.panels_at_once) as u64;
-        let bytes = panels * BYTES_PER_CELL + bytes_in_flight(scene);
-        if bytes > MEMORY_LIMIT {
+        let bytes = plan.bytes + plan.cells as u64 * BYTES_PER_CELL;
+        if !fits(bytes, plan.gpu_bytes) {
             return Err(PlanError::AllPanels {
                 whiskers: plan.whiskers,
                 cells,

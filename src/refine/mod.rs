@@ -121,11 +121,23 @@ pub enum RefineOutcome {
 /// `[target]`.
 #[must_use]
 pub fn refine(method: Method, sheets: &[&Sheet], targets: &[CellTarget]) -> Vec<Refined> {
-    let mut cells = vec![Refined::default(); targets.len()];
+    let mut cells = Vec::new();
+    refine_into(method, sheets, targets, &mut cells);
+    cells
+}
+
+/// Refines the guesses of `targets` like [`refine`], and writes one cell for each target into `cells`, whose memory is reused.
+pub fn refine_into(
+    method: Method,
+    sheets: &[&Sheet],
+    targets: &[CellTarget],
+    cells: &mut Vec<Refined>,
+) {
+    cells.clear();
+    cells.resize(targets.len(), Refined::default());
     let size = chunk_size(targets.len());
     let chunks = cells.par_chunks_mut(size).zip(targets.par_chunks(size));
     chunks.for_each(|(cells, targets)| refine_chunk(method, sheets, targets, cells));
-    cells
 }
 
 fn refine_chunk(method: Method, sheets: &[&Sheet], targets: &[CellTarget], cells: &mut [Refined]) {

@@ -1,6 +1,7 @@
 //! Layout of an EXR map: the position of each value in parts, channels, tiles and blocks.
 
 use super::{Channels, STATE_CHANNELS};
+use crate::plan::BLOCK_ROWS;
 use crate::scene::Grid;
 use exr::block::BlockIndex;
 use exr::math::{RoundingMode, Vec2};
@@ -54,7 +55,7 @@ impl AtlasLayout {
     }
 
     /// Tiles, one per panel. A single panel has scan lines: their many blocks compress in parallel.
-    fn blocks(&self) -> BlockDescription {
+    fn description(&self) -> BlockDescription {
         if self.panels() == 1 {
             return BlockDescription::ScanLines;
         }
@@ -68,7 +69,7 @@ impl AtlasLayout {
     /// Rows of cells in a block; the last block of a panel may have fewer.
     fn block_height(&self) -> usize {
         match self.panels() {
-            1 => COMPRESSION.scan_lines_per_block(),
+            1 => BLOCK_ROWS,
             _ => self.distances,
         }
     }
@@ -78,7 +79,23 @@ impl AtlasLayout {
         self.distances.div_ceil(self.block_height())
     }
 
-    /// Returns the indices `(column, row)` of the tile of a `panel` in the atlas; `None` if there is only one panel.
+    /// Blocks of so many cells of a panel in each part.
+    pub(super) fn blocks(&self, cells: usize) -> usize {
+        cells.div_ceil(self.block_height() * self.push_angles)
+    }
+
+    /// Number of cells that a panel must have whose first `begun` blocks came before: all that are left, or `cells` if they are whole
+    /// blocks of a single panel.
+    pub(super) fn expected_cells(&self, begun: usize, cells: usize) -> usize {
+        let block = self.block_height() * self.push_angles;
+        let left = self.cells() - begun * block;
+        match cells > 0 && cells < left && cells.is_multiple_of(block) {
+            true => cells,
+            false => left,
+        }
+    }
+
+    /// Indices `(column, row)` of the tile of a `panel` in the atlas; `None` if there is only one panel.
     pub(super) fn tile(&self, panel: usize) -> Option<Vec2<usize>> {
         (self.panels() > 1).then_some(Vec2(panel % self.columns, panel / self.columns))
     }
@@ -88,7 +105,7 @@ impl AtlasLayout {
         block * self.block_height()
     }
 
-    /// Returns the samples of a block of a panel, line by line, in the order of the file, from all samples of each channel.
+    /// The samples of a block of a panel, or of some of its rows, line by line, in the order of the file, from all samples of each channel.
     pub(super) fn lines<'a>(
         &self,
         block: usize,
@@ -96,7 +113,8 @@ impl AtlasLayout {
     ) -> impl Iterator<Item = &'a [u8]> + Clone {
         let line = self.push_angles * SAMPLE_BYTES;
         let first = self.first_row(block);
-        let rows = first..(first + self.block_height()).min(self.distances);
+        let all = channels.first().map_or(0, |samples| samples.len() / line);
+        let rows = first..(first + self.block_height()).min(all);
         rows.flat_map(move |row| {
             let channels = channels.iter();
             channels.map(move |samples| &samples[row * line..][..line])
@@ -132,7 +150,7 @@ impl AtlasLayout {
                 let channels =
                     channels.map(|name| ChannelDescription::named(name, sample_type(name)));
                 let mut header = Header::new(Text::from(part), size, channels.collect())
-                    .with_encoding(COMPRESSION, self.blocks(), LineOrder::Increasing);
+                    .with_encoding(COMPRESSION, self.description(), LineOrder::Increasing);
                 header.own_attributes.other = attributes.clone();
                 header
             });
@@ -171,3 +189,13 @@ pub(super) fn sample_type(name: &str) -> SampleType {
 
 /// Size of one sample of an EXR map in bytes; every channel is 32 bits wide.
 pub(super) const SAMPLE_BYTES: usize = 4;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_of_rows_are_whole_blocks() {
+        assert_eq!(COMPRESSION.scan_lines_per_block(), BLOCK_ROWS);
+    }
+}

@@ -35,6 +35,8 @@ pub struct MapWriter {
     tables: Vec<u64>,
     /// Panels written so far.
     written: usize,
+    /// Packed blocks of a panel that came in part: `[part][block]`. In the file, the blocks of a part follow one another.
+    packed: Vec<Vec<Vec<u8>>>,
     counts: CellCounts,
 }
 
@@ -83,6 +85,7 @@ impl MapWriter {
             position,
             layout,
             channels: about.channels,
+            packed: vec![Vec::new(); headers.len()],
             headers,
             tables,
             written: 0,
@@ -92,7 +95,8 @@ impl MapWriter {
         Ok(writer)
     }
 
-    /// Compresses the next panels of the map in parallel and appends them, in the order of the sweep.
+    /// Compresses the next panels in parallel and appends them, in the order of the sweep. The only panel of a map may come in bands of
+    /// rows, each as a panel of [`BLOCK_ROWS`](crate::plan::BLOCK_ROWS) rows or a multiple of it, except for the last one.
     ///
     /// # Errors
     /// A panel is one too many, has the wrong size or a code without a name, or the disk is full.
@@ -109,30 +113,50 @@ impl MapWriter {
         }
         self.count(first, panels)?;
 
-        let blocks = self.layout.blocks_per_panel();
-        let of_panel = self.tables.len() * blocks;
-        let part = |task: usize| task % of_panel / blocks;
         let parts = layout::parts(self.channels);
-        let chunks: Vec<Vec<u8>> = (0..panels.len() * of_panel)
-            .into_par_iter()
-            .map(|task| {
-                let (panel, part) = (task / of_panel, part(task));
+        let begun = self.packed[0].len();
+        let tasks: Vec<[usize; 3]> = (0..panels.len())
+            .flat_map(|panel| {
+                let blocks = self.layout.blocks(panels[panel].regime.len());
+                let of_part = move |part| (0..blocks).map(move |block| [panel, part, block]);
+                (0..parts.len()).flat_map(of_part)
+            })
+            .collect();
+        let chunks: Vec<Vec<u8>> = tasks
+            .par_iter()
+            .map(|&[panel, part, block]| {
                 let samples = samples(&panels[panel], &parts[part].1);
-                self.chunk(first + panel, part, task % blocks, &samples)
+                let lines = self.layout.lines(block, &samples);
+                self.chunk(first + panel, part, begun + block, zip::pack(lines))
             })
             .collect::<exr::error::Result<_>>()
             .map_err(StoreError::at(&self.path, StoreError::Encode))?;
-        self.write_at(self.position, &chunks)?;
+        let blocks = self.layout.blocks_per_panel();
+        let mut chunks = chunks.into_iter();
+        let mut ready: Vec<Vec<u8>> = Vec::new();
         let mut offsets = vec![Vec::new(); self.tables.len()];
-        for (task, chunk) in chunks.iter().enumerate() {
-            offsets[part(task)].extend(self.position.to_le_bytes());
-            self.position += chunk.len() as u64;
+        let mut position = self.position;
+        for of_panel in tasks.chunk_by(|a, b| a[0] == b[0]) {
+            for ([_, part, _], chunk) in of_panel.iter().zip(&mut chunks) {
+                self.packed[*part].push(chunk);
+            }
+            if self.packed[0].len() == blocks {
+                for (packed, offsets) in self.packed.iter_mut().zip(&mut offsets) {
+                    for chunk in packed.drain(..) {
+                        offsets.extend(position.to_le_bytes());
+                        position += chunk.len() as u64;
+                        ready.push(chunk);
+                    }
+                }
+                self.written += 1;
+            }
         }
+        self.write_at(self.position, &ready)?;
+        self.position = position;
         for (part, offsets) in offsets.into_iter().enumerate() {
             let before = OFFSET_BYTES * (first * blocks) as u64;
             self.write_at(self.tables[part] + before, &[offsets])?;
         }
-        self.written += panels.len();
         Ok(())
     }
 
@@ -199,7 +223,8 @@ impl MapWriter {
     }
 
     fn check_sizes(&self, index: usize, panel: &Panel) -> Result<(), StoreError> {
-        let expected = self.layout.cells();
+        let begun = self.packed[0].len();
+        let expected = self.layout.expected_cells(begun, panel.regime.len());
         for channel in self.channels.names() {
             let cells = panel.bytes(channel).len() / SAMPLE_BYTES;
             if cells != expected {
@@ -244,16 +269,15 @@ impl MapWriter {
         Ok(())
     }
 
-    /// One compressed block of one part of a panel, from the samples of the part's channels.
+    /// The bytes of a block of one part of a panel, from its compressed samples.
     fn chunk(
         &self,
         panel: usize,
         part: usize,
         block: usize,
-        samples: &[&[u8]],
+        compressed_pixels_le: Vec<u8>,
     ) -> exr::error::Result<Vec<u8>> {
         let layout = &self.layout;
-        let compressed_pixels_le = zip::pack(layout.lines(block, samples));
         let compressed_block = match layout.tile(panel) {
             Some(tile) => CompressedBlock::Tile(CompressedTileBlock {
                 coordinates: TileCoordinates {

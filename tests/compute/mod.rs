@@ -31,7 +31,7 @@ pub fn compute_as(
         engine,
         &mut |_| ControlFlow::Continue(()),
         &mut |panels| {
-            all.extend(panels);
+            all.append(panels);
             Ok::<(), Infallible>(())
         },
     );

@@ -67,7 +67,7 @@ fn a_batch_is_solved_while_the_previous_one_is_completed() {
             }
             ControlFlow::Continue(())
         };
-        let discard = &mut |_| Ok::<(), Infallible>(());
+        let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
         let Ok(_) = map::run(&scene, &plan, Some(&mut engine), &mut one_more, discard);
         assert_eq!(completed, 16);
     });
@@ -133,7 +133,7 @@ fn an_engine_goes_from_run_to_run() {
     let mut plan_of_sweep = Plan::new(&sweep).unwrap();
     plan_of_sweep.panels_at_once = 1;
     for _ in 0..3 {
-        let refuse = &mut |_| Err("no room");
+        let refuse = &mut |_: &mut Vec<Panel>| Err("no room");
         let refused = map::run(
             &sweep,
             &plan_of_sweep,
@@ -178,8 +178,8 @@ fn the_spectral_engine_is_a_stage() {
 fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
     let (scene, plan) = in_batches();
     let has_engine = engine.is_some();
-    let mut keep = |panels: Vec<Panel>| {
-        assert!(MapWriter::sample(&scene.grid, plan.channels, &panels) > 0);
+    let mut keep = |panels: &mut Vec<Panel>| {
+        assert!(MapWriter::sample(&scene.grid, plan.channels, panels) > 0);
         Ok::<(), Infallible>(())
     };
     let Ok(summary) = map::run(

@@ -105,6 +105,52 @@ fn a_panel_that_does_not_fit_is_refused() {
     assert_eq!(counts.regimes.values().sum::<u64>(), 40);
 }
 
+/// The only panel of a map may come in bands of whole blocks; the file has the same bytes.
+#[test]
+fn bands_make_the_same_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(5, 70, None, None);
+    let tolerances = json!(null);
+    let about = map::describe(&scene, &tolerances);
+    let whole = panel(&scene, 0);
+    let rows = |from: usize, to: usize| {
+        let cells = from * 5..to * 5;
+        let mut band = whole.clone();
+        let codes = [&mut band.regime, &mut band.status, &mut band.newton_steps];
+        codes.map(|codes| *codes = codes[cells.clone()].to_vec());
+        let numbers = [&mut band.residual, &mut band.margin_deg];
+        for numbers in band.state.iter_mut().chain(numbers) {
+            *numbers = numbers[cells.clone()].to_vec();
+        }
+        band
+    };
+    let write = |name: &str, bands: &[Panel]| {
+        let path = folder.path().join(name);
+        let mut writer = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
+        for band in bands {
+            writer.write_panels(std::slice::from_ref(band))?;
+        }
+        writer.finish(EngineCells::default(), Audit::default())?;
+        Ok::<_, StoreError>(fs::read(&path).unwrap())
+    };
+    let expected = write("whole", std::slice::from_ref(&whole)).unwrap();
+    let bands = [rows(0, 32), rows(32, 48), rows(48, 70)];
+    assert!(write("bands", &bands).unwrap() == expected);
+    let refusal = |bands: &[Panel]| write("refused", bands).unwrap_err().to_string();
+    assert_eq!(
+        refusal(&[rows(0, 32), rows(32, 50)]),
+        "panel 0: channel `regime` has 90 cells instead of 190"
+    );
+    assert_eq!(
+        refusal(&bands[..2]),
+        "the map was finished after 0 of 1 panels"
+    );
+    assert_eq!(
+        refusal(&[whole.clone(), rows(0, 16)]),
+        "there is no panel 1; the map has 1"
+    );
+}
+
 #[test]
 fn an_unknown_channel_is_refused_with_the_known_ones() {
     let folder = tempfile::tempdir().unwrap();
