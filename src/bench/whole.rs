@@ -155,7 +155,7 @@ pub fn measure(
 fn run(scene: &Scene, plan: &Plan, gpu: Option<&mut Gpu>) -> Result<MapRun, EngineError> {
     let engine = gpu.map(|gpu| gpu as &mut dyn Engine);
     let mut keep = |panels: Vec<Panel>| {
-        black_box(MapWriter::sample(&scene.grid, plan.channels, &panels));
+        black_box(MapWriter::sample(&scene.grid, plan, &panels));
         Ok::<(), Infallible>(())
     };
     let Ok(summary) = map::run(

@@ -1,9 +1,11 @@
 //! What will be computed, decided beforehand: without a device, a disk or a clock.
 
 mod channels;
+mod digits;
 mod effects;
 
 pub use channels::{Channel, Channels, STATE_CHANNELS};
+pub use digits::{Digits, rounded};
 pub use effects::{Cost, Effect, effects};
 
 use crate::rod::{Effects, Rod, Side};
@@ -58,6 +60,8 @@ pub struct Plan {
     pub parts: Vec<Range<usize>>,
     /// Channels to compute.
     pub channels: Channels,
+    /// Digits of the channels in files.
+    pub digits: Digits,
     /// Panels computed together, so that small panels fill an engine.
     pub panels_at_once: usize,
     /// Maximum number of rows of a batch for an engine.
@@ -146,6 +150,7 @@ impl Plan {
             cells: cells * whiskers,
             parts: std::iter::once(0..whiskers).collect(),
             channels: Channels::ALL,
+            digits: Digits::ALL,
             sides,
             panels_at_once,
             rows_at_once,

@@ -1,5 +1,6 @@
 //! The place of each value in an EXR map: parts, channels, tiles and blocks.
 
+use super::zip::SampleLine;
 use super::{Channels, STATE_CHANNELS};
 use crate::scene::Grid;
 use exr::block::BlockIndex;
@@ -87,18 +88,18 @@ impl AtlasLayout {
         block * self.block_height()
     }
 
-    /// The samples of a block of a panel, line by line, in the order of the file, from all samples of each channel.
+    /// The samples of a block of a panel, line by line, in the order of the file, from all samples of each channel with its rounding.
     pub(super) fn lines<'a>(
         &self,
         block: usize,
-        channels: &'a [&[u8]],
-    ) -> impl Iterator<Item = &'a [u8]> + Clone {
+        channels: &'a [SampleLine<'a>],
+    ) -> impl Iterator<Item = SampleLine<'a>> + Clone {
         let line = self.push_angles * SAMPLE_BYTES;
         let first = self.first_row(block);
         let rows = first..(first + self.block_height()).min(self.distances);
         rows.flat_map(move |row| {
             let channels = channels.iter();
-            channels.map(move |samples| &samples[row * line..][..line])
+            channels.map(move |(samples, kept_bits)| (&samples[row * line..][..line], *kept_bits))
         })
     }
 
