@@ -174,7 +174,10 @@ pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, 
     });
     let mut attributes: Map<String, Value> = agreed.collect();
     let identity = StoreIdentity::of(&attributes).text();
-    attributes.insert("Conventions".to_owned(), json!("CF-1.11"));
+    // Version 1.12 defines the attributes of rounded arrays.
+    let is_rounded = attributes.contains_key(DIGITS);
+    let conventions = if is_rounded { "CF-1.12" } else { "CF-1.11" };
+    attributes.insert("Conventions".to_owned(), json!(conventions));
     attributes.insert("title".to_owned(), json!(title));
     attributes.insert(IDENTITY.to_owned(), json!(identity));
     attributes

@@ -60,7 +60,7 @@ impl ZarrStore {
     /// The store at `path`, which [`begin`](Self::begin) creates; it exists already only if it `may_exist`. Regimes are always stored.
     ///
     /// # Errors
-    /// The store was created with another scene, version, engine, accuracy or choice of channels, or it exists although it must
+    /// The store was created with another scene, version, engine, accuracy, channels or digits, or it exists although it must
     /// not.
     pub fn join(
         path: &Path,
