@@ -150,6 +150,7 @@ fn files(criterion: &mut Criterion) {
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::json!({}),
         channels: whiskmap::map::Channels::ALL,
+        digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     };
     let write = |path: &Path| -> Result<(), StoreError> {

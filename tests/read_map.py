@@ -2,6 +2,7 @@
 
 Usage: python3 tests/read_map.py FILE. Needs `pip install OpenEXR numpy`.
 """
+import json
 import pathlib
 import re
 import sys
@@ -21,8 +22,13 @@ def snippet():
     return found
 
 
-def check(axes, about, channels):
+def check(axes, about, channels, parts):
     """Every channel has every cell, the counts are those of the cells, and quantities are where there is contact."""
+    digits = json.loads(parts[0].header.get("digits", '""'))
+    for name, number in (entry.split("=") for entry in digits.split(", ") if entry):
+        bits = int(np.ceil(int(number) * np.log2(10)))
+        dropped = channels[name].view(np.uint32) & (1 << 23 - bits) - 1
+        assert not dropped[np.isfinite(channels[name])].any(), name
     names = "curvature_per_mm", "taper", "distance_mm", "push_angle_deg"
     shape = tuple(axes[name].size if name in axes else 1 for name in names)
     assert len(channels) == 14, sorted(channels)
@@ -41,4 +47,4 @@ def check(axes, about, channels):
 if __name__ == "__main__":
     found = {}
     exec(snippet().replace(SHOWN, repr(sys.argv[1])), found)
-    check(*(found[name] for name in ("axes", "about", "channels")))
+    check(*(found[name] for name in ("axes", "about", "channels", "parts")))

@@ -33,6 +33,11 @@ def check(store):
     counts = store.regime_cells.sum(dim=names[:2])
     for code, cells in zip(store.regime_code.values, counts.values):
         assert int((regime == code).sum()) == int(cells), (code, cells)
+    for array in store.values():
+        if "quantization" in array.attrs:
+            assert store[array.attrs["quantization"]].attrs["algorithm"] == "bitround"
+            dropped = array.values.view(np.uint32) & (1 << 23 - array.attrs["quantization_nsb"]) - 1
+            assert not dropped[np.isfinite(array.values)].any(), array.name
     contact = np.isin(regime, [1, 4])
     assert contact.any() and (np.isfinite(store.force_un.values) == contact).all()
     print(f"{store.encoding['source']}: {regime.size} cells of {len(store)} variables, {contact.sum()} in contact")

@@ -43,7 +43,13 @@ for scene in cone morphology; do
     "$target/checked/whiskmap" map "scenes/$scene.toml" --engine cpu --no-png -o "$target/maps"
     python3 tests/read_map.py "$target/maps/$scene.exr"
 done
-rm -rf "$target/maps/morphology.zarr"
+rounded="$target/maps/rounded"
+rm -rf "$rounded" "$target/maps/morphology.zarr"
+for format in exr zarr; do
+    "$target/checked/whiskmap" map scenes/morphology.toml --engine cpu --no-png --digits 5,force_un=3 --format "$format" -o "$rounded"
+done
+python3 tests/read_map.py "$rounded/morphology.exr"
+python3 tests/read_store.py "$rounded/morphology.zarr"
 "$target/checked/whiskmap" map scenes/morphology.toml --engine cpu --format zarr -o "$target/maps"
 rm -rf "$target/maps/slice.zarr"
 "$target/checked/whiskmap" extract "$target/maps/morphology.zarr" --at taper=0.95 -o "$target/maps/slice.zarr"

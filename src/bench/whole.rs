@@ -204,7 +204,7 @@ fn own_seconds(
 fn run(scene: &Scene, plan: &Plan, engine: Option<&mut dyn Engine>) -> Result<MapRun, EngineError> {
     let mut packed_bytes = 0;
     let mut keep = |panels: &mut Vec<Panel>| {
-        packed_bytes += MapWriter::sample(&scene.grid, plan.channels, panels);
+        packed_bytes += MapWriter::sample(&scene.grid, plan, panels);
         Ok::<(), Infallible>(())
     };
     let Ok(summary) = map::run(

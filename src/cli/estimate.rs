@@ -47,8 +47,8 @@ impl MapFormat {
     /// Packs some panels of `scene`, and returns the number of bytes.
     fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> u64 {
         match self {
-            Self::Exr => MapWriter::sample(&scene.grid, plan.channels, panels),
-            Self::Zarr => ZarrStore::sample(scene, plan.channels, panels),
+            Self::Exr => MapWriter::sample(&scene.grid, plan, panels),
+            Self::Zarr => ZarrStore::sample(scene, plan, panels),
         }
     }
 }
@@ -95,6 +95,7 @@ fn thinned(scene: &Scene, plan: &Plan, lines: [usize; 2]) -> Result<(Scene, Plan
     let small_plan = Plan {
         method: plan.method,
         channels: plan.channels,
+        digits: plan.digits,
         ..Plan::new(&small)?
     };
     Ok((small, small_plan))

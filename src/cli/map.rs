@@ -1,6 +1,7 @@
 //! Command `whiskmap map`.
 
 use super::arguments::whole;
+use super::digits::DigitsArgs;
 use super::disk;
 use super::engine::EngineArgs;
 use super::estimate::MapFormat;
@@ -31,6 +32,7 @@ Examples:
   whiskmap map scenes/morphology.toml --tolerance 1e-3deg
   whiskmap map scenes/cone.toml --engine gpu --adapter 0
   whiskmap map scenes/morphology.toml --format zarr --channels regime,force_un
+  whiskmap map scenes/morphology.toml --format zarr --digits 5,force_un=3
   whiskmap map scenes/morphology.toml --format zarr --resume
   whiskmap map scenes/morphology.toml --format zarr --shard 3/8 --resume
   whiskmap map - < my_whisker.toml
@@ -54,6 +56,8 @@ pub struct MapArgs {
     /// [default: all]
     #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
     channels: Option<Channels>,
+    #[command(flatten)]
+    digits: DigitsArgs,
     /// Format of the map
     #[arg(long, value_enum, default_value = "exr")]
     format: MapFormat,
@@ -80,6 +84,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
     let channels = args.channels.unwrap_or(Channels::ALL);
     plan.channels = channels.with_marks(scene.has_friction());
+    plan.digits = args.digits.of(plan.channels)?;
     let mut engine = args.engine.open(&scene, &plan, left_deg)?;
     let input = engine
         .0
@@ -97,6 +102,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         engine: &solver,
         tolerances: &tolerances(&scene, accuracy, engine.0.as_deref()),
         channels: plan.channels,
+        digits: plan.digits,
         arithmetic: ArithmeticClass::detect().name(),
     };
     files.folder("--output", &args.output)?;

@@ -10,6 +10,7 @@ mod curve;
 mod data;
 mod design;
 mod devices;
+mod digits;
 mod disk;
 mod engine;
 mod estimate;

@@ -1,5 +1,6 @@
 //! Command `whiskmap plan`.
 
+use super::digits::DigitsArgs;
 use super::engine::expansions;
 use super::estimate::{FileCost, MapCost, MapFormat, estimate, files};
 use super::failure::Failure;
@@ -16,6 +17,7 @@ use whiskmap::scene::Scene;
 #[command(after_help = "\
 Examples:
   whiskmap plan scenes/cone.toml
+  whiskmap plan scenes/morphology.toml --digits 5
   whiskmap plan - < my_whisker.toml
 
 Effects with their own kernel add work to every integration step. The others are free: pole radius and friction only change \
@@ -31,6 +33,8 @@ panels of its current block: at most 2 million cells.")]
 pub struct PlanArgs {
     /// Scene file; - is standard input
     scene: PathBuf,
+    #[command(flatten)]
+    digits: DigitsArgs,
 }
 
 /// Seconds for the samples.
@@ -38,7 +42,8 @@ const SAMPLE_SECONDS: f64 = 2.0;
 
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
     let scene = read_scene(&args.scene)?;
-    let plan = Plan::in_bands(&scene)?;
+    let mut plan = Plan::in_bands(&scene)?;
+    plan.digits = args.digits.of(plan.channels)?;
     let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
     let files = files(&scene, &plan, &MapFormat::of(&scene))?;
     print(&scene, &plan, &estimate, &files)?;

@@ -7,6 +7,7 @@ use std::io::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 use whiskmap::classify::Regime;
+use whiskmap::plan::Digits;
 use whiskmap::store::{BlockState, CheckDepth, StoreError, TemporaryFiles, ZarrStore};
 
 #[derive(Debug, Args)]
@@ -133,6 +134,9 @@ fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {
         if cells > 0 {
             writeln!(out, "{cells:>12}  {}", regime.name())?;
         }
+    }
+    if store.digits != Digits::ALL {
+        writeln!(out, "rounded to digits: {}", store.digits)?;
     }
     if !found.missing.is_empty() {
         writeln!(out, "missing blocks: {}", ranges(&found.missing))?;

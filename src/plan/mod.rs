@@ -1,10 +1,12 @@
 //! Plan of a run: what will be computed, decided without a device, a disk or a clock.
 
 mod channels;
+mod digits;
 mod effects;
 mod expansions;
 
 pub use channels::{Channel, Channels, STATE_CHANNELS};
+pub use digits::{Digits, rounded};
 pub use effects::{Cost, Effect, effects};
 pub use expansions::{ExpansionCount, STATES_OF_ROW, USUAL_PATCH, expansion_cost};
 
@@ -83,6 +85,8 @@ pub struct Plan {
     pub parts: Vec<Range<usize>>,
     /// Channels that the run computes.
     pub channels: Channels,
+    /// Digits of the run's channels in files.
+    pub digits: Digits,
     /// Number of panels computed together, so that small panels fill an engine.
     pub panels_at_once: usize,
     /// Rows of a panel that are finished together, a band; all of them unless there is one panel, in bands.
@@ -204,6 +208,7 @@ impl Plan {
             cells: cells * whiskers,
             parts: std::iter::once(0..whiskers).collect(),
             channels: Channels::ALL,
+            digits: Digits::ALL,
             sides,
             panels_at_once,
             band_rows,

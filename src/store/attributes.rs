@@ -4,6 +4,7 @@ use super::layout::AtlasLayout;
 use super::tally::{CellCounts, regimes, statuses};
 use crate::engine;
 use crate::map::{Audit, Channels, EngineCells};
+use crate::plan::Digits;
 use crate::scene::{Grid, Parameter, SceneData, SweepAxis};
 use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};
@@ -21,6 +22,8 @@ pub struct MapDescription<'a> {
     pub tolerances: &'a Value,
     /// Channels of the map that are stored.
     pub channels: Channels,
+    /// Digits to which the channels of the map are rounded.
+    pub digits: Digits,
     /// Rounding of the CPU of the run: the [name](crate::numerics::ArithmeticClass::name) of an arithmetic class.
     pub arithmetic: &'a str,
 }
@@ -55,6 +58,15 @@ pub(super) const CHECKSUM: &str = "checksum";
 /// Digits of the checksum of an EXR map while it is computed.
 pub(super) const NO_CHECKSUM: &str = "00000000";
 
+/// Name of the attribute with the digits of rounded channels; a file without it stores all bits.
+pub(super) const DIGITS: &str = "digits";
+
+/// Returns the text of the attribute [`DIGITS`]: the stored channels that are rounded, if any.
+pub(super) fn digits(about: &MapDescription<'_>) -> Option<String> {
+    let digits = about.digits.of(about.channels);
+    (digits != Digits::ALL).then(|| digits.to_string())
+}
+
 /// Attributes of an EXR map: texts by name.
 pub(super) type ExrAttributes = HashMap<Text, AttributeValue>;
 
@@ -80,8 +92,11 @@ pub(super) fn encode(about: &MapDescription<'_>) -> ExrAttributes {
         ("panels", json!([layout.columns, layout.rows])),
         (CHECKSUM, json!(NO_CHECKSUM)),
     ];
-    let encoded = attributes.map(|(name, value)| attribute(name, &ascii_json(&value)));
-    encoded.into()
+    let digits = digits(about).map(|digits| (DIGITS, json!(digits)));
+    let encoded = attributes.into_iter().chain(digits);
+    encoded
+        .map(|(name, value)| attribute(name, &ascii_json(&value)))
+        .collect()
 }
 
 /// Encodes the attribute `counts`, padded with spaces to [`counts_width`].

@@ -44,7 +44,7 @@ pub enum StoreError {
     },
     /// The folder has blocks of another store, whose metadata are missing or damaged.
     #[error(
-        "{folder} has blocks of another scene, version, engine, arithmetic, accuracy or choice of channels; \
+        "{folder} has blocks of another scene, version, engine, arithmetic, accuracy, channels or digits; \
          remove it, or give another --output", folder = .0.display()
     )]
     OtherBlocks(PathBuf),

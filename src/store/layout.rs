@@ -1,5 +1,6 @@
 //! Layout of an EXR map: the position of each value in parts, channels, tiles and blocks.
 
+use super::zip::SampleLine;
 use super::{Channels, STATE_CHANNELS};
 use crate::plan::BLOCK_ROWS;
 use crate::scene::Grid;
@@ -105,19 +106,20 @@ impl AtlasLayout {
         block * self.block_height()
     }
 
-    /// The samples of a block of a panel, or of some of its rows, line by line, in the order of the file, from all samples of each channel.
+    /// Returns the samples of a block of a panel, or of some of its rows, line by line, in the order of the file, from all samples of each
+    /// channel with its rounding.
     pub(super) fn lines<'a>(
         &self,
         block: usize,
-        channels: &'a [&[u8]],
-    ) -> impl Iterator<Item = &'a [u8]> + Clone {
+        channels: &'a [SampleLine<'a>],
+    ) -> impl Iterator<Item = SampleLine<'a>> + Clone {
         let line = self.push_angles * SAMPLE_BYTES;
         let first = self.first_row(block);
-        let all = channels.first().map_or(0, |samples| samples.len() / line);
+        let all = channels.first().map_or(0, |(samples, _)| samples.len() / line);
         let rows = first..(first + self.block_height()).min(all);
         rows.flat_map(move |row| {
             let channels = channels.iter();
-            channels.map(move |samples| &samples[row * line..][..line])
+            channels.map(move |(samples, kept_bits)| (&samples[row * line..][..line], *kept_bits))
         })
     }
 

@@ -1,8 +1,9 @@
 //! Reader of EXR maps, which reads one channel of a panel at a time.
 
-use super::attributes;
+use super::attributes::{self, DIGITS};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
 use super::{CellCounts, Channels, StoreError, header};
+use crate::plan::Digits;
 use crate::scene::Grid;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::Chunk;
@@ -112,6 +113,24 @@ impl StoredMap {
     /// There is no such attribute, or it is not JSON.
     pub fn attribute(&self, name: &str) -> Result<serde_json::Value, StoreError> {
         header::parse(&self.meta, name).map_err(StoreError::at(&self.path, StoreError::NotAMap))
+    }
+
+    /// Returns the digits to which the channels of the map are rounded.
+    ///
+    /// # Errors
+    /// The attribute is damaged.
+    pub fn digits(&self) -> Result<Digits, StoreError> {
+        let own = self.meta.headers.first();
+        let mut names = own
+            .into_iter()
+            .flat_map(|own| own.own_attributes.other.keys());
+        if !names.any(|name| name.bytes() == DIGITS.as_bytes()) {
+            return Ok(Digits::ALL);
+        }
+        let text: String = header::parse(&self.meta, DIGITS)
+            .map_err(StoreError::at(&self.path, StoreError::NotAMap))?;
+        text.parse()
+            .map_err(StoreError::at(&self.path, StoreError::NotAMap))
     }
 
     /// Returns the names of all channels of the map, part by part, `[channel]`.

@@ -3,6 +3,7 @@
 use super::{ChannelValues, StoreError, StoredMap};
 #[cfg(feature = "zarr")]
 use super::{ZarrStore, tally};
+use crate::plan::Digits;
 use crate::scene::Grid;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -71,6 +72,18 @@ impl MapSource {
             Self::Exr(map) => map.attribute(name),
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.attribute(name),
+        }
+    }
+
+    /// Returns the digits to which the channels of the map are rounded.
+    ///
+    /// # Errors
+    /// The attribute is damaged.
+    pub fn digits(&self) -> Result<Digits, StoreError> {
+        match self {
+            Self::Exr(map) => map.digits(),
+            #[cfg(feature = "zarr")]
+            Self::Zarr(store) => Ok(store.digits),
         }
     }
 

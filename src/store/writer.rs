@@ -3,9 +3,11 @@
 use super::attributes::{self, MapDescription, attribute};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
 use super::tally::{self, CellCounts};
+use super::zip::SampleLine;
 use super::{Channels, Output, Panel, StoreError, TemporaryFiles, header, zip};
 use crate::classify::Regime;
 use crate::map::{Audit, EngineCells};
+use crate::plan::{Digits, Plan};
 use crate::scene::Grid;
 use exr::block::chunk::{
     Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates,
@@ -29,6 +31,7 @@ pub struct MapWriter {
     position: u64,
     layout: AtlasLayout,
     channels: Channels,
+    digits: Digits,
     headers: Headers,
     /// Position of each part's table of block positions. Tables are written with their blocks: those of a large sweep would not
     /// fit in memory.
@@ -86,6 +89,7 @@ impl MapWriter {
             layout,
             channels: about.channels,
             packed: vec![Vec::new(); headers.len()],
+            digits: about.digits,
             headers,
             tables,
             written: 0,
@@ -125,7 +129,7 @@ impl MapWriter {
         let chunks: Vec<Vec<u8>> = tasks
             .par_iter()
             .map(|&[panel, part, block]| {
-                let samples = samples(&panels[panel], &parts[part].1);
+                let samples = samples(&panels[panel], &parts[part].1, self.digits);
                 let lines = self.layout.lines(block, &samples);
                 self.chunk(first + panel, part, begun + block, zip::pack(lines))
             })
@@ -160,13 +164,13 @@ impl MapWriter {
         Ok(())
     }
 
-    /// Packs `panels` of a map with this `grid`, and returns their size in bytes without headers.
+    /// Packs `panels` of a run of `plan` over this `grid`, and returns their size in bytes without headers.
     #[must_use]
-    pub fn sample(grid: &Grid, channels: Channels, panels: &[Panel]) -> u64 {
+    pub fn sample(grid: &Grid, plan: &Plan, panels: &[Panel]) -> u64 {
         let layout = AtlasLayout::of(grid);
         let packed = panels.par_iter().map(|panel| {
-            let bytes = layout::parts(channels).into_iter().map(|(_, part)| {
-                let samples = samples(panel, &part);
+            let bytes = layout::parts(plan.channels).into_iter().map(|(_, part)| {
+                let samples = samples(panel, &part, plan.digits);
                 let blocks = 0..layout.blocks_per_panel();
                 let pack = |block| zip::pack(layout.lines(block, &samples)).len() as u64;
                 blocks.map(pack).sum::<u64>()
@@ -302,7 +306,10 @@ impl MapWriter {
     }
 }
 
-/// The samples of some channels of a panel, as bytes.
-fn samples<'a>(panel: &'a Panel, channels: &[&str]) -> Vec<&'a [u8]> {
-    channels.iter().map(|name| panel.bytes(name)).collect()
+/// The samples of some channels of a panel, as bytes, with their rounding.
+fn samples<'a>(panel: &'a Panel, channels: &[&str], digits: Digits) -> Vec<SampleLine<'a>> {
+    let channels = channels.iter();
+    channels
+        .map(|name| (panel.bytes(name), digits.mantissa_bits(name)))
+        .collect()
 }

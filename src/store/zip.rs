@@ -4,13 +4,17 @@
 //! difference from the one before it, plus 128; and all that is deflated (zlib, RFC 1950). A block that does not get smaller
 //! is stored as it was.
 
+use crate::plan::rounded;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
 /// The fastest level of `miniz_oxide`, at nearly the smallest size: see `benches/NOTES.md`.
 const LEVEL: u8 = 1;
 
-/// Packs the `lines` of samples of a block, in the order of the file; returns its bytes.
-pub(super) fn pack<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
+/// A line of samples of 4 bytes, and the number of mantissa bits to which they are rounded.
+pub(super) type SampleLine<'a> = (&'a [u8], Option<u32>);
+
+/// The block of these `lines` of samples, in the order of the file.
+pub(super) fn pack<'a>(lines: impl Iterator<Item = SampleLine<'a>> + Clone) -> Vec<u8> {
     let mut bytes = separated(lines.clone());
     take_differences(&mut bytes);
     let packed = compress_to_vec_zlib(&bytes, LEVEL);
@@ -18,22 +22,37 @@ pub(super) fn pack<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8>
         return packed;
     }
     bytes.clear();
-    lines.for_each(|line| bytes.extend_from_slice(line));
+    for (line, kept_bits) in lines {
+        let (samples, _) = line.as_chunks::<4>();
+        let samples = samples.iter().map(|sample| stored(*sample, kept_bits));
+        bytes.extend(samples.flat_map(u32::to_le_bytes));
+    }
     bytes
 }
 
+/// The sample as it is stored.
+fn stored(sample: [u8; 4], kept_bits: Option<u32>) -> u32 {
+    let sample = u32::from_le_bytes(sample);
+    kept_bits.map_or(sample, |bits| {
+        rounded(f32::from_bits(sample), bits).to_bits()
+    })
+}
+
 /// The bytes at even places, then those at odd ones; every line has as many of both.
-fn separated<'a>(lines: impl Iterator<Item = &'a [u8]> + Clone) -> Vec<u8> {
-    let size = lines.clone().map(<[u8]>::len).sum();
+fn separated<'a>(lines: impl Iterator<Item = SampleLine<'a>> + Clone) -> Vec<u8> {
+    let size = lines.clone().map(|(line, _)| line.len()).sum();
     let mut separated = vec![0; size];
     let (mut evens, mut odds) = separated.split_at_mut(size / 2);
-    for line in lines {
-        let (pairs, _) = line.as_chunks::<2>();
+    for (line, kept_bits) in lines {
+        let (samples, _) = line.as_chunks::<4>();
         let (even, odd);
-        (even, evens) = evens.split_at_mut(pairs.len());
-        (odd, odds) = odds.split_at_mut(pairs.len());
-        for ((even, odd), pair) in even.iter_mut().zip(odd).zip(pairs) {
-            [*even, *odd] = *pair;
+        (even, evens) = evens.split_at_mut(line.len() / 2);
+        (odd, odds) = odds.split_at_mut(line.len() / 2);
+        let (even, odd) = (even.as_chunks_mut().0, odd.as_chunks_mut().0);
+        for ((even, odd), sample) in even.iter_mut().zip(odd).zip(samples) {
+            let bytes = stored(*sample, kept_bits).to_le_bytes();
+            *even = [bytes[0], bytes[2]];
+            *odd = [bytes[1], bytes[3]];
         }
     }
     separated
@@ -80,7 +99,7 @@ mod tests {
                 let difference = i32::from(expected[i]) - i32::from(expected[i - 1]) + 128;
                 expected[i] = difference as u8;
             }
-            let packed = pack(lines.iter().map(Vec::as_slice));
+            let packed = pack(lines.iter().map(|line| (line.as_slice(), None)));
             assert!(packed.len() < bytes.len());
             assert_eq!(decompress_to_vec_zlib(&packed).ok(), Some(expected));
         }
@@ -90,6 +109,9 @@ mod tests {
     fn noise_is_stored_as_it_is() {
         let mixed = |x: u32| (x ^ x >> 16).wrapping_mul(0x85eb_ca6b);
         let lines = lines(50, |x| mixed(mixed(mixed(x + 1))));
-        assert_eq!(pack(lines.iter().map(Vec::as_slice)), lines.concat());
+        assert_eq!(
+            pack(lines.iter().map(|line| (line.as_slice(), None))),
+            lines.concat()
+        );
     }
 }

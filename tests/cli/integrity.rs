@@ -166,6 +166,7 @@ fn sizes_that_a_store_claims_are_not_allocated() {
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::Value::Null,
         channels: whiskmap::plan::Channels::ALL,
+        digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     };
     let path = place.path("huge.zarr");

@@ -98,6 +98,7 @@ fn write_without_status(place: &Place) {
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::json!({}),
         channels: Channels::those(|name| name != "status"),
+        digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     };
     let mut writer =

@@ -11,6 +11,8 @@ mod curve;
 mod damage;
 mod data;
 mod design;
+#[cfg(unix)]
+mod digits;
 mod engine;
 mod extract;
 #[cfg(unix)]

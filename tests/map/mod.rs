@@ -123,6 +123,7 @@ pub fn describe<'a>(scene: &'a SceneData, tolerances: &'a Value) -> MapDescripti
         engine: &ENGINE,
         tolerances,
         channels: Channels::ALL,
+        digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     }
 }

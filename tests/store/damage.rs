@@ -25,6 +25,7 @@ taper = [0, 0.5, 0.8, 1]
 fn about<'a>(scene: &'a Scene, arithmetic: &'a str) -> MapDescription<'a> {
     MapDescription {
         channels: Channels::those(|name| ["regime", "status", "force_un"].contains(&name)),
+        digits: whiskmap::plan::Digits::ALL,
         arithmetic,
         ..map::describe(scene, &serde_json::Value::Null)
     }

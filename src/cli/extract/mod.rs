@@ -13,6 +13,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};
+use whiskmap::plan::Digits;
 use whiskmap::scene::{LONGEST_TITLE, Parameter, Scene, SceneData};
 use whiskmap::store::{MapDescription, MapSlice, MapWriter, TemporaryFolder, ZarrStore};
 
@@ -166,11 +167,12 @@ fn scene(slice: &MapSlice) -> Result<Scene, Failure> {
     Ok(builder.build()?)
 }
 
-/// Engine, arithmetic and tolerances of the whole map.
+/// Engine, arithmetic, tolerances and digits of the whole map.
 struct MapOrigin {
     engine: engine::EngineDescription,
     arithmetic: String,
     tolerances: serde_json::Value,
+    digits: Digits,
 }
 
 impl MapOrigin {
@@ -189,6 +191,7 @@ impl MapOrigin {
             // Maps of older versions do not have it.
             arithmetic: text("arithmetic").unwrap_or_default(),
             tolerances: slice.stored().attribute("tolerances")?,
+            digits: slice.stored().digits()?,
         })
     }
 
@@ -198,6 +201,7 @@ impl MapOrigin {
             engine: &self.engine,
             tolerances: &self.tolerances,
             channels,
+            digits: self.digits,
             arithmetic: &self.arithmetic,
         }
     }

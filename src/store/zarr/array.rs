@@ -2,6 +2,7 @@
 
 use super::blocks::Blocks;
 use super::blosc;
+use super::planes::{planes, turned};
 use serde_json::{Value, json};
 
 /// Kind of the values of a Zarr array: their type and fill value.
@@ -65,6 +66,8 @@ pub(super) struct ZarrArray {
     chunk_values: usize,
     /// Values of a line of a chunk, if its lines are stored as columns.
     width: Option<usize>,
+    /// Number of mantissa bits to which values are rounded, unless all are stored.
+    kept_bits: Option<u32>,
 }
 
 impl ZarrArray {
@@ -97,10 +100,21 @@ impl ZarrArray {
         }
     }
 
-    /// Creates the Zarr array of the values along an axis, in one chunk that is not packed.
+    /// The array, whose values are rounded to this number of mantissa bits.
+    pub(super) fn rounded_to(self, kept_bits: Option<u32>) -> Self {
+        Self { kept_bits, ..self }
+    }
+
+    /// The values along an axis, in one chunk that is not packed.
     pub(super) fn of_axis(name: &str, kind: ValueKind, count: usize, about: Value) -> Self {
         let about = (about, json!([little_endian()]));
         Self::new(name, kind, [&[count]; 2], &[name], about)
+    }
+
+    /// One value without axes, which is not packed.
+    pub(super) fn scalar(name: &str, kind: ValueKind, about: Value) -> Self {
+        let about = (about, json!([little_endian()]));
+        Self::new(name, kind, [&[]; 2], &[], about)
     }
 
     fn new(
@@ -131,6 +145,7 @@ impl ZarrArray {
             values,
             chunk_values: values,
             width: None,
+            kept_bits: None,
         }
     }
 
@@ -175,9 +190,10 @@ impl ZarrArray {
     /// A frame of Blosc and its checksum.
     fn pack_chunk(&self, values: &[u8]) -> Vec<u8> {
         let size = self.kind.size();
-        let mut chunk = match self.width {
-            Some(width) => blosc::pack(&turned(values, width), size),
-            None => blosc::pack(values, size),
+        let mut chunk = if size == 1 {
+            blosc::pack(values, size)
+        } else {
+            blosc::pack(&planes(values, self.width, self.kept_bits), size)
         };
         chunk.extend(crc32c::crc32c(&chunk).to_le_bytes());
         chunk
@@ -227,27 +243,7 @@ fn chunk_codecs(kind: ValueKind, shape: &[usize], are_turned: bool) -> Value {
     transpose.into_iter().chain(codecs).collect()
 }
 
-/// Columns that are turned together: those of a cache line.
-const TOGETHER: usize = 16;
-
-/// Lines of `width` values of 4 bytes, turned into columns.
-fn turned(lines: &[u8], width: usize) -> Vec<u8> {
-    let (from, _) = lines.as_chunks::<4>();
-    let mut turned = vec![0; lines.len()];
-    let (to, _) = turned.as_chunks_mut::<4>();
-    let height = from.len() / width;
-    for first in (0..width).step_by(TOGETHER) {
-        for (y, line) in from.chunks_exact(width).enumerate() {
-            let columns = line.iter().enumerate().skip(first).take(TOGETHER);
-            for (x, value) in columns {
-                to[x * height + y] = *value;
-            }
-        }
-    }
-    turned
-}
-
-/// Returns the attributes of a Zarr array by which xarray labels its values: unit and name.
+/// The attributes of an array by which xarray labels its values: unit and name.
 pub(super) fn about(units: Option<&str>, long_name: &str) -> Value {
     let mut about = json!({});
     if let Some(units) = units {

@@ -5,6 +5,7 @@
 //! block and of the frame. Frames of this program have one block: its position and its size, as `u32`, and a zlib stream. Where
 //! that is not shorter than the values, the values follow the header as they are.
 
+use super::planes::joined;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 
@@ -32,20 +33,17 @@ const COPIED: u8 = 2;
 /// Flags of zlib, and of a block that is one stream.
 const ZLIB_IN_ONE: u8 = 3 << 5 | 1 << 4;
 
-/// Packs `values`, each of `size` bytes, into a Blosc frame.
-pub(super) fn pack(values: &[u8], size: usize) -> Vec<u8> {
-    let stream = compress_to_vec_zlib(&shuffled(values, size), LEVEL);
-    let length = BEFORE_STREAM + stream.len();
-    let is_copied = length >= OVERHEAD + values.len();
-    let length = if is_copied {
-        OVERHEAD + values.len()
-    } else {
-        length
-    };
-    let mut frame = header(values.len(), size, length, is_copied).to_vec();
+/// The frame of values, each of `size` bytes, from their `planes`.
+pub(super) fn pack(planes: &[u8], size: usize) -> Vec<u8> {
+    let stream = compress_to_vec_zlib(planes, LEVEL);
+    let copied = OVERHEAD + planes.len();
+    let is_copied = BEFORE_STREAM + stream.len() >= copied;
+    let length = copied.min(BEFORE_STREAM + stream.len());
+    let mut frame = header(planes.len(), size, length, is_copied).to_vec();
     frame.reserve(length - OVERHEAD);
     if is_copied {
-        frame.extend(values);
+        frame.resize(length, 0);
+        joined(planes, size, &mut frame[OVERHEAD..]);
     } else {
         frame.extend((OVERHEAD as u32 + 4).to_le_bytes());
         frame.extend((stream.len() as u32).to_le_bytes());
@@ -76,7 +74,7 @@ pub(super) fn unpack(
         Ok(found) if found == length => {
             let first = values.len();
             values.resize(first + length, 0);
-            unshuffle(&planes, size, &mut values[first..]);
+            joined(&planes, size, &mut values[first..]);
             Ok(())
         }
         _ => Err("a chunk cannot be inflated to its values"),
@@ -95,29 +93,9 @@ fn header(values: usize, size: usize, length: usize, is_copied: bool) -> [u8; OV
     header
 }
 
-/// The first bytes of all values, then the second ones, and so on.
-fn shuffled(values: &[u8], size: usize) -> Vec<u8> {
-    let mut planes = vec![0; values.len()];
-    for (place, plane) in planes.chunks_exact_mut(values.len() / size).enumerate() {
-        let bytes = values[place..].iter().step_by(size);
-        plane
-            .iter_mut()
-            .zip(bytes)
-            .for_each(|(to, from)| *to = *from);
-    }
-    planes
-}
-
-/// Undoes [`shuffled`].
-fn unshuffle(planes: &[u8], size: usize, values: &mut [u8]) {
-    for (place, plane) in planes.chunks_exact(values.len() / size).enumerate() {
-        let bytes = values[place..].iter_mut().step_by(size);
-        bytes.zip(plane).for_each(|(to, from)| *to = *from);
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::planes::planes;
     use super::*;
 
     /// `count` values of `size` bytes: smooth, or noise that cannot be packed.
@@ -151,7 +129,11 @@ mod tests {
             (900, 4, true),
         ] {
             let values = values(count, size, is_noise);
-            let frame = pack(&values, size);
+            let planes = match size {
+                1 => values.clone(),
+                _ => planes(&values, None, None),
+            };
+            let frame = pack(&planes, size);
             assert!(frame.len() <= values.len() + OVERHEAD);
             assert_eq!(frame.len() < values.len(), count > 1 && !is_noise);
             let mut found = Vec::new();

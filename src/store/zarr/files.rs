@@ -72,10 +72,10 @@ impl ZarrStore {
     /// Returns every file of metadata and coordinates of the store with its bytes; the root's is the last.
     pub(super) fn metadata_files(&self) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files = Vec::new();
-        for (array, values) in metadata::coordinates(&self.scene.grid) {
+        for (array, values) in self.constants() {
             let folder = self.path.join(&array.name);
             files.push((folder.join(METADATA), json(&array.metadata)));
-            files.push((folder.join(ZarrArray::file(&[], 1)), values));
+            files.push((folder.join(ZarrArray::file(&[], array.dimensions)), values));
         }
         for array in &self.arrays {
             let file = self.path.join(&array.name).join(METADATA);
@@ -87,9 +87,16 @@ impl ZarrStore {
 
     /// The bytes of the root's metadata.
     fn root(&self) -> Vec<u8> {
-        let coordinates = metadata::coordinates(&self.scene.grid);
-        let axes = coordinates.iter().map(|(array, _)| array);
-        json(&metadata::group(&self.attributes, axes.chain(&self.arrays)))
+        let constants = self.constants();
+        let constants = constants.iter().map(|(array, _)| array);
+        json(&metadata::group(
+            &self.attributes,
+            constants.chain(&self.arrays),
+        ))
+    }
+
+    fn constants(&self) -> Vec<(ZarrArray, Vec<u8>)> {
+        metadata::constants(&self.scene.grid, self.digits)
     }
 
     /// Checks that the store at the path, if any, has these settings. Its metadata may be damaged if its blocks belong to this store.

@@ -1,17 +1,18 @@
 //! Identities of a store and of the files of its blocks: hashes of everything that their bytes depend on.
 
-use crate::store::attributes::sorted;
+use crate::store::attributes::{DIGITS, sorted};
 use serde_json::{Map, Value};
 use twox_hash::XxHash3_128;
 
-/// Names of the attributes in which all runs that fill a store must agree; the first that differs is named.
-pub(super) const AGREED: [&str; 6] = [
+/// The attributes in which all runs that fill a store must agree; the first that differs is named.
+pub(super) const AGREED: [&str; 7] = [
     "whiskmap_version",
     "engine",
     "arithmetic",
     "tolerances",
     "channels",
     "scene",
+    DIGITS,
 ];
 
 /// Identity of a store: the XXH3-128 hash of the attributes in which all runs that fill it agree.
@@ -24,7 +25,8 @@ pub(super) type FileIdentity = [u8; 16];
 impl StoreIdentity {
     /// Returns the identity of a store with these attributes.
     pub(super) fn of(attributes: &Map<String, Value>) -> Self {
-        let agreed = AGREED.map(|name| attributes.get(name).map(sorted));
+        let agreed = AGREED.iter().filter_map(|name| attributes.get(*name));
+        let agreed: Vec<Value> = agreed.map(sorted).collect();
         let text = serde_json::json!(agreed).to_string();
         Self(XxHash3_128::oneshot(text.as_bytes()))
     }

@@ -5,7 +5,9 @@ use super::array::{NOT_COMPUTED, ZarrArray, about};
 use super::blocks::Blocks;
 use super::identity::{AGREED, StoreIdentity};
 use crate::classify::{Regime, Status};
+use crate::plan::Digits;
 use crate::scene::{Grid, SceneData};
+use crate::store::attributes::{DIGITS, digits};
 use crate::store::{Channels, MapDescription};
 use serde_json::{Map, Value, json};
 
@@ -34,8 +36,12 @@ const CHANNELS: [(&str, ValueKind, Option<&str>, &str); 14] = [
     ("residual", Quantity, Some("1"), "distance from the wanted pole over the whisker's length"),
 ];
 
-/// Returns the arrays of a store that are filled block by block, `[array]`. The regimes, which mark a block as finished, are the last.
-pub(super) fn arrays(grid: &Grid, blocks: &Blocks, channels: Channels) -> Vec<ZarrArray> {
+/// The arrays that are filled block by block. The regimes, which mark a block as finished, are the last.
+pub(super) fn arrays(
+    grid: &Grid,
+    blocks: &Blocks,
+    (channels, digits): (Channels, Digits),
+) -> Vec<ZarrArray> {
     let sweep = grid.sweep.iter().map(|axis| axis.parameter.axis());
     let sweep: Vec<&str> = sweep.collect();
     let of_cells = [&sweep[..], &["distance_mm", "push_angle_deg"]].concat();
@@ -58,10 +64,14 @@ pub(super) fn arrays(grid: &Grid, blocks: &Blocks, channels: Channels) -> Vec<Za
         // Columns make quantities 8 % smaller, but a line of margins is the one before it, shifted.
         let is_turned = kind == Quantity && name != "margin_deg";
         let sizes = (&sizes[..], is_turned.then_some(push_angles));
-        let about = with_flags(name, about(units, meaning));
-        arrays.push(ZarrArray::in_blocks(
-            name, kind, blocks, sizes, &of_cells, about,
-        ));
+        let mut about = with_flags(name, about(units, meaning));
+        let kept_bits = digits.mantissa_bits(name);
+        if let Some(bits) = kept_bits {
+            about["quantization"] = json!(QUANTIZATION);
+            about["quantization_nsb"] = json!(bits);
+        }
+        let array = ZarrArray::in_blocks(name, kind, blocks, sizes, &of_cells, about);
+        arrays.push(array.rounded_to(kept_bits));
     }
     arrays
 }
@@ -96,8 +106,11 @@ fn word(name: &str) -> String {
     parts.join("_")
 }
 
-/// Returns the coordinate arrays along every axis of a store, with their values as bytes.
-pub(super) fn coordinates(grid: &Grid) -> Vec<(ZarrArray, Vec<u8>)> {
+/// Array without axes whose attributes describe the rounding (CF conventions, 8.4).
+const QUANTIZATION: &str = "quantization";
+
+/// The coordinates along every axis, and the description of the rounding if there is any, with their values as bytes.
+pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)> {
     let inside = [
         (
             "distance_mm",
@@ -127,6 +140,13 @@ pub(super) fn coordinates(grid: &Grid) -> Vec<(ZarrArray, Vec<u8>)> {
     let (_, _, units, meaning) = CHANNELS[0];
     let about = with_flags("regime", about(units, meaning));
     all.push((ZarrArray::of_axis(CODES, Code, codes.len(), about), codes));
+    if digits != Digits::ALL {
+        let about = json!({
+            "algorithm": "bitround",
+            "implementation": concat!("whiskmap version ", env!("CARGO_PKG_VERSION")),
+        });
+        all.push((ZarrArray::scalar(QUANTIZATION, Code, about), vec![0]));
+    }
     all
 }
 
@@ -140,6 +160,8 @@ pub(super) fn attributes(about: &MapDescription<'_>, scene: &SceneData) -> Map<S
         ("channels", json!(about.channels.to_string())),
         ("scene", json!(scene.text.to_string())),
     ];
+    let digits = digits(about).map(|digits| (DIGITS, json!(digits)));
+    let agreed = agreed.into_iter().chain(digits);
     let agreed = agreed.map(|(name, value)| (name.to_owned(), value));
     completed(&Map::from_iter(agreed), &scene.title)
 }
@@ -152,7 +174,10 @@ pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, 
     });
     let mut attributes: Map<String, Value> = agreed.collect();
     let identity = StoreIdentity::of(&attributes).text();
-    attributes.insert("Conventions".to_owned(), json!("CF-1.11"));
+    // Version 1.12 defines the attributes of rounded arrays.
+    let is_rounded = attributes.contains_key(DIGITS);
+    let conventions = if is_rounded { "CF-1.12" } else { "CF-1.11" };
+    attributes.insert("Conventions".to_owned(), json!(conventions));
     attributes.insert("title".to_owned(), json!(title));
     attributes.insert(IDENTITY.to_owned(), json!(identity));
     attributes

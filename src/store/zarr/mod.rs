@@ -15,6 +15,7 @@ mod files;
 mod identity;
 mod metadata;
 mod pack;
+mod planes;
 mod read;
 mod shard;
 
@@ -24,8 +25,10 @@ pub use self::pack::PackedPanel;
 use self::array::ZarrArray;
 use self::blocks::Blocks;
 use self::identity::StoreIdentity;
+use super::attributes::DIGITS;
 use super::stored::is_compatible;
 use super::{Channels, MapDescription, StoreError};
+use crate::plan::Digits;
 use crate::scene::{Grid, Scene};
 use serde_json::{Map, Value};
 use std::ops::Range;
@@ -39,6 +42,8 @@ pub struct ZarrStore {
     pub scene: Scene,
     /// Channels of the map that are stored.
     pub channels: Channels,
+    /// The digits to which they are rounded.
+    pub digits: Digits,
     path: PathBuf,
     attributes: Map<String, Value>,
     identity: StoreIdentity,
@@ -56,7 +61,7 @@ impl ZarrStore {
     /// stored.
     ///
     /// # Errors
-    /// The store was created with another scene, version, engine, accuracy or choice of channels, or it exists although it must
+    /// The store was created with another scene, version, engine, accuracy, channels or digits, or it exists although it must
     /// not.
     pub fn join(
         path: &Path,
@@ -71,7 +76,12 @@ impl ZarrStore {
         let attributes = metadata::attributes(&about, scene);
         let own = Self {
             may_exist,
-            ..Self::new(path, attributes, scene.clone(), about.channels)
+            ..Self::new(
+                path,
+                attributes,
+                scene.clone(),
+                (about.channels, about.digits),
+            )
         };
         own.agree()?;
         Ok(own)
@@ -113,20 +123,31 @@ impl ZarrStore {
         let channels = text("channels")?
             .parse()
             .map_err(|why: String| foreign(&why))?;
+        let digits = match attributes.get(DIGITS) {
+            None => Digits::ALL,
+            Some(_) => text(DIGITS)?.parse().map_err(|why: String| foreign(&why))?,
+        };
         let attributes = metadata::completed(&attributes, &scene.title);
-        Ok(Self::new(path, attributes, scene, channels))
+        Ok(Self::new(path, attributes, scene, (channels, digits)))
     }
 
-    fn new(path: &Path, attributes: Map<String, Value>, scene: Scene, channels: Channels) -> Self {
+    fn new(
+        path: &Path,
+        attributes: Map<String, Value>,
+        scene: Scene,
+        (channels, digits): (Channels, Digits),
+    ) -> Self {
+        let digits = digits.of(channels);
         let blocks = Blocks::of(&scene.grid);
         Self {
-            arrays: metadata::arrays(&scene.grid, &blocks, channels),
+            arrays: metadata::arrays(&scene.grid, &blocks, (channels, digits)),
             path: path.to_owned(),
             identity: StoreIdentity::of(&attributes),
             may_exist: true,
             attributes,
             scene,
             channels,
+            digits,
             blocks,
         }
     }

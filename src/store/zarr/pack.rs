@@ -5,8 +5,9 @@ use super::files::write;
 use super::metadata::CELLS;
 use super::{ZarrStore, shard};
 use crate::classify::Regime;
+use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::store::{Channels, Panel, StoreError, TemporaryFiles};
+use crate::store::{Panel, StoreError, TemporaryFiles};
 use rayon::prelude::*;
 use serde_json::Map;
 use std::borrow::Cow;
@@ -25,11 +26,11 @@ impl ZarrStore {
         PackedPanel(packed.collect())
     }
 
-    /// Packs `panels` of `scene`, and returns their size in bytes without headers.
+    /// Packs `panels` of a run of `plan`, and returns how many bytes they take without headers.
     #[must_use]
-    pub fn sample(scene: &Scene, channels: Channels, panels: &[Panel]) -> u64 {
-        let (nowhere, channels) = (Path::new(""), channels.with("regime"));
-        let store = Self::new(nowhere, Map::new(), scene.clone(), channels);
+    pub fn sample(scene: &Scene, plan: &Plan, panels: &[Panel]) -> u64 {
+        let stored = (plan.channels.with("regime"), plan.digits);
+        let store = Self::new(Path::new(""), Map::new(), scene.clone(), stored);
         let packed = panels.iter().map(|panel| store.pack(panel));
         let chunks = packed.flat_map(|panel| panel.0.into_iter().flatten());
         chunks.map(|chunk| chunk.len() as u64).sum()

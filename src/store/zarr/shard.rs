@@ -106,7 +106,7 @@ impl ExpectedFile {
             return Some("the index does not fit the file's length");
         }
         let why = "it belongs to another block, or to a store of another scene, version, engine, \
-            arithmetic, accuracy or choice of channels";
+            arithmetic, accuracy, channels or digits";
         (identity != self.identity).then_some(why)
     }
 
