@@ -84,7 +84,9 @@ pub fn compare(
     let rows = rows.flat_map(|(row, part)| part.each().map(move |cell| (row, cell)));
     for ((row, cell), (index, from)) in rows.zip(batch.places_in(rest)) {
         let holds = match (cells.outcome[index], found.outcome[from]) {
-            (Outcome::OffSheet, ours) => !matches!(ours, Outcome::Solved | Outcome::AtTip),
+            (Outcome::BeyondTip | Outcome::OffSheet, ours) => {
+                !matches!(ours, Outcome::Solved | Outcome::AtTip)
+            }
             (Outcome::Solved, ours) if ours != Outcome::OffSheet => {
                 let theirs = cells.get(index);
                 f64::from(theirs.residual) <= (1.0 + ROUNDED) * residual_bound

@@ -48,7 +48,10 @@ pub fn complete(
 
 /// Returns true if the CPU only audits cells with this outcome of an engine.
 const fn is_final(outcome: Outcome) -> bool {
-    matches!(outcome, Outcome::Solved | Outcome::OffSheet)
+    matches!(
+        outcome,
+        Outcome::Solved | Outcome::BeyondTip | Outcome::OffSheet
+    )
 }
 
 /// The cells that the CPU solves: those that are not certified, and the sample of the audit.

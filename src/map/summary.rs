@@ -43,7 +43,7 @@ impl EngineCells {
             Outcome::NearEdge => self.near_edge += 1,
             Outcome::OutsideTrust => self.outside_trust += 1,
             Outcome::Missed => self.missed += 1,
-            Outcome::NoBasePoint | Outcome::OffSheet => {}
+            Outcome::NoBasePoint | Outcome::BeyondTip | Outcome::OffSheet => {}
             _ => self.not_finite += 1,
         }
     }

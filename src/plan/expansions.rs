@@ -51,3 +51,20 @@ impl ExpansionCount {
         self.cost < self.cells
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn expansions_pay_for_long_rows_or_many() {
+        // A row of 110 cells costs as much as its expansions: 34 states of 3 cells, and 8.
+        assert!(!ExpansionCount::new(4, 110).pays() && ExpansionCount::new(4, 111).pays());
+        // A patch of 24 x 28 states costs 2016 cells, and 8 a row.
+        let patch = ExpansionCount::new(96, 48);
+        assert_eq!((patch.cells, patch.cost), (4608, 2784));
+        assert!(patch.pays() && !ExpansionCount::new(96, 29).pays());
+        // As many rows as a patch has give no patch.
+        assert_eq!(ExpansionCount::new(24, 48).cost, 2640);
+    }
+}

@@ -115,7 +115,9 @@ impl AtlasLayout {
     ) -> impl Iterator<Item = SampleLine<'a>> + Clone {
         let line = self.push_angles * SAMPLE_BYTES;
         let first = self.first_row(block);
-        let all = channels.first().map_or(0, |(samples, _)| samples.len() / line);
+        let all = channels
+            .first()
+            .map_or(0, |(samples, _)| samples.len() / line);
         let rows = first..(first + self.block_height()).min(all);
         rows.flat_map(move |row| {
             let channels = channels.iter();

@@ -19,10 +19,72 @@ fn auto_does_not_start_a_gpu_for_a_small_map() {
     let run = place.run(&["map", "scene.toml", "--no-png"]);
     let said = said(&run);
     assert!(said.starts_with("cpu f64 on "), "{said}");
-    assert!(
-        said.ends_with("(auto: the CPU is done before a GPU has started)"),
-        "{said}"
-    );
+    let counts = "(auto: expanding a whisker side costs as much as 2640 cells, and it has 288)";
+    assert!(said.ends_with(counts), "{said}");
+}
+
+/// Rows of 160 cells on each side: the map takes less time with expansions, and is too small for a GPU.
+#[test]
+fn auto_expands_rows_where_the_counts_say_so() {
+    let place = wide();
+    let run = place.run(&["map", "scene.toml", "--no-png"]);
+    let said = said(&run);
+    assert!(said.starts_with("spectral f64 on "), "{said}");
+    let counts = "(auto: expanding a whisker side costs as much as 2640 cells, and it has 3840)";
+    assert!(said.ends_with(counts), "{said}");
+    let plan = place.run(&["plan", "scene.toml"]);
+    let line = "engine        spectral: expanding a whisker side costs as much as 2640 cells, and it has 3840";
+    assert!(plan.out.contains(line), "{plan:?}");
+}
+
+/// The bound on residuals follows the tolerance; below the residual of refined states, nothing is expanded.
+#[test]
+fn a_tolerance_chooses_the_bound_of_expansions() {
+    let place = wide();
+    let mut bounds = Vec::new();
+    for (tolerance, is_expanded) in [("1e-3deg", true), ("1e-6deg", true), ("1e-9deg", false)] {
+        let arguments = [
+            "map",
+            "scene.toml",
+            "--engine=spectral",
+            "--no-png",
+            "--tolerance",
+            tolerance,
+        ];
+        let run = place.run(&arguments);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let line = run
+            .err
+            .lines()
+            .find(|line| line.starts_with("accuracy: "))
+            .unwrap();
+        let bound = line
+            .strip_prefix("accuracy: residuals of at most ")
+            .unwrap();
+        let bound: f64 = bound
+            .strip_suffix(" of the length")
+            .unwrap()
+            .parse()
+            .unwrap();
+        assert_eq!(
+            run.out.contains("solved by the engine"),
+            is_expanded,
+            "{run:?}"
+        );
+        let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
+        let residuals = map.read_channel("residual").unwrap();
+        let worst = residuals.values().fold(0.0, f64::max);
+        assert!(
+            worst <= bound.max(1e-12),
+            "{tolerance}: {worst:e} {bound:e}"
+        );
+        bounds.push(bound);
+    }
+    // The nearest pole is at a tenth of the length.
+    for (bound, tolerance) in bounds.iter().zip([1e-3_f64, 1e-6, 1e-9]) {
+        assert!(*bound <= 0.1 * tolerance.to_radians() * 1.05, "{bounds:?}");
+    }
+    assert!(bounds[0] > 100.0 * bounds[1], "{bounds:?}");
 }
 
 #[test]
@@ -40,7 +102,7 @@ fn the_cpu_engine_has_no_adapter_and_no_other_precision() {
 
 /// The small map with enough columns for expansions of its rows.
 fn wide() -> Place {
-    Place::with(&SCENE.replace("to = 70, count = 24", "to = 70, count = 160"))
+    Place::with(&SCENE.replace("to = 70, count = 24", "to = 70, count = 320"))
 }
 
 #[test]

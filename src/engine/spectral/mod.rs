@@ -14,6 +14,7 @@ use super::{
 };
 use crate::numerics::Unit;
 use crate::numerics::inverse::InverseBlock;
+use crate::sheet::{Edge, RowSpan};
 use crate::shooting::Resolution;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -24,11 +25,10 @@ use std::sync::Arc;
 /// Distance beyond the ends of a row, in parts of its end's row parameter, that rounding explains.
 const OUTSIDE: f64 = 1e-6;
 
-/// Push angle beyond the end of a row, in radians, from which on cells have no state. Nearer cells fall back to the CPU engine, whose
-/// outcome tells at which edge they are.
-const BEYOND: f64 = 0.02;
+/// Push angle beyond the end of a row at the tip, in radians, up to which the CPU engine decides at which side of the tip a cell is.
+const NEAR_TIP: f64 = 1e-3;
 
-/// The spectral engine. It works where it is called, on the threads of the current pool: [`Engine::submit`] keeps a batch,
+/// Spectral engine. It works where it is called, on the threads of the current pool: [`Engine::submit`] keeps a batch,
 /// [`Engine::collect`] solves it.
 #[derive(Debug)]
 pub struct Spectral {
@@ -84,9 +84,24 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64
         points,
         ..
     } = into;
-    let beyond = row.each().skip(pushes.len());
-    let beyond = beyond.filter(|cell| side.columns.magnitudes[*cell] <= end + BEYOND);
-    outcome[pushes.len() + beyond.count()..].fill(Outcome::OffSheet);
+    // Beyond the tip and beyond the sheet, cells have no state. Others beyond the end fall back to the CPU engine.
+    let last = sheet
+        .spans(row.row)
+        .first()
+        .map_or(f64::INFINITY, RowSpan::last_push);
+    let tip = match sheet.crossings[row.row][0].edge {
+        Edge::Tip => end + NEAR_TIP,
+        Edge::Fold => last,
+    };
+    let beyond = row.each().zip(outcome.iter_mut()).skip(pushes.len());
+    for (cell, outcome) in beyond {
+        let push = side.columns.magnitudes[cell];
+        if push > last {
+            *outcome = Outcome::OffSheet;
+        } else if push > tip {
+            *outcome = Outcome::BeyondTip;
+        }
+    }
     expansion
         .inverse
         .solve(&pushes, |from, count, block: &InverseBlock<FUNCTIONS>| {

@@ -258,3 +258,33 @@ impl RowExpansion {
         (off <= residual && is_at_edge).then_some(Self { inverse, residual })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Number of points of an expansion with coefficients `0.3^k` that leaves out 1e-11, from one of 16 points.
+    #[test]
+    fn the_decay_gives_the_number_of_points() {
+        let tail = |first: i32| 0.3_f64.powi(first);
+        let tail = ExpansionTail {
+            last: tail(13),
+            before: tail(10),
+        };
+        let points = tail.points(16, 1e-11);
+        // 0.3^21.04 is 1e-11: 8.04 more, and a tenth.
+        assert_eq!(points, Some(16 + 9));
+        assert_eq!(tail.points(16, 1e-6), Some(16));
+        let flat = ExpansionTail {
+            last: 1e-3,
+            before: 1e-3,
+        };
+        assert_eq!(flat.points(16, 1e-11), None);
+        assert_eq!(tail.points(36, 1e-11), None);
+        let unknown = ExpansionTail {
+            last: f64::NAN,
+            ..flat
+        };
+        assert_eq!(unknown.points(16, 1e-11), None);
+    }
+}

@@ -139,6 +139,12 @@ impl RowSpan {
         self.polynomials(stencil(i, AROUND, self.nodes.len()))
     }
 
+    /// Returns the largest push angle that has a guess, in radians.
+    pub fn last_push(&self) -> f64 {
+        let ends = self.ends.first().into_iter().chain(self.ends.last());
+        ends.map(|end| end.push).fold(f64::NEG_INFINITY, f64::max) + self.margin
+    }
+
     /// Returns true if the row span begins at first touch, where the load is 0.
     pub fn begins_at_touch(&self) -> bool {
         self.nodes.first().is_some_and(|node| node.w == 0.0)
