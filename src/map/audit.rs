@@ -148,6 +148,8 @@ fn sizes(side: &WhiskerSide, row: impl Iterator<Item = Values>) -> Values {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rod::{Rod, Side};
+    use crate::shooting::batch::Method;
 
     /// One cell of each part of a row, whatever the ranges; other cells in other rows.
     #[test]
@@ -167,6 +169,14 @@ mod tests {
             assert_eq!(sample(3).of(9..9).count(), 0);
             assert_eq!(sample(4).of(0..1792).eq(all), one_in == 1);
         }
+    }
+
+    #[test]
+    fn one_cell_in_256_is_audited_and_at_least_64() {
+        let rod = Rod::default();
+        let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &[0.5]);
+        let audited = |columns| AuditSample::new(&sheet, 0, columns).of(0..columns).count();
+        assert_eq!([10, 64, 4096, 1 << 16].map(audited), [10, 64, 64, 256]);
     }
 
     /// Rows shorter than a part have equally many cells in all.
