@@ -179,7 +179,7 @@ fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
     let (scene, plan) = in_batches();
     let has_engine = engine.is_some();
     let mut keep = |panels: Vec<Panel>| {
-        assert!(MapWriter::sample(&scene.grid, plan.channels, &panels) > 0);
+        assert!(MapWriter::sample(&scene.grid, &plan, &panels) > 0);
         Ok::<(), Infallible>(())
     };
     let Ok(summary) = map::run(
