@@ -153,7 +153,7 @@ fn refused(name: &str) -> String {
     } else {
         "is no channel"
     };
-    let (known, hint) = (names.join(", "), did_you_mean(name, names.into_iter()));
+    let (known, hint) = (names.join(", "), did_you_mean(name, names));
     format!("`{name}` {kind}; must be one of {known}{hint}")
 }
 
