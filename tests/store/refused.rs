@@ -116,7 +116,9 @@ fn bands_make_the_same_file() {
         let cells = from * 5..to * 5;
         let mut band = whole.clone();
         let codes = [&mut band.regime, &mut band.status, &mut band.newton_steps];
-        codes.map(|codes| *codes = codes[cells.clone()].to_vec());
+        for codes in codes {
+            *codes = codes[cells.clone()].to_vec();
+        }
         let numbers = [&mut band.residual, &mut band.margin_deg];
         for numbers in band.state.iter_mut().chain(numbers) {
             *numbers = numbers[cells.clone()].to_vec();
