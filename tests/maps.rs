@@ -81,8 +81,15 @@ fn bands_are_the_rows_of_a_panel() {
                     append(&mut joined, panel);
                     bands.push(panel.regime.len() / scene.grid.push_angle_deg.len());
                     // The next band in this memory must overwrite all of it.
-                    *panel = Panel::unresolved(7, Channels::ALL);
-                    panel.newton_steps.fill(9);
+                    let codes = [
+                        &mut panel.regime,
+                        &mut panel.status,
+                        &mut panel.newton_steps,
+                    ];
+                    codes.into_iter().for_each(|codes| codes.fill(9));
+                    let numbers = [&mut panel.residual, &mut panel.margin_deg];
+                    let numbers = numbers.into_iter().chain(&mut panel.state);
+                    numbers.for_each(|numbers| numbers.fill(9.0));
                 }
                 Ok::<(), Infallible>(())
             },

@@ -242,12 +242,13 @@ fn a_map_in_memory_is_limited_by_all_its_panels() {
     let refused = whiskmap::map(&large, whiskmap::Options::default()).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "grid: 400 panels of 250000 cells take 5376 MiB in memory: must be at most 4096 MiB; \
+        "grid: 400 panels of 250000 cells take 5342 MiB in memory: must be at most 4096 MiB; \
          take one panel at a time with `for_each_panel`, or lower the counts of the axes"
     );
     let one = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml").unwrap();
     let [kept, written] = [Plan::in_memory(&one), Plan::new(&one)].map(|plan| plan.unwrap().bytes);
-    assert_eq!(kept, written);
+    // Panels in memory are not packed.
+    assert!(kept < written);
 }
 
 #[test]

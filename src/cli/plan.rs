@@ -106,7 +106,7 @@ fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std:
     let [mib, of_gpu] = [bytes, plan.gpu_bytes].map(|bytes| bytes.div_ceil(1 << 20));
     writeln!(
         out,
-        "memory        at most {mib} MiB for panels and cells in flight; with a GPU, {of_gpu} MiB more"
+        "memory        at most {mib} MiB for panels and cells, and {of_gpu} MiB more with a GPU"
     )?;
     let threads = counted(threads, "thread");
     writeln!(

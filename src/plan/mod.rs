@@ -70,6 +70,15 @@ const fn fits(bytes: u64, gpu_bytes: u64) -> bool {
     bytes + THREADS_IN_FLIGHT * BYTES_PER_THREAD + gpu_bytes <= MEMORY_LIMIT
 }
 
+/// Returns the memory of the sheets of so many whiskers, in bytes.
+fn bytes_of_sheets(scene: &Scene, whiskers: usize) -> u64 {
+    let of_side = match scene.whisker.profile {
+        Some(_) => MEASURED_SIDE_BYTES,
+        None => SIDE_BYTES,
+    };
+    (whiskers * Plan::sides(scene).len()) as u64 * of_side
+}
+
 /// The sizes and effects of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -174,15 +183,9 @@ impl Plan {
         let rows = whiskers * distances;
         let computed = rows.min(2 * panels_at_once * band_rows) * push_angles;
         let packed = cells * panels_at_once;
-        let is_measured = scene.whisker.profile.is_some();
-        let of_side = if is_measured {
-            MEASURED_SIDE_BYTES
-        } else {
-            SIDE_BYTES
-        };
         let bytes = computed as u64 * BYTES_PER_CELL
             + packed as u64 * PACKED_BYTES_PER_CELL
-            + (panels_at_once * sides.len()) as u64 * of_side;
+            + bytes_of_sheets(scene, panels_at_once);
         let gpu_bytes = CELLS_IN_FLIGHT.max(push_angles) as u64 * BYTES_ON_GPU;
         if !fits(bytes, gpu_bytes) {
             return Err(PlanError::Panel {
@@ -222,11 +225,12 @@ impl Plan {
     /// Creates the plan of a run of `scene` that keeps the panels of all whiskers in memory.
     ///
     /// # Errors
-    /// When one panel, or all panels with those that are being computed, take more than [`MEMORY_LIMIT`].
+    /// When one panel, or all panels, take more than [`MEMORY_LIMIT`].
     pub fn in_memory(scene: &Scene) -> Result<Self, PlanError> {
         let plan = Self::new(scene)?;
         let cells = plan.cells / plan.whiskers;
-        let bytes = plan.bytes + plan.cells as u64 * BYTES_PER_CELL;
+        let bytes =
+            plan.cells as u64 * BYTES_PER_CELL + bytes_of_sheets(scene, plan.panels_at_once);
         if !fits(bytes, plan.gpu_bytes) {
             return Err(PlanError::AllPanels {
                 whiskers: plan.whiskers,

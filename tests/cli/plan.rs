@@ -66,8 +66,7 @@ fn a_straight_cylinder_has_no_effects() {
     // 4 MiB for each thread, 256 KiB for the sheet of the only side, and 16 cells.
     let threads = std::thread::available_parallelism().unwrap();
     let mib = 4 * threads.get() + 1;
-    let memory =
-        format!("at most {mib} MiB for panels and cells in flight; with a GPU, 192 MiB more");
+    let memory = format!("at most {mib} MiB for panels and cells, and 192 MiB more with a GPU");
     assert_eq!(fact(&run, "memory"), memory);
 }
 
