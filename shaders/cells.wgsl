@@ -70,8 +70,8 @@ fn solve(push: real, steps: u32) -> Cell {
     let per_load = abs(load) + 1.0 / (s * s);
     let step_length = max(abs(step.x) / s, abs(step.y) / per_load);
     let moves = max(abs(angle), abs(apart.bent)) * distance + length(vec2<real>(apart.x, apart.y));
-    let left = (LEFT_BY_STEP * step_length + base_point[BOUNDS].x) * step_length;
-    let residual = left * (s + distance) + base_point[BOUNDS].y + ROUNDING_OF_MOTION * moves + ROUNDING;
+    let left = (LEFT_BY_STEP * step_length + JACOBIAN_ERROR) * step_length;
+    let residual = left * (s + distance) + ROUNDING_OF_MOTION * moves + ROUNDING;
     cell.residual = f32(residual);
 
     // Channel values.
@@ -92,10 +92,8 @@ fn solve(push: real, steps: u32) -> Cell {
     cell.numbers[3] = f32(product(end_force, tangent.sin).y);
     cell.numbers[4] = f32(product(end_force, tangent.cos).y);
     cell.numbers[5] = f32(-product(end_force, Both(position.x, shift.x)).y);
-    let farther = dot(shift, 2.0 * position + shift) / (length(position + shift) + length(position));
-    let resting = value_at(of_row(RESTING_BY_DISTANCE), farther * base_point[BOUNDS].z);
-    cell.numbers[6] = f32(angle_of(moved_contact) - theta - resting);
-    cell.numbers[7] = f32(farther);
+    cell.numbers[6] = f32(angle_of(moved_contact) - theta - value_at(of_row(RESTING_BY_W), w));
+    cell.numbers[7] = f32(dot(shift, 2.0 * position + shift) / (length(position + shift) + length(position)));
     let energy = Both(base_point[BASE].w, product(Both(position.x, apart.x), Both(base_point[BASE].z, apart.bent)).y + apart.along);
     cell.numbers[8] = f32(0.5 * product(force, energy).y
         + base_point[BY_TAU].w * step.x + base_point[BY_LOAD].w * step.y);

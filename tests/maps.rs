@@ -232,7 +232,7 @@ fn channels_have_the_names_of_files() {
 /// The spectral engine solves most cells of a map in memory, with the regimes of the CPU engine.
 #[test]
 fn options_select_the_engine() {
-    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(96, 1);
+    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(256, 1);
     let mut options = Options::default();
     assert_eq!(options.engine, MapEngine::Cpu);
     let wanted = whiskmap::map(&scene, options.clone()).unwrap();

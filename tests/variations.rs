@@ -10,7 +10,7 @@ use crate::random_rods;
 
 use glam::DVec2;
 use std::sync::Arc;
-use whiskmap::engine::{BasePointAccuracy, POWERS, RowBatch, RowTerms, SideColumns, WhiskerSide};
+use whiskmap::engine::{POWERS, RowBatch, RowTerms, SideColumns, WhiskerSide};
 use whiskmap::refine::{CellTarget, RefineOutcome, TOLERANCE, base_points, refine, states};
 use whiskmap::rod::{Effects, Rod, Side, Units, arclength};
 use whiskmap::scene::Scene;
@@ -270,13 +270,7 @@ fn base_points_follow_their_row() {
         let rows = (0..distances.len()).map(|row| (0, row));
         let batch = RowBatch::new(method, sides.into(), [].into(), rows);
         let (sheet, pushes) = (&batch.sides[0].sheet, &columns.magnitudes);
-        let accuracy = BasePointAccuracy {
-            resolution: method.resolution,
-            residual: 1e-12,
-            least: 16,
-            motion: 0.4,
-        };
-        let all = base_points(&batch, accuracy);
+        let all = base_points(&batch);
         let (count, worst) = &mut found[usize::from(sheet.is_continued())];
         for (row, points) in batch.rows.iter().zip(&all) {
             *count += usize::from(!points.is_empty());

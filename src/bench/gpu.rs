@@ -94,10 +94,10 @@ fn measure_one(
     let start = Instant::now();
     let mut gpu = Gpu::open(Some(one.adapter), one.precision)?;
     gpu.is_timed = true;
-    let accuracy = one.precision.base_points(Method::fine().resolution);
+    let resolution = one.precision.resolution(Method::fine().resolution);
     let batches = requests.iter().map(|own| own.batch.clone());
     let batches: Vec<RowBatch> = batches
-        .map(|batch| batch.with_base_points(accuracy))
+        .map(|batch| batch.with_base_points(resolution))
         .collect();
     let mut first_result_s = None;
     let mut of_runs: [Vec<f64>; 4] = Default::default();
@@ -133,7 +133,7 @@ fn measure_one(
     let stages = of_runs.map(|ms| median(ms.into_iter().skip(2)));
     let rung = Rung {
         integrator: "differences",
-        steps: accuracy.resolution.least,
+        steps: resolution.least,
     };
     let errors = task.only(&targets).errors(&points);
     let row = Measurement::new(&engine, rung, seconds, stages, None, errors);

@@ -95,7 +95,7 @@ pub const MACHINES: [Machine; 3] = [
     },
 ];
 
-/// Where the cells of an engine are solved.
+/// Processor that solves the cells of an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum SolvedOn {
     /// The host's cores, in `f64`.
@@ -109,7 +109,7 @@ pub enum SolvedOn {
 /// Work of an engine per cell of a map, in the mean of cells with and without a state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CellWork {
-    /// Where cells are solved.
+    /// Processor that solves the cells.
     pub solved_on: SolvedOn,
     /// Floating-point operations that solve the cell.
     pub operations: f64,

@@ -17,7 +17,7 @@ use std::time::Instant;
 pub const SPECTRAL: &str = "spectral";
 
 /// Maximum bounds on the residual in whisker lengths, from coarse to the smallest that refined states allow.
-const BOUNDS: [f64; 5] = [1e-1, 1e-3, 1e-5, 1e-8, 1e-11];
+const BOUNDS: [f64; 5] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
 
 /// Expansions with one bound, made and evaluated on one thread, against trajectories.
 #[derive(Clone, Copy, Debug, Serialize)]

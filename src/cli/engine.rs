@@ -191,7 +191,7 @@ pub fn expansions(scene: &Scene, plan: &Plan) -> String {
         return "measured radii have no expansions".to_owned();
     };
     let ExpansionCount { cells, cost } = count;
-    format!("expanding a whisker side costs as much as {cost} cells, and it has {cells}")
+    format!("a side has {cells} cells, its expansions cost {cost}")
 }
 
 /// Opens the spectral engine, with push angles exact to `tolerance_deg`, if given.

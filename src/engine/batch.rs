@@ -19,30 +19,10 @@ pub const MOST_TRAJECTORY_STEPS: u32 = 512;
 /// Base points per rayon task.
 const CHUNK: usize = 64;
 
-/// Coefficients of the Jacobian's Taylor polynomials along a row: its Newton step needs few digits.
-pub const JACOBIAN_POWERS: usize = 8;
-
-/// Coefficients of the direction of the resting whisker by the distance from the base.
-pub const RESTING_POWERS: usize = 8;
-
-/// Numbers that are expanded along a row: push angle and `tau`.
-pub type RowTerms = [f64; 2];
-
-/// Derivatives of `(ln D, phi)` by `tau` and by load.
-pub type JacobianTerms = [f64; 4];
-
-/// Accuracy that an engine needs of base points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BasePointAccuracy {
-    /// Resolution of their trajectories' steps.
-    pub resolution: Resolution,
-    /// Residual bound of cells, in whisker lengths.
-    pub residual: f64,
-    /// Fewest base points of a row.
-    pub least: usize,
-    /// Largest motion of base and pole from a base point to a cell, in whisker lengths.
-    pub motion: f64,
-}
+/// Seven numbers of a state that are expanded along a row. They are the push angle (radians), `tau`, a direction (radians), and the
+/// derivatives of `(ln D, phi)` by `tau` and by load. The direction is that of the resting whisker's point at the distance of the
+/// contact.
+pub type RowTerms = [f64; 7];
 
 /// Base point: an exact state of a row, with the Taylor expansion of the row around it.
 #[derive(Clone, Debug)]
@@ -55,25 +35,14 @@ pub struct BasePoint {
     pub load: f64,
     /// Signed push angle of the base point since first touch, in radians.
     pub push: f64,
-    /// Bound on the distance of the pole from the row, in whisker lengths.
-    pub residual: f64,
-    /// The state with its first derivatives, in the frame of the contact.
+    /// State at the base point with its first derivatives, in the frame of the contact.
     pub state: FirstVariation,
     /// Derivative of the signed load `f/rho^2` by the row parameter `w` along a row. Here, `w` is `load tau^2` over its value at the end
     /// of the row.
     pub load_per_w: f64,
     /// Taylor coefficients of the row in `w` around the base point: `[power][term]`.
     pub row: [RowTerms; POWERS],
-    /// Taylor coefficients of the Jacobian in `w`, less its value here: `[power][derivative]`.
-    pub jacobian: [JacobianTerms; JACOBIAN_POWERS],
-    /// Bound on the Jacobian's error at the cells, for steps in units of the contact's arclength and of the load's scale `|load| + 1/s^2`.
-    pub jacobian_error: f64,
-    /// Taylor coefficients of the direction of the resting whisker's point at the distance of the contact from the base, in the distance
-    /// less its value here, over `distance_unit`: `[power]`, in radians.
-    pub resting: [f64; RESTING_POWERS],
-    /// Unit of the distance in `resting`, in whisker lengths.
-    pub distance_unit: f64,
-    /// Cells of the base point: indices among the columns of all sides.
+    /// Cells of the base point: range of indices among the columns of all sides.
     pub cells: Range<u32>,
     /// Trajectory of the base point, and its place in the batch.
     pub trajectory: BaseTrajectory,
@@ -205,17 +174,17 @@ impl RowBatch {
         !self.base_points.is_empty() || self.rows.iter().any(has_sheet)
     }
 
-    /// Adds base points of this `accuracy` to all rows that have them.
+    /// Returns the batch with base points for all rows that can have them, with trajectories in the steps of `resolution`.
     #[must_use]
-    pub fn with_base_points(mut self, accuracy: BasePointAccuracy) -> Self {
-        let found = base_points(&self, accuracy);
+    pub fn with_base_points(mut self, resolution: Resolution) -> Self {
+        let found = base_points(&self);
         let mut base_points = Vec::with_capacity(found.iter().map(Vec::len).sum());
         for (row, found) in self.rows.iter_mut().zip(found) {
             let from = base_points.len();
             base_points.extend(found);
             row.base_points = from..base_points.len();
         }
-        self.set_base_points(base_points, accuracy.resolution);
+        self.set_base_points(base_points, resolution);
         self
     }
 

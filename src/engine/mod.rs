@@ -14,8 +14,7 @@ mod spectral;
 mod worker;
 
 pub use batch::{
-    BasePoint, BasePointAccuracy, BaseTrajectory, BatchRow, JACOBIAN_POWERS, JacobianTerms,
-    MOST_TRAJECTORY_STEPS, POWERS, RESTING_POWERS, RowBatch, RowTerms,
+    BasePoint, BaseTrajectory, BatchRow, MOST_TRAJECTORY_STEPS, POWERS, RowBatch, RowTerms,
 };
 pub use cells::{Cell, CellRun, Cells, Outcome};
 pub use columns::{Column, SideColumns};
@@ -70,14 +69,12 @@ impl EngineDescription {
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EngineInput {
-    /// Base points of this accuracy. The engine works on a thread of its own.
-    BasePoints(BasePointAccuracy),
-    /// Spectral sheets of whisker sides, with at most this residual, in whisker lengths. The engine works on the threads of the current pool.
+    /// Base points with trajectories in the steps of this resolution. The engine works on a thread of its own.
+    BasePoints(Resolution),
+    /// The spectral sheets of whisker sides, with at most this residual, in whisker lengths. The engine works on the threads of the current
+    /// pool.
     SpectralSheets(f64),
 }
-
-/// Largest motion of base and pole from a base point to a cell for an engine without rounding, in whisker lengths.
-const MOST_MOTION: f64 = 0.4;
 
 /// Engine: solves the cells of row batches, on any thread.
 pub trait Engine: Send {
@@ -89,12 +86,7 @@ pub trait Engine: Send {
 
     /// Returns what batches carry for this engine where the CPU integrates with `resolution`.
     fn input(&self, resolution: Resolution) -> EngineInput {
-        EngineInput::BasePoints(BasePointAccuracy {
-            resolution,
-            residual: self.residual_bound(),
-            least: 2,
-            motion: MOST_MOTION,
-        })
+        EngineInput::BasePoints(resolution)
     }
 
     /// Submits a batch to the engine, which starts without waiting for a device.

@@ -197,11 +197,11 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let mut batch = RowBatch::new(method, Arc::clone(&sides), Arc::clone(&self.pushes), rows);
         batch.has_values = self.plan.channels.has_state();
         let is_for_engine = self.worker.is_working() && on_gpu(method.effects).is_ok();
-        if let Some(EngineInput::BasePoints(accuracy)) = self.input
+        if let Some(EngineInput::BasePoints(resolution)) = self.input
             && is_for_engine
         {
             let times = &mut self.summary.stages;
-            batch = times.time(Stage::BasePoints, || batch.with_base_points(accuracy));
+            batch = times.time(Stage::BasePoints, || batch.with_base_points(resolution));
         }
         self.begun = (to < all).then_some((sides, to));
         Some((batch, to == end))

@@ -4,7 +4,7 @@
 //! fold, so the Jacobian is regular there, too.
 
 use super::newton::verdict;
-use super::{ContactState, LEFT_BY_STEP, RefineOutcome};
+use super::{ContactState, RefineOutcome};
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::rod::{Rod, arclength};
 use crate::sheet::{Guess, Sheet};
@@ -13,42 +13,45 @@ use crate::shooting::{FirstVariation, limited};
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// State of a row to find.
+/// Target of a search for a state of a row at a row parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct RowState<'a> {
-    /// Sheet of the whisker side.
+    /// Stable sheet on which the state lies.
     pub sheet: &'a Sheet,
-    /// Index of the row in the sheet.
+    /// Index of the state's row in the sheet.
     pub row: usize,
-    /// Signed row parameter `load tau^2`.
+    /// Signed row parameter `load tau^2` of the state, dimensionless.
     pub w: f64,
-    /// Contact coordinate `tau` near the state; the load follows from `w`.
+    /// Contact coordinate `tau` near the state, dimensionless; the load follows from `w`.
     pub tau: f64,
 }
 
-/// State that is exact to rounding.
+/// State of a row that is exact to rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct ExactState {
-    /// Contact coordinate `tau`.
+    /// Contact coordinate `tau` of the exact state, dimensionless.
     pub tau: f64,
-    /// Signed load `f/rho^2`.
+    /// Signed load `f/rho^2` of the exact state, dimensionless.
     pub load: f64,
-    /// State, with the derivatives of the last trajectory.
+    /// Exact state, with the derivatives of the last trajectory.
     pub variation: FirstVariation,
-    /// Bound on the distance of the pole from the row, in whisker lengths, that the last Newton step leaves.
-    pub residual: f64,
-    /// Bound on the change of the Jacobian along the last Newton step, for steps in units of the contact's arclength and of the load's scale.
-    pub jacobian_error: f64,
 }
 
 /// Accuracy and starts of row states.
 #[derive(Clone, Copy, Debug)]
 pub struct RowStateGoal {
-    /// Longest Newton step whose end is extrapolated, as [`limited`] measures it. It leaves an error of at most
-    /// [`LEFT_BY_STEP`] times its square.
+    /// Longest Newton step whose end is extrapolated. A step of this length leaves an error of at most [`LEFT_BY_STEP`](super::LEFT_BY_STEP) times its square.
     pub longest_step: f64,
     /// True if the first trajectories are coarse: starts are farther from the states than `longest_step`.
     pub is_coarse_first: bool,
+}
+
+impl RowStateGoal {
+    /// States that are exact to rounding, as base points are: all cells of a base point inherit its error.
+    pub const EXACT: Self = Self {
+        longest_step: 3e-8,
+        is_coarse_first: false,
+    };
 }
 
 /// Maximum number of trajectories for each state.
@@ -59,8 +62,6 @@ struct RowProblem<'a> {
     ln_distance: f64,
     longest_step: f64,
     derivatives: FirstVariation,
-    /// Length of the last Newton step.
-    last: f64,
 }
 
 impl<'a> NewtonProblem<'a> for RowProblem<'a> {
@@ -84,7 +85,6 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
         let step = DVec2::new(miss.perp_dot(by_load), by_tau.perp_dot(miss));
         let step = step / by_tau.perp_dot(by_load);
         let (step, length) = limited(step, arclength(self.rod(), at.x), at.y);
-        self.last = length;
         if length <= self.longest_step {
             NewtonStep::Extrapolate(step)
         } else {
@@ -93,8 +93,7 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
     }
 }
 
-/// Finds the `states` of rows with the accuracy of `goal`, one result for each, `[state]`. A result is `None` where Newton's method fails, or
-/// leads off the stable sheet.
+/// Finds the `states`, one result for each. A result is `None` where Newton's method fails, or leads off the stable sheet.
 pub fn row_states(
     method: Method,
     states: &[RowState],
@@ -116,7 +115,6 @@ fn solve<'a>(
         state: *state,
         longest_step: goal.longest_step,
         derivatives: FirstVariation::default(),
-        last: 0.0,
     };
     let mut problems: Vec<RowProblem> = states.iter().map(problem).collect();
     let start = |state: &RowState| DVec2::new(state.tau, state.w / (state.tau * state.tau));
@@ -137,7 +135,6 @@ fn solve<'a>(
         let guess = Guess { tau, load };
         let is_solved = iterate.outcome == NewtonOutcome::Converged
             && verdict(state.sheet, guess, &reached) == RefineOutcome::Solved;
-        let s = arclength(&state.sheet.rod, reached.tau);
         is_solved.then_some(ExactState {
             tau: reached.tau,
             load: reached.load,
@@ -145,11 +142,6 @@ fn solve<'a>(
                 full: reached.full,
                 ..problem.derivatives
             },
-            residual: LEFT_BY_STEP
-                * problem.last
-                * problem.last
-                * (s + reached.full.map.pole.length()),
-            jacobian_error: 2.0 * LEFT_BY_STEP * problem.last,
         })
     });
     exact.collect()

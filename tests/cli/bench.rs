@@ -12,7 +12,11 @@ fn numbers(rows: &[Value], key: &str) -> Vec<f64> {
 #[test]
 fn errors_fall_from_rung_to_rung() {
     // Rows with few cells have no base points and no expansions, so a GPU and the spectral engine would solve no cell.
-    let place = Place::with(&SCENE.replace("to = 70, count = 24", "to = 70, count = 192"));
+    let place = Place::with(
+        &SCENE
+            .replace("to = 70, count = 24", "to = 70, count = 512")
+            .replace("count = 24", "count = 64"),
+    );
     let run = good(&place, &["bench", "scene.toml", "--quick", "--json", "-"]);
     let report: Value = serde_json::from_str(&run.out).unwrap();
     assert!(report["states"].as_u64().unwrap() > 200);
@@ -36,8 +40,14 @@ fn errors_fall_from_rung_to_rung() {
             _ => (1, 1, 1e-5),
         };
         assert_eq!(errors.len(), rungs, "{engine}: {errors:?}");
+        // One size of patches may keep two bounds.
+        let is_spectral = engine["name"] == "spectral";
         assert!(
-            errors[..falling].is_sorted_by(|a, b| a > b),
+            errors[..falling].is_sorted_by(|a, b| a > b || is_spectral && a == b),
+            "{engine}: {errors:?}"
+        );
+        assert!(
+            errors[0] > 1e3 * errors[rungs - 1] || rungs == 1,
             "{engine}: {errors:?}"
         );
         assert!(errors[rungs - 1] < exact, "{engine}: {errors:?}");
@@ -103,7 +113,8 @@ fn errors_fall_from_rung_to_rung() {
 fn expansions_hang_together(report: &Value) {
     let all = report["expansions"].as_array().unwrap();
     assert_eq!(all.len(), 5);
-    assert!(numbers(all, "/states").is_sorted_by(|a, b| a < b));
+    let states = numbers(all, "/states");
+    assert!(states.is_sorted() && states[0] < states[4], "{states:?}");
     let certified = numbers(all, "/certified");
     assert!(
         certified.iter().all(|part| (0.5..=1.0).contains(part)),

@@ -69,7 +69,7 @@ fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
 
 /// Without stored states an engine returns no values, and the audit compares outcomes alone.
 fn a_map_of_regimes_passes_its_audit(engine: &mut dyn Engine) {
-    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(96, 1);
+    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(256, 1);
     let mut plan = Plan::new(&cone).unwrap();
     plan.channels = "regime".parse().unwrap();
     let (summary, panels) = compute_as(&cone, &plan, Some(engine));

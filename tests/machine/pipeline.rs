@@ -161,7 +161,8 @@ fn stages_are_one_sequence_beside_an_engine() {
 
 /// The engine's seconds are those of its stage, not beside the others.
 fn the_spectral_engine_is_a_stage() {
-    let (scene, plan) = in_batches();
+    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(256, 1);
+    let plan = Plan::new(&scene).unwrap();
     let (summary, _) = compute_as(&scene, &plan, Some(&mut Spectral::default()));
     let expansions = summary.stage_seconds(Stage::Expansions);
     assert!(expansions > 0.0 && summary.stage_seconds(Stage::BasePoints) == 0.0);

@@ -5,6 +5,7 @@ use crate::compute::{assert_identical, compute, shipped, works};
 use crate::kinds::rows_of_every_kind;
 use crate::random_rods::Random;
 use std::sync::Arc;
+use whiskmap::classify::Status;
 use whiskmap::engine::{Cpu, FORCE, Outcome, SideColumns, Spectral, WhiskerSide};
 use whiskmap::map::{EngineCells, Panel};
 use whiskmap::plan::Plan;
@@ -86,7 +87,13 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
     assert_eq!(wanted.len(), found.len(), "{title}");
     for (whisker, (wanted, found)) in wanted.iter().zip(found).enumerate() {
         assert!(wanted.regime == found.regime, "{title}: {whisker}");
-        assert!(wanted.status == found.status, "{title}: {whisker}");
+        let statuses = wanted.status.iter().zip(&found.status);
+        for (wanted, found) in statuses.filter(|(wanted, found)| wanted != found) {
+            // Where the row ends next to the corner of fold and tip, either edge may be named.
+            let edges = [Status::BeyondFold, Status::BeyondTip].map(Status::code);
+            let are_edges = [wanted, found].map(|own| edges.contains(own));
+            assert_eq!(are_edges, [true; 2], "{title}: {whisker}");
+        }
         let swept = scene.whisker(whisker);
         let distances = grid.distance_mm.iter();
         let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
@@ -182,9 +189,9 @@ fn random_sweep(seed: u64) -> Scene {
     let tapers = [between(0.0, 0.6), between(0.6, 1.0)];
     let curvatures = [between(0.0, 0.3), between(0.3, 1.2)].map(|bend| bend / length);
     let (pushes, distances) = if between(0.0, 1.0) < 0.5 {
-        (96, 64)
+        (240, 64)
     } else {
-        (160, 9)
+        (480, 9)
     };
     let push = between(30.0, 110.0);
     let nearest = length * between(0.1, 0.3);
@@ -258,7 +265,7 @@ fn measured_radii_fall_back() {
         assert!(summary.engine_failure.is_none() && summary.audit.cells == 0);
         assert_identical(&wanted, &found);
     }
-    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(96, 1);
+    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(256, 1);
     let (summary, _) = compute(&cone, Some(&mut Spectral::default()));
     works(&summary, SOLVED).unwrap();
 }

@@ -1,7 +1,7 @@
 //! Base points and starts of steps in the layout of the shaders.
 
 use super::Precision;
-use crate::engine::{BasePoint, JACOBIAN_POWERS, JacobianTerms, MOST_TRAJECTORY_STEPS, POWERS};
+use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, POWERS};
 use crate::numerics::Real;
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
@@ -11,6 +11,9 @@ use std::mem::offset_of;
 
 /// Powers of a row's polynomials in the shaders, from the first on, in whole quads.
 const ROW_POWERS: usize = POWERS.next_multiple_of(4);
+
+/// Powers of the Jacobian's polynomials in the shaders: the last Newton step needs five digits.
+const JACOBIAN_POWERS: usize = 8;
 
 const _: () = assert!(
     MOST_TRAJECTORY_STEPS as usize <= Precision::F64.most_steps(),
@@ -71,19 +74,17 @@ pub struct GpuBasePoint<T> {
     by_load: [T; 4],
     /// Push angle of the base point as two numbers (radians), number of steps, and index of the first step.
     pub push: [T; 4],
-    /// Bounds on the error of the Jacobian and on the base point's residual, and the inverse of the unit of distance.
-    bounds: [T; 4],
-    /// Taylor polynomials in the change of the row parameter: changes of the push angle and of `tau`.
+    /// Taylor polynomials in the change of the row parameter: changes of the push angle, of `tau`, and of the direction of the resting
+    /// whisker's point at the distance of the contact.
     push_by_w: [T; ROW_POWERS],
     tau_by_w: [T; ROW_POWERS],
-    /// Taylor polynomial in the change of the distance over its unit: change of the direction of the resting whisker's point there.
-    resting_by_distance: [T; ROW_POWERS],
+    resting_by_w: [T; ROW_POWERS],
     /// Taylor polynomial of the derivatives of `(ln D, phi)` by `tau` and by load: four numbers for each power.
     jacobian: [[T; 4]; JACOBIAN_POWERS],
 }
 
-/// Index of each field of a base point in the shaders, in quads, and the number of quads.
-pub const QUADS: [(&str, usize); 14] = {
+/// Position of each field of a base point in the shaders, in quads of numbers, and the number of quads.
+pub const QUADS: [(&str, usize); 13] = {
     macro_rules! quads {
         ($($name:literal $member:ident)+) => {
             [
@@ -94,7 +95,7 @@ pub const QUADS: [(&str, usize); 14] = {
     }
     quads!(
         "CONTACT" contact "ROD" rod "POSITIONS" positions "BASE" base "REST" rest "BY_TAU" by_tau "BY_LOAD" by_load "PUSH" push
-        "BOUNDS" bounds "PUSH_BY_W" push_by_w "TAU_BY_W" tau_by_w "RESTING_BY_DISTANCE" resting_by_distance "JACOBIAN" jacobian
+        "PUSH_BY_W" push_by_w "TAU_BY_W" tau_by_w "RESTING_BY_W" resting_by_w "JACOBIAN" jacobian
     )
 };
 
@@ -107,10 +108,12 @@ impl<T: Scalar> GpuBasePoint<T> {
         let full = &state.full;
         let numbers =
             |by: &StateDerivative| [by.angle, by.position.x, by.position.y, by.energy].map(T::of);
-        let polynomial = |terms: &[f64]| {
-            std::array::from_fn(|i| T::of(terms.get(i + 1).copied().unwrap_or_default()))
+        let powers = |i: usize| {
+            std::array::from_fn(|power| {
+                let term = base.row.get(power + 1);
+                term.map_or(T::of(0.0), |term| T::of(term[i]))
+            })
         };
-        let powers = |which: usize| polynomial(&base.row.map(|terms| terms[which]));
         let to_pole = rod.to_pole() - full.position;
         let energy = match full.force {
             0.0 => 0.0,
@@ -129,17 +132,12 @@ impl<T: Scalar> GpuBasePoint<T> {
             by_tau: numbers(&state.by_tau),
             by_load: numbers(&state.by_load),
             push: [high, low, steps[0], steps[1]],
-            bounds: [
-                base.jacobian_error,
-                base.residual,
-                1.0 / base.distance_unit,
-                0.0,
-            ]
-            .map(T::of),
             push_by_w: powers(0),
             tau_by_w: powers(1),
-            resting_by_distance: polynomial(&base.resting),
-            jacobian: base.jacobian.map(|terms: JacobianTerms| terms.map(T::of)),
+            resting_by_w: powers(2),
+            jacobian: std::array::from_fn(|power| {
+                std::array::from_fn(|i| T::of(base.row[power][3 + i]))
+            }),
         }
     }
 }

@@ -191,7 +191,7 @@ impl Engine for Gpu {
     }
 
     fn input(&self, resolution: Resolution) -> EngineInput {
-        EngineInput::BasePoints(self.precision.base_points(resolution))
+        EngineInput::BasePoints(self.resolution(resolution))
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {

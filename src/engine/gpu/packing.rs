@@ -133,12 +133,7 @@ mod tests {
             push: 0.1,
             state: FirstVariation::default(),
             load_per_w: 1.0,
-            residual: 0.0,
             row: Default::default(),
-            jacobian: Default::default(),
-            jacobian_error: 0.0,
-            resting: Default::default(),
-            distance_unit: 1.0,
             cells: 0..cells,
             trajectory: BaseTrajectory {
                 steps,

@@ -126,47 +126,36 @@ impl<const D: usize> Chebyshev<D> {
         later
     }
 
-    /// Taylor coefficients `[x][power][function]` of the functions around each of `xs`. The `i`-th derivative over `i!` is the factor of
-    /// the `i`-th power.
-    #[must_use]
-    pub fn taylor<const P: usize>(&self, xs: &[f64]) -> Vec<[[f64; D]; P]> {
-        Unit::detect().run(Taylor {
-            functions: self,
-            xs,
-        })
-    }
-
-    /// Taylor coefficients of one function around `x`, by Clenshaw's recurrence with truncated power series in place of
-    /// numbers.
+    /// Returns the Taylor coefficients `[power]` of one function of an expansion around `x`, by Clenshaw's recurrence with truncated
+    /// power series in place of numbers.
     #[inline(always)]
     pub(super) fn series<T: Real, const P: usize>(&self, function: usize, x: T) -> [T; P] {
-        let y = T::of(2.0).mul_add(x, T::of(-1.0));
-        let (mut later, mut latest) = ([T::of(0.0); P], [T::of(0.0); P]);
+        let (zero, two) = (T::of(0.0), T::of(2.0));
+        let y = two.mul_add(x, T::of(-1.0));
+        let (mut later, mut latest) = ([zero; P], [zero; P]);
+        // `factor y b + c - d`, where `y` grows by twice the distance from `x`.
+        let combine = |factor: T, b: [T; P], c: f64, d: [T; P]| {
+            let mut sum = [zero; P];
+            for power in (0..P).rev() {
+                let rest = if power == 0 {
+                    T::of(c) - d[0]
+                } else {
+                    (two * factor).mul_add(b[power - 1], -d[power])
+                };
+                sum[power] = (factor * y).mul_add(b[power], rest);
+            }
+            sum
+        };
         for coefficients in self.coefficients.iter().skip(1).rev() {
-            let sum = clenshaw(T::of(2.0), y, later, coefficients[function], latest);
+            let sum = combine(two, later, coefficients[function], latest);
             (later, latest) = (sum, later);
         }
         let constant = self
             .coefficients
             .first()
             .map_or(0.0, |first| first[function]);
-        clenshaw(T::of(1.0), y, later, constant, latest)
+        combine(T::of(1.0), later, constant, latest)
     }
-}
-
-/// Step of Clenshaw's recurrence with truncated power series: `factor y b + c - d`, where `y` grows by twice the distance from its value.
-#[inline(always)]
-fn clenshaw<T: Real, const P: usize>(factor: T, y: T, b: [T; P], c: f64, d: [T; P]) -> [T; P] {
-    let mut sum = [T::of(0.0); P];
-    for power in (0..P).rev() {
-        let rest = if power == 0 {
-            T::of(c) - d[0]
-        } else {
-            (T::of(2.0) * factor).mul_add(b[power - 1], -d[power])
-        };
-        sum[power] = (factor * y).mul_add(b[power], rest);
-    }
-    sum
 }
 
 /// Coefficients from values: plain loops, which a compiler turns into vectors of any unit, without fused products.
@@ -195,33 +184,5 @@ impl<const D: usize> SimdTask for Transform<'_, D> {
             }
         }
         coefficients
-    }
-}
-
-/// Taylor coefficients around some places side by side.
-struct Taylor<'a, const D: usize, const P: usize> {
-    functions: &'a Chebyshev<D>,
-    xs: &'a [f64],
-}
-
-impl<const D: usize, const P: usize> SimdTask for Taylor<'_, D, P> {
-    type Output = Vec<[[f64; D]; P]>;
-
-    #[inline(always)]
-    fn run<T: Lanes>(self) -> Self::Output {
-        let mut terms = vec![[[0.0; D]; P]; self.xs.len()];
-        let lanes = <T::Narrow as Lanes>::LANES;
-        for (xs, terms) in self.xs.chunks(lanes).zip(terms.chunks_mut(lanes)) {
-            let x = T::Narrow::pack(std::array::from_fn(|lane| xs[lane.min(xs.len() - 1)]));
-            for function in 0..D {
-                let series: [T::Narrow; P] = self.functions.series(function, x);
-                for (power, found) in series.iter().enumerate() {
-                    for (terms, found) in terms.iter_mut().zip(found.unpack()) {
-                        terms[power][function] = found;
-                    }
-                }
-            }
-        }
-        terms
     }
 }
