@@ -35,8 +35,6 @@ const SAFETY: f64 = 4.0;
 /// If there is none, the finest rung with its estimate.
 pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Accuracy, Accuracy> {
     let sample = SceneSample::new(scene, sides);
-    let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
-    let left = GOAL * lengths.fold(0.0, f64::max) / scene.grid.distance_mm[0];
     let mut tried = Accuracy {
         resolution: Resolution::FINE,
         error_deg: f64::INFINITY,
@@ -44,7 +42,7 @@ pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Acc
     for resolution in Resolution::LADDER {
         tried = Accuracy {
             resolution,
-            error_deg: (SAFETY * sample.error(resolution) + left).to_degrees(),
+            error_deg: (SAFETY * sample.error(resolution)).to_degrees() + bound_deg(scene, GOAL),
         };
         if tried.error_deg <= tolerance_deg {
             return Ok(tried);
@@ -63,7 +61,7 @@ pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
     (goal * longest / nearest).to_degrees()
 }
 
-/// Largest bound on the residual of the spectral engine, in whisker lengths: the smallest patches keep it.
+/// Largest bound on the residual of the spectral engine, in whisker lengths. Most of the first patches keep it, so a larger one saves nothing.
 const LARGEST_BOUND: f64 = 1e-5;
 
 /// Returns the bound on the residual of the spectral engine, in whisker lengths, with which push angles are within `tolerance_deg`.

@@ -128,6 +128,9 @@ pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<MapCost, Fai
 /// Most push angles of a sample for an engine, whose base points cost the same for any number of cells in a row.
 const WIDE: usize = 2048;
 
+/// Distances of the first sample of [`compare`]: more than a patch of expansions has rows.
+const COMPARED_LINES: usize = 32;
+
 /// Timed rounds of [`compare`]: a single one may be disturbed.
 const ROUNDS: f64 = 3.0;
 
@@ -145,8 +148,8 @@ pub fn compare(
     seconds: f64,
 ) -> Result<[f64; 2], Failure> {
     let [first, second] = engines;
-    MapSample::measure(scene, plan, second, [WIDE, FIRST_LINES])?;
-    let (mut lines, mut left) = (FIRST_LINES, seconds);
+    MapSample::measure(scene, plan, second, [WIDE, COMPARED_LINES])?;
+    let (mut lines, mut left) = (COMPARED_LINES, seconds);
     let mut fastest = [f64::INFINITY; 2];
     loop {
         let start = Instant::now();

@@ -9,7 +9,7 @@ use whiskmap::scene::Scene;
 
 #[derive(Debug, Args)]
 pub struct ToleranceArgs {
-    /// Maximum push-angle error, such as 1e-6deg; selects the cheapest steps whose estimated error is below it
+    /// Maximum push-angle error, such as 1e-6deg; selects the cheapest steps or expansions that meet it
     /// [default: the finest steps, without an estimate]
     ///
     /// The tolerance bounds the push angle of states and detachments, and the relative error of the distance, in radians. It

@@ -1,7 +1,7 @@
 //! Regime maps, computed in memory.
 
 use super::{Error, MapEngine, Options, accuracy};
-use crate::accuracy::spectral_bound;
+use crate::accuracy::{bound_deg, spectral_bound};
 use crate::classify::Regime;
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
@@ -215,6 +215,18 @@ fn run<E: From<Error> + Send>(
         }
         MapEngine::Gpu(precision) => Some(open(precision).map_err(Error::from)?),
     };
+    if let Some((engine, left)) = engine.as_ref().zip(left_deg) {
+        let bound = bound_deg(scene, engine.residual_bound());
+        if bound > left * (1.0 + f64::EPSILON.sqrt()) {
+            let tolerance_deg = options.tolerance_deg.unwrap_or(0.0);
+            let least = tolerance_deg - left + bound;
+            return Err(Error::Tolerance {
+                tolerance_deg,
+                least,
+            }
+            .into());
+        }
+    }
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let (mut done, all) = (0, plan.cells);
     let mut on_progress = |cells| {

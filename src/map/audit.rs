@@ -1,4 +1,4 @@
-//! Audit of an engine: a sample of its solved cells is compared with the CPU engine.
+//! Audit of an engine: a sample of its cells, solved or without a state, is compared with the CPU engine.
 
 use super::summary::Audit;
 use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSide};
@@ -68,6 +68,10 @@ const BY_DISTANCE: f64 = 4.0;
 /// allows.
 const VALUES_PER_MISS: f64 = 10.0;
 
+/// Largest change of a value, as a part of its size, over that of the row parameter, as a part of its end: values are smooth functions of the
+/// row parameter.
+const ROW_PARAMETER: f64 = 4.0;
+
 /// Relative error of a residual that is rounded to `f32`.
 const ROUNDED: f64 = f32::EPSILON as f64;
 
@@ -124,8 +128,14 @@ fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Ce
     let miss_angle = miss / side.sheet.rows[row.row].pole_distance;
     let column = side.columns.first + cell as u32;
     let base = of_row.iter().find(|base| base.cells.contains(&column));
+    let end = side.sheet.crossings[row.row].first();
+    let by_expansion = end.map_or(0.0, |end| {
+        // Next to a fold, the row parameter changes with the square root of the push angle.
+        let left = (end.push - push.abs()).max(miss_angle);
+        VALUES_PER_MISS * miss + ROW_PARAMETER * miss_angle / (end.push * left).sqrt()
+    });
     (0..ours.len()).all(|i| {
-        let by_miss = base.map_or(VALUES_PER_MISS * miss * sizes[i], |base| {
+        let by_miss = base.map_or(by_expansion * sizes[i], |base| {
             let part_of_turn = (miss_angle / (push - base.push).abs()).min(1.0);
             BY_DISTANCE * part_of_turn * (ours[i] - base.trajectory.values[i]).abs()
         });

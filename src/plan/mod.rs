@@ -27,9 +27,6 @@ const PACKED_BYTES_PER_CELL: u64 = 32;
 /// Bytes of a whisker side: its sheet, and the expansions of a spectral engine.
 const SIDE_BYTES: u64 = 256 << 10;
 
-/// Bytes of a whisker side with measured radii: a spectral engine has expansions for each piece of the whisker.
-const MEASURED_SIDE_BYTES: u64 = 12 << 20;
-
 /// Bytes of the cells in flight on a thread: targets, states and results.
 pub const BYTES_PER_THREAD: u64 = 4 << 20;
 
@@ -72,11 +69,7 @@ const fn fits(bytes: u64, gpu_bytes: u64) -> bool {
 
 /// Returns the memory of the sheets of so many whiskers, in bytes.
 fn bytes_of_sheets(scene: &Scene, whiskers: usize) -> u64 {
-    let of_side = match scene.whisker.profile {
-        Some(_) => MEASURED_SIDE_BYTES,
-        None => SIDE_BYTES,
-    };
-    (whiskers * Plan::sides(scene).len()) as u64 * of_side
+    (whiskers * Plan::sides(scene).len()) as u64 * SIDE_BYTES
 }
 
 /// The sizes and effects of a run.

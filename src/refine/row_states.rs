@@ -40,7 +40,8 @@ pub struct ExactState {
 /// Accuracy and starts of row states.
 #[derive(Clone, Copy, Debug)]
 pub struct RowStateGoal {
-    /// Longest Newton step whose end is extrapolated. A step of this length leaves an error of at most [`LEFT_BY_STEP`](super::LEFT_BY_STEP) times its square.
+    /// Longest Newton step whose end is extrapolated. It leaves an error of at most [`LEFT_BY_STEP`](super::LEFT_BY_STEP) times its square, in
+    /// units of the contact's arclength and the pole's distance together.
     pub longest_step: f64,
     /// True if the first trajectories are coarse: starts are farther from the states than `longest_step`.
     pub is_coarse_first: bool,

@@ -13,7 +13,7 @@ use whiskmap::shooting::batch::Method;
 
 /// Rows of a whisker, and columns of each side.
 pub const ROWS: usize = 4;
-const COLUMNS: usize = 256;
+const COLUMNS: usize = 64;
 
 /// The largest push angle, in radians.
 const LARGEST_PUSH: f64 = 1.8;

@@ -23,17 +23,17 @@ fn auto_does_not_start_a_gpu_for_a_small_map() {
     assert!(said.ends_with(counts), "{said}");
 }
 
-/// Rows of 160 cells on each side: the map takes less time with expansions, and is too small for a GPU.
+/// Rows of 256 cells on each side: the map takes less time with expansions, and is too small for a GPU.
 #[test]
 fn auto_expands_rows_where_the_counts_say_so() {
     let place = wide();
     let run = place.run(&["map", "scene.toml", "--no-png"]);
     let said = said(&run);
     assert!(said.starts_with("spectral f64 on "), "{said}");
-    let counts = "(auto: a side has 3840 cells, its expansions cost 2640)";
+    let counts = "(auto: a side has 6144 cells, its expansions cost 2640)";
     assert!(said.ends_with(counts), "{said}");
     let plan = place.run(&["plan", "scene.toml"]);
-    let line = "engine        spectral: a side has 3840 cells, its expansions cost 2640";
+    let line = "engine        spectral: a side has 6144 cells, its expansions cost 2640";
     assert!(plan.out.contains(line), "{plan:?}");
 }
 
@@ -102,7 +102,7 @@ fn the_cpu_engine_has_no_adapter_and_no_other_precision() {
 
 /// The small map with enough columns for expansions of its rows.
 fn wide() -> Place {
-    Place::with(&SCENE.replace("to = 70, count = 24", "to = 70, count = 320"))
+    Place::with(&SCENE.replace("to = 70, count = 24", "to = 70, count = 512"))
 }
 
 #[test]

@@ -26,8 +26,9 @@ tests! {
         the_engine_runs_on_the_preferred_adapter;
 }
 
+/// Rows of two whiskers: so many that a patch has fewer states than their cells.
 fn some() -> RandomRows {
-    RandomRows::new(USUAL, 40, 9, |_, _| ())
+    RandomRows::many(160, USUAL, 2, 9, |_, _| ())
 }
 
 /// A cell as bits; only the outcome if it is not solved.

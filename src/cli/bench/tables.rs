@@ -167,13 +167,13 @@ fn computed(out: &mut impl Write, report: &Report) -> io::Result<()> {
 fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     writeln!(
         out,
-        "\nwhole maps of {} cells, all threads\n{:20}      ms  +-%  host us/cell  host share  for devices  fallback",
+        "\nwhole maps of {} cells, all threads\n{:20}      ms  +-%  host us/cell  share  for devices  fallback",
         report.map_cells, ""
     )?;
     for map in &report.maps {
         writeln!(
             out,
-            "{:20} {:7.1} {} {:13.3} {:11.2} {:11.0}% {:8.2}%",
+            "{:20} {:7.1} {} {:13.3} {:6.2} {:11.0}% {:8.2}%",
             map.engine,
             1e3 * map.seconds.median,
             spread(&map.seconds),

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::numerics::Unit;
 use crate::numerics::inverse::InverseBlock;
-use crate::sheet::{Edge, RowSpan};
+use crate::sheet::Edge;
 use crate::shooting::Resolution;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -85,13 +85,15 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64
         ..
     } = into;
     // Beyond the tip and beyond the sheet, cells have no state. Others beyond the end fall back to the CPU engine.
-    let last = sheet
-        .spans(row.row)
-        .first()
-        .map_or(f64::INFINITY, RowSpan::last_push);
+    // A row with more pieces may have states there.
+    let is_one = sheet.crossings[row.row].len() == 1;
+    let last = match &sheet.spans(row.row)[..] {
+        [span] if is_one => span.last_push(),
+        _ => f64::INFINITY,
+    };
     let tip = match sheet.crossings[row.row][0].edge {
-        Edge::Tip => end + NEAR_TIP,
-        Edge::Fold => last,
+        Edge::Tip if is_one => end + NEAR_TIP,
+        _ => last,
     };
     let beyond = row.each().zip(outcome.iter_mut()).skip(pushes.len());
     for (cell, outcome) in beyond {

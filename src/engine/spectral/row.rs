@@ -49,12 +49,15 @@ pub enum StateStarts<'a> {
     Expansions(&'a [Chebyshev<FUNCTIONS>], f64),
 }
 
-/// Part of the bound on the residual that the extrapolated Newton step of a state may take.
-const STATE_ERROR: f64 = 0.05;
+/// Part of the bound on the residual that the extrapolated Newton step of a state may take. The certificate finds larger errors.
+const STATE_ERROR: f64 = 0.1;
+
+/// Largest sum of the contact's arclength and the pole's distance, in whisker lengths, in the bound on the error of a step.
+const LARGEST_LEVER: f64 = 2.0;
 
 impl ExactRow {
-    /// Computes `count` states of each row of `sheet` from `starts`, for expansions with a residual of at most `most` whisker lengths. An entry is `None` for a row without a simple span from first touch,
-    /// or if Newton's method fails for a state.
+    /// Computes `count` states of each row of `sheet` from `starts`, for expansions with a residual of at most `most` whisker lengths. An
+    /// entry is `None` for a row without a simple span from first touch, or if Newton's method fails for a state.
     pub fn all(
         method: Method,
         sheet: &Sheet,
@@ -79,7 +82,7 @@ impl ExactRow {
             }
         });
         let spans: Vec<Option<Vec<RowState>>> = spans.collect();
-        let longest_step = (STATE_ERROR * most / LEFT_BY_STEP).sqrt();
+        let longest_step = (STATE_ERROR * most / (LARGEST_LEVER * LEFT_BY_STEP)).sqrt();
         let goal = RowStateGoal {
             longest_step,
             is_coarse_first: match starts {
