@@ -3,6 +3,7 @@
 use super::{Place, Run, SCENE, names};
 use std::fs;
 use std::io::{BufRead, BufReader};
+use std::path::Path;
 use std::process::Stdio;
 
 /// Runs `map` on [`SCENE`] with `line` instead of the line with the same key; the message must have all `parts`.
@@ -172,7 +173,10 @@ fn a_folder_without_permission() {
     if tempfile::tempfile_in(&locked).is_ok() {
         // The program may be in a folder that other users cannot enter.
         let program = place.path("whiskmap");
-        fs::copy(env!("CARGO_BIN_EXE_whiskmap"), &program).unwrap();
+        // A copy by this process would be open for writing in a child that another test starts meanwhile, and then cannot be run.
+        let mut copy = std::process::Command::new("cp");
+        copy.args([Path::new(env!("CARGO_BIN_EXE_whiskmap")), &program]);
+        assert!(copy.status().unwrap().success());
         fs::set_permissions(place.path(""), fs::Permissions::from_mode(0o755)).unwrap();
         let arguments: Vec<_> = command.get_args().map(ToOwned::to_owned).collect();
         command = std::process::Command::new(program);
