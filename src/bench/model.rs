@@ -115,7 +115,7 @@ pub struct CellWork {
     pub operations: f64,
     /// Bytes read and written in the memory of the device that solves.
     pub memory_bytes: f64,
-    /// Bytes between host and GPU.
+    /// Bytes per cell between host and device, both directions together; 0 on the host.
     pub bus_bytes: f64,
     /// Microseconds of one core for all other stages but packing.
     pub host_us: f64,

@@ -31,8 +31,8 @@ impl Sliding {
         (rod.friction != 0.0).then_some(if rate < 0.0 { Self::Base } else { Self::Tip })
     }
 
-    /// Returns the sliding directions of the contact at `points` `(tau, load)` of `rod`, `[point]`, with one trajectory each; `None`
-    /// without friction.
+    /// Returns whether the contact slides to the tip or the base at `points` `(tau, load)` of `rod`, `[point]`; `None` without friction.
+    /// Integrates one trajectory for each point.
     #[must_use]
     pub fn at(method: Method, rod: &Rod, points: &[DVec2]) -> Vec<Option<Self>> {
         let shot = Batch::new(method).shoot_at(rod, points.iter().copied());

@@ -15,7 +15,7 @@ use crate::scene::Scene;
 use crate::shooting::batch::Method;
 use std::ops::Range;
 
-/// Maximum memory of a run, in bytes.
+/// Limit on the memory of a run, in bytes; a plan that takes more is refused.
 pub const MEMORY_LIMIT: u64 = 4 << 30;
 
 /// Bytes per cell of a panel: 14 channels of 4 bytes.

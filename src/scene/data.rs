@@ -71,7 +71,7 @@ impl SceneData {
         self.whisker_at(self.grid.place(index))
     }
 
-    /// Returns groups of `size` whiskers of the sweep, `[group]`; the last group has the rest.
+    /// Returns the whiskers of the sweep in groups of `size`, `[group][whisker]`; the last group has the rest.
     pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<SweptWhisker>> {
         let mut whiskers = self.whiskers();
         let next = move || -> Vec<_> { whiskers.by_ref().take(size).collect() };

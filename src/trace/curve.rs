@@ -160,7 +160,8 @@ pub fn curve_at(
     .collect()
 }
 
-/// Computes the corner of the detachment curve of `whisker` on one `side`, or the reason why there is none.
+/// Computes the corner of the detachment curve of `whisker` on one `side`. Without a corner, distance and push angle are `None`, and
+/// `reason` says why.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     let end = |distance: f64| curve(whisker, pole, side, &[distance])[0];

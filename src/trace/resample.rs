@@ -28,8 +28,8 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
 /// Maximum number of nodes of an interpolation.
 const NODES: usize = 6;
 
-/// Returns the index of the last node before `target`, and the point `(tau, load)` at `target` of the polynomial through the nodes around
-/// it.
+/// Interpolates the curve at the length `target` along it; `lengths` are those of the nodes. Returns the index of the last node up to
+/// `target`, and `(tau, load)`.
 pub fn interpolate(nodes: &[CurveNode], lengths: &[f64], target: f64) -> (usize, DVec2) {
     let near = lengths.partition_point(|length| *length <= target);
     let near = near.saturating_sub(1);

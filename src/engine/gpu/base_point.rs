@@ -83,7 +83,7 @@ pub struct GpuBasePoint<T> {
     jacobian: [[T; 4]; JACOBIAN_POWERS],
 }
 
-/// Position of each field of a base point in the shaders, in quads of numbers, and the number of quads.
+/// Name and position of each field of a base point in the shaders, in quads of numbers. The last pair is the number of quads.
 pub const QUADS: [(&str, usize); 13] = {
     macro_rules! quads {
         ($($name:literal $member:ident)+) => {

@@ -49,7 +49,7 @@ impl LevelCurve {
     }
 }
 
-/// Level curve with the node from which it is followed, or `None` for a curve that is left out.
+/// Level curve and the node from which it is followed. The whole is `None` for a curve that is left out.
 pub type CurveStart<'a> = Option<(&'a LevelCurve, CurveNode)>;
 
 /// Follows several level curves at once, each as [`LevelCurve::continuation`] does; their trajectories share batches.

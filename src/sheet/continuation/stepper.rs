@@ -132,7 +132,7 @@ impl<'a> Stepper<'a> {
         self.trajectories = 0;
     }
 
-    /// Returns the chord from the last node of the continuation to `next`.
+    /// Returns the [`Chord`] from the last node of the continuation to `next`: its level curve, both nodes, and whether they are stable.
     pub fn chord(&self, next: CurveNode) -> Chord<'a> {
         Chord {
             level: self.level,

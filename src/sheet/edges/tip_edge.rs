@@ -31,7 +31,7 @@ const SLOPE_OFF: f64 = 1e-2;
 /// Number of intervals between the samples of an edge that no polynomial approximates.
 const MANY_TIP_INTERVALS: usize = 256;
 
-/// Sampled tip edge, without the corner.
+/// Tip edge without the corner: its samples, the polynomials through them, and the shooting map at first touch.
 #[derive(Clone, Debug)]
 pub struct SampledTipEdge {
     /// Samples of the tip edge by load, including extrema of the distance, `[sample]`.

@@ -44,7 +44,8 @@ pub struct ContactNodes {
     slopes: Vec<[f64; 2]>,
     /// Polynomials of `ln tau` of the folds, indexed by the first node of the stencil, `[stencil]`.
     pub ln_tau: Vec<Hermite>,
-    /// Polynomials of `ln(|load| tau^2)` of the folds, indexed by the first node of the stencil, `[stencil]`.
+    /// Polynomials of `ln(|load| tau^2)` of the folds, `[stencil]`. The argument is the node index, counted from the first node of the
+    /// stencil.
     pub ln_q: Vec<Hermite>,
 }
 

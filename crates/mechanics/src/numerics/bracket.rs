@@ -84,9 +84,9 @@ impl Bracket {
         self.newton(self.middle(), |_| 0.0, iterate).x
     }
 
-    /// Halves the bracket until its ends are at most `width` apart or neighbouring numbers. `is_below(middle)` returns true if the
-    /// function is negative there: [`Bracket::below`] then moves to the middle, otherwise [`Bracket::above`]. Its first error ends the
-    /// search and is returned. It serves where a function is known by its sign alone.
+    /// Halves the bracket in place until its ends are at most `width` apart or neighbouring numbers. `is_below(middle)` returns true if
+    /// the function is negative there: [`Bracket::below`] then moves to the middle, otherwise [`Bracket::above`]. Its first error ends
+    /// the search and is returned. It serves where a function is known by its sign alone.
     ///
     /// # Errors
     ///

@@ -7,8 +7,8 @@ use glam::DVec2;
 /// load's scale on the sheet.
 pub const LONGEST_STEP: f64 = 0.25;
 
-/// Shortens a Newton `step` in `(tau, load)` as a whole to [`LONGEST_STEP`]. Returns it with its relative length before. Near a fold the
-/// Jacobian is nearly singular, and the full step would leave the sheet.
+/// Shortens a Newton `step` in `(tau, load)` as a whole to [`LONGEST_STEP`]. Returns it with its length before, relative to `s` and
+/// `|load| + 1/s^2`.
 #[must_use]
 pub fn limited(step: DVec2, s: f64, load: f64) -> (DVec2, f64) {
     let length = (step.x.abs() / s).max(step.y.abs() / (load.abs() + 1.0 / (s * s)));
@@ -72,7 +72,7 @@ pub struct FullState {
     pub tangent: DVec2,
     /// Position of the base in the frame of the contact, in whisker lengths.
     pub position: DVec2,
-    /// Force at the contact, in `E I_base/L_w^2`.
+    /// Signed force at the contact, with the sign of the load, in `E I_base/L_w^2`.
     pub force: f64,
     /// Bending energy of the state, in `E I_base/L_w`.
     pub energy: f64,
