@@ -5,7 +5,8 @@
 
 use super::certificate::{Check, MARGIN, bounds};
 use super::row::{
-    ExactRow, ExpansionTail, FUNCTIONS, RowExpansion, StateStarts, Weights, larger, value_weights,
+    ExactRow, ExpansionTail, FUNCTIONS, RowExpansion, StateStarts, Weights, larger, simple_end,
+    value_weights,
 };
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::{Chebyshev, MOST_POINTS, TAIL, chebyshev_points};
@@ -81,15 +82,12 @@ impl RowInterval {
     /// Returns the coordinate of a row of `sheet` in a patch, with the edge where it ends; `None` if it has no simple span from first
     /// touch.
     pub fn coordinate(sheet: &Sheet, row: usize) -> Option<(Edge, f64)> {
-        let [end] = &sheet.crossings[row][..] else {
-            return None;
-        };
-        let is_simple = sheet.touches(row) && end.is_sound() && !end.is_at_touch();
+        let end = simple_end(sheet, row)?;
         let coordinate = match end.edge {
             Edge::Fold => libm::log(sheet.rod.tau(sheet.rows[row].contact)),
             Edge::Tip => end.load,
         };
-        (is_simple && !sheet.is_continued()).then_some((end.edge, coordinate))
+        Some((end.edge, coordinate))
     }
 
     /// Rows at parts of the interval.

@@ -1,6 +1,5 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row parameter.
 
-use super::patch::RowInterval;
 use crate::engine::{Values, WhiskerSide};
 use crate::numerics::expansion::{Chebyshev, MOST_POINTS, TAIL, chebyshev_points};
 use crate::numerics::inverse::Inverse;
@@ -40,6 +39,15 @@ pub struct ExactRow {
     pub states: Vec<ExactState>,
 }
 
+/// Returns the end of a `row` of `sheet`; `None` if it has no simple span from first touch.
+pub fn simple_end(sheet: &Sheet, row: usize) -> Option<&Crossing> {
+    let [end] = &sheet.crossings[row][..] else {
+        return None;
+    };
+    let is_simple = sheet.touches(row) && end.is_sound() && !end.is_at_touch();
+    (is_simple && !sheet.is_continued()).then_some(end)
+}
+
 /// Newton starts of the states of rows.
 #[derive(Clone, Copy)]
 pub enum StateStarts<'a> {
@@ -70,8 +78,7 @@ impl ExactRow {
         let spans = rows.par_iter().enumerate().map(|(i, row)| match starts {
             StateStarts::Spans => Some(SpanFromTouch::new(sheet, *row)?.states(points).collect()),
             StateStarts::Expansions(rows, _) => {
-                RowInterval::coordinate(sheet, *row)?;
-                let end = &sheet.crossings[*row][0];
+                let end = simple_end(sheet, *row)?;
                 let state = |place: &f64| RowState {
                     sheet,
                     row: *row,
