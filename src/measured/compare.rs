@@ -3,8 +3,9 @@
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
+use crate::shooting::Resolution;
 use crate::trace::row;
-use crate::trace::{Detachment, DetachmentKind, curve};
+use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
 use serde::Serialize;
 
 row! {
@@ -72,7 +73,7 @@ impl MeasuredPoints {
         let mut distances: Vec<f64> = points.map(|point| point.distance_mm).collect();
         distances.sort_by(f64::total_cmp);
         distances.dedup();
-        curve(whisker, pole, side, &distances)
+        curve_without_strain(Resolution::FINE, whisker, pole, side, &distances)
     }
 }
 

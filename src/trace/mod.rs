@@ -11,6 +11,7 @@ mod shape;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
+pub(crate) use curve::curve_without_strain;
 pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;

@@ -13,7 +13,7 @@ pub use spread::EndSpread;
 use crate::rod::Side;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
 use crate::shooting::Resolution;
-use crate::trace::{DetachmentKind, curve_at};
+use crate::trace::{DetachmentKind, curve_without_strain};
 use normal::Normal;
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
@@ -117,7 +117,7 @@ impl Draws {
     ) -> Vec<EndSpread> {
         let distances = &self.scene.grid.distance_mm;
         let curve = |whisker: &Whisker, pole: &Pole| {
-            let curve = curve_at(resolution, whisker, pole, side, distances);
+            let curve = curve_without_strain(resolution, whisker, pole, side, distances);
             let ends = curve.iter().map(|end| (end.kind, end.push_angle_deg));
             ends.collect::<Vec<PushEnd>>()
         };
@@ -169,6 +169,6 @@ fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn,
 /// The push angles of the ends of `scene` in degrees, a value for each distance.
 fn pushes_deg(scene: &Scene, resolution: Resolution, side: Side) -> Vec<Option<f64>> {
     let distances = &scene.grid.distance_mm;
-    let ends = curve_at(resolution, &scene.whisker, &scene.pole, side, distances);
+    let ends = curve_without_strain(resolution, &scene.whisker, &scene.pole, side, distances);
     ends.iter().map(|end| end.push_angle_deg).collect()
 }
