@@ -25,6 +25,7 @@ Examples:
   whiskmap curve scenes/cone.toml | head
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
+  whiskmap curve scenes/robot.toml --units mN,Nmm | head
   whiskmap curve scenes/cone.toml --corner
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg

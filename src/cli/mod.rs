@@ -35,6 +35,7 @@ mod submit;
 mod summary;
 mod tolerance;
 mod uncertainty;
+mod units;
 mod verify;
 
 use clap::{Parser, Subcommand};

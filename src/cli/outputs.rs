@@ -2,6 +2,7 @@
 
 use super::failure::{Failure, message};
 use super::files::{Files, OutputFile, OutputTable, STDOUT};
+use super::units::ColumnUnits;
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
@@ -16,6 +17,9 @@ pub struct OutputArgs {
     /// Write a picture to FILE; the ending selects PNG or SVG
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// Units of the table, separated by commas, such as mN,Nmm or um,rad; the names of columns end in them
+    #[arg(long, value_name = "UNITS", value_delimiter = ',')]
+    units: Vec<String>,
 }
 
 /// Open CSV table and plot of a command.
@@ -31,11 +35,23 @@ impl OutputArgs {
 
     /// Opens the CSV table and the plot, before any work.
     pub fn open(&self, files: &mut Files) -> Result<OpenOutputs, Failure> {
+        let units = ColumnUnits::new(&self.units)?;
         let stdout = self.plot.is_none().then(|| Path::new(STDOUT));
         let csv = self.csv.as_deref().or(stdout);
         let (table, plot) = open(files, "--csv", csv, self.plot.as_deref())?;
-        let table = table.map(OutputFile::table);
+        let table = table.map(|file| file.table().in_units(units));
         Ok(OpenOutputs { table, plot })
+    }
+
+    /// Opens another CSV table, of the command-line option `option`.
+    pub fn table(
+        &self,
+        files: &mut Files,
+        option: &str,
+        path: &Path,
+    ) -> Result<OutputTable, Failure> {
+        let units = ColumnUnits::new(&self.units)?;
+        Ok(files.output(option, path)?.table().in_units(units))
     }
 }
 
