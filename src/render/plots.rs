@@ -2,9 +2,9 @@
 //!
 //! Solid lines are stable states, dashed lines unstable states. Slip-off is black and pull-off is blue, as in the paper.
 
-use crate::design::{Design, DesignEnd, DesignTarget};
+use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
 use crate::measured::ComparedPoint;
-use crate::scene::Parameter;
+use crate::scene::{Parameter, digits};
 use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
 use crate::uncertainty::EndSpread;
 use whiskmap_plot::{Band, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
@@ -143,29 +143,48 @@ pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
     plot
 }
 
-/// Returns a plot of the push angles of a design, with its solutions as dots; over the logarithm of the parameter if its range is wide.
+/// Returns a plot of the goal's quantity over the parameter of a design, with its solutions as dots. Axes with a wide range of positive
+/// numbers are logarithmic.
 #[must_use]
 pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> Plot {
-    let (x_label, x): (String, fn(f64) -> f64) = match design.is_wide() {
-        true => (format!("log10 of {}", parameter.name()), f64::log10),
-        false => (parameter.name().to_owned(), |value| value),
+    let goal = target.goal;
+    let (unit, size) = match goal.quantity().unit() {
+        Some("uN") => (" (\u{b5}N)", "uN"),
+        Some("nNm") => (" (nN m)", "nN m"),
+        Some("deg") => (" (deg)", "deg"),
+        _ => ("", ""),
     };
-    let mut plot = empty("", &x_label, "push angle at detachment (deg)");
-    let push = target.push_angle_deg;
-    let wanted = design.range.map(|end| [x(end), push]).to_vec();
+    let label = format!("{}{unit}", goal.title());
+    let x_label = match parameter.unit() {
+        "1" => parameter.title().to_owned(),
+        unit => format!("{} ({unit})", parameter.title()),
+    };
+    let mut plot = empty("", &x_label, &label);
+    let reached = [DetachmentKind::SlipOff, DetachmentKind::PullOff];
+    let reached = reached.into_iter().filter_map(|kind| design.reached(kind));
+    let reached = reached.fold([target.value; 2], |[low, high], [least, most]| {
+        [low.min(least), high.max(most)]
+    });
+    plot.logarithmic = [design.range, reached].map(is_wide);
+    let wanted = design.range.map(|end| [end, target.value]).to_vec();
     let wanted = Line::new(wanted, Ink::Grey, Stroke::Dashed);
-    plot.lines.push(wanted.named(format!("{push} deg")));
+    let value = digits(target.value);
+    plot.lines
+        .push(wanted.named(format!("{value} {size}").trim_end()));
     for piece in design.ends.chunk_by(|a, b| a.kind == b.kind) {
         if let Some((ink, name)) = look(piece[0].kind) {
-            let place = |end: &DesignEnd| Some([x(end.value), end.push_angle_deg?]);
+            let place = |end: &DesignEnd| Some([end.value, end.reached?]);
             let points = piece.iter().filter_map(place).collect();
             plot.lines
                 .push(Line::new(points, ink, Stroke::Solid).named(name));
         }
     }
-    let ink = look(target.kind).map_or(Ink::Black, |(ink, _)| ink);
+    let ink = goal
+        .kind()
+        .and_then(look)
+        .map_or(Ink::Black, |(ink, _)| ink);
     plot.dots.extend(design.values.iter().map(|value| Dot {
-        at: [x(*value), push],
+        at: [*value, target.value],
         ink,
         open: false,
         name: Some("solution".to_owned()),

@@ -194,7 +194,7 @@ impl Branch {
     }
 
     /// Length of the branch from first touch to each node, in the measure of [`LevelCurve::length`].
-    fn lengths(&self) -> Vec<f64> {
+    pub(super) fn lengths(&self) -> Vec<f64> {
         let mut length = 0.0;
         let steps = self.continuation.nodes.windows(2);
         let rest = steps.map(|pair| {

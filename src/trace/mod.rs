@@ -6,6 +6,7 @@
 mod branch;
 mod columns;
 mod curve;
+mod peak;
 mod resample;
 mod shape;
 mod state;

@@ -187,16 +187,22 @@ pub struct Plot {
     pub inset: Option<Inset>,
     /// True if a data unit has the same length on both axes of the plot.
     pub equal_axes: bool,
-    /// True if both axes of the plot are logarithmic. Numbers that are not positive are not drawn, and neither are discs and insets.
-    pub logarithmic: bool,
+    /// Axes of the plot that are logarithmic, `[x, y]`. On these, numbers that are not positive are not drawn; if any is logarithmic,
+    /// neither are discs and insets.
+    pub logarithmic: [bool; 2],
     /// True if the plot is drawn without frame, ticks and labels.
     pub bare: bool,
 }
 
 impl Plot {
-    /// Replaces all numbers by their decimal logarithms, NaN where there is none.
+    /// Replaces all numbers on logarithmic axes by their decimal logarithms, NaN where there is none.
     fn logarithms(&self) -> Self {
-        let logarithm = |x: f64| if x > 0.0 { x.log10() } else { f64::NAN };
+        let on = |axis: usize, value: f64| match self.logarithmic[axis] {
+            false => value,
+            true if value > 0.0 => value.log10(),
+            true => f64::NAN,
+        };
+        let logarithm = |[x, y]: [f64; 2]| [on(0, x), on(1, y)];
         let mut plot = Self {
             discs: Vec::new(),
             inset: None,
@@ -204,17 +210,17 @@ impl Plot {
             ..self.clone()
         };
         for point in plot.bands.iter_mut().flat_map(|band| &mut band.points) {
-            *point = point.map(logarithm);
+            *point = [on(0, point[0]), on(1, point[1]), on(1, point[2])];
         }
         for point in plot.lines.iter_mut().flat_map(|line| &mut line.points) {
-            *point = point.map(logarithm);
+            *point = logarithm(*point);
         }
         for dot in &mut plot.dots {
-            dot.at = dot.at.map(logarithm);
+            dot.at = logarithm(dot.at);
         }
         for note in &mut plot.notes {
-            note.at = note.at.map(logarithm);
-            note.to = note.to.map(|to| to.map(logarithm));
+            note.at = logarithm(note.at);
+            note.to = note.to.map(logarithm);
         }
         plot
     }

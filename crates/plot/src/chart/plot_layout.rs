@@ -38,19 +38,21 @@ impl<'a> PlotLayout<'a> {
     /// Chooses ranges, units and ticks of a plot for a body of this `size`, `[width, height]` in pixels.
     pub fn plan(plot: &'a Plot, size: [f64; 2]) -> Self {
         let plot = match plot.logarithmic {
-            true => Cow::Owned(plot.logarithms()),
-            false => Cow::Borrowed(plot),
+            [false, false] => Cow::Borrowed(plot),
+            _ => Cow::Owned(plot.logarithms()),
         };
         let window = Window::of(&plot, size);
         // The unit of numbers that span many is left alone.
-        let (choose, largest): (TickChooser, _) = match plot.logarithmic {
-            true => (ticks::of_logarithms, [0.0; 2]),
-            false => (ticks::of_numbers, window.largest),
-        };
-        let (x_label, x_unit) = units::readable(&plot.x_label, largest[0]);
-        let (y_label, y_unit) = units::readable(&plot.y_label, largest[1]);
-        let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], choose);
-        let y_ticks = ticks::upwards(window.y.map(|end| end / y_unit), size[1], choose);
+        let [x, y] = [0, 1].map(|axis| -> (TickChooser, f64) {
+            match plot.logarithmic[axis] {
+                true => (ticks::of_logarithms, 0.0),
+                false => (ticks::of_numbers, window.largest[axis]),
+            }
+        });
+        let (x_label, x_unit) = units::readable(&plot.x_label, x.1);
+        let (y_label, y_unit) = units::readable(&plot.y_label, y.1);
+        let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], x.0);
+        let y_ticks = ticks::upwards(window.y.map(|end| end / y_unit), size[1], y.0);
         let axes = Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size);
         Self { plot, window, axes }
     }

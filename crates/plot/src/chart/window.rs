@@ -29,7 +29,7 @@ impl Window {
         let [x, y] = if plot.equal_axes {
             equal_units(extents, pixels)
         } else {
-            extents.map(|extent| widened(extent, plot.logarithmic))
+            [0, 1].map(|axis| widened(extents[axis], plot.logarithmic[axis]))
         };
         let mut largest = extents.map(magnitude);
         if plot.equal_axes {

@@ -54,7 +54,7 @@ fn degenerate_data_give_pictures_without_nan() {
                     ..Note::default()
                 }],
                 equal_axes,
-                logarithmic,
+                logarithmic: [logarithmic; 2],
                 ..Plot::default()
             });
         }
@@ -145,7 +145,7 @@ fn logarithmic_axes_are_labelled_with_the_numbers_themselves() {
     let plot = |points: &[[f64; 2]]| Plot {
         x_label: "time (mm)".to_owned(),
         lines: vec![line(points, Ink::Black, Stroke::Solid)],
-        logarithmic: true,
+        logarithmic: [true; 2],
         ..Plot::default()
     };
     let document = svg(&single(plot(&points)).picture());
@@ -189,7 +189,7 @@ fn logarithmic_axes_have_ticks_whatever_they_span() {
     ] {
         let svg = svg(&single(Plot {
             lines: vec![line(&[[from, from], [to, to]], Ink::Black, Stroke::Solid)],
-            logarithmic: true,
+            logarithmic: [true; 2],
             ..Plot::default()
         })
         .picture());
