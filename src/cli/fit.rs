@@ -23,8 +23,8 @@ Minimizes the squares of measured minus predicted angles, from the values of the
 the data are side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) \
 and sd_deg, the standard deviation of the angle. Without sd_deg, the residuals give the standard deviation.
 
-A warning names parameters that the points do not determine. youngs_modulus_gpa is always one of them, because no detachment \
-depends on it. These parameters and parameters at a limit of the scene have no standard error.
+A warning names parameters that the points do not determine. youngs_modulus_gpa and profile_scale are always among them, because no \
+detachment depends on them. These parameters and parameters at a limit of the scene have no standard error.
 
 The values are not a fit if the RMS is more than 5 degrees, or more than a third of the range of the measured angles and 0; \
 with sd_deg, only if chi-square is also too large for these deviations. A reduced chi-square above 400 is never a fit. Then \

@@ -46,7 +46,11 @@ impl SceneData {
                 // It needs both radii.
                 Parameter::Taper => {}
                 // They are no axes of a sweep.
-                Parameter::YoungsModulusGpa | Parameter::SpiralPerMm | Parameter::SpiralPerMm2 => {}
+                Parameter::YoungsModulusGpa
+                | Parameter::ProfileScale
+                | Parameter::TipExtensionMm
+                | Parameter::SpiralPerMm
+                | Parameter::SpiralPerMm2 => {}
             }
         }
         if let Some(taper) = place.value(Parameter::Taper) {
