@@ -9,16 +9,16 @@ use super::pole::check_single;
 use super::progress::Progress;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{ComparedPoint, MeasuredAngle};
-use whiskmap::render::{CurveAxis, DrawnCurve, Plot, Stroke, curves, measured};
+use whiskmap::render::{CurveAxis, DrawnCurve, Plot, Stroke, bands, curves, error_bars, measured};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
-use whiskmap::uncertainty::EndSpread;
+use whiskmap::uncertainty::{Draws, EndSpread};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -29,6 +29,8 @@ Examples:
   whiskmap curve scenes/cone.toml --corner
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --y force_un --plot forces.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --data points.csv --plot beside.svg
 
 The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
 Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \
@@ -37,8 +39,8 @@ one whisker.
 
 With --data, the table has measured points instead of the curve. They are read from a CSV file with the columns side (cb or \
 cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) and sd_deg. The plot \
-shows them on the curve, slip-offs as open circles and pull-offs as filled ones. Their RMS and bias are printed on standard \
-error.
+shows them on the curve, slip-offs as open circles and pull-offs as filled ones, with error bars of one standard deviation. \
+Their RMS and bias are printed on standard error. With --samples, the plot shows the bands, too.
 
 With --samples, whiskers are drawn from the standard deviations in the scene's [uncertainty], independently and with normal \
 distributions. A draw outside the limits of the scene is repeated; standard error gives the number of such draws. \
@@ -60,8 +62,17 @@ pub struct CurveArgs {
     #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples"])]
     corner: bool,
     /// Compare the measured detachments in FILE with the curve; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance", "samples"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance"])]
     data: Option<PathBuf>,
+    /// Column on the vertical axis of the plot
+    #[arg(
+        long,
+        value_name = "COLUMN",
+        value_enum,
+        default_value = "push_angle_deg",
+        conflicts_with = "data"
+    )]
+    y: CurveColumn,
     #[command(flatten)]
     sampling: SampleArgs,
     #[command(flatten)]
@@ -84,17 +95,23 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             "--plot: the scene sweeps {whiskers} whiskers over {keys}; a plot shows one"
         )));
     }
-    if let Some(path) = &args.data {
-        return compare(args, &scene, path, files);
-    }
     let draws = args.sampling.draw(&scene)?;
+    if let Some(path) = &args.data {
+        return compare(args, &scene, draws.as_ref(), path, files);
+    }
+    let axes = [DISTANCE, args.y.axis()];
     let mut outputs = args.outputs.open(files)?;
     let accuracy = args.tolerance.find(&scene, &Side::BOTH)?;
     args.tolerance.report(accuracy);
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {
-        let curve = || scene_curve(&scene, resolution, AXES);
-        return uncertainty::run(&scene, &draws, resolution, outputs, curve);
+        let rows = uncertainty::spread(&draws, resolution);
+        outputs.rows(&rows)?;
+        outputs.finish(scene.title.clone(), || Plot {
+            bands: bands(&rows, args.y.percentiles()),
+            ..scene_curve(&scene, resolution, axes)
+        })?;
+        return uncertainty::check(&rows, &draws);
     }
     let mut drawn = Vec::new();
     let (mut unresolved, mut all) = (0, 0);
@@ -128,7 +145,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         }
     }
     bar.finish();
-    outputs.finish(scene.title.clone(), || plot(&drawn, AXES))?;
+    outputs.finish(scene.title.clone(), || plot(&drawn, axes))?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
@@ -145,26 +162,47 @@ fn write<R: Serialize>(
     }
 }
 
-/// Compares the measured points of the file at `path` with the curve.
-fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> Result<(), Failure> {
+/// Compares the measured points of the file at `path` with the curve. The plot has the bands of `draws`, too.
+fn compare(
+    args: &CurveArgs,
+    scene: &Scene,
+    draws: Option<&Draws>,
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
     let points = data::read(files, path)?;
     let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
+    if draws.is_some() && !args.outputs.has_plot() {
+        let must =
+            "--samples: with --data, bands are in the plot alone; give --plot, or leave out --data";
+        return Err(Failure::Input(must.to_owned()));
+    }
+    if draws.is_some() && points.angle == MeasuredAngle::Chord {
+        let origin = &points.origin;
+        let must = format!(
+            "--samples: bands are of push angles, and {origin} has push_chord_deg; give push_angle_deg"
+        );
+        return Err(Failure::Input(must));
+    }
     let mut outputs = args.outputs.open(files)?;
     let comparison = points.beside(&whisker, &pole);
     data::name_left_out(&points, &comparison);
     let rows = &comparison.rows;
     outputs.rows(rows)?;
+    let spread = draws.map(|draws| uncertainty::spread(draws, Resolution::FINE));
+    let spread = spread.unwrap_or_default();
     outputs.finish(scene.title.clone(), || {
-        let axes = match points.angle {
-            MeasuredAngle::Push => AXES,
-            MeasuredAngle::Chord => [AXES[0], CHORD],
+        let y = match points.angle {
+            MeasuredAngle::Push => CurveColumn::PushAngleDeg.axis(),
+            MeasuredAngle::Chord => CHORD,
         };
-        Plot {
-            dots: measured(rows),
-            ..scene_curve(scene, Resolution::FINE, axes)
-        }
+        let mut plot = scene_curve(scene, Resolution::FINE, [DISTANCE, y]);
+        plot.bands = bands(&spread, CurveColumn::PushAngleDeg.percentiles());
+        plot.lines.extend(error_bars(rows));
+        plot.dots = measured(rows);
+        plot
     })?;
     if comparison.count() == 0 {
         return Err(Failure::Unresolved {
@@ -197,17 +235,67 @@ fn plot(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
     curves("", &[ends], axes)
 }
 
-/// Horizontal and vertical axis of a plot.
-const AXES: [CurveAxis; 2] = [
-    CurveAxis {
-        label: "distance at first touch (mm)",
-        value: |end| Some(end.distance_mm),
-    },
-    CurveAxis {
-        label: "push angle at detachment (deg)   CF < 0 < CB",
-        value: |end| end.push_angle_deg,
-    },
-];
+/// Columns that a plot can show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum CurveColumn {
+    /// Push angle at detachment
+    PushAngleDeg,
+    /// Size of the force at detachment
+    ForceUn,
+    /// Moment at the base at detachment
+    BaseMomentNnm,
+}
+
+impl CurveColumn {
+    const fn axis(self) -> CurveAxis {
+        match self {
+            Self::PushAngleDeg => CurveAxis {
+                label: "push angle at detachment (deg)   CF < 0 < CB",
+                value: |end| end.push_angle_deg,
+            },
+            // The sign keeps the sides apart.
+            Self::ForceUn => CurveAxis {
+                label: "force at detachment (\u{b5}N)   CF < 0 < CB",
+                value: |end| Some(end.side.sign() * end.force_un?),
+            },
+            Self::BaseMomentNnm => CurveAxis {
+                label: "moment at the base at detachment (nN m)",
+                value: |end| end.base_moment_nnm,
+            },
+        }
+    }
+
+    /// The percentiles 5, 25, 75 and 95 of samples.
+    const fn percentiles(self) -> fn(&EndSpread) -> [Option<f64>; 4] {
+        match self {
+            Self::PushAngleDeg => |row| [row.p5_deg, row.p25_deg, row.p75_deg, row.p95_deg],
+            Self::ForceUn => |row| {
+                let ends = [
+                    row.force_p5_un,
+                    row.force_p25_un,
+                    row.force_p75_un,
+                    row.force_p95_un,
+                ];
+                ends.map(|end| Some(row.side.sign() * end?))
+            },
+            Self::BaseMomentNnm => |row| {
+                [
+                    row.moment_p5_nnm,
+                    row.moment_p25_nnm,
+                    row.moment_p75_nnm,
+                    row.moment_p95_nnm,
+                ]
+            },
+        }
+    }
+}
+
+/// Horizontal axis of a plot.
+const DISTANCE: CurveAxis = CurveAxis {
+    label: "distance at first touch (mm)",
+    value: |end| Some(end.distance_mm),
+};
 
 /// Vertical axis for measured chord angles.
 const CHORD: CurveAxis = CurveAxis {

@@ -10,7 +10,7 @@ mod plots;
 pub use map::{MapOptions, map};
 pub use plots::{
     BranchAxis, CurveAxis, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves, designs,
-    measured, shapes,
+    error_bars, measured, shapes,
 };
 pub use whiskmap_plot::{
     Band, Chart, Disc, Dot, EncodeError, Ink, Inset, Line, Note, Picture, PictureFormat, Plot,

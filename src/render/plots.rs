@@ -98,11 +98,7 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
 #[must_use]
 pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
     let dots = points.iter().map(|point| {
-        let (ink, open, name) = match point.kind {
-            Some(DetachmentKind::SlipOff) => (Ink::Black, true, "measured slip-off"),
-            Some(DetachmentKind::PullOff) => (Ink::Blue, false, "measured pull-off"),
-            _ => (Ink::Grey, false, "measured"),
-        };
+        let (ink, open, name) = measured_look(point);
         Dot {
             at: [point.distance_mm, point.measured_deg],
             ink,
@@ -192,24 +188,33 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
     plot
 }
 
-/// Returns bands of push angle (deg) over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th.
-/// `rows` has one side after the other, each in order of increasing distance.
+/// Returns the error bars of measured detachments: lines of one standard deviation up and down, `[distance (mm), angle (deg)]`. Points
+/// without a standard deviation have none.
 #[must_use]
-pub fn bands(rows: &[EndSpread]) -> Vec<Band> {
-    type Percentiles = fn(&EndSpread) -> [Option<f64>; 2];
-    let kinds: [(Shade, &str, Percentiles); 2] = [
-        (Shade::Light, "5 to 95 % of samples", |row| {
-            [row.p5_deg, row.p95_deg]
-        }),
-        (Shade::Dark, "25 to 75 % of samples", |row| {
-            [row.p25_deg, row.p75_deg]
-        }),
+pub fn error_bars(points: &[ComparedPoint]) -> Vec<Line> {
+    let bars = points.iter().filter_map(|point| {
+        let sd = point.sd_deg?;
+        let ends = [-sd, sd].map(|end| [point.distance_mm, point.measured_deg + end]);
+        let (ink, ..) = measured_look(point);
+        Some(Line::new(ends.to_vec(), ink, Stroke::Solid).named("standard deviation"))
+    });
+    bars.collect()
+}
+
+/// Returns bands over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th. `percentiles` returns
+/// the 5th, 25th, 75th and 95th. `rows` has one side after the other, each in order of increasing distance.
+#[must_use]
+pub fn bands(rows: &[EndSpread], percentiles: fn(&EndSpread) -> [Option<f64>; 4]) -> Vec<Band> {
+    let kinds = [
+        (Shade::Light, "5 to 95 % of samples", [0, 3]),
+        (Shade::Dark, "25 to 75 % of samples", [1, 2]),
     ];
     let mut bands = Vec::new();
-    for (shade, name, percentiles) in kinds {
+    for (shade, name, ends) in kinds {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let point = |row: &EndSpread| {
-                let [low, high] = percentiles(row).map(|end| end.unwrap_or(f64::NAN));
+                let all = percentiles(row);
+                let [low, high] = ends.map(|end| all[end].unwrap_or(f64::NAN));
                 [row.distance_mm, low, high]
             };
             bands.push(Band {
@@ -220,6 +225,15 @@ pub fn bands(rows: &[EndSpread]) -> Vec<Band> {
         }
     }
     bands
+}
+
+/// The ink of a measured detachment, true if its dot is open, and its name.
+const fn measured_look(point: &ComparedPoint) -> (Ink, bool, &'static str) {
+    match point.kind {
+        Some(DetachmentKind::SlipOff) => (Ink::Black, true, "measured slip-off"),
+        Some(DetachmentKind::PullOff) => (Ink::Blue, false, "measured pull-off"),
+        _ => (Ink::Grey, false, "measured"),
+    }
 }
 
 /// The ink and the name of a kind of detachment; `None` if there is no detachment.

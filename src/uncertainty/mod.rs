@@ -13,12 +13,12 @@ pub use spread::EndSpread;
 use crate::rod::Side;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
 use crate::shooting::Resolution;
-use crate::trace::{DetachmentKind, curve_without_strain};
+use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
 use normal::Normal;
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
 
-/// Most ends on one side; an end takes 24 bytes.
+/// Most ends on one side; an end takes 40 bytes.
 const MOST_ENDS: usize = 1 << 24;
 
 /// Most draws for one sample.
@@ -118,8 +118,7 @@ impl Draws {
         let distances = &self.scene.grid.distance_mm;
         let curve = |whisker: &Whisker, pole: &Pole| {
             let curve = curve_without_strain(resolution, whisker, pole, side, distances);
-            let ends = curve.iter().map(|end| (end.kind, end.push_angle_deg));
-            ends.collect::<Vec<PushEnd>>()
+            curve.iter().map(PushEnd::new).collect::<Vec<PushEnd>>()
         };
         let ends: Vec<Vec<PushEnd>> = self
             .drawn
@@ -141,8 +140,23 @@ impl Draws {
     }
 }
 
-/// Kind of the end of a push, and its push angle in degrees.
-type PushEnd = (DetachmentKind, Option<f64>);
+/// End of a push.
+#[derive(Clone, Copy, Debug)]
+struct PushEnd {
+    kind: DetachmentKind,
+    /// Push angle in degrees, force in uN and moment at the base in nN m; `None` without a detachment.
+    loads: Option<[f64; 3]>,
+}
+
+impl PushEnd {
+    fn new(end: &Detachment) -> Self {
+        let loads = || Some([end.push_angle_deg?, end.force_un?, end.base_moment_nnm?]);
+        Self {
+            kind: end.kind,
+            loads: loads(),
+        }
+    }
+}
 
 /// A drawn whisker with its pole, and the number of draws refused before it.
 type Drawn = ((Whisker, Pole), u64);
