@@ -13,7 +13,7 @@ use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{ComparedPoint, MeasuredAngle};
-use whiskmap::render::{CurveAxis, DrawnCurve, Plot, Stroke, curves, measured};
+use whiskmap::render::{CurveAxis, DISTANCE, DrawnCurve, Plot, Stroke, curves, measured, regions};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker};
 use whiskmap::shooting::Resolution;
@@ -95,7 +95,6 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         let curve = || scene_curve(&scene, resolution, AXES);
         return uncertainty::run(&scene, &draws, resolution, outputs, curve);
     }
-    let mut drawn = Vec::new();
     let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
     let of_side = if args.corner { 1 } else { distances.len() };
@@ -122,12 +121,11 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
         all += rows.len() as u64;
-        if args.outputs.has_plot() {
-            drawn.extend(rows.into_iter().map(|(_, row)| row));
-        }
     }
     bar.finish();
-    outputs.finish(scene.title.clone(), || plot(&drawn, AXES))?;
+    outputs.finish(scene.title.clone(), || {
+        scene_curve(&scene, resolution, AXES)
+    })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
@@ -158,7 +156,7 @@ fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> R
     outputs.finish(scene.title.clone(), || {
         let axes = match points.angle {
             MeasuredAngle::Push => AXES,
-            MeasuredAngle::Chord => [AXES[0], CHORD],
+            MeasuredAngle::Chord => [CHORD, AXES[1]],
         };
         Plot {
             dots: measured(rows),
@@ -178,38 +176,54 @@ fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> R
     Ok(())
 }
 
-/// Plots the detachment curve of the scene's first whisker.
+/// Rows between the farthest distance of the grid and the reach of the whisker; push angles grow like a root near the reach.
+const AT_TIP: usize = 16;
+
+/// Plots the detachment curve of the scene's first whisker. Where the grid goes as far as the tip, the curve does so too.
 fn scene_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
     let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    let distances = &scene.grid.distance_mm;
-    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, distances);
-    let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
-    plot(&ends, axes)
-}
-
-fn plot(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
-    let ends = DrawnCurve {
-        rows,
+    let reach_mm = trace::reach_mm(&whisker, &pole, Side::Cb);
+    let grid = scene.grid.distance_mm.iter().copied();
+    let mut distances: Vec<f64> = grid
+        .clone()
+        .filter(|distance| *distance < reach_mm)
+        .collect();
+    if grid.last() >= Some(reach_mm) {
+        let last = distances.last().copied().unwrap_or_default();
+        let near = |step: usize| {
+            let left = 1.0 - step as f64 / AT_TIP as f64;
+            reach_mm - left * left * (reach_mm - last)
+        };
+        distances.extend((1..=AT_TIP).map(near));
+    }
+    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, &distances);
+    let rows: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
+    let drawn = DrawnCurve {
+        rows: &rows,
+        reach_mm,
         stroke: Stroke::Solid,
         name: "",
     };
-    curves("", &[ends], axes)
+    Plot {
+        regions: Some(regions(scene.is_straight())),
+        ..curves("", &[drawn], axes)
+    }
 }
 
 /// Horizontal and vertical axis of a plot.
 const AXES: [CurveAxis; 2] = [
     CurveAxis {
-        label: "distance at first touch (mm)",
-        value: |end| Some(end.distance_mm),
+        label: "push angle at detachment (deg)",
+        value: |end| end.push_angle_deg,
     },
     CurveAxis {
-        label: "push angle at detachment (deg)   CF < 0 < CB",
-        value: |end| end.push_angle_deg,
+        label: DISTANCE,
+        value: |end| Some(end.distance_mm),
     },
 ];
 
-/// Vertical axis for measured chord angles.
+/// Horizontal axis for measured chord angles.
 const CHORD: CurveAxis = CurveAxis {
-    label: "chord angle at detachment (deg)   CF < 0 < CB",
+    label: "chord angle at detachment (deg)",
     value: |end| end.push_chord_deg,
 };

@@ -3,11 +3,10 @@
 use super::arguments::{angle, parameter, side};
 use super::failure::Failure;
 use super::files::Files;
-use super::outputs::open;
+use super::outputs::{PlotArgs, open};
 use super::pole::{self, PoleArgs, title};
 use clap::Args;
 use std::io::{self, Write};
-use std::path::PathBuf;
 use whiskmap::design::{self, Design, DesignError, DesignTarget};
 use whiskmap::render::designs;
 use whiskmap::rod::Side;
@@ -37,9 +36,8 @@ pub struct DesignArgs {
     /// Parameter of the scene to vary
     #[arg(long = "for", value_name = "NAME", value_parser = parameter())]
     parameter: Parameter,
-    /// Plot the push angle against the parameter to FILE; the ending selects PNG or SVG
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PlotArgs,
 }
 
 #[derive(Debug, Args)]
@@ -93,7 +91,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let target = args.target()?;
     let (path, distance) = (&args.pole.scene, args.pole.distance);
     let (scene, _) = pole::read(files, path, "design", &[distance])?;
-    let (_, picture) = open(files, "--plot", None, args.plot.as_deref())?;
+    let (_, picture) = open(files, "--plot", None, &args.picture)?;
     let found = design::design(&scene, args.parameter, &target);
     let found = found.map_err(|why| match why {
         DesignError::Sweep(_) => Failure::Input(why.to_string()),

@@ -2,6 +2,7 @@
 //!
 //! Solid lines are stable states, dashed lines unstable states. Slip-off is black and pull-off is blue, as in the paper.
 
+use super::labels;
 use crate::design::{Design, DesignEnd, DesignTarget};
 use crate::measured::ComparedPoint;
 use crate::scene::Parameter;
@@ -29,6 +30,9 @@ pub type BranchAxis = PlotAxis<BranchPoint, f64>;
 pub struct DrawnCurve<'a> {
     /// Detachments of the curve, one whisker and side after the other, each in order of increasing distance.
     pub rows: &'a [Detachment],
+    /// Distance in mm at which the tip of the resting whisker touches the pole. If both sides have a detachment there, a grey line between
+    /// them closes the region of stable states.
+    pub reach_mm: f64,
     /// Dash pattern of the curve: solid or dashed.
     pub stroke: Stroke,
     /// Name of the curve's whisker, before the kind of detachment in the legend; may be empty.
@@ -40,7 +44,13 @@ pub struct DrawnCurve<'a> {
 pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
-    for DrawnCurve { rows, stroke, name } in all {
+    for DrawnCurve {
+        rows,
+        reach_mm,
+        stroke,
+        name,
+    } in all
+    {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let kinds = side.chunk_by(|a, b| a.kind == b.kind);
             let parts = kinds.filter_map(|part| {
@@ -54,20 +64,37 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
             });
             plot.lines.extend(joined(parts));
         }
+        let at_reach = rows.iter().filter(|row| row.distance_mm == *reach_mm);
+        let tip: Vec<_> = at_reach.filter_map(place).collect();
+        if tip.len() > 1 {
+            let line = Line::new(tip, Ink::Grey, *stroke);
+            plot.lines.push(line.named("first touch at the tip"));
+        }
     }
     plot
 }
 
-/// Returns a bifurcation diagram: a plot of the branches at each pole, in the ink beside them. Each branch begins at its first touch.
+/// The branches of a whisker at one pole, with their colour and name.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawnBranch<'a> {
+    /// Points of the branches at the pole, one side after the other; each branch begins at its first touch.
+    pub points: &'a [BranchPoint],
+    /// Colour of the branches.
+    pub ink: Ink,
+    /// Name of the stable states in the legend.
+    pub name: &'a str,
+}
+
+/// Returns a bifurcation diagram: a plot of the branches at each pole.
 #[must_use]
-pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxis; 2]) -> Plot {
+pub fn branches(title: &str, poles: &[DrawnBranch], [x, y]: [BranchAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |point: &BranchPoint| [(x.value)(point), (y.value)(point)];
-    for (ink, points) in poles {
+    for DrawnBranch { points, ink, name } in poles {
         for branch in points.chunk_by(|_, next| next.mark != Some(BranchMark::FirstTouch)) {
             let parts = branch.chunk_by(|a, b| a.stable == b.stable).map(|part| {
                 let (stroke, name) = match part[0].stable {
-                    true => (Stroke::Solid, "stable"),
+                    true => (Stroke::Solid, *name),
                     false => (Stroke::Dashed, "unstable"),
                 };
                 Line::new(part.iter().map(place).collect(), *ink, stroke).named(name)
@@ -93,7 +120,7 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
     plot
 }
 
-/// Returns measured detachments as dots at `[distance (mm), angle (deg)]`: slip-off open, pull-off filled, grey where the kind is
+/// Returns measured detachments as dots at `[angle (deg), distance (mm)]`: slip-off open, pull-off filled, grey where the kind is
 /// unknown.
 #[must_use]
 pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
@@ -104,7 +131,7 @@ pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
             _ => (Ink::Grey, false, "measured"),
         };
         Dot {
-            at: [point.distance_mm, point.measured_deg],
+            at: [point.measured_deg, point.distance_mm],
             ink,
             open,
             name: Some(name.to_owned()),
@@ -143,21 +170,23 @@ pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
     plot
 }
 
-/// Returns a plot of the push angles of a design, with its solutions as dots; over the logarithm of the parameter if its range is wide.
+/// Returns a plot of the push angles of a design, with its solutions as dots; over a logarithmic axis if the
+/// range of the parameter is wide.
 #[must_use]
 pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> Plot {
-    let (x_label, x): (String, fn(f64) -> f64) = match design.is_wide() {
-        true => (format!("log10 of {}", parameter.name()), f64::log10),
-        false => (parameter.name().to_owned(), |value| value),
-    };
-    let mut plot = empty("", &x_label, "push angle at detachment (deg)");
+    let mut plot = empty(
+        "",
+        &labels::parameter(parameter),
+        "push angle at detachment (deg)",
+    );
+    plot.logarithmic[0] = design.is_wide();
     let push = target.push_angle_deg;
-    let wanted = design.range.map(|end| [x(end), push]).to_vec();
+    let wanted = design.range.map(|end| [end, push]).to_vec();
     let wanted = Line::new(wanted, Ink::Grey, Stroke::Dashed);
     plot.lines.push(wanted.named(format!("{push} deg")));
     for piece in design.ends.chunk_by(|a, b| a.kind == b.kind) {
         if let Some((ink, name)) = look(piece[0].kind) {
-            let place = |end: &DesignEnd| Some([x(end.value), end.push_angle_deg?]);
+            let place = |end: &DesignEnd| Some([end.value, end.push_angle_deg?]);
             let points = piece.iter().filter_map(place).collect();
             plot.lines
                 .push(Line::new(points, ink, Stroke::Solid).named(name));
@@ -165,7 +194,7 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
     }
     let ink = look(target.kind).map_or(Ink::Black, |(ink, _)| ink);
     plot.dots.extend(design.values.iter().map(|value| Dot {
-        at: [x(*value), push],
+        at: [*value, push],
         ink,
         open: false,
         name: Some("solution".to_owned()),
@@ -173,7 +202,7 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
     plot
 }
 
-/// Returns bands of push angle (deg) over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th.
+/// Returns bands of push angle (deg) at each distance (mm), across `[angle, distance]`: from the 5th to the 95th percentile, and over them from the 25th to the 75th.
 /// `rows` has one side after the other, each in order of increasing distance.
 #[must_use]
 pub fn bands(rows: &[EndSpread]) -> Vec<Band> {
@@ -191,7 +220,7 @@ pub fn bands(rows: &[EndSpread]) -> Vec<Band> {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let point = |row: &EndSpread| {
                 let [low, high] = percentiles(row).map(|end| end.unwrap_or(f64::NAN));
-                [row.distance_mm, low, high]
+                [low, high].map(|angle| [angle, row.distance_mm])
             };
             bands.push(Band {
                 points: side.iter().map(point).collect(),

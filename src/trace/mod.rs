@@ -11,7 +11,7 @@ mod shape;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
-pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at};
+pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, reach_mm};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;
 
