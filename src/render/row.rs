@@ -42,8 +42,13 @@ pub fn chart(
         };
         lines.push(Line::new(points, ink, Stroke::Solid).named(name));
     }
+    // The title of a slice has the distance.
+    let title = match map.readable().any(|(name, _)| name == "distance_mm") {
+        true => String::new(),
+        false => format!("distance at first touch: {} mm", grid.distance_mm[0]),
+    };
     let plot = Plot {
-        title: format!("distance at first touch: {} mm", grid.distance_mm[0]),
+        title,
         x_label: labels::PUSH_ANGLE.to_owned(),
         y_label: labels::channel(channel),
         lines,

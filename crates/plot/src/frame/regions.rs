@@ -1,7 +1,7 @@
 //! Names of the regions of a plot or a heat map to the left and the right of 0, above the frame.
 
 use super::heading::NAME;
-use crate::picture::font::width;
+use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Picture};
 
 /// Space between the names of two regions, in units.
@@ -20,39 +20,46 @@ pub struct Region {
     pub short: String,
 }
 
-/// The names of the regions, each with its middle as a fraction of the axis; none without room.
-pub struct RegionNames(Vec<(String, f64)>);
+/// The names of the regions in lines, each with its middle as a fraction of the axis; none without room.
+pub struct RegionNames(Vec<(TextBlock, f64)>);
 
 impl RegionNames {
     /// Chooses the names of `[left, right]` on an axis of this length, on which 0 is at the fraction `zero`. Both names are long, or both
-    /// are short.
+    /// are short; long ones may have two lines.
     pub fn plan(regions: Option<&[Region; 2]>, zero: f64, length: f64) -> Self {
         let zero = zero.clamp(0.0, 1.0);
         let sides = [[0.0, zero], [zero, 1.0]];
         let regions: Vec<_> = regions.into_iter().flatten().zip(sides).collect();
-        let has_room =
-            |name: &str, [from, to]: [f64; 2]| width(name, NAME) + GAP <= length * (to - from);
-        let is_long = regions
+        let set = |name: &str, [from, to]: [f64; 2]| {
+            let block = TextBlock::new(name, NAME, length * (to - from) - GAP);
+            let is_whole = block.lines.len() < 3 && block.lines.join(" ") == name;
+            is_whole.then_some((block, 0.5 * (from + to)))
+        };
+        let shown = regions
             .iter()
-            .filter(|(region, side)| has_room(&region.short, *side))
-            .all(|(region, side)| has_room(&region.name, *side));
-        let names = regions.into_iter().filter_map(|(region, side)| {
-            let name = if is_long { &region.name } else { &region.short };
-            has_room(name, side).then(|| (name.clone(), 0.5 * (side[0] + side[1])))
-        });
-        Self(names.collect())
+            .filter(|(region, side)| set(&region.short, *side).is_some());
+        let long: Option<Vec<_>> = shown
+            .map(|(region, side)| set(&region.name, *side))
+            .collect();
+        Self(long.unwrap_or_else(|| {
+            let short = regions.iter();
+            short
+                .filter_map(|(region, side)| set(&region.short, *side))
+                .collect()
+        }))
     }
 
     /// Returns the height of the names above the frame, in units.
     pub fn height(&self) -> f64 {
-        if self.0.is_empty() { 0.0 } else { HEIGHT }
+        let heights = self.0.iter().map(|(block, _)| HEIGHT + block.below_first());
+        heights.fold(0.0, f64::max)
     }
 
-    /// Draws the names above the frame of `body`.
+    /// Draws the names above the frame of `body`, their last lines beside each other.
     pub fn draw(&self, picture: &mut Picture, body: Area) {
-        for (name, at) in &self.0 {
+        for (block, at) in &self.0 {
             let [x, y] = body.point(*at, 1.0);
-            picture.text(name, [x, y - ABOVE], NAME, Anchor::Centre);
+            picture.block(block, [x, y - ABOVE - block.below_first()], Anchor::Centre);
         }
     }
 }
@@ -73,14 +80,21 @@ mod tests {
         ];
         let names = |zero, length| {
             let names = RegionNames::plan(Some(&regions), zero, length).0;
-            names.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+            names
+                .into_iter()
+                .map(|(name, _)| name.lines.join("|"))
+                .collect::<Vec<_>>()
         };
         assert_eq!(
             names(0.5, 1000.0),
             ["concave forward (CF)", "concave backward (CB)"]
         );
-        assert_eq!(names(0.5, 300.0), ["CF", "CB"]);
-        assert_eq!(names(0.1, 1000.0), ["CF", "CB"]);
+        assert_eq!(
+            names(0.5, 400.0),
+            ["concave forward|(CF)", "concave backward|(CB)"]
+        );
+        assert_eq!(names(0.5, 200.0), ["CF", "CB"]);
+        assert_eq!(names(0.1, 600.0), ["CF", "CB"]);
         assert_eq!(names(-0.2, 1000.0), ["concave backward (CB)"]);
         assert_eq!(names(0.5, 20.0), [""; 0]);
         assert_eq!(RegionNames::plan(None, 0.5, 1000.0).height(), 0.0);

@@ -67,7 +67,7 @@ impl CellAxis {
         let range = self.range().map(|end| end / unit);
         let values = match self.count() {
             0..=8 => self.values.iter().map(|value| value / unit).collect(),
-            _ => ticks::round(range, (length / 80.0).clamp(3.0, 8.0)),
+            _ => ticks::round(range, (length / 60.0).clamp(3.0, 8.0)),
         };
         (ticks::at(&values, range), label)
     }

@@ -181,3 +181,33 @@ fn a_colour_bar_chooses_the_unit_that_suits_it() {
     let svg = svg(&drawn(&[0.0, 1.0, 2.0], counts).unwrap());
     assert!(svg.contains(">1<") && !svg.contains(">0.5<"), "whole ticks");
 }
+
+/// Two decades, from the 1st percentile on; a negative value, or a range of less, keeps the scale linear.
+#[test]
+fn a_scale_becomes_logarithmic_by_itself_over_two_decades() {
+    let is_log = |values: &[f64], range| {
+        let options = ScaleOptions {
+            log: None,
+            range,
+            ..force()
+        };
+        let document = |log| {
+            let picture = drawn(
+                values,
+                ScaleOptions {
+                    log,
+                    ..options.clone()
+                },
+            );
+            picture.ok().map(|picture| svg(&picture))
+        };
+        let own = document(None);
+        assert!(own == document(Some(true)) || own == document(Some(false)));
+        own == document(Some(true))
+    };
+    assert!(is_log(&[1.0, 10.0, 101.0], None) && is_log(&[0.0, 1.0, 101.0], None));
+    assert!(!is_log(&[1.0, 10.0, 99.0], None) && !is_log(&[0.0, 0.0, 0.0], None));
+    assert!(is_log(&[1.0, 10.0, 20.0], Some([1.0, 101.0])));
+    assert!(!is_log(&[1.0, 10.0, 2000.0], Some([1.0, 99.0])));
+    assert!(!is_log(&[-1.0, 1.0, 1000.0], None));
+}
