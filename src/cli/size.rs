@@ -91,8 +91,8 @@ mod tests {
             ("8.5x6cm", 85.0, Some(60.0)),
             ("85x60", 85.0, Some(60.0)),
         ] {
-            let sides = sides(text).expect(text);
-            assert_eq!((sides.width_mm, sides.height_mm), (width, height), "{text}");
+            let sides = sides(text).map(|sides| (sides.width_mm, sides.height_mm));
+            assert_eq!(sides, Ok((width, height)), "{text}");
         }
         for text in [
             "",

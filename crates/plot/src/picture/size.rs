@@ -46,18 +46,18 @@ pub struct SizeError {
 
 impl PrintSize {
     /// Returns the width and the height of the picture in units, `None` for a height that suits its contents.
-    pub fn units(self) -> [Option<f64>; 2] {
+    pub(crate) fn units(self) -> [Option<f64>; 2] {
         [Some(self.width_mm / MM), self.height_mm.map(|mm| mm / MM)]
     }
 
     /// Returns pixels per unit.
-    pub fn scale(self) -> f64 {
+    pub(crate) fn scale(self) -> f64 {
         self.dpi / 25.4 * MM
     }
 
     /// Returns the size that the bodies have together if the picture has this size, given that a picture of size `whole` has `bodies`, all
     /// in units, `[width, height]`: at least [`LEAST_BODY`]. If the height is free, it is `ratio` times the width.
-    pub fn bodies(self, whole: [f64; 2], bodies: [f64; 2], ratio: f64) -> [f64; 2] {
+    pub(crate) fn bodies(self, whole: [f64; 2], bodies: [f64; 2], ratio: f64) -> [f64; 2] {
         let units = self.units();
         let inside = |axis: usize| {
             let left = units[axis].map(|all| all - (whole[axis] - bodies[axis]));
@@ -68,7 +68,7 @@ impl PrintSize {
     }
 
     /// Returns the size of a picture of size `whole` with these `bodies`, all in units: this size, and a free height as it is.
-    pub fn fitted(self, whole: [f64; 2], bodies: [f64; 2]) -> Result<[f64; 2], SizeError> {
+    pub(crate) fn fitted(self, whole: [f64; 2], bodies: [f64; 2]) -> Result<[f64; 2], SizeError> {
         let units = self.units();
         for (axis, side) in ["width", "height"].into_iter().enumerate() {
             if bodies[axis] <= LEAST_BODY && units[axis].is_some_and(|all| whole[axis] > all) {

@@ -105,7 +105,7 @@ pub fn contact() -> Result<FigurePanel, NoState> {
         notes: vec![
             Note::text(from(at, 3.2 * radius, 0.3 * angle), "\u{3b8}_{obj}"),
             Note::arrow(beside(-1.9, 2.6), at, "(x_{obj}, y_{obj})", Ink::Grey),
-            Note::arrow(beside(1.2, -3.0), pole, "(x_{cen}, y_{cen})", Ink::Grey),
+            Note::arrow(beside(1.0, -2.3), pole, "(x_{cen}, y_{cen})", Ink::Grey),
             Note::arrow(pole, beside(0.82, -0.57), "", Ink::Black),
             Note::text(beside(2.6, -1.6), "r_{pole}"),
         ],
