@@ -13,7 +13,9 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{ComparedPoint, MeasuredAngle};
-use whiskmap::render::{CurveAxis, DrawnCurve, Plot, Stroke, bands, curves, error_bars, measured};
+use whiskmap::render::{
+    CurveAxis, DISTANCE, DrawnCurve, Plot, Stroke, bands, curves, error_bars, measured, regions,
+};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker};
 use whiskmap::shooting::Resolution;
@@ -29,7 +31,7 @@ Examples:
   whiskmap curve scenes/cone.toml --corner
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
-  whiskmap curve scenes/uncertain.toml --samples 500 --y force_un --plot forces.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --x force_un --plot forces.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --data points.csv --plot beside.svg
 
 The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
@@ -64,7 +66,7 @@ pub struct CurveArgs {
     /// Compare the measured detachments in FILE with the curve; - is standard input
     #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance"])]
     data: Option<PathBuf>,
-    /// Column on the vertical axis of the plot
+    /// Column on the horizontal axis of the plot
     #[arg(
         long,
         value_name = "COLUMN",
@@ -72,7 +74,7 @@ pub struct CurveArgs {
         default_value = "push_angle_deg",
         conflicts_with = "data"
     )]
-    y: CurveColumn,
+    x: CurveColumn,
     #[command(flatten)]
     sampling: SampleArgs,
     #[command(flatten)]
@@ -99,7 +101,6 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(path) = &args.data {
         return compare(args, &scene, draws.as_ref(), path, files);
     }
-    let axes = [DISTANCE, args.y.axis()];
     let mut outputs = args.outputs.open(files)?;
     let accuracy = args.tolerance.find(&scene, &Side::BOTH)?;
     args.tolerance.report(accuracy);
@@ -108,12 +109,11 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         let rows = uncertainty::spread(&draws, resolution);
         outputs.rows(&rows)?;
         outputs.finish(scene.title.clone(), || Plot {
-            bands: bands(&rows, args.y.percentiles()),
-            ..scene_curve(&scene, resolution, axes)
+            bands: bands(&rows, args.x.percentiles()),
+            ..scene_curve(&scene, resolution, args.x.axis())
         })?;
         return uncertainty::check(&rows, &draws);
     }
-    let mut drawn = Vec::new();
     let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
     let of_side = if args.corner { 1 } else { distances.len() };
@@ -140,12 +140,11 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
         all += rows.len() as u64;
-        if args.outputs.has_plot() {
-            drawn.extend(rows.into_iter().map(|(_, row)| row));
-        }
     }
     bar.finish();
-    outputs.finish(scene.title.clone(), || plot(&drawn, axes))?;
+    outputs.finish(scene.title.clone(), || {
+        scene_curve(&scene, resolution, args.x.axis())
+    })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
@@ -194,11 +193,11 @@ fn compare(
     let spread = draws.map(|draws| uncertainty::spread(draws, Resolution::FINE));
     let spread = spread.unwrap_or_default();
     outputs.finish(scene.title.clone(), || {
-        let y = match points.angle {
+        let x = match points.angle {
             MeasuredAngle::Push => CurveColumn::PushAngleDeg.axis(),
             MeasuredAngle::Chord => CHORD,
         };
-        let mut plot = scene_curve(scene, Resolution::FINE, [DISTANCE, y]);
+        let mut plot = scene_curve(scene, Resolution::FINE, x);
         plot.bands = bands(&spread, CurveColumn::PushAngleDeg.percentiles());
         plot.lines.extend(error_bars(rows));
         plot.dots = measured(rows);
@@ -217,22 +216,38 @@ fn compare(
     Ok(())
 }
 
-/// Plots the detachment curve of the scene's first whisker.
-fn scene_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
-    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    let distances = &scene.grid.distance_mm;
-    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, distances);
-    let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
-    plot(&ends, axes)
-}
+/// Rows between the farthest distance of the grid and the reach of the whisker; push angles grow like a root near the reach.
+const AT_TIP: usize = 16;
 
-fn plot(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
-    let ends = DrawnCurve {
-        rows,
+/// Plots the detachment curve of the scene's first whisker. Where the grid goes as far as the tip, the curve does so too.
+fn scene_curve(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot {
+    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
+    let reach_mm = trace::reach_mm(&whisker, &pole, Side::Cb);
+    let grid = scene.grid.distance_mm.iter().copied();
+    let mut distances: Vec<f64> = grid
+        .clone()
+        .filter(|distance| *distance < reach_mm)
+        .collect();
+    if grid.last() >= Some(reach_mm) {
+        let last = distances.last().copied().unwrap_or_default();
+        let near = |step: usize| {
+            let left = 1.0 - step as f64 / AT_TIP as f64;
+            reach_mm - left * left * (reach_mm - last)
+        };
+        distances.extend((1..=AT_TIP).map(near));
+    }
+    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, &distances);
+    let rows: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
+    let drawn = DrawnCurve {
+        rows: &rows,
+        reach_mm,
         stroke: Stroke::Solid,
         name: "",
     };
-    curves("", &[ends], axes)
+    Plot {
+        regions: Some(regions(scene.is_straight())),
+        ..curves("", &[drawn], [x, UPWARD])
+    }
 }
 
 /// Columns that a plot can show.
@@ -251,12 +266,12 @@ impl CurveColumn {
     const fn axis(self) -> CurveAxis {
         match self {
             Self::PushAngleDeg => CurveAxis {
-                label: "push angle at detachment (deg)   CF < 0 < CB",
+                label: "push angle at detachment (deg)",
                 value: |end| end.push_angle_deg,
             },
             // The sign keeps the sides apart.
             Self::ForceUn => CurveAxis {
-                label: "force at detachment (\u{b5}N)   CF < 0 < CB",
+                label: "force at detachment (\u{b5}N)",
                 value: |end| Some(end.side.sign() * end.force_un?),
             },
             Self::BaseMomentNnm => CurveAxis {
@@ -291,14 +306,14 @@ impl CurveColumn {
     }
 }
 
-/// Horizontal axis of a plot.
-const DISTANCE: CurveAxis = CurveAxis {
-    label: "distance at first touch (mm)",
+/// Vertical axis of a plot.
+const UPWARD: CurveAxis = CurveAxis {
+    label: DISTANCE,
     value: |end| Some(end.distance_mm),
 };
 
-/// Vertical axis for measured chord angles.
+/// Horizontal axis for measured chord angles.
 const CHORD: CurveAxis = CurveAxis {
-    label: "chord angle at detachment (deg)   CF < 0 < CB",
+    label: "chord angle at detachment (deg)",
     value: |end| end.push_chord_deg,
 };

@@ -3,7 +3,7 @@
 use super::arguments::{angle, parameter, side};
 use super::failure::Failure;
 use super::files::{Files, STDOUT};
-use super::outputs::open;
+use super::outputs::{PlotArgs, open};
 use super::pole::{self, PoleArgs, title};
 use clap::Args;
 use std::io::{self, Write};
@@ -47,9 +47,8 @@ pub struct DesignArgs {
     /// Write the scene with the value to BETTER.toml; with several values, the one nearest to the scene's own; - is standard output
     #[arg(short, long, value_name = "BETTER.toml")]
     output: Option<PathBuf>,
-    /// Plot the target's quantity against the parameter to FILE; the ending selects PNG or SVG
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PlotArgs,
 }
 
 #[derive(Debug, Args)]
@@ -130,7 +129,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let (path, distance) = (&args.pole.scene, args.pole.distance);
     let (scene, _) = pole::read(files, path, "design", &[distance])?;
     let output = args.output.as_deref();
-    let (better, picture) = open(files, "--output", output, args.plot.as_deref())?;
+    let (better, picture) = open(files, "--output", output, &args.picture)?;
     let refused = |why| match why {
         DesignError::Sweep(_) => Failure::Input(why.to_string()),
         DesignError::Distance(why) => Failure::Scene(why),

@@ -20,7 +20,7 @@ use whiskmap::engine::{Engine, EngineDescription, EngineInput};
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
-use whiskmap::render::{self, MapOptions, PictureFormat};
+use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::scene::Scene;
 use whiskmap::store::{MapDescription, MapWriter, Output, StoredMap};
 
@@ -146,6 +146,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         PictureFile {
             file: OutputFile { output, path },
             format: PictureFormat::Png,
+            size: PictureSize::Natural,
         }
         .write(&regimes)?;
     }

@@ -29,6 +29,7 @@ mod selection;
 mod shape;
 mod sharded;
 mod signals;
+mod size;
 mod status;
 mod stdout;
 mod submit;
@@ -88,7 +89,7 @@ enum Command {
     Submit(submit::SubmitArgs),
     /// Draw a stored map: its regimes or any channel
     Render(render::RenderArgs),
-    /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
+    /// Compute the exact detachment curve of a scene, as CSV or a picture
     Curve(curve::CurveArgs),
     /// Fit parameters of a scene to measured detachments
     Fit(fit::FitArgs),

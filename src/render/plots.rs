@@ -2,6 +2,7 @@
 //!
 //! Solid lines are stable states, dashed lines unstable states. Slip-off is black and pull-off is blue, as in the paper.
 
+use super::labels;
 use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
 use crate::measured::ComparedPoint;
 use crate::scene::{Parameter, digits};
@@ -29,6 +30,9 @@ pub type BranchAxis = PlotAxis<BranchPoint, f64>;
 pub struct DrawnCurve<'a> {
     /// Detachments of the curve, one whisker and side after the other, each in order of increasing distance.
     pub rows: &'a [Detachment],
+    /// Distance in mm at which the tip of the resting whisker touches the pole. If both sides have a detachment there, a grey line between
+    /// them closes the region of stable states.
+    pub reach_mm: f64,
     /// Dash pattern of the curve: solid or dashed.
     pub stroke: Stroke,
     /// Name of the curve's whisker, before the kind of detachment in the legend; may be empty.
@@ -40,7 +44,13 @@ pub struct DrawnCurve<'a> {
 pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
-    for DrawnCurve { rows, stroke, name } in all {
+    for DrawnCurve {
+        rows,
+        reach_mm,
+        stroke,
+        name,
+    } in all
+    {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let kinds = side.chunk_by(|a, b| a.kind == b.kind);
             let parts = kinds.filter_map(|part| {
@@ -54,20 +64,37 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
             });
             plot.lines.extend(joined(parts));
         }
+        let at_reach = rows.iter().filter(|row| row.distance_mm == *reach_mm);
+        let tip: Vec<_> = at_reach.filter_map(place).collect();
+        if tip.len() > 1 {
+            let line = Line::new(tip, Ink::Grey, *stroke);
+            plot.lines.push(line.named("first touch at the tip"));
+        }
     }
     plot
 }
 
-/// Returns a bifurcation diagram: a plot of the branches at each pole, in the ink beside them. Each branch begins at its first touch.
+/// The branches of a whisker at one pole, with their colour and name.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawnBranch<'a> {
+    /// Points of the branches at the pole, one side after the other; each branch begins at its first touch.
+    pub points: &'a [BranchPoint],
+    /// Colour of the branches.
+    pub ink: Ink,
+    /// Name of the stable states in the legend.
+    pub name: &'a str,
+}
+
+/// Returns a bifurcation diagram: a plot of the branches at each pole.
 #[must_use]
-pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxis; 2]) -> Plot {
+pub fn branches(title: &str, poles: &[DrawnBranch], [x, y]: [BranchAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |point: &BranchPoint| [(x.value)(point), (y.value)(point)];
-    for (ink, points) in poles {
+    for DrawnBranch { points, ink, name } in poles {
         for branch in points.chunk_by(|_, next| next.mark != Some(BranchMark::FirstTouch)) {
             let parts = branch.chunk_by(|a, b| a.stable == b.stable).map(|part| {
                 let (stroke, name) = match part[0].stable {
-                    true => (Stroke::Solid, "stable"),
+                    true => (Stroke::Solid, *name),
                     false => (Stroke::Dashed, "unstable"),
                 };
                 Line::new(part.iter().map(place).collect(), *ink, stroke).named(name)
@@ -93,14 +120,14 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
     plot
 }
 
-/// Returns measured detachments as dots at `[distance (mm), angle (deg)]`: slip-off open, pull-off filled, grey where the kind is
+/// Returns measured detachments as dots at `[angle (deg), distance (mm)]`: slip-off open, pull-off filled, grey where the kind is
 /// unknown.
 #[must_use]
 pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
     let dots = points.iter().map(|point| {
         let (ink, open, name) = measured_look(point);
         Dot {
-            at: [point.distance_mm, point.measured_deg],
+            at: [point.measured_deg, point.distance_mm],
             ink,
             open,
             name: Some(name.to_owned()),
@@ -151,11 +178,7 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
         _ => ("", ""),
     };
     let label = format!("{}{unit}", goal.title());
-    let x_label = match parameter.unit() {
-        "1" => parameter.title().to_owned(),
-        unit => format!("{} ({unit})", parameter.title()),
-    };
-    let mut plot = empty("", &x_label, &label);
+    let mut plot = empty("", &labels::parameter(parameter), &label);
     let reached = [DetachmentKind::SlipOff, DetachmentKind::PullOff];
     let reached = reached.into_iter().filter_map(|kind| design.reached(kind));
     let reached = reached.fold([target.value; 2], |[low, high], [least, most]| {
@@ -188,20 +211,20 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
     plot
 }
 
-/// Returns the error bars of measured detachments: lines of one standard deviation up and down, `[distance (mm), angle (deg)]`. Points
-/// without a standard deviation have none.
+/// Returns the error bars of measured detachments: lines of one standard deviation to the left and right, `[angle (deg), distance (mm)]`.
+/// Points without a standard deviation have none.
 #[must_use]
 pub fn error_bars(points: &[ComparedPoint]) -> Vec<Line> {
     let bars = points.iter().filter_map(|point| {
         let sd = point.sd_deg?;
-        let ends = [-sd, sd].map(|end| [point.distance_mm, point.measured_deg + end]);
+        let ends = [-sd, sd].map(|end| [point.measured_deg + end, point.distance_mm]);
         let (ink, ..) = measured_look(point);
         Some(Line::new(ends.to_vec(), ink, Stroke::Solid).named("standard deviation"))
     });
     bars.collect()
 }
 
-/// Returns bands over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th. `percentiles` returns
+/// Returns bands along the distance (mm), across `[value, distance]`: from the 5th to the 95th percentile, and over them from the 25th to the 75th. `percentiles` returns
 /// the 5th, 25th, 75th and 95th. `rows` has one side after the other, each in order of increasing distance.
 #[must_use]
 pub fn bands(rows: &[EndSpread], percentiles: fn(&EndSpread) -> [Option<f64>; 4]) -> Vec<Band> {
@@ -214,8 +237,8 @@ pub fn bands(rows: &[EndSpread], percentiles: fn(&EndSpread) -> [Option<f64>; 4]
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let point = |row: &EndSpread| {
                 let all = percentiles(row);
-                let [low, high] = ends.map(|end| all[end].unwrap_or(f64::NAN));
-                [row.distance_mm, low, high]
+                let ends = ends.map(|end| all[end].unwrap_or(f64::NAN));
+                ends.map(|end| [end, row.distance_mm])
             };
             bands.push(Band {
                 points: side.iter().map(point).collect(),

@@ -107,6 +107,13 @@ impl SceneData {
         self.corner_whiskers().any(|own| own.pole.friction != 0.0)
     }
 
+    /// Returns true if all whiskers of the sweep are straight at rest.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.corner_whiskers()
+            .all(|own| own.whisker.sharpest_bend_per_mm() == 0.0)
+    }
+
     /// Returns true if the scene has an axis along which whiskers differ.
     #[must_use]
     pub fn is_sweep(&self) -> bool {

@@ -162,13 +162,27 @@ impl MapSlice {
     /// # Errors
     /// The map or store has no scene.
     pub fn has_friction(&self) -> Result<bool, StoreError> {
-        let text = self.stored.attribute("scene")?;
-        let scene = Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map");
+        let scene = self.scene()?;
         let mut chosen = self.chosen.iter();
         Ok(match chosen.find(|(name, _)| *name == "friction") {
             Some((_, friction)) => *friction != 0.0,
-            None => scene.map_or(true, |scene| scene.has_friction()),
+            None => scene.is_none_or(|scene| scene.has_friction()),
         })
+    }
+
+    /// Returns true if all whiskers of the whole map or store are straight; false if this version cannot read the scene.
+    ///
+    /// # Errors
+    /// The map or store has no scene.
+    pub fn is_straight(&self) -> Result<bool, StoreError> {
+        let scene = self.scene()?;
+        Ok(scene.is_some_and(|scene| scene.is_straight()))
+    }
+
+    /// The scene of the map or store; `None` if this version cannot read it.
+    fn scene(&self) -> Result<Option<Scene>, StoreError> {
+        let text = self.stored.attribute("scene")?;
+        Ok(Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map").ok())
     }
 
     /// Returns the indices of the slice's whiskers in the whole sweep, with the last axis varying fastest.

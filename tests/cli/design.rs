@@ -58,7 +58,7 @@ fn a_value_is_a_line() {
     assert_eq!((plotted.code, plotted.out), (Some(0), found.out.clone()));
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
     assert!(
-        svg.contains(">taper (1") && svg.contains(">20 deg<"),
+        svg.contains(">taper (1 \u{2212} tip/base radius)<") && svg.contains(">20 deg<"),
         "{svg}"
     );
     assert_eq!(
@@ -160,7 +160,7 @@ fn what_cannot_be_designed_is_refused() {
     );
     refused(
         &["--slip-off", "9", "--plot", "p.gif"],
-        &["--plot p.gif: must end in .png or .svg"],
+        &["--plot p.gif: must end in .png, .svg or .pdf"],
     );
     refused(
         &["--slip-off", "nine"],

@@ -24,6 +24,7 @@ mod map;
 mod marks;
 mod other;
 mod paper;
+mod pictures;
 mod plan;
 use crate::program;
 #[cfg(unix)]

@@ -15,7 +15,8 @@ fn figures_come_with_their_tables() {
     files.sort_unstable();
     assert_eq!(files, names(&place.path("new/folder")));
     let pictures = ["fig1", "fig2", "fig3", "fig4d", "fig5c"];
-    let pictures = pictures.map(|figure| ["png", "svg"].map(|ending| format!("{figure}.{ending}")));
+    let pictures =
+        pictures.map(|figure| ["pdf", "png", "svg"].map(|ending| format!("{figure}.{ending}")));
     let mut expected = pictures.concat();
     let branch = |shown: &str| format!("distance_mm,side,stable,push_angle_deg,{shown},mark");
     let shape = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,part";

@@ -158,14 +158,15 @@ fn the_ending_decides_what_is_written() {
         ("b.PNG", b"\x89PNG"),
         ("c.svg", b"<?xml"),
         ("d.Svg", b"<?xml"),
+        ("e.pdf", b"%PDF"),
     ] {
         let run = place.run(&["render", "outputs/scene.exr", "-o", name]);
         assert_eq!((run.code, &*run.out), (Some(0), &*format!("{name}\n")));
         assert!(place.bytes(name).starts_with(start), "{name}");
     }
-    for name in ["e.jpg", "f", "g.svg.gz"] {
+    for name in ["f.jpg", "g", "h.svg.gz"] {
         let run = place.run(&["render", "outputs/scene.exr", "-o", name]);
-        run.assert_refused(&[&format!("--output {name}: must end in .png or .svg")]);
+        run.assert_refused(&[&format!("--output {name}: must end in .png, .svg or .pdf")]);
         assert!(!place.path(name).exists());
     }
     let mut piped = place.plain_command(&["render", "outputs/scene.exr", "-o", "-"]);
@@ -200,9 +201,11 @@ fn scale_and_width_are_chosen() {
         String::from_utf8(place.bytes("force.svg")).unwrap()
     };
     let plain = draw(&[]);
-    assert_ne!(draw(&["--log"]), plain);
+    // Forces span more than two decades.
+    assert_eq!(draw(&["--log"]), plain);
+    assert_ne!(draw(&["--linear"]), plain);
     let ranged = draw(&["--range", "-10,2e6"]);
-    assert!(ranged.contains(">force (N)<") && ranged.contains(">2.0<"));
+    assert!(ranged.contains(">contact force (N)<") && ranged.contains(">2.0<"));
     assert!(draw(&["--width", "640"]).contains(" width=\"640\" "));
 
     let arc = |range: &str| {

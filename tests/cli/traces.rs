@@ -125,7 +125,7 @@ fn wrong_arguments_are_refused_before_any_work() {
     };
     refused(
         &["--plot", "p.jpg"],
-        &["--plot p.jpg: must end in .png or .svg"],
+        &["--plot p.jpg: must end in .png, .svg or .pdf"],
     );
     refused(
         &["--plot", "nowhere/p.png"],

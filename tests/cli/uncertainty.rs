@@ -84,7 +84,7 @@ fn samples_and_measured_points_share_a_plot() {
         "scene.toml",
         "--samples",
         "20",
-        "--y",
+        "--x",
         "force_un",
         "--plot",
         "f.svg",
