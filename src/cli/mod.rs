@@ -18,6 +18,7 @@ mod extract;
 mod failure;
 mod files;
 mod fit;
+mod manual;
 mod map;
 mod outputs;
 mod plan;
@@ -71,7 +72,9 @@ Examples:
   whiskmap reproduce                                 # figures 1 to 5 of the paper
   whiskmap verify
   whiskmap bench scenes/cone.toml
-  whiskmap devices";
+  whiskmap devices
+  whiskmap completions bash
+  whiskmap man curve | man -l -";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -105,6 +108,10 @@ enum Command {
     Bench(bench::BenchArgs),
     /// List the GPU adapters
     Devices,
+    /// Print the completions of commands and options for a shell
+    Completions(manual::CompletionsArgs),
+    /// Print the manual page of the program or of a command
+    Man(manual::ManArgs),
 }
 
 /// Parses the arguments of the command line, runs the command and returns the exit code.
@@ -168,5 +175,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Verify => verify::run(),
         Command::Bench(args) => bench::run(args, files),
         Command::Devices => devices::run(),
+        Command::Completions(args) => manual::completions(args),
+        Command::Man(args) => manual::man(args),
     }
 }

@@ -20,6 +20,7 @@ mod files;
 mod fit;
 #[cfg(unix)]
 mod integrity;
+mod manual;
 mod map;
 mod marks;
 mod other;
