@@ -6,6 +6,7 @@
 mod arguments;
 mod bench;
 mod branch;
+mod compare;
 mod curve;
 mod data;
 mod design;
@@ -62,6 +63,7 @@ Examples:
   whiskmap submit scenes/morphology.toml --shards 8 > sweep.sbatch
   whiskmap status outputs/morphology.zarr            # finished and missing blocks
   whiskmap extract outputs/morphology.zarr --at taper=0.5 -o slice.csv
+  whiskmap compare outputs/cone.exr gpu/cone.exr --within 1e-5
   whiskmap curve scenes/cone.toml --plot curve.png
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png
@@ -88,6 +90,8 @@ enum Command {
     Status(status::StatusArgs),
     /// Write a job array for Slurm that fills a store
     Submit(submit::SubmitArgs),
+    /// Compare two maps or stores of one scene, channel by channel
+    Compare(compare::CompareArgs),
     /// Draw a stored map: its regimes or any channel
     Render(render::RenderArgs),
     /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
@@ -165,6 +169,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Extract(args) => extract::run(args, files),
         Command::Status(args) => status::run(args, files.temporary()),
         Command::Submit(args) => submit::run(args),
+        Command::Compare(args) => compare::run(args, files),
         Command::Render(args) => render::run(args, files),
         Command::Curve(args) => curve::run(args, files),
         Command::Fit(args) => fit::run(args, files),

@@ -59,7 +59,7 @@ pub fn run(args: &SubmitArgs) -> Result<(), Failure> {
         return Err(Failure::Input(why.to_owned()));
     }
     let scene = read_scene(&args.scene)?;
-    let blocks = ZarrStore::blocks(&scene.grid);
+    let blocks = ZarrStore::blocks(&scene.grid).len();
     if args.shards as usize > blocks {
         return Err(Failure::Input(format!(
             "--shards {}: must be at most {blocks}, the number of blocks of this sweep",

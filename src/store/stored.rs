@@ -7,6 +7,7 @@ use crate::plan::Digits;
 use crate::scene::Grid;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 /// A stored map that is open for reading: an EXR file or a Zarr store.
@@ -120,10 +121,22 @@ impl MapSource {
     /// # Errors
     /// There is no such channel or whisker, or it is missing or damaged.
     pub fn read_panel(&self, name: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
+        self.read_panels(name, whisker..whisker + 1)
+    }
+
+    /// Reads a channel of consecutive whiskers of the stored map: `[whisker][distance][push angle]`.
+    ///
+    /// # Errors
+    /// There is no such channel or whisker, or it is missing or damaged.
+    pub fn read_panels(
+        &self,
+        name: &str,
+        whiskers: Range<usize>,
+    ) -> Result<ChannelValues, StoreError> {
         match self {
-            Self::Exr(map) => map.read_panel(name, whisker),
+            Self::Exr(map) => map.read_panels(name, whiskers),
             #[cfg(feature = "zarr")]
-            Self::Zarr(store) => store.read_panel(name, whisker),
+            Self::Zarr(store) => store.read_panels(name, whiskers),
         }
     }
 }

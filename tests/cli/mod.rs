@@ -6,6 +6,7 @@
 
 mod bench;
 mod branch;
+mod compare;
 mod curve;
 #[cfg(unix)]
 mod damage;
