@@ -31,6 +31,7 @@ mod selection;
 mod shape;
 mod sharded;
 mod signals;
+mod slurm;
 mod status;
 mod stdout;
 mod submit;
@@ -143,6 +144,7 @@ fn start(command: &Command) -> Result<(), Failure> {
     failure::keep_expected_panics_silent();
     let (threads, advice) = match command {
         Command::Map(args) => (args.threads, args.advice()),
+        Command::Plan(args) => (args.map.threads, ""),
         _ => (None, ""),
     };
     let temporary = TemporaryFiles::default();
