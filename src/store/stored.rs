@@ -116,6 +116,18 @@ impl MapSource {
         }
     }
 
+    /// Returns the indices of the whiskers that are not computed yet, as ranges in order: those of unfinished blocks of a store.
+    ///
+    /// # Errors
+    /// The file system refuses to look for a file.
+    pub fn missing(&self) -> Result<Vec<Range<usize>>, StoreError> {
+        match self {
+            Self::Exr(_) => Ok(Vec::new()),
+            #[cfg(feature = "zarr")]
+            Self::Zarr(store) => store.missing(),
+        }
+    }
+
     /// Reads a channel of one whisker of the stored map: `[distance][push angle]`.
     ///
     /// # Errors
