@@ -127,11 +127,11 @@ fn tables_are_complete() {
             let place = format!("{}:{}", page.display(), number + 1);
             let before = number.checked_sub(1).map_or("", |before| lines[before]);
             assert!(before.is_empty(), "{place}: no blank line before the table");
-            let is_rule = |row: &&&str| row.chars().all(|c| "|-: ".contains(c));
+            let is_rule = |row: &&str| row.chars().all(|c| "|-: ".contains(c));
             let rules: Vec<_> = rows
                 .iter()
                 .enumerate()
-                .filter(|(_, row)| is_rule(&row))
+                .filter(|(_, row)| is_rule(row))
                 .collect();
             assert!(matches!(rules[..], [(1, _)]), "{place}: no line of dashes");
             for row in &rows {

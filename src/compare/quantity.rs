@@ -80,7 +80,7 @@ impl QuantityComparison {
     /// Adds the values of a cell.
     pub(super) fn add(&mut self, cell: usize, values: [f64; 2]) {
         match values.map(|value| value.is_nan()) {
-            [true, true] => return,
+            [true, true] => {}
             [false, true] => self.only_in[0] += 1,
             [true, false] => self.only_in[1] += 1,
             [false, false] => self.add_both(cell, values),

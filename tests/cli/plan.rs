@@ -161,7 +161,7 @@ fn the_size_of_files_is_estimated() {
     assert!(!run.out.contains("EXR file"), "{run:?}");
 }
 
-/// Four panels of 256 cells are in one block, and one panel of 2048 x 1024 cells is in bands of rows only in an EXR file.
+/// A single panel is in bands of rows only for an EXR file, and only a store keeps the packed panels of a block.
 #[test]
 fn the_memory_of_a_store_includes_its_block_and_whole_panels() {
     let scene = STRAIGHT.replace("count = 8", "count = 2048");
@@ -181,7 +181,7 @@ fn the_memory_of_a_store_includes_its_block_and_whole_panels() {
     let run = plan(&Place::with(&format!("{scene}{axes}")));
     let [exr, zarr] = ["EXR file", "Zarr store"].map(|format| memory_mib(&run, format));
     // A block has 64 panels of 32 packed bytes a cell.
-    assert_eq!(zarr - exr, (64 - 16) * 128 * 128 * 32 >> 20);
+    assert_eq!(zarr - exr, ((64 - 16) * 128 * 128 * 32) >> 20);
 }
 
 /// Returns the lines of shards, as words.
