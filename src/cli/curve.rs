@@ -7,6 +7,7 @@ use super::files::Files;
 use super::outputs::{OpenOutputs, OutputArgs};
 use super::pole::check_single;
 use super::progress::Progress;
+use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
 use clap::{Args, ValueEnum};
@@ -17,7 +18,7 @@ use whiskmap::render::{
     CurveAxis, DISTANCE, DrawnCurve, Plot, Stroke, bands, curves, error_bars, measured, regions,
 };
 use whiskmap::rod::Side;
-use whiskmap::scene::{Scene, SweepPlace, SweptWhisker};
+use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 use whiskmap::uncertainty::{Draws, EndSpread};
@@ -29,6 +30,7 @@ Examples:
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
   whiskmap curve scenes/robot.toml --units mN,Nmm | head
   whiskmap curve scenes/cone.toml --corner
+  whiskmap curve scenes/morphology.toml --at taper=0.95 --at curvature_per_mm=0.02 --plot curve.svg
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --x force_un --plot forces.svg
@@ -37,7 +39,7 @@ Examples:
 The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
 Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \
 sweep axes, such as grid.taper, the table has the curve of every whisker, with a leading column for each axis. A plot shows \
-one whisker.
+one whisker, which --at selects.
 
 With --data, the table has measured points instead of the curve. They are read from a CSV file with the columns side (cb or \
 cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) and sd_deg. The plot \
@@ -76,6 +78,8 @@ pub struct CurveArgs {
     )]
     x: CurveColumn,
     #[command(flatten)]
+    selection: SelectionArgs,
+    #[command(flatten)]
     sampling: SampleArgs,
     #[command(flatten)]
     tolerance: ToleranceArgs,
@@ -87,14 +91,21 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(data) = &args.data {
         data::check_stdin(&args.scene, data)?;
     }
-    let scene = files.scene(&args.scene)?;
+    let scene = args.selection.of_scene(&files.scene(&args.scene)?)?;
     let whiskers = scene.whisker_count();
     if args.outputs.has_plot() && whiskers > 1 {
-        let keys = scene.grid.sweep.iter();
-        let keys = keys.map(|axis| axis.parameter.axis_key());
-        let keys = keys.collect::<Vec<_>>().join(", ");
+        let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
+        let (keys, values): (Vec<_>, Vec<_>) = axes
+            .map(|axis| {
+                let value = digits(axis.values[axis.values.len() / 2]);
+                let at = format!("--at {}={value}", axis.parameter.axis());
+                (axis.parameter.axis_key(), at)
+            })
+            .unzip();
         return Err(Failure::Input(format!(
-            "--plot: the scene sweeps {whiskers} whiskers over {keys}; a plot shows one"
+            "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows one: choose it, such as by {}",
+            keys.join(", "),
+            values.join(" ")
         )));
     }
     let draws = args.sampling.draw(&scene)?;

@@ -1,7 +1,7 @@
 //! Command `whiskmap render`.
 
 use super::arguments::whole;
-use super::failure::Failure;
+use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::PictureFile;
 use super::selection::{SelectionArgs, channels, with_marks};
@@ -76,7 +76,15 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
 }
 
 pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
-    let map = args.selection.open(files, &args.file)?;
+    let mut map = args.selection.open(files, &args.file)?;
+    let missing = map.blank_missing()?;
+    if missing > 0 {
+        message(&format!(
+            "warning: {} is not finished: {missing} of {} panels are not computed and stay blank; `whiskmap status` lists their blocks",
+            args.file.display(),
+            map.grid().whisker_count()
+        ));
+    }
     let channel = args.channel.as_deref();
     if let Some(name) = &args.channel {
         let drawn = channels(&map, std::slice::from_ref(name))?;

@@ -4,7 +4,7 @@ use super::boundary::stretches;
 use super::{RenderError, labels, row};
 use crate::classify::{Regime, Status};
 use crate::scene::SweepAxis;
-use crate::store::{ChannelValues, MapSlice, STATE_CHANNELS};
+use crate::store::{ChannelValues, MapSlice, NOT_COMPUTED, STATE_CHANNELS};
 use std::collections::BTreeMap;
 use whiskmap_plot::{
     CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, PictureSize,
@@ -95,6 +95,7 @@ fn codes(
         return Err(RenderError::Codes(channel.to_owned()));
     }
     let fill = |(place, &code): (usize, &u32)| match channel {
+        _ if code == u32::from(NOT_COMPUTED) => (code, Fill::BLANK),
         "regime" => (code, regime_fill(code)),
         _ => (code, Fill::qualitative(place)),
     };
@@ -145,12 +146,16 @@ fn quantities(
     let mut whole = false;
     for index in 0..map.layout().panels() {
         let samples = map.read_panel(channel, index)?;
-        whole = matches!(samples, ChannelValues::U32(_));
+        whole |= matches!(samples, ChannelValues::U32(_));
         summary.extend(samples.values());
     }
     let scale = ScaleOptions {
         label: labels::channel(channel),
-        blank: "no contact".to_owned(),
+        blank: if map.has_blanks() {
+            "no contact, or not computed".to_owned()
+        } else {
+            "no contact".to_owned()
+        },
         log: options.log.or((!labels::is_load(channel)).then_some(false)),
         range: options.range,
         whole,
