@@ -273,7 +273,7 @@ fn scale_and_width_are_chosen() {
         );
     }
     for range in ["a,2", "1,2,3", "0,inf"] {
-        refused(&["--range", range], &[range, "must be a number"]);
+        refused(&["--range", range], &[range, "must be a force"]);
     }
     refused(
         &["--range", "1uN,2"],
