@@ -276,8 +276,8 @@ fn scale_and_width_are_chosen() {
         refused(&["--range", range], &[range, "must be a force"]);
     }
     refused(
-        &["--range", "1uN,2"],
-        &["--range 1uN,2: 1uN: unit uN: must be left out"],
+        &["--range", "1deg,2"],
+        &["--range 1deg,2: 1deg: unit deg: must be uN (the default)"],
     );
     refused(&["--range", "2,1"], &["range 2,1", "smaller one first"]);
     refused(&["--range", "1e99,1"], &["range 1e99,1:"]);
