@@ -23,6 +23,12 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 // Topics for users.
+#[cfg(feature = "zarr")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "pictures and comparisons need not have the same bits on every machine"
+)]
+pub mod compare;
 pub mod design;
 #[cfg(feature = "fit")]
 pub mod fit;

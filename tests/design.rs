@@ -1,10 +1,10 @@
 //! The values that make a whisker detach where it should: known ones come back, none is missed, none is made up.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::design::{Design, DesignError, DesignTarget, design};
+use whiskmap::design::{Design, DesignError, DesignGoal, DesignTarget, design};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene};
-use whiskmap::trace::{Detachment, DetachmentKind, curve};
+use whiskmap::trace::{Branch, BranchPoint, Detachment, DetachmentKind, curve};
 
 fn robot() -> Scene {
     Scene::parse(include_str!("../scenes/robot.toml"), "robot.toml").unwrap()
@@ -39,11 +39,15 @@ fn end(scene: &Scene, distance_mm: f64, side: Side) -> Detachment {
 }
 
 fn target(distance_mm: f64, side: Side, kind: DetachmentKind, push_angle_deg: f64) -> DesignTarget {
+    let goal = match kind {
+        DetachmentKind::PullOff => DesignGoal::PullOff,
+        _ => DesignGoal::SlipOff,
+    };
     DesignTarget {
         distance_mm,
         side,
-        kind,
-        push_angle_deg,
+        goal,
+        value: push_angle_deg,
     }
 }
 
@@ -52,8 +56,8 @@ fn assert_sound(scene: &Scene, parameter: Parameter, target: &DesignTarget, desi
     for value in &design.values {
         let moved = scene.with_parameters(&[(parameter, *value)]).unwrap();
         let end = end(&moved, target.distance_mm, target.side);
-        assert_eq!(end.kind, target.kind, "{parameter:?} {value}");
-        let miss = (end.push_angle_deg.unwrap() - target.push_angle_deg).abs();
+        assert_eq!(Some(end.kind), target.goal.kind(), "{parameter:?} {value}");
+        let miss = (end.push_angle_deg.unwrap() - target.value).abs();
         assert!(miss <= 1e-9, "{parameter:?} {value}: {miss}");
     }
 }
@@ -139,10 +143,10 @@ fn kinds_are_told_apart() {
     let far = ask(DetachmentKind::SlipOff, 1.0);
     assert_eq!(far.values, [0.0; 0]);
     assert_eq!(far.range, [0.0, 1.0]);
-    let [least, corner] = far.reached_deg(DetachmentKind::SlipOff).unwrap();
-    let [same, most] = far.reached_deg(DetachmentKind::PullOff).unwrap();
+    let [least, corner] = far.reached(DetachmentKind::SlipOff).unwrap();
+    let [same, most] = far.reached(DetachmentKind::PullOff).unwrap();
     assert!(least < corner && same < most && (same - corner).abs() < 1e-9);
-    assert_eq!(far.reached_deg(DetachmentKind::OutOfReach), None);
+    assert_eq!(far.reached(DetachmentKind::OutOfReach), None);
     // On both sides of the corner, far within one step of the scan.
     for away in [1e-7, 0.1] {
         assert_eq!(ask(DetachmentKind::SlipOff, corner - away).values.len(), 1);
@@ -233,7 +237,61 @@ fn a_number_that_does_not_matter_has_no_solution() {
         let target = target(60.0, Side::Cb, DetachmentKind::SlipOff, push);
         let design = design(&scene, Parameter::YoungsModulusGpa, &target).unwrap();
         assert_eq!(design.values, [0.0; 0]);
-        let [low, high] = design.reached_deg(DetachmentKind::SlipOff).unwrap();
+        let [low, high] = design.reached(DetachmentKind::SlipOff).unwrap();
         assert!(high - low < 1e-9);
     }
+}
+
+/// With each solution, the largest load of a push is the target: over 2,000 states of its branch none is larger, and one is almost as large.
+/// A load of any kind grows with the size of a whisker of fixed shape, so that the scene's own value comes back.
+#[test]
+fn the_largest_load_of_a_push_reaches_the_target() {
+    type Load = fn(&BranchPoint) -> f64;
+    let goals: [(DesignGoal, Load); 3] = [
+        (DesignGoal::MaxForce, |point| point.force_un),
+        (DesignGoal::MaxMoment, |point| point.base_moment_nnm.abs()),
+        (DesignGoal::MaxStrain, |point| point.peak_strain),
+    ];
+    let cylinder = include_str!("../scenes/cylinder.toml");
+    let cylinder = Scene::parse(cylinder, "cylinder.toml").unwrap();
+    let mut before_the_end = 0;
+    for (scene, distance_mm, side) in [
+        (&robot(), 60.0, Side::Cb),
+        (&robot(), 95.0, Side::Cb),
+        (&cylinder, 6.0, Side::Cf),
+    ] {
+        for (goal, load) in goals {
+            let most = |scene: &Scene| {
+                let branch = Branch::new(&scene.whisker, &scene.pole, side, distance_mm).unwrap();
+                let points = branch.points(4000).unwrap();
+                let stable: Vec<f64> = points.iter().filter(|p| p.stable).map(load).collect();
+                let most = stable.iter().copied().fold(0.0, f64::max);
+                (most, most > stable[stable.len() - 1])
+            };
+            let (value, is_before) = most(scene);
+            before_the_end += u32::from(is_before);
+            let target = DesignTarget {
+                distance_mm,
+                side,
+                goal,
+                value,
+            };
+            let parameter = Parameter::BaseRadiusUm;
+            let design = design(scene, parameter, &target).unwrap();
+            let own = parameter.value(scene).unwrap();
+            let off = design.values.iter().map(|value| (value / own - 1.0).abs());
+            let off = off.fold(f64::INFINITY, f64::min);
+            let values = &design.values;
+            assert!(off < 2e-6, "{goal:?} {side:?} at {distance_mm}: {values:?}");
+            for found in &design.values {
+                let (reached, _) = most(&scene.with(parameter, *found).unwrap());
+                let off = reached / value - 1.0;
+                assert!(
+                    (-1e-5..2e-6).contains(&off),
+                    "{goal:?} {found}: {reached} {value}"
+                );
+            }
+        }
+    }
+    assert!(before_the_end >= 4, "{before_the_end}");
 }

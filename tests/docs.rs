@@ -102,6 +102,51 @@ fn every_column_is_on_the_page_of_the_commands() {
     }
 }
 
+/// Returns the number of cells of a row of a table; pipes in cells are escaped.
+fn cells(row: &str) -> usize {
+    row.replace("\\|", "")
+        .matches('|')
+        .count()
+        .saturating_sub(1)
+}
+
+/// A table has a blank line before it, a second line of dashes, and equally many cells in each row.
+#[test]
+fn tables_are_complete() {
+    let mut tables = 0;
+    for (page, text) in pages() {
+        let lines: Vec<&str> = text.lines().collect();
+        let is_row = |line: &&str| line.starts_with('|');
+        let mut number = 0;
+        while number < lines.len() {
+            let rows: Vec<&str> = lines[number..].iter().copied().take_while(is_row).collect();
+            if rows.is_empty() {
+                number += 1;
+                continue;
+            }
+            let place = format!("{}:{}", page.display(), number + 1);
+            let before = number.checked_sub(1).map_or("", |before| lines[before]);
+            assert!(before.is_empty(), "{place}: no blank line before the table");
+            let is_rule = |row: &&str| row.chars().all(|c| "|-: ".contains(c));
+            let rules: Vec<_> = rows
+                .iter()
+                .enumerate()
+                .filter(|(_, row)| is_rule(row))
+                .collect();
+            assert!(matches!(rules[..], [(1, _)]), "{place}: no line of dashes");
+            for row in &rows {
+                assert!(
+                    row.ends_with('|') && cells(row) == cells(rows[0]),
+                    "{place}: {row}"
+                );
+            }
+            tables += 1;
+            number += rows.len();
+        }
+    }
+    assert!(tables > 20, "only {tables} tables found");
+}
+
 /// Returns the anchor of a heading, as GitHub forms it.
 fn anchor(heading: &str) -> String {
     let heading = heading.trim_start_matches('#').trim().to_lowercase();

@@ -72,7 +72,7 @@ fn friction_takes_energy_only_toward_the_tip() {
                     counts[usize::from(sliding == Sliding::Base)] += 1;
                     let state = branch.state(push, true).unwrap();
                     assert_eq!(
-                        WhiskerShape::new(&branch, &state, 2).sliding,
+                        WhiskerShape::new(&branch, &state, 2).state.sliding,
                         Some(sliding),
                         "{case}"
                     );
@@ -239,7 +239,7 @@ fn cells_that_slide_toward_the_base_are_marked() {
             let side = Side::of_push(*push);
             let branch = Branch::new(&scene.whisker, &scene.pole, side, *distance).unwrap();
             let state = branch.state(push.to_radians(), true).unwrap();
-            let sliding = WhiskerShape::new(&branch, &state, 2).sliding;
+            let sliding = WhiskerShape::new(&branch, &state, 2).state.sliding;
             assert_eq!(sliding == Some(Sliding::Base), slides, "{distance} {push}");
             assert_eq!(
                 sliding == Some(Sliding::Sticks),

@@ -223,3 +223,60 @@ fn what_cannot_be_drawn_is_refused() {
         "{said}"
     );
 }
+
+/// Loads are proportional to the fourth power of the radii, and the push angle does not depend on them. The tip's cone matters to pull-offs
+/// alone.
+#[test]
+fn measured_radii_spread_loads_by_their_factor_and_pull_offs_by_their_tip() {
+    let spread = |uncertainty: &str| {
+        let text = format!(
+            "
+            title = 'measured'
+            [whisker]
+            length_mm = 18.5
+            youngs_modulus_gpa = 3
+            curvature = {{ parabola_per_mm = 0.02 }}
+            [whisker.profile]
+            rows = [[0, 30], [9, 21], [18.5, 11.5]]
+            profile_scale = 1
+            tip_extension_mm = 1.6
+            [grid]
+            push_angle_deg = [10]
+            distance_mm = [10, 19.2]
+            [uncertainty]
+            {uncertainty}"
+        );
+        let rows = spreads(&Scene::parse(&text, "measured.toml").unwrap(), 2_000, 1);
+        [rows[2], rows[3]]
+    };
+    for row in spread("profile_scale = 1e-3") {
+        assert!(row.sd_deg.unwrap() < 1e-9, "{row:?}");
+        let force = row.force_un.unwrap();
+        // Sampling leaves 1.6 % of the deviation (1/sqrt(2n)), as above.
+        let loads = [
+            (force, row.force_mean_un, row.force_sd_un, row.force_p95_un),
+            (
+                row.moment_nnm.unwrap(),
+                row.moment_mean_nnm,
+                row.moment_sd_nnm,
+                row.moment_p95_nnm,
+            ),
+        ];
+        for (own, mean, sd, p95) in loads {
+            let part = sd.unwrap() / own.abs();
+            assert!((part / 4e-3 - 1.0).abs() < 0.05, "{row:?}");
+            assert!((mean.unwrap() / own - 1.0).abs() < 4e-4, "{row:?}");
+            let wide = (p95.unwrap() - own) / (1.644_854 * sd.unwrap());
+            assert!((wide - 1.0).abs() < 0.1, "{row:?}");
+        }
+    }
+    let [near, far] = spread("tip_extension_mm = 1e-3");
+    assert_eq!(
+        [near.slip_off, far.pull_off],
+        [2_000; 2],
+        "{near:?} {far:?}"
+    );
+    assert!(near.sd_deg.unwrap() < 1e-9, "{near:?}");
+    let [sd, foretold] = [far.sd_deg, far.sd_first_order_deg].map(Option::unwrap);
+    assert!(sd > 1e-4 && (sd / foretold - 1.0).abs() < 0.06, "{far:?}");
+}

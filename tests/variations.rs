@@ -240,6 +240,7 @@ const NO_UNITS: Units = Units {
     length_mm: 1.0,
     force_un: 1.0,
     moment_nnm: 1.0,
+    strain: 1.0,
 };
 
 /// Between base points the Taylor polynomials of a row give the contact of each cell, on lattices and along continued rows.

@@ -2,7 +2,10 @@
 //!
 //! Newton's method adds its largest residual, whose angle is largest at the nearest pole.
 
+mod engine;
 mod sample;
+
+pub use engine::{excess_deg, spectral};
 
 use crate::refine::GOAL;
 use crate::rod::Side;
@@ -59,13 +62,4 @@ pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
     let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
     let longest = lengths.fold(0.0, f64::max);
     (goal * longest / nearest).to_degrees()
-}
-
-/// Largest bound on the residual of the spectral engine, in whisker lengths. Most of the first patches keep it, so a larger one saves nothing.
-const LARGEST_BOUND: f64 = 1e-5;
-
-/// Returns the bound on the residual of the spectral engine, in whisker lengths, with which push angles are within `tolerance_deg`.
-#[must_use]
-pub fn spectral_bound(scene: &Scene, tolerance_deg: f64) -> f64 {
-    (tolerance_deg / bound_deg(scene, 1.0)).min(LARGEST_BOUND)
 }

@@ -6,15 +6,17 @@ use super::files::Files;
 use super::outputs::OutputArgs;
 use super::pole::{self, PolesArgs, refuse, title};
 use clap::{Args, ValueEnum};
-use whiskmap::render::{BranchAxis, Ink, Note, Plot, branches};
+use whiskmap::render::{BranchAxis, DrawnBranch, Ink, PUSH_ANGLE, Plot, branches, regions};
 use whiskmap::rod::Side;
-use whiskmap::trace::{Branch, BranchMark, BranchPoint};
+use whiskmap::scene::Scene;
+use whiskmap::trace::{Branch, BranchPoint};
 
 const EXAMPLES: &str = "\
 Examples:
   whiskmap branch scenes/cone.toml --distance 15.66 | less
   whiskmap branch scenes/cone.toml --distance 15.66 --side cb --csv branch.csv --plot branch.png
   whiskmap branch scenes/cone.toml --distance 10,13,15.66 --y force_un --plot force.svg
+  whiskmap branch scenes/cone.toml --distance 15.66 --y force_un --whole --plot force.pdf --size 85mm
 
 Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: first-touch) on. \
 Stable states end where they meet the unstable ones (slip-off), or with the tip at the pole (pull-off). Unstable states end \
@@ -42,6 +44,9 @@ pub struct BranchArgs {
         default_value = "arc_length_mm"
     )]
     y: BranchColumn,
+    /// Show unstable states whole; otherwise the vertical axis of a force or a moment ends with the stable states
+    #[arg(long, requires = "plot")]
+    whole: bool,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -71,22 +76,27 @@ enum BranchColumn {
 }
 
 impl BranchColumn {
+    /// Returns true for a load, which grows far beyond the stable states.
+    const fn is_load(self) -> bool {
+        matches!(self, Self::ForceUn | Self::BaseMomentNnm)
+    }
+
     fn axis(self) -> BranchAxis {
         match self {
             Self::ForceUn => BranchAxis {
-                label: "force (\u{b5}N)",
+                label: "contact force (\u{b5}N)",
                 value: |point| point.force_un,
             },
             Self::BaseMomentNnm => BranchAxis {
-                label: "moment at the base (nN m)",
+                label: "bending moment at the base (nN m)",
                 value: |point| point.base_moment_nnm,
             },
             Self::ContactAngleDeg => BranchAxis {
-                label: "contact angle from the base's tangent (deg)",
+                label: "contact angle (deg)",
                 value: |point| point.contact_angle_deg,
             },
             Self::ArcLengthMm => BranchAxis {
-                label: "arc length of contact (mm)",
+                label: "arc length from base to contact (mm)",
                 value: |point| point.arc_length_mm,
             },
         }
@@ -94,7 +104,7 @@ impl BranchColumn {
 }
 
 const PUSH: BranchAxis = BranchAxis {
-    label: "push angle (deg)   CF < 0 < CB",
+    label: PUSH_ANGLE,
     value: |point| point.push_angle_deg,
 };
 
@@ -116,21 +126,36 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
         }
     }
     outputs.rows(&points)?;
-    outputs.finish(title(&scene, distances), || {
-        plot(&points, args.y.axis(), distances.len() > 1)
-    })
+    outputs.finish(title(&scene, distances), || plot(&scene, &points, args))
 }
 
-/// Plots branches; with several poles, labels each detachment with its distance.
-fn plot(points: &[BranchPoint], y: BranchAxis, has_distances: bool) -> Plot {
-    let mut plot = branches("", &[(Ink::Black, points)], [PUSH, y]);
-    let is_end = |point: &&BranchPoint| {
-        matches!(point.mark, Some(BranchMark::SlipOff | BranchMark::PullOff))
+/// Plots branches, those of several poles in their own colours.
+fn plot(scene: &Scene, points: &[BranchPoint], args: &BranchArgs) -> Plot {
+    let y = args.y.axis();
+    let at_poles = points.chunk_by(|a, b| a.distance_mm == b.distance_mm);
+    let at_poles: Vec<_> = at_poles.collect();
+    let named: Vec<_> = match &at_poles[..] {
+        [only] => vec![(Ink::Black, "stable".to_owned(), *only)],
+        poles => {
+            let name = |points: &[BranchPoint]| format!("{} mm, stable", points[0].distance_mm);
+            let poles = poles.iter().enumerate();
+            poles
+                .map(|(index, points)| (Ink::Series(index), name(points), *points))
+                .collect()
+        }
     };
-    let ends = points.iter().filter(is_end).filter(|_| has_distances);
-    plot.notes.extend(ends.map(|end| {
-        let at = [end.push_angle_deg, (y.value)(end)];
-        Note::text(at, format!("{} mm", end.distance_mm))
-    }));
-    plot
+    let drawn = named.iter().map(|(ink, name, points)| DrawnBranch {
+        points,
+        ink: *ink,
+        name,
+    });
+    let stable = points.iter().filter(|point| point.stable).map(y.value);
+    let ends = stable.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [value.min(low), value.max(high)]
+    });
+    Plot {
+        regions: Some(regions(scene.is_straight())),
+        y_range: (args.y.is_load() && !args.whole).then_some(ends),
+        ..branches("", &drawn.collect::<Vec<_>>(), [PUSH, y])
+    }
 }

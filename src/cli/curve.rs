@@ -7,37 +7,44 @@ use super::files::Files;
 use super::outputs::{OpenOutputs, OutputArgs};
 use super::pole::check_single;
 use super::progress::Progress;
+use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{ComparedPoint, MeasuredAngle};
-use whiskmap::render::{CurveAxis, DrawnCurve, Plot, Stroke, curves, measured};
+use whiskmap::render::{
+    CurveAxis, DISTANCE, DrawnCurve, Plot, Stroke, bands, curves, error_bars, measured, regions,
+};
 use whiskmap::rod::Side;
-use whiskmap::scene::{Scene, SweepPlace, SweptWhisker};
+use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
-use whiskmap::uncertainty::EndSpread;
+use whiskmap::uncertainty::{Draws, EndSpread};
 
 const EXAMPLES: &str = "\
 Examples:
   whiskmap curve scenes/cone.toml | head
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
+  whiskmap curve scenes/robot.toml --units mN,Nmm | head
   whiskmap curve scenes/cone.toml --corner
+  whiskmap curve scenes/morphology.toml --at taper=0.95 --at curvature_per_mm=0.02 --plot curve.svg
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --x force_un --plot forces.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --data points.csv --plot beside.svg
 
 The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
 Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \
 sweep axes, such as grid.taper, the table has the curve of every whisker, with a leading column for each axis. A plot shows \
-one whisker.
+one whisker, which --at selects.
 
 With --data, the table has measured points instead of the curve. They are read from a CSV file with the columns side (cb or \
 cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) and sd_deg. The plot \
-shows them on the curve, slip-offs as open circles and pull-offs as filled ones. Their RMS and bias are printed on standard \
-error.
+shows them on the curve, slip-offs as open circles and pull-offs as filled ones, with error bars of one standard deviation. \
+Their RMS and bias are printed on standard error. With --samples, the plot shows the bands, too.
 
 With --samples, whiskers are drawn from the standard deviations in the scene's [uncertainty], independently and with normal \
 distributions. A draw outside the limits of the scene is repeated; standard error gives the number of such draws. \
@@ -59,8 +66,19 @@ pub struct CurveArgs {
     #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples"])]
     corner: bool,
     /// Compare the measured detachments in FILE with the curve; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance", "samples"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance"])]
     data: Option<PathBuf>,
+    /// Column on the horizontal axis of the plot
+    #[arg(
+        long,
+        value_name = "COLUMN",
+        value_enum,
+        default_value = "push_angle_deg",
+        conflicts_with = "data"
+    )]
+    x: CurveColumn,
+    #[command(flatten)]
+    selection: SelectionArgs,
     #[command(flatten)]
     sampling: SampleArgs,
     #[command(flatten)]
@@ -73,29 +91,40 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(data) = &args.data {
         data::check_stdin(&args.scene, data)?;
     }
-    let scene = files.scene(&args.scene)?;
+    let scene = args.selection.of_scene(&files.scene(&args.scene)?)?;
     let whiskers = scene.whisker_count();
     if args.outputs.has_plot() && whiskers > 1 {
-        let keys = scene.grid.sweep.iter();
-        let keys = keys.map(|axis| axis.parameter.axis_key());
-        let keys = keys.collect::<Vec<_>>().join(", ");
+        let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
+        let (keys, values): (Vec<_>, Vec<_>) = axes
+            .map(|axis| {
+                let value = digits(axis.values[axis.values.len() / 2]);
+                let at = format!("--at {}={value}", axis.parameter.axis());
+                (axis.parameter.axis_key(), at)
+            })
+            .unzip();
         return Err(Failure::Input(format!(
-            "--plot: the scene sweeps {whiskers} whiskers over {keys}; a plot shows one"
+            "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows one: choose it, such as by {}",
+            keys.join(", "),
+            values.join(" ")
         )));
     }
-    if let Some(path) = &args.data {
-        return compare(args, &scene, path, files);
-    }
     let draws = args.sampling.draw(&scene)?;
+    if let Some(path) = &args.data {
+        return compare(args, &scene, draws.as_ref(), path, files);
+    }
     let mut outputs = args.outputs.open(files)?;
     let accuracy = args.tolerance.find(&scene, &Side::BOTH)?;
     args.tolerance.report(accuracy);
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {
-        let curve = || scene_curve(&scene, resolution, AXES);
-        return uncertainty::run(&scene, &draws, resolution, outputs, curve);
+        let rows = uncertainty::spread(&draws, resolution);
+        outputs.rows(&rows)?;
+        outputs.finish(scene.title.clone(), || Plot {
+            bands: bands(&rows, args.x.percentiles()),
+            ..scene_curve(&scene, resolution, args.x.axis())
+        })?;
+        return uncertainty::check(&rows, &draws);
     }
-    let mut drawn = Vec::new();
     let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
     let of_side = if args.corner { 1 } else { distances.len() };
@@ -122,12 +151,11 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
         all += rows.len() as u64;
-        if args.outputs.has_plot() {
-            drawn.extend(rows.into_iter().map(|(_, row)| row));
-        }
     }
     bar.finish();
-    outputs.finish(scene.title.clone(), || plot(&drawn, AXES))?;
+    outputs.finish(scene.title.clone(), || {
+        scene_curve(&scene, resolution, args.x.axis())
+    })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
@@ -144,26 +172,47 @@ fn write<R: Serialize>(
     }
 }
 
-/// Compares the measured points of the file at `path` with the curve.
-fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> Result<(), Failure> {
+/// Compares the measured points of the file at `path` with the curve. The plot has the bands of `draws`, too.
+fn compare(
+    args: &CurveArgs,
+    scene: &Scene,
+    draws: Option<&Draws>,
+    path: &Path,
+    files: &mut Files,
+) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
     let points = data::read(files, path)?;
     let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
+    if draws.is_some() && !args.outputs.has_plot() {
+        let must =
+            "--samples: with --data, bands are in the plot alone; give --plot, or leave out --data";
+        return Err(Failure::Input(must.to_owned()));
+    }
+    if draws.is_some() && points.angle == MeasuredAngle::Chord {
+        let origin = &points.origin;
+        let must = format!(
+            "--samples: bands are of push angles, and {origin} has push_chord_deg; give push_angle_deg"
+        );
+        return Err(Failure::Input(must));
+    }
     let mut outputs = args.outputs.open(files)?;
     let comparison = points.beside(&whisker, &pole);
     data::name_left_out(&points, &comparison);
     let rows = &comparison.rows;
     outputs.rows(rows)?;
+    let spread = draws.map(|draws| uncertainty::spread(draws, Resolution::FINE));
+    let spread = spread.unwrap_or_default();
     outputs.finish(scene.title.clone(), || {
-        let axes = match points.angle {
-            MeasuredAngle::Push => AXES,
-            MeasuredAngle::Chord => [AXES[0], CHORD],
+        let x = match points.angle {
+            MeasuredAngle::Push => CurveColumn::PushAngleDeg.axis(),
+            MeasuredAngle::Chord => CHORD,
         };
-        Plot {
-            dots: measured(rows),
-            ..scene_curve(scene, Resolution::FINE, axes)
-        }
+        let mut plot = scene_curve(scene, Resolution::FINE, x);
+        plot.bands = bands(&spread, CurveColumn::PushAngleDeg.percentiles());
+        plot.lines.extend(error_bars(rows));
+        plot.dots = measured(rows);
+        plot
     })?;
     if comparison.count() == 0 {
         return Err(Failure::Unresolved {
@@ -178,38 +227,104 @@ fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> R
     Ok(())
 }
 
-/// Plots the detachment curve of the scene's first whisker.
-fn scene_curve(scene: &Scene, resolution: Resolution, axes: [CurveAxis; 2]) -> Plot {
-    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    let distances = &scene.grid.distance_mm;
-    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, distances);
-    let ends: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
-    plot(&ends, axes)
-}
+/// Rows between the farthest distance of the grid and the reach of the whisker; push angles grow like a root near the reach.
+const AT_TIP: usize = 16;
 
-fn plot(rows: &[Detachment], axes: [CurveAxis; 2]) -> Plot {
-    let ends = DrawnCurve {
-        rows,
+/// Plots the detachment curve of the scene's first whisker. Where the grid goes as far as the tip, the curve does so too.
+fn scene_curve(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot {
+    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
+    let reach_mm = trace::reach_mm(&whisker, &pole, Side::Cb);
+    let grid = scene.grid.distance_mm.iter().copied();
+    let mut distances: Vec<f64> = grid
+        .clone()
+        .filter(|distance| *distance < reach_mm)
+        .collect();
+    if grid.last() >= Some(reach_mm) {
+        let last = distances.last().copied().unwrap_or_default();
+        let near = |step: usize| {
+            let left = 1.0 - step as f64 / AT_TIP as f64;
+            reach_mm - left * left * (reach_mm - last)
+        };
+        distances.extend((1..=AT_TIP).map(near));
+    }
+    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, &distances);
+    let rows: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
+    let drawn = DrawnCurve {
+        rows: &rows,
+        reach_mm,
         stroke: Stroke::Solid,
         name: "",
     };
-    curves("", &[ends], axes)
+    Plot {
+        regions: Some(regions(scene.is_straight())),
+        ..curves("", &[drawn], [x, UPWARD])
+    }
 }
 
-/// Horizontal and vertical axis of a plot.
-const AXES: [CurveAxis; 2] = [
-    CurveAxis {
-        label: "distance at first touch (mm)",
-        value: |end| Some(end.distance_mm),
-    },
-    CurveAxis {
-        label: "push angle at detachment (deg)   CF < 0 < CB",
-        value: |end| end.push_angle_deg,
-    },
-];
+/// Columns that a plot can show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum CurveColumn {
+    /// Push angle at detachment
+    PushAngleDeg,
+    /// Size of the force at detachment
+    ForceUn,
+    /// Moment at the base at detachment
+    BaseMomentNnm,
+}
 
-/// Vertical axis for measured chord angles.
+impl CurveColumn {
+    const fn axis(self) -> CurveAxis {
+        match self {
+            Self::PushAngleDeg => CurveAxis {
+                label: "push angle at detachment (deg)",
+                value: |end| end.push_angle_deg,
+            },
+            // The sign keeps the sides apart.
+            Self::ForceUn => CurveAxis {
+                label: "force at detachment (\u{b5}N)",
+                value: |end| Some(end.side.sign() * end.force_un?),
+            },
+            Self::BaseMomentNnm => CurveAxis {
+                label: "moment at the base at detachment (nN m)",
+                value: |end| end.base_moment_nnm,
+            },
+        }
+    }
+
+    /// The percentiles 5, 25, 75 and 95 of samples.
+    const fn percentiles(self) -> fn(&EndSpread) -> [Option<f64>; 4] {
+        match self {
+            Self::PushAngleDeg => |row| [row.p5_deg, row.p25_deg, row.p75_deg, row.p95_deg],
+            Self::ForceUn => |row| {
+                let ends = [
+                    row.force_p5_un,
+                    row.force_p25_un,
+                    row.force_p75_un,
+                    row.force_p95_un,
+                ];
+                ends.map(|end| Some(row.side.sign() * end?))
+            },
+            Self::BaseMomentNnm => |row| {
+                [
+                    row.moment_p5_nnm,
+                    row.moment_p25_nnm,
+                    row.moment_p75_nnm,
+                    row.moment_p95_nnm,
+                ]
+            },
+        }
+    }
+}
+
+/// Vertical axis of a plot.
+const UPWARD: CurveAxis = CurveAxis {
+    label: DISTANCE,
+    value: |end| Some(end.distance_mm),
+};
+
+/// Horizontal axis for measured chord angles.
 const CHORD: CurveAxis = CurveAxis {
-    label: "chord angle at detachment (deg)   CF < 0 < CB",
+    label: "chord angle at detachment (deg)",
     value: |end| end.push_chord_deg,
 };

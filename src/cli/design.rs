@@ -2,16 +2,17 @@
 
 use super::arguments::{angle, parameter, side};
 use super::failure::Failure;
-use super::files::Files;
-use super::outputs::open;
+use super::files::{Files, STDOUT};
+use super::outputs::{PlotArgs, open};
 use super::pole::{self, PoleArgs, title};
 use clap::Args;
 use std::io::{self, Write};
-use std::path::PathBuf;
-use whiskmap::design::{self, Design, DesignError, DesignTarget};
+use std::path::{Path, PathBuf};
+use whiskmap::design::{self, Design, DesignError, DesignGoal, DesignTarget};
+use whiskmap::input::Quantity;
 use whiskmap::render::designs;
 use whiskmap::rod::Side;
-use whiskmap::scene::{Parameter, digits};
+use whiskmap::scene::{Parameter, Scene, digits};
 use whiskmap::trace::DetachmentKind;
 
 #[derive(Debug, Args)]
@@ -19,13 +20,19 @@ use whiskmap::trace::DetachmentKind;
 Examples:
   whiskmap design scenes/robot.toml --distance 60 --side cb --slip-off 30deg --for taper --plot taper.svg
   whiskmap design scenes/robot.toml --distance 60 --slip-off -50deg --for parabola_per_mm
+  whiskmap design scenes/robot.toml --distance 60 --side cb --max-force 60mN --for base_radius_um -o better.toml
+  whiskmap design scenes/robot.toml --distance 60 --side cb --max-strain 0.01 --for taper
   whiskmap design scenes/cylinder.toml --distance 19 --pull-off 40deg --for length_mm
 
-Each line is one value that makes the whisker detach at that angle, with a relative error of 1e-9; where two solutions nearly \
-merge, with the root of the rounding error. The search covers the whole range that the scene accepts with 128 values; in a \
-wide range, half of them are spaced logarithmically. A pair of solutions between two of these values is found if the push \
-angle turns back only once there. Without any solution the exit code is 1, and standard error gives the possible push \
-angles. The scene's grid is ignored.")]
+Each line is one value with which a push reaches the target. --max-force, --max-moment and --max-strain are the largest values of \
+the push, from first touch until the whisker detaches in either way: of the contact force, the moment at the base, and the \
+bending strain at the surface of the whisker.
+
+Values for push angles have 10 significant digits and a relative error of 1e-9; where two solutions nearly merge, that of the \
+root of the rounding error. Values for loads have 6 digits. The search covers the whole range that the scene accepts with 128 \
+values; in a wide range, half of them are spaced logarithmically. A pair of solutions between two of these values is found if \
+the target's quantity turns back only once there. Without any solution the exit code is 1, and standard error gives what is \
+possible. The scene's grid is ignored.")]
 pub struct DesignArgs {
     #[command(flatten)]
     pole: PoleArgs,
@@ -33,24 +40,35 @@ pub struct DesignArgs {
     #[arg(long, value_parser = side())]
     side: Option<Side>,
     #[command(flatten)]
-    end: EndArgs,
+    goal: GoalArgs,
     /// Parameter of the scene to vary
     #[arg(long = "for", value_name = "NAME", value_parser = parameter())]
     parameter: Parameter,
-    /// Plot the push angle against the parameter to FILE; the ending selects PNG or SVG
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    /// Write the scene with the value to BETTER.toml; with several values, the one nearest to the scene's own; - is standard output
+    #[arg(short, long, value_name = "BETTER.toml")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PlotArgs,
 }
 
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
-struct EndArgs {
+struct GoalArgs {
     /// Push angle of the slip-off, such as 30deg, 30°, 30 or 0.5rad: positive CB, negative CF
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = push)]
     slip_off: Option<f64>,
     /// Push angle of the pull-off
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = push)]
     pull_off: Option<f64>,
+    /// Largest contact force of the push, such as 60mN, 60000uN or 60000
+    #[arg(long, value_name = "FORCE", allow_hyphen_values = true, requires = "side", value_parser = load(Quantity::ForceUn))]
+    max_force: Option<f64>,
+    /// Largest moment at the base in the push, such as 250nNm, 250 or 0.25uNm
+    #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, requires = "side", value_parser = load(Quantity::MomentNnm))]
+    max_moment: Option<f64>,
+    /// Largest bending strain of the push, such as 0.01
+    #[arg(long, value_name = "STRAIN", allow_hyphen_values = true, requires = "side", value_parser = load(Quantity::Number))]
+    max_strain: Option<f64>,
 }
 
 fn push(text: &str) -> Result<f64, String> {
@@ -62,29 +80,46 @@ fn push(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Returns a parser of a load of this quantity.
+fn load(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match quantity.parse(text)? {
+        load if load > 0.0 => Ok(load),
+        _ => Err("must be more than 0".to_owned()),
+    }
+}
+
 impl DesignArgs {
     fn target(&self) -> Result<DesignTarget, Failure> {
-        let (option, kind, push) = match (self.end.slip_off, self.end.pull_off) {
-            (Some(push), _) => ("--slip-off", DetachmentKind::SlipOff, Some(push)),
-            (None, push) => ("--pull-off", DetachmentKind::PullOff, push),
+        let goals = [
+            ("--slip-off", DesignGoal::SlipOff, self.goal.slip_off),
+            ("--pull-off", DesignGoal::PullOff, self.goal.pull_off),
+            ("--max-force", DesignGoal::MaxForce, self.goal.max_force),
+            ("--max-moment", DesignGoal::MaxMoment, self.goal.max_moment),
+            ("--max-strain", DesignGoal::MaxStrain, self.goal.max_strain),
+        ];
+        let mut given = goals
+            .iter()
+            .filter_map(|(option, goal, value)| Some((*option, *goal, (*value)?)));
+        let (option, goal, value) = given.next().unwrap_or(("", DesignGoal::SlipOff, f64::NAN));
+        let side = match (goal.kind(), self.side) {
+            (None, Some(side)) => side,
+            _ => Side::of_push(value),
         };
-        let push_angle_deg = push.unwrap_or(f64::NAN);
-        let side = Side::of_push(push_angle_deg);
         let other = match (self.side, side) {
             (Some(Side::Cf), Side::Cb) => Some("--side cf must be negative"),
             (Some(Side::Cb), Side::Cf) => Some("--side cb must be positive"),
             _ => None,
         };
         if let Some(must) = other {
-            let push = digits(push_angle_deg);
+            let push = digits(value);
             let why = format!("{option} {push} deg: a push angle of {must}");
             return Err(Failure::Input(why));
         }
         Ok(DesignTarget {
             distance_mm: self.pole.distance,
             side,
-            kind,
-            push_angle_deg,
+            goal,
+            value,
         })
     }
 }
@@ -93,53 +128,109 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let target = args.target()?;
     let (path, distance) = (&args.pole.scene, args.pole.distance);
     let (scene, _) = pole::read(files, path, "design", &[distance])?;
-    let (_, picture) = open(files, "--plot", None, args.plot.as_deref())?;
-    let found = design::design(&scene, args.parameter, &target);
-    let found = found.map_err(|why| match why {
+    let output = args.output.as_deref();
+    let (better, picture) = open(files, "--output", output, &args.picture)?;
+    let refused = |why| match why {
         DesignError::Sweep(_) => Failure::Input(why.to_string()),
         DesignError::Distance(why) => Failure::Scene(why),
         _ => Failure::Input(format!("{}: --for {why}", path.display())),
-    })?;
+    };
+    let found = design::design(&scene, args.parameter, &target).map_err(refused)?;
     if let Some(picture) = picture {
-        let plot = designs(args.parameter, &target, &found);
+        let shown = found.shown();
+        let near = Design {
+            range: shown,
+            ends: design::ends_between(&scene, args.parameter, &target, shown).map_err(refused)?,
+            values: found.values.clone(),
+        };
+        let plot = designs(args.parameter, &target, &near);
         picture.plot(title(&scene, &[distance]), plot)?;
     }
     if found.values.is_empty() {
         let why = unreached(args.parameter, &target, &found);
         return Err(Failure::NoValue(why));
     }
+    let digits_of_goal = target.goal.digits();
+    let values = found.values.iter();
+    let values = values.map(|value| written(&scene, args.parameter, *value, digits_of_goal));
+    let values: Vec<f64> = values.collect();
+    if let Some(file) = better {
+        let own = args.parameter.value(&scene).unwrap_or(f64::NAN);
+        let apart = |value: &f64| (value - own).abs();
+        let nearest = values.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let changes = nearest.map(|value| match args.parameter {
+            // The scene gives the radius, which has no more digits than the taper.
+            Parameter::Taper => {
+                let radius = scene.whisker.base_radius_um * (1.0 - value);
+                let radius = written(&scene, Parameter::TipRadiusUm, radius, digits_of_goal);
+                (Parameter::TipRadiusUm, radius)
+            }
+            own => (own, *value),
+        });
+        file.write(scene.to_toml_with(changes.as_slice())?.as_bytes())?;
+        if output == Some(Path::new(STDOUT)) {
+            return Ok(());
+        }
+    }
     let mut out = io::stdout().lock();
-    for value in &found.values {
-        writeln!(out, "{}", digits(*value))?;
+    for value in values {
+        writeln!(out, "{}", digits(value))?;
     }
     Ok(())
 }
 
-/// Returns the message for a target without a solution, with the push angles that are possible.
+/// Returns a solution with its significant digits, or with all digits if the scene refuses it otherwise, next to a limit.
+fn written(scene: &Scene, parameter: Parameter, value: f64, digits: usize) -> f64 {
+    let short = rounded(value, digits);
+    match scene.with(parameter, short) {
+        Ok(_) => short,
+        Err(_) => value,
+    }
+}
+
+/// Rounds to significant digits.
+fn rounded(value: f64, digits: usize) -> f64 {
+    let text = format!("{value:.*e}", digits - 1);
+    text.parse().unwrap_or(value)
+}
+
+/// Returns the message for a target without a solution, with what is possible.
 fn unreached(parameter: Parameter, target: &DesignTarget, design: &Design) -> String {
     let name = parameter.name();
     let [from, to] = design.range.map(digits);
+    let goal = target.goal;
+    let unit = goal
+        .quantity()
+        .unit()
+        .map_or_else(String::new, |unit| format!(" {unit}"));
+    let wanted = match goal.kind() {
+        Some(DetachmentKind::PullOff) => "pulls the whisker off at".to_owned(),
+        Some(_) => "makes the whisker slip off at".to_owned(),
+        None => format!("gives a {} of", goal.title()),
+    };
+    let number = |value: f64| match goal.kind() {
+        Some(_) => format!("{value:.6}"),
+        None => digits(rounded(value, goal.digits())),
+    };
     let ways = [
         (DetachmentKind::SlipOff, "slips off"),
         (DetachmentKind::PullOff, "is pulled off"),
     ];
     let reached = ways.iter().filter_map(|(kind, way)| {
-        let [low, high] = design.reached_deg(*kind)?;
-        Some(if high - low < 1e-6 {
-            format!("it {way} at {low:.6} deg for every value")
-        } else {
-            format!("it {way} between {low:.6} and {high:.6} deg")
-        })
+        let [low, high] = design.reached(*kind)?.map(number);
+        let between = match goal.kind() {
+            Some(_) if low == high => format!("at {low}{unit} for every value"),
+            Some(_) => format!("between {low} and {high}{unit}"),
+            None if low == high => format!("with {low}{unit} for every value"),
+            None => format!("with {low} to {high}{unit}"),
+        };
+        Some(format!("it {way} {between}"))
     });
     let reached: Vec<_> = reached.collect();
     let reached = match reached.join(", and ") {
         nothing if nothing.is_empty() => "it does not reach the pole".to_owned(),
         reached => reached,
     };
-    let wanted = match target.kind {
-        DetachmentKind::PullOff => "pulls the whisker off",
-        _ => "makes the whisker slip off",
-    };
-    let push = digits(target.push_angle_deg);
-    format!("no {name} between {from} and {to} {wanted} at {push} deg: {reached}")
+    let value = digits(target.value);
+    format!("no {name} between {from} and {to} {wanted} {value}{unit}: {reached}")
 }

@@ -4,9 +4,9 @@ use super::estimate::{compare, estimate};
 use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
 use std::env;
-use whiskmap::accuracy::{bound_deg, spectral_bound};
+use whiskmap::accuracy::{excess_deg, spectral};
 use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
-use whiskmap::engine::{Engine, EngineDescription, EngineError, Spectral, on_gpu};
+use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
 use whiskmap::plan::{ExpansionCount, Plan};
 use whiskmap::refine::GOAL;
 use whiskmap::scene::Scene;
@@ -56,6 +56,49 @@ impl EngineArgs {
         plan: &Plan,
         tolerance_deg: Option<f64>,
     ) -> Result<OpenEngine, Failure> {
+        self.check()?;
+        match self.engine {
+            EngineChoice::Cpu => Ok((None, "selected by --engine".to_owned())),
+            EngineChoice::Spectral => {
+                if plan.method.effects.profile {
+                    message(
+                        "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell",
+                    );
+                }
+                let spectral = spectral(scene, tolerance_deg);
+                Ok((Some(Box::new(spectral)), "selected by --engine".to_owned()))
+            }
+            EngineChoice::Gpu | EngineChoice::Auto => {
+                self.open_gpu_or_auto(scene, plan, tolerance_deg)
+            }
+        }
+    }
+
+    /// Returns the engine whose cost an estimate measures, and why: the one that [`Self::open`] selects if there is no GPU.
+    ///
+    /// # Errors
+    /// If the options contradict each other.
+    pub fn without_gpu(
+        &self,
+        scene: &Scene,
+        plan: &Plan,
+        tolerance_deg: Option<f64>,
+    ) -> Result<OpenEngine, Failure> {
+        self.check()?;
+        let selected = || "selected by --engine".to_owned();
+        Ok(match self.engine {
+            EngineChoice::Auto => {
+                let (engine, _) = without_gpu(scene, plan, tolerance_deg);
+                (engine, expansions(scene, plan))
+            }
+            EngineChoice::Spectral => (Some(Box::new(spectral(scene, tolerance_deg))), selected()),
+            EngineChoice::Cpu => (None, selected()),
+            EngineChoice::Gpu => (None, "in place of the GPU, which is not opened".to_owned()),
+        })
+    }
+
+    /// Returns an error if the options contradict each other.
+    fn check(&self) -> Result<(), Failure> {
         let why = match (self.engine, self.precision, &self.adapter) {
             (EngineChoice::Cpu | EngineChoice::Spectral, Some(Precision::F32), _) => {
                 "--precision f32: the CPU computes in f64; allowed with --engine gpu".to_owned()
@@ -70,19 +113,7 @@ impl EngineArgs {
                     "--adapter {adapter}: the {name} engine has none; allowed with --engine gpu and --engine auto"
                 )
             }
-            (EngineChoice::Cpu, ..) => return Ok((None, "selected by --engine".to_owned())),
-            (EngineChoice::Spectral, ..) => {
-                if plan.method.effects.profile {
-                    message(
-                        "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell",
-                    );
-                }
-                let spectral = spectral(scene, tolerance_deg);
-                return Ok((Some(spectral), "selected by --engine".to_owned()));
-            }
-            (EngineChoice::Gpu | EngineChoice::Auto, ..) => {
-                return self.open_gpu_or_auto(scene, plan, tolerance_deg);
-            }
+            _ => return Ok(()),
         };
         Err(Failure::Input(why))
     }
@@ -121,10 +152,10 @@ impl EngineArgs {
             return Some(why.to_owned());
         }
         let precision = self.precision();
-        let bound_deg = bound_deg(scene, precision.goal());
-        let is_coarser = tolerance_deg.is_some_and(|tolerance| bound_deg > tolerance);
-        is_coarser
-            .then(|| format!("gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"))
+        let bound_deg = excess_deg(scene, precision.goal(), tolerance_deg)?;
+        Some(format!(
+            "gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"
+        ))
     }
 
     fn precision(&self) -> Precision {
@@ -150,7 +181,7 @@ impl EngineArgs {
         tolerance_deg: Option<f64>,
     ) -> Result<OpenEngine, Failure> {
         let (mut host, why) = without_gpu(scene, plan, tolerance_deg);
-        if estimate(scene, plan, FIRST_LOOK)?.seconds < OPENING {
+        if estimate(scene, plan, &mut None, FIRST_LOOK)?.seconds < OPENING {
             return Ok((host, why));
         }
         let (index, name) = self.adapter()?.unzip();
@@ -182,22 +213,17 @@ fn without_gpu(scene: &Scene, plan: &Plan, tolerance_deg: Option<f64>) -> OpenEn
     let spectral = spectral(scene, tolerance_deg);
     let pays = plan.expansions(scene).is_some_and(|count| count.pays());
     let is_possible = spectral.residual_bound() >= GOAL;
-    ((pays && is_possible).then_some(spectral), why)
+    let engine = (pays && is_possible).then(|| Box::new(spectral) as _);
+    (engine, why)
 }
 
 /// Returns why expansions pay for `scene`, or why they do not, in one line.
-pub fn expansions(scene: &Scene, plan: &Plan) -> String {
+fn expansions(scene: &Scene, plan: &Plan) -> String {
     let Some(count) = plan.expansions(scene) else {
         return "measured radii have no expansions".to_owned();
     };
     let ExpansionCount { cells, cost } = count;
     format!("a side has {cells} cells, its expansions cost {cost}")
-}
-
-/// Opens the spectral engine, with push angles exact to `tolerance_deg`, if given.
-fn spectral(scene: &Scene, tolerance_deg: Option<f64>) -> Box<dyn Engine> {
-    let bound = tolerance_deg.map(|tolerance| spectral_bound(scene, tolerance));
-    Box::new(bound.map_or_else(Spectral::default, Spectral::new))
 }
 
 /// Environment variable that also other programs with wgpu use to select an adapter.

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel, Stage, Summary};
-use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
+use whiskmap::plan::{Plan, PlanError, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
 use whiskmap::store::{MapWriter, ZarrStore};
 
@@ -42,6 +42,17 @@ impl MapFormat {
         let mut formats = vec![Self::Exr, Self::Zarr];
         formats.retain(|format| *format == Self::Zarr || scene.grid.sweep.len() <= 2);
         formats
+    }
+
+    /// Returns the plan of a map of `scene` in this format.
+    pub fn plan(self, scene: &Scene) -> Result<Plan, PlanError> {
+        match self {
+            Self::Exr => Plan::in_bands(scene),
+            Self::Zarr => {
+                let whiskers = ZarrStore::blocks(&scene.grid).map(|block| block.len());
+                Plan::in_blocks(scene, whiskers.max().unwrap_or(1))
+            }
+        }
     }
 
     /// Packs some panels of `scene`, and returns the number of bytes.
@@ -107,15 +118,20 @@ const FIRST_LINES: usize = 8;
 /// Ratio of the numbers of push angles, and of distances, of successive samples.
 const DENSER: usize = 2;
 
-/// Estimates the cost of `plan` on the CPU alone, from samples of increasing density.
+/// Estimates the cost of `plan` with an engine, or on the CPU alone, from samples of increasing density.
 ///
 /// The stages of the last sample are scaled: sheets by whiskers, sides and distances, the others by cells. The samples take
 /// about `seconds` together, unless the first one takes longer.
-pub fn estimate(scene: &Scene, plan: &Plan, seconds: f64) -> Result<MapCost, Failure> {
+pub fn estimate(
+    scene: &Scene,
+    plan: &Plan,
+    engine: &mut Option<Box<dyn Engine>>,
+    seconds: f64,
+) -> Result<MapCost, Failure> {
     let (mut lines, mut left) = (FIRST_LINES, seconds);
     loop {
         let start = Instant::now();
-        let sample = MapSample::measure(scene, plan, &mut None, [lines, lines])?;
+        let sample = MapSample::measure(scene, plan, engine, [lines, lines])?;
         let last = start.elapsed().as_secs_f64();
         left -= last;
         match denser(lines, last, left) {

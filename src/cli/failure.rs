@@ -4,6 +4,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use whiskmap::bench::PeersError;
+use whiskmap::compare::CompareError;
 use whiskmap::engine::EngineError;
 use whiskmap::engine::gpu::DRIVER_CALL;
 use whiskmap::fit;
@@ -37,6 +38,11 @@ pub enum Failure {
     Engine(#[from] EngineError),
     #[error(transparent)]
     Store(#[from] store::StoreError),
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// Two maps differ by more than is allowed, in these channels.
+    #[error("the maps differ by more than --within allows in {0}")]
+    Different(String),
     #[error(transparent)]
     Render(#[from] RenderError),
     #[error(transparent)]
@@ -84,7 +90,10 @@ impl Failure {
             | Self::Render(
                 RenderError::Scale { .. } | RenderError::Codes(_) | RenderError::TooManyAxes(_),
             ) => true,
-            Self::Store(error) | Self::Render(RenderError::Store(error)) => error.is_unreadable(),
+            Self::Compare(CompareError::Mismatch(_)) => true,
+            Self::Store(error)
+            | Self::Compare(CompareError::Store(error))
+            | Self::Render(RenderError::Store(error)) => error.is_unreadable(),
             _ => false,
         };
         if is_input { 2 } else { 1 }

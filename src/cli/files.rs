@@ -1,6 +1,7 @@
 //! Inputs and outputs of a command. All are declared here, so that no output destroys an input or another output.
 
 use super::failure::{Failure, message};
+use super::units::ColumnUnits;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -177,6 +178,8 @@ impl OutputFile {
             is_regular: self.output.is_regular(),
             table: TableFile::new(self.output),
             path: self.path,
+            units: ColumnUnits::default(),
+            has_header: false,
         }
     }
 }
@@ -186,15 +189,30 @@ pub struct OutputTable {
     table: TableFile,
     path: PathBuf,
     is_regular: bool,
+    units: ColumnUnits,
+    has_header: bool,
 }
 
 impl OutputTable {
+    /// Sets the units of the table's columns.
+    pub fn in_units(self, units: ColumnUnits) -> Self {
+        Self { units, ..self }
+    }
+
     /// Appends `rows` to the CSV table.
     ///
     /// # Errors
     /// The output cannot be written; the message names the file.
     pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), Failure> {
-        self.table.rows(rows).map_err(unwritten(&self.path))
+        let written = if self.units.are_own() {
+            self.table.rows(rows)
+        } else {
+            let lines = self.units.converted(rows);
+            let skipped = usize::from(self.has_header);
+            self.has_header = true;
+            lines.and_then(|lines| self.table.rows(lines.iter().skip(skipped)))
+        };
+        written.map_err(unwritten(&self.path))
     }
 
     /// Appends to the CSV table the rows that `write` makes.

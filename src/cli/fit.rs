@@ -23,8 +23,8 @@ Minimizes the squares of measured minus predicted angles, from the values of the
 the data are side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) \
 and sd_deg, the standard deviation of the angle. Without sd_deg, the residuals give the standard deviation.
 
-A warning names parameters that the points do not determine. youngs_modulus_gpa is always one of them, because no detachment \
-depends on it. These parameters and parameters at a limit of the scene have no standard error.
+A warning names parameters that the points do not determine. youngs_modulus_gpa and profile_scale are always among them, because no \
+detachment depends on them. These parameters and parameters at a limit of the scene have no standard error.
 
 The values are not a fit if the RMS is more than 5 degrees, or more than a third of the range of the measured angles and 0; \
 with sd_deg, only if chi-square is also too large for these deviations. A reduced chi-square above 400 is never a fit. Then \
@@ -133,20 +133,53 @@ fn no_error(fit: &Fit, estimate: &Estimate) -> &'static str {
     }
 }
 
-/// Prints the table, with all digits of the values.
+/// Formats a value and its standard error with the digits that the error leaves, by the rule of the Particle Data Group: with three digits
+/// of the error below 355, two of them, below 950 one, otherwise 1000.
+///
+/// Review of Particle Physics, section 5.3 of the introduction.
+fn with_error(value: f64, error: f64) -> [String; 2] {
+    if !(error.is_normal() && value.is_finite()) {
+        return [value, error].map(digits);
+    }
+    let three = format!("{error:.2e}");
+    let (leading, exponent) = three.split_once('e').unwrap_or((&three, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or_default();
+    let is_long = leading.parse::<f64>().is_ok_and(|leading| leading < 3.55);
+    let places = i32::from(is_long) - exponent;
+    [value, error].map(|own| {
+        if places >= 0 {
+            return format!("{own:.*}", places as usize);
+        }
+        let unit = 10_f64.powi(-places);
+        format!("{:.0}", (own / unit).round() * unit)
+    })
+}
+
+/// Formats a value without a standard error with six significant digits.
+fn six_digits(value: f64) -> String {
+    digits(format!("{value:.5e}").parse().unwrap_or(value))
+}
+
+/// Prints the table; the JSON has all digits of the values.
 fn table(title: &str, fit: &Fit) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "{title}")?;
     if fit.not_a_fit.is_some() {
         writeln!(out, "not a fit")?;
     }
-    let mut line =
-        |name: &str, value: &str, error: &str| writeln!(out, "{name:19} {value:>22} {error:>22}");
-    line("parameter", "value", "standard error")?;
+    writeln!(out, "{:19} value +- standard error", "parameter")?;
     for estimate in &fit.estimates {
-        let error = estimate.standard_error.map(digits);
-        let error = error.as_deref().unwrap_or(no_error(fit, estimate));
-        line(estimate.parameter.name(), &digits(estimate.value), error)?;
+        let name = estimate.parameter.name();
+        match estimate.standard_error {
+            Some(error) => {
+                let [value, error] = with_error(estimate.value, error);
+                writeln!(out, "{name:19} {value} +- {error}")?;
+            }
+            None => {
+                let value = six_digits(estimate.value);
+                writeln!(out, "{name:19} {value}, {}", no_error(fit, estimate))?;
+            }
+        }
     }
     for (i, estimate) in fit.estimates.iter().enumerate() {
         for (other, correlation) in fit.estimates[..i].iter().zip(&fit.correlation[i]) {
@@ -191,4 +224,27 @@ fn document(fit: &Fit) -> Value {
         "left_out": comparison.left_out().count(),
         "points": comparison.rows,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_error;
+
+    /// The first two are the examples of the Review of Particle Physics.
+    #[test]
+    fn values_have_the_digits_that_their_error_leaves() {
+        for (value, error, expected) in [
+            (0.827, 0.119, "0.83 +- 0.12"),
+            (0.827, 0.367, "0.8 +- 0.4"),
+            (14.3456, 0.9512, "14.3 +- 1.0"),
+            (2.486_722_579_745_257_5, 0.082_870_272_725, "2.49 +- 0.08"),
+            (0.017_435_134_7, 0.000_724_921, "0.0174 +- 0.0007"),
+            (-1234.5, 355.0, "-1200 +- 400"),
+            (1234.5, 12.3, "1234 +- 12"),
+            (9.99e-7, 9.96e-9, "0.000000999 +- 0.000000010"),
+            (1.5, 0.0, "1.5 +- 0"),
+        ] {
+            assert_eq!(with_error(value, error).join(" +- "), expected);
+        }
+    }
 }

@@ -20,7 +20,7 @@ use whiskmap::engine::{Engine, EngineDescription, EngineInput};
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
-use whiskmap::render::{self, MapOptions, PictureFormat};
+use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::scene::Scene;
 use whiskmap::store::{MapDescription, MapWriter, Output, StoredMap};
 
@@ -41,12 +41,12 @@ A sweep over more than two axes needs a Zarr store, the folder NAME.zarr. Any nu
 whiskers; finished blocks are kept.")]
 pub struct MapArgs {
     /// Scene file; - is standard input
-    scene: PathBuf,
+    pub scene: PathBuf,
     /// Folder for the files; created if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "outputs")]
     output: PathBuf,
     #[command(flatten)]
-    engine: EngineArgs,
+    pub engine: EngineArgs,
     /// Number of CPU threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
     pub threads: Option<u32>,
@@ -58,33 +58,33 @@ pub struct MapArgs {
     channels: Option<Channels>,
     #[command(flatten)]
     digits: DigitsArgs,
-    /// Format of the map
-    #[arg(long, value_enum, default_value = "exr")]
-    format: MapFormat,
+    /// Format of the map [default: exr]
+    #[arg(long, value_enum)]
+    pub format: Option<MapFormat>,
     #[command(flatten)]
-    run: RunArgs,
+    pub run: RunArgs,
     /// Write no picture
     #[arg(long)]
     no_png: bool,
 }
 
+/// Plan of a map, and the accuracy of its steps.
+pub struct PlannedMap {
+    pub plan: Plan,
+    /// Accuracy of the steps that --tolerance selects.
+    accuracy: Option<Accuracy>,
+    /// Part of the tolerance that the steps leave to the engine, in degrees.
+    pub left_deg: Option<f64>,
+}
+
 pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&args.scene)?;
-    args.check(&scene)?;
-    let mut plan = match args.format {
-        MapFormat::Exr => Plan::in_bands(&scene)?,
-        MapFormat::Zarr => Plan::new(&scene)?,
-    };
-    let accuracy = args.tolerance.find(&scene, &plan.sides)?;
-    if let Some(accuracy) = &accuracy {
-        plan.method.resolution = accuracy.resolution;
-    }
-    // The part of the tolerance that the steps leave to the engine.
-    let left_deg = args.tolerance.degrees().zip(accuracy.as_ref());
-    let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
-    let channels = args.channels.unwrap_or(Channels::ALL);
-    plan.channels = channels.with_marks(scene.has_friction());
-    plan.digits = args.digits.of(plan.channels)?;
+    let format = args.format.unwrap_or(MapFormat::Exr);
+    let PlannedMap {
+        plan,
+        accuracy,
+        left_deg,
+    } = args.plan(&scene, format)?;
     let mut engine = args.engine.open(&scene, &plan, left_deg)?;
     let input = engine
         .0
@@ -106,7 +106,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         arithmetic: ArithmeticClass::detect().name(),
     };
     files.folder("--output", &args.output)?;
-    if args.format == MapFormat::Zarr {
+    if format == MapFormat::Zarr {
         let path = args.output.join(format!("{}.zarr", scene.name));
         return sharded::fill(&path, &args.run, files, &scene, plan, &about, &mut engine);
     }
@@ -146,6 +146,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         PictureFile {
             file: OutputFile { output, path },
             format: PictureFormat::Png,
+            size: PictureSize::Natural,
         }
         .write(&regimes)?;
     }
@@ -156,16 +157,39 @@ impl MapArgs {
     /// Returns the text that an interrupt adds to its message.
     pub fn advice(&self) -> &'static str {
         match self.format {
-            MapFormat::Exr => "",
-            MapFormat::Zarr => {
+            None | Some(MapFormat::Exr) => "",
+            Some(MapFormat::Zarr) => {
                 "; finished blocks are kept: resume with the same command and --resume"
             }
         }
     }
 
+    /// Returns the plan of the map in this format, as the options say.
+    ///
+    /// # Errors
+    /// If the options contradict each other, the scene or the format.
+    pub fn plan(&self, scene: &Scene, format: MapFormat) -> Result<PlannedMap, Failure> {
+        self.check(scene, format)?;
+        let mut plan = format.plan(scene)?;
+        let accuracy = self.tolerance.find(scene, &plan.sides)?;
+        if let Some(accuracy) = &accuracy {
+            plan.method.resolution = accuracy.resolution;
+        }
+        let left_deg = self.tolerance.degrees().zip(accuracy.as_ref());
+        let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));
+        let channels = self.channels.unwrap_or(Channels::ALL);
+        plan.channels = channels.with_marks(scene.has_friction());
+        plan.digits = self.digits.of(plan.channels)?;
+        Ok(PlannedMap {
+            plan,
+            accuracy,
+            left_deg,
+        })
+    }
+
     /// Returns an error if the format does not support the options.
-    fn check(&self, scene: &Scene) -> Result<(), Failure> {
-        if self.format == MapFormat::Zarr {
+    fn check(&self, scene: &Scene, format: MapFormat) -> Result<(), Failure> {
+        if format == MapFormat::Zarr {
             return Ok(());
         }
         let refuse = |why: String| Err(Failure::Input(format!("{why}; give --format zarr")));

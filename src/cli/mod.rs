@@ -6,6 +6,7 @@
 mod arguments;
 mod bench;
 mod branch;
+mod compare;
 mod curve;
 mod data;
 mod design;
@@ -18,6 +19,7 @@ mod extract;
 mod failure;
 mod files;
 mod fit;
+mod manual;
 mod map;
 mod outputs;
 mod plan;
@@ -29,12 +31,15 @@ mod selection;
 mod shape;
 mod sharded;
 mod signals;
+mod size;
+mod slurm;
 mod status;
 mod stdout;
 mod submit;
 mod summary;
 mod tolerance;
 mod uncertainty;
+mod units;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -61,6 +66,7 @@ Examples:
   whiskmap submit scenes/morphology.toml --shards 8 > sweep.sbatch
   whiskmap status outputs/morphology.zarr            # finished and missing blocks
   whiskmap extract outputs/morphology.zarr --at taper=0.5 -o slice.csv
+  whiskmap compare outputs/cone.exr gpu/cone.exr --within 1e-5
   whiskmap curve scenes/cone.toml --plot curve.png
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png
@@ -71,7 +77,9 @@ Examples:
   whiskmap reproduce                                 # figures 1 to 5 of the paper
   whiskmap verify
   whiskmap bench scenes/cone.toml
-  whiskmap devices";
+  whiskmap devices
+  whiskmap completions bash
+  whiskmap man curve | man -l -";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -85,9 +93,11 @@ enum Command {
     Status(status::StatusArgs),
     /// Write a job array for Slurm that fills a store
     Submit(submit::SubmitArgs),
+    /// Compare two maps or stores of one scene, channel by channel
+    Compare(compare::CompareArgs),
     /// Draw a stored map: its regimes or any channel
     Render(render::RenderArgs),
-    /// Compute the exact detachment curve of a scene, as CSV, PNG or SVG
+    /// Compute the exact detachment curve of a scene, as CSV or a picture
     Curve(curve::CurveArgs),
     /// Fit parameters of a scene to measured detachments
     Fit(fit::FitArgs),
@@ -105,6 +115,10 @@ enum Command {
     Bench(bench::BenchArgs),
     /// List the GPU adapters
     Devices,
+    /// Print the completions of commands and options for a shell
+    Completions(manual::CompletionsArgs),
+    /// Print the manual page of the program or of a command
+    Man(manual::ManArgs),
 }
 
 /// Parses the arguments of the command line, runs the command and returns the exit code.
@@ -132,6 +146,7 @@ fn start(command: &Command) -> Result<(), Failure> {
     failure::keep_expected_panics_silent();
     let (threads, advice) = match command {
         Command::Map(args) => (args.threads, args.advice()),
+        Command::Plan(args) => (args.map.threads, ""),
         _ => (None, ""),
     };
     let temporary = TemporaryFiles::default();
@@ -158,6 +173,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Extract(args) => extract::run(args, files),
         Command::Status(args) => status::run(args, files.temporary()),
         Command::Submit(args) => submit::run(args),
+        Command::Compare(args) => compare::run(args, files),
         Command::Render(args) => render::run(args, files),
         Command::Curve(args) => curve::run(args, files),
         Command::Fit(args) => fit::run(args, files),
@@ -168,5 +184,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Verify => verify::run(),
         Command::Bench(args) => bench::run(args, files),
         Command::Devices => devices::run(),
+        Command::Completions(args) => manual::completions(args),
+        Command::Man(args) => manual::man(args),
     }
 }

@@ -2,20 +2,33 @@
 
 use super::failure::{Failure, message};
 use super::files::{Files, OutputFile, OutputTable, STDOUT};
+use super::size::SizeArgs;
+use super::units::ColumnUnits;
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::render::{Chart, Picture, PictureFormat, Plot};
+use whiskmap::render::{Chart, Picture, PictureFormat, PictureSize, Plot};
 
 #[derive(Debug, Args)]
 pub struct OutputArgs {
     /// Write the table to FILE; - is standard output [default: - without --plot]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write a picture to FILE; the ending selects PNG or SVG
+    /// Units of the table, separated by commas, such as mN,Nmm or um,rad; the names of columns end in them
+    #[arg(long, value_name = "UNITS", value_delimiter = ',')]
+    units: Vec<String>,
+    #[command(flatten)]
+    picture: PlotArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct PlotArgs {
+    /// Write a picture to FILE; the ending selects PNG, SVG or PDF
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    size: SizeArgs,
 }
 
 /// Open CSV table and plot of a command.
@@ -26,16 +39,28 @@ pub struct OpenOutputs {
 
 impl OutputArgs {
     pub fn has_plot(&self) -> bool {
-        self.plot.is_some()
+        self.picture.plot.is_some()
     }
 
     /// Opens the CSV table and the plot, before any work.
     pub fn open(&self, files: &mut Files) -> Result<OpenOutputs, Failure> {
-        let stdout = self.plot.is_none().then(|| Path::new(STDOUT));
+        let units = ColumnUnits::new(&self.units)?;
+        let stdout = (!self.has_plot()).then(|| Path::new(STDOUT));
         let csv = self.csv.as_deref().or(stdout);
-        let (table, plot) = open(files, "--csv", csv, self.plot.as_deref())?;
-        let table = table.map(OutputFile::table);
+        let (table, plot) = open(files, "--csv", csv, &self.picture)?;
+        let table = table.map(|file| file.table().in_units(units));
         Ok(OpenOutputs { table, plot })
+    }
+
+    /// Opens another CSV table, of the command-line option `option`.
+    pub fn table(
+        &self,
+        files: &mut Files,
+        option: &str,
+        path: &Path,
+    ) -> Result<OutputTable, Failure> {
+        let units = ColumnUnits::new(&self.units)?;
+        Ok(files.output(option, path)?.table().in_units(units))
     }
 }
 
@@ -61,20 +86,27 @@ impl OpenOutputs {
 pub struct PictureFile {
     pub file: OutputFile,
     pub format: PictureFormat,
+    pub size: PictureSize,
 }
 
 impl PictureFile {
     /// Draws one plot below its title into the file. Returns the path of a regular file.
     pub fn plot(self, title: String, plot: Plot) -> Result<Option<PathBuf>, Failure> {
-        self.write(&Chart::single(title, plot).picture())
+        self.chart(&Chart::single(title, plot))
     }
 
-    /// Writes the picture into the file; warns if a PNG lacks characters. Returns the path of a regular file.
+    /// Draws a chart into the file. Returns the path of a regular file.
+    pub fn chart(self, chart: &Chart) -> Result<Option<PathBuf>, Failure> {
+        let picture = chart.picture(self.size);
+        self.write(&picture.map_err(|why| Failure::Input(format!("--size: {why}")))?)
+    }
+
+    /// Writes the picture into the file; warns if a PNG or PDF lacks characters. Returns the path of a regular file.
     pub fn write(self, picture: &Picture) -> Result<Option<PathBuf>, Failure> {
         let missing: String = picture.missing_glyphs().into_iter().collect();
-        if self.format == PictureFormat::Png && !missing.is_empty() {
+        if self.format != PictureFormat::Svg && !missing.is_empty() {
             message(&format!(
-                "warning: the built-in font lacks \u{201c}{missing}\u{201d}: the PNG shows boxes; an SVG has the text itself"
+                "warning: the built-in font lacks \u{201c}{missing}\u{201d}: the picture shows boxes; an SVG has the text itself"
             ));
         }
         self.file.write(&picture.encode(self.format)?)
@@ -86,16 +118,21 @@ pub fn open(
     files: &mut Files,
     option: &str,
     data: Option<&Path>,
-    plot: Option<&Path>,
+    PlotArgs { plot, size }: &PlotArgs,
 ) -> Result<(Option<OutputFile>, Option<PictureFile>), Failure> {
     let format = |path: &Path| {
-        let must = || format!("--plot {}: must end in .png or .svg", path.display());
+        let must = || format!("--plot {}: must end in .png, .svg or .pdf", path.display());
         PictureFormat::of(path).ok_or_else(|| Failure::Input(must()))
     };
+    let plot = plot.as_deref();
     let format = plot.map(format).transpose()?;
+    let size = size.picture().map_err(Failure::Input)?;
+    if plot.is_none() && size != PictureSize::Natural {
+        return Err(Failure::Input("--size: needs --plot".to_owned()));
+    }
     let output = data.map(|path| files.output(option, path)).transpose()?;
     let picture = plot.map(|path| files.output("--plot", path)).transpose()?;
     let picture = picture.zip(format);
-    let picture = picture.map(|(file, format)| PictureFile { file, format });
+    let picture = picture.map(|(file, format)| PictureFile { file, format, size });
     Ok((output, picture))
 }

@@ -1,56 +1,108 @@
 //! Command `whiskmap plan`.
 
-use super::digits::DigitsArgs;
-use super::engine::expansions;
+use super::arguments::whole;
 use super::estimate::{FileCost, MapCost, MapFormat, estimate, files};
 use super::failure::Failure;
 use super::files::read_scene;
+use super::map::{MapArgs, PlannedMap};
+use super::sharded::{ShardShare, shares};
 use clap::Args;
 use indicatif::DecimalBytes;
 use std::io::Write;
-use std::path::PathBuf;
-use whiskmap::engine::on_gpu;
+use std::ops::Range;
+use whiskmap::engine::{EngineDescription, on_gpu};
 use whiskmap::plan::{BYTES_PER_THREAD, Cost, Plan, ROD_STATES, effects};
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Scene, digits};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   whiskmap plan scenes/cone.toml
-  whiskmap plan scenes/morphology.toml --digits 5
+  whiskmap plan scenes/morphology.toml --format zarr --digits 5 --tolerance 1e-3deg
+  whiskmap plan scenes/morphology.toml --engine cpu --shards 8
   whiskmap plan - < my_whisker.toml
 
-Effects with their own kernel add work to every integration step. The others are free: pole radius and friction only change \
-the start of a trajectory, and projection is a faster taper and a steeper modulus gradient. The pole touches the whisker's \
-centre line: the whisker's thickness does not add to the pole's radius. A GPU divides an engine call into submissions \
-according to its speed.
+plan takes all options of map. Effects with their own kernel add work to every integration step. The others are free: pole \
+radius and friction only change the start of a trajectory, and projection is a faster taper and a steeper modulus gradient. \
+The pole touches the whisker's centre line: the whisker's thickness does not add to the pole's radius. A GPU divides an engine \
+call into submissions according to its speed.
 
 Trajectories of cells, seconds and bytes are scaled up from samples: at most 128 x 128 cells (for the bytes, about 2^18 in \
 all) and two values per sweep axis, fewer if these would take more than some seconds. They are computed and packed on this \
-machine's CPU and discarded. Nothing is written and no GPU is opened. Seconds are wall seconds on all threads. The seconds \
-of a file are the additional time for packing, without its picture and without the disk. A store also keeps the packed \
-panels of its current block: at most 2 million cells.")]
+machine's CPU and discarded. Nothing is written and no GPU is opened: with --engine gpu, the seconds are those of the CPU \
+engine. Seconds are wall seconds on all threads. The seconds of a file are the additional time for packing, without its \
+picture and without the disk. CPU-hours are these seconds times the threads. Finished blocks of a store are not subtracted.")]
 pub struct PlanArgs {
-    /// Scene file; - is standard input
-    scene: PathBuf,
     #[command(flatten)]
-    digits: DigitsArgs,
+    pub map: MapArgs,
+    /// Print the CPU-hours and bytes of each of N shards of a store
+    #[arg(long, value_name = "N", value_parser = whole(1..=1_000_000), conflicts_with = "shard")]
+    shards: Option<u32>,
 }
 
 /// Seconds for the samples.
 const SAMPLE_SECONDS: f64 = 2.0;
 
+/// Estimate of a map in some formats.
+pub struct PlanEstimate {
+    /// Plan of the map in the first format.
+    pub plan: Plan,
+    pub cost: MapCost,
+    pub files: Vec<FileCost>,
+    /// Description of the engine that the samples use, and why.
+    engine: (String, String),
+}
+
+impl PlanEstimate {
+    /// Measures samples of `scene` for a map in each of these formats.
+    pub fn measure(args: &MapArgs, scene: &Scene, formats: &[MapFormat]) -> Result<Self, Failure> {
+        let first = formats.first().copied().unwrap_or(MapFormat::Zarr);
+        let PlannedMap { plan, left_deg, .. } = args.plan(scene, first)?;
+        let (mut engine, why) = args.engine.without_gpu(scene, &plan, left_deg)?;
+        let description = EngineDescription::of(engine.as_deref()).engine;
+        Ok(Self {
+            cost: estimate(scene, &plan, &mut engine, SAMPLE_SECONDS)?,
+            files: files(scene, &plan, formats)?,
+            plan,
+            engine: (description, why),
+        })
+    }
+
+    /// Returns the CPU seconds and the bytes of some of the map's whiskers, packed in the first format.
+    pub fn share(&self, whiskers: usize) -> [f64; 2] {
+        let share = whiskers as f64 / self.plan.whiskers as f64;
+        let file = self.files.first();
+        let packing = file.map_or(0.0, |file| file.seconds);
+        let threads = rayon::current_num_threads() as f64;
+        let bytes = file.map_or(0.0, |file| file.bytes);
+        [(self.cost.seconds + packing) * threads, bytes].map(|all| all * share)
+    }
+}
+
 pub fn run(args: &PlanArgs) -> Result<(), Failure> {
-    let scene = read_scene(&args.scene)?;
-    let mut plan = Plan::in_bands(&scene)?;
-    plan.digits = args.digits.of(plan.channels)?;
-    let estimate = estimate(&scene, &plan, SAMPLE_SECONDS)?;
-    let files = files(&scene, &plan, &MapFormat::of(&scene))?;
-    print(&scene, &plan, &estimate, &files)?;
+    let scene = read_scene(&args.map.scene)?;
+    let shard = args.map.run.shard;
+    let count = args.shards.map(|count| count as usize);
+    let count = count.or(shard.map(|shard| shard.count));
+    let shares = count.map_or(Ok(Vec::new()), |count| shares(&scene, count))?;
+    let formats = match (args.map.format, count) {
+        (Some(format), _) => vec![format],
+        (None, Some(_)) => vec![MapFormat::Zarr],
+        (None, None) => MapFormat::of(&scene),
+    };
+    if count.is_some() && formats == [MapFormat::Exr] {
+        let why = "--shards: an EXR file has one writer; give --format zarr";
+        return Err(Failure::Input(why.to_owned()));
+    }
+    let estimate = PlanEstimate::measure(&args.map, &scene, &formats)?;
+    print(&scene, &estimate)?;
+    let own = shard.map_or(0..shares.len(), |shard| shard.index..shard.index + 1);
+    print_shards(&scene, &estimate, &shares[own.clone()], own.start)?;
     Ok(())
 }
 
-fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std::io::Result<()> {
+fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
+    let (plan, cost) = (&estimate.plan, &estimate.cost);
     let mut out = std::io::stdout().lock();
     writeln!(out, "{}\n", scene.title)?;
     writeln!(out, "{:16}  {:3}  {:12}  why", "effect", "", "cost when on")?;
@@ -86,9 +138,8 @@ fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std:
         out,
         "trajectories  about {most:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm"
     )?;
-    let pays = plan.expansions(scene).is_some_and(|count| count.pays());
-    let engine = if pays { "spectral" } else { "cpu" };
-    writeln!(out, "engine        {engine}: {}", expansions(scene, plan))?;
+    let (engine, why) = &estimate.engine;
+    writeln!(out, "engine        {engine}: {why}")?;
     match on_gpu(plan.method.effects) {
         Ok(()) => writeln!(
             out,
@@ -101,27 +152,69 @@ fn print(scene: &Scene, plan: &Plan, cost: &MapCost, files: &[FileCost]) -> std:
         )?,
         Err(why) => writeln!(out, "GPU calls     none: {why}")?,
     }
+    let gpu = mib(plan.gpu_bytes);
+    writeln!(out, "GPU memory    {gpu} MiB more than below, on the host")?;
     let (seconds, threads) = (two_digits(cost.seconds), rayon::current_num_threads());
-    let bytes = plan.bytes + threads as u64 * BYTES_PER_THREAD;
-    let [mib, of_gpu] = [bytes, plan.gpu_bytes].map(|bytes| bytes.div_ceil(1 << 20));
+    let on = counted(threads, "thread");
     writeln!(
         out,
-        "memory        at most {mib} MiB for panels and cells, and {of_gpu} MiB more with a GPU"
+        "time          about {seconds} s on {on}, without the files"
     )?;
-    let threads = counted(threads, "thread");
-    writeln!(
-        out,
-        "time          about {seconds} s on {threads} of the CPU engine, without the files"
-    )?;
-    for own in files {
+    for own in &estimate.files {
         let name = match own.format {
             MapFormat::Exr => "EXR file",
             MapFormat::Zarr => "Zarr store",
         };
         let (bytes, seconds) = (DecimalBytes(own.bytes as u64), two_digits(own.seconds));
-        writeln!(out, "{name:12}  about {bytes}, {seconds} s more")?;
+        let memory = mib(memory(&own.format.plan(scene)?, threads));
+        writeln!(
+            out,
+            "{name:12}  about {bytes}, {seconds} s more, at most {memory} MiB of memory"
+        )?;
     }
     Ok(())
+}
+
+/// Returns the memory of panels and cells of a map on this number of threads, in bytes.
+pub fn memory(plan: &Plan, threads: usize) -> u64 {
+    plan.bytes + threads as u64 * BYTES_PER_THREAD
+}
+
+fn mib(bytes: u64) -> u64 {
+    bytes.div_ceil(1 << 20)
+}
+
+/// Prints a line for each run of equal shards, of which the first one has the index `first`.
+fn print_shards(
+    scene: &Scene,
+    estimate: &PlanEstimate,
+    shares: &[ShardShare],
+    mut first: usize,
+) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
+    for run in shares.chunk_by(|one, next| one == next) {
+        let ShardShare { blocks, whiskers } = run[0];
+        let [seconds, bytes] = estimate.share(whiskers);
+        writeln!(
+            out,
+            "{:12}  {}, {} cells: about {} CPU-hours, {}",
+            named(first..first + run.len()),
+            counted(blocks, "block"),
+            panel * whiskers,
+            significant(seconds / 3600.0),
+            DecimalBytes(bytes as u64)
+        )?;
+        first += run.len();
+    }
+    Ok(())
+}
+
+fn named(shards: Range<usize>) -> String {
+    match shards.len() {
+        1 => format!("shard {}", shards.start),
+        _ => format!("shards {}-{}", shards.start, shards.end - 1),
+    }
 }
 
 fn counted(count: usize, what: &str) -> String {
@@ -133,4 +226,9 @@ fn counted(count: usize, what: &str) -> String {
 fn two_digits(x: f64) -> String {
     let digits = (1.0 - x.log10().floor()).clamp(0.0, 4.0);
     format!("{x:.*}", digits as usize)
+}
+
+/// Formats a number with two significant digits, however small it is.
+fn significant(x: f64) -> String {
+    digits(format!("{x:.1e}").parse().unwrap_or(x))
 }

@@ -1,15 +1,16 @@
 //! Command `whiskmap render`.
 
 use super::arguments::whole;
-use super::failure::Failure;
+use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::PictureFile;
 use super::selection::{SelectionArgs, channels, with_marks};
+use super::size::SizeArgs;
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
-use whiskmap::render::{self, MapOptions, PictureFormat};
+use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::store::MapSlice;
 
 #[derive(Debug, Args)]
@@ -17,13 +18,14 @@ use whiskmap::store::MapSlice;
 Examples:
   whiskmap render outputs/cone.exr
   whiskmap render outputs/cone.exr -o cone.svg
+  whiskmap render outputs/cone.exr -o cone.pdf --size 85mm
   whiskmap render outputs/cone.exr --channel force_un -o force.png --width 3000
   whiskmap render outputs/cone.exr --channel force_un --log --range 1,1000
   whiskmap render outputs/cone.exr -o - | display
   whiskmap render outputs/sweep.zarr --at pole_radius_mm=0.25 --at friction=0.2
 
-A picture has at most two sweep axes; give a value of each other axis with --at. An SVG contains the cells as pixels, and text \
-and lines as vectors.
+A picture has at most two sweep axes; give a value of each other axis with --at. A slice of one distance is drawn as a line chart \
+of the channel. An SVG or PDF contains the cells as pixels, and text and lines as vectors.
 
 The ends of --range have the unit in the channel's name, or a given unit, such as 5mm,1cm. The colour bar selects its own unit.")]
 pub struct RenderArgs {
@@ -34,9 +36,13 @@ pub struct RenderArgs {
     /// Draw this channel with a colour bar [default: the regimes]
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
-    /// Use a logarithmic colour scale from the 1st percentile of the values above 0; cells at or below 0 stay blank
+    /// Use a logarithmic scale from the 1st percentile of the values above 0; cells at or below 0 stay blank [default: for loads and
+    /// energies that span more than two decades]
     #[arg(long, requires = "channel")]
     log: bool,
+    /// Use a linear scale
+    #[arg(long, requires = "channel", conflicts_with = "log")]
+    linear: bool,
     /// Ends of the colour bar; values beyond them have the colours of the ends
     #[arg(
         long,
@@ -46,9 +52,11 @@ pub struct RenderArgs {
     )]
     range: Option<String>,
     /// Width of the picture in pixels, from 300 to 8000 [default: by the map, about 1500]
-    #[arg(long, value_name = "PX", value_parser = whole(300..=8000))]
+    #[arg(long, value_name = "PX", conflicts_with = "size", value_parser = whole(300..=8000))]
     width: Option<u32>,
-    /// Write the picture to FILE; the ending selects PNG or SVG; - is PNG on standard output [default: beside the map, named
+    #[command(flatten)]
+    size: SizeArgs,
+    /// Write the picture to FILE; the ending selects PNG, SVG or PDF; - is PNG on standard output [default: beside the map, named
     /// by the map, --at and the channel]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -68,7 +76,15 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
 }
 
 pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
-    let map = args.selection.open(files, &args.file)?;
+    let mut map = args.selection.open(files, &args.file)?;
+    let missing = map.blank_missing()?;
+    if missing > 0 {
+        message(&format!(
+            "warning: {} is not finished: {missing} of {} panels are not computed and stay blank; `whiskmap status` lists their blocks",
+            args.file.display(),
+            map.grid().whisker_count()
+        ));
+    }
     let channel = args.channel.as_deref();
     if let Some(name) = &args.channel {
         let drawn = channels(&map, std::slice::from_ref(name))?;
@@ -78,14 +94,18 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     let range = ends
         .map(|(text, channel)| range(text, channel))
         .transpose()?;
-    let target = target(args, &map, files)?;
+    let size = match args.width {
+        Some(pixels) => PictureSize::Width(pixels),
+        None => args.size.picture().map_err(Failure::Input)?,
+    };
+    let target = target(args, size, &map, files)?;
     let picture = render::map(
         &map,
         &MapOptions {
             channel,
-            log: args.log,
+            log: (args.log || args.linear).then_some(args.log),
             range,
-            width: args.width,
+            size,
         },
     )?;
     let path = target.file.path.clone();
@@ -97,7 +117,12 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
 }
 
 /// Opens the output; on standard output, a picture is PNG.
-fn target(args: &RenderArgs, map: &MapSlice, files: &mut Files) -> Result<PictureFile, Failure> {
+fn target(
+    args: &RenderArgs,
+    size: PictureSize,
+    map: &MapSlice,
+    files: &mut Files,
+) -> Result<PictureFile, Failure> {
     let path = args.output.clone().unwrap_or_else(|| {
         let chosen = map.readable();
         let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
@@ -115,7 +140,7 @@ fn target(args: &RenderArgs, map: &MapSlice, files: &mut Files) -> Result<Pictur
     }
     let file = files.output("--output", &path)?;
     match PictureFormat::of(&path).or(is_stdout.then_some(PictureFormat::Png)) {
-        Some(format) => Ok(PictureFile { file, format }),
-        None => refuse("must end in .png or .svg, or be - for PNG on standard output"),
+        Some(format) => Ok(PictureFile { file, format, size }),
+        None => refuse("must end in .png, .svg or .pdf, or be - for PNG on standard output"),
     }
 }

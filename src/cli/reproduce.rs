@@ -4,6 +4,7 @@ use super::data;
 use super::failure::Failure;
 use super::files::Files;
 use super::outputs::PictureFile;
+use super::size::SizeArgs;
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -16,10 +17,10 @@ use whiskmap::scene::Whisker;
 #[command(after_help = "\
 Examples:
   whiskmap reproduce
-  whiskmap reproduce /tmp/figures
+  whiskmap reproduce /tmp/figures --size 180mm
   whiskmap reproduce --fig5c-right scenes/cone_points.csv
 
-Writes fig1, fig2, fig3, fig4d and fig5c as SVG and PNG, and a CSV for each panel. Solid lines are stable states or \
+Writes fig1, fig2, fig3, fig4d and fig5c as PNG, SVG and PDF, and a CSV for each panel. Solid lines are stable states or \
 whiskers, dashed lines unstable states or cylinders. Slip-off is black and pull-off is blue, as in the paper. The push angle \
 is the rotation of the base since first touch.")]
 pub struct ReproduceArgs {
@@ -35,6 +36,8 @@ pub struct ReproduceArgs {
     /// Add measured detachments to the right panel of Fig. 5C
     #[arg(long, value_name = "FILE")]
     fig5c_right: Option<PathBuf>,
+    #[command(flatten)]
+    size: SizeArgs,
 }
 
 impl ReproduceArgs {
@@ -72,6 +75,7 @@ fn points(
 }
 
 pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
+    let size = args.size.picture().map_err(Failure::Input)?;
     let measured = args.measurements(files)?;
     let folder = &args.folder;
     files.folder("DIR", folder)?;
@@ -84,11 +88,12 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
         let tables = tables.collect::<Result<Vec<_>, _>>()?;
         let mut picture = |ending, format| {
             let file = open(figure.name, ending)?;
-            Ok::<_, Failure>(PictureFile { file, format })
+            Ok::<_, Failure>(PictureFile { file, format, size })
         };
         let pictures = [
             picture("png", PictureFormat::Png)?,
             picture("svg", PictureFormat::Svg)?,
+            picture("pdf", PictureFormat::Pdf)?,
         ];
         opened.push((figure, tables, pictures));
     }
@@ -96,7 +101,7 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
     for (figure, tables, pictures) in opened {
         for picture in pictures {
             let path = picture.file.path.clone();
-            picture.write(&figure.chart.picture())?;
+            picture.chart(&figure.chart)?;
             writeln!(out, "{}", path.display())?;
         }
         for ((_, rows), file) in figure.tables.iter().zip(tables) {

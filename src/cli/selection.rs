@@ -1,4 +1,4 @@
-//! Options `--at` and `--channel`: the selected part of a map or a store.
+//! Options `--at` and `--channel`: the selected part of a map, a store or a sweep.
 
 use super::failure::{Failure, message};
 use super::files::Files;
@@ -7,8 +7,8 @@ use std::path::Path;
 use std::str::FromStr;
 use whiskmap::input::did_you_mean;
 use whiskmap::map::Channels;
-use whiskmap::scene::digits;
-use whiskmap::store::{AxisValue, MapSlice, MapSource};
+use whiskmap::scene::{Scene, digits};
+use whiskmap::store::{AxisValue, InvalidAxisValue, MapSlice, MapSource, scene_at};
 
 #[derive(Debug, Args)]
 pub struct SelectionArgs {
@@ -32,12 +32,26 @@ impl SelectionArgs {
                 env!("CARGO_PKG_VERSION")
             ));
         }
-        let slice = MapSlice::new(stored, &self.at, self.exact);
-        let slice = slice.map_err(|why| Failure::Input(format!("--at {why}")))?;
-        for (name, value) in slice.chosen() {
-            message(&format!("{name} = {}", digits(*value)));
-        }
+        let slice = MapSlice::new(stored, &self.at, self.exact).map_err(refused)?;
+        name(slice.chosen());
         Ok(slice)
+    }
+
+    /// Returns the selected part of the sweep of a scene, and prints the selected values.
+    pub fn of_scene(&self, scene: &Scene) -> Result<Scene, Failure> {
+        let (scene, chosen) = scene_at(scene, &self.at, self.exact).map_err(refused)?;
+        name(&chosen);
+        Ok(scene)
+    }
+}
+
+fn refused(why: InvalidAxisValue) -> Failure {
+    Failure::Input(format!("--at {why}"))
+}
+
+fn name(chosen: &[(&'static str, f64)]) {
+    for (name, value) in chosen {
+        message(&format!("{name} = {}", digits(*value)));
     }
 }
 

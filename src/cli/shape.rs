@@ -6,6 +6,8 @@ use super::files::Files;
 use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{Args, ValueEnum};
+use std::io::{self, Write};
+use std::path::PathBuf;
 use whiskmap::classify::Sliding;
 use whiskmap::render::{DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::rod::Side;
@@ -17,6 +19,7 @@ Examples:
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --plot shape.svg
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10 --branch unstable --csv shape.csv
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle -20
+  whiskmap shape scenes/robot.toml --distance 60 --push-angle 20 --state loads.csv --csv shape.csv --units mN,Nmm
 
 The origin is at the base, and the first axis is along the base's tangent at first touch. Since then, the base has turned by \
 the push angle, and the pole is fixed.";
@@ -42,6 +45,9 @@ pub struct ShapeArgs {
     /// Number of points along the whisker, besides the contact
     #[arg(long, value_name = "N", default_value = "200", value_parser = whole(2..=1_000_000))]
     points: u32,
+    /// Write the state to FILE, as one row with the columns of `branch`: loads, energy, largest strain; - is standard output
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -64,6 +70,9 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         return Err(Failure::Input(why));
     }
     let mut outputs = args.outputs.open(files)?;
+    let state_table = args.state.as_deref();
+    let state_table = state_table.map(|path| args.outputs.table(files, "--state", path));
+    let state_table = state_table.transpose()?;
     let side = args.side.unwrap_or(Side::of_push(push_deg));
     let stable = args.branch == BranchPart::Stable;
     let refused = |why| match why {
@@ -74,7 +83,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let state = branch.state(push_deg.to_radians(), stable);
     let count = args.points as usize;
     let shape = WhiskerShape::new(&branch, &state.map_err(refused)?, count);
-    let how = match shape.sliding {
+    let how = match shape.state.sliding {
         Some(Sliding::Base) => Some("slides toward the base"),
         Some(Sliding::Sticks) => Some("sticks at an earlier position"),
         Some(Sliding::Tip) | None => None,
@@ -85,6 +94,11 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         ));
     }
     outputs.rows(&shape.points)?;
+    let state_file = state_table.map(|mut table| {
+        table.rows([&shape.state])?;
+        table.finish()
+    });
+    let state_file = state_file.transpose()?.flatten();
     let (stroke, name) = if stable {
         (Stroke::Solid, "stable")
     } else {
@@ -102,5 +116,9 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid).named("first touch");
         plot.lines.insert(0, at_rest);
         plot
-    })
+    })?;
+    if let Some(path) = state_file {
+        writeln!(io::stdout(), "{}", path.display())?;
+    }
+    Ok(())
 }

@@ -19,14 +19,42 @@ use whiskmap::store::{BlockState, CheckDepth, MapDescription, PackedPanel, ZarrS
 /// Shard of a store: the blocks of one of `count` processes, every `count`-th block.
 #[derive(Clone, Copy, Debug)]
 pub struct Shard {
-    index: usize,
-    count: usize,
+    pub index: usize,
+    pub count: usize,
 }
 
 impl Shard {
     fn has(self, block: usize) -> bool {
         block % self.count == self.index
     }
+}
+
+/// Share of a store that one of several processes computes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ShardShare {
+    pub blocks: usize,
+    pub whiskers: usize,
+}
+
+/// Returns the shares of `count` shards of a store of `scene`, `[shard]`.
+///
+/// # Errors
+/// If there are more shards than blocks.
+pub fn shares(scene: &Scene, count: usize) -> Result<Vec<ShardShare>, Failure> {
+    let blocks = ZarrStore::blocks(&scene.grid);
+    if count > blocks.len() {
+        return Err(Failure::Input(format!(
+            "--shards {count}: must be at most {}, the number of blocks of this sweep",
+            blocks.len()
+        )));
+    }
+    let mut shares = vec![ShardShare::default(); count];
+    for (block, whiskers) in blocks.enumerate() {
+        let share = &mut shares[block % count];
+        share.blocks += 1;
+        share.whiskers += whiskers.len();
+    }
+    Ok(shares)
 }
 
 impl FromStr for Shard {

@@ -1,12 +1,17 @@
 //! Command `whiskmap submit`: job array for Slurm.
 
 use super::arguments::whole;
-use super::failure::Failure;
+use super::estimate::MapFormat;
+use super::failure::{Failure, message};
 use super::files::{check_folder, read_scene};
+use super::map::MapArgs;
+use super::plan::{PlanEstimate, memory};
+use super::sharded::shares;
+use super::slurm;
 use clap::{Args, Parser};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use whiskmap::store::ZarrStore;
+use whiskmap::scene::Scene;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -16,7 +21,10 @@ Examples:
   whiskmap submit scenes/morphology.toml --shards 8 -o /scratch/maps -- --channels regime,force_un > sweep.sbatch
 
 `sbatch sweep.sbatch` then fills the store. The scene, the folder and this program must be visible to every node. A second \
-submission of the script computes missing blocks. Give other options to sbatch, before the script's name.")]
+submission of the script computes missing blocks. Give other options to sbatch, before the script's name.
+
+Without --time or --mem, both are proposed from samples of the scene on this machine: three times the estimated CPU time of \
+the largest shard over --cpus-per-task, and five minutes; and the memory of `whiskmap plan`.")]
 pub struct SubmitArgs {
     /// Scene file
     scene: PathBuf,
@@ -29,14 +37,14 @@ pub struct SubmitArgs {
     /// Partition of the cluster
     #[arg(long, value_name = "NAME", value_parser = word)]
     partition: Option<String>,
-    /// Time limit of a task, such as 30:00 or 1-12:00:00
-    #[arg(long, value_name = "TIME", value_parser = word)]
+    /// Time limit of a task in a format of Slurm, such as 30:00 or 1-12:00:00 [default: by an estimate]
+    #[arg(long, value_name = "TIME", value_parser = slurm::time, allow_hyphen_values = true)]
     time: Option<String>,
     /// Number of threads of a task
     #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
     cpus_per_task: Option<u32>,
-    /// Memory of a task, such as 500M
-    #[arg(long, value_name = "SIZE", value_parser = word)]
+    /// Memory of a task in a format of Slurm, such as 500M [default: by an estimate]
+    #[arg(long, value_name = "SIZE", value_parser = slurm::memory, allow_hyphen_values = true)]
     mem: Option<String>,
     /// Options of `map`, such as --channels or --tolerance
     #[arg(last = true, value_name = "OPTIONS OF MAP")]
@@ -59,66 +67,125 @@ pub fn run(args: &SubmitArgs) -> Result<(), Failure> {
         return Err(Failure::Input(why.to_owned()));
     }
     let scene = read_scene(&args.scene)?;
-    let blocks = ZarrStore::blocks(&scene.grid);
-    if args.shards as usize > blocks {
-        return Err(Failure::Input(format!(
-            "--shards {}: must be at most {blocks}, the number of blocks of this sweep",
-            args.shards
-        )));
-    }
+    let shares = shares(&scene, args.shards as usize)?;
     let store = args.output.join(format!("{}.zarr", scene.name));
     check_folder("--output", &args.output)?;
     check_folder("--output", &store)?;
-    let script = args.script(&scene.name)?;
-    check(&args.map)?;
+    let map = args.map()?;
+    let whiskers = shares.iter().map(|share| share.whiskers).max();
+    let limits = || args.limits(&scene, &map, whiskers.unwrap_or_default());
+    let script = args.script(&scene.name, limits)?;
     io::stdout().lock().write_all(script.as_bytes())?;
     Ok(())
 }
 
-/// Returns an error if `map` does not accept its `own` options together with those of the script.
-fn check(own: &[String]) -> Result<(), Failure> {
-    let given = "whiskmap map SCENE -o=DIR --format=zarr --shard=0/1 --resume --threads=1";
-    let all = given.split(' ').chain(own.iter().map(String::as_str));
-    super::Arguments::try_parse_from(all)
-        .map(drop)
-        .map_err(|why| {
-            let why = why.to_string();
-            let why = why.lines().next().unwrap_or_default();
-            let why = why.strip_prefix("error: ").unwrap_or(why);
-            Failure::Input(format!("-- {}: {why}", own.join(" ")))
-        })
-}
+/// Factor of a proposed time limit over the estimate: samples underestimate by a factor of up to 1.1, and nodes may be slower.
+const SLOWER: f64 = 3.0;
+
+/// Seconds of a proposed time limit for the start of a task.
+const START_SECONDS: f64 = 300.0;
+
+/// Memory of the program besides panels and cells, in bytes. It takes 20 MiB on Linux.
+const PROGRAM_BYTES: u64 = 64 << 20;
 
 impl SubmitArgs {
-    /// Returns the script for a store of this `name`.
-    fn script(&self, name: &str) -> Result<String, Failure> {
+    /// Returns the arguments of `map` in a task.
+    ///
+    /// # Errors
+    /// If `map` does not accept its own options together with those of the script.
+    fn map(&self) -> Result<MapArgs, Failure> {
+        let given = "whiskmap map SCENE -o=DIR --format=zarr --shard=0/1 --resume --threads=1";
+        let engine = if self.has_engine() {
+            ""
+        } else {
+            " --engine=cpu"
+        };
+        let given = format!("{given}{engine}");
+        let all = given.split(' ').chain(self.map.iter().map(String::as_str));
+        let parsed = super::Arguments::try_parse_from(all).map_err(|why| why.to_string());
+        match parsed.map(|parsed| parsed.command) {
+            Ok(super::Command::Map(map)) => Ok(map),
+            Ok(_) => Err("must be options of map".to_owned()),
+            Err(why) => Err(why),
+        }
+        .map_err(|why| {
+            let why = why.lines().next().unwrap_or_default();
+            let why = why.strip_prefix("error: ").unwrap_or(why);
+            Failure::Input(format!("-- {}: {why}", self.map.join(" ")))
+        })
+    }
+
+    /// Returns true if the options of `map` select an engine.
+    fn has_engine(&self) -> bool {
+        self.map.iter().any(|own| own.starts_with("--engine"))
+    }
+
+    /// Returns time limit and memory of a task: those given, or else those that an estimate of `whiskers` of the sweep proposes.
+    fn limits(
+        &self,
+        scene: &Scene,
+        map: &MapArgs,
+        whiskers: usize,
+    ) -> Result<[String; 2], Failure> {
+        if let (Some(time), Some(memory)) = (&self.time, &self.mem) {
+            return Ok([time.clone(), memory.clone()]);
+        }
+        let estimate = PlanEstimate::measure(map, scene, &[MapFormat::Zarr])?;
+        let cpus = self.cpus_per_task.unwrap_or(1);
+        let [cpu_seconds, _] = estimate.share(whiskers);
+        let seconds = cpu_seconds / f64::from(cpus);
+        let bytes = memory(&estimate.plan, cpus as usize) + PROGRAM_BYTES;
+        let limit = |option: &str, given: &Option<String>, proposed: String, why: String| {
+            given.clone().unwrap_or_else(|| {
+                message(&format!("note: --{option} {proposed} is proposed: {why}"));
+                proposed
+            })
+        };
+        let time = slurm::time_of(SLOWER * seconds + START_SECONDS);
+        let of_time = format!("a task takes about {seconds:.0} s on {cpus} CPUs like these");
+        let of_memory = format!("a task takes at most {} MiB", bytes.div_ceil(1 << 20));
+        Ok([
+            limit("time", &self.time, time, of_time),
+            limit("mem", &self.mem, slurm::memory_of(bytes), of_memory),
+        ])
+    }
+
+    /// Returns the script for a store of this `name`, with the time and the memory that `limits` returns.
+    fn script(
+        &self,
+        name: &str,
+        limits: impl FnOnce() -> Result<[String; 2], Failure>,
+    ) -> Result<String, Failure> {
         let program = std::env::current_exe()?;
         let folder = absolute("--output", &self.output)?;
         let store = quoted("--output", &folder.join(format!("{name}.zarr")))?;
         let folder = quoted("--output", &folder)?;
         let scene = quoted("scene", &absolute("scene", &self.scene)?)?;
         let program = quoted("this program", &program)?;
+        let [time, memory] = limits()?;
 
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
         let job: String = name.chars().map(plain).collect();
         let last = self.shards - 1;
         let cpus = self.cpus_per_task.map(|cpus| cpus.to_string());
         let resources = [
-            ("partition", &self.partition),
-            ("time", &self.time),
-            ("cpus-per-task", &cpus),
-            ("mem", &self.mem),
+            ("partition", self.partition.as_ref()),
+            ("time", Some(&time)),
+            ("cpus-per-task", cpus.as_ref()),
+            ("mem", Some(&memory)),
         ];
         let resources = resources.map(|(option, value)| {
-            let value = value.as_ref();
             value.map_or_else(String::new, |value| format!("#SBATCH --{option}={value}\n"))
         });
         let resources = resources.concat();
         let partition = self.partition.as_ref();
         let partition = partition.map_or_else(String::new, |name| format!(" --partition={name}"));
         // `auto` may select different engines on different nodes.
-        let is_chosen = self.map.iter().any(|own| own.starts_with("--engine"));
-        let engine = if is_chosen { "" } else { " --engine cpu" };
+        let engine = if self.has_engine() {
+            ""
+        } else {
+            " --engine cpu"
+        };
         let own = self
             .map
             .iter()

@@ -2,10 +2,8 @@
 
 use super::arguments::whole;
 use super::failure::{Failure, check_resolved, message};
-use super::outputs::OpenOutputs;
 use super::progress::Progress;
 use clap::Args;
-use whiskmap::render::{Plot, bands};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::shooting::Resolution;
@@ -37,14 +35,8 @@ impl SampleArgs {
     }
 }
 
-/// Writes the percentiles of the `draws` as a table, and plots them around the `curve` of the `scene` itself.
-pub fn run(
-    scene: &Scene,
-    draws: &Draws,
-    resolution: Resolution,
-    mut outputs: OpenOutputs,
-    curve: impl FnOnce() -> Plot,
-) -> Result<(), Failure> {
+/// Computes the percentiles of the `draws`, `[side][distance]`. Prints the number of repeated draws.
+pub fn spread(draws: &Draws, resolution: Resolution) -> Vec<EndSpread> {
     let bar = Progress::over(Side::BOTH.len() * draws.len(), "curves");
     let spread = |side| draws.spread(resolution, side, || bar.inc(1));
     let rows: Vec<EndSpread> = Side::BOTH.into_iter().flat_map(spread).collect();
@@ -56,11 +48,11 @@ pub fn run(
             refused + kept as u64
         ));
     }
-    outputs.rows(&rows)?;
-    outputs.finish(scene.title.clone(), || Plot {
-        bands: bands(&rows),
-        ..curve()
-    })?;
+    rows
+}
+
+/// Returns an error if the end of every sample is unresolved.
+pub fn check(rows: &[EndSpread], draws: &Draws) -> Result<(), Failure> {
     let unresolved = rows.iter().map(|row| row.unresolved).sum();
     let all = rows.len() * draws.len();
     check_resolved(

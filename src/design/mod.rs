@@ -1,36 +1,23 @@
-//! Designs: values of a parameter with which a whisker detaches in a given way at a given push angle.
+//! Designs: values of a parameter with which a push reaches a target: a push angle at detachment, or a largest load.
 //!
 //! The search scans the range that the scene accepts. Between samples it finds changes of the kind of detachment, and turns of
-//! the push angle. It bisects between neighbours of all these values. Every solution is a computed end: a jump of the push angle
-//! across the target is no solution.
+//! the target's quantity. It bisects between neighbours of all these values. Every solution is computed: a jump across the target is no
+//! solution.
 
 mod samples;
 mod search;
+mod target;
 mod turn;
 
-use crate::rod::Side;
+pub use samples::is_wide;
+pub use target::{DesignGoal, DesignTarget};
+
 use crate::scene::{Parameter, Scene, SceneError, digits};
 use crate::trace::DetachmentKind;
 use search::DesignSearch;
 
-/// Largest difference of the push angles of a solution and the target, in degrees: exact ends are known to 1e-11.
-const TOLERANCE_DEG: f64 = 1e-9;
-
 /// Relative difference of values below which they are one solution, or a range leaves no choice.
 const EQUAL: f64 = 1e-9;
-
-/// Target of a design: the detachment to reach.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DesignTarget {
-    /// Distance from the base to the contact at first touch, in millimetres.
-    pub distance_mm: f64,
-    /// Side of the whisker that the pole is on.
-    pub side: Side,
-    /// Kind of the target detachment: how the push ends.
-    pub kind: DetachmentKind,
-    /// Push angle of the target detachment, in degrees: positive CB, negative CF.
-    pub push_angle_deg: f64,
-}
 
 /// End of a push at one value of the design's parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,15 +26,15 @@ pub struct DesignEnd {
     pub value: f64,
     /// Kind of the end: how the push ends at this value.
     pub kind: DetachmentKind,
-    /// Push angle of the detachment at this value of the parameter, in degrees; `None` without a detachment.
-    pub push_angle_deg: Option<f64>,
+    /// Value of the goal's quantity at this value of the parameter, in its unit; `None` without a detachment.
+    pub reached: Option<f64>,
 }
 
 /// Solutions of a design, and the ends over the whole range of the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     /// Solutions of the design, in the unit of the parameter, growing: `[solution]`. Empty if no value reaches the target, or if every
-    /// value has the same push angle.
+    /// value reaches the same.
     pub values: Vec<f64>,
     /// Range of the parameter `[least, greatest]` that the scene accepts, in its unit.
     pub range: [f64; 2],
@@ -84,20 +71,27 @@ pub enum DesignError {
 }
 
 impl Design {
-    /// Returns true if the parameter's range is so wide that a logarithmic axis suits it.
+    /// Returns the part `[least, greatest]` of the range that a chart shows, in the unit of the parameter: in a wide range, up to ten times
+    /// below and above the solutions.
     #[must_use]
-    pub fn is_wide(&self) -> bool {
-        samples::is_wide(self.range)
+    pub fn shown(&self) -> [f64; 2] {
+        match (self.values.first(), self.values.last()) {
+            (Some(first), Some(last)) if is_wide(self.range) => {
+                let [low, high] = self.range;
+                [low.max(first / 10.0), high.min(last * 10.0)]
+            }
+            _ => self.range,
+        }
     }
 
-    /// Returns the least and the greatest push angle of ends of a kind, in degrees; `None` without such an end.
+    /// Returns the least and the greatest value of the goal's quantity over ends of a kind, in its unit; `None` without such an end.
     #[must_use]
-    pub fn reached_deg(&self, kind: DetachmentKind) -> Option<[f64; 2]> {
+    pub fn reached(&self, kind: DetachmentKind) -> Option<[f64; 2]> {
         let ends = self.ends.iter().filter(|end| end.kind == kind);
-        let pushes = ends.filter_map(|end| end.push_angle_deg);
-        pushes.fold(None, |reached, push| {
-            let [low, high] = reached.unwrap_or([push; 2]);
-            Some([push.min(low), push.max(high)])
+        let values = ends.filter_map(|end| end.reached);
+        values.fold(None, |reached, value| {
+            let [low, high] = reached.unwrap_or([value; 2]);
+            Some([value.min(low), value.max(high)])
         })
     }
 }
@@ -105,12 +99,12 @@ impl Design {
 /// Finds every value of `parameter` with which the whisker of `scene` detaches as `target` says. The grid is not used.
 ///
 /// ```
-/// use whiskmap::design::{DesignTarget, design};
-/// use whiskmap::{rod::Side, trace::DetachmentKind};
+/// use whiskmap::design::{DesignGoal, DesignTarget, design};
+/// use whiskmap::rod::Side;
 /// use whiskmap::scene::{Parameter, Scene};
 ///
 /// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
-/// let target = DesignTarget { distance_mm: 15.66, side: Side::Cb, kind: DetachmentKind::SlipOff, push_angle_deg: 20.0 };
+/// let target = DesignTarget { distance_mm: 15.66, side: Side::Cb, goal: DesignGoal::SlipOff, value: 20.0 };
 /// let design = design(&cone, Parameter::TipRadiusUm, &target)?;
 /// let [tip_radius_um] = design.values[..] else { panic!("{design:?}") };
 /// assert!((tip_radius_um - 4.063).abs() < 1e-3);
@@ -131,11 +125,7 @@ pub fn design(
         let given = Parameter::given(scene);
         return Err(DesignError::Lacking { parameter, given });
     };
-    // Other distances would limit what is accepted.
-    let scene = &scene
-        .to_builder()
-        .distance_mm([target.distance_mm])
-        .build()?;
+    let scene = &with_one_pole(scene, target)?;
     let range = parameter.range(scene);
     if range[1] - range[0] <= 3.0 * EQUAL * value.abs() {
         return Err(DesignError::Fixed { parameter, value });
@@ -148,7 +138,7 @@ pub fn design(
     let ends = search.scan(range);
     let mut values: Vec<f64> = ends
         .chunk_by(|a, b| a.kind == b.kind)
-        .filter(|piece| piece[0].kind == target.kind)
+        .filter(|piece| target.accepts(piece[0].kind))
         .flat_map(|piece| search.solutions(piece))
         .collect();
     values.sort_by(f64::total_cmp);
@@ -158,9 +148,36 @@ pub fn design(
         range,
         ends,
     };
-    let reached = design.reached_deg(target.kind);
-    if reached.is_some_and(|[low, high]| high - low <= TOLERANCE_DEG) {
+    let kinds = [DetachmentKind::SlipOff, DetachmentKind::PullOff].into_iter();
+    let reached = kinds
+        .filter(|kind| target.accepts(*kind))
+        .filter_map(|kind| design.reached(kind))
+        .reduce(|[low, high], [least, most]| [low.min(least), high.max(most)]);
+    if reached.is_some_and(|[low, high]| high - low <= target.tolerance()) {
         design.values.clear();
     }
     Ok(design)
+}
+
+/// Computes the ends of pushes at values of `parameter` over a part of its range, in its unit, `[value]`, as [`Design::ends`] are.
+///
+/// # Errors
+/// If the scene accepts no pole at the distance of the target.
+pub fn ends_between(
+    scene: &Scene,
+    parameter: Parameter,
+    target: &DesignTarget,
+    range: [f64; 2],
+) -> Result<Vec<DesignEnd>, DesignError> {
+    let search = DesignSearch {
+        scene: &with_one_pole(scene, target)?,
+        parameter,
+        target,
+    };
+    Ok(search.scan(range))
+}
+
+/// The scene with the pole of the target alone: other distances would limit what is accepted.
+fn with_one_pole(scene: &Scene, target: &DesignTarget) -> Result<Scene, SceneError> {
+    scene.to_builder().distance_mm([target.distance_mm]).build()
 }

@@ -29,6 +29,7 @@ pub fn samples([low, high]: [f64; 2]) -> Vec<f64> {
 }
 
 /// Returns true for a range `[low, high]` of positive numbers that spans more than a factor of 10.
+#[must_use]
 pub fn is_wide([low, high]: [f64; 2]) -> bool {
     low > 0.0 && high > WIDE * low
 }

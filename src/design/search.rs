@@ -1,10 +1,10 @@
 //! Search of a design for ends at a push angle: a scan, changes of kind, and bisection between turns.
 
 use super::samples::samples;
-use super::{DesignEnd, DesignTarget, TOLERANCE_DEG, turn};
+use super::{DesignEnd, DesignTarget, turn};
 use crate::numerics::Bracket;
 use crate::scene::{Parameter, Scene};
-use crate::trace::{DetachmentKind, curve};
+use crate::trace::DetachmentKind;
 use rayon::prelude::*;
 use std::convert::Infallible;
 
@@ -22,24 +22,19 @@ impl DesignSearch<'_> {
     /// The end at a value of the parameter; `Unresolved` if the scene refuses the value.
     fn end(&self, value: f64) -> DesignEnd {
         let moved = self.scene.with_parameters(&[(self.parameter, value)]);
-        let end = moved.ok().and_then(|scene| {
-            let distances = &scene.grid.distance_mm;
-            curve(&scene.whisker, &scene.pole, self.target.side, distances).pop()
-        });
+        let reached = moved.map(|scene| self.target.reached(&scene));
+        let (kind, reached) = reached.unwrap_or((DetachmentKind::Unresolved, None));
         DesignEnd {
             value,
-            kind: end.map_or(DetachmentKind::Unresolved, |end| end.kind),
-            push_angle_deg: end.and_then(|end| end.push_angle_deg),
+            kind,
+            reached,
         }
     }
 
-    /// Push angle of an end less that of the target, in degrees; NaN for an end of another kind.
+    /// Value of an end less that of the target, in the unit of the goal; NaN for an end of another kind.
     fn miss(&self, end: &DesignEnd) -> f64 {
-        let push = end
-            .push_angle_deg
-            .filter(|_| end.kind == self.target.kind)
-            .unwrap_or(f64::NAN);
-        push - self.target.push_angle_deg
+        let accepted = end.reached.filter(|_| self.target.accepts(end.kind));
+        accepted.unwrap_or(f64::NAN) - self.target.value
     }
 
     fn miss_at(&self, value: f64) -> f64 {
@@ -107,11 +102,11 @@ impl DesignSearch<'_> {
                 let [next, miss_there] = places[i + 1];
                 let bracket = Bracket::new([*value, next], [*miss, miss_there]);
                 solutions.push(bracket.bisect(|value| self.miss_at(value)));
-            } else if !before && miss.abs() <= TOLERANCE_DEG {
+            } else if !before && miss.abs() <= self.target.tolerance() {
                 solutions.push(*value);
             }
         }
-        solutions.retain(|value| self.miss_at(*value).abs() <= TOLERANCE_DEG);
+        solutions.retain(|value| self.miss_at(*value).abs() <= self.target.tolerance());
         solutions
     }
 }

@@ -1,11 +1,7 @@
 //! Extremum of a function near zero, between samples. The function has no sign change to bracket, so the golden section brackets its
 //! extremum by three values.
 
-/// Steps of the golden section. They leave 1e-8 of the interval, in which a smooth function is flat to rounding.
-const STEPS: u32 = 40;
-
-/// Part of an interval that a step of the golden section keeps.
-const GOLDEN: f64 = 0.618_033_988_749_894_8;
+use crate::numerics::least_between;
 
 /// Returns argument and value of an extremum toward zero between three neighbouring arguments with their values, or the first argument
 /// found beyond zero. `None` without such an extremum, or if it is too far from zero for a smooth function.
@@ -20,33 +16,8 @@ pub fn toward_zero(
     if !turns || least > left.max(right) - least {
         return None;
     }
-    let mut best = here;
-    let mut ends = [before[0], after[0]];
-    let [mut low, mut high] = [GOLDEN, 1.0 - GOLDEN].map(|part| {
-        let at = part * ends[0] + (1.0 - part) * ends[1];
-        [at, sign * value(at)]
-    });
-    for _ in 0..STEPS {
-        for [at, there] in [low, high] {
-            if there < sign * best[1] {
-                best = [at, sign * there];
-            }
-        }
-        if sign * best[1] < 0.0 {
-            break;
-        }
-        // The search avoids NaN.
-        if low[1] < high[1] || high[1].is_nan() {
-            (ends[1], high) = (high[0], low);
-            let at = GOLDEN * ends[0] + (1.0 - GOLDEN) * ends[1];
-            low = [at, sign * value(at)];
-        } else {
-            (ends[0], low) = (low[0], high);
-            let at = (1.0 - GOLDEN) * ends[0] + GOLDEN * ends[1];
-            high = [at, sign * value(at)];
-        }
-    }
-    (best != here).then_some(best)
+    let [at, found] = least_between([before[0], after[0]], 0.0, |at| sign * value(at));
+    (found < least).then_some([at, sign * found])
 }
 
 #[cfg(test)]

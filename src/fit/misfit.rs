@@ -106,12 +106,16 @@ impl<'a> Misfit<'a> {
 fn size(parameter: Parameter, whisker: &Whisker) -> f64 {
     let length = whisker.length_mm;
     match parameter {
-        Parameter::LengthMm | Parameter::VertexMm | Parameter::PoleRadiusMm => length,
+        Parameter::LengthMm
+        | Parameter::TipExtensionMm
+        | Parameter::VertexMm
+        | Parameter::PoleRadiusMm => length,
         Parameter::BaseRadiusUm | Parameter::TipRadiusUm => whisker.base_radius_um,
         Parameter::YoungsModulusGpa => whisker.youngs_modulus_gpa,
         Parameter::ParabolaPerMm | Parameter::SpiralPerMm => 1.0 / length,
         Parameter::SpiralPerMm2 => 1.0 / (length * length),
         Parameter::Taper
+        | Parameter::ProfileScale
         | Parameter::ModulusTipToBase
         | Parameter::ArcStretch
         | Parameter::Friction => 1.0,

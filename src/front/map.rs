@@ -1,11 +1,11 @@
 //! Regime maps, computed in memory.
 
 use super::{Error, MapEngine, Options, accuracy};
-use crate::accuracy::{bound_deg, spectral_bound};
+use crate::accuracy::{excess_deg, spectral};
 use crate::classify::Regime;
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
-use crate::engine::{Engine, EngineError, Precision, Spectral};
+use crate::engine::{Engine, EngineError, Precision};
 use crate::map::{self as stages, Panel, Summary};
 use crate::plan::{Channel, Plan};
 use crate::scene::{Grid, Scene};
@@ -202,30 +202,24 @@ fn run<E: From<Error> + Send>(
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;
     }
-    // The part of the tolerance that the steps leave to the engine.
     let left_deg = options.tolerance_deg.zip(accuracy);
-    let left_deg = left_deg.map(|(tolerance, accuracy)| tolerance - accuracy.error_deg);
+    let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));
     let mut engine: Option<Box<dyn Engine>> = match options.engine {
         MapEngine::Cpu => None,
-        MapEngine::Spectral => {
-            let bound = left_deg.map(|left| spectral_bound(scene, left));
-            Some(Box::new(
-                bound.map_or_else(Spectral::default, Spectral::new),
-            ))
-        }
+        MapEngine::Spectral => Some(Box::new(spectral(scene, left_deg))),
         MapEngine::Gpu(precision) => Some(open(precision).map_err(Error::from)?),
     };
-    if let Some((engine, left)) = engine.as_ref().zip(left_deg) {
-        let bound = bound_deg(scene, engine.residual_bound());
-        if bound > left * (1.0 + f64::EPSILON.sqrt()) {
-            let tolerance_deg = options.tolerance_deg.unwrap_or(0.0);
-            let least = tolerance_deg - left + bound;
-            return Err(Error::Tolerance {
-                tolerance_deg,
-                least,
-            }
-            .into());
+    let residual_bound = engine.as_ref().map(|engine| engine.residual_bound());
+    let excess = residual_bound.and_then(|bound| excess_deg(scene, bound, left_deg));
+    if let (Some(excess), Some(tolerance_deg), Some(left)) =
+        (excess, options.tolerance_deg, left_deg)
+    {
+        let least = tolerance_deg - left + excess;
+        return Err(Error::Tolerance {
+            tolerance_deg,
+            least,
         }
+        .into());
     }
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let (mut done, all) = (0, plan.cells);

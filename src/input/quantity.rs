@@ -2,7 +2,7 @@
 
 use super::names::shortened;
 
-/// Quantity of a number in text: length, angle or plain number, with the unit of a number without one.
+/// Quantity of a number in text, with the unit of a number without one.
 ///
 /// ```
 /// use whiskmap::input::Quantity;
@@ -10,6 +10,7 @@ use super::names::shortened;
 /// assert_eq!(Quantity::LengthMm.parse("15cm"), Ok(150.0));
 /// assert_eq!(Quantity::of("tip_radius_um").parse("2"), Ok(2.0));
 /// assert_eq!(Quantity::AngleDeg.parse("30\u{b0}"), Ok(30.0));
+/// assert_eq!(Quantity::of("force_un").parse("60mN"), Ok(60e3));
 /// assert!(Quantity::LengthMm.parse("30deg").is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,21 +22,47 @@ pub enum Quantity {
     LengthUm,
     /// An angle; a number without a unit is in degrees.
     AngleDeg,
+    /// A force; a number without a unit is in micronewtons.
+    ForceUn,
+    /// A moment; a number without a unit is in nanonewton metres.
+    MomentNnm,
+    /// An energy; a number without a unit is in nanojoules.
+    EnergyNj,
     /// A plain number, which has no unit.
     Number,
 }
 
-/// Units of length, in micrometres. The sign for micro is U+00B5 or U+03BC.
-const LENGTHS_UM: [(&str, f64); 6] = [
-    ("mm", 1e3),
-    ("cm", 1e4),
-    ("m", 1e6),
-    ("um", 1.0),
-    ("\u{b5}m", 1.0),
-    ("\u{3bc}m", 1.0),
+/// Units of one kind with their sizes. Ratios of sizes are whole numbers except for radians, so that a conversion rounds once.
+type Units = &'static [(&'static str, f64)];
+
+const LENGTHS: Units = &[("mm", 1e3), ("cm", 1e4), ("m", 1e6), ("um", 1.0)];
+const ANGLES: Units = &[
+    ("deg", 1.0),
+    ("\u{b0}", 1.0),
+    ("rad", 180.0 / std::f64::consts::PI),
 ];
+const FORCES: Units = &[("uN", 1e3), ("nN", 1.0), ("mN", 1e6), ("N", 1e9)];
+const MOMENTS: Units = &[
+    ("nNm", 1.0),
+    ("uNm", 1e3),
+    ("mNm", 1e6),
+    ("Nm", 1e9),
+    ("uNmm", 1.0),
+    ("mNmm", 1e3),
+    ("Nmm", 1e6),
+];
+const ENERGIES: Units = &[("nJ", 1.0), ("uJ", 1e3), ("mJ", 1e6), ("J", 1e9)];
 
 impl Quantity {
+    /// All quantities that have a unit, one for each kind of unit.
+    pub const KINDS: [Self; 5] = [
+        Self::LengthMm,
+        Self::AngleDeg,
+        Self::ForceUn,
+        Self::MomentNnm,
+        Self::EnergyNj,
+    ];
+
     /// Returns the quantity of an axis or a channel, by the unit at the end of its name.
     #[must_use]
     pub fn of(name: &str) -> Self {
@@ -44,6 +71,9 @@ impl Quantity {
             Some("mm") => Self::LengthMm,
             Some("um") => Self::LengthUm,
             Some("deg") => Self::AngleDeg,
+            Some("un") => Self::ForceUn,
+            Some("nnm") => Self::MomentNnm,
+            Some("nj") => Self::EnergyNj,
             _ => Self::Number,
         }
     }
@@ -55,8 +85,30 @@ impl Quantity {
             Self::LengthMm => Some("mm"),
             Self::LengthUm => Some("um"),
             Self::AngleDeg => Some("deg"),
+            Self::ForceUn => Some("uN"),
+            Self::MomentNnm => Some("nNm"),
+            Self::EnergyNj => Some("nJ"),
             Self::Number => None,
         }
+    }
+
+    const fn table(self) -> Units {
+        match self {
+            Self::LengthMm | Self::LengthUm => LENGTHS,
+            Self::AngleDeg => ANGLES,
+            Self::ForceUn => FORCES,
+            Self::MomentNnm => MOMENTS,
+            Self::EnergyNj => ENERGIES,
+            Self::Number => &[],
+        }
+    }
+
+    /// Returns the names of the units in which a number of the quantity can be given, its own unit first.
+    pub fn units(self) -> impl Iterator<Item = &'static str> {
+        let own = self.unit();
+        let others = self.table().iter().map(|(name, _)| *name);
+        own.into_iter()
+            .chain(others.filter(move |name| Some(*name) != own))
     }
 
     /// Returns the finite number in `text`, in the quantity's own unit.
@@ -71,32 +123,30 @@ impl Quantity {
         let number = number.filter(|number| number.is_finite());
         let number = number.ok_or_else(|| self.example().to_owned())?;
         let unit = unit.trim();
+        if unit.is_empty() {
+            return Ok(number);
+        }
+        let sizes = self.sizes(unit);
         let unknown = || format!("unit {}: {}", shortened(unit), self.allowed());
-        self.convert(number, unit).ok_or_else(unknown)
+        let [own, size] = sizes.ok_or_else(unknown)?;
+        Ok(converted(number, size, own))
     }
 
-    /// Converts a number from this unit to that of the quantity; `None` for a unit of another quantity.
-    fn convert(self, number: f64, unit: &str) -> Option<f64> {
-        let own_um = match self {
-            _ if unit.is_empty() => return Some(number),
-            Self::LengthMm => 1e3,
-            Self::LengthUm => 1.0,
-            Self::AngleDeg => {
-                return match unit {
-                    "deg" | "\u{b0}" => Some(number),
-                    "rad" => Some(number.to_degrees()),
-                    _ => None,
-                };
-            }
-            Self::Number => return None,
+    /// Converts a number in the quantity's own unit to another `unit`. Returns `None` for a unit of another quantity.
+    #[must_use]
+    pub fn convert(self, number: f64, unit: &str) -> Option<f64> {
+        let [own, size] = self.sizes(unit)?;
+        Some(converted(number, own, size))
+    }
+
+    /// Sizes of the quantity's own unit and of another unit of it. The sign for micro is U+00B5 or U+03BC.
+    fn sizes(self, unit: &str) -> Option<[f64; 2]> {
+        let unit = unit.replace(['\u{b5}', '\u{3bc}'], "u");
+        let size = |name: &str| {
+            let found = self.table().iter().find(|(own, _)| *own == name);
+            found.map(|(_, size)| *size)
         };
-        let (_, unit_um) = LENGTHS_UM.iter().find(|(name, _)| *name == unit)?;
-        // Ratios of units are whole numbers, so that the result is rounded once.
-        Some(if *unit_um < own_um {
-            number / (own_um / unit_um)
-        } else {
-            number * (unit_um / own_um)
-        })
+        Some([size(self.unit()?)?, size(&unit)?])
     }
 
     /// Message about a text without a number.
@@ -105,24 +155,41 @@ impl Quantity {
             Self::LengthMm => "must be a length, such as 15.66, 15.66mm or 1.5cm",
             Self::LengthUm => "must be a length, such as 1.5, 1.5um or 0.0015mm",
             Self::AngleDeg => "must be an angle, such as 30, 30deg, 30\u{b0} or 0.5rad",
+            Self::ForceUn => "must be a force, such as 60, 60uN or 0.06mN",
+            Self::MomentNnm => "must be a moment, such as 250, 250nNm or 0.25uNm",
+            Self::EnergyNj => "must be an energy, such as 40, 40nJ or 0.04uJ",
             Self::Number => "must be a number, such as 0.9",
         }
     }
 
     /// Message that lists the allowed units.
-    const fn allowed(self) -> &'static str {
-        match self {
-            Self::LengthMm => "must be mm (the default), cm, m or um",
-            Self::LengthUm => "must be um (the default), mm, cm or m",
-            Self::AngleDeg => "must be deg (the default), \u{b0} or rad",
-            Self::Number => "must be left out",
+    fn allowed(self) -> String {
+        let names: Vec<&str> = self.units().collect();
+        match names[..] {
+            [own, ref others @ .., last] => {
+                let others = others.iter().map(|name| format!(", {name}"));
+                let others: String = others.collect();
+                format!("must be {own} (the default){others} or {last}")
+            }
+            _ => "must be left out".to_owned(),
         }
+    }
+}
+
+/// Converts a number between units of these sizes.
+fn converted(number: f64, from: f64, to: f64) -> f64 {
+    if from < to {
+        number / (to / from)
+    } else {
+        number * (from / to)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Quantity::{self, AngleDeg, LengthMm, LengthUm, Number};
+    use super::Quantity::{
+        self, AngleDeg, EnergyNj, ForceUn, LengthMm, LengthUm, MomentNnm, Number,
+    };
 
     #[test]
     fn units_are_converted_with_one_rounding() {
@@ -140,6 +207,11 @@ mod tests {
             (AngleDeg, "-30deg", -30.0),
             (AngleDeg, "30 \u{b0}", 30.0),
             (AngleDeg, "0.5rad", 0.5_f64.to_degrees()),
+            (ForceUn, "60mN", 60e3),
+            (ForceUn, "300 nN", 0.3),
+            (MomentNnm, "1.1Nmm", 1.1e6),
+            (MomentNnm, "3\u{b5}Nm", 3e3),
+            (EnergyNj, "7uJ", 7e3),
             (Number, "-1e-3", -1e-3),
         ] {
             assert_eq!(quantity.parse(text), Ok(value), "{text}");
@@ -189,7 +261,9 @@ mod tests {
             ("push_angle_deg", AngleDeg),
             ("curvature_per_mm", Number),
             ("taper", Number),
-            ("force_un", Number),
+            ("force_un", ForceUn),
+            ("base_moment_nnm", MomentNnm),
+            ("energy_nj", EnergyNj),
         ] {
             assert_eq!(Quantity::of(name), quantity, "{name}");
         }

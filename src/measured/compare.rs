@@ -3,8 +3,9 @@
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
+use crate::shooting::Resolution;
 use crate::trace::row;
-use crate::trace::{Detachment, DetachmentKind, curve};
+use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
 use serde::Serialize;
 
 row! {
@@ -19,6 +20,8 @@ row! {
         pub distance_mm: f64,
         /// Measured angle, in degrees: of the push or of the chord, as in the file.
         pub measured_deg: f64,
+        /// Standard deviation of the measured angle, in degrees; empty where not given.
+        pub sd_deg: Option<f64>,
         /// Observed end of the push: slip-off, pull-off or empty.
         pub kind: Option<DetachmentKind>,
         /// Predicted angle of the same kind, in degrees; empty where the side never detaches.
@@ -55,6 +58,7 @@ impl MeasuredPoints {
                 side: point.side,
                 distance_mm: point.distance_mm,
                 measured_deg: point.angle_deg,
+                sd_deg: self.have_deviations.then_some(point.sd_deg),
                 kind: point.kind,
                 predicted_deg,
                 predicted_kind: end.kind,
@@ -72,7 +76,7 @@ impl MeasuredPoints {
         let mut distances: Vec<f64> = points.map(|point| point.distance_mm).collect();
         distances.sort_by(f64::total_cmp);
         distances.dedup();
-        curve(whisker, pole, side, &distances)
+        curve_without_strain(Resolution::FINE, whisker, pole, side, &distances)
     }
 }
 

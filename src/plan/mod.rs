@@ -144,7 +144,15 @@ impl Plan {
     /// # Errors
     /// When one panel takes more than [`MEMORY_LIMIT`].
     pub fn new(scene: &Scene) -> Result<Self, PlanError> {
-        Self::with_band(scene, scene.grid.distance_mm.len())
+        Self::in_blocks(scene, 1)
+    }
+
+    /// Creates the plan of a run for `scene` that keeps the packed panels of a block of `whiskers`, until the block is written.
+    ///
+    /// # Errors
+    /// When one panel, or one block, takes more than [`MEMORY_LIMIT`].
+    pub fn in_blocks(scene: &Scene, whiskers: usize) -> Result<Self, PlanError> {
+        Self::with_band(scene, scene.grid.distance_mm.len(), whiskers)
     }
 
     /// Returns the plan for a run of `scene` that keeps bands of rows: a single panel is never in memory as a whole, except as packed.
@@ -157,13 +165,13 @@ impl Plan {
         match scene.whisker_count() {
             1 => {
                 let band = (CELLS_OF_PANELS / push_angles).max(1);
-                Self::with_band(scene, band.next_multiple_of(BLOCK_ROWS).min(rows))
+                Self::with_band(scene, band.next_multiple_of(BLOCK_ROWS).min(rows), 1)
             }
             _ => Self::new(scene),
         }
     }
 
-    fn with_band(scene: &Scene, band_rows: usize) -> Result<Self, PlanError> {
+    fn with_band(scene: &Scene, band_rows: usize, packed_panels: usize) -> Result<Self, PlanError> {
         let push_angles = scene.grid.push_angle_deg.len();
         let distances = scene.grid.distance_mm.len();
         let cells = push_angles * distances;
@@ -175,7 +183,7 @@ impl Plan {
         // Some are packed while the next ones are computed.
         let rows = whiskers * distances;
         let computed = rows.min(2 * panels_at_once * band_rows) * push_angles;
-        let packed = cells * panels_at_once;
+        let packed = cells * packed_panels.max(panels_at_once);
         let bytes = computed as u64 * BYTES_PER_CELL
             + packed as u64 * PACKED_BYTES_PER_CELL
             + bytes_of_sheets(scene, panels_at_once);

@@ -1,58 +1,68 @@
 //! Pictures of stored maps: the regimes, or any channel.
 
-use super::RenderError;
 use super::boundary::stretches;
+use super::{RenderError, labels, row};
 use crate::classify::{Regime, Status};
 use crate::scene::SweepAxis;
-use crate::store::{ChannelValues, MapSlice, STATE_CHANNELS};
+use crate::store::{ChannelValues, MapSlice, NOT_COMPUTED, STATE_CHANNELS};
 use std::collections::BTreeMap;
 use whiskmap_plot::{
-    CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, Rgb,
-    ScaleOptions, Shading, ValueSummary,
+    CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, PictureSize,
+    Rgb, ScaleOptions, Shading, ValueSummary,
 };
 
-/// Options of the picture of a map: channel, colour scale and width.
+/// Options of the picture of a map: channel, scale of its values, and size.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MapOptions<'a> {
     /// Name of the drawn channel. `None` draws the regimes, with the detachment boundary over them.
     pub channel: Option<&'a str>,
-    /// True if the colour scale of the map is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the
-    /// 1st percentile of the positive values.
-    pub log: bool,
+    /// True if the scale of the map's values is logarithmic: values at or below 0 are blank; without a range, a colour bar starts at the
+    /// 1st percentile of the positive values. `None` for a logarithmic colour scale of loads and energies that span more than two decades,
+    /// and linear ones otherwise.
+    pub log: Option<bool>,
     /// Ends `[low, high]` of the colour bar, in the channel's unit; values beyond them take the colours of the ends. `None` for the
     /// extent of the values.
     pub range: Option<[f64; 2]>,
-    /// Width of the picture in pixels; `None` for the width at which all text can be read.
-    pub width: Option<u32>,
+    /// Size of the picture.
+    pub size: PictureSize,
 }
 
 /// Draws a map: codes with a legend, quantities with a colour bar. A map of several whiskers becomes a contact sheet with the first
-/// sweep axis to the right and the second upwards.
+/// sweep axis to the right and the second upwards. A row of quantities becomes a line chart. All maps show the detachment boundary if
+/// their margins are stored.
 ///
 /// # Errors
-/// The map has more than two sweep axes, lacks the channel, or is damaged. Or the channel cannot have the requested colour scale.
+/// The map has more than two sweep axes, lacks the channel, or is damaged. Or the channel cannot have the requested colour scale, or the
+/// size on paper is too small.
 pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderError> {
     let grid = map.grid();
     if grid.sweep.len() > 2 {
         return Err(RenderError::TooManyAxes(grid.sweep_names()));
     }
     let channel = options.channel.unwrap_or("regime");
-    let (shading, legend) = match map.names(channel) {
+    let is_straight = map.is_straight()?;
+    if row::is_row(map) && map.names(channel).is_none() {
+        return row::chart(map, channel, is_straight, options);
+    }
+    let (shading, mut legend) = match map.names(channel) {
         Some(names) => codes(map, channel, names, options)?,
         None => quantities(map, channel, options)?,
     };
-    let has_boundary = channel == "regime" && map.channels().contains(&"margin_deg");
+    let has_boundary = has_boundary(map)?;
+    if has_boundary {
+        legend.push(LegendEntry::curve("detachment boundary"));
+    }
     let has_marks = has_marks(map, channel)?;
     let heat_map = HeatMap {
         title: map.title(),
-        x: CellAxis::new("push angle (deg)   CF < 0 < CB", &grid.push_angle_deg),
-        y: CellAxis::new("distance at first touch (mm)", &grid.distance_mm),
+        x: CellAxis::new(labels::PUSH_ANGLE, &grid.push_angle_deg),
+        y: CellAxis::new(labels::DISTANCE, &grid.distance_mm),
         panel_axes: grid.atlas().map(|axis| axis.map(panel_axis)),
         shading,
         legend,
-        width: options.width,
+        regions: Some(labels::regions(is_straight)),
     };
-    heat_map.picture(|index| {
+    heat_map.picture(options.size, |index| {
         let mut cells = PanelCells {
             values: map.read_panel(channel, index)?.values().collect(),
             ..PanelCells::default()
@@ -68,12 +78,8 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
 }
 
 fn panel_axis(axis: &SweepAxis) -> PanelAxis {
-    let title = axis.parameter.title();
     PanelAxis {
-        label: match axis.parameter.unit() {
-            "1" => title.to_owned(),
-            unit => format!("{title} ({unit})"),
-        },
+        label: labels::parameter(axis.parameter),
         values: axis.values.clone(),
     }
 }
@@ -85,10 +91,11 @@ fn codes(
     names: BTreeMap<u32, String>,
     options: &MapOptions<'_>,
 ) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
-    if options.log || options.range.is_some() {
+    if options.log.is_some() || options.range.is_some() {
         return Err(RenderError::Codes(channel.to_owned()));
     }
     let fill = |(place, &code): (usize, &u32)| match channel {
+        _ if code == u32::from(NOT_COMPUTED) => (code, Fill::BLANK),
         "regime" => (code, regime_fill(code)),
         _ => (code, Fill::qualitative(place)),
     };
@@ -96,10 +103,7 @@ fn codes(
     let codes = map.codes(channel)?;
     let present = names.into_iter().filter(|(code, _)| codes.contains(code));
     let entry = |(code, name)| LegendEntry::swatch(fills[&code], name);
-    let mut legend: Vec<_> = present.map(entry).collect();
-    if channel == "regime" && has_boundary(map)? {
-        legend.push(LegendEntry::curve("detachment boundary"));
-    }
+    let legend = present.map(entry).collect();
     let other = regime_fill(Regime::Unresolved.code());
     Ok((Shading::Codes { fills, other }, legend))
 }
@@ -142,13 +146,17 @@ fn quantities(
     let mut whole = false;
     for index in 0..map.layout().panels() {
         let samples = map.read_panel(channel, index)?;
-        whole = matches!(samples, ChannelValues::U32(_));
+        whole |= matches!(samples, ChannelValues::U32(_));
         summary.extend(samples.values());
     }
     let scale = ScaleOptions {
-        label: label(channel),
-        blank: "no contact".to_owned(),
-        log: options.log,
+        label: labels::channel(channel),
+        blank: if map.has_blanks() {
+            "no contact, or not computed".to_owned()
+        } else {
+            "no contact".to_owned()
+        },
+        log: options.log.or((!labels::is_load(channel)).then_some(false)),
         range: options.range,
         whole,
     };
@@ -171,20 +179,4 @@ fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
 
 fn is_mark(code: u32) -> bool {
     Status::MARKS.iter().any(|status| status.code() == code)
-}
-
-/// The name of a channel in words, with the unit that its last word stands for.
-fn label(channel: &str) -> String {
-    const UNITS: [(&str, &str); 5] = [
-        ("_mm", "mm"),
-        ("_deg", "deg"),
-        ("_un", "\u{b5}N"),
-        ("_nnm", "nN m"),
-        ("_nj", "nJ"),
-    ];
-    let unit = UNITS.iter().find_map(|(suffix, unit)| {
-        let name = channel.strip_suffix(suffix)?;
-        Some(format!("{} ({unit})", name.replace('_', " ")))
-    });
-    unit.unwrap_or_else(|| channel.replace('_', " "))
 }

@@ -4,17 +4,20 @@
 //! are read panel by panel.
 
 mod boundary;
+mod labels;
 mod map;
 mod plots;
+mod row;
 
+pub use labels::{DISTANCE, PUSH_ANGLE, regions};
 pub use map::{MapOptions, map};
 pub use plots::{
-    BranchAxis, CurveAxis, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves, designs,
-    measured, shapes,
+    BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves,
+    designs, error_bars, measured, shapes,
 };
 pub use whiskmap_plot::{
-    Band, Chart, Disc, Dot, EncodeError, Ink, Inset, Line, Note, Picture, PictureFormat, Plot,
-    Stroke,
+    Band, Chart, Disc, Dot, EncodeError, Ink, Inset, Line, Note, Picture, PictureFormat,
+    PictureSize, Plot, PrintSize, Region, SizeError, Stroke,
 };
 
 use crate::store;
@@ -35,6 +38,9 @@ pub enum RenderError {
         /// Fault of the colour scale: what is wrong, and what is allowed.
         cause: ScaleError,
     },
+    /// The picture has no room in its size on paper.
+    #[error("the picture is {0}")]
+    Size(#[from] SizeError),
     /// A colour scale is requested for a channel of codes.
     #[error(
         "colour scale of `{0}`: the channel is made of codes; choose a channel of quantities, such as force_un"

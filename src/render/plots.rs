@@ -2,9 +2,10 @@
 //!
 //! Solid lines are stable states, dashed lines unstable states. Slip-off is black and pull-off is blue, as in the paper.
 
-use crate::design::{Design, DesignEnd, DesignTarget};
+use super::labels;
+use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
 use crate::measured::ComparedPoint;
-use crate::scene::Parameter;
+use crate::scene::{Parameter, digits};
 use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
 use crate::uncertainty::EndSpread;
 use whiskmap_plot::{Band, Disc, Dot, Ink, Line, Plot, Shade, Stroke};
@@ -29,6 +30,9 @@ pub type BranchAxis = PlotAxis<BranchPoint, f64>;
 pub struct DrawnCurve<'a> {
     /// Detachments of the curve, one whisker and side after the other, each in order of increasing distance.
     pub rows: &'a [Detachment],
+    /// Distance in mm at which the tip of the resting whisker touches the pole. If both sides have a detachment there, a grey line between
+    /// them closes the region of stable states.
+    pub reach_mm: f64,
     /// Dash pattern of the curve: solid or dashed.
     pub stroke: Stroke,
     /// Name of the curve's whisker, before the kind of detachment in the legend; may be empty.
@@ -40,7 +44,13 @@ pub struct DrawnCurve<'a> {
 pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
-    for DrawnCurve { rows, stroke, name } in all {
+    for DrawnCurve {
+        rows,
+        reach_mm,
+        stroke,
+        name,
+    } in all
+    {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let kinds = side.chunk_by(|a, b| a.kind == b.kind);
             let parts = kinds.filter_map(|part| {
@@ -54,20 +64,37 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
             });
             plot.lines.extend(joined(parts));
         }
+        let at_reach = rows.iter().filter(|row| row.distance_mm == *reach_mm);
+        let tip: Vec<_> = at_reach.filter_map(place).collect();
+        if tip.len() > 1 {
+            let line = Line::new(tip, Ink::Grey, *stroke);
+            plot.lines.push(line.named("first touch at the tip"));
+        }
     }
     plot
 }
 
-/// Returns a bifurcation diagram: a plot of the branches at each pole, in the ink beside them. Each branch begins at its first touch.
+/// The branches of a whisker at one pole, with their colour and name.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawnBranch<'a> {
+    /// Points of the branches at the pole, one side after the other; each branch begins at its first touch.
+    pub points: &'a [BranchPoint],
+    /// Colour of the branches.
+    pub ink: Ink,
+    /// Name of the stable states in the legend.
+    pub name: &'a str,
+}
+
+/// Returns a bifurcation diagram: a plot of the branches at each pole.
 #[must_use]
-pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxis; 2]) -> Plot {
+pub fn branches(title: &str, poles: &[DrawnBranch], [x, y]: [BranchAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |point: &BranchPoint| [(x.value)(point), (y.value)(point)];
-    for (ink, points) in poles {
+    for DrawnBranch { points, ink, name } in poles {
         for branch in points.chunk_by(|_, next| next.mark != Some(BranchMark::FirstTouch)) {
             let parts = branch.chunk_by(|a, b| a.stable == b.stable).map(|part| {
                 let (stroke, name) = match part[0].stable {
-                    true => (Stroke::Solid, "stable"),
+                    true => (Stroke::Solid, *name),
                     false => (Stroke::Dashed, "unstable"),
                 };
                 Line::new(part.iter().map(place).collect(), *ink, stroke).named(name)
@@ -93,18 +120,14 @@ pub fn branches(title: &str, poles: &[(Ink, &[BranchPoint])], [x, y]: [BranchAxi
     plot
 }
 
-/// Returns measured detachments as dots at `[distance (mm), angle (deg)]`: slip-off open, pull-off filled, grey where the kind is
+/// Returns measured detachments as dots at `[angle (deg), distance (mm)]`: slip-off open, pull-off filled, grey where the kind is
 /// unknown.
 #[must_use]
 pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
     let dots = points.iter().map(|point| {
-        let (ink, open, name) = match point.kind {
-            Some(DetachmentKind::SlipOff) => (Ink::Black, true, "measured slip-off"),
-            Some(DetachmentKind::PullOff) => (Ink::Blue, false, "measured pull-off"),
-            _ => (Ink::Grey, false, "measured"),
-        };
+        let (ink, open, name) = measured_look(point);
         Dot {
-            at: [point.distance_mm, point.measured_deg],
+            at: [point.measured_deg, point.distance_mm],
             ink,
             open,
             name: Some(name.to_owned()),
@@ -143,29 +166,44 @@ pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
     plot
 }
 
-/// Returns a plot of the push angles of a design, with its solutions as dots; over the logarithm of the parameter if its range is wide.
+/// Returns a plot of the goal's quantity over the parameter of a design, with its solutions as dots. Axes with a wide range of positive
+/// numbers are logarithmic.
 #[must_use]
 pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> Plot {
-    let (x_label, x): (String, fn(f64) -> f64) = match design.is_wide() {
-        true => (format!("log10 of {}", parameter.name()), f64::log10),
-        false => (parameter.name().to_owned(), |value| value),
+    let goal = target.goal;
+    let (unit, size) = match goal.quantity().unit() {
+        Some("uN") => (" (\u{b5}N)", "uN"),
+        Some("nNm") => (" (nN m)", "nN m"),
+        Some("deg") => (" (deg)", "deg"),
+        _ => ("", ""),
     };
-    let mut plot = empty("", &x_label, "push angle at detachment (deg)");
-    let push = target.push_angle_deg;
-    let wanted = design.range.map(|end| [x(end), push]).to_vec();
+    let label = format!("{}{unit}", goal.title());
+    let mut plot = empty("", &labels::parameter(parameter), &label);
+    let reached = [DetachmentKind::SlipOff, DetachmentKind::PullOff];
+    let reached = reached.into_iter().filter_map(|kind| design.reached(kind));
+    let reached = reached.fold([target.value; 2], |[low, high], [least, most]| {
+        [low.min(least), high.max(most)]
+    });
+    plot.logarithmic = [design.range, reached].map(is_wide);
+    let wanted = design.range.map(|end| [end, target.value]).to_vec();
     let wanted = Line::new(wanted, Ink::Grey, Stroke::Dashed);
-    plot.lines.push(wanted.named(format!("{push} deg")));
+    let value = digits(target.value);
+    plot.lines
+        .push(wanted.named(format!("{value} {size}").trim_end()));
     for piece in design.ends.chunk_by(|a, b| a.kind == b.kind) {
         if let Some((ink, name)) = look(piece[0].kind) {
-            let place = |end: &DesignEnd| Some([x(end.value), end.push_angle_deg?]);
+            let place = |end: &DesignEnd| Some([end.value, end.reached?]);
             let points = piece.iter().filter_map(place).collect();
             plot.lines
                 .push(Line::new(points, ink, Stroke::Solid).named(name));
         }
     }
-    let ink = look(target.kind).map_or(Ink::Black, |(ink, _)| ink);
+    let ink = goal
+        .kind()
+        .and_then(look)
+        .map_or(Ink::Black, |(ink, _)| ink);
     plot.dots.extend(design.values.iter().map(|value| Dot {
-        at: [x(*value), push],
+        at: [*value, target.value],
         ink,
         open: false,
         name: Some("solution".to_owned()),
@@ -173,25 +211,34 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
     plot
 }
 
-/// Returns bands of push angle (deg) over distance (mm): from the 5th to the 95th percentile, and over them from the 25th to the 75th.
-/// `rows` has one side after the other, each in order of increasing distance.
+/// Returns the error bars of measured detachments: lines of one standard deviation to the left and right, `[angle (deg), distance (mm)]`.
+/// Points without a standard deviation have none.
 #[must_use]
-pub fn bands(rows: &[EndSpread]) -> Vec<Band> {
-    type Percentiles = fn(&EndSpread) -> [Option<f64>; 2];
-    let kinds: [(Shade, &str, Percentiles); 2] = [
-        (Shade::Light, "5 to 95 % of samples", |row| {
-            [row.p5_deg, row.p95_deg]
-        }),
-        (Shade::Dark, "25 to 75 % of samples", |row| {
-            [row.p25_deg, row.p75_deg]
-        }),
+pub fn error_bars(points: &[ComparedPoint]) -> Vec<Line> {
+    let bars = points.iter().filter_map(|point| {
+        let sd = point.sd_deg?;
+        let ends = [-sd, sd].map(|end| [point.measured_deg + end, point.distance_mm]);
+        let (ink, ..) = measured_look(point);
+        Some(Line::new(ends.to_vec(), ink, Stroke::Solid).named("standard deviation"))
+    });
+    bars.collect()
+}
+
+/// Returns bands along the distance (mm), across `[value, distance]`: from the 5th to the 95th percentile, and over them from the 25th to the 75th. `percentiles` returns
+/// the 5th, 25th, 75th and 95th. `rows` has one side after the other, each in order of increasing distance.
+#[must_use]
+pub fn bands(rows: &[EndSpread], percentiles: fn(&EndSpread) -> [Option<f64>; 4]) -> Vec<Band> {
+    let kinds = [
+        (Shade::Light, "5 to 95 % of samples", [0, 3]),
+        (Shade::Dark, "25 to 75 % of samples", [1, 2]),
     ];
     let mut bands = Vec::new();
-    for (shade, name, percentiles) in kinds {
+    for (shade, name, ends) in kinds {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let point = |row: &EndSpread| {
-                let [low, high] = percentiles(row).map(|end| end.unwrap_or(f64::NAN));
-                [row.distance_mm, low, high]
+                let all = percentiles(row);
+                let ends = ends.map(|end| all[end].unwrap_or(f64::NAN));
+                ends.map(|end| [end, row.distance_mm])
             };
             bands.push(Band {
                 points: side.iter().map(point).collect(),
@@ -201,6 +248,15 @@ pub fn bands(rows: &[EndSpread]) -> Vec<Band> {
         }
     }
     bands
+}
+
+/// The ink of a measured detachment, true if its dot is open, and its name.
+const fn measured_look(point: &ComparedPoint) -> (Ink, bool, &'static str) {
+    match point.kind {
+        Some(DetachmentKind::SlipOff) => (Ink::Black, true, "measured slip-off"),
+        Some(DetachmentKind::PullOff) => (Ink::Blue, false, "measured pull-off"),
+        _ => (Ink::Grey, false, "measured"),
+    }
 }
 
 /// The ink and the name of a kind of detachment; `None` if there is no detachment.

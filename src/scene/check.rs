@@ -79,6 +79,7 @@ fn whisker(numbers: &Numbers, rows: Option<&[[f64; 2]]>) -> Result<Whisker, Scen
     };
     let length_mm = check(limits(Parameter::LengthMm), Parameter::LengthMm)?;
     let radii = profile::radii(numbers, rows, length_mm)?;
+    let length_mm = radii.length_mm;
     let modulus = numbers.get(Parameter::YoungsModulusGpa);
     let unit = modulus.and_then(|gpa| other_unit(gpa, MODULUS_GPA, &MODULUS_UNITS));
     let unit = unit.map(|unit| format!("is it in {unit}?"));

@@ -46,7 +46,11 @@ impl SceneData {
                 // It needs both radii.
                 Parameter::Taper => {}
                 // They are no axes of a sweep.
-                Parameter::YoungsModulusGpa | Parameter::SpiralPerMm | Parameter::SpiralPerMm2 => {}
+                Parameter::YoungsModulusGpa
+                | Parameter::ProfileScale
+                | Parameter::TipExtensionMm
+                | Parameter::SpiralPerMm
+                | Parameter::SpiralPerMm2 => {}
             }
         }
         if let Some(taper) = place.value(Parameter::Taper) {
@@ -101,6 +105,13 @@ impl SceneData {
     #[must_use]
     pub fn has_friction(&self) -> bool {
         self.corner_whiskers().any(|own| own.pole.friction != 0.0)
+    }
+
+    /// Returns true if all whiskers of the sweep are straight at rest.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.corner_whiskers()
+            .all(|own| own.whisker.sharpest_bend_per_mm() == 0.0)
     }
 
     /// Returns true if the scene has an axis along which whiskers differ.

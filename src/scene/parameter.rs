@@ -67,6 +67,10 @@ parameters! {
         TipRadiusUm = "tip_radius_um", "um", "whisker.tip_radius_um", "radius at the tip";
         /// Taper of the whisker, `1 - tip/base radius`, dimensionless; it determines the radius at the tip.
         Taper = "taper", "1", "whisker.tip_radius_um", "taper (1 \u{2212} tip/base radius)";
+        /// Factor of all measured radii, dimensionless; no detachment depends on it.
+        ProfileScale = "profile_scale", "1", "whisker.profile.profile_scale", "factor of the measured radii";
+        /// Length of the cone that continues the last two measured rows to the tip, in mm.
+        TipExtensionMm = "tip_extension_mm", "mm", "whisker.profile.tip_extension_mm", "cone beyond the last row";
         /// Young's modulus of the whisker at the base, in GPa; no detachment depends on it.
         YoungsModulusGpa = "youngs_modulus_gpa", "GPa", "whisker.youngs_modulus_gpa", "Young's modulus";
         /// Coefficient of the parabola of the resting whisker, in 1/mm.

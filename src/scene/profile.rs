@@ -14,6 +14,10 @@ pub(super) const MOST: usize = 256;
 /// Largest distance of the last row from the tip, relative to the length: tables are rounded.
 const END_SLACK: f64 = 1e-9;
 
+/// Limits of the radius of a row, in micrometres.
+const THINNEST_UM: f64 = 1e-3;
+const THICKEST_UM: f64 = 1e5;
+
 /// Least distance of two rows, relative to the length: `f32` can tell them apart.
 const NARROWEST: f64 = 1e-6;
 
@@ -25,8 +29,13 @@ const SHARPEST_TIP: f64 = 1000.0;
 /// unresolved after 20 s.
 const DEEPEST_WAIST: f64 = 4.0;
 
+/// Limits of the factor of all radii.
+const SCALES: [f64; 2] = [1e-3, 1e3];
+
 /// Checked radii of a whisker: base and tip, or a measured profile.
 pub(super) struct Radii {
+    /// Arclength of the whisker from base to tip, in millimetres: with the cone beyond the last row.
+    pub length_mm: f64,
     pub base_radius_um: f64,
     pub tip_radius_um: f64,
     /// Rows of the measured profile, `[row][arclength, radius]`, as fractions of the length and the base radius; `None` for a cone.
@@ -53,7 +62,14 @@ pub(super) fn radii(
             let must = "must be left out: the radii are those of whisker.profile";
             return Err(SceneFault::of_value(*key, digits(value), must));
         }
-        return measured(rows, length_mm);
+        check_rows(rows, length_mm)?;
+        return measured(numbers, rows, length_mm);
+    }
+    for parameter in [Parameter::ProfileScale, Parameter::TipExtensionMm] {
+        if let Some(value) = numbers.get(parameter) {
+            let must = "must be left out: there are no whisker.profile.rows";
+            return Err(SceneFault::of_value(parameter.key(), digits(value), must));
+        }
     }
     let given = |end: usize| {
         let absent = || SceneFault::new(keys[end], "is left out, and there is no whisker.profile");
@@ -63,13 +79,14 @@ pub(super) fn radii(
     let tip_radius_um =
         NumberLimits::between(0.0, ("base_radius_um", base_radius_um)).check(keys[1], given(1)?)?;
     Ok(Radii {
+        length_mm,
         base_radius_um,
         tip_radius_um,
         profile: None,
     })
 }
 
-fn measured(rows: &[[f64; 2]], length_mm: f64) -> Result<Radii, SceneFault> {
+fn check_rows(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
     let count = match rows.len() {
         2..=MOST => None,
         few @ ..2 => Some(few.to_string()),
@@ -91,7 +108,7 @@ fn measured(rows: &[[f64; 2]], length_mm: f64) -> Result<Radii, SceneFault> {
                 "must be farther from the row before it, by at least length_mm / 1000000 ({})",
                 NARROWEST * length_mm
             )
-        } else if !(1e-3..=1e5).contains(&radius) {
+        } else if !(THINNEST_UM..=THICKEST_UM).contains(&radius) {
             "the radius must be between 0.001 and 100000 um".to_owned()
         } else if !(thinnest..=thickest).contains(&radius) {
             format!(
@@ -125,19 +142,80 @@ fn measured(rows: &[[f64; 2]], length_mm: f64) -> Result<Radii, SceneFault> {
         );
         return refused(i, must);
     }
+    Ok(())
+}
+
+/// The radii through checked `rows`, scaled and continued by a cone.
+fn measured(numbers: &Numbers, rows: &[[f64; 2]], length_mm: f64) -> Result<Radii, SceneFault> {
     let mut profile = rows.to_vec();
+    if let Some(last) = profile.last_mut() {
+        last[0] = length_mm;
+    }
+    if let Some(extension) = numbers.get(Parameter::TipExtensionMm) {
+        let extension =
+            extension_limits(&profile).check(Parameter::TipExtensionMm.key(), extension)?;
+        if extension > NARROWEST * length_mm {
+            profile.push(beyond(&profile, extension));
+        }
+    }
+    let scale = numbers.get(Parameter::ProfileScale).unwrap_or(1.0);
+    let scale = scale_limits(&profile).check(Parameter::ProfileScale.key(), scale)?;
+    let [[_, base], [length_mm, tip]] = [profile[0], profile[profile.len() - 1]];
     for [s, radius] in &mut profile {
         *s /= length_mm;
-        *radius /= base_radius_um;
-    }
-    if let Some([end, _]) = profile.last_mut() {
-        *end = 1.0;
+        *radius /= base;
     }
     Ok(Radii {
-        base_radius_um,
-        tip_radius_um,
+        length_mm,
+        base_radius_um: scale * base,
+        tip_radius_um: scale * tip,
         profile: Some(profile),
     })
+}
+
+/// The end `[arclength, radius]` of the cone of this length, in millimetres, that continues the last two rows.
+fn beyond(rows: &[[f64; 2]], extension: f64) -> [f64; 2] {
+    let [.., [from, before], [end, last]] = *rows else {
+        return [extension, 0.0];
+    };
+    let slope = (last - before) / (end - from);
+    [end + extension, slope.mul_add(extension, last)]
+}
+
+/// Limits of the length of the cone beyond `rows`: at most the length of the rows. Its end has a radius that a last row may have.
+fn extension_limits(rows: &[[f64; 2]]) -> NumberLimits {
+    let ([_, base], [length_mm, last]) = (rows[0], rows[rows.len() - 1]);
+    let slope = beyond(rows, 1.0)[1] - last;
+    let radii = rows.iter().map(|row| row[1]);
+    let thinnest = radii.fold(f64::INFINITY, f64::min);
+    let (why, tip) = match slope < 0.0 {
+        true => (
+            "where the radius is a thousandth of that at the base",
+            base / SHARPEST_TIP,
+        ),
+        false => (
+            "where the radius is that at the base, or four times the least",
+            base.min(DEEPEST_WAIST * thinnest),
+        ),
+    };
+    let most = (tip - last) / slope;
+    let end = match most < length_mm {
+        true => (why, most.max(0.0)),
+        false => ("length_mm", length_mm),
+    };
+    NumberLimits::between(0.0, end)
+}
+
+/// Limits of the factor of the radii of `rows`, which keep every radius within its own limits.
+fn scale_limits(rows: &[[f64; 2]]) -> NumberLimits {
+    let radii = rows.iter().map(|row| row[1]);
+    let thickest = radii.clone().fold(0.0, f64::max);
+    let thinnest = radii.fold(f64::INFINITY, f64::min);
+    let [least, most] = SCALES;
+    NumberLimits::between(
+        least.max(THINNEST_UM / thinnest).min(1.0),
+        most.min(THICKEST_UM / thickest),
+    )
 }
 
 /// The first row that is a waist deeper than [`DEEPEST_WAIST`], and its least radius.

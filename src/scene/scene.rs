@@ -86,6 +86,11 @@ impl Scene {
         SceneBuilder::clone(&self.builder)
     }
 
+    /// Returns the measured rows as the scene gives them, `[row][arclength_mm, radius_um]`; `None` without a profile.
+    pub(crate) fn measured_rows(&self) -> Option<&[[f64; 2]]> {
+        self.builder.rows.as_deref()
+    }
+
     /// Returns the path of the CSV file from which the radii were read; `None` if the scene names none.
     #[must_use]
     pub fn rows_file(&self) -> Option<&Path> {

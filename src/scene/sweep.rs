@@ -37,7 +37,7 @@ pub(super) fn axes(
     Ok(axes)
 }
 
-/// Returns the least and the greatest length of the whiskers of a sweep, in millimetres.
+/// Returns the least and the greatest length of the whiskers of a sweep, with the cones beyond measured rows, in millimetres.
 pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
     let length = Parameter::LengthMm;
     let limits = limits(length);
@@ -45,7 +45,8 @@ pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
     let own = own.ok_or_else(|| SceneFault::new(length.key(), "is left out"))?;
     limits.check(length.key(), own)?;
     let Some((_, axis)) = scene.sweep.iter().find(|(own, _)| *own == length) else {
-        return Ok([own; 2]);
+        let extension = scene.numbers.get(Parameter::TipExtensionMm);
+        return Ok([own + extension.unwrap_or(0.0).max(0.0); 2]);
     };
     let values = axis.checked(length.axis_key(), &limits)?;
     Ok([values[0], values[values.len() - 1]])

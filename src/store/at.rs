@@ -1,7 +1,7 @@
 //! Values selected on the axes of a map or a store.
 
-use crate::input::Quantity;
-use crate::scene::digits;
+use crate::input::{Quantity, did_you_mean};
+use crate::scene::{LONGEST_TITLE, Scene, digits};
 use std::str::FromStr;
 
 /// Selected value of an axis of a map or a store.
@@ -36,11 +36,112 @@ impl FromStr for AxisValue {
     }
 }
 
+/// Error of a selected value that an axis does not have.
+#[derive(Debug, thiserror::Error)]
+#[error("{axis}: {why}")]
+pub struct InvalidAxisValue {
+    axis: String,
+    why: String,
+}
+
+impl InvalidAxisValue {
+    pub(super) fn new(at: &AxisValue, why: impl ToString) -> Self {
+        Self {
+            axis: at.axis.clone(),
+            why: why.to_string(),
+        }
+    }
+}
+
+/// Returns the scene with one value on each sweep axis in `wanted`, the nearest one, and the names of these axes with their values. The
+/// title names the values.
+///
+/// # Errors
+/// An axis is unknown or given twice, ends more than half a step before the value, or does not have it although `exact`.
+pub fn scene_at(
+    scene: &Scene,
+    wanted: &[AxisValue],
+    exact: bool,
+) -> Result<(Scene, ChosenValues), InvalidAxisValue> {
+    let sweep = scene.grid.sweep.iter();
+    let axes: Vec<_> = sweep
+        .map(|axis| (axis.parameter.axis(), &*axis.values))
+        .collect();
+    let (mut builder, mut chosen) = (scene.to_builder(), ChosenValues::new());
+    for at in wanted {
+        let select = select(&axes, &chosen, at, exact);
+        let (axis, index) = select.map_err(|why| InvalidAxisValue::new(at, why))?;
+        let (name, value) = (axes[axis].0, axes[axis].1[index]);
+        builder = builder.sweep(scene.grid.sweep[axis].parameter, [value]);
+        chosen.push((name, value));
+    }
+    if let Some(at) = wanted.last() {
+        let title = titled(&scene.title, &chosen);
+        let title: String = title.chars().take(LONGEST_TITLE).collect();
+        let built = builder.title(title).build();
+        return match built {
+            Ok(scene) => Ok((scene, chosen)),
+            Err(why) => Err(InvalidAxisValue::new(at, why)),
+        };
+    }
+    Ok((scene.clone(), chosen))
+}
+
+/// Names and values of selected axes, each in the unit of its axis.
+pub type ChosenValues = Vec<(&'static str, f64)>;
+
+/// Returns names of selected axes, and their values as text to four digits.
+pub(super) fn readable(chosen: &ChosenValues) -> impl Iterator<Item = (&'static str, String)> {
+    chosen.iter().map(|(name, value)| {
+        let rounded = format!("{value:.3e}").parse().unwrap_or(*value);
+        (*name, digits(rounded))
+    })
+}
+
+/// Returns a title with the selected values.
+pub(super) fn titled(title: &str, chosen: &ChosenValues) -> String {
+    let chosen = readable(chosen).map(|(name, value)| format!(", {name} = {value}"));
+    std::iter::once(title.to_owned()).chain(chosen).collect()
+}
+
+/// Returns the indices of the axis and of the value that `at` selects on `axes`, of which some are `chosen` already.
+pub(super) fn select(
+    axes: &[(&'static str, &[f64])],
+    chosen: &ChosenValues,
+    at: &AxisValue,
+    exact: bool,
+) -> Result<(usize, usize), String> {
+    let names = || axes.iter().map(|(name, _)| *name).collect::<Vec<_>>();
+    let axis = axes.iter().position(|(name, _)| *name == at.axis);
+    let unknown = || match &*names() {
+        [] => "there is no sweep axis".to_owned(),
+        names => {
+            let hint = did_you_mean(&at.axis, names.iter().copied());
+            format!("must be one of the axes, {}{hint}", names.join(", "))
+        }
+    };
+    let axis = axis.ok_or_else(unknown)?;
+    let (name, values) = axes[axis];
+    let index = nearest(values, at.value);
+    let value = values[index];
+    if exact && value != at.value {
+        let [wanted, value] = [at.value, value].map(|own| with_unit(name, own));
+        return Err(format!(
+            "{wanted} is no value of the axis; the nearest is {value}"
+        ));
+    }
+    check_near(name, values, at.value)?;
+    if chosen.iter().any(|(other, _)| *other == name) {
+        return Err("is given twice".to_owned());
+    }
+    Ok((axis, index))
+}
+
 /// Relative distance at which a value still selects the only value of an axis: messages and file names have four digits.
 const ROUNDED: f64 = 5e-4;
 
 /// Checks that `wanted` is at most half a step beyond the `values` of the axis `name`.
-pub(super) fn check_near(name: &str, values: &[f64], wanted: f64) -> Result<(), String> {
+fn check_near(name: &str, values: &[f64], wanted: f64) -> Result<(), String> {
     let (first, last) = (values[0], values[values.len() - 1]);
     let [below, above] = match values {
         [only] => [ROUNDED * only.abs(); 2],
@@ -59,7 +160,7 @@ pub(super) fn check_near(name: &str, values: &[f64], wanted: f64) -> Result<(), 
 }
 
 /// Returns a value of the axis `name` as text, with the unit of a length or an angle.
-pub(super) fn with_unit(name: &str, value: f64) -> String {
+fn with_unit(name: &str, value: f64) -> String {
     match Quantity::of(name).unit() {
         Some(unit) => format!("{} {unit}", digits(value)),
         None => digits(value),
@@ -67,7 +168,7 @@ pub(super) fn with_unit(name: &str, value: f64) -> String {
 }
 
 /// Returns the index of the value nearest to `wanted`.
-pub(super) fn nearest(values: &[f64], wanted: f64) -> usize {
+fn nearest(values: &[f64], wanted: f64) -> usize {
     let apart = |value: &f64| (value - wanted).abs();
     let places = values.iter().enumerate();
     let nearest = places.min_by(|(_, a), (_, b)| apart(a).total_cmp(&apart(b)));

@@ -29,17 +29,17 @@ mod writer;
 mod zarr;
 mod zip;
 
-pub use at::AxisValue;
+pub use at::{AxisValue, ChosenValues, InvalidAxisValue, scene_at};
 pub use attributes::MapDescription;
 pub use error::StoreError;
 pub use file_id::FileId;
 pub use layout::AtlasLayout;
 pub use output::Output;
 pub use reader::{ChannelValues, StoredMap};
-pub use slice::{InvalidAxisValue, MapSlice};
+pub use slice::MapSlice;
 pub use stored::MapSource;
 pub use table::TableFile;
-pub use tally::CellCounts;
+pub use tally::{CellCounts, NOT_COMPUTED};
 pub use target::check_links;
 pub use temporary::TemporaryFiles;
 #[cfg(feature = "zarr")]

@@ -145,7 +145,7 @@ impl StoredMap {
     /// # Errors
     /// There is no such channel, or the file is damaged.
     pub fn read_channel(&self, name: &str) -> Result<ChannelValues, StoreError> {
-        self.read(name, 0..self.layout.panels())
+        self.read_panels(name, 0..self.layout.panels())
     }
 
     /// Reads a channel of one panel of the map: `[distance][push angle]`. No other panel is read.
@@ -153,14 +153,22 @@ impl StoredMap {
     /// # Errors
     /// There is no such channel or panel, or the file is damaged.
     pub fn read_panel(&self, name: &str, index: usize) -> Result<ChannelValues, StoreError> {
-        let panels = self.layout.panels();
-        if index >= panels {
-            return Err(StoreError::NoSuchPanel { index, panels });
-        }
-        self.read(name, index..index + 1)
+        self.read_panels(name, index..index + 1)
     }
 
-    fn read(&self, name: &str, panels: Range<usize>) -> Result<ChannelValues, StoreError> {
+    /// Reads a channel of consecutive panels of the map: `[panel][distance][push angle]`. No other panel is read.
+    ///
+    /// # Errors
+    /// There is no such channel or panel, or the file is damaged.
+    pub fn read_panels(
+        &self,
+        name: &str,
+        panels: Range<usize>,
+    ) -> Result<ChannelValues, StoreError> {
+        let all = self.layout.panels();
+        if let Some(index) = panels.clone().find(|index| *index >= all) {
+            return Err(StoreError::NoSuchPanel { index, panels: all });
+        }
         let (part, channel) = self.find(name)?;
         let mut file = open(&self.path)?;
         let mut bytes = Vec::new();

@@ -1,20 +1,13 @@
 //! Slices: parts of a map or a store in which the values of some axes are fixed.
 
-use super::at::{AxisValue, check_near, nearest, with_unit};
+use super::at::{AxisValue, ChosenValues, InvalidAxisValue, readable, select, titled};
 use super::{
-    AtlasLayout, ChannelValues, Channels, MapSource, Panel, STATE_CHANNELS, StoreError, StoredMap,
+    AtlasLayout, ChannelValues, Channels, MapSource, NOT_COMPUTED, Panel, STATE_CHANNELS,
+    StoreError, StoredMap,
 };
-use crate::input::did_you_mean;
-use crate::scene::{Grid, Scene, digits};
+use crate::scene::{Grid, Scene};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Error of a selected value that an axis does not have.
-#[derive(Debug, thiserror::Error)]
-#[error("{axis}: {why}")]
-pub struct InvalidAxisValue {
-    axis: String,
-    why: String,
-}
+use std::ops::Range;
 
 /// Slice: a part of a map or a store, read panel by panel.
 #[derive(Debug)]
@@ -24,9 +17,11 @@ pub struct MapSlice {
     /// Selected rows and columns of each panel.
     rows: Vec<usize>,
     columns: Vec<usize>,
-    chosen: Vec<(&'static str, f64)>,
+    chosen: ChosenValues,
     /// Selected index of each sweep axis of the whole.
     fixed: Vec<Option<usize>>,
+    /// Whiskers of the whole that read as not computed, as ranges in order.
+    blank: Vec<Range<usize>>,
 }
 
 impl MapSlice {
@@ -41,10 +36,8 @@ impl MapSlice {
     ) -> Result<Self, InvalidAxisValue> {
         let mut slice = Self::whole(stored);
         for at in wanted {
-            slice.choose(at, exact).map_err(|why| InvalidAxisValue {
-                axis: at.axis.clone(),
-                why,
-            })?;
+            let chosen = slice.choose(at, exact);
+            chosen.map_err(|why| InvalidAxisValue::new(at, why))?;
         }
         Ok(slice)
     }
@@ -56,6 +49,7 @@ impl MapSlice {
             columns: (0..grid.push_angle_deg.len()).collect(),
             chosen: Vec::new(),
             fixed: vec![None; grid.sweep.len()],
+            blank: Vec::new(),
             grid,
             stored,
         }
@@ -64,32 +58,14 @@ impl MapSlice {
     fn choose(&mut self, at: &AxisValue, exact: bool) -> Result<(), String> {
         let whole = self.stored.grid();
         let sweep = whole.sweep.iter();
-        let sweep = sweep.map(|axis| (axis.parameter.axis(), &axis.values));
+        let sweep = sweep.map(|axis| (axis.parameter.axis(), &*axis.values));
         let inside = [
-            ("distance_mm", &whole.distance_mm),
-            ("push_angle_deg", &whole.push_angle_deg),
+            ("distance_mm", &*whole.distance_mm),
+            ("push_angle_deg", &*whole.push_angle_deg),
         ];
-        let axes: Vec<(&'static str, &Vec<f64>)> = sweep.chain(inside).collect();
-        let names = || axes.iter().map(|(name, _)| *name).collect::<Vec<_>>();
-        let axis = axes.iter().position(|(name, _)| *name == at.axis);
-        let unknown = || {
-            let hint = did_you_mean(&at.axis, names());
-            format!("must be one of the axes, {}{hint}", names().join(", "))
-        };
-        let axis = axis.ok_or_else(unknown)?;
-        let (name, values) = axes[axis];
-        let index = nearest(values, at.value);
-        let value = values[index];
-        if exact && value != at.value {
-            let [wanted, value] = [at.value, value].map(|own| with_unit(name, own));
-            return Err(format!(
-                "{wanted} is no value of the axis; the nearest is {value}"
-            ));
-        }
-        check_near(name, values, at.value)?;
-        if self.chosen.iter().any(|(other, _)| *other == name) {
-            return Err("is given twice".to_owned());
-        }
+        let axes: Vec<_> = sweep.chain(inside).collect();
+        let (axis, index) = select(&axes, &self.chosen, at, exact)?;
+        let (name, value) = (axes[axis].0, axes[axis].1[index]);
         self.chosen.push((name, value));
         match name {
             "distance_mm" => {
@@ -107,6 +83,35 @@ impl MapSlice {
             }
         }
         Ok(())
+    }
+
+    /// Lets unfinished blocks of a store be read: their codes are [`NOT_COMPUTED`], all other values are NaN. Returns the number of such
+    /// panels of the slice.
+    ///
+    /// # Errors
+    /// The file system refuses to look for a file.
+    pub fn blank_missing(&mut self) -> Result<usize, StoreError> {
+        self.blank = self.stored.missing()?;
+        let panels = 0..self.grid.whisker_count();
+        let is_blank = |whisker: &usize| self.is_blank(self.in_whole(*whisker));
+        let count = panels.filter(is_blank).count();
+        if count == 0 {
+            self.blank.clear();
+        }
+        Ok(count)
+    }
+
+    /// Returns true if panels of the slice read as not computed, see [`MapSlice::blank_missing`].
+    #[must_use]
+    pub fn has_blanks(&self) -> bool {
+        !self.blank.is_empty()
+    }
+
+    /// Returns true if whisker `index` of the whole reads as not computed.
+    fn is_blank(&self, index: usize) -> bool {
+        let place = self.blank.partition_point(|range| range.end <= index);
+        let range = self.blank.get(place);
+        range.is_some_and(|range| range.contains(&index))
     }
 
     /// Returns the whole map or store of the slice.
@@ -135,20 +140,13 @@ impl MapSlice {
 
     /// Returns names of the fixed axes of the slice, and their values as text to four digits.
     pub fn readable(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
-        self.chosen.iter().map(|(name, value)| {
-            let rounded = format!("{value:.3e}").parse().unwrap_or(*value);
-            (*name, digits(rounded))
-        })
+        readable(&self.chosen)
     }
 
     /// Returns the title of the scene with the fixed values, one line.
     #[must_use]
     pub fn title(&self) -> String {
-        let chosen = self.readable();
-        let chosen = chosen.map(|(name, value)| format!(", {name} = {value}"));
-        std::iter::once(self.stored.title().to_owned())
-            .chain(chosen)
-            .collect()
+        titled(self.stored.title(), &self.chosen)
     }
 
     /// Returns the names of all channels of the slice, `[channel]`.
@@ -162,13 +160,27 @@ impl MapSlice {
     /// # Errors
     /// The map or store has no scene.
     pub fn has_friction(&self) -> Result<bool, StoreError> {
-        let text = self.stored.attribute("scene")?;
-        let scene = Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map");
+        let scene = self.scene()?;
         let mut chosen = self.chosen.iter();
         Ok(match chosen.find(|(name, _)| *name == "friction") {
             Some((_, friction)) => *friction != 0.0,
-            None => scene.map_or(true, |scene| scene.has_friction()),
+            None => scene.is_none_or(|scene| scene.has_friction()),
         })
+    }
+
+    /// Returns true if all whiskers of the whole map or store are straight; false if this version cannot read the scene.
+    ///
+    /// # Errors
+    /// The map or store has no scene.
+    pub fn is_straight(&self) -> Result<bool, StoreError> {
+        let scene = self.scene()?;
+        Ok(scene.is_some_and(|scene| scene.is_straight()))
+    }
+
+    /// The scene of the map or store; `None` if this version cannot read it.
+    fn scene(&self) -> Result<Option<Scene>, StoreError> {
+        let text = self.stored.attribute("scene")?;
+        Ok(Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map").ok())
     }
 
     /// Returns the indices of the slice's whiskers in the whole sweep, with the last axis varying fastest.
@@ -223,6 +235,13 @@ impl MapSlice {
                 panels,
             });
         }
+        if self.is_blank(self.in_whole(whisker)) {
+            let cells = self.rows.len() * self.columns.len();
+            return Ok(match self.stored.names(channel) {
+                Some(_) => ChannelValues::U32(vec![NOT_COMPUTED.into(); cells]),
+                None => ChannelValues::F32(vec![f32::NAN; cells]),
+            });
+        }
         let width = self.stored.grid().push_angle_deg.len();
         let rows = self.rows.iter();
         let cells =
@@ -259,10 +278,13 @@ impl MapSlice {
         Ok(panel)
     }
 
-    /// Returns the names of the codes of `regime` or `status` in the slice, by code; `None` for other channels.
+    /// Returns the names of the codes of `regime` or `status` in the slice, by code, with that of cells that are not computed; `None` for
+    /// other channels.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
-        self.stored.names(channel)
+        let mut names = self.stored.names(channel)?;
+        names.insert(NOT_COMPUTED.into(), "not computed".to_owned());
+        Some(names)
     }
 
     /// Returns the codes of a channel that occur in the slice.

@@ -7,6 +7,7 @@ use crate::plan::Digits;
 use crate::scene::Grid;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 /// A stored map that is open for reading: an EXR file or a Zarr store.
@@ -115,15 +116,39 @@ impl MapSource {
         }
     }
 
+    /// Returns the indices of the whiskers that are not computed yet, as ranges in order: those of unfinished blocks of a store.
+    ///
+    /// # Errors
+    /// The file system refuses to look for a file.
+    pub fn missing(&self) -> Result<Vec<Range<usize>>, StoreError> {
+        match self {
+            Self::Exr(_) => Ok(Vec::new()),
+            #[cfg(feature = "zarr")]
+            Self::Zarr(store) => store.missing(),
+        }
+    }
+
     /// Reads a channel of one whisker of the stored map: `[distance][push angle]`.
     ///
     /// # Errors
     /// There is no such channel or whisker, or it is missing or damaged.
     pub fn read_panel(&self, name: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
+        self.read_panels(name, whisker..whisker + 1)
+    }
+
+    /// Reads a channel of consecutive whiskers of the stored map: `[whisker][distance][push angle]`.
+    ///
+    /// # Errors
+    /// There is no such channel or whisker, or it is missing or damaged.
+    pub fn read_panels(
+        &self,
+        name: &str,
+        whiskers: Range<usize>,
+    ) -> Result<ChannelValues, StoreError> {
         match self {
-            Self::Exr(map) => map.read_panel(name, whisker),
+            Self::Exr(map) => map.read_panels(name, whiskers),
             #[cfg(feature = "zarr")]
-            Self::Zarr(store) => store.read_panel(name, whisker),
+            Self::Zarr(store) => store.read_panels(name, whiskers),
         }
     }
 }

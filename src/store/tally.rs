@@ -5,6 +5,9 @@ use crate::map::{Audit, EngineCells};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Code of a cell of a store, in the channels of codes, that is not computed yet.
+pub const NOT_COMPUTED: u8 = 254;
+
 /// Counts of the cells of a map: its attribute `counts`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CellCounts {

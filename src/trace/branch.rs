@@ -8,7 +8,7 @@ use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row};
 use crate::shooting::batch::Method;
-use crate::shooting::{FullState, Reader, Reading};
+use crate::shooting::{FullState, PeakStrain, Reader, Reading};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -41,8 +41,18 @@ row! {
         pub contact_angle_deg: f64,
         /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: f64,
+        /// Force that the pole puts on the base, along the base's tangent, in uN.
+        pub base_force_x_un: f64,
+        /// Force that the pole puts on the base, to the left of its tangent, in uN.
+        pub base_force_y_un: f64,
         /// Moment of the pole on the base, in nN m: positive turns it to the left.
         pub base_moment_nnm: f64,
+        /// Bending energy of the whisker, in nJ.
+        pub energy_nj: f64,
+        /// Largest bending strain at the surface: radius times change of curvature.
+        pub peak_strain: f64,
+        /// Arclength from the base to the largest bending strain, in mm.
+        pub peak_strain_mm: f64,
         /// Determinant of d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
         /// Mark: first-touch; slip-off, pull-off (stable); second-fold, tip (unstable).
@@ -184,7 +194,7 @@ impl Branch {
     }
 
     /// Length of the branch from first touch to each node, in the measure of [`LevelCurve::length`].
-    fn lengths(&self) -> Vec<f64> {
+    pub(super) fn lengths(&self) -> Vec<f64> {
         let mut length = 0.0;
         let steps = self.continuation.nodes.windows(2);
         let rest = steps.map(|pair| {
@@ -195,9 +205,10 @@ impl Branch {
     }
 
     /// State at `node` as a point without mark and sliding direction.
-    fn point(&self, node: &CurveNode, stable: bool) -> BranchPoint {
+    pub(super) fn point(&self, node: &CurveNode, stable: bool) -> BranchPoint {
         let LevelCurve { rod, side, row, .. } = &self.level;
         let reading = self.reading(node.point.x, &node.full, node.push);
+        let peak = PeakStrain::new(rod, node.point.x, node.point.y, FINER);
         BranchPoint {
             distance_mm: self.distance_mm,
             side: *side,
@@ -207,7 +218,12 @@ impl Branch {
             arc_length_mm: reading.arc_length_mm,
             contact_angle_deg: node.angle.to_degrees(),
             force_un: reading.force_un,
+            base_force_x_un: reading.base_force_un.x,
+            base_force_y_un: reading.base_force_un.y,
             base_moment_nnm: reading.base_moment_nnm,
+            energy_nj: reading.energy_nj,
+            peak_strain: peak.strain * self.units.strain,
+            peak_strain_mm: peak.arclength * self.units.length_mm,
             // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
             // normal component of the force.
             det: node.full.map.det() * row.pole_distance

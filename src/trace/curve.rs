@@ -7,7 +7,7 @@ use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
 use crate::shooting::batch::{Batch, Method};
-use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
+use crate::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 use serde::{Deserialize, Serialize};
 
 /// Kind of the end of a push from first touch.
@@ -52,6 +52,12 @@ row! {
         pub base_force_y_un: Option<f64>,
         /// Moment of the pole on the base, in nN m: positive turns it to the left.
         pub base_moment_nnm: Option<f64>,
+        /// Bending energy of the whisker, in nJ.
+        pub energy_nj: Option<f64>,
+        /// Largest bending strain at the surface: radius times change of curvature.
+        pub peak_strain: Option<f64>,
+        /// Arclength from the base to the largest bending strain, in mm.
+        pub peak_strain_mm: Option<f64>,
         /// Angle of the tangent at the contact, from the base's tangent, in degrees.
         pub contact_angle_deg: Option<f64>,
         /// Remaining error of the detachment, relative to the distance of the pole.
@@ -88,6 +94,13 @@ pub enum NoCorner {
     NotFound,
 }
 
+/// Returns the distance in mm at which the tip of the resting whisker touches the pole: the largest distance of a detachment curve.
+#[must_use]
+pub fn reach_mm(whisker: &Whisker, pole: &Pole, side: Side) -> f64 {
+    let rest = Rest::new(&whisker.rod(pole, side));
+    rest.at_arclength(rest.end()).0.length() * whisker.length_mm
+}
+
 /// Computes the detachment curve of `whisker` on one `side`: one end for each of `distances_mm`, which must increase, `[distance]`.
 #[must_use]
 pub fn curve(whisker: &Whisker, pole: &Pole, side: Side, distances_mm: &[f64]) -> Vec<Detachment> {
@@ -103,9 +116,31 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
+    detachments(resolution, (whisker, pole, side), distances_mm, true)
+}
+
+/// Computes the detachment curve as [`curve_at`] does, but leaves out the largest strain, which takes a trajectory more for each end.
+#[must_use]
+pub fn curve_without_strain(
+    resolution: Resolution,
+    whisker: &Whisker,
+    pole: &Pole,
+    side: Side,
+    distances_mm: &[f64],
+) -> Vec<Detachment> {
+    detachments(resolution, (whisker, pole, side), distances_mm, false)
+}
+
+fn detachments(
+    resolution: Resolution,
+    (whisker, pole, side): (&Whisker, &Pole, Side),
+    distances_mm: &[f64],
+    has_strain: bool,
+) -> Vec<Detachment> {
     let rod = &whisker.rod(pole, side);
     let method = Method::new(resolution);
-    let reader = Reader::new(whisker.units(), rod);
+    let units = whisker.units();
+    let reader = Reader::new(units, rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, rod, side, &distances);
     let ends: Vec<Result<&Crossing, DetachmentKind>> = (0..distances.len())
@@ -134,6 +169,10 @@ pub fn curve_at(
             let reading = reader.read(end.tau, full, row.touch, push);
             (push.to_degrees(), end.residual + off, reading)
         });
+        let peak = reached
+            .as_ref()
+            .filter(|_| has_strain)
+            .map(|(end, _)| PeakStrain::new(rod, end.tau, end.load, resolution));
         let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
         Detachment {
             side,
@@ -152,6 +191,9 @@ pub fn curve_at(
             base_force_x_un: value(|reading| reading.base_force_un.x),
             base_force_y_un: value(|reading| reading.base_force_un.y),
             base_moment_nnm: value(|reading| reading.base_moment_nnm),
+            energy_nj: value(|reading| reading.energy_nj),
+            peak_strain: peak.map(|peak| peak.strain * units.strain),
+            peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
             contact_angle_deg: value(|reading| reading.contact_angle_deg),
             residual: reading.as_ref().map(|(_, residual, _)| *residual),
             sliding,
@@ -164,7 +206,8 @@ pub fn curve_at(
 /// `reason` says why.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
-    let end = |distance: f64| curve(whisker, pole, side, &[distance])[0];
+    let end =
+        |distance: f64| curve_without_strain(Resolution::FINE, whisker, pole, side, &[distance])[0];
     let found = corner_distance(whisker, pole, side, &end).and_then(|distance| {
         let push = end(distance).push_angle_deg.ok_or(NoCorner::NotFound)?;
         Ok((distance, push))

@@ -6,12 +6,14 @@
 mod branch;
 mod columns;
 mod curve;
+mod peak;
 mod resample;
 mod shape;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
-pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at};
+pub(crate) use curve::curve_without_strain;
+pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, reach_mm};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;
 

@@ -1,9 +1,9 @@
 //! Shape of the whisker in one state, from base to tip.
 
 use super::columns::row;
-use super::{Branch, FINER, StateAtPush};
-use crate::classify::Sliding;
+use super::{Branch, BranchPoint, FINER, StateAtPush};
 use crate::rod::{Rest, arclength};
+use crate::shooting::bending_strain;
 use crate::shooting::shape::{RodPoint, profile};
 use glam::DVec2;
 use serde::Serialize;
@@ -20,8 +20,8 @@ pub struct WhiskerShape {
     pub pole_radius_mm: f64,
     /// Distance of the computed pole from its true position, in whisker lengths.
     pub residual: f64,
-    /// Sliding direction of the contact in the direction of the branch; `None` without friction.
-    pub sliding: Option<Sliding>,
+    /// State of the whisker: its loads, energy, largest strain and sliding direction.
+    pub state: BranchPoint,
 }
 
 row! {
@@ -40,6 +40,8 @@ row! {
         pub curvature_per_mm: f64,
         /// Bending moment in the whisker at the point, in nN m.
         pub moment_nnm: f64,
+        /// Bending strain at the surface: radius times change of curvature.
+        pub strain: f64,
         /// Part of the whisker: loaded (before the contact), contact or free (beyond it).
         pub part: WhiskerPart,
     }
@@ -66,7 +68,6 @@ impl WhiskerShape {
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);
         at.insert(index, contact);
-        let state = (DVec2::new(found.tau, found.load), found.push);
         let places = profile(rod, found.tau, found.load, FINER, &at);
         // Rotation from the axes of the contact to those of first touch, where the base's tangent is at `-push`.
         let base = &found.full;
@@ -88,6 +89,7 @@ impl WhiskerShape {
                 angle_deg: angle.to_degrees(),
                 curvature_per_mm: place.curvature / length,
                 moment_nnm: place.moment * units.moment_nnm,
+                strain: bending_strain(rod, place.arclength, place.moment) * units.strain,
                 part: match i.cmp(&index) {
                     std::cmp::Ordering::Less => WhiskerPart::Loaded,
                     std::cmp::Ordering::Equal => WhiskerPart::Contact,
@@ -100,10 +102,7 @@ impl WhiskerShape {
             pole_mm: (pole * length).to_array(),
             pole_radius_mm: rod.pole.abs() * length,
             residual: found.full.map.pole.distance(row.pole(found.push)),
-            sliding: branch
-                .slidings(&[state], usize::from(found.stable))
-                .pop()
-                .flatten(),
+            state: branch.point_of(found),
         }
     }
 

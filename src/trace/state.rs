@@ -1,8 +1,9 @@
 //! State of a branch at a push angle.
 
-use super::{Branch, NoState};
-use crate::sheet::Continuation;
+use super::{Branch, BranchPoint, NoState};
+use crate::sheet::{Continuation, CurveNode};
 use crate::shooting::{FullState, Reading};
+use glam::DVec2;
 
 /// State of a branch at a push angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +14,8 @@ pub struct StateAtPush {
     pub load: f64,
     /// Push angle of the state as requested, signed, in radians.
     pub push: f64,
+    /// Angle of the tangent at the contact, from the base's tangent, in radians.
+    pub angle: f64,
     /// True if the state at the push angle is stable.
     pub stable: bool,
     /// Pole, pose of the base, force and energy of the state, in the frame of the contact, dimensionless.
@@ -24,6 +27,22 @@ impl Branch {
     #[must_use]
     pub fn read(&self, state: &StateAtPush) -> Reading {
         self.reading(state.tau, &state.full, state.push)
+    }
+
+    /// Returns `state` as a point of the branch without a mark, with its sliding direction.
+    #[must_use]
+    pub fn point_of(&self, state: &StateAtPush) -> BranchPoint {
+        let node = CurveNode {
+            point: DVec2::new(state.tau, state.load),
+            full: state.full,
+            push: state.push,
+            angle: state.angle,
+        };
+        let slidings = self.slidings(&[(node.point, node.push)], usize::from(state.stable));
+        BranchPoint {
+            sliding: slidings[0],
+            ..self.point(&node, state.stable)
+        }
     }
 
     /// Returns the state at the signed `push`, in radians, on the stable or the unstable part of the branch.
@@ -71,6 +90,7 @@ impl Branch {
             tau: node.point.x,
             load: node.point.y,
             push,
+            angle: node.angle,
             stable,
             full: node.full,
         })

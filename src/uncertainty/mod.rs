@@ -13,12 +13,12 @@ pub use spread::EndSpread;
 use crate::rod::Side;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
 use crate::shooting::Resolution;
-use crate::trace::{DetachmentKind, curve_at};
+use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
 use normal::Normal;
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
 
-/// Most ends on one side; an end takes 24 bytes.
+/// Most ends on one side; an end takes 40 bytes.
 const MOST_ENDS: usize = 1 << 24;
 
 /// Most draws for one sample.
@@ -117,9 +117,8 @@ impl Draws {
     ) -> Vec<EndSpread> {
         let distances = &self.scene.grid.distance_mm;
         let curve = |whisker: &Whisker, pole: &Pole| {
-            let curve = curve_at(resolution, whisker, pole, side, distances);
-            let ends = curve.iter().map(|end| (end.kind, end.push_angle_deg));
-            ends.collect::<Vec<PushEnd>>()
+            let curve = curve_without_strain(resolution, whisker, pole, side, distances);
+            curve.iter().map(PushEnd::new).collect::<Vec<PushEnd>>()
         };
         let ends: Vec<Vec<PushEnd>> = self
             .drawn
@@ -141,8 +140,23 @@ impl Draws {
     }
 }
 
-/// Kind of the end of a push, and its push angle in degrees.
-type PushEnd = (DetachmentKind, Option<f64>);
+/// End of a push.
+#[derive(Clone, Copy, Debug)]
+struct PushEnd {
+    kind: DetachmentKind,
+    /// Push angle in degrees, force in uN and moment at the base in nN m; `None` without a detachment.
+    loads: Option<[f64; 3]>,
+}
+
+impl PushEnd {
+    fn new(end: &Detachment) -> Self {
+        let loads = || Some([end.push_angle_deg?, end.force_un?, end.base_moment_nnm?]);
+        Self {
+            kind: end.kind,
+            loads: loads(),
+        }
+    }
+}
 
 /// A drawn whisker with its pole, and the number of draws refused before it.
 type Drawn = ((Whisker, Pole), u64);
@@ -169,6 +183,6 @@ fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn,
 /// The push angles of the ends of `scene` in degrees, a value for each distance.
 fn pushes_deg(scene: &Scene, resolution: Resolution, side: Side) -> Vec<Option<f64>> {
     let distances = &scene.grid.distance_mm;
-    let ends = curve_at(resolution, &scene.whisker, &scene.pole, side, distances);
+    let ends = curve_without_strain(resolution, &scene.whisker, &scene.pole, side, distances);
     ends.iter().map(|end| end.push_angle_deg).collect()
 }

@@ -41,6 +41,38 @@ row! {
         pub sd_deg: Option<f64>,
         /// Standard deviation of the push angle to first order, in degrees.
         pub sd_first_order_deg: Option<f64>,
+        /// Force of the scene's detachment, in uN.
+        pub force_un: Option<f64>,
+        /// 5th percentile of the forces at detachment, in uN.
+        pub force_p5_un: Option<f64>,
+        /// 25th percentile of the forces at detachment, in uN.
+        pub force_p25_un: Option<f64>,
+        /// Median of the forces at detachment, in uN.
+        pub force_p50_un: Option<f64>,
+        /// 75th percentile of the forces at detachment, in uN.
+        pub force_p75_un: Option<f64>,
+        /// 95th percentile of the forces at detachment, in uN.
+        pub force_p95_un: Option<f64>,
+        /// Mean force at detachment, in uN.
+        pub force_mean_un: Option<f64>,
+        /// Standard deviation of forces at detachment, from samples, in uN.
+        pub force_sd_un: Option<f64>,
+        /// Moment at the base of the scene's detachment, in nN m.
+        pub moment_nnm: Option<f64>,
+        /// 5th percentile of the moments at detachment, in nN m.
+        pub moment_p5_nnm: Option<f64>,
+        /// 25th percentile of the moments at detachment, in nN m.
+        pub moment_p25_nnm: Option<f64>,
+        /// Median of the moments at detachment, in nN m.
+        pub moment_p50_nnm: Option<f64>,
+        /// 75th percentile of the moments at detachment, in nN m.
+        pub moment_p75_nnm: Option<f64>,
+        /// 95th percentile of the moments at detachment, in nN m.
+        pub moment_p95_nnm: Option<f64>,
+        /// Mean moment at detachment, in nN m.
+        pub moment_mean_nnm: Option<f64>,
+        /// Standard deviation of moments at detachment, from samples, in nN m.
+        pub moment_sd_nnm: Option<f64>,
     }
 }
 
@@ -55,37 +87,74 @@ impl EndSpread {
     ) -> Self {
         // In the order of the kinds.
         let mut counts = [0; 4];
-        let mut pushes = Vec::new();
-        for (kind, push) in ends {
+        let mut values: [Vec<f64>; 3] = Default::default();
+        for PushEnd { kind, loads } in ends {
             counts[kind as usize] += 1;
-            pushes.extend(push);
+            for (all, value) in values.iter_mut().zip(loads.into_iter().flatten()) {
+                all.push(value);
+            }
         }
-        pushes.sort_by(f64::total_cmp);
-        let count = pushes.len() as f64;
-        let mean = (count > 0.0).then(|| pushes.iter().sum::<f64>() / count);
-        let squares = mean.filter(|_| count > 1.0).map(|mean| {
-            let squares = pushes.iter().map(|push| (push - mean).powi(2));
-            squares.sum::<f64>()
-        });
+        let [pushes, forces, moments] = values.map(Statistics::new);
         let [slip_off, pull_off, out_of_reach, unresolved] = counts;
-        let (kind, push_angle_deg) = own;
+        let loads = own.loads;
         Self {
             side,
             distance_mm,
-            kind,
-            push_angle_deg,
+            kind: own.kind,
+            push_angle_deg: loads.map(|[push, ..]| push),
             slip_off,
             pull_off,
             out_of_reach,
             unresolved,
-            p5_deg: quantile(&pushes, 0.05),
-            p25_deg: quantile(&pushes, 0.25),
-            p50_deg: quantile(&pushes, 0.5),
-            p75_deg: quantile(&pushes, 0.75),
-            p95_deg: quantile(&pushes, 0.95),
-            mean_deg: mean,
-            sd_deg: squares.map(|squares| (squares / (count - 1.0)).sqrt()),
+            p5_deg: pushes.percentiles[0],
+            p25_deg: pushes.percentiles[1],
+            p50_deg: pushes.percentiles[2],
+            p75_deg: pushes.percentiles[3],
+            p95_deg: pushes.percentiles[4],
+            mean_deg: pushes.mean,
+            sd_deg: pushes.deviation,
             sd_first_order_deg,
+            force_un: loads.map(|[_, force, _]| force),
+            force_p5_un: forces.percentiles[0],
+            force_p25_un: forces.percentiles[1],
+            force_p50_un: forces.percentiles[2],
+            force_p75_un: forces.percentiles[3],
+            force_p95_un: forces.percentiles[4],
+            force_mean_un: forces.mean,
+            force_sd_un: forces.deviation,
+            moment_nnm: loads.map(|[.., moment]| moment),
+            moment_p5_nnm: moments.percentiles[0],
+            moment_p25_nnm: moments.percentiles[1],
+            moment_p50_nnm: moments.percentiles[2],
+            moment_p75_nnm: moments.percentiles[3],
+            moment_p95_nnm: moments.percentiles[4],
+            moment_mean_nnm: moments.mean,
+            moment_sd_nnm: moments.deviation,
+        }
+    }
+}
+
+/// Percentiles, mean and standard deviation of the samples that detach; `None` without enough of these.
+struct Statistics {
+    /// The percentiles 5, 25, 50, 75 and 95.
+    percentiles: [Option<f64>; 5],
+    mean: Option<f64>,
+    deviation: Option<f64>,
+}
+
+impl Statistics {
+    fn new(mut values: Vec<f64>) -> Self {
+        values.sort_by(f64::total_cmp);
+        let count = values.len() as f64;
+        let mean = (count > 0.0).then(|| values.iter().sum::<f64>() / count);
+        let squares = mean.filter(|_| count > 1.0).map(|mean| {
+            let squares = values.iter().map(|value| (value - mean).powi(2));
+            squares.sum::<f64>()
+        });
+        Self {
+            percentiles: [0.05, 0.25, 0.5, 0.75, 0.95].map(|part| quantile(&values, part)),
+            mean,
+            deviation: squares.map(|squares| (squares / (count - 1.0)).sqrt()),
         }
     }
 }
@@ -126,12 +195,13 @@ mod tests {
     fn ends_without_detachment_are_counted_and_left_out() {
         use DetachmentKind::{OutOfReach, PullOff, SlipOff, Unresolved};
         let ends = [
-            (SlipOff, Some(3.0)),
+            (SlipOff, Some([3.0, 1.0, -2.0])),
             (OutOfReach, None),
-            (PullOff, Some(1.0)),
+            (PullOff, Some([1.0, 2.0, -1.0])),
             (Unresolved, None),
-            (SlipOff, Some(5.0)),
-        ];
+            (SlipOff, Some([5.0, 6.0, -6.0])),
+        ]
+        .map(|(kind, loads)| PushEnd { kind, loads });
         let spread = EndSpread::new(Side::Cb, 10.0, ends[0], ends.into_iter(), None);
         let counts = [
             spread.slip_off,
@@ -141,6 +211,14 @@ mod tests {
         ];
         assert_eq!(counts, [2, 1, 1, 1]);
         assert_eq!((spread.mean_deg, spread.sd_deg), (Some(3.0), Some(2.0)));
+        assert_eq!(
+            (spread.force_mean_un, spread.force_p50_un),
+            (Some(3.0), Some(2.0))
+        );
+        assert_eq!(
+            (spread.moment_mean_nnm, spread.moment_p50_nnm),
+            (Some(-3.0), Some(-2.0))
+        );
         let nothing = EndSpread::new(Side::Cb, 10.0, ends[1], std::iter::empty(), None);
         assert_eq!(
             (nothing.p50_deg, nothing.mean_deg, nothing.sd_deg),

@@ -64,10 +64,7 @@ pub(super) fn moved(scene: &Scene, steps: &[(Varying, f64)]) -> Result<Scene, Sc
     builder.build()
 }
 
-/// Arclength in millimetres and radius in micrometres of the rows of the profile.
+/// Arclength in millimetres and radius in micrometres of the measured rows.
 fn rows(scene: &Scene) -> Vec<[f64; 2]> {
-    let whisker = &scene.whisker;
-    let rows = whisker.profile.iter().flatten();
-    rows.map(|[s, radius]| [s * whisker.length_mm, radius * whisker.base_radius_um])
-        .collect()
+    scene.measured_rows().unwrap_or_default().to_vec()
 }

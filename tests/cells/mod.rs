@@ -23,6 +23,7 @@ const NO_UNITS: Units = Units {
     length_mm: 1.0,
     force_un: 1.0,
     moment_nnm: 1.0,
+    strain: 1.0,
 };
 
 /// Rows of random whiskers, each on the side of its pole.

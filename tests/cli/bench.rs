@@ -219,7 +219,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
 fn an_output_that_cannot_be_written_is_refused_before_any_work() {
     let place = Place::with(SCENE);
     for (arguments, why) in [
-        (["--plot", "b.jpg"], "must end in .png or .svg"),
+        (["--plot", "b.jpg"], "must end in .png, .svg or .pdf"),
         (["--json", "no/b.json"], "--json no/b.json"),
     ] {
         let run = place.run(&[&["bench", "scene.toml", "--quick"][..], &arguments].concat());

@@ -29,7 +29,8 @@ fn a_curve_is_a_table_of_exact_numbers() {
         assert_eq!(number(1), Some(end.distance_mm));
         assert_eq!(number(4), end.push_angle_deg);
         assert_eq!(number(11), end.base_moment_nnm);
-        assert_eq!(number(13), end.residual);
+        assert_eq!(number(13), end.peak_strain);
+        assert_eq!(number(16), end.residual);
         assert_eq!(
             row[3] == "out-of-reach",
             row[4..].iter().all(|cell| cell.is_empty())
@@ -111,4 +112,63 @@ fn a_curve_without_any_end_is_written_and_fails() {
     let run = place.run(&["curve", "near.toml"]);
     let warning = "warning: 2 of 4 ends are unresolved: see the column `kind`\n";
     assert_eq!((run.code, &*run.err), (Some(0), warning), "{run:?}");
+}
+
+/// The curve of a part of a sweep is the curve of a scene with its values.
+#[test]
+fn a_part_of_a_sweep_is_selected() {
+    let tapers = SCENE.replace("tip_radius_um = 1.5\n", "");
+    let place = Place::with(&format!(
+        "{tapers}taper = [0, 0.5, 1]\nfriction = [0, 0.2]\n"
+    ));
+    place.write(
+        "one.toml",
+        &SCENE.replace("tip_radius_um = 1.5", "tip_radius_um = 15"),
+    );
+    let curve = |options: &[&str]| place.run(&[&["curve"], options].concat());
+    let one = curve(&["one.toml"]);
+    let at = ["--at", "taper=0.6", "--at", "friction=0"];
+    let run = curve(&[&["scene.toml"], &at[..]].concat());
+    assert_eq!(
+        (run.code, &*run.err),
+        (Some(0), "taper = 0.5\nfriction = 0\n"),
+        "{run:?}"
+    );
+    let rows: Vec<&str> = run.out.lines().skip(1).collect();
+    let parts: Vec<_> = rows
+        .iter()
+        .map(|row| row.strip_prefix("0.5,0.0,").unwrap())
+        .collect();
+    assert_eq!(parts, one.out.lines().skip(1).collect::<Vec<_>>());
+    assert_eq!(parts.len(), 48);
+    let run = curve(&[&["scene.toml"], &at[..2]].concat());
+    assert_eq!(run.out.lines().count(), 1 + 2 * 48);
+
+    let plot = ["scene.toml", "--plot", "plot.svg"];
+    curve(&plot).assert_refused(&[
+        "--plot: the scene sweeps 6 whiskers over grid.taper, grid.friction; a plot shows one: choose it, \
+         such as by --at taper=0.5 --at friction=0.2",
+    ]);
+    let advice = ["--at", "taper=0.5", "--at", "friction=0.2"];
+    assert_eq!(curve(&[&plot[..], &advice].concat()).code, Some(0));
+    let picture = String::from_utf8(place.bytes("plot.svg")).unwrap();
+    assert!(picture.contains("A small map, taper = 0.5, friction = 0.2"));
+    for (at, said) in [
+        (
+            &["taper=2"][..],
+            "--at taper: 2 is more than half a step beyond the axis",
+        ),
+        (
+            &["tapr=0.5"],
+            "--at tapr: must be one of the axes, taper, friction; did you mean `taper`?",
+        ),
+        (&["taper=0", "taper=1"], "--at taper: is given twice"),
+    ] {
+        let at: Vec<&str> = at.iter().flat_map(|at| ["--at", at]).collect();
+        curve(&[&["scene.toml"], &at[..]].concat()).assert_refused(&[said]);
+    }
+    curve(&["scene.toml", "--exact", "--at", "taper=0.6"])
+        .assert_refused(&["0.6 is no value of the axis"]);
+    curve(&["one.toml", "--at", "taper=0.6"])
+        .assert_refused(&["--at taper: there is no sweep axis"]);
 }

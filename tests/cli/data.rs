@@ -4,7 +4,7 @@ use super::traces::cells;
 use super::{Place, Run, SCENE};
 
 pub const POINTS: &str =
-    "line,side,distance_mm,measured_deg,kind,predicted_deg,predicted_kind,residual_deg";
+    "line,side,distance_mm,measured_deg,sd_deg,kind,predicted_deg,predicted_kind,residual_deg";
 
 /// Points of a whisker whose tip is 2 um thick.
 pub const DATA: &str = "# made up\nkind,side,distance_mm,push_angle_deg\n\
@@ -34,11 +34,11 @@ fn points_beside_the_curve() {
     assert_eq!(firsts, ["3", "4", "5", "6", "7", "8"]);
     for row in &rows {
         let number = |i: usize| row[i].parse::<f64>().unwrap();
-        assert_eq!(number(7), number(3) - number(5));
-        assert!(["slip-off", "pull-off"].contains(&row[6]), "{row:?}");
+        assert_eq!(number(8), number(3) - number(6));
+        assert!(["slip-off", "pull-off"].contains(&row[7]), "{row:?}");
     }
-    assert_eq!(rows[3][..5], ["6", "cb", "15.0", "18.9", ""]);
-    assert_eq!(rows[4][4..7].first(), Some(&"pull-off"));
+    assert_eq!(rows[3][..6], ["6", "cb", "15.0", "18.9", "", ""]);
+    assert_eq!(rows[4][5..8].first(), Some(&"pull-off"));
     let said = [
         "points compared: 6, 0 left out, 0 of another kind than predicted\n",
         "\nRMS: ",
@@ -62,7 +62,7 @@ fn points_beside_the_curve() {
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
     assert!(svg.contains("chord angle at detachment (deg)"));
     let table = String::from_utf8(place.bytes("t.csv")).unwrap();
-    let residual: f64 = cells(&table, POINTS)[0][7].parse().unwrap();
+    let residual: f64 = cells(&table, POINTS)[0][8].parse().unwrap();
     assert!(residual.abs() < 0.01, "{residual}");
 }
 
@@ -78,7 +78,10 @@ fn points_that_never_detach() {
     let named = "warning: points.csv:2: left out: by theory this side never detaches at 8 mm\n\
                  points compared: 1, 1 left out, 0 of another kind than predicted\n";
     assert!(run.err.starts_with(named), "{run:?}");
-    assert_eq!(cells(&run.out, POINTS)[0][4..], ["", "", "unresolved", ""]);
+    assert_eq!(
+        cells(&run.out, POINTS)[0][4..],
+        ["", "", "", "unresolved", ""]
+    );
     place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,8,40\n");
     let run = curve(&place, &[]);
     assert_eq!(run.code, Some(1), "{run:?}");

@@ -35,14 +35,32 @@ fn a_value_is_a_line() {
     let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
     assert_eq!((end[0], end[3]), ("cb", "slip-off"));
     assert!(
-        (end[4].parse::<f64>().unwrap() - 20.0).abs() < 1e-9,
+        (end[4].parse::<f64>().unwrap() - 20.0).abs() < 1e-7,
         "{curve}"
     );
+    // The value has 10 digits. The scene written by -o has the radius to match, and its comments.
+    assert!((11..=12).contains(&line.len()), "{line}");
+    place.write("scene.toml", &format!("# mine\n{SCENE}"));
+    let better = run(&place, &["--slip-off", "20deg", "-o", "better.toml"]);
+    assert_eq!((better.code, &better.out), (Some(0), &found.out));
+    let better = String::from_utf8(place.bytes("better.toml")).unwrap();
+    let radius = better.split("tip_radius_um = ").nth(1).unwrap();
+    let radius = radius.split_whitespace().next().unwrap();
+    let own: f64 = radius.parse().unwrap();
+    assert!(
+        better.starts_with("# mine\n") && radius.len() <= 12,
+        "{better}"
+    );
+    assert!((own / 30.0 + taper - 1.0).abs() < 1e-9, "{better}");
+    assert_eq!(run(&place, &["--slip-off", "20deg", "-o", "-"]).out, better);
     // The plot does not change the result, and has one dot at the solution.
     let plotted = run(&place, &["--slip-off", "20deg", "--plot", "p.svg"]);
     assert_eq!((plotted.code, plotted.out), (Some(0), found.out.clone()));
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
-    assert!(svg.contains(">taper<") && svg.contains(">20 deg<"), "{svg}");
+    assert!(
+        svg.contains(">taper (1 \u{2212} tip/base radius)<") && svg.contains(">20 deg<"),
+        "{svg}"
+    );
     assert_eq!(
         svg.matches("<circle").count(),
         2,
@@ -81,6 +99,14 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
         &["--pull-off", "-5"],
         &[range, "pulls the whisker off at -5 deg: "],
     );
+    none(
+        &["--max-strain", "10", "--side", "cb"],
+        &[
+            range,
+            "gives a largest bending strain of 10: it slips off with ",
+            ", and it is pulled off with ",
+        ],
+    );
     let far = [
         "design",
         "scene.toml",
@@ -116,14 +142,25 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
 fn what_cannot_be_designed_is_refused() {
     let place = Place::with(SCENE);
     let refused = |more: &[&str], parts: &[&str]| run(&place, more).assert_refused(parts);
-    refused(&[], &["--slip-off <ANGLE>|--pull-off <ANGLE>"]);
+    refused(
+        &[],
+        &["--slip-off <ANGLE>|--pull-off <ANGLE>|--max-force <FORCE>"],
+    );
+    refused(&["--max-force", "60mN"], &["--side"]);
+    let cb = |goal, value| ["--side", "cb", goal, value];
+    refused(
+        &cb("--max-force", "60Nm"),
+        &["unit Nm: must be uN (the default), nN, mN or N"],
+    );
+    refused(&cb("--max-strain", "-1"), &["must be more than 0"]);
+    refused(&cb("--max-moment", "0uNm"), &["must be more than 0"]);
     refused(
         &["--slip-off", "9", "--pull-off", "9"],
         &["cannot be used with"],
     );
     refused(
         &["--slip-off", "9", "--plot", "p.gif"],
-        &["--plot p.gif: must end in .png or .svg"],
+        &["--plot p.gif: must end in .png, .svg or .pdf"],
     );
     refused(
         &["--slip-off", "nine"],

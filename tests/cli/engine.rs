@@ -33,7 +33,7 @@ fn auto_expands_rows_where_the_counts_say_so() {
     let counts = "(auto: a side has 6144 cells, its expansions cost 2640)";
     assert!(said.ends_with(counts), "{said}");
     let plan = place.run(&["plan", "scene.toml"]);
-    let line = "engine        spectral: a side has 6144 cells, its expansions cost 2640";
+    let line = "engine        spectral f64: a side has 6144 cells, its expansions cost 2640";
     assert!(plan.out.contains(line), "{plan:?}");
 }
 

@@ -3,6 +3,7 @@
 use super::store::{SWEEP, good};
 use super::{Place, SCENE};
 use std::fs;
+use whiskmap::classify::Regime;
 use whiskmap::scene::Parameter;
 use whiskmap::store::{StoredMap, ZarrStore};
 
@@ -32,7 +33,7 @@ fn a_slice_is_what_the_store_has_there() {
     );
     let table = fs::read_to_string(place.path("s.csv")).unwrap();
     let mut lines = table.lines();
-    let header = "taper,friction,pole_radius_mm,distance_mm,push_angle_deg,regime,status,force_un";
+    let header = "taper,friction,pole_radius_mm,distance_mm,push_angle_deg,regime,regime_name,status,status_name,force_un";
     assert_eq!(lines.next(), Some(header));
     for friction in 0..2 {
         let whisker = 1 + 3 * friction + 6;
@@ -42,8 +43,14 @@ fn a_slice_is_what_the_store_has_there() {
             let cells: Vec<&str> = lines.next().unwrap().split(',').collect();
             assert_eq!(cells[1], ["0.0", "0.3"][friction]);
             assert_eq!(cells[4..6], ["-70.0", &regime.value(row * 64).to_string()]);
+            let code = regime.value(row * 64) as u32;
+            let named = Regime::ALL
+                .into_iter()
+                .find(|own| own.code() == code)
+                .unwrap();
+            assert_eq!(cells[6], named.name());
             let own = force.value(row * 64);
-            let found = cells[7].parse::<f32>().map(f64::from).ok();
+            let found = cells[9].parse::<f32>().map(f64::from).ok();
             assert_eq!(found, Some(own).filter(|own| own.is_finite()));
         }
     }

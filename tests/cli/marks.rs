@@ -70,7 +70,7 @@ fn a_slice_with_friction_keeps_the_status_of_loads() {
     let axes = "distance_mm,push_angle_deg";
     assert_eq!(
         table(&["--channel=force_un"]),
-        format!("{axes},status,force_un")
+        format!("{axes},status,status_name,force_un")
     );
     assert_eq!(
         table(&["--channel=margin_deg"]),

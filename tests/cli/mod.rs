@@ -6,6 +6,7 @@
 
 mod bench;
 mod branch;
+mod compare;
 mod curve;
 #[cfg(unix)]
 mod damage;
@@ -20,10 +21,12 @@ mod files;
 mod fit;
 #[cfg(unix)]
 mod integrity;
+mod manual;
 mod map;
 mod marks;
 mod other;
 mod paper;
+mod pictures;
 mod plan;
 use crate::program;
 #[cfg(unix)]

@@ -15,10 +15,11 @@ fn figures_come_with_their_tables() {
     files.sort_unstable();
     assert_eq!(files, names(&place.path("new/folder")));
     let pictures = ["fig1", "fig2", "fig3", "fig4d", "fig5c"];
-    let pictures = pictures.map(|figure| ["png", "svg"].map(|ending| format!("{figure}.{ending}")));
+    let pictures =
+        pictures.map(|figure| ["pdf", "png", "svg"].map(|ending| format!("{figure}.{ending}")));
     let mut expected = pictures.concat();
     let branch = |shown: &str| format!("distance_mm,side,stable,push_angle_deg,{shown},mark");
-    let shape = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,part";
+    let shape = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,strain,part";
     let (section, sketch) = ("arc_length_mm,x_mm,y_mm,radius_um", "whisker,x_mm,y_mm");
     let solution = format!("solution,push_angle_deg,{shape}");
     let ends = "whisker,side,kind,push_angle_deg,distance_mm,contact_distance_mm";

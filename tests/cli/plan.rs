@@ -14,9 +14,14 @@ distance_mm = [5.0, 10.0]
 "#;
 
 /// Runs `plan`, which must succeed without messages, fit a terminal, and write no file.
-fn plan(place: &Place, scene: &str) -> Run {
+fn plan(place: &Place) -> Run {
+    plan_with(place, &[])
+}
+
+/// Runs `plan` on `scene.toml` with these options, as [`plan`] does.
+fn plan_with(place: &Place, options: &[&str]) -> Run {
     let before = names(&place.path(""));
-    let run = place.run(&["plan", scene]);
+    let run = place.run(&[&["plan", "scene.toml"], options].concat());
     assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
     let wide = run.out.lines().find(|line| line.chars().count() > 80);
     assert_eq!(wide, None);
@@ -44,7 +49,7 @@ fn fact<'a>(run: &'a Run, name: &str) -> &'a str {
 
 #[test]
 fn a_straight_cylinder_has_no_effects() {
-    let run = plan(&Place::with(STRAIGHT), "scene.toml");
+    let run = plan(&Place::with(STRAIGHT));
     assert!(run.out.starts_with("A straight cylinder\n\neffect "));
     let expected = [
         "taper | off | own kernel | tip_radius_um 30 = base_radius_um 30",
@@ -63,17 +68,22 @@ fn a_straight_cylinder_has_no_effects() {
     assert_eq!(fact(&run, "cells"), cells);
     let calls = "1: groups of 1 whisker, 1 side of 2 rows, 1024 rows a call";
     assert_eq!(fact(&run, "GPU calls"), calls);
+    assert_eq!(
+        fact(&run, "GPU memory"),
+        "192 MiB more than below, on the host"
+    );
     // 4 MiB for each thread, 256 KiB for the sheet of the only side, and 16 cells.
     let threads = std::thread::available_parallelism().unwrap();
     let mib = 4 * threads.get() + 1;
-    let memory = format!("at most {mib} MiB for panels and cells, and 192 MiB more with a GPU");
-    assert_eq!(fact(&run, "memory"), memory);
+    for format in ["EXR file", "Zarr store"] {
+        assert_eq!(memory_mib(&run, format), mib);
+    }
 }
 
 #[test]
 fn the_cone_scene() {
     let place = Place::with(include_str!("../../scenes/cone.toml"));
-    let run = plan(&place, "scene.toml");
+    let run = plan(&place);
     let expected = [
         "taper | on | own kernel | tip_radius_um 1.5 < base_radius_um 30",
         "measured radii | off | own kernel | no whisker.profile",
@@ -93,7 +103,7 @@ fn the_cone_scene() {
 
     // Only the seconds change, and they are positive.
     let same = |run: &Run| run.out.lines().take(16).collect::<Vec<_>>().join("\n");
-    let again = plan(&place, "scene.toml");
+    let again = plan(&place);
     assert_eq!(same(&run), same(&again));
     let words: Vec<&str> = fact(&run, "time").split(' ').collect();
     let seconds: f64 = words[1].parse().unwrap();
@@ -109,6 +119,12 @@ fn bytes(run: &Run, format: &str) -> f64 {
     let unit = ["B", "kB", "MB", "GB"];
     let unit = unit.iter().position(|unit| *unit == said[2]).unwrap();
     said[1].parse::<f64>().unwrap() * 1000_f64.powi(unit as i32)
+}
+
+/// Returns the MiB of memory for a file of this `format`, as `plan` prints them.
+fn memory_mib(run: &Run, format: &str) -> usize {
+    let line = fact(run, format).strip_suffix(" MiB of memory").unwrap();
+    line.rsplit(' ').next().unwrap().parse().unwrap()
 }
 
 /// Returns the bytes of all files below a folder.
@@ -129,7 +145,7 @@ fn the_size_of_files_is_estimated() {
     let sweep = sweep.replace("[5.0, 10.0]", "{ from = 2, to = 20, count = 200 }");
     let axes = "taper = [0, 0.4, 0.8]\nfriction = [0, 0.2, 0.4]\n";
     let place = Place::with(&format!("{sweep}{axes}"));
-    let run = plan(&place, "scene.toml");
+    let run = plan(&place);
     place.map(&["scene.toml", "--no-png"]);
     place.map(&["scene.toml", "--format", "zarr"]);
     for (format, name) in [("EXR file", "scene.exr"), ("Zarr store", "scene.zarr")] {
@@ -141,15 +157,111 @@ fn the_size_of_files_is_estimated() {
         "scene.toml",
         &format!("{sweep}{axes}pole_radius_mm = [0.1, 0.2]\n"),
     );
-    let run = plan(&place, "scene.toml");
+    let run = plan(&place);
     assert!(!run.out.contains("EXR file"), "{run:?}");
+}
+
+/// A single panel is in bands of rows only for an EXR file, and only a store keeps the packed panels of a block.
+#[test]
+fn the_memory_of_a_store_includes_its_block_and_whole_panels() {
+    let scene = STRAIGHT.replace("count = 8", "count = 2048");
+    let scene = scene.replace("[5.0, 10.0]", "{ from = 2, to = 20, count = 1024 }");
+    let run = plan(&Place::with(&scene));
+    let [exr, zarr] = ["EXR file", "Zarr store"].map(|format| memory_mib(&run, format));
+    // A panel of 56 bytes a cell is 112 MiB; two bands of 128 rows are 28 MiB.
+    assert_eq!(zarr - exr, 112 - 28);
+    let axes = "friction = { from = 0, to = 0.5, count = 512 }\n";
+    let scene = scene.replace("count = 2048", "count = 128");
+    let scene = scene.replace("count = 1024", "count = 128");
+    let run = plan(&Place::with(&format!("{scene}{axes}")));
+    let [exr, zarr] = ["EXR file", "Zarr store"].map(|format| memory_mib(&run, format));
+    // A group has 16 panels; a block has 4, which take no more.
+    assert_eq!(zarr, exr);
+    let axes = "friction = { from = 0, to = 0.5, count = 8192 }\n";
+    let run = plan(&Place::with(&format!("{scene}{axes}")));
+    let [exr, zarr] = ["EXR file", "Zarr store"].map(|format| memory_mib(&run, format));
+    // A block has 64 panels of 32 packed bytes a cell.
+    assert_eq!(zarr - exr, ((64 - 16) * 128 * 128 * 32) >> 20);
+}
+
+/// Returns the lines of shards, as words.
+fn shards(run: &Run) -> Vec<Vec<&str>> {
+    let lines = run.out.lines().filter(|line| line.starts_with("shard"));
+    lines
+        .map(|line| line.split_whitespace().collect())
+        .collect()
+}
+
+/// Eight blocks of three whiskers each.
+#[test]
+fn shards_have_their_part_of_cells_hours_and_bytes() {
+    let place = Place::with(super::store::SWEEP);
+    let run = plan_with(&place, &["--shards", "3", "--channels", "regime,force_un"]);
+    let lines = shards(&run);
+    assert_eq!(lines.len(), 2, "{run:?}");
+    assert_eq!(
+        lines[0][..6],
+        ["shards", "0-1", "3", "blocks,", "36864", "cells:"]
+    );
+    assert_eq!(
+        lines[1][..6],
+        ["shard", "2", "2", "blocks,", "24576", "cells:"]
+    );
+    for line in &lines {
+        let hours: f64 = line[7].parse().unwrap();
+        assert!(line[8] == "CPU-hours," && hours > 0.0, "{run:?}");
+    }
+    assert!(!run.out.contains("EXR file"), "{run:?}");
+    let one = plan_with(
+        &place,
+        &["--shard", "2/3", "--format", "zarr", "--threads", "1"],
+    );
+    assert_eq!(shards(&one)[0][..6], lines[1][..6]);
+    assert!(fact(&one, "time").contains(" on 1 thread, "), "{one:?}");
+    let plan = |options: &[&str]| place.run(&[&["plan", "scene.toml"], options].concat());
+    plan(&["--shards", "9"])
+        .assert_refused(&["--shards 9: must be at most 8, the number of blocks"]);
+    plan(&["--shards", "2", "--format", "exr"]).assert_refused(&["an EXR file has one writer"]);
+    plan(&["--shards", "2", "--shard", "0/2"]).assert_refused(&["cannot be used with"]);
+}
+
+/// Every option of `map` is an option of `plan`.
+#[test]
+fn the_options_of_a_map_change_its_estimate() {
+    let place = Place::with(SCENE);
+    let all = bytes(&plan_with(&place, &[]), "EXR file");
+    let run = plan_with(
+        &place,
+        &["--channels", "regime", "--engine", "cpu", "--format", "exr"],
+    );
+    assert!(bytes(&run, "EXR file") < 0.2 * all, "{run:?}");
+    assert_eq!(fact(&run, "engine"), "cpu f64: selected by --engine");
+    assert!(!run.out.contains("Zarr store"), "{run:?}");
+    let run = plan_with(
+        &place,
+        &[
+            "--engine",
+            "spectral",
+            "--tolerance",
+            "1e-2deg",
+            "--no-png",
+            "-o",
+            "elsewhere",
+            "--force",
+        ],
+    );
+    assert_eq!(fact(&run, "engine"), "spectral f64: selected by --engine");
+    let plan = |options: &[&str]| place.run(&[&["plan", "scene.toml"], options].concat());
+    plan(&["--engine", "cpu", "--precision", "f32"]).assert_refused(&["--precision f32: the CPU"]);
+    plan(&["--tolerance", "1e-10deg"]).assert_refused(&["must be at least"]);
+    plan(&["--channels", "regime", "--digits", "force_un=3"]).assert_refused(&["is not stored"]);
 }
 
 #[test]
 fn everything_on() {
     let more = "[whisker.modulus_gradient]\ntip_to_base = 1.4\n[whisker.projection]\narc_stretch = 1.03\n\
                 [contact]\nfriction = 0.2\n[pole]";
-    let run = plan(&Place::with(&SCENE.replace("[pole]", more)), "scene.toml");
+    let run = plan(&Place::with(&SCENE.replace("[pole]", more)));
     let listed = effects(&run);
     let off: Vec<&str> = listed
         .iter()
@@ -164,7 +276,7 @@ fn everything_on() {
 fn a_sweep_names_its_axes() {
     let whisker = STRAIGHT.replace("tip_radius_um = 30\n", "");
     let axes = "taper = { from = 0, to = 1, count = 4 }\ncurvature_per_mm = [0, 0.02, 0.04]\n";
-    let run = plan(&Place::with(&format!("{whisker}{axes}")), "scene.toml");
+    let run = plan(&Place::with(&format!("{whisker}{axes}")));
     let listed = effects(&run);
     assert_eq!(listed[0], "taper | on | own kernel | grid.taper 0 to 1");
     let curvature = "curvature | on | own kernel | grid.curvature_per_mm 0 to 0.04";

@@ -23,11 +23,68 @@ fn a_shape_is_the_requested_state() {
     for (run, part) in [(stable, true), (unstable, false)] {
         let rows = cells(&run.out, SHAPE);
         assert_eq!(rows.len(), 12);
-        let contact = rows.iter().find(|row| row[6] == "contact").unwrap();
+        let contact = rows.iter().find(|row| row[7] == "contact").unwrap();
         let state = branch.state(10_f64.to_radians(), part).unwrap();
         let arc = branch.read(&state).arc_length_mm;
         assert_eq!(contact[0].parse::<f64>().unwrap(), arc);
         assert_eq!(rows.last().unwrap()[0], "20.0");
+    }
+}
+
+/// The row of `--state` has the loads of the shape: its base row has the moment, and no row a larger strain.
+#[test]
+fn the_state_has_the_loads_of_the_shape() {
+    let place = Place::with(SCENE);
+    let at = [
+        "shape",
+        "scene.toml",
+        "--distance=15.66",
+        "--push-angle=10",
+        "--state",
+        "state.csv",
+    ];
+    let table = good(&place, &[&at[..], &["--csv", "-"]].concat()).out;
+    let table = table.strip_suffix("state.csv\n").unwrap();
+    let state = String::from_utf8(place.bytes("state.csv")).unwrap();
+    let state = cells(&state, BRANCH);
+    let [row] = &state[..] else {
+        panic!("{state:?}")
+    };
+    let number = |cell: &str| cell.parse::<f64>().unwrap();
+    let shape = cells(table, SHAPE);
+    let base = &shape[0];
+    assert_eq!((row[1], row[2], row[3]), ("cb", "true", "10.0"));
+    assert!(
+        (number(row[10]) / number(base[5]) - 1.0).abs() < 1e-9,
+        "{row:?} {base:?}"
+    );
+    let most = shape.iter().map(|row| number(row[6])).fold(0.0, f64::max);
+    let peak = number(row[12]);
+    assert!((0.999..=1.0).contains(&(most / peak)), "{most} {peak}");
+    // In other units; the names of columns end in them.
+    let words = [&at[..], &["--csv", "shape.csv", "--units", "mN,Nmm,cm"]].concat();
+    assert_eq!(good(&place, &words).out, "shape.csv\nstate.csv\n");
+    let other = String::from_utf8(place.bytes("state.csv")).unwrap();
+    let header = BRANCH
+        .replace("_un", "_mn")
+        .replace("_nnm", "_nmm")
+        .replace("_mm", "_cm");
+    let converted = &cells(&other, &header)[0];
+    for (column, size) in [(7, 1e3), (10, 1e6), (5, 10.0), (3, 1.0)] {
+        assert_eq!(
+            number(converted[column]),
+            number(row[column]) / size,
+            "{column}"
+        );
+    }
+    for (units, must) in [
+        ("mN,kg", "--units kg: must be one of mm, cm, "),
+        ("mN,uN", "--units uN: mN is a unit of the same quantity"),
+        ("mn", "did you mean `mN`?"),
+    ] {
+        place
+            .run(&[&at[..], &["--units", units]].concat())
+            .assert_refused(&[must]);
     }
 }
 
@@ -87,11 +144,11 @@ fn sliding_toward_the_base_is_reported() {
         &["branch", "scene.toml", "--distance=9", "--side=cf"],
     );
     let rows = cells(&branch.out, BRANCH);
-    assert_eq!([rows[1][11], rows[199][11]], ["base", "tip"]);
+    assert_eq!([rows[1][16], rows[199][16]], ["base", "tip"]);
     let curve = good(&place, &["curve", "scene.toml"]);
     for row in cells(&curve.out, CURVE) {
         let sliding = if row[3] == "out-of-reach" { "" } else { "tip" };
-        assert_eq!(row[14], sliding, "{row:?}");
+        assert_eq!(row[17], sliding, "{row:?}");
     }
     let map = place.map(&["scene.toml", "--no-png"]);
     map.assert_settled();

@@ -120,8 +120,14 @@ fn submit_refuses_what_no_task_could_do() {
     }
     submit(&["--shards=9"])
         .assert_refused(&["--shards 9: must be at most 8, the number of blocks"]);
-    for word in ["--time=1 h", "--partition=a\nb", "--mem="] {
-        submit(&["--shards=2", word]).assert_refused(&["must be letters, digits and"]);
+    submit(&["--shards=2", "--partition=a\nb"]).assert_refused(&["must be letters, digits and"]);
+    for time in ["1 h", "1h", "1:00:00:00", "-5", ""] {
+        submit(&["--shards=2", &format!("--time={time}")])
+            .assert_refused(&["must be minutes, minutes:seconds, hours:minutes:seconds, "]);
+    }
+    for memory in ["", "1.5G", "2GB"] {
+        submit(&["--shards=2", &format!("--mem={memory}")])
+            .assert_refused(&["must be a whole number with K, M (the default), G or T"]);
     }
     for (own, said) in [
         (&["--colour"][..], "unexpected argument '--colour'"),
@@ -147,6 +153,39 @@ fn submit_refuses_what_no_task_could_do() {
         &SWEEP.replace("length_mm = 20", "length_mm = -20"),
     );
     scene("wrong.toml").assert_refused(&["length_mm = -20"]);
+}
+
+/// The sweep takes seconds, so the limit is five minutes and the next whole one. A task of one thread takes 4 MiB for its cells, 64 MiB
+/// for the program and some for panels.
+#[test]
+fn time_and_memory_are_proposed() {
+    let place = Place::with(SWEEP);
+    let run = place.run(&["submit", "scene.toml", "--shards=8"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let value = |option: &str| {
+        let line = format!("#SBATCH --{option}=");
+        let value = run.out.lines().find_map(|own| own.strip_prefix(&line));
+        value
+            .unwrap_or_else(|| panic!("no {line}: {run:?}"))
+            .to_owned()
+    };
+    let minutes: u32 = value("time").split(':').nth(1).unwrap().parse().unwrap();
+    assert!(
+        value("time").starts_with("0:") && (6..30).contains(&minutes),
+        "{run:?}"
+    );
+    assert_eq!(value("mem"), "100M");
+    for option in ["time", "mem"] {
+        let note = format!(
+            "note: --{option} {} is proposed: a task takes ",
+            value(option)
+        );
+        assert!(run.err.contains(&note), "{run:?}");
+    }
+    assert_eq!(run.err.lines().count(), 2, "{run:?}");
+    let given = place.run(&["submit", "scene.toml", "--shards=8", "--time=1-12"]);
+    assert!(given.out.contains("#SBATCH --time=1-12\n"), "{given:?}");
+    assert!(!given.err.contains("--time"), "{given:?}");
 }
 
 /// The lines for GNU parallel and Kubernetes in the documentation run.

@@ -3,13 +3,16 @@
 use super::{Place, Run, SCENE, names};
 
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
-                     arc_length_mm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,contact_angle_deg,residual,\
-                     sliding";
+                     arc_length_mm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
+                     peak_strain_mm,contact_angle_deg,residual,sliding";
 pub const BRANCH: &str = "distance_mm,side,stable,push_angle_deg,push_chord_deg,arc_length_mm,contact_angle_deg,force_un,\
-                      base_moment_nnm,det,mark,sliding";
-pub const SHAPE: &str = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,part";
+                      base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,peak_strain_mm,det,\
+                      mark,sliding";
+pub const SHAPE: &str = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,strain,part";
 pub const SPREAD: &str = "side,distance_mm,kind,push_angle_deg,slip_off,pull_off,out_of_reach,unresolved,p5_deg,p25_deg,\
-                      p50_deg,p75_deg,p95_deg,mean_deg,sd_deg,sd_first_order_deg";
+                      p50_deg,p75_deg,p95_deg,mean_deg,sd_deg,sd_first_order_deg,\
+                      force_un,force_p5_un,force_p25_un,force_p50_un,force_p75_un,force_p95_un,force_mean_un,force_sd_un,\
+                      moment_nnm,moment_p5_nnm,moment_p25_nnm,moment_p50_nnm,moment_p75_nnm,moment_p95_nnm,moment_mean_nnm,moment_sd_nnm";
 pub const CB: [&str; 5] = ["branch", "scene.toml", "--distance", "15.66", "--side=cb"];
 
 /// Runs the program, which must succeed without messages.
@@ -122,7 +125,7 @@ fn wrong_arguments_are_refused_before_any_work() {
     };
     refused(
         &["--plot", "p.jpg"],
-        &["--plot p.jpg: must end in .png or .svg"],
+        &["--plot p.jpg: must end in .png, .svg or .pdf"],
     );
     refused(
         &["--plot", "nowhere/p.png"],

@@ -43,6 +43,58 @@ fn a_spread_is_a_table_and_bands() {
     assert!(svg.contains(">5 to 95 % of samples<") && svg.contains(">25 to 75 % of samples<"));
 }
 
+/// One picture has the bands, the points and their error bars; the table has the points.
+#[test]
+fn samples_and_measured_points_share_a_plot() {
+    let place = uncertain();
+    let data = "side,distance_mm,push_angle_deg,kind,sd_deg\ncb,10,40,slip-off,1.5\ncf,15,-29,slip-off,0.5\n";
+    place.write("points.csv", data);
+    let words = [
+        "curve",
+        "scene.toml",
+        "--samples",
+        "20",
+        "--data",
+        "points.csv",
+    ];
+    let run = place.run(&[&words[..], &["--csv", "t.csv", "--plot", "p.svg"]].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let table = String::from_utf8(place.bytes("t.csv")).unwrap();
+    let rows = cells(&table, super::data::POINTS);
+    assert_eq!([rows[0][4], rows[1][4]], ["1.5", "0.5"]);
+    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    assert_eq!(svg.matches("<polygon").count(), 4, "two sides, two bands");
+    // Both points and the sample in the legend.
+    assert_eq!(svg.matches("<circle").count(), 3, "{svg}");
+    assert!(svg.contains(">standard deviation<"), "{svg}");
+    place
+        .run(&words)
+        .assert_refused(&["--samples: with --data, bands are in the plot alone"]);
+    place.write(
+        "points.csv",
+        &data.replace("push_angle_deg", "push_chord_deg"),
+    );
+    let chords = place.run(&[&words[..], &["--plot", "q.svg"]].concat());
+    chords.assert_refused(&[
+        "--samples: bands are of push angles, and points.csv has push_chord_deg",
+    ]);
+
+    let forces = [
+        "curve",
+        "scene.toml",
+        "--samples",
+        "20",
+        "--x",
+        "force_un",
+        "--plot",
+        "f.svg",
+    ];
+    good(&place, &forces);
+    let svg = String::from_utf8(place.bytes("f.svg")).unwrap();
+    assert!(svg.contains("force at detachment"), "{svg}");
+    assert_eq!(svg.matches("<polygon").count(), 4, "two sides, two bands");
+}
+
 /// Commands that draw no whiskers ignore the table, also in stored scenes.
 #[test]
 fn other_commands_leave_the_table_alone() {

@@ -80,4 +80,11 @@ fn an_euler_spiral_and_measured_radii() {
     comes_back(&spiral, MeasuredAngle::Push, &truth);
     let measured = Scene::read("scenes/measured.toml").unwrap();
     comes_back(&measured, MeasuredAngle::Push, &[(ParabolaPerMm, 0.018)]);
+    // The tip matters for pull-offs, far out.
+    let rows = [[0.0, 30.0], [9.0, 21.0], [18.5, 11.5]];
+    let short = measured.to_builder().profile(rows);
+    let short = short.set(LengthMm, 18.5).set(TipExtensionMm, 1.6);
+    let short = short.distance_mm([10.0]).build().unwrap();
+    let truth = [(TipExtensionMm, 1.8), (ParabolaPerMm, 0.018)];
+    comes_back(&short, MeasuredAngle::Push, &truth);
 }

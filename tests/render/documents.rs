@@ -4,7 +4,7 @@ use super::drawn::{Pixels, rasters, svg, well_formed};
 use super::map::{panel, scene, write};
 use super::{SLIP_OFF, colours, flat, picture};
 use std::fs;
-use whiskmap::render::{self, MapOptions, RenderError};
+use whiskmap::render::{self, MapOptions, PictureSize, RenderError};
 use whiskmap::store::{self, Panel, StoredMap};
 
 #[test]
@@ -41,7 +41,7 @@ fn an_svg_document_has_the_cells_as_pixels_and_the_rest_as_such() {
                 "{same} of {all}"
             );
             let boundary = document.matches("stroke-width=\"3\"").count();
-            assert_eq!(boundary > 1, channel.is_none() && panels.len() == 1);
+            assert_eq!(boundary > 1, panels.len() == 1);
         }
     }
 }
@@ -52,7 +52,7 @@ fn a_picture_has_the_requested_width() {
     let panels = [flat(&scene, &[2; 30], 3.0)];
     for width in [300, 1001, 3000] {
         let options = MapOptions {
-            width: Some(width),
+            size: PictureSize::Width(width),
             ..MapOptions::default()
         };
         let picture = picture(&scene, &panels, &options).unwrap();
@@ -92,15 +92,18 @@ fn errors_leave_no_picture() {
 
 #[test]
 fn a_channel_has_its_unit_and_refused_scales_name_it() {
-    let scene = scene(3, 1, None, None);
-    let panels = [flat(&scene, &[1; 3], 2e3)];
+    let scene = scene(3, 2, None, None);
+    let panels = [flat(&scene, &[1; 6], 2e3)];
     for (channel, label) in [
-        ("force_un", ">force (mN)<"),
-        ("arc_length_mm", ">arc length (m)<"),
-        ("push_chord_deg", ">push chord (deg)<"),
-        ("base_moment_nnm", ">base moment (\u{b5}N m)<"),
-        ("energy_nj", ">energy (\u{b5}J)<"),
-        ("newton_steps", ">newton steps<"),
+        ("force_un", ">contact force (mN)<"),
+        ("arc_length_mm", ">arc length from base to contact (m)<"),
+        ("push_chord_deg", ">chord angle (deg)<"),
+        (
+            "base_moment_nnm",
+            ">bending moment at the base (\u{b5}N m)<",
+        ),
+        ("energy_nj", ">bending energy (\u{b5}J)<"),
+        ("newton_steps", ">Newton steps<"),
     ] {
         let options = MapOptions {
             channel: Some(channel),
@@ -133,9 +136,9 @@ fn a_channel_has_its_unit_and_refused_scales_name_it() {
     ] {
         let options = MapOptions {
             channel,
-            log,
+            log: log.then_some(true),
             range,
-            width: None,
+            size: PictureSize::Natural,
         };
         let error = picture(&scene, &panels, &options).unwrap_err();
         assert!(error.to_string().contains(refused), "{error}");

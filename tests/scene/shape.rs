@@ -2,7 +2,9 @@
 
 use std::fs;
 
-use whiskmap::scene::{EulerSpiral, Scene};
+use whiskmap::rod::Side;
+use whiskmap::scene::{EulerSpiral, Parameter, Scene};
+use whiskmap::trace::{Detachment, curve};
 
 use super::{BASE, parse};
 
@@ -351,4 +353,80 @@ fn a_title_has_at_most_a_thousand_characters() {
     let message = refusal(&titled(1001 - own));
     let why = "title: must have at most 1000 characters, has 1001";
     assert!(message.contains(why), "{message}");
+}
+
+/// Half of a cone, continued by its other half, is the whole cone. A factor of the radii changes no angle, and forces by its fourth power.
+#[test]
+fn a_scaled_and_continued_profile_is_the_whole_cone() {
+    let cone = parse(&scene("base_radius_um = 30\ntip_radius_um = 1.5", "")).unwrap();
+    let half = "[whisker.profile]\nrows = [[0, 15], [10, 7.875]]\ntip_extension_mm = 10\nprofile_scale = 2";
+    let text = scene(half, "").replace("length_mm = 20", "length_mm = 10");
+    let half = parse(&text).unwrap();
+    assert_eq!(half.whisker.length_mm, 20.0);
+    let ends =
+        [&cone, &half].map(|scene| curve(&scene.whisker, &scene.pole, Side::Cb, &[8.0, 19.8]));
+    let thin = half.with(Parameter::ProfileScale, 1.0).unwrap();
+    let thin = curve(&thin.whisker, &thin.pole, Side::Cb, &[8.0, 19.8]);
+    for ((one, other), thin) in ends[0].iter().zip(&ends[1]).zip(&thin) {
+        let push = |end: &Detachment| end.push_angle_deg.unwrap();
+        assert!((push(one) - push(other)).abs() < 1e-8, "{one:?} {other:?}");
+        assert!(
+            (push(thin) - push(other)).abs() < 1e-12,
+            "{thin:?} {other:?}"
+        );
+        let ratios = [one, thin].map(|end| end.force_un.unwrap() / other.force_un.unwrap());
+        assert!(
+            (ratios[0] - 1.0).abs() < 1e-6 && (ratios[1] - 1.0 / 16.0).abs() < 1e-12,
+            "{ratios:?}"
+        );
+    }
+    // The written text has both numbers, and says the same.
+    let other = half.with(Parameter::TipExtensionMm, 9.0).unwrap();
+    assert_eq!(parse(&other.to_toml()).unwrap().whisker, other.whisker);
+    let [least, most] = Parameter::TipExtensionMm.range(&thin_rows());
+    assert!(least == 0.0 && (most - 1.297).abs() < 1e-3, "{most}");
+}
+
+/// The last rows of `scenes/measured.csv`, which nearly reach the tip.
+fn thin_rows() -> Scene {
+    let rows = "[whisker.profile]\nrows = [[0, 30], [18.5, 3.2], [20, 1.5]]\ntip_extension_mm = 1";
+    parse(&scene(rows, "")).unwrap()
+}
+
+#[test]
+fn a_cone_beyond_the_rows_has_limits() {
+    for (profile, must) in [
+        (
+            "[whisker.profile]\nrows = [[0, 30], [18.5, 3.2], [20, 1.5]]\ntip_extension_mm = 1.5",
+            "whisker.profile.tip_extension_mm = 1.5: must be between 0 and where the radius is a thousandth of that at the base (1.29",
+        ),
+        (
+            "[whisker.profile]\nrows = [[0, 30], [20, 29]]\ntip_extension_mm = 20.5",
+            "must be between 0 and length_mm (20)",
+        ),
+        (
+            "[whisker.profile]\nrows = [[0, 30], [19, 10], [20, 15]]\ntip_extension_mm = 4",
+            "must be between 0 and where the radius is that at the base, or four times the least (3",
+        ),
+        (
+            "[whisker.profile]\nrows = [[0, 30], [20, 2]]\nprofile_scale = 0",
+            "whisker.profile.profile_scale = 0: must be between 0.001 and 1000",
+        ),
+        (
+            "base_radius_um = 30\ntip_radius_um = 1.5\nprofile.profile_scale = 2",
+            "rows",
+        ),
+    ] {
+        let message = refusal(&scene(profile, ""));
+        assert!(message.contains(must), "{message}");
+    }
+    let bare = parse(&scene("base_radius_um = 30\ntip_radius_um = 1.5", "")).unwrap();
+    let why = bare
+        .with(Parameter::TipExtensionMm, 1.0)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        why.contains("must be left out: there are no whisker.profile.rows"),
+        "{why}"
+    );
 }

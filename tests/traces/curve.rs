@@ -62,6 +62,11 @@ fn a_curve_is_the_end_of_each_branch() {
                 (last.arc_length_mm, end.arc_length_mm),
                 (last.force_un, end.force_un),
                 (last.base_moment_nnm, end.base_moment_nnm),
+                (last.base_force_x_un, end.base_force_x_un),
+                (last.base_force_y_un, end.base_force_y_un),
+                (last.energy_nj, end.energy_nj),
+                (last.peak_strain, end.peak_strain),
+                (last.peak_strain_mm, end.peak_strain_mm),
             ] {
                 let other = other.unwrap();
                 // Only the push angle of a fold is more accurate than the square root of the rounding error.

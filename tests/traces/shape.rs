@@ -30,6 +30,17 @@ fn a_shape_fits_its_state() {
             let reading = branch.read(&state);
             let miss = (base.moment_nnm / reading.base_moment_nnm - 1.0).abs();
             assert!(miss < 1e-9, "{case}: {base:?}");
+            // The curvature of the base changes by the strain over the radius, 30 um.
+            let at_rest = 2.0 * whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+            let strain = 0.03 * (base.curvature_per_mm - at_rest).abs();
+            assert!((strain - base.strain).abs() < 1e-12, "{case}: {base:?}");
+            let strains = shape.points.iter().map(|point| point.strain);
+            let most = strains.fold(0.0, f64::max);
+            let peak = shape.state.peak_strain;
+            assert!(
+                (0.99..1.0 + 1e-9).contains(&(most / peak)),
+                "{case}: {most} {peak}"
+            );
             assert!(shape.residual < 1e-12, "{case}");
 
             let contact = shape

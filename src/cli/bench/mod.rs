@@ -5,7 +5,7 @@ mod tables;
 
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
-use super::outputs::open;
+use super::outputs::{PlotArgs, open};
 use clap::Args;
 use plot::chart;
 use std::io::IsTerminal;
@@ -43,9 +43,8 @@ pub struct BenchArgs {
     /// Write all measurements to FILE, as JSON; - is standard output, without the tables
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Plot error against time to FILE; the ending selects PNG or SVG
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PlotArgs,
     /// Plot the programs of FILE as well, which benches/peers/run.sh writes
     #[arg(long, value_name = "FILE", requires = "plot")]
     peers: Option<PathBuf>,
@@ -60,7 +59,7 @@ pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
     peers.inspect(|path| files.input(path));
     let peers = peers.map(Peers::read).transpose()?;
     let json = args.json.as_deref();
-    let (output, picture) = open(files, "--json", json, args.plot.as_deref())?;
+    let (output, picture) = open(files, "--json", json, &args.picture)?;
     let effort = if args.quick {
         Effort::QUICK
     } else {
@@ -83,7 +82,7 @@ pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
     }
     if let Some(picture) = picture {
         let chart = chart(&report.scene, &report.rows, peers.as_ref());
-        picture.write(&chart.picture())?;
+        picture.chart(&chart)?;
     }
     if json != Some(Path::new(STDOUT)) {
         tables(&report)?;

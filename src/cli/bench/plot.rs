@@ -24,7 +24,7 @@ fn plot(rows: &[Measurement], peers: Option<&Peers>) -> Plot {
     let mut plot = Plot {
         x_label: "time per state (\u{b5}s)".to_owned(),
         y_label: "worst error of the push angle (deg)".to_owned(),
-        logarithmic: true,
+        logarithmic: [true; 2],
         ..Plot::default()
     };
     for rows in engines {

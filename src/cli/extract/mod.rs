@@ -26,7 +26,8 @@ Examples:
   whiskmap extract outputs/sweep.zarr -o map.exr
   whiskmap extract outputs/cone.exr --at distance_mm=15.66 --channel regime --channel force_un -o row.csv
 
-A table has one line per cell, with the values of all axes first; missing values are empty. An array has the remaining axes in \
+A table has one line per cell, with the values of all axes first; missing values are empty. The columns regime_name and \
+status_name have the names of the codes. An array has the remaining axes in \
 the order of the grid, then distance and push angle. A store keeps every axis; the axes of --at have one value. A map has at \
 most two sweep axes.")]
 pub struct ExtractArgs {

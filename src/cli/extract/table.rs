@@ -3,12 +3,18 @@
 use super::super::failure::Failure;
 use super::super::files::Files;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
+use std::collections::BTreeMap;
 use std::path::Path;
 use whiskmap::store::{ChannelValues, MapSlice};
+
+/// Names of the codes of a channel, by code.
+type CodeNames = BTreeMap<u32, String>;
 
 struct CellLine<'a> {
     axes: &'a [(&'static str, f64)],
     channels: &'a [&'static str],
+    /// Names of the codes of `regime` and `status`.
+    names: [&'a CodeNames; 2],
     samples: &'a [ChannelValues],
     cell: usize,
 }
@@ -22,7 +28,16 @@ impl Serialize for CellLine<'_> {
         }
         for (name, samples) in self.channels.iter().zip(self.samples) {
             match samples {
-                ChannelValues::U32(codes) => columns.serialize_field(name, &codes[self.cell])?,
+                ChannelValues::U32(codes) => {
+                    let code = codes[self.cell];
+                    columns.serialize_field(name, &code)?;
+                    let [regimes, statuses] = self.names;
+                    match *name {
+                        "regime" => columns.serialize_field("regime_name", &regimes.get(&code))?,
+                        "status" => columns.serialize_field("status_name", &statuses.get(&code))?,
+                        _ => {}
+                    }
+                }
                 ChannelValues::F32(values) => {
                     let value = Some(values[self.cell]).filter(|value| !value.is_nan());
                     columns.serialize_field(name, &value)?;
@@ -40,6 +55,7 @@ pub fn table(
     files: &mut Files,
 ) -> Result<(), Failure> {
     let mut table = files.output("--output", path)?.table();
+    let names = ["regime", "status"].map(|name| slice.names(name).unwrap_or_default());
     let grid = slice.grid();
     for whisker in slice.whiskers() {
         let samples = channels.iter().map(|name| slice.read_panel(name, whisker));
@@ -55,6 +71,7 @@ pub fn table(
             let line = CellLine {
                 axes: &axes,
                 channels,
+                names: names.each_ref(),
                 samples: &samples,
                 cell,
             };

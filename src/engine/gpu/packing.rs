@@ -124,6 +124,7 @@ mod tests {
             length_mm: 1.0,
             force_un: 1.0,
             moment_nnm: 1.0,
+            strain: 1.0,
         };
         let sides = [WhiskerSide::new(columns, units, sheet)];
         let base = |&(steps, cells): &(u32, u32)| BasePoint {

@@ -3,10 +3,10 @@
 use super::{Figure, FigurePanel, PUSH, figure};
 use crate::measured::MeasuredPoint;
 use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE, cylinder_of};
-use crate::render::{CurveAxis, Dot, DrawnCurve, Ink, Line, Stroke, curves};
-use crate::rod::{Rest, Side};
+use crate::render::{CurveAxis, Dot, DrawnCurve, Ink, Stroke, curves, regions};
+use crate::rod::Side;
 use crate::scene::Whisker;
-use crate::trace::{Detachment, DetachmentKind, curve};
+use crate::trace::{Detachment, DetachmentKind, curve, reach_mm};
 use serde::Serialize;
 
 /// Measured detachments, by push angle, for the panels of the paper that show them; each list may be empty.
@@ -40,8 +40,7 @@ const NEAREST: f64 = 0.25;
 /// like a root near there, so distances are closer together.
 fn detachments(whisker: &Whisker) -> Vec<Detachment> {
     let of_side = |side| {
-        let rest = Rest::new(&whisker.rod(&POLE, side));
-        let reach = rest.at_arclength(rest.end()).0.length() * whisker.length_mm;
+        let reach = reach_mm(whisker, &POLE, side);
         let to_tip = |i: usize| (1.0 - (i + 1) as f64 / DISTANCES as f64).powi(2);
         let distances: Vec<f64> = (0..DISTANCES)
             .map(|i| reach * (1.0 - (1.0 - NEAREST) * to_tip(i)))
@@ -53,7 +52,7 @@ fn detachments(whisker: &Whisker) -> Vec<Detachment> {
 
 const AXES: [CurveAxis; 2] = [
     CurveAxis {
-        label: "push angle \u{3b8}_p at detachment (deg)",
+        label: "push angle \u{3b8}_{p} at detachment (deg)",
         value: |end| end.push_angle_deg,
     },
     CurveAxis {
@@ -73,12 +72,15 @@ pub fn panel(
     let all = || whiskers.iter().zip(&rows);
     let drawn = all().map(|((name, _, stroke), rows)| DrawnCurve {
         rows,
+        reach_mm: rows.last().map_or(0.0, |end| end.distance_mm),
         stroke: *stroke,
         name: if whiskers.len() > 1 { name } else { "" },
     });
     let mut plot = curves(title, &drawn.collect::<Vec<_>>(), AXES);
-    let reaches = all().map(|((.., stroke), rows)| reach(rows, *stroke));
-    plot.lines.extend(reaches);
+    plot.regions =
+        Some(regions(whiskers.iter().all(|(_, whisker, _)| {
+            whisker.sharpest_bend_per_mm() == 0.0
+        })));
     let table = all().flat_map(|((whisker, ..), rows)| {
         rows.iter().map(|end| DetachmentRow {
             whisker,
@@ -90,16 +92,6 @@ pub fn panel(
         })
     });
     FigurePanel::new(letter, plot, table.collect())
-}
-
-/// A line between the farthest detachments of both sides, where the region of stable states ends without a detachment.
-fn reach(rows: &[Detachment], stroke: Stroke) -> Line {
-    let farthest = |side| {
-        let of_side = rows.iter().rfind(|end| end.side == side)?;
-        Some([of_side.push_angle_deg?, of_side.distance_mm])
-    };
-    let points = Side::BOTH.into_iter().filter_map(farthest).collect();
-    Line::new(points, Ink::Grey, stroke).named("first touch at the tip")
 }
 
 /// Measured detachments as circles.

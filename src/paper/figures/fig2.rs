@@ -49,7 +49,7 @@ pub fn fig2() -> Result<Figure, NoState> {
     ];
     let chord = |end: &BranchPoint| format!("{:.2}", end.push_chord_deg);
     let caption = vec![
-        "Push angle \u{3b8}_p: rotation of the base since first touch, which gives the paper's 15.6 and 62.7 deg;".to_owned(),
+        "Push angle \u{3b8}_{p}: rotation of the base since first touch, which gives the paper's 15.6 and 62.7 deg;".to_owned(),
         format!("the chord angle of Fig. 1D gives {} and {}. Insets show the contact.", chord(&slip_off), chord(&pull_off)),
     ];
     let title = "Fig. 2: a cone and a cylinder in front of one pole, CB";
@@ -76,7 +76,7 @@ fn panel(
             shape,
             ink: Ink::Black,
             stroke,
-            name: format!("{solution}, \u{3b8}_p = {push_angle_deg:.2} deg"),
+            name: format!("{solution}, \u{3b8}_{{p}} = {push_angle_deg:.2} deg"),
         });
     }
     let inset = Inset {

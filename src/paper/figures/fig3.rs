@@ -4,7 +4,7 @@ use super::drawing::{MAGNIFIED, outline, sections};
 use super::fig2::{self, PUSH_DEG};
 use super::{Figure, FigurePanel, PUSH, detachment, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
-use crate::render::{BranchAxis, Ink, Line, Note, Plot, Stroke, branches};
+use crate::render::{BranchAxis, DrawnBranch, Ink, Line, Note, Plot, Stroke, branches, regions};
 use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Branch, BranchPoint, NoState};
@@ -34,12 +34,12 @@ impl Serialize for BranchRow {
 }
 
 const PUSH_ANGLE: BranchAxis = BranchAxis {
-    label: "push angle \u{3b8}_p (deg)",
+    label: "push angle \u{3b8}_{p} (deg)",
     value: |point| point.push_angle_deg,
 };
 /// The contact angle in the axes of Eqs. 8-14, in which the pole stands still and the base turns against the push.
 const CONTACT_ANGLE: BranchAxis = BranchAxis {
-    label: "contact angle \u{3b8}_obj (deg)",
+    label: "contact angle \u{3b8}_{obj} (deg)",
     value: |point| point.contact_angle_deg - point.push_angle_deg,
 };
 const FORCE: BranchAxis = BranchAxis {
@@ -47,7 +47,7 @@ const FORCE: BranchAxis = BranchAxis {
     value: |point| point.force_un,
 };
 const CONTACT: BranchAxis = BranchAxis {
-    label: "contact s_obj (mm)",
+    label: "contact position s_{obj} (mm)",
     value: |point| point.arc_length_mm,
 };
 
@@ -77,8 +77,8 @@ pub fn fig3() -> Result<Figure, NoState> {
         .zip(cylinder)
         .flat_map(|(left, right)| [left, right]);
     let caption = vec![
-        format!("{PUSH} Unstable states are drawn as far as \u{3b8}_p = 0."),
-        "\u{3b8}_obj: from the x-axis of Eqs. 8-14 to the whisker at the contact; it grows toward +y, as in dy/ds = sin \u{3b8}."
+        format!("{PUSH} Unstable states are drawn as far as \u{3b8}_{{p}} = 0."),
+        "\u{3b8}_{obj}: from the x-axis of Eqs. 8-14 to the whisker at the contact; it grows toward +y, as in dy/ds = sin \u{3b8}."
             .to_owned(),
         "Arrows: a, b the states of Fig. 2A (stable), 2B; c, d those of Fig. 2C, 2D. The stable states lie inside of E and J."
             .to_owned(),
@@ -114,7 +114,16 @@ fn column(
         .iter()
         .flat_map(|(_, points)| points.iter().copied())
         .collect();
-    let plot = |y| branches(title, poles, [PUSH_ANGLE, y]);
+    let drawn = poles.iter().map(|(ink, points)| DrawnBranch {
+        points,
+        ink: *ink,
+        name: "stable",
+    });
+    let drawn: Vec<_> = drawn.collect();
+    let plot = |y| Plot {
+        regions: Some(regions(false)),
+        ..branches(title, &drawn, [PUSH_ANGLE, y])
+    };
     let mut contacts = plot(CONTACT);
     let (branch, end) = fig2::branch(whisker)?;
     let at_10 = branch

@@ -103,4 +103,4 @@ fn lettered(
 }
 
 /// The definition of the push angle, for captions.
-const PUSH: &str = "Push angle \u{3b8}_p: rotation of the base since first touch; CF left (negative), CB right (positive).";
+const PUSH: &str = "Push angle \u{3b8}_{p}: rotation of the base since first touch; CF left (negative), CB right (positive).";

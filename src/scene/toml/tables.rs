@@ -28,10 +28,12 @@ enum KeyValue {
 }
 
 /// Keys that may be left out, also in a table that is given; the axes of the sweep may be left out, too.
-const OPTIONAL: [&str; 14] = [
+const OPTIONAL: [&str; 16] = [
     Parameter::BaseRadiusUm.key(),
     Parameter::TipRadiusUm.key(),
     "whisker.profile",
+    Parameter::ProfileScale.key(),
+    Parameter::TipExtensionMm.key(),
     "whisker.curvature",
     Parameter::ParabolaPerMm.key(),
     Parameter::VertexMm.key(),

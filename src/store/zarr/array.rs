@@ -3,6 +3,7 @@
 use super::blocks::Blocks;
 use super::blosc;
 use super::planes::{planes, turned};
+use crate::store::NOT_COMPUTED;
 use serde_json::{Value, json};
 
 /// Kind of the values of a Zarr array: their type and fill value.
@@ -17,9 +18,6 @@ pub(super) enum ValueKind {
     /// Coordinates along an axis as `f64`.
     Coordinate,
 }
-
-/// Code of a cell of a Zarr store that is not computed yet.
-pub(super) const NOT_COMPUTED: u8 = 254;
 
 impl ValueKind {
     const fn data_type(self) -> &'static str {

@@ -1,15 +1,16 @@
 //! Checks of the blocks and metadata of a store, and removal of damaged blocks.
 
 use super::ZarrStore;
-use super::array::{NOT_COMPUTED, ZarrArray};
+use super::array::ZarrArray;
 use super::identity::FileIdentity;
 use super::metadata::CELLS;
 use super::read::open_regular;
 use crate::classify::Regime;
-use crate::store::{StoreError, check_links};
+use crate::store::{NOT_COMPUTED, StoreError, check_links};
 use rayon::prelude::*;
 use std::fs;
 use std::io::{self, Read};
+use std::ops::Range;
 use std::path::Path;
 
 /// Depth of a check of a block's files.
@@ -42,14 +43,10 @@ impl ZarrStore {
     /// Checks the files of a block and returns its state.
     #[must_use]
     pub fn state(&self, block: usize, depth: CheckDepth) -> BlockState {
-        // The file that is written last is looked for first.
-        for array in self.arrays.iter().rev() {
-            let file = self.file(array, block);
-            match file.try_exists() {
-                Ok(true) => {}
-                Ok(false) => return BlockState::Missing,
-                Err(why) => return BlockState::Unreadable(vec![StoreError::Read(file, why)]),
-            }
+        match self.is_missing(block) {
+            Ok(false) => {}
+            Ok(true) => return BlockState::Missing,
+            Err(fault) => return BlockState::Unreadable(vec![fault]),
         }
         let faults = self.arrays.par_iter();
         let faults = faults.filter_map(|array| self.check(array, block, depth).err());
@@ -67,6 +64,33 @@ impl ZarrStore {
         } else {
             BlockState::Damaged(faults)
         }
+    }
+
+    /// Returns true if a file of the block does not exist.
+    fn is_missing(&self, block: usize) -> Result<bool, StoreError> {
+        // The file that is written last is looked for first.
+        for array in self.arrays.iter().rev() {
+            let file = self.file(array, block);
+            let exists = file.try_exists();
+            if !exists.map_err(StoreError::at(&file, StoreError::Read))? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Returns the indices in the sweep of the whiskers of each block that is not finished, `[block]`.
+    ///
+    /// # Errors
+    /// The file system refuses to look for a file.
+    pub fn missing(&self) -> Result<Vec<Range<usize>>, StoreError> {
+        let mut missing = Vec::new();
+        for block in 0..self.block_count() {
+            if self.is_missing(block)? {
+                missing.push(self.whiskers(block));
+            }
+        }
+        Ok(missing)
     }
 
     fn check(&self, array: &ZarrArray, block: usize, depth: CheckDepth) -> Result<(), StoreError> {

@@ -1,14 +1,14 @@
 //! Arrays and attributes of a store.
 
 use super::array::ValueKind::{self, Code, Coordinate, Count, Quantity};
-use super::array::{NOT_COMPUTED, ZarrArray, about};
+use super::array::{ZarrArray, about};
 use super::blocks::Blocks;
 use super::identity::{AGREED, StoreIdentity};
 use crate::classify::{Regime, Status};
 use crate::plan::Digits;
 use crate::scene::{Grid, SceneData};
 use crate::store::attributes::{DIGITS, digits};
-use crate::store::{Channels, MapDescription};
+use crate::store::{Channels, MapDescription, NOT_COMPUTED};
 use serde_json::{Map, Value, json};
 
 /// Name of the array with the number of cells of each regime: `[sweep axes.., regime]`.

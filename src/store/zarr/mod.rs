@@ -163,10 +163,11 @@ impl ZarrStore {
         })
     }
 
-    /// Returns the number of blocks of a store of a sweep over `grid`.
+    /// Returns the indices in the sweep of the whiskers of each block of a store of a sweep over `grid`, `[block]`.
     #[must_use]
-    pub fn blocks(grid: &Grid) -> usize {
-        Blocks::of(grid).count()
+    pub fn blocks(grid: &Grid) -> impl ExactSizeIterator<Item = Range<usize>> + use<> {
+        let blocks = Blocks::of(grid);
+        (0..blocks.count()).map(move |block| blocks.whiskers(block))
     }
 
     /// Returns the number of blocks of the store, done or not.

@@ -8,6 +8,7 @@ use crate::classify::Regime;
 use crate::store::{ChannelValues, StoreError};
 use std::fs::{self, File};
 use std::io::{self, Cursor, Read};
+use std::ops::Range;
 use std::path::Path;
 
 impl ZarrStore {
@@ -33,31 +34,47 @@ impl ZarrStore {
     /// # Errors
     /// There is no such channel, or the whisker's block is missing or damaged.
     pub fn read_panel(&self, name: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
-        let array = self
-            .arrays
-            .iter()
-            .find(|array| array.name == name && name != CELLS);
+        self.read_panels(name, whisker..whisker + 1)
+    }
+
+    /// Reads a channel of consecutive whiskers of the store: `[whisker][distance][push angle]`. Each file of a block is read once.
+    ///
+    /// # Errors
+    /// There is no such channel, or a block is missing or damaged.
+    pub fn read_panels(
+        &self,
+        name: &str,
+        whiskers: Range<usize>,
+    ) -> Result<ChannelValues, StoreError> {
+        let mut arrays = self.arrays.iter();
+        let array = arrays.find(|array| array.name == name && name != CELLS);
         let array = array.ok_or_else(|| StoreError::UnknownChannel {
             path: self.path.clone(),
             name: name.to_owned(),
             known: self.channels.to_string(),
         })?;
-        let (block, index) = self.blocks.find(whisker);
-        let file = self.file(array, block);
-        let (expected, bytes) = self.read_file(array, &file)?;
-        let chunks = expected.chunks / self.blocks.slots();
-        let frames = expected.frames(&bytes);
-        let frames = frames.skip(self.blocks.slot(block, index) * chunks);
-        let values = array.unpack(frames.take(chunks));
-        let values = values.map_err(StoreError::at(&file, StoreError::Damaged))?;
-        let [distances, push_angles] = self.blocks.panel;
-        let bytes = &values[..distances * push_angles * array.kind.size()];
-        Ok(match array.kind {
-            ValueKind::Code => {
-                ChannelValues::U32(bytes.iter().map(|code| u32::from(*code)).collect())
+        let panel_bytes = self.blocks.panel.iter().product::<usize>() * array.kind.size();
+        let mut bytes = Vec::with_capacity(whiskers.len() * panel_bytes);
+        let mut next = whiskers.start;
+        while next < whiskers.end {
+            let (block, first) = self.blocks.find(next);
+            let end = self.blocks.whiskers(block).end.min(whiskers.end);
+            let file = self.file(array, block);
+            let (expected, packed) = self.read_file(array, &file)?;
+            let chunks = expected.chunks / self.blocks.slots();
+            let frames: Vec<&[u8]> = expected.frames(&packed).collect();
+            for index in first..first + (end - next) {
+                let slot = self.blocks.slot(block, index) * chunks;
+                let values = array.unpack(frames[slot..slot + chunks].iter().copied());
+                let values = values.map_err(StoreError::at(&file, StoreError::Damaged))?;
+                bytes.extend_from_slice(&values[..panel_bytes]);
             }
-            ValueKind::Count => ChannelValues::U32(bytemuck::pod_collect_to_vec(bytes)),
-            _ => ChannelValues::F32(bytemuck::pod_collect_to_vec(bytes)),
+            next = end;
+        }
+        Ok(match array.kind {
+            ValueKind::Code => ChannelValues::U32(bytes.into_iter().map(u32::from).collect()),
+            ValueKind::Count => ChannelValues::U32(bytemuck::pod_collect_to_vec(&bytes)),
+            _ => ChannelValues::F32(bytemuck::pod_collect_to_vec(&bytes)),
         })
     }
 

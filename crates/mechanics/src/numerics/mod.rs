@@ -4,6 +4,7 @@ mod bracket;
 pub mod chebyshev;
 pub mod expansion;
 pub mod gauss;
+mod golden;
 pub mod inverse;
 pub mod newton_form;
 pub mod newton_form_simd;
@@ -13,6 +14,7 @@ pub mod tensor;
 mod vector;
 
 pub use bracket::{Bracket, Root, illinois};
+pub use golden::least_between;
 pub(crate) use real::horner;
 pub use real::{Real, expm1_over_small, hyperbolic_small, rotated_by_small};
 pub use simd::{ArithmeticClass, Lanes, LanesTask, SimdTask, Unit, WIDTH};

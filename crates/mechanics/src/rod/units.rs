@@ -11,6 +11,8 @@ pub struct Units {
     pub force_un: f64,
     /// Unit of moment in nanonewton metres, and of energy in nanojoules: `E I_base/L`.
     pub moment_nnm: f64,
+    /// Unit of bending strain: the base radius over the whisker's length, dimensionless.
+    pub strain: f64,
 }
 
 impl Units {
@@ -23,6 +25,7 @@ impl Units {
             length_mm,
             force_un: stiffness / (length * length) * 1e6,
             moment_nnm: stiffness / length * 1e9,
+            strain: base_radius_um * 1e-3 / length_mm,
         }
     }
 }

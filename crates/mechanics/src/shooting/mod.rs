@@ -18,6 +18,7 @@ mod resolution;
 mod rhs;
 pub mod sensitivity;
 pub mod shape;
+mod strain;
 
 pub use integrator::{
     BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, StepStage, collocate, integrate,
@@ -32,3 +33,4 @@ pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use reading::{Reader, Reading};
 pub use resolution::{PieceSteps, Resolution};
 pub use rhs::{Carried, NoSensitivity, Planar, RodSystem, Section, Sensitivity, TrajectoryState};
+pub use strain::{PeakStrain, bending_strain};

@@ -2,8 +2,8 @@
 
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{
-    BackwardCompliance, Bent, Graded, Intrinsic, Measured, NoSensitivity, Nystrom8, Resolution,
-    RodSystem, Scales, Section, Spiral, TrajectoryState, collocate, integrate,
+    BackwardCompliance, Bent, Graded, Intrinsic, Measured, NoSensitivity, Nystrom8, PieceSteps,
+    Resolution, RodSystem, Scales, Section, Spiral, TrajectoryState, collocate, integrate,
 };
 use glam::DVec2;
 
@@ -40,7 +40,7 @@ pub fn profile(
         force: load * radius * radius,
         tangent: rod.contact_tangent(),
         steps: resolution.steps(rod, tau, load),
-        resolution,
+        pieces: resolution.of_pieces(rod, tau, load),
     };
     match rod.spiral {
         Some([at_base, slope]) => trajectory.points(Spiral { at_base, slope }, (), at),
@@ -71,7 +71,8 @@ struct ShapeTrajectory<'a> {
     tangent: DVec2,
     /// Steps of the whole trajectory, or of a piece of a profile that does all the bending.
     steps: u32,
-    resolution: Resolution,
+    /// Steps along the pieces of a profile.
+    pieces: PieceSteps,
 }
 
 impl ShapeTrajectory<'_> {
@@ -118,13 +119,11 @@ impl ShapeTrajectory<'_> {
         };
         let mut ahead = self.tau;
         let last = self.rod.piece(self.contact);
-        let load = self.force / self.rod.radius(self.tau).powi(2);
-        let needed = self.resolution.of_pieces(self.rod, self.tau, load);
         for (k, piece) in profile.pieces[..=last].iter().enumerate().rev() {
             let (whole, end) = (ahead - piece.tau, piece.tau.max(to));
             ahead = piece.tau;
             if end < from {
-                let steps = needed.of(profile, k);
+                let steps = self.pieces.of(profile, k);
                 let (steps, h) = share(steps, whole, from - end);
                 let material = Measured {
                     from: piece.from,

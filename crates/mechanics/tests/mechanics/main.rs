@@ -12,3 +12,4 @@ mod resolution;
 mod rest;
 mod roots;
 mod rough;
+mod strain;

@@ -1,10 +1,10 @@
-//! Layout of a chart, in pixels: title, caption, and plots in rows.
+//! Layout of a chart, in units of the picture: title, caption, and plots in rows.
 
 use super::Chart;
 use super::plot_layout::PlotLayout;
-use crate::frame::axes::BELOW;
 use crate::frame::heading::{ALONE, HEAD_ROOM, Heading, NAME, SIDES, TITLE, TITLE_LINE};
-use crate::picture::font::{FittedText, fitted};
+use crate::picture::size::{PictureSize, SizeError};
+use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Picture};
 
 /// Size of the body of a plot among several.
@@ -15,29 +15,57 @@ const SIDES_AMONG: [f64; 2] = [116.0, 40.0];
 const ABOVE: f64 = 24.0;
 /// Distance between lines of the caption, in pixels.
 const CAPTION_LINE: f64 = 28.0;
+/// Layouts until bodies and the labels around them agree: the labels depend on the bodies.
+const PASSES: usize = 3;
 
-/// A chart with the positions of its title, caption and plots, in pixels.
+/// A chart with the positions of its title, caption and plots, in units of the picture.
 pub struct ChartLayout<'a> {
-    title: FittedText,
-    /// Lines of the caption, each with the middle of its line.
-    caption: Vec<(FittedText, f64)>,
+    title: TextBlock,
+    /// Lines of the caption, each with the middle of its first line.
+    caption: Vec<(TextBlock, f64)>,
     /// Room to the left of each body.
     left: f64,
     /// Each plot with its heading, the top of the heading, and the plot's body.
     plots: Vec<(PlotLayout<'a>, Heading, f64, Area)>,
     /// Width and height of the picture.
-    size: [f64; 2],
+    units: [f64; 2],
+    size: PictureSize,
 }
 
 impl<'a> ChartLayout<'a> {
     /// Lays a chart out: plots have bodies of equal size in straight rows, with space for the widest labels.
-    pub fn plan(chart: &'a Chart) -> Self {
-        let columns = chart.columns.clamp(1, chart.plots.len().max(1));
-        let ([width, height], least) = if chart.plots.len() > 1 {
-            (AMONG, SIDES_AMONG)
-        } else {
-            (ALONE, SIDES)
+    pub fn plan(chart: &'a Chart, size: PictureSize) -> Result<Self, SizeError> {
+        let (natural, least) = match chart.plots.len() {
+            0 | 1 => (ALONE, SIDES),
+            _ => (AMONG, SIDES_AMONG),
         };
+        let PictureSize::Print(print) = size else {
+            return Ok(Self::around(chart, natural, least, size));
+        };
+        let columns = chart.columns();
+        let counts = [columns, chart.plots.len().div_ceil(columns).max(1)].map(|n| n as f64);
+        let ratio = natural[1] * counts[1] / (natural[0] * counts[0]);
+        let mut body = natural;
+        let mut layout = Self::around(chart, body, [0.0; 2], size);
+        for _ in 0..PASSES {
+            let bodies = [0, 1].map(|axis| body[axis] * counts[axis]);
+            let bodies = print.bodies(layout.units, bodies, ratio);
+            body = [0, 1].map(|axis| bodies[axis] / counts[axis]);
+            layout = Self::around(chart, body, [0.0; 2], size);
+        }
+        let bodies = [0, 1].map(|axis| body[axis] * counts[axis]);
+        layout.units = print.fitted(layout.units, bodies)?;
+        Ok(layout)
+    }
+
+    /// Lays a chart out around bodies of this size, with at least `least` space `[left, right]` beside each.
+    fn around(
+        chart: &'a Chart,
+        [width, height]: [f64; 2],
+        least: [f64; 2],
+        size: PictureSize,
+    ) -> Self {
+        let columns = chart.columns();
         let layouts = chart.plots.iter();
         let layouts: Vec<_> = layouts
             .map(|plot| PlotLayout::plan(plot, [width, height]))
@@ -49,18 +77,19 @@ impl<'a> ChartLayout<'a> {
         let pitch = left + width + right;
         let across = pitch * columns as f64;
 
+        let room = across - left - right;
+        let title = TextBlock::new(&chart.title, TITLE, room);
         let mut top = match &*chart.title {
             "" => ABOVE,
-            _ => HEAD_ROOM,
+            _ => HEAD_ROOM + title.below_first(),
         };
-        let room = across - left - right;
-        let lines = chart.caption.iter().enumerate();
-        let caption = lines.map(|(i, line)| {
-            let middle = top + CAPTION_LINE * (i as f64 + 0.5);
-            (fitted(line, NAME, room), middle)
-        });
-        let caption: Vec<_> = caption.collect();
-        top += CAPTION_LINE * caption.len() as f64;
+        let mut caption = Vec::new();
+        for line in &chart.caption {
+            let line = TextBlock::new(line, NAME, room);
+            let middle = top + 0.5 * CAPTION_LINE;
+            top += CAPTION_LINE + line.below_first();
+            caption.push((line, middle));
+        }
 
         let mut plots = Vec::new();
         let mut rest = layouts.into_iter().peekable();
@@ -68,29 +97,32 @@ impl<'a> ChartLayout<'a> {
             let row: Vec<_> = rest.by_ref().take(columns).collect();
             let headings = row.iter().map(|layout| layout.heading(left, width));
             let headings: Vec<_> = headings.collect();
-            let heights = headings.iter().map(|heading| heading.height);
-            let head = heights.fold(0.0, f64::max);
+            let most = |heights: &mut dyn Iterator<Item = f64>| heights.fold(0.0, f64::max);
+            let head = most(&mut headings.iter().map(|heading| heading.height));
+            let above = most(&mut row.iter().map(|layout| layout.regions.height()));
+            let below = most(&mut row.iter().map(|layout| layout.axes.below()));
             for (column, (layout, heading)) in row.into_iter().zip(headings).enumerate() {
-                let corner = [left + pitch * column as f64, top + head];
+                let corner = [left + pitch * column as f64, top + head + above];
                 let body = Area::new(corner, [width, height]);
                 plots.push((layout, heading, top, body));
             }
-            top += head + height + BELOW;
+            top += head + above + height + below;
         }
         Self {
-            title: fitted(&chart.title, TITLE, room),
+            title,
             caption,
             left,
             plots,
-            size: [across, top],
+            units: [across, top],
+            size,
         }
     }
 
     pub fn draw(&self) -> Picture {
-        let mut picture = Picture::new(self.size, None);
-        picture.fitted(&self.title, [self.left, TITLE_LINE], Anchor::Left);
+        let mut picture = Picture::new(self.units, self.size);
+        picture.block(&self.title, [self.left, TITLE_LINE], Anchor::Left);
         for (line, middle) in &self.caption {
-            picture.fitted(line, [self.left, *middle], Anchor::Left);
+            picture.block(line, [self.left, *middle], Anchor::Left);
         }
         for (layout, heading, top, body) in &self.plots {
             heading.draw(&mut picture, [body.left, *top], self.left);

@@ -1,14 +1,16 @@
 //! Charts: curves over axes that fit them, in one plot or several.
 //!
 //! Invariant: every finite point of the data lies inside the frame of its plot. Nothing is clipped except in insets, which enlarge a part
-//! of a plot.
+//! of a plot, and beyond a given [`Plot::y_range`].
 
 mod chart_layout;
 mod plot_layout;
 mod viewport;
 mod window;
 
+use crate::frame::regions::Region;
 use crate::picture::Picture;
+use crate::picture::size::{PictureSize, SizeError};
 
 /// The colour of a line, a dot or an arrow of a chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,6 +22,8 @@ pub enum Ink {
     Blue,
     /// Grey ink, for lines in the background.
     Grey,
+    /// The ink of a series among several, counted from 0; after seven inks they repeat.
+    Series(usize),
 }
 
 /// The dash pattern of a line of a chart: solid or dashed.
@@ -153,9 +157,9 @@ pub enum Shade {
 /// A band of a plot: the shaded area between two curves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
-    /// Points `[x, y_of_one_curve, y_of_the_other]` of the band, in data units. A point that is not finite, or beyond 1e300, breaks the
-    /// band.
-    pub points: Vec<[f64; 3]>,
+    /// Points of the band, each `[x, y]` on one curve and `[x, y]` on the other, in data units. Points that are not finite, or beyond
+    /// 1e300, break the band.
+    pub points: Vec<[[f64; 2]; 2]>,
     /// Grey of the band: light or dark.
     pub shade: Shade,
     /// Name of the band in the legend, as in [`Line::name`].
@@ -187,34 +191,46 @@ pub struct Plot {
     pub inset: Option<Inset>,
     /// True if a data unit has the same length on both axes of the plot.
     pub equal_axes: bool,
-    /// True if both axes of the plot are logarithmic. Numbers that are not positive are not drawn, and neither are discs and insets.
-    pub logarithmic: bool,
+    /// Regions of the plot left and right of 0, which a line separates: `[left, right]`; `None` for no regions.
+    pub regions: Option<[Region; 2]>,
+    /// Range `[low, high]` of the plot's vertical axis, in data units: lines and bands are clipped to it, and other contents beyond it
+    /// are not drawn. `None` for the extent of all contents.
+    pub y_range: Option<[f64; 2]>,
+    /// Axes of the plot that are logarithmic, `[x, y]`. On these, numbers that are not positive are not drawn; if any is logarithmic,
+    /// neither are discs and insets.
+    pub logarithmic: [bool; 2],
     /// True if the plot is drawn without frame, ticks and labels.
     pub bare: bool,
 }
 
 impl Plot {
-    /// Replaces all numbers by their decimal logarithms, NaN where there is none.
+    /// Replaces all numbers on logarithmic axes by their decimal logarithms, NaN where there is none.
     fn logarithms(&self) -> Self {
-        let logarithm = |x: f64| if x > 0.0 { x.log10() } else { f64::NAN };
+        let on = |axis: usize, value: f64| match self.logarithmic[axis] {
+            false => value,
+            true if value > 0.0 => value.log10(),
+            true => f64::NAN,
+        };
+        let logarithm = |[x, y]: [f64; 2]| [on(0, x), on(1, y)];
         let mut plot = Self {
             discs: Vec::new(),
             inset: None,
             equal_axes: false,
+            y_range: self.y_range.map(|range| range.map(|end| on(1, end))),
             ..self.clone()
         };
         for point in plot.bands.iter_mut().flat_map(|band| &mut band.points) {
             *point = point.map(logarithm);
         }
         for point in plot.lines.iter_mut().flat_map(|line| &mut line.points) {
-            *point = point.map(logarithm);
+            *point = logarithm(*point);
         }
         for dot in &mut plot.dots {
-            dot.at = dot.at.map(logarithm);
+            dot.at = logarithm(dot.at);
         }
         for note in &mut plot.notes {
-            note.at = note.at.map(logarithm);
-            note.to = note.to.map(|to| to.map(logarithm));
+            note.at = logarithm(note.at);
+            note.to = note.to.map(logarithm);
         }
         plot
     }
@@ -244,9 +260,16 @@ impl Chart {
         }
     }
 
-    /// Lays the chart out as a picture; equal charts give equal pictures.
-    #[must_use]
-    pub fn picture(&self) -> Picture {
-        chart_layout::ChartLayout::plan(self).draw()
+    /// Lays the chart out as a picture of this size; equal charts give equal pictures.
+    ///
+    /// # Errors
+    /// The size on paper is too small.
+    pub fn picture(&self, size: PictureSize) -> Result<Picture, SizeError> {
+        Ok(chart_layout::ChartLayout::plan(self, size)?.draw())
+    }
+
+    /// The number of plots in a row.
+    fn columns(&self) -> usize {
+        self.columns.clamp(1, self.plots.len().max(1))
     }
 }

@@ -1,13 +1,14 @@
 //! Layout of one plot of a chart: frame, ticks and contents.
 
 use super::viewport::{Viewport, colour, pen};
-use super::window::{Window, drawable, drawable_disc, drawable_span};
+use super::window::{Window, drawable_disc, drawable_span};
 use super::{Band, Dot, Plot, Shade};
 use crate::frame::axes::{Axes, FRAME};
 use crate::frame::heading::{DOT, Heading, LINE, LegendEntry, LegendSymbol};
-use crate::frame::ticks::{self, TickChooser};
+use crate::frame::regions::RegionNames;
+use crate::frame::ticks::{self, TickChooser, fraction};
 use crate::frame::units;
-use crate::picture::palette::{Fill, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
+use crate::picture::palette::{Fill, GREY, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
 use crate::picture::{Area, Pen, Picture};
 use std::borrow::Cow;
 
@@ -32,27 +33,36 @@ pub struct PlotLayout<'a> {
     plot: Cow<'a, Plot>,
     window: Window,
     pub axes: Axes,
+    pub regions: RegionNames,
 }
 
 impl<'a> PlotLayout<'a> {
     /// Chooses ranges, units and ticks of a plot for a body of this `size`, `[width, height]` in pixels.
     pub fn plan(plot: &'a Plot, size: [f64; 2]) -> Self {
         let plot = match plot.logarithmic {
-            true => Cow::Owned(plot.logarithms()),
-            false => Cow::Borrowed(plot),
+            [false, false] => Cow::Borrowed(plot),
+            _ => Cow::Owned(plot.logarithms()),
         };
         let window = Window::of(&plot, size);
         // The unit of numbers that span many is left alone.
-        let (choose, largest): (TickChooser, _) = match plot.logarithmic {
-            true => (ticks::of_logarithms, [0.0; 2]),
-            false => (ticks::of_numbers, window.largest),
-        };
-        let (x_label, x_unit) = units::readable(&plot.x_label, largest[0]);
-        let (y_label, y_unit) = units::readable(&plot.y_label, largest[1]);
-        let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], choose);
-        let y_ticks = ticks::upwards(window.y.map(|end| end / y_unit), size[1], choose);
+        let [x, y] = [0, 1].map(|axis| -> (TickChooser, f64) {
+            match plot.logarithmic[axis] {
+                true => (ticks::of_logarithms, 0.0),
+                false => (ticks::of_numbers, window.largest[axis]),
+            }
+        });
+        let (x_label, x_unit) = units::readable(&plot.x_label, x.1);
+        let (y_label, y_unit) = units::readable(&plot.y_label, y.1);
+        let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], x.0);
+        let y_ticks = ticks::upwards(window.y.map(|end| end / y_unit), size[1], y.0);
         let axes = Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size);
-        Self { plot, window, axes }
+        let regions = RegionNames::plan(plot.regions.as_ref(), fraction(window.x, 0.0), size[0]);
+        Self {
+            plot,
+            window,
+            axes,
+            regions,
+        }
     }
 
     /// Lays out the plot's letter, title and legend. The body is `width` pixels wide, with `left` pixels of space to its left.
@@ -69,13 +79,17 @@ impl<'a> PlotLayout<'a> {
         for band in &plot.bands {
             draw_band(picture, &viewport, band);
         }
+        if plot.regions.is_some() && window.holds([0.0, window.y[0]]) {
+            let ends = window.y.map(|y| viewport.place([0.0, y]));
+            picture.polyline(&ends, Pen::solid(FRAME, GREY));
+        }
         for disc in plot.discs.iter().filter(|disc| drawable_disc(disc)) {
             viewport.disc(picture, disc);
         }
         for line in &plot.lines {
-            viewport.line(picture, line, false);
+            viewport.line(picture, line, plot.y_range.is_some());
         }
-        for dot in plot.dots.iter().filter(|dot| drawable(dot.at)) {
+        for dot in plot.dots.iter().filter(|dot| window.holds(dot.at)) {
             let at = viewport.place(dot.at);
             match dot.open {
                 true => picture.circle(at, DOT - 0.5 * LINE, WHITE, Some(rim(dot))),
@@ -89,6 +103,7 @@ impl<'a> PlotLayout<'a> {
         if !plot.bare {
             picture.frame(body, FRAME);
             self.axes.draw(picture, body, left);
+            self.regions.draw(picture, body);
         }
     }
 
@@ -124,8 +139,10 @@ impl<'a> PlotLayout<'a> {
 /// Draws the stretches of a band between points that cannot be drawn.
 fn draw_band(picture: &mut Picture, viewport: &Viewport, band: &Band) {
     for stretch in band.points.split(|point| !drawable_span(*point)) {
-        let there = stretch.iter().map(|[x, from, _]| [*x, *from]);
-        let back = stretch.iter().rev().map(|[x, _, to]| [*x, *to]);
+        let [low, high] = viewport.window.y;
+        let inside = |[x, y]: [f64; 2]| [x, y.clamp(low, high)];
+        let there = stretch.iter().map(|[one, _]| inside(*one));
+        let back = stretch.iter().rev().map(|[_, other]| inside(*other));
         let corners = there.chain(back).map(|point| viewport.place(point));
         picture.polygon(corners.collect(), ground(band.shade));
     }

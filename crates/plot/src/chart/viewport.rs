@@ -4,7 +4,7 @@ use super::window::{Window, drawable};
 use super::{Disc, Ink, Inset, Line, Note, Plot, Stroke};
 use crate::frame::axes::FRAME;
 use crate::frame::heading::{LINE, NAME};
-use crate::picture::palette::{BLANK, BLUE, GREY, INK, Rgb};
+use crate::picture::palette::{BLANK, BLUE, GREY, INK, Rgb, SERIES};
 use crate::picture::{Anchor, Area, Pen, Picture, font};
 use glam::DVec2;
 
@@ -30,6 +30,7 @@ pub const fn colour(ink: Ink) -> Rgb {
         Ink::Black => INK,
         Ink::Blue => BLUE,
         Ink::Grey => GREY,
+        Ink::Series(index) => SERIES[index % SERIES.len()],
     }
 }
 

@@ -25,11 +25,12 @@ pub struct Window {
 impl Window {
     /// Chooses ranges that show all contents of a plot, for a body of `pixels` `[width, height]`.
     pub fn of(plot: &Plot, pixels: [f64; 2]) -> Self {
-        let extents = [0, 1].map(|axis| extent(plot, axis));
+        let mut extents = [0, 1].map(|axis| extent(plot, axis));
+        extents[1] = plot.y_range.unwrap_or(extents[1]);
         let [x, y] = if plot.equal_axes {
             equal_units(extents, pixels)
         } else {
-            extents.map(|extent| widened(extent, plot.logarithmic))
+            [0, 1].map(|axis| widened(extents[axis], plot.logarithmic[axis]))
         };
         let mut largest = extents.map(magnitude);
         if plot.equal_axes {
@@ -118,9 +119,9 @@ pub fn drawable(point: [f64; 2]) -> bool {
     point.iter().all(|at| at.abs() <= HUGE)
 }
 
-/// Returns true if both edges of a band can be drawn at the point `[x, y_of_one_curve, y_of_the_other]`.
-pub fn drawable_span([x, from, to]: [f64; 3]) -> bool {
-    drawable([x, from]) && drawable([x, to])
+/// Returns true if the points of both edges of a band can be drawn.
+pub fn drawable_span(edges: [[f64; 2]; 2]) -> bool {
+    edges.into_iter().all(drawable)
 }
 
 /// The lower left and the upper right corner of the square around a disc.
@@ -138,16 +139,20 @@ fn extent(plot: &Plot, axis: usize) -> [f64; 2] {
     let lines = plot.lines.iter().flat_map(|line| &line.points).copied();
     let bands = plot.bands.iter().flat_map(|band| &band.points);
     let bands = bands.copied().filter(|point| drawable_span(*point));
-    let edges = bands.flat_map(|[x, from, to]| [[x, from], [x, to]]);
+    let edges = bands.flatten();
     let dots = plot.dots.iter().map(|dot| dot.at);
     let discs = plot.discs.iter().filter(|disc| drawable_disc(disc));
     let notes = plot.notes.iter();
     let notes = notes.flat_map(|note| std::iter::once(note.at).chain(note.to));
+    let within = |[_, y]: [f64; 2]| match plot.y_range {
+        Some([low, high]) => (low..=high).contains(&y),
+        None => true,
+    };
     let drawn = lines
         .chain(edges)
         .chain(dots)
         .chain(notes)
-        .filter(|point| drawable(*point))
+        .filter(|point| drawable(*point) && within(*point))
         .chain(discs.flat_map(corners));
     let extent = drawn.fold(None, |extent: Option<[f64; 2]>, point| {
         let [low, high] = extent.unwrap_or([point[axis]; 2]);

@@ -2,14 +2,14 @@
 
 use super::heading::{LABEL, TICK};
 use super::ticks::Tick;
-use crate::picture::font::{FittedText, fitted};
 use crate::picture::palette::INK;
+use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Pen, Picture};
 
 /// Width of the lines of frames and ticks, in pixels.
 pub const FRAME: f64 = 1.5;
-/// Height of the space below a body for ticks and axis label, in pixels.
-pub const BELOW: f64 = 112.0;
+/// Height of the space below a body for ticks and an axis label of one line, in pixels.
+const BELOW: f64 = 112.0;
 /// Distance of the middle of the horizontal axis' label from the frame, in pixels.
 const X_LABEL: f64 = 76.0;
 /// Distance of the middle of the vertical axis' label from the left end of the space, in pixels.
@@ -19,8 +19,8 @@ const Y_LABEL: f64 = 34.0;
 pub struct Axes {
     x_ticks: Vec<Tick>,
     y_ticks: Vec<Tick>,
-    x_label: FittedText,
-    y_label: FittedText,
+    x_label: TextBlock,
+    y_label: TextBlock,
 }
 
 impl Axes {
@@ -32,8 +32,8 @@ impl Axes {
         Self {
             x_ticks,
             y_ticks,
-            x_label: fitted(x_label, LABEL, width),
-            y_label: fitted(y_label, LABEL, height),
+            x_label: TextBlock::new(x_label, LABEL, width),
+            y_label: TextBlock::new(y_label, LABEL, height),
         }
     }
 
@@ -41,10 +41,15 @@ impl Axes {
     pub fn sides(&self) -> [f64; 2] {
         let widest = self.y_ticks.iter().map(|tick| tick.width);
         let widest = widest.fold(0.0, f64::max);
-        let beside = Y_LABEL + 0.6 * LABEL + 16.0;
+        let beside = Y_LABEL + self.y_label.below_first() + 0.6 * LABEL + 16.0;
         let last = self.x_ticks.last();
         let end = last.map_or(0.0, |last| 0.5 * last.width);
         [beside + widest + 15.0, end + 8.0]
+    }
+
+    /// Returns the height that ticks and label take below the body, in pixels.
+    pub fn below(&self) -> f64 {
+        BELOW + self.x_label.below_first()
     }
 
     /// Draws the axes around `body`, with `left` pixels of space to its left. Labels that would overlap are left out.
@@ -69,8 +74,8 @@ impl Axes {
             }
         }
         let [x, y] = body.point(0.5, 0.0);
-        picture.fitted(&self.x_label, [x, y + X_LABEL], Anchor::Centre);
+        picture.block(&self.x_label, [x, y + X_LABEL], Anchor::Centre);
         let [x, y] = body.point(0.0, 0.5);
-        picture.fitted(&self.y_label, [x - left + Y_LABEL, y], Anchor::Upwards);
+        picture.block(&self.y_label, [x - left + Y_LABEL, y], Anchor::Upwards);
     }
 }

@@ -1,7 +1,8 @@
 //! The heading above a plot or a heat map: letter, title and legend.
 
-use crate::picture::font::{self, FittedText, fitted};
+use crate::picture::font;
 use crate::picture::palette::{Fill, INK, Rgb, WHITE};
+use crate::picture::text::{FittedText, SMALLEST, TextBlock, fitted};
 use crate::picture::{Anchor, Area, DASHES, Pen, Picture};
 
 /// Font size of titles, in pixels.
@@ -11,13 +12,13 @@ pub const LABEL: f64 = 23.0;
 /// Font size of tick labels, in pixels.
 pub const TICK: f64 = 20.0;
 /// Font size of names in a legend, in pixels.
-pub const NAME: f64 = 18.0;
+pub const NAME: f64 = SMALLEST;
 
 /// Size `[width, height]` of the body of a single plot or heat map, in pixels.
 pub const ALONE: [f64; 2] = [1280.0, 880.0];
 /// Least space `[left, right]` beside the body of a single plot or heat map, in pixels.
 pub const SIDES: [f64; 2] = [136.0, 48.0];
-/// Height of the space for a picture's title, in pixels.
+/// Height of the space for a picture's title of one line, in pixels.
 pub const HEAD_ROOM: f64 = 74.0;
 /// Distance of the title's middle from the top of a picture, in pixels.
 pub const TITLE_LINE: f64 = 46.0;
@@ -26,7 +27,7 @@ pub const TITLE_LINE: f64 = 46.0;
 pub const LINE: f64 = 3.0;
 /// Radius of the dots of charts, in pixels.
 pub const DOT: f64 = 8.0;
-/// Height of the line of letter and title.
+/// Height of letter and a title of one line.
 const HEAD: f64 = 46.0;
 /// Distance between lines of the legend, in pixels.
 const LEGEND_LINE: f64 = 38.0;
@@ -104,10 +105,10 @@ impl LegendEntry {
 /// Letter, title and legend of a plot or a heat map, laid out for a width.
 pub struct Heading {
     letter: FittedText,
-    title: FittedText,
+    title: TextBlock,
     /// Each entry with its line and its offset along the line.
     entries: Vec<(LegendEntry, usize, f64)>,
-    /// Height of the line of letter and title.
+    /// Height of letter and title.
     head: f64,
     /// Height of the heading including the space below it, in pixels.
     pub height: f64,
@@ -133,10 +134,15 @@ impl Heading {
             end += reach + NEXT;
         }
         let bare = letter.is_empty() && title.is_empty();
-        let head = if bare { 0.0 } else { HEAD };
+        let title = TextBlock::new(title, LABEL, width);
+        let head = if bare {
+            0.0
+        } else {
+            HEAD + title.below_first()
+        };
         Self {
             letter: fitted(letter, TITLE, left - 2.0 * LETTER),
-            title: fitted(title, LABEL, width),
+            title,
             entries,
             head,
             height: head + LEGEND_LINE * lines as f64 + BELOW,
@@ -148,7 +154,7 @@ impl Heading {
         let middle = top + 0.5 * HEAD;
         let beside = body_left - left + LETTER;
         picture.fitted(&self.letter, [beside, middle], Anchor::Left);
-        picture.fitted(&self.title, [body_left, middle], Anchor::Left);
+        picture.block(&self.title, [body_left, middle], Anchor::Left);
         for (LegendEntry { symbol, name }, line, offset) in &self.entries {
             let x = body_left + offset;
             let y = middle + self.head + LEGEND_LINE * *line as f64;

@@ -2,5 +2,6 @@
 
 pub mod axes;
 pub mod heading;
+pub mod regions;
 pub mod ticks;
 pub mod units;

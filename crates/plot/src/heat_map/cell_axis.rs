@@ -61,13 +61,13 @@ impl CellAxis {
         units::readable(&self.label, largest)
     }
 
-    /// Returns the ticks and the label of the axis: ticks at all values if they are few, else at round ones.
-    pub(crate) fn ticks(&self) -> (Vec<Tick>, String) {
+    /// Returns the ticks and the label of an axis of this length: ticks at all values if they are few, else at round ones.
+    pub(crate) fn ticks(&self, length: f64) -> (Vec<Tick>, String) {
         let (label, unit) = self.readable();
         let range = self.range().map(|end| end / unit);
         let values = match self.count() {
             0..=8 => self.values.iter().map(|value| value / unit).collect(),
-            _ => ticks::round(range, 8.0),
+            _ => ticks::round(range, (length / 60.0).clamp(3.0, 8.0)),
         };
         (ticks::at(&values, range), label)
     }

@@ -6,10 +6,17 @@ use crate::frame::heading::{LABEL, LegendEntry, TICK};
 use crate::frame::ticks::{self, Tick};
 use crate::frame::units;
 use crate::picture::palette::{self, Fill, INK};
+use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Pen, Picture};
 
-/// Width of the space for the colour bar, to the right of the picture's body, in pixels.
-pub const BAR_ROOM: f64 = 190.0;
+/// Distance of the colour bar from the body, and its width, in pixels.
+const BAR: [f64; 2] = [32.0, 28.0];
+/// Largest height of the colour bar, in pixels.
+const BAR_HEIGHT: f64 = 900.0;
+/// Distance of tick labels from the colour bar, in pixels.
+const BESIDE: f64 = 13.0;
+/// Ratio of the largest to the smallest value above which a scale becomes logarithmic by itself.
+const DECADES: f64 = 100.0;
 
 /// Options of a colour scale: label, range, and linear or logarithmic.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,9 +25,10 @@ pub struct ScaleOptions {
     pub label: String,
     /// Name in the legend of cells whose value is not finite.
     pub blank: String,
-    /// True if the colour scale is logarithmic. Values at or below 0 are blank; without a range, the colour bar starts at the 1st
-    /// percentile of the positive values.
-    pub log: bool,
+    /// True if the colour scale is logarithmic: values at or below 0 are blank; without a range, the colour bar starts at the 1st
+    /// percentile of the positive values. `None` for a logarithmic scale if no value is negative and the colour bar would span more than
+    /// two decades, and a linear one otherwise.
+    pub log: Option<bool>,
     /// Ends `[low, high]` of the colour bar, in the unit of the values; values beyond them take the colours of the ends. `None` for the
     /// extent of the values.
     pub range: Option<[f64; 2]>,
@@ -56,6 +64,8 @@ pub struct ColourScale {
     pub(super) range: Option<[f64; 2]>,
     /// Legend entries for cells whose colour is not on the colour bar, `[entry]`.
     pub(super) legend: Vec<LegendEntry>,
+    /// True if the scale is logarithmic.
+    log: bool,
     options: ScaleOptions,
 }
 
@@ -66,7 +76,9 @@ impl ColourScale {
     /// The range is not two finite numbers in increasing order. Or the scale is logarithmic, and its range begins at or below 0, or no
     /// value is above 0.
     pub fn new(summary: &ValueSummary, options: ScaleOptions) -> Result<Self, ScaleError> {
-        let log = options.log;
+        let log = options
+            .log
+            .unwrap_or_else(|| spans_decades(summary, options.range));
         if let Some(range) = options.range {
             check(range, log)?;
         }
@@ -102,13 +114,14 @@ impl ColourScale {
         Ok(Self {
             range: options.range.or(range.map(|range| widened(range, log))),
             legend,
+            log,
             options,
         })
     }
 
     pub(super) fn fill(&self, value: f64) -> Fill {
         match self.range {
-            Some(range) if value.is_finite() && !(self.options.log && value <= 0.0) => {
+            Some(range) if value.is_finite() && !(self.log && value <= 0.0) => {
                 colour(range, self.fraction(range, value))
             }
             _ => Fill::BLANK,
@@ -117,7 +130,7 @@ impl ColourScale {
 
     /// The fraction of the colour bar below a value.
     fn fraction(&self, range: [f64; 2], value: f64) -> f64 {
-        if self.options.log {
+        if self.log {
             ticks::fraction(range.map(f64::ln), value.ln())
         } else {
             ticks::fraction(range, value)
@@ -128,7 +141,7 @@ impl ColourScale {
     fn ticks(&self, range: [f64; 2], unit: f64, height: f64) -> Vec<Tick> {
         let wanted = (height / 60.0).clamp(4.0, 8.0);
         let shown = range.map(|end| end / unit);
-        if self.options.log {
+        if self.log {
             let values = ticks::logarithmic(shown, wanted);
             // The smallest end may be 0 in a larger unit.
             let at = |value: f64| self.fraction(range, value * unit);
@@ -140,25 +153,43 @@ impl ColourScale {
         ticks::at(&values, shown)
     }
 
-    /// Draws the colour bar of the scale to the right of `body`.
-    pub(super) fn draw_bar(&self, picture: &mut Picture, body: Area) {
-        let Some(range) = self.range else {
-            return;
-        };
-        let height = body.height.min(900.0);
-        let top = body.top + 0.5 * (body.height - height);
-        let bar = Area::new([body.right() + 36.0, top], [30.0, height]);
-        picture.raster(bar, |_, up| colour(range, up));
-        picture.frame(bar, FRAME);
+    /// The ticks and the label of a bar beside a body of this height, and the distance of the label's middle from the body; `None`
+    /// without a bar.
+    fn bar(&self, height: f64) -> Option<(Vec<Tick>, TextBlock, f64)> {
+        let range = self.range?;
+        let height = height.min(BAR_HEIGHT);
         let largest = range[0].abs().max(range[1].abs());
         let (label, unit) = units::readable(&self.options.label, largest);
-        for tick in self.ticks(range, unit, height) {
+        let ticks = self.ticks(range, unit, height);
+        let widest = ticks.iter().map(|tick| tick.width).fold(0.0, f64::max);
+        let beside = BAR[0] + BAR[1] + BESIDE + widest + 0.6 * LABEL + 12.0;
+        Some((ticks, TextBlock::new(&label, LABEL, height), beside))
+    }
+
+    /// Returns the width of the space for the colour bar beside a body of this height, in pixels; `None` without a bar.
+    pub(super) fn bar_room(&self, height: f64) -> Option<f64> {
+        let (_, label, beside) = self.bar(height)?;
+        Some(beside + label.below_first() + 0.6 * LABEL + 8.0)
+    }
+
+    /// Draws the colour bar of the scale to the right of `body`.
+    pub(super) fn draw_bar(&self, picture: &mut Picture, body: Area) {
+        let (Some(range), Some((ticks, label, beside))) = (self.range, self.bar(body.height))
+        else {
+            return;
+        };
+        let height = body.height.min(BAR_HEIGHT);
+        let top = body.top + 0.5 * (body.height - height);
+        let bar = Area::new([body.right() + BAR[0], top], [BAR[1], height]);
+        picture.raster(bar, |_, up| colour(range, up));
+        picture.frame(bar, FRAME);
+        for tick in ticks {
             let [x, y] = bar.point(1.0, tick.at);
             picture.polyline(&[[x, y], [x + 7.0, y]], Pen::solid(FRAME, INK));
-            picture.text(&tick.label, [x + 13.0, y], TICK, Anchor::Left);
+            picture.text(&tick.label, [x + BESIDE, y], TICK, Anchor::Left);
         }
-        let middle = [body.right() + BAR_ROOM - 24.0, bar.top + 0.5 * bar.height];
-        picture.text(&label, middle, LABEL, Anchor::Upwards);
+        let middle = [body.right() + beside, bar.top + 0.5 * bar.height];
+        picture.block(&label, middle, Anchor::Upwards);
     }
 }
 
@@ -183,6 +214,13 @@ fn check(range: [f64; 2], log: bool) -> Result<(), ScaleError> {
     } else {
         Ok(())
     }
+}
+
+/// Returns true if no value is negative, and the colour bar of a logarithmic scale would span more than two decades.
+fn spans_decades(summary: &ValueSummary, range: Option<[f64; 2]>) -> bool {
+    let ends = range.or_else(|| Some([summary.positive_start().0, summary.positive?[1]]));
+    let is_negative = summary.extent.is_some_and(|[low, _]| low < 0.0);
+    !is_negative && ends.is_some_and(|[low, high]| low > 0.0 && high > DECADES * low)
 }
 
 /// Makes the ends of a colour bar symmetric about 0 if both signs occur, and different from each other.

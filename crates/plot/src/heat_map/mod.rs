@@ -8,7 +8,9 @@ mod layout;
 pub mod summary;
 
 use crate::frame::heading::LegendEntry;
+use crate::frame::regions::Region;
 use crate::picture::palette::{Fill, INK, WHITE};
+use crate::picture::size::{PictureSize, SizeError};
 use crate::picture::{Area, Pen, Picture};
 use cell_axis::CellAxis;
 use colour_scale::ColourScale;
@@ -18,7 +20,8 @@ use std::collections::BTreeMap;
 /// A heat map: numbers or codes in the cells of one panel, or of many panels side by side.
 ///
 /// ```
-/// use whiskmap_plot::{CellAxis, ColourScale, HeatMap, PanelCells, PictureFormat, ScaleOptions, Shading, ValueSummary};
+/// use whiskmap_plot::{CellAxis, ColourScale, HeatMap, PanelCells, PictureFormat, PictureSize, ScaleOptions, Shading, SizeError,
+///     ValueSummary};
 ///
 /// let values: Vec<f64> = (0..12).map(f64::from).collect(); // [y][x]
 /// let mut summary = ValueSummary::default();
@@ -31,10 +34,10 @@ use std::collections::BTreeMap;
 ///     panel_axes: [None, None],
 ///     shading: Shading::Quantities(ColourScale::new(&summary, options)?),
 ///     legend: Vec::new(),
-///     width: Some(800),
+///     regions: None,
 /// };
 /// let cells = PanelCells { values, ..PanelCells::default() };
-/// let picture = heat_map.picture(|_| Ok::<_, std::convert::Infallible>(cells.clone()))?;
+/// let picture = heat_map.picture(PictureSize::Width(800), |_| Ok::<_, SizeError>(cells.clone()))?;
 /// assert_eq!(picture.pixels()[0], 800);
 /// assert!(String::from_utf8(picture.encode(PictureFormat::Svg)?)?.contains(">Twelve cells</text>"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -53,8 +56,8 @@ pub struct HeatMap {
     pub shading: Shading,
     /// Legend of the heat map, `[entry]`; the entries of a [`ColourScale`] come before it.
     pub legend: Vec<LegendEntry>,
-    /// Width of the heat map in pixels; `None` for the width at which all text can be read.
-    pub width: Option<u32>,
+    /// Regions of the heat map left and right of 0: `[left, right]`; `None` for no regions.
+    pub regions: Option<[Region; 2]>,
 }
 
 /// An axis along which the panels of a heat map differ.
@@ -105,20 +108,35 @@ impl Shading {
 }
 
 impl HeatMap {
-    /// Lays the heat map out. `panel` returns the contents of panel `row * columns + column`; panels are drawn one by one.
+    /// Lays the heat map out as a picture of this size. `panel` returns the contents of panel `row * columns + column`; panels are drawn one by one.
     ///
     /// # Errors
-    /// Errors of `panel`.
-    pub fn picture<E>(
+    /// The size on paper is too small, or an error of `panel`.
+    pub fn picture<E: From<SizeError>>(
         &self,
+        size: PictureSize,
         panel: impl FnMut(usize) -> Result<PanelCells, E>,
     ) -> Result<Picture, E> {
-        HeatMapLayout::plan(self).draw(self, panel)
+        HeatMapLayout::plan(self, size)?.draw(panel)
     }
 
     fn panel_counts(&self) -> [usize; 2] {
         let count = |axis: &Option<PanelAxis>| axis.as_ref().map_or(1, |axis| axis.values.len());
         self.panel_axes.each_ref().map(count)
+    }
+
+    /// Notes on the axes of the panels of a contact sheet.
+    fn notes(&self) -> Vec<String> {
+        let across = format!("each panel, to the right: {}", self.x.summary());
+        let upwards = format!("each panel, upwards: {}", self.y.summary());
+        let regions = self.regions.iter();
+        let regions = regions.map(|[left, right]| {
+            format!(
+                "each panel, left of 0: {}; right: {}",
+                left.name, right.name
+            )
+        });
+        [across, upwards].into_iter().chain(regions).collect()
     }
 
     /// Draws a panel into `area` with curves of the given width.

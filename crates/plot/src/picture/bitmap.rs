@@ -3,8 +3,9 @@
 use super::coverage::{Coverage, dashes, polygon};
 use super::font::{self, CAPITALS};
 use super::palette::{INK, Rgb, WHITE};
+use super::size::MM;
 use super::{Anchor, Pen, Picture, Primitive};
-use png::Compression;
+use png::{Compression, PixelDimensions, Unit};
 
 /// The pixels of a picture, row by row.
 fn draw(picture: &Picture) -> Vec<Rgb> {
@@ -28,17 +29,25 @@ pub fn file(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
         true => Compression::Balanced,
         false => Compression::Fastest,
     };
-    encode(picture.pixels(), &draw(picture), compression)
+    let per_metre = (picture.scale / MM * 1e3).round() as u32;
+    let density = picture.is_print.then_some(per_metre);
+    encode(picture.pixels(), &draw(picture), compression, density)
 }
 
-/// Encodes the pixels of an image, row by row, as PNG.
+/// Encodes the pixels of an image, row by row, as PNG, with the number of pixels per metre if it is known.
 pub fn encode(
     [width, height]: [usize; 2],
     pixels: &[Rgb],
     compression: Compression,
+    per_metre: Option<u32>,
 ) -> Result<Vec<u8>, png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
+    encoder.set_pixel_dims(per_metre.map(|pixels| PixelDimensions {
+        xppu: pixels,
+        yppu: pixels,
+        unit: Unit::Meter,
+    }));
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(compression);
     let mut writer = encoder.write_header()?;

@@ -1,18 +1,19 @@
-//! The built-in font, DejaVu Sans. A font size is the height of an em in pixels.
+//! The built-in font, DejaVu Sans. A font size is the height of an em in units of the picture.
+//!
+//! In a text, `_{...}` is a subscript: `θ_{p}`.
 
-use ab_glyph::{Font, FontRef, OutlinedGlyph, PxScale, PxScaleFont, ScaleFont, point};
+use ab_glyph::{Font, FontRef, Outline, OutlinedGlyph, PxScale, PxScaleFont, ScaleFont, point};
 use std::sync::LazyLock;
 
 /// Height of capital letters of the built-in font, in ems.
 pub const CAPITALS: f64 = 0.729;
+/// Size of subscripts, and their drop below the baseline, as fractions of the font size.
+const SUBSCRIPT: [f64; 2] = [0.7, 0.18];
 
 #[allow(clippy::expect_used, reason = "the font file is a part of the crate")]
 static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
     FontRef::try_from_slice(include_bytes!("../../fonts/DejaVuSans.ttf")).expect("DejaVu Sans")
 });
-
-/// A text cut to its space, and its font size in pixels.
-pub type FittedText = (String, f64);
 
 /// The font with an em of this many pixels.
 fn sized(size: f64) -> PxScaleFont<&'static FontRef<'static>> {
@@ -21,49 +22,102 @@ fn sized(size: f64) -> PxScaleFont<&'static FontRef<'static>> {
     FONT.as_scaled(PxScale::from(size as f32 * ems))
 }
 
-/// Returns the width of a text of font size `size`, in pixels.
+/// A stretch of a text on one baseline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Run<'a> {
+    pub text: &'a str,
+    /// Font size of the run.
+    pub size: f64,
+    /// Drop of the run's baseline below that of the text.
+    pub drop: f64,
+}
+
+/// Returns the runs of a text of font size `size`: between and inside its subscripts. A subscript without an end is plain text.
+pub fn runs(text: &str, size: f64) -> Vec<Run<'_>> {
+    let plain = |text| Run {
+        text,
+        size,
+        drop: 0.0,
+    };
+    let mut runs = Vec::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once("_{")
+        && let Some((text, next)) = after.split_once('}')
+    {
+        let [part, drop] = SUBSCRIPT.map(|part| part * size);
+        runs.extend([
+            plain(before),
+            Run {
+                text,
+                size: part,
+                drop,
+            },
+        ]);
+        rest = next;
+    }
+    runs.push(plain(rest));
+    runs.retain(|run| !run.text.is_empty());
+    runs
+}
+
+/// Returns the width of a text of font size `size`.
 pub fn width(text: &str, size: f64) -> f64 {
-    let font = sized(size);
-    text.chars()
-        .map(|c| f64::from(font.h_advance(font.glyph_id(c))))
-        .sum()
+    let of_run = |run: Run<'_>| {
+        let font = sized(run.size);
+        let advances = run.text.chars().map(|c| font.h_advance(font.glyph_id(c)));
+        advances.map(f64::from).sum::<f64>()
+    };
+    runs(text, size).into_iter().map(of_run).sum()
+}
+
+/// Calls `draw` with the font, the character and the place of each glyph of a text. The text begins at the origin, with y downwards.
+fn each_glyph(
+    text: &str,
+    size: f64,
+    mut draw: impl FnMut(PxScaleFont<&'static FontRef<'static>>, char, [f32; 2]),
+) {
+    let mut x = 0.0;
+    for run in runs(text, size) {
+        let font = sized(run.size);
+        for c in run.text.chars() {
+            draw(font, c, [x, run.drop as f32]);
+            x += font.h_advance(font.glyph_id(c));
+        }
+    }
 }
 
 /// Returns the outlines of a text in pixels, `[glyph]`. It begins at the origin, with y downwards from its baseline.
 pub fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
-    let font = sized(size);
-    let mut x = 0.0;
-    let outlines = text.chars().filter_map(|c| {
-        let id = font.glyph_id(c);
-        let glyph = id.with_scale_and_position(font.scale(), point(x, 0.0));
-        x += font.h_advance(id);
-        font.outline_glyph(glyph)
+    let mut outlines = Vec::new();
+    each_glyph(text, size, |font, c, [x, y]| {
+        let glyph = font
+            .glyph_id(c)
+            .with_scale_and_position(font.scale(), point(x, y));
+        outlines.extend(font.outline_glyph(glyph));
     });
-    outlines.collect()
+    outlines
 }
 
-/// The end of a text that is cut.
-const ELLIPSIS: &str = "\u{2026}";
-
-/// Fits a text into `room` pixels: shrinks the font to no less than 0.6 of `largest`, and cuts the text if that does not suffice.
-pub fn fitted(text: &str, largest: f64, room: f64) -> FittedText {
-    let whole = width(text, largest).max(1.0);
-    let size = largest * (room / whole).clamp(0.6, 1.0);
-    let most = room + 1.0;
-    if whole * size / largest <= most {
-        return (text.to_owned(), size);
-    }
-    let font = sized(size);
-    let mut end = width(ELLIPSIS, size);
-    let fits = |c: &char| {
-        end += f64::from(font.h_advance(font.glyph_id(*c)));
-        end <= most
-    };
-    let kept: String = text.chars().take_while(fits).collect();
-    (kept + ELLIPSIS, size)
+/// The curves of a glyph in units of the font, y upwards, with the size of that unit and the place `[x, y]` of the glyph's origin.
+pub struct GlyphCurves {
+    pub outline: Outline,
+    pub unit: f64,
+    pub at: [f64; 2],
 }
 
-/// Returns the characters of a text that the built-in font lacks, each once, in their order. A PNG shows them as boxes.
+/// Returns the curves of a text, `[glyph]`. It begins at the origin, with y downwards from its baseline.
+pub fn curves(text: &str, size: f64) -> Vec<GlyphCurves> {
+    let mut curves = Vec::new();
+    each_glyph(text, size, |font, c, at| {
+        let unit = f64::from(font.scale().y / FONT.height_unscaled());
+        let at = at.map(f64::from);
+        let outline = FONT.outline(font.glyph_id(c));
+        curves.extend(outline.map(|outline| GlyphCurves { outline, unit, at }));
+    });
+    curves
+}
+
+/// Returns the characters of a text that the built-in font lacks, each once, in their order. A PNG or PDF shows them as boxes.
 #[must_use]
 pub fn missing_glyphs(text: &str) -> Vec<char> {
     let mut missing: Vec<char> = Vec::new();
@@ -80,17 +134,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_text_is_cut_where_its_room_ends() {
-        let (whole, size) = fitted("short", 20.0, 400.0);
-        assert_eq!((&*whole, size), ("short", 20.0));
-        for text in ["m".repeat(100_000), "i".repeat(500), "\u{9b0d}".repeat(90)] {
-            let (cut, size) = fitted(&text, 20.0, 400.0);
-            let kept = cut.strip_suffix(ELLIPSIS).unwrap_or_default();
-            assert!(size == 12.0 && text.starts_with(kept), "{cut}");
-            let one: String = text.chars().take(1).collect();
-            let [cut, one] = [&*cut, &*one].map(|text| width(text, size));
-            assert!(cut <= 401.0 && cut + one > 401.0, "{cut}");
+    fn subscripts_are_smaller_and_lower() {
+        let texts = |text: &'static str| -> Vec<(&str, f64)> {
+            let runs = runs(text, 10.0).into_iter();
+            runs.map(|run| (run.text, run.size)).collect()
+        };
+        assert_eq!(
+            texts("\u{3b8}_{obj} (deg)"),
+            [("\u{3b8}", 10.0), ("obj", 7.0), (" (deg)", 10.0)]
+        );
+        for plain in ["tip_radius_um", "a_{b", "{p}", ""] {
+            assert!(
+                texts(plain)
+                    .iter()
+                    .all(|(text, size)| *text == plain && *size == 10.0)
+            );
         }
-        assert_eq!(fitted("wide", 20.0, 1.0).0, ELLIPSIS);
+        assert!(runs("a_{b}", 10.0)[1].drop > 1.0);
+        let typeset = width("\u{3b8}_{p}", 10.0);
+        assert!(typeset < width("\u{3b8}p", 10.0) && typeset > width("\u{3b8}", 10.0));
     }
 }

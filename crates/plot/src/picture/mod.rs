@@ -1,14 +1,18 @@
-//! A picture as plain data: primitives in the order in which they are drawn. It becomes pixels or SVG when it is encoded.
+//! A picture as plain data: primitives in the order in which they are drawn. It becomes pixels, SVG or PDF when it is encoded.
 
 mod bitmap;
 mod coverage;
 pub mod font;
 pub mod palette;
+mod pdf;
+pub mod size;
 mod svg;
+pub mod text;
 
-use font::FittedText;
 use palette::{Fill, INK, Rgb};
+use size::PictureSize;
 use std::path::Path;
+use text::{FittedText, TextBlock};
 
 /// Lengths of a dash and of a gap of dashed lines, in pixels along the middle of the line. The round ends of a dash cover one line width
 /// of each gap.
@@ -99,15 +103,18 @@ pub enum PictureFormat {
     Png,
     /// The SVG 1.1 format: lines and text as vectors, the cells of heat maps as pixels.
     Svg,
+    /// The PDF 1.7 format: lines as vectors, text as outlines, the cells of heat maps as pixels.
+    Pdf,
 }
 
 impl PictureFormat {
-    /// Returns the format for the extension `png` or `svg` of a path, in upper or lower case.
+    /// Returns the format for the extension `png`, `svg` or `pdf` of a path, in upper or lower case.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         match &*path.extension()?.to_str()?.to_ascii_lowercase() {
             "png" => Some(Self::Png),
             "svg" => Some(Self::Svg),
+            "pdf" => Some(Self::Pdf),
             _ => None,
         }
     }
@@ -125,16 +132,24 @@ pub struct Picture {
     size: [f64; 2],
     /// Pixels per unit.
     scale: f64,
+    /// True if the picture has a size on paper.
+    is_print: bool,
     primitives: Vec<Primitive>,
 }
 
 impl Picture {
-    /// Creates an empty white picture of `size` pixels, `[width, height]`, enlarged to `width` pixels if given.
-    pub(crate) fn new(size: [f64; 2], width: Option<u32>) -> Self {
-        let size = size.map(f64::ceil);
+    /// Creates an empty white picture of `units`, `[width, height]`. They are those of `size` if it is one on paper.
+    pub(crate) fn new(units: [f64; 2], size: PictureSize) -> Self {
+        let natural = units.map(f64::ceil);
+        let (size, scale, is_print) = match size {
+            PictureSize::Natural => (natural, 1.0, false),
+            PictureSize::Width(pixels) => (natural, f64::from(pixels) / natural[0], false),
+            PictureSize::Print(print) => (units, print.scale(), true),
+        };
         Self {
             size,
-            scale: width.map_or(1.0, |width| f64::from(width) / size[0]),
+            scale,
+            is_print,
             primitives: Vec::new(),
         }
     }
@@ -147,6 +162,7 @@ impl Picture {
         Ok(match format {
             PictureFormat::Png => bitmap::file(self)?,
             PictureFormat::Svg => svg::document(self)?.into_bytes(),
+            PictureFormat::Pdf => pdf::document(self),
         })
     }
 
@@ -157,8 +173,8 @@ impl Picture {
             .map(|length| (length * self.scale).round().max(1.0) as usize)
     }
 
-    /// Returns the characters of the picture's texts that the built-in font lacks, each once. A PNG shows them as boxes; an SVG has them
-    /// as text.
+    /// Returns the characters of the picture's texts that the built-in font lacks, each once. A PNG or PDF shows them as boxes; an SVG
+    /// has them as text.
     #[must_use]
     pub fn missing_glyphs(&self) -> Vec<char> {
         let texts = self
@@ -206,6 +222,18 @@ impl Picture {
 
     pub(crate) fn fitted(&mut self, (text, size): &FittedText, at: [f64; 2], anchor: Anchor) {
         self.text(text, at, *size, anchor);
+    }
+
+    /// Draws the lines of a text, the first one at a point and the others below it, or to its right if the text runs upwards.
+    pub(crate) fn block(&mut self, block: &TextBlock, [x, y]: [f64; 2], anchor: Anchor) {
+        for (index, line) in block.lines.iter().enumerate() {
+            let step = block.leading() * index as f64;
+            let at = match anchor {
+                Anchor::Upwards => [x + step, y],
+                _ => [x, y + step],
+            };
+            self.text(line, at, block.size, anchor);
+        }
     }
 
     /// Fills a rectangle pixel by pixel; `fill` gets the pixel's fractions from the left and from the bottom.

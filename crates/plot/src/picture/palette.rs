@@ -13,6 +13,16 @@ pub const WHITE: Rgb = rgb(0xffffff);
 /// Colour of text, frames, and black lines of charts.
 pub const INK: Rgb = rgb(0x222b33);
 pub const BLUE: Rgb = rgb(0x1c6cc4);
+/// Colours of series that can be told apart on white (Okabe and Ito 2008, without yellow, and indigo).
+pub const SERIES: [Rgb; 7] = [
+    rgb(0x0072b2),
+    rgb(0xd55e00),
+    rgb(0x009e73),
+    rgb(0xcc79a7),
+    rgb(0x332288),
+    rgb(0xe69f00),
+    rgb(0x56b4e9),
+];
 /// Colour of grey lines of charts, of squares that an inset enlarges, and of dark discs.
 pub const GREY: Rgb = rgb(0x9aa1a8);
 pub const SHADE_LIGHT: Rgb = rgb(0xdbe4ee);

@@ -1,14 +1,18 @@
 //! Encoding of pictures as SVG documents with native lines, circles and text. Rasters are embedded as PNG.
 
 use super::bitmap;
-use super::font::CAPITALS;
+use super::font::{CAPITALS, runs};
 use super::palette::{INK, Rgb, WHITE};
+use super::size::MM;
 use super::{Anchor, DASHES, EncodeError, Pen, Picture, Primitive};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use png::Compression;
 
 pub fn document(picture: &Picture) -> Result<String, EncodeError> {
-    let [width, height] = picture.pixels();
+    let [width, height] = match picture.is_print {
+        true => picture.size.map(|length| number(length * MM) + "mm"),
+        false => picture.pixels().map(|pixels| pixels.to_string()),
+    };
     let ([across, down], white) = (picture.size.map(number), colour(WHITE));
     let mut document = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
@@ -32,8 +36,12 @@ pub fn document(picture: &Picture) -> Result<String, EncodeError> {
             Primitive::Raster(corner, size, pixels) => {
                 let units = |pixels: usize| number(pixels as f64 / picture.scale);
                 let ([x, y], [width, height]) = (corner.map(units), size.map(units));
-                let png =
-                    BASE64_STANDARD.encode(bitmap::encode(*size, pixels, Compression::Balanced)?);
+                let png = BASE64_STANDARD.encode(bitmap::encode(
+                    *size,
+                    pixels,
+                    Compression::Balanced,
+                    None,
+                )?);
                 format!(
                     "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
                      style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{png}\"/>\n"
@@ -72,12 +80,26 @@ fn words(text: &str, at: [f64; 2], size: f64, anchor: Anchor) -> String {
         Anchor::Right => ("end", String::new()),
         Anchor::Upwards => ("middle", format!(" transform=\"rotate(-90 {x} {y})\"")),
     };
+    let mut drop = 0.0;
+    let spans = runs(text, size).into_iter().map(|run| {
+        let words = escaped(run.text);
+        let step = run.drop - std::mem::replace(&mut drop, run.drop);
+        match (run.drop, step) {
+            (0.0, 0.0) => words,
+            (0.0, up) => format!("<tspan dy=\"{}\">{words}</tspan>", number(up)),
+            (_, down) => format!(
+                "<tspan font-size=\"{}\" dy=\"{}\">{words}</tspan>",
+                number(run.size),
+                number(down)
+            ),
+        }
+    });
+    let words: String = spans.collect();
     let (baseline, size) = (number(at[1] + 0.5 * CAPITALS * size), number(size));
     format!(
         "<text x=\"{x}\" y=\"{baseline}\" font-family=\"DejaVu Sans, Verdana, sans-serif\" font-size=\"{size}\" \
-         text-anchor=\"{side}\" fill=\"{}\"{turn}>{}</text>\n",
+         text-anchor=\"{side}\" fill=\"{}\"{turn}>{words}</text>\n",
         colour(INK),
-        escaped(text),
     )
 }
 

@@ -1,7 +1,7 @@
 //! Axes: their units and ranges, whatever the data.
 
 use crate::drawn::{Pixels, frame, line, polylines, single, svg, well_formed};
-use whiskmap_plot::{Chart, Disc, Dot, Ink, Note, Plot, Stroke};
+use whiskmap_plot::{Chart, Disc, Dot, Ink, Note, PictureSize, Plot, Stroke};
 
 #[test]
 fn degenerate_data_give_pictures_without_nan() {
@@ -54,13 +54,13 @@ fn degenerate_data_give_pictures_without_nan() {
                     ..Note::default()
                 }],
                 equal_axes,
-                logarithmic,
+                logarithmic: [logarithmic; 2],
                 ..Plot::default()
             });
         }
     }
     for plot in plots {
-        let svg = svg(&single(plot.clone()).picture());
+        let svg = svg(&single(plot.clone()).picture(PictureSize::Natural).unwrap());
         assert!(
             well_formed(&svg) && !svg.contains("NaN") && !svg.contains("inf"),
             "{plot:?}"
@@ -85,7 +85,8 @@ fn degenerate_data_give_pictures_without_nan() {
                     columns,
                     ..Chart::default()
                 }
-                .picture()
+                .picture(PictureSize::Natural)
+                .unwrap()
             )
             .width
                 > 500
@@ -103,7 +104,8 @@ fn axes_choose_the_unit_that_suits_their_numbers() {
             equal_axes,
             ..Plot::default()
         })
-        .picture())
+        .picture(PictureSize::Natural)
+        .unwrap())
     };
     let large = chart(&[[0.0, 0.0], [2000.0, 4e7]], false);
     for text in [">x (m)<", ">force (N)<", ">2.0<", ">40<"] {
@@ -133,7 +135,7 @@ fn a_large_disc_widens_both_axes() {
         })
     };
     for (radius, unit) in [(20.0, 1280.0 / 108.0), (70.0, 880.0 / 151.2)] {
-        let svg = svg(&chart(radius).picture());
+        let svg = svg(&chart(radius).picture(PictureSize::Natural).unwrap());
         let points = &polylines(&svg)[0].0;
         assert!((points[1][0] - points[0][0] - 100.0 * unit).abs() < 0.02);
     }
@@ -145,10 +147,10 @@ fn logarithmic_axes_are_labelled_with_the_numbers_themselves() {
     let plot = |points: &[[f64; 2]]| Plot {
         x_label: "time (mm)".to_owned(),
         lines: vec![line(points, Ink::Black, Stroke::Solid)],
-        logarithmic: true,
+        logarithmic: [true; 2],
         ..Plot::default()
     };
-    let document = svg(&single(plot(&points)).picture());
+    let document = svg(&single(plot(&points)).picture(PictureSize::Natural).unwrap());
     for text in ["0.1", "1", "10", "1e\u{2212}8", "1e\u{2212}5", "0.01"] {
         assert!(document.contains(&format!(">{text}<")), "{text}");
     }
@@ -174,7 +176,10 @@ fn logarithmic_axes_are_labelled_with_the_numbers_themselves() {
         at: [1.0, -1.0],
         ..Dot::default()
     }];
-    assert_eq!(svg(&single(more).picture()), document);
+    assert_eq!(
+        svg(&single(more).picture(PictureSize::Natural).unwrap()),
+        document
+    );
 }
 
 /// Powers of ten where there are some, and never two labels on each other.
@@ -189,10 +194,11 @@ fn logarithmic_axes_have_ticks_whatever_they_span() {
     ] {
         let svg = svg(&single(Plot {
             lines: vec![line(&[[from, from], [to, to]], Ink::Black, Stroke::Solid)],
-            logarithmic: true,
+            logarithmic: [true; 2],
             ..Plot::default()
         })
-        .picture());
+        .picture(PictureSize::Natural)
+        .unwrap());
         let labels = svg.matches("<text").count();
         assert!((6..=30).contains(&labels), "{from} {to}: {labels}");
     }

@@ -9,15 +9,16 @@ const DARK: [u8; 3] = [0xa9, 0xbd, 0xd2];
 
 #[test]
 fn a_band_is_where_its_numbers_are() {
+    let around = |x: f64, y: f64, half: f64| [[x, y - half], [x, y + half]];
     let band = |half: f64, shade| Band {
         points: vec![
-            [0.0, 10.0 - half, 10.0 + half],
-            [40.0, 10.0 - half, 10.0 + half],
-            [f64::NAN, 0.0, 0.0],
-            [60.0, 20.0 - half, 20.0 + half],
-            [80.0, 20.0 - half, f64::INFINITY],
-            [90.0, 20.0 - half, 20.0 + half],
-            [100.0, 30.0 - half, 30.0 + half],
+            around(0.0, 10.0, half),
+            around(40.0, 10.0, half),
+            around(f64::NAN, 0.0, 0.0),
+            around(60.0, 20.0, half),
+            [[80.0, 20.0 - half], [80.0, f64::INFINITY]],
+            around(90.0, 20.0, half),
+            around(100.0, 30.0, half),
         ],
         shade,
         name: Some(format!("band of {half}")),

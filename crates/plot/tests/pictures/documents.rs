@@ -3,7 +3,9 @@
 use crate::drawn::{frame, line, polylines, single, svg, well_formed};
 use crate::{arc, both};
 use std::path::Path;
-use whiskmap_plot::{Chart, Disc, Dot, Ink, Note, PictureFormat, Plot, Stroke, missing_glyphs};
+use whiskmap_plot::{
+    Chart, Disc, Dot, Ink, Note, PictureFormat, PictureSize, Plot, Stroke, missing_glyphs,
+};
 
 #[test]
 fn the_legend_has_each_name_once_and_wraps() {
@@ -19,7 +21,8 @@ fn the_legend_has_each_name_once_and_wraps() {
     ]
     .map(|name| name.repeat(2));
     let names: Vec<&str> = long.iter().map(String::as_str).collect();
-    let document = |names: &[&str]| svg(&single(plot(names)).picture());
+    let document =
+        |names: &[&str]| svg(&single(plot(names)).picture(PictureSize::Natural).unwrap());
     let twice = document(&["stable", "unstable", "stable"]);
     assert_eq!(twice.matches(">stable<").count(), 1);
     assert_eq!(twice.matches(">unstable<").count(), 1);
@@ -52,7 +55,7 @@ fn a_document_is_well_formed_whatever_the_texts() {
         caption: vec![text.to_owned()],
         columns: 3,
     };
-    let svg = svg(&chart.picture());
+    let svg = svg(&chart.picture(PictureSize::Natural).unwrap());
     assert!(well_formed(&svg), "{svg}");
     let shown = "a&lt;b &amp; &quot;c&quot;&gt; \u{2212} \u{fffd}</text>";
     assert_eq!(svg.matches(shown).count(), 7);
@@ -109,7 +112,7 @@ fn equal_charts_give_equal_bytes() {
             title: "arc".to_owned(),
             ..Plot::default()
         };
-        single(plot).picture()
+        single(plot).picture(PictureSize::Natural).unwrap()
     };
     for format in [PictureFormat::Png, PictureFormat::Svg] {
         let [one, other] = [0, 1].map(|_| chart().encode(format).unwrap());
@@ -134,7 +137,8 @@ fn characters_that_the_font_lacks_are_named() {
         title: title.to_owned(),
         ..Plot::default()
     })
-    .picture();
+    .picture(PictureSize::Natural)
+    .unwrap();
     assert_eq!(picture.missing_glyphs(), ['\u{9f20}', '\u{1f400}']);
     let svg = svg(&picture);
     assert!(svg.contains(title) && svg.contains("sans-serif"));

@@ -103,7 +103,7 @@ fn from_base64(text: &str) -> Vec<u8> {
 /// Left, top, right and bottom of the first frame.
 pub fn frame(svg: &str) -> [f64; 4] {
     let closed = |(points, _): &(Vec<[f64; 2]>, bool)| {
-        points.len() == 5 && points[0] == points[4] && points[1][0] - points[0][0] > 300.0
+        points.len() == 5 && points[0] == points[4] && points[1][0] - points[0][0] > 100.0
     };
     let (corners, _) = polylines(svg).into_iter().find(closed).unwrap();
     [corners[0][0], corners[2][1], corners[2][0], corners[0][1]]

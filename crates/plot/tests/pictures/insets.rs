@@ -2,7 +2,7 @@
 
 use crate::drawn::{frame, line, polylines, single, svg, well_formed};
 use crate::{BLACK, BLUE, WHITE, both};
-use whiskmap_plot::{Disc, Dot, Ink, Inset, Note, Plot, Stroke};
+use whiskmap_plot::{Disc, Dot, Ink, Inset, Note, PictureSize, Plot, Stroke};
 
 const DIAGONAL: [[f64; 2]; 2] = [[0.0, 0.0], [20.0, 10.0]];
 
@@ -39,7 +39,7 @@ fn plain() -> String {
         inset: None,
         ..enlarged()
     };
-    svg(&single(plot).picture())
+    svg(&single(plot).picture(PictureSize::Natural).unwrap())
 }
 
 #[test]
@@ -100,7 +100,8 @@ fn an_inset_without_room_is_left_out() {
             inset,
             ..enlarged()
         })
-        .picture());
+        .picture(PictureSize::Natural)
+        .unwrap());
         assert_eq!(svg, plain(), "{centre:?} {half}");
     }
 }
@@ -119,7 +120,8 @@ fn notes_stand_above_their_point_or_behind_their_arrow() {
             inset: None,
             ..enlarged()
         })
-        .picture())
+        .picture(PictureSize::Natural)
+        .unwrap())
     };
     let place = |svg: &str, text: &str| {
         let tag = svg
@@ -193,15 +195,15 @@ fn a_drawing_has_no_axes_and_a_caption_is_below_the_title() {
         x_label: "across".to_owned(),
         ..enlarged()
     });
-    let bare = svg(&chart.picture());
+    let bare = svg(&chart.picture(PictureSize::Natural).unwrap());
     chart.plots[0].bare = false;
-    let framed = svg(&chart.picture());
+    let framed = svg(&chart.picture(PictureSize::Natural).unwrap());
     assert!(framed.contains(">across<") && !bare.contains(">across<"));
     assert!(!bare.contains(">10<") && framed.contains(">10<"));
     chart.title = "title".to_owned();
-    let titled = frame(&svg(&chart.picture()))[1];
+    let titled = frame(&svg(&chart.picture(PictureSize::Natural).unwrap()))[1];
     chart.caption = vec!["one line".to_owned(), "another".to_owned()];
-    let captioned = svg(&chart.picture());
+    let captioned = svg(&chart.picture(PictureSize::Natural).unwrap());
     assert!(captioned.contains(">one line<") && captioned.contains(">another<"));
     assert_eq!(frame(&captioned)[1] - titled, 2.0 * 28.0);
 }

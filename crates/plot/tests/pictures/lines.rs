@@ -2,7 +2,7 @@
 
 use crate::drawn::{Pixels, frame, line, polylines, single, svg};
 use crate::{BLACK, BLANK, BLUE, WHITE, arc, both};
-use whiskmap_plot::{Disc, Dot, Ink, Plot, Stroke};
+use whiskmap_plot::{Disc, Dot, Ink, PictureSize, Plot, Stroke};
 
 #[test]
 fn a_line_is_where_its_numbers_are() {
@@ -96,14 +96,14 @@ fn points_that_are_not_finite_break_a_line() {
         }],
         ..Plot::default()
     });
-    let svg = svg(&chart.picture());
+    let svg = svg(&chart.picture(PictureSize::Natural).unwrap());
     let stretches = polylines(&svg);
     assert_eq!([stretches[0].0.len(), stretches[1].0.len()], [2, 2]);
     assert_eq!(svg.matches("<circle").count(), 1, "the point on its own");
     let [left, _, right, bottom] = frame(&svg);
     let across = left + (right - left) * (2.0 / 5.0 + 0.04) / 1.08;
     let alone = [across, bottom - 880.0 * 0.04 / 1.08];
-    let picture = Pixels::of(&chart.picture());
+    let picture = Pixels::of(&chart.picture(PictureSize::Natural).unwrap());
     for away in [-4.0, 0.0, 4.0] {
         assert_eq!(picture.at([alone[0] + away, alone[1]]), BLUE);
     }
@@ -202,7 +202,8 @@ fn a_line_looks_the_same_however_many_points_it_has() {
                     lines,
                     ..Plot::default()
                 })
-                .picture(),
+                .picture(PictureSize::Natural)
+                .unwrap(),
             )
         });
         let pairs = few.pixels.iter().zip(&many.pixels);

@@ -10,9 +10,10 @@ mod insets;
 mod lines;
 mod panels;
 mod scales;
+mod sizes;
 
 use drawn::{Pixels, svg};
-use whiskmap_plot::Chart;
+use whiskmap_plot::{Chart, PictureSize};
 
 const WHITE: [u8; 3] = [255; 3];
 const BLACK: [u8; 3] = [0x22, 0x2b, 0x33];
@@ -22,7 +23,8 @@ const BLANK: [u8; 3] = [0xdc, 0xdd, 0xde];
 
 /// A chart as SVG and as pixels.
 fn both(chart: &Chart) -> (String, Pixels) {
-    (svg(&chart.picture()), Pixels::of(&chart.picture()))
+    let picture = chart.picture(PictureSize::Natural).unwrap();
+    (svg(&picture), Pixels::of(&picture))
 }
 
 /// A quarter of a circle of radius 100 in a thousand pieces.

@@ -2,9 +2,9 @@
 
 use crate::drawn::{Pixels, body, polylines, svg};
 use crate::{BLACK, BLANK, WHITE};
-use std::convert::Infallible;
 use whiskmap_plot::{
-    CellAxis, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, Shading,
+    CellAxis, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, PictureSize, Shading,
+    SizeError,
 };
 
 const RED: [u8; 3] = [200, 0, 0];
@@ -23,13 +23,15 @@ fn coded(x: &[f64], y: &[f64]) -> HeatMap {
             other: Fill::BLANK,
         },
         legend: vec![LegendEntry::swatch(Fill::plain(RED), "red")],
-        width: None,
+        regions: None,
     }
 }
 
 fn drawn(map: &HeatMap, mut panel: impl FnMut(usize) -> PanelCells) -> Picture {
-    map.picture(|index| Ok::<_, Infallible>(panel(index)))
-        .unwrap()
+    map.picture(PictureSize::Natural, |index| {
+        Ok::<_, SizeError>(panel(index))
+    })
+    .unwrap()
 }
 
 #[test]
@@ -129,6 +131,8 @@ fn panels_stand_along_their_axes() {
     ] {
         assert!(svg.contains(text), "{text}");
     }
-    map.width = Some(700);
-    assert_eq!(drawn(&map, |_| PanelCells::default()).pixels()[0], 700);
+    let narrow = map.picture(PictureSize::Width(700), |_| {
+        Ok::<_, SizeError>(PanelCells::default())
+    });
+    assert_eq!(narrow.unwrap().pixels()[0], 700);
 }

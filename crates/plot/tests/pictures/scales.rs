@@ -2,16 +2,16 @@
 
 use crate::BLANK;
 use crate::drawn::{Pixels, body, svg};
-use std::convert::Infallible;
 use whiskmap_plot::{
-    CellAxis, ColourScale, HeatMap, PanelCells, Picture, ScaleError, ScaleOptions, Shading,
-    ValueSummary,
+    CellAxis, ColourScale, HeatMap, PanelCells, Picture, PictureSize, ScaleError, ScaleOptions,
+    Shading, SizeError, ValueSummary,
 };
 
 /// Options of a scale of forces.
 fn force() -> ScaleOptions {
     ScaleOptions {
         label: "force (\u{b5}N)".to_owned(),
+        log: Some(false),
         blank: "no contact".to_owned(),
         ..ScaleOptions::default()
     }
@@ -29,11 +29,11 @@ fn drawn(values: &[f64], options: ScaleOptions) -> Result<Picture, ScaleError> {
         panel_axes: [None, None],
         shading: Shading::Quantities(ColourScale::new(&summary, options)?),
         legend: Vec::new(),
-        width: None,
+        regions: None,
     };
     let values = values.to_vec();
-    let picture = map.picture(|_| {
-        Ok::<_, Infallible>(PanelCells {
+    let picture = map.picture(PictureSize::Natural, |_| {
+        Ok::<_, SizeError>(PanelCells {
             values: values.clone(),
             ..PanelCells::default()
         })
@@ -67,7 +67,7 @@ fn a_scale_is_white_at_zero_when_both_signs_occur() {
 #[test]
 fn a_logarithmic_scale_has_equal_ratios_at_equal_distances() {
     let log = || ScaleOptions {
-        log: true,
+        log: Some(true),
         ..force()
     };
     let linear = drawn(&[0.0, 5.0, 10.0], force()).unwrap();
@@ -87,7 +87,7 @@ fn a_logarithmic_scale_starts_at_the_1st_percentile() {
     let zeros = [0.0; 10].into_iter().chain([1e-30; 3]);
     let values: Vec<f64> = zeros.chain((13..400).map(f64::from)).collect();
     let log = ScaleOptions {
-        log: true,
+        log: Some(true),
         ..force()
     };
     let svg = svg(&drawn(&values, log).unwrap());
@@ -104,7 +104,7 @@ fn a_logarithmic_scale_starts_at_the_1st_percentile() {
 #[test]
 fn a_logarithmic_scale_takes_all_positive_numbers() {
     let options = ScaleOptions {
-        log: true,
+        log: Some(true),
         range: Some([1e-320, 1e308]),
         ..force()
     };
@@ -117,7 +117,7 @@ fn values_beyond_the_range_take_the_colours_of_its_ends() {
     let ranged = |values: [f64; 3], range, log| {
         let range = Some(range);
         let options = ScaleOptions {
-            log,
+            log: Some(log),
             range,
             ..force()
         };
@@ -139,7 +139,7 @@ fn values_beyond_the_range_take_the_colours_of_its_ends() {
 fn impossible_scales_are_refused() {
     let refused = |values: [f64; 3], range, log, what: &str| {
         let options = ScaleOptions {
-            log,
+            log: Some(log),
             range,
             ..force()
         };
@@ -180,4 +180,34 @@ fn a_colour_bar_chooses_the_unit_that_suits_it() {
     };
     let svg = svg(&drawn(&[0.0, 1.0, 2.0], counts).unwrap());
     assert!(svg.contains(">1<") && !svg.contains(">0.5<"), "whole ticks");
+}
+
+/// Two decades, from the 1st percentile on; a negative value, or a range of less, keeps the scale linear.
+#[test]
+fn a_scale_becomes_logarithmic_by_itself_over_two_decades() {
+    let is_log = |values: &[f64], range| {
+        let options = ScaleOptions {
+            log: None,
+            range,
+            ..force()
+        };
+        let document = |log| {
+            let picture = drawn(
+                values,
+                ScaleOptions {
+                    log,
+                    ..options.clone()
+                },
+            );
+            picture.ok().map(|picture| svg(&picture))
+        };
+        let own = document(None);
+        assert!(own == document(Some(true)) || own == document(Some(false)));
+        own == document(Some(true))
+    };
+    assert!(is_log(&[1.0, 10.0, 101.0], None) && is_log(&[0.0, 1.0, 101.0], None));
+    assert!(!is_log(&[1.0, 10.0, 99.0], None) && !is_log(&[0.0, 0.0, 0.0], None));
+    assert!(is_log(&[1.0, 10.0, 20.0], Some([1.0, 101.0])));
+    assert!(!is_log(&[1.0, 10.0, 2000.0], Some([1.0, 99.0])));
+    assert!(!is_log(&[-1.0, 1.0, 1000.0], None));
 }

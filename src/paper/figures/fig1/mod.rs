@@ -81,15 +81,15 @@ fn cone() -> FigurePanel {
         Line::new(virtual_tip, Ink::Grey, Stroke::Dashed),
     ];
     plot.notes = [
-        below(1.2, tip, "L_w"),
+        below(1.2, tip, "L_{w}"),
         below(2.4, length, "L"),
         [
             Note::arrow([0.6, 0.0], [0.6, at_base], "", Ink::Grey),
             Note::arrow([0.6, at_base], [0.6, 0.0], "", Ink::Grey),
-            Note::text([1.7, 0.4], "r_base"),
+            Note::text([1.7, 0.4], "r_{base}"),
         ],
         [
-            Note::arrow([tip, 1.4], [tip, at_tip], "tip: r_tip", Ink::Grey),
+            Note::arrow([tip, 1.4], [tip, at_tip], "tip: r_{tip}", Ink::Grey),
             Note::arrow([length, 1.4], [length, 0.1], "virtual tip", Ink::Grey),
             Note::text([-0.9, -0.6], "base"),
         ],
@@ -106,8 +106,8 @@ fn sides() -> Result<FigurePanel, NoState> {
     let mut plot = drawing("concave forward (CF, left), concave backward (CB, right)");
     let mut rows = Vec::new();
     for (side, name, words, start) in [
-        (Side::Cf, "cf", "CF: \u{3b8}_p < 0", -APART_MM),
-        (Side::Cb, "cb", "CB: \u{3b8}_p > 0", 0.0),
+        (Side::Cf, "cf", "CF: \u{3b8}_{p} < 0", -APART_MM),
+        (Side::Cb, "cb", "CB: \u{3b8}_{p} > 0", 0.0),
     ] {
         let branch = Branch::new(&CONE, &POLE, side, TOUCH_MM)?;
         let points = WhiskerShape::at_rest(&branch, POINTS);

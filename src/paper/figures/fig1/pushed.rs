@@ -86,8 +86,8 @@ pub fn contact() -> Result<FigurePanel, NoState> {
     plot.dots = vec![dot(base), dot(middle)];
     let normal = angle + std::f64::consts::FRAC_PI_2;
     plot.notes = vec![
-        Note::text(base, "(x\u{2080}, y\u{2080})"),
-        Note::text([2.2, -3.2], "\u{3b8}\u{2080}"),
+        Note::text(base, "(x_{0}, y_{0})"),
+        Note::text([2.2, -3.2], "\u{3b8}_{0}"),
         Note::text(from(base, 6.0, at[1].atan2(at[0])), "d"),
         Note::arrow(beside_middle, middle, "(x(s), y(s)), \u{3b8}(s)", Ink::Grey),
         Note::arrow(at, from(at, 3.0, normal), "", Ink::Blue),
@@ -103,11 +103,11 @@ pub fn contact() -> Result<FigurePanel, NoState> {
             grey(arc_at(at, 2.5 * radius, [0.0, angle]), Stroke::Solid),
         ],
         notes: vec![
-            Note::text(from(at, 3.2 * radius, 0.3 * angle), "\u{3b8}_obj"),
-            Note::arrow(beside(-1.9, 2.6), at, "(x_obj, y_obj)", Ink::Grey),
-            Note::arrow(beside(1.2, -3.0), pole, "(x_cen, y_cen)", Ink::Grey),
+            Note::text(from(at, 3.2 * radius, 0.3 * angle), "\u{3b8}_{obj}"),
+            Note::arrow(beside(-1.9, 2.6), at, "(x_{obj}, y_{obj})", Ink::Grey),
+            Note::arrow(beside(1.0, -2.3), pole, "(x_{cen}, y_{cen})", Ink::Grey),
             Note::arrow(pole, beside(0.82, -0.57), "", Ink::Black),
-            Note::text(beside(2.6, -1.6), "r_pole"),
+            Note::text(beside(2.6, -1.6), "r_{pole}"),
         ],
     });
     Ok(FigurePanel::new("B", plot, pushed.shape.points))
@@ -136,7 +136,7 @@ pub fn push_angle() -> Result<FigurePanel, NoState> {
     let at = [pushed.contact.x_mm, pushed.contact.y_mm];
     let [real, other] = [at, virtual_at].map(|at| DVec2::from(at).to_angle());
 
-    let mut plot = drawing("the push angle \u{3b8}_p between lines of equal length d");
+    let mut plot = drawing("the push angle \u{3b8}_{p} between lines of equal length d");
     plot.discs = vec![
         pushed.pole(true),
         Disc {
@@ -162,9 +162,9 @@ pub fn push_angle() -> Result<FigurePanel, NoState> {
     };
     let between = from([0.0, 0.0], 7.0, 0.5 * (real + other));
     plot.notes = vec![
-        Note::text(between, "\u{3b8}_p"),
-        beside(at, "(x_obj, y_obj)"),
-        beside(virtual_at, "(x_virtual, y_virtual)"),
+        Note::text(between, "\u{3b8}_{p}"),
+        beside(at, "(x_{obj}, y_{obj})"),
+        beside(virtual_at, "(x_{virtual}, y_{virtual})"),
     ];
     Ok(FigurePanel::new("D", plot, rows))
 }

@@ -1,0 +1,36 @@
+//! Share of a tolerance that is left to the engine, and the engines that keep it.
+
+use super::{Accuracy, bound_deg};
+use crate::engine::Spectral;
+use crate::scene::Scene;
+
+/// Largest bound on the residual of the spectral engine, in whisker lengths. Most of the first patches keep it, so a larger one saves nothing.
+const LARGEST_BOUND: f64 = 1e-5;
+
+/// Relative rounding error of a bound that is computed from a tolerance and back.
+const ROUNDING: f64 = 1e-8;
+
+impl Accuracy {
+    /// Returns the part of `tolerance_deg` that the steps leave to the engine, in degrees.
+    #[must_use]
+    pub fn left_deg(&self, tolerance_deg: f64) -> f64 {
+        tolerance_deg - self.error_deg
+    }
+}
+
+/// Returns the spectral engine whose residuals leave push angles within `left_deg`, if given.
+#[must_use]
+pub fn spectral(scene: &Scene, left_deg: Option<f64>) -> Spectral {
+    let bound = left_deg.map(|left| (left / bound_deg(scene, 1.0)).min(LARGEST_BOUND));
+    bound.map_or_else(Spectral::default, Spectral::new)
+}
+
+/// Returns the bound on push-angle errors in degrees for an engine with this bound on its residuals, if it exceeds `left_deg`; otherwise
+/// `None`.
+#[must_use]
+pub fn excess_deg(scene: &Scene, residual_bound: f64, left_deg: Option<f64>) -> Option<f64> {
+    let bound = bound_deg(scene, residual_bound);
+    left_deg
+        .is_some_and(|left| bound > left * (1.0 + ROUNDING))
+        .then_some(bound)
+}

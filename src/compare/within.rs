@@ -1,0 +1,105 @@
+//! Largest differences that two maps may have.
+
+use super::{MapComparison, QuantityComparison};
+use crate::input::{Quantity, did_you_mean};
+use crate::plan::{Channels, STATE_CHANNELS};
+use std::str::FromStr;
+
+/// Largest allowed differences of two maps: relative for all states, absolute for named channels.
+///
+/// ```
+/// use whiskmap::compare::Within;
+///
+/// let within: Within = "1e-6,force_un=0.1,regime=3".parse()?;
+/// assert!("force=0.1".parse::<Within>().is_err());
+/// assert!("-1".parse::<Within>().is_err());
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Within {
+    /// Allowed difference of channels of states and of `margin_deg`, as a fraction of the channel's largest value.
+    relative: Option<f64>,
+    /// Allowed difference of single channels, in the channel's unit; of `regime` and `status`, the number of cells that may differ.
+    absolute: Vec<(&'static str, f64)>,
+}
+
+impl Within {
+    /// Returns the names of single channels with an allowed difference.
+    pub fn channels(&self) -> impl Iterator<Item = &'static str> {
+        self.absolute.iter().map(|(name, _)| *name)
+    }
+
+    /// Returns the names of the channels that differ by more than is allowed. Regimes may not differ unless `regime=N` allows N cells; as
+    /// many cells may have a state in only one map.
+    #[must_use]
+    pub fn exceeded(&self, comparison: &MapComparison) -> Vec<&'static str> {
+        let codes = comparison.codes.iter().filter(|own| {
+            let allowed = self.cells(own.channel);
+            allowed.is_some_and(|allowed| own.differing as f64 > allowed)
+        });
+        let quantities = comparison.quantities.iter().filter(|own| {
+            let allowed = self.allowed(own);
+            let one_sided = own.only_in.iter().sum::<u64>() as f64;
+            allowed.is_some_and(|allowed| {
+                own.beyond_rounding > allowed || one_sided > self.cells("regime").unwrap_or(0.0)
+            })
+        });
+        let codes = codes.map(|own| own.channel);
+        codes.chain(quantities.map(|own| own.channel)).collect()
+    }
+
+    fn named(&self, channel: &str) -> Option<f64> {
+        let mut named = self.absolute.iter();
+        named.find_map(|(name, value)| (*name == channel).then_some(*value))
+    }
+
+    /// The number of cells that may differ in a channel of codes; `None` for any number.
+    fn cells(&self, channel: &str) -> Option<f64> {
+        let by_default = self.relative.filter(|_| channel == "regime").map(|_| 0.0);
+        self.named(channel).or(by_default)
+    }
+
+    /// The allowed difference of a channel in its unit; `None` for any difference.
+    fn allowed(&self, own: &QuantityComparison) -> Option<f64> {
+        let is_exact = STATE_CHANNELS.contains(&own.channel) || own.channel == "margin_deg";
+        let relative = self.relative.filter(|_| is_exact);
+        let relative = relative.map(|relative| relative * own.largest_value);
+        self.named(own.channel).or(relative)
+    }
+}
+
+impl FromStr for Within {
+    type Err = String;
+
+    /// Parses `N` for all channels of states and `NAME=N` for single channels, with commas between them.
+    fn from_str(list: &str) -> Result<Self, String> {
+        let (mut relative, mut absolute) = (None, Vec::new());
+        for entry in list.split(',').map(str::trim) {
+            let refused = |why: String| format!("`{entry}`: {why}");
+            let (name, number) = entry.split_once('=').unwrap_or(("", entry));
+            let number = Quantity::of(name).parse(number).map_err(refused)?;
+            if number < 0.0 {
+                return Err(refused("must be at least 0".to_owned()));
+            }
+            let is_new = if entry.contains('=') {
+                let mut names = Channels::ALL.names();
+                let name = names.find(|own| *own == name.trim()).ok_or_else(|| {
+                    let hint = did_you_mean(name, Channels::ALL.names().collect::<Vec<_>>());
+                    refused(format!(
+                        "must be one of the channels, {}{hint}",
+                        Channels::ALL
+                    ))
+                })?;
+                let is_new = absolute.iter().all(|(own, _)| *own != name);
+                absolute.push((name, number));
+                is_new
+            } else {
+                relative.replace(number).is_none()
+            };
+            if !is_new {
+                return Err(refused("must be given once".to_owned()));
+            }
+        }
+        Ok(Self { relative, absolute })
+    }
+}

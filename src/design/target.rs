@@ -1,0 +1,140 @@
+//! Targets of designs: push angles of detachments, and the largest loads of pushes.
+
+use crate::input::Quantity;
+use crate::rod::Side;
+use crate::scene::Scene;
+use crate::shooting::Resolution;
+use crate::trace::{Branch, BranchPoint, DetachmentKind, curve_without_strain};
+
+/// Largest difference of the push angles of a solution and the target, in degrees: exact ends are known to 1e-11.
+const TOLERANCE_DEG: f64 = 1e-9;
+
+/// Largest difference of the loads of a solution and the target, relative to the target. Where a load is largest at the fold, it is known to
+/// the root of the rounding error, as only the push angle is stationary there.
+const TOLERANCE: f64 = 1e-6;
+
+/// Target of a design: where the pole is, and the value that a push must reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DesignTarget {
+    /// Distance from the base to the contact at first touch, in millimetres.
+    pub distance_mm: f64,
+    /// Side of the whisker that the pole is on.
+    pub side: Side,
+    /// Quantity that the design gives a value.
+    pub goal: DesignGoal,
+    /// Value of the quantity, in its unit; a push angle is positive CB and negative CF.
+    pub value: f64,
+}
+
+/// Quantity of a push that a design gives a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DesignGoal {
+    /// Push angle at which the whisker slips off, in degrees.
+    SlipOff,
+    /// Push angle at which the whisker is pulled off, in degrees.
+    PullOff,
+    /// Largest contact force from first touch to the detachment, in uN.
+    MaxForce,
+    /// Largest moment at the base from first touch to the detachment, in nN m.
+    MaxMoment,
+    /// Largest bending strain from first touch to the detachment, dimensionless.
+    MaxStrain,
+}
+
+impl DesignGoal {
+    /// Returns the kind of detachment that the goal requires; `None` if any detachment counts.
+    #[must_use]
+    pub const fn kind(self) -> Option<DetachmentKind> {
+        match self {
+            Self::SlipOff => Some(DetachmentKind::SlipOff),
+            Self::PullOff => Some(DetachmentKind::PullOff),
+            Self::MaxForce | Self::MaxMoment | Self::MaxStrain => None,
+        }
+    }
+
+    /// Returns the quantity of the goal, with its unit.
+    #[must_use]
+    pub const fn quantity(self) -> Quantity {
+        match self {
+            Self::SlipOff | Self::PullOff => Quantity::AngleDeg,
+            Self::MaxForce => Quantity::ForceUn,
+            Self::MaxMoment => Quantity::MomentNnm,
+            Self::MaxStrain => Quantity::Number,
+        }
+    }
+
+    /// Returns the name of the goal's quantity in charts and messages.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::SlipOff | Self::PullOff => "push angle at detachment",
+            Self::MaxForce => "largest force",
+            Self::MaxMoment => "largest moment at the base",
+            Self::MaxStrain => "largest bending strain",
+        }
+    }
+
+    /// Returns the number of significant digits of a solution for the goal, by the tolerance of the goal.
+    #[must_use]
+    pub const fn digits(self) -> usize {
+        match self {
+            Self::SlipOff | Self::PullOff => 10,
+            Self::MaxForce | Self::MaxMoment | Self::MaxStrain => 6,
+        }
+    }
+
+    /// The size of a load at a state; `None` for push angles.
+    fn load(self) -> Option<fn(&BranchPoint) -> f64> {
+        match self {
+            Self::SlipOff | Self::PullOff => None,
+            Self::MaxForce => Some(|point| point.force_un),
+            Self::MaxMoment => Some(|point| point.base_moment_nnm.abs()),
+            Self::MaxStrain => Some(|point| point.peak_strain),
+        }
+    }
+}
+
+impl DesignTarget {
+    /// Returns true if a design may end with this kind of detachment.
+    #[must_use]
+    pub fn accepts(&self, kind: DetachmentKind) -> bool {
+        match self.goal.kind() {
+            Some(own) => kind == own,
+            None => matches!(kind, DetachmentKind::SlipOff | DetachmentKind::PullOff),
+        }
+    }
+
+    /// The largest difference of a solution from the target, in the unit of the goal.
+    pub(super) fn tolerance(&self) -> f64 {
+        match self.goal.load() {
+            None => TOLERANCE_DEG,
+            Some(_) => TOLERANCE * self.value.abs(),
+        }
+    }
+
+    /// Computes how a push ends with the whisker of `scene`, and the value of the goal's quantity, in its unit. The value is `None` without
+    /// a detachment.
+    pub(super) fn reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
+        let (whisker, pole, side) = (&scene.whisker, &scene.pole, self.side);
+        let end = || {
+            let distances = [self.distance_mm];
+            curve_without_strain(Resolution::FINE, whisker, pole, side, &distances).pop()
+        };
+        let Some(end) = end() else {
+            return (DetachmentKind::Unresolved, None);
+        };
+        let detaches = end.push_angle_deg;
+        let value = match self.goal.load() {
+            None => detaches,
+            Some(load) => detaches.and_then(|_| {
+                let branch = Branch::new(whisker, pole, side, self.distance_mm).ok()?;
+                Some(branch.largest(load))
+            }),
+        };
+        match value {
+            Some(value) => (end.kind, Some(value)),
+            None if detaches.is_some() => (DetachmentKind::Unresolved, None),
+            None => (end.kind, None),
+        }
+    }
+}
