@@ -1,31 +1,15 @@
 //! Pictures of stored maps: the regimes, or any channel.
 
 use super::boundary::stretches;
-use super::{RenderError, labels, row};
+use super::{MapOptions, RenderError, labels, row};
 use crate::classify::{Regime, Status};
 use crate::scene::SweepAxis;
 use crate::store::{ChannelValues, MapSlice, NOT_COMPUTED, STATE_CHANNELS};
 use std::collections::BTreeMap;
 use whiskmap_plot::{
-    CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, PictureSize,
-    Rgb, ScaleOptions, Shading, ValueSummary,
+    CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, Rgb,
+    ScaleOptions, Shading, ValueSummary,
 };
-
-/// Options of the picture of a map: channel, scale of its values, and size.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct MapOptions<'a> {
-    /// Name of the drawn channel. `None` draws the regimes, with the detachment boundary over them.
-    pub channel: Option<&'a str>,
-    /// True if the scale of the map's values is logarithmic: values at or below 0 are blank; without a range, a colour bar starts at the
-    /// 1st percentile of the positive values. `None` for a logarithmic colour scale of loads and energies that span more than two decades,
-    /// and linear ones otherwise.
-    pub log: Option<bool>,
-    /// Ends `[low, high]` of the colour bar, in the channel's unit; values beyond them take the colours of the ends. `None` for the
-    /// extent of the values.
-    pub range: Option<[f64; 2]>,
-    /// Size of the picture.
-    pub size: PictureSize,
-}
 
 /// Draws a map: codes with a legend, quantities with a colour bar. A map of several whiskers becomes a contact sheet with the first
 /// sweep axis to the right and the second upwards. A row of quantities becomes a line chart. All maps show the detachment boundary if

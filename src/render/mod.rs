@@ -6,11 +6,13 @@
 mod boundary;
 mod labels;
 mod map;
+mod options;
 mod plots;
 mod row;
 
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
-pub use map::{MapOptions, map};
+pub use map::map;
+pub use options::MapOptions;
 pub use plots::{
     BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves,
     designs, error_bars, measured, shapes,

@@ -1,11 +1,10 @@
 //! Line charts of maps with one row: a channel over the push angle.
 
-use super::map::MapOptions;
-use super::{RenderError, labels};
+use super::{MapOptions, RenderError, labels};
 use crate::store::MapSlice;
 use whiskmap_plot::{Chart, Ink, Line, Picture, Plot, Stroke};
 
-/// Largest number of whiskers whose lines one chart tells apart.
+/// Maximum number of whiskers in a line chart. More lines would share colours.
 const MOST_LINES: usize = 7;
 
 /// Returns true if a slice is drawn as a line chart: one row of few whiskers, with several push angles.

@@ -13,7 +13,7 @@ pub const WHITE: Rgb = rgb(0xffffff);
 /// Colour of text, frames, and black lines of charts.
 pub const INK: Rgb = rgb(0x222b33);
 pub const BLUE: Rgb = rgb(0x1c6cc4);
-/// Colours of series that can be told apart on white (Okabe and Ito 2008, without yellow, and indigo).
+/// Colours of the lines of a chart. They differ on white for readers with any colour vision (Okabe and Ito 2008, with indigo for yellow).
 pub const SERIES: [Rgb; 7] = [
     rgb(0x0072b2),
     rgb(0xd55e00),
