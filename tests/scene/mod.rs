@@ -8,6 +8,7 @@
 mod any_text;
 mod axes;
 mod changed;
+mod profile;
 mod refused;
 mod shape;
 mod tables;

@@ -1,0 +1,112 @@
+//! Plots of detachment curves: the push angle or a load to the right, the distance upward.
+
+use clap::ValueEnum;
+use whiskmap::render::{CurveAxis, DISTANCE, DrawnCurve, Plot, Stroke, curves, regions};
+use whiskmap::rod::Side;
+use whiskmap::scene::{Scene, SweptWhisker};
+use whiskmap::shooting::Resolution;
+use whiskmap::trace::{self, Detachment};
+use whiskmap::uncertainty::EndSpread;
+
+/// Rows between the farthest distance of the grid and the reach of the whisker; push angles grow like a root near the reach.
+const AT_TIP: usize = 16;
+
+/// Plots the detachment curve of the scene's first whisker. Where the grid goes as far as the tip, the curve does so too.
+pub fn scene_curve(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot {
+    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
+    let reach_mm = trace::reach_mm(&whisker, &pole, Side::Cb);
+    let grid = scene.grid.distance_mm.iter().copied();
+    let mut distances: Vec<f64> = grid
+        .clone()
+        .filter(|distance| *distance < reach_mm)
+        .collect();
+    if grid.last() >= Some(reach_mm) {
+        let last = distances.last().copied().unwrap_or_default();
+        let near = |step: usize| {
+            let left = 1.0 - step as f64 / AT_TIP as f64;
+            reach_mm - left * left * (reach_mm - last)
+        };
+        distances.extend((1..=AT_TIP).map(near));
+    }
+    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, &distances);
+    let rows: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
+    let drawn = DrawnCurve {
+        rows: &rows,
+        reach_mm,
+        stroke: Stroke::Solid,
+        name: "",
+    };
+    Plot {
+        regions: Some(regions(scene.is_straight())),
+        ..curves("", &[drawn], [x, UPWARD])
+    }
+}
+
+/// Columns that a plot can show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum CurveColumn {
+    /// Push angle at detachment
+    PushAngleDeg,
+    /// Size of the force at detachment
+    ForceUn,
+    /// Moment at the base at detachment
+    BaseMomentNnm,
+}
+
+impl CurveColumn {
+    /// The horizontal axis of the column.
+    pub const fn axis(self) -> CurveAxis {
+        match self {
+            Self::PushAngleDeg => CurveAxis {
+                label: "push angle at detachment (deg)",
+                value: |end| end.push_angle_deg,
+            },
+            // The sign keeps the sides apart.
+            Self::ForceUn => CurveAxis {
+                label: "force at detachment (\u{b5}N)",
+                value: |end| Some(end.side.sign() * end.force_un?),
+            },
+            Self::BaseMomentNnm => CurveAxis {
+                label: "moment at the base at detachment (nN m)",
+                value: |end| end.base_moment_nnm,
+            },
+        }
+    }
+
+    /// The percentiles 5, 25, 75 and 95 of samples.
+    pub const fn percentiles(self) -> fn(&EndSpread) -> [Option<f64>; 4] {
+        match self {
+            Self::PushAngleDeg => |row| [row.p5_deg, row.p25_deg, row.p75_deg, row.p95_deg],
+            Self::ForceUn => |row| {
+                let ends = [
+                    row.force_p5_un,
+                    row.force_p25_un,
+                    row.force_p75_un,
+                    row.force_p95_un,
+                ];
+                ends.map(|end| Some(row.side.sign() * end?))
+            },
+            Self::BaseMomentNnm => |row| {
+                [
+                    row.moment_p5_nnm,
+                    row.moment_p25_nnm,
+                    row.moment_p75_nnm,
+                    row.moment_p95_nnm,
+                ]
+            },
+        }
+    }
+}
+
+/// Vertical axis of a plot.
+const UPWARD: CurveAxis = CurveAxis {
+    label: DISTANCE,
+    value: |end| Some(end.distance_mm),
+};
+
+/// Horizontal axis for measured chord angles.
+pub const CHORD: CurveAxis = CurveAxis {
+    label: "chord angle at detachment (deg)",
+    value: |end| end.push_chord_deg,
+};

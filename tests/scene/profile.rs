@@ -1,0 +1,318 @@
+//! Measured radii: what is accepted, and what is refused.
+
+use std::fs;
+
+use whiskmap::rod::Side;
+use whiskmap::scene::{Parameter, Scene};
+use whiskmap::trace::{Detachment, curve};
+
+use super::parse;
+use super::shape::{refusal, scene};
+
+const ROWS: &str = "[whisker.profile]\nrows = [[0, 30], [5, 31], [12.5, 10], [20, 1.5]]";
+
+#[test]
+fn radii_are_read_from_the_scene_and_from_a_file() {
+    let listed = parse(&scene(ROWS, "")).unwrap();
+    let whisker = &listed.whisker;
+    assert_eq!((whisker.base_radius_um, whisker.tip_radius_um), (30.0, 1.5));
+    let rows = [
+        [0.0, 1.0],
+        [0.25, 31.0 / 30.0],
+        [0.625, 1.0 / 3.0],
+        [1.0, 0.05],
+    ];
+    assert_eq!(whisker.profile.as_deref(), Some(&rows[..]));
+
+    let folder = tempfile::tempdir().unwrap();
+    let csv =
+        "# a remark\nwhisker, arc_length_mm ,radius_um\nC2, 0,30\nC2,5,31\nC2,12.5,10\nC2,20,1.5\n";
+    fs::write(folder.path().join("radii.csv"), csv).unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, scene("[whisker.profile]\nrows = \"radii.csv\"", "")).unwrap();
+    let read = Scene::read(&path).unwrap();
+    assert_eq!(read.whisker, *whisker);
+
+    // What is kept with a map stands for itself.
+    fs::remove_dir_all(folder.path()).unwrap();
+    assert_eq!(parse(&read.to_toml()).unwrap().whisker, *whisker);
+}
+
+#[test]
+fn radii_that_are_refused() {
+    for (rows, why) in [
+        (
+            "\"no.csv\"",
+            "rows = \"no.csv\": must be a list of rows: only a scene file may name a CSV file",
+        ),
+        ("5", "expected the name of a CSV file or a list"),
+        ("[]", "must be 2 to 256 rows, are 0"),
+        (
+            "[[0, 30], [20]]",
+            "invalid length 1, expected a list of 2 numbers",
+        ),
+        (
+            "[[0, 30, 1], [20, 1]]",
+            "invalid length 3, expected a list of 2 numbers",
+        ),
+        ("[[0, 30], [20, \"thin\"]]", "expected a number"),
+        ("[[0, 30], [20, 0]]", "rows[1]: the radius must be between"),
+        (
+            "[[0, 30], [20, nan]]",
+            "rows[1]: the radius must be between",
+        ),
+        (
+            "[[0, 30], [0, 20], [20, 1]]",
+            "rows[1]: the arclength must grow",
+        ),
+        (
+            "[[0, 30], [nan, 20], [20, 1]]",
+            "rows[1]: the arclength must grow",
+        ),
+        ("[[0, 30], [21, 1]]", "rows[1]: the arclength must grow"),
+        (
+            "[[0, 30], [1e-200, 20], [20, 1]]",
+            "rows[1]: must be farther from the row before it",
+        ),
+        (
+            "[[1, 30], [20, 1]]",
+            "must begin at the base, at 0, and end at the tip",
+        ),
+        ("[[0, 30], [19, 1]]", "end at the tip, at length_mm (20)"),
+        ("[[0, 30], [20, 31]]", "the radius at the tip must be"),
+        (
+            "[[0, 30], [20, 0.02]]",
+            "rows[1]: the radius must be between a thousandth",
+        ),
+        (
+            "[[0, 30], [2, 29], [3, 2], [4, 28], [20, 1]]",
+            "rows[2]: the radius must be at least 7 um: a waist is at most four times as thin",
+        ),
+        (
+            "[[0, 2], [5, 9], [20, 1]]",
+            "rows[1]: the radius must be between a thousandth of that at the base (0.002) and four times it (8)",
+        ),
+        (
+            "[[0, 30], [5, 12], [6, 2.9], [7, 11], [8, 12], [20, 1]]",
+            "rows[2]: the radius must be at least 3 um",
+        ),
+        (
+            "[[0, 1], [5, 0.0009], [20, 1]]",
+            "rows[1]: the radius must be",
+        ),
+    ] {
+        let message = refusal(&scene(&format!("[whisker.profile]\nrows = {rows}"), ""));
+        assert!(message.contains(why), "{rows}: {message}");
+    }
+    // A step, a bulge and a waist that is just shallow enough.
+    for rows in [
+        "[[0, 30], [2, 30], [3, 2], [20, 2]]",
+        "[[0, 30], [5, 20], [6, 120], [7, 20], [20, 1]]",
+        "[[0, 30], [5, 30], [6, 3], [7, 12], [20, 1]]",
+    ] {
+        let accepted = parse(&scene(&format!("[whisker.profile]\nrows = {rows}"), ""));
+        assert_eq!(accepted.err(), None, "{rows}");
+    }
+    let both = scene("", "").replace("[pole]", &format!("{ROWS}\n[pole]"));
+    assert!(
+        refusal(&both).contains("base_radius_um = 30.0: must be left out"),
+        "{}",
+        refusal(&both)
+    );
+    let neither = scene(ROWS, "").replace(ROWS, "");
+    assert!(refusal(&neither).contains("whisker.base_radius_um: is left out"));
+    let axis = scene(ROWS, "").replace("[grid]", "[grid]\ntaper = [0, 0.5]");
+    assert!(refusal(&axis).contains("grid.taper: must be left out"));
+}
+
+#[test]
+fn a_bad_csv_file_is_named_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, scene("[whisker.profile]\nrows = \"radii.csv\"", "")).unwrap();
+    for (csv, why) in [
+        (
+            "arc_length_mm,radius\n0,30\n",
+            "radii.csv:1: found arc_length_mm, radius; needed arc_length_mm, radius_um, each once; `radius` is not known; did you mean `radius_um`",
+        ),
+        (
+            "arc_length_mm,radius_um\n0,30\n1,thin\n",
+            "radii.csv:3: radius_um = thin: must be a number",
+        ),
+        (
+            "arc_length_mm,radius_um\n0,30\n1\n",
+            "radii.csv:3: has 1 cell: must have 2, one a column",
+        ),
+        (
+            "arc_length_mm,radius_um\n# a remark\n0,30\n\n# another\n20,nan\n",
+            "radii.csv:6: radius_um = nan: must be a number",
+        ),
+        (
+            "arc_length_mm,radius_um\n0,30\n20,0.001\n",
+            "line 3: the radius must be between a thousandth",
+        ),
+        (
+            "arc_length_mm,radius_um\n0,30\n21,1\n",
+            "line 3: the arclength",
+        ),
+        ("", "radii.csv: has no rows"),
+        (
+            "arc_length_mm,radius_um\n0,30\n",
+            "must be 2 to 256 rows, are 1",
+        ),
+        (
+            "arc_length_mm,radius_um\n0,30\n# a slip\n3,2\n4,30\n20,1\n",
+            "line 4: the radius must be at least 7.5 um",
+        ),
+        (&"0,1\n".repeat(300_000), "longer than 1 MiB"),
+        (
+            &format!("arc_length_mm,radius_um\n{}", "0,1\n".repeat(300)),
+            "are more",
+        ),
+    ] {
+        fs::write(folder.path().join("radii.csv"), csv).unwrap();
+        let message = Scene::read(&path).unwrap_err().to_string();
+        assert!(message.contains(why), "{csv:.100}: {message}");
+        assert!(message.contains("rows = \"radii.csv\""), "{message}");
+    }
+
+    // The tables of other countries and programs have the same rows.
+    fs::write(
+        folder.path().join("radii.csv"),
+        "day;radius_um;arc_length_mm\n1;30;0\n2;20,5;5\n3;1,5;20\n",
+    )
+    .unwrap();
+    let read = Scene::read(&path).unwrap();
+    let rows = read.whisker.profile.as_ref().unwrap();
+    assert_eq!(rows[1], [5.0 / 20.0, 20.5 / 30.0]);
+    let note = read.note().unwrap();
+    let wanted = "radii.csv:1: columns that are not used: day";
+    assert!(note.ends_with(wanted), "{note}");
+
+    // What is wrong elsewhere is shown where the scene's own text has it.
+    fs::write(
+        folder.path().join("radii.csv"),
+        "arc_length_mm,radius_um\n0,30\n5,20\n20,1\n",
+    )
+    .unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    let text = text.replace("radius_mm = 0.25", "radius_mm = -1");
+    fs::write(&path, &text).unwrap();
+    let line = 1 + text
+        .lines()
+        .position(|l| l.starts_with("radius_mm"))
+        .unwrap();
+    let message = Scene::read(&path).unwrap_err().to_string();
+    assert!(
+        message.contains(&format!("scene.toml:{line}:")),
+        "{message}"
+    );
+}
+
+/// A map or a store brings its scene along: checking its text opens no file, even one that is there.
+#[test]
+fn the_text_of_a_scene_names_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("radii.csv");
+    fs::write(&csv, "arc_length_mm,radius_um\n0,30\n20,1\n").unwrap();
+    let text = scene(&format!("[whisker.profile]\nrows = {csv:?}"), "");
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, &text).unwrap();
+    assert!(Scene::read(&path).is_ok());
+    let refused = "only a scene file may name a CSV file";
+    assert!(refusal(&text).contains(refused), "{}", refusal(&text));
+}
+
+#[test]
+fn a_scene_names_regular_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    for (name, why) in [
+        (".", "must name a regular file"),
+        ("no.csv", "No such file"),
+        #[cfg(unix)]
+        ("/dev/zero", "must name a regular file"),
+    ] {
+        let text = scene(&format!("[whisker.profile]\nrows = {name:?}"), "");
+        fs::write(&path, &text).unwrap();
+        let message = Scene::read(&path).unwrap_err().to_string();
+        let key = format!("whisker.profile.rows = {name:?}: ");
+        assert!(message.contains(&key) && message.contains(why), "{message}");
+    }
+}
+
+/// Half of a cone, continued by its other half, is the whole cone. A factor of the radii changes no angle, and forces by its fourth power.
+#[test]
+fn a_scaled_and_continued_profile_is_the_whole_cone() {
+    let cone = parse(&scene("base_radius_um = 30\ntip_radius_um = 1.5", "")).unwrap();
+    let half = "[whisker.profile]\nrows = [[0, 15], [10, 7.875]]\ntip_extension_mm = 10\nprofile_scale = 2";
+    let text = scene(half, "").replace("length_mm = 20", "length_mm = 10");
+    let half = parse(&text).unwrap();
+    assert_eq!(half.whisker.length_mm, 20.0);
+    let ends =
+        [&cone, &half].map(|scene| curve(&scene.whisker, &scene.pole, Side::Cb, &[8.0, 19.8]));
+    let thin = half.with(Parameter::ProfileScale, 1.0).unwrap();
+    let thin = curve(&thin.whisker, &thin.pole, Side::Cb, &[8.0, 19.8]);
+    for ((one, other), thin) in ends[0].iter().zip(&ends[1]).zip(&thin) {
+        let push = |end: &Detachment| end.push_angle_deg.unwrap();
+        assert!((push(one) - push(other)).abs() < 1e-8, "{one:?} {other:?}");
+        assert!(
+            (push(thin) - push(other)).abs() < 1e-12,
+            "{thin:?} {other:?}"
+        );
+        let ratios = [one, thin].map(|end| end.force_un.unwrap() / other.force_un.unwrap());
+        assert!(
+            (ratios[0] - 1.0).abs() < 1e-6 && (ratios[1] - 1.0 / 16.0).abs() < 1e-12,
+            "{ratios:?}"
+        );
+    }
+    // The written text has both numbers, and says the same.
+    let other = half.with(Parameter::TipExtensionMm, 9.0).unwrap();
+    assert_eq!(parse(&other.to_toml()).unwrap().whisker, other.whisker);
+    let [least, most] = Parameter::TipExtensionMm.range(&thin_rows());
+    assert!(least == 0.0 && (most - 1.297).abs() < 1e-3, "{most}");
+}
+
+/// The last rows of `scenes/measured.csv`, which nearly reach the tip.
+fn thin_rows() -> Scene {
+    let rows = "[whisker.profile]\nrows = [[0, 30], [18.5, 3.2], [20, 1.5]]\ntip_extension_mm = 1";
+    parse(&scene(rows, "")).unwrap()
+}
+
+#[test]
+fn a_cone_beyond_the_rows_has_limits() {
+    for (profile, must) in [
+        (
+            "[whisker.profile]\nrows = [[0, 30], [18.5, 3.2], [20, 1.5]]\ntip_extension_mm = 1.5",
+            "whisker.profile.tip_extension_mm = 1.5: must be between 0 and where the radius is a thousandth of that at the base (1.29",
+        ),
+        (
+            "[whisker.profile]\nrows = [[0, 30], [20, 29]]\ntip_extension_mm = 20.5",
+            "must be between 0 and length_mm (20)",
+        ),
+        (
+            "[whisker.profile]\nrows = [[0, 30], [19, 10], [20, 15]]\ntip_extension_mm = 4",
+            "must be between 0 and where the radius is that at the base, or four times the least (3",
+        ),
+        (
+            "[whisker.profile]\nrows = [[0, 30], [20, 2]]\nprofile_scale = 0",
+            "whisker.profile.profile_scale = 0: must be between 0.001 and 1000",
+        ),
+        (
+            "base_radius_um = 30\ntip_radius_um = 1.5\nprofile.profile_scale = 2",
+            "rows",
+        ),
+    ] {
+        let message = refusal(&scene(profile, ""));
+        assert!(message.contains(must), "{message}");
+    }
+    let bare = parse(&scene("base_radius_um = 30\ntip_radius_um = 1.5", "")).unwrap();
+    let why = bare
+        .with(Parameter::TipExtensionMm, 1.0)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        why.contains("must be left out: there are no whisker.profile.rows"),
+        "{why}"
+    );
+}
