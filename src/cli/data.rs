@@ -4,7 +4,7 @@ use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use std::path::Path;
 use whiskmap::measured::{Comparison, MeasuredPoints};
-use whiskmap::scene::digits;
+use whiskmap::scene::{digits, rounded};
 
 /// Returns an error if both the scene and the points are standard input.
 pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
@@ -48,6 +48,9 @@ pub fn name_left_out(points: &MeasuredPoints, comparison: &Comparison) {
     }
 }
 
+/// Significant digits of statistics in text. JSON has all.
+pub const STATISTIC_DIGITS: usize = 4;
+
 /// Returns name and value of each figure of a comparison: number of points, RMS, bias.
 pub fn summary(comparison: &Comparison) -> Vec<(&'static str, String)> {
     let count = format!(
@@ -56,7 +59,7 @@ pub fn summary(comparison: &Comparison) -> Vec<(&'static str, String)> {
         comparison.left_out().count(),
         comparison.of_another_kind()
     );
-    let degrees = |value: f64| format!("{} deg", digits(value));
+    let degrees = |value: f64| format!("{} deg", digits(rounded(value, STATISTIC_DIGITS)));
     let residuals = [
         ("RMS", comparison.rms_deg()),
         ("bias", comparison.bias_deg()),

@@ -12,7 +12,7 @@ use whiskmap::design::{self, Design, DesignError, DesignGoal, DesignTarget};
 use whiskmap::input::Quantity;
 use whiskmap::render::designs;
 use whiskmap::rod::Side;
-use whiskmap::scene::{Parameter, Scene, digits};
+use whiskmap::scene::{Parameter, Scene, digits, rounded};
 use whiskmap::trace::DetachmentKind;
 
 #[derive(Debug, Args)]
@@ -186,12 +186,6 @@ fn written(scene: &Scene, parameter: Parameter, value: f64, digits: usize) -> f6
         Ok(_) => short,
         Err(_) => value,
     }
-}
-
-/// Rounds to significant digits.
-fn rounded(value: f64, digits: usize) -> f64 {
-    let text = format!("{value:.*e}", digits - 1);
-    text.parse().unwrap_or(value)
 }
 
 /// Returns the message for a target without a solution, with what is possible.

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::fit::{Estimate, Fit, FitError, fit};
 use whiskmap::measured::MeasuredPoints;
-use whiskmap::scene::{Parameter, digits};
+use whiskmap::scene::{Parameter, digits, rounded};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -184,12 +184,12 @@ fn table(title: &str, fit: &Fit) -> io::Result<()> {
     for (i, estimate) in fit.estimates.iter().enumerate() {
         for (other, correlation) in fit.estimates[..i].iter().zip(&fit.correlation[i]) {
             let [first, second] = [other, estimate].map(|own| own.parameter.name());
-            if let Some(correlation) = correlation.map(digits) {
+            if let Some(correlation) = correlation.map(statistic) {
                 writeln!(out, "correlation of {first} and {second}: {correlation}")?;
             }
         }
     }
-    let (chi_square, freedom) = (digits(fit.chi_square), fit.degrees_of_freedom);
+    let (chi_square, freedom) = (statistic(fit.chi_square), fit.degrees_of_freedom);
     writeln!(
         out,
         "chi-square: {chi_square}, {freedom} degrees of freedom"
@@ -198,6 +198,11 @@ fn table(title: &str, fit: &Fit) -> io::Result<()> {
         writeln!(out, "{name}: {value}")?;
     }
     Ok(())
+}
+
+/// Formats a statistic for the table.
+fn statistic(value: f64) -> String {
+    digits(rounded(value, data::STATISTIC_DIGITS))
 }
 
 /// Returns the fit as JSON, with parameters by name.

@@ -142,7 +142,9 @@ impl SubmitArgs {
             })
         };
         let time = slurm::time_of(SLOWER * seconds + START_SECONDS);
-        let of_time = format!("a task takes about {seconds:.0} s on {cpus} CPUs like these");
+        let plural = if cpus == 1 { "" } else { "s" };
+        let of_time =
+            format!("a task takes about {seconds:.0} s on {cpus} CPU{plural} of this kind");
         let of_memory = format!("a task takes at most {} MiB", bytes.div_ceil(1 << 20));
         Ok([
             limit("time", &self.time, time, of_time),

@@ -82,6 +82,13 @@ pub fn digits(value: f64) -> String {
     digits.trim_end_matches(".0").to_owned()
 }
 
+/// Rounds a number to a number of significant digits, at least 1.
+#[must_use]
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    let text = format!("{value:.*e}", digits.saturating_sub(1));
+    text.parse().unwrap_or(value)
+}
+
 /// End of a range of allowed numbers: the number, and its meaning if it follows from other numbers.
 pub(super) struct LimitEnd {
     value: f64,

@@ -33,7 +33,7 @@ pub use data::SceneData;
 
 pub use error::SceneError;
 pub use grid::{Grid, SweepAxis, SweepPlace};
-pub use limits::digits;
+pub use limits::{digits, rounded};
 pub use parameter::Parameter;
 pub use scene::Scene;
 pub use toml::SceneText;
