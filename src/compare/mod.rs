@@ -12,7 +12,7 @@ pub use self::codes::{CodeComparison, CodePair, DifferentCodes};
 pub use self::quantity::QuantityComparison;
 pub use self::within::Within;
 
-use crate::scene::Grid;
+use crate::scene::{Grid, digits, rounded};
 use crate::store::{MapSource, StoreError, ZarrStore};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
@@ -64,7 +64,7 @@ impl CellPlace {
 impl fmt::Display for CellPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values = self.0.iter();
-        let values = values.map(|(name, value)| format!("{name} = {}", four_digits(*value)));
+        let values = values.map(|(name, value)| format!("{name} = {}", digits(rounded(*value, 4))));
         f.write_str(&values.collect::<Vec<_>>().join(", "))
     }
 }
@@ -77,11 +77,6 @@ impl Serialize for CellPlace {
         }
         map.end()
     }
-}
-
-/// Returns a number with at most four significant digits.
-fn four_digits(value: f64) -> String {
-    crate::scene::digits(format!("{value:.3e}").parse().unwrap_or(value))
 }
 
 /// Compares two stored maps. Values that are rounded in a file may differ by what the rounding explains, see
