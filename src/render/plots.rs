@@ -130,7 +130,10 @@ pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
             at: [point.measured_deg, point.distance_mm],
             ink,
             open,
-            name: Some(name.to_owned()),
+            name: Some(match point.sd_deg {
+                Some(_) => format!("{name} \u{b1} standard deviation"),
+                None => name.to_owned(),
+            }),
         }
     });
     dots.collect()
@@ -212,20 +215,20 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
 }
 
 /// Returns the error bars of measured detachments: lines of one standard deviation to the left and right, `[angle (deg), distance (mm)]`.
-/// Points without a standard deviation have none.
+/// Points without a standard deviation have none. The names of the dots explain the bars.
 #[must_use]
 pub fn error_bars(points: &[ComparedPoint]) -> Vec<Line> {
     let bars = points.iter().filter_map(|point| {
         let sd = point.sd_deg?;
         let ends = [-sd, sd].map(|end| [point.measured_deg + end, point.distance_mm]);
         let (ink, ..) = measured_look(point);
-        Some(Line::new(ends.to_vec(), ink, Stroke::Solid).named("standard deviation"))
+        Some(Line::new(ends.to_vec(), ink, Stroke::Solid))
     });
     bars.collect()
 }
 
-/// Returns bands along the distance (mm), across `[value, distance]`: from the 5th to the 95th percentile, and over them from the 25th to the 75th. `percentiles` returns
-/// the 5th, 25th, 75th and 95th. `rows` has one side after the other, each in order of increasing distance.
+/// Returns bands along the distance (mm), across `[value, distance]`: from the 5th to the 95th percentile, and over them from the 25th
+/// to the 75th. `percentiles` returns the 5th, 25th, 75th and 95th. `rows` has one side after the other, each in order of increasing distance.
 #[must_use]
 pub fn bands(rows: &[EndSpread], percentiles: fn(&EndSpread) -> [Option<f64>; 4]) -> Vec<Band> {
     let kinds = [

@@ -66,7 +66,7 @@ fn samples_and_measured_points_share_a_plot() {
     assert_eq!(svg.matches("<polygon").count(), 4, "two sides, two bands");
     // Both points and the sample in the legend.
     assert_eq!(svg.matches("<circle").count(), 3, "{svg}");
-    assert!(svg.contains(">standard deviation<"), "{svg}");
+    assert!(svg.contains(" \u{b1} standard deviation<"), "{svg}");
     place
         .run(&words)
         .assert_refused(&["--samples: with --data, bands are in the plot alone"]);
