@@ -223,7 +223,7 @@ fn expansions(scene: &Scene, plan: &Plan) -> String {
         return "measured radii have no expansions".to_owned();
     };
     let ExpansionCount { cells, cost } = count;
-    format!("a side has at most {cells} cells, its expansions cost {cost}")
+    format!("at most {cells} cells a side, expansions cost {cost}")
 }
 
 /// Environment variable that also other programs with wgpu use to select an adapter.

@@ -43,7 +43,7 @@ fn auto_times_the_engines_for_a_large_map() {
     let times = match taken.starts_with(host) {
         true => {
             let (counted, times) = why.rsplit_once("; ").unwrap();
-            assert!(counted.starts_with("a side has "), "{said}");
+            assert!(counted.starts_with("at most "), "{said}");
             times.strip_suffix(')').unwrap().strip_suffix(&gpu)
         }
         false => {
