@@ -77,6 +77,9 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
 
 pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     let mut map = args.selection.open(files, &args.file)?;
+    if map.grid().sweep.len() > 2 {
+        map.fix_single_axes();
+    }
     let missing = map.blank_missing()?;
     if missing > 0 {
         message(&format!(

@@ -98,10 +98,12 @@ pub(super) fn readable(chosen: &ChosenValues) -> impl Iterator<Item = (&'static 
     })
 }
 
-/// Returns a title with the selected values.
+/// Returns a title with the selected values, but for those that it has already, as that of an extracted part.
 pub(super) fn titled(title: &str, chosen: &ChosenValues) -> String {
     let chosen = readable(chosen).map(|(name, value)| format!(", {name} = {value}"));
-    std::iter::once(title.to_owned()).chain(chosen).collect()
+    let is_new = |part: &String| !title.ends_with(&**part) && !title.contains(&format!("{part}, "));
+    let new = chosen.filter(is_new);
+    std::iter::once(title.to_owned()).chain(new).collect()
 }
 
 /// Returns the indices of the axis and of the value that `at` selects on `axes`, of which some are `chosen` already.

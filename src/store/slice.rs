@@ -85,6 +85,16 @@ impl MapSlice {
         Ok(())
     }
 
+    /// Fixes the sweep axes that have one value. The title does not name them.
+    pub fn fix_single_axes(&mut self) {
+        for (fixed, axis) in self.fixed.iter_mut().zip(&self.stored.grid().sweep) {
+            if axis.values.len() == 1 {
+                *fixed = Some(0);
+            }
+        }
+        self.grid.sweep.retain(|axis| axis.values.len() > 1);
+    }
+
     /// Lets unfinished blocks of a store be read: their codes are [`NOT_COMPUTED`], all other values are NaN. Returns the number of such
     /// panels of the slice.
     ///

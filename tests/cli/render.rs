@@ -96,6 +96,32 @@ fn stores_and_parts_are_drawn_like_maps() {
     ]);
     assert_eq!(beside.out, "scene.friction=0.3.force_un.png\n");
 
+    // An extracted axis of one value takes no room, and its value stands once in the title.
+    run(&[
+        "extract",
+        "scene.zarr",
+        "--at=friction=0.3",
+        "-o",
+        "part.zarr",
+    ]);
+    run(&["render", "part.zarr", "-o", "own.svg"]);
+    run(&[
+        "render",
+        "part.zarr",
+        "--at=friction=0.3",
+        "-o",
+        "chosen.svg",
+    ]);
+    run(&[
+        "render",
+        "scene.zarr",
+        "--at=friction=0.3",
+        "-o",
+        "drawn.svg",
+    ]);
+    let drawn = place.bytes("drawn.svg");
+    assert!(drawn == place.bytes("own.svg") && drawn == place.bytes("chosen.svg"));
+
     place.run(&["render", "scene.zarr"]).assert_refused(&[
         "a picture has room for two sweep axes, there are taper, friction, pole_radius_mm",
         "--at",
