@@ -172,7 +172,7 @@ fn detachments(
         let peak = reached
             .as_ref()
             .filter(|_| has_strain)
-            .map(|(end, _)| PeakStrain::new(rod, end.tau, end.load, resolution));
+            .map(|(end, _)| PeakStrain::new(rod, end.tau, end.load, resolution.doubled()));
         let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
         Detachment {
             side,
