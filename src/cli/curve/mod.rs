@@ -2,7 +2,7 @@
 
 mod plot;
 
-use super::arguments::column_help;
+use super::arguments::{column_help, length};
 use super::data;
 use super::failure::{Failure, check_resolved, message};
 use super::files::Files;
@@ -29,7 +29,7 @@ Examples:
   whiskmap curve scenes/cone.toml | head
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
-  whiskmap curve scenes/robot.toml --units mN,Nmm | head
+  whiskmap curve scenes/robot.toml --distance 60 --units mN,Nmm
   whiskmap curve scenes/cone.toml --corner
   whiskmap curve scenes/morphology.toml --at taper=0.95 --at curvature_per_mm=0.02 --plot curve.svg
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
@@ -80,6 +80,10 @@ pub struct CurveArgs {
     x: CurveColumn,
     #[command(flatten)]
     selection: SelectionArgs,
+    /// Distances from the base to the contact at first touch in place of the scene's, in mm or with a unit, such as 1.5cm; several
+    /// are separated by commas
+    #[arg(long, value_name = "LENGTH", value_delimiter = ',', allow_hyphen_values = true, value_parser = length)]
+    distance: Vec<f64>,
     #[command(flatten)]
     sampling: SampleArgs,
     #[command(flatten)]
@@ -92,7 +96,13 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(data) = &args.data {
         data::check_stdin(&args.scene, data)?;
     }
-    let scene = args.selection.of_scene(&files.scene(&args.scene)?)?;
+    let mut scene = args.selection.of_scene(&files.scene(&args.scene)?)?;
+    if !args.distance.is_empty() {
+        let mut distances = args.distance.clone();
+        distances.sort_by(f64::total_cmp);
+        distances.dedup();
+        scene = scene.to_builder().distance_mm(distances).build()?;
+    }
     let whiskers = scene.whisker_count();
     if args.outputs.has_plot() && whiskers > 1 {
         let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
