@@ -35,7 +35,7 @@ pub fn run() -> Result<(), Failure> {
     writeln!(out, "* is the adapter of --engine gpu")?;
     writeln!(
         out,
-        "--engine auto times it and {cpu} on a sample of the scene, and selects the faster one"
+        "--engine auto times it and an engine of the CPU on samples of a scene that takes at least 0.1 s, and selects the faster one"
     )?;
     Ok(())
 }

@@ -182,7 +182,7 @@ impl EngineArgs {
     ) -> Result<OpenEngine, Failure> {
         let (mut host, why) = without_gpu(scene, plan, tolerance_deg);
         if estimate(scene, plan, &mut None, FIRST_LOOK)?.seconds < OPENING {
-            return Ok((host, why));
+            return Ok((host, format!("{why}; a GPU is not timed below {OPENING} s")));
         }
         let (index, name) = self.adapter()?.unzip();
         let gpu = match self.gpu(index) {
