@@ -29,7 +29,7 @@ pub fn regions(is_straight: bool) -> [Region; 2] {
 pub fn parameter(parameter: Parameter) -> String {
     match parameter.unit() {
         "1" => parameter.title().to_owned(),
-        unit => format!("{} ({unit})", parameter.title()),
+        unit => format!("{} ({})", parameter.title(), unit.replace("um", "\u{b5}m")),
     }
 }
 

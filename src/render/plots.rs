@@ -175,7 +175,7 @@ pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
 pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> Plot {
     let goal = target.goal;
     let (unit, size) = match goal.quantity().unit() {
-        Some("uN") => (" (\u{b5}N)", "uN"),
+        Some("uN") => (" (\u{b5}N)", "\u{b5}N"),
         Some("nNm") => (" (nN m)", "nN m"),
         Some("deg") => (" (deg)", "deg"),
         _ => ("", ""),
