@@ -10,7 +10,7 @@ const MOST_PIXELS: f64 = 10_000.0;
 
 #[derive(Debug, Args)]
 pub struct SizeArgs {
-    /// Set the width, or width and height, on paper, such as 85mm or 85x60mm; all text has at least 7 pt
+    /// Set the width, or width and height, on paper, such as 85mm or 180x120mm; all text has at least 7 pt
     #[arg(long, value_name = "W[xH]", value_parser = sides)]
     size: Option<Sides>,
     /// Set the pixels per inch of a PNG, and of the cells of a map in every format
@@ -69,7 +69,7 @@ fn sides(text: &str) -> Result<Sides, String> {
     let parse = |side: &str| match Quantity::LengthMm.parse(side) {
         Ok(length) if (10.0..=2000.0).contains(&length) => Ok(length),
         Ok(length) => Err(format!("{length} mm: must be between 10 mm and 2000 mm")),
-        Err(_) => Err("must be a width, or width x height, such as 85mm or 85x60mm".to_owned()),
+        Err(_) => Err("must be a width, or width x height, such as 85mm or 180x120mm".to_owned()),
     };
     Ok(Sides {
         width_mm: parse(&width)?,

@@ -132,7 +132,7 @@ fn a_picture_has_its_size_on_paper() {
     refused(&["--size", "85mm"], &["--size: needs --plot"]);
     refused(&["--plot=q.pdf", "--dpi=300"], &["--size"]);
     let sized = |size: &str, part: &str| refused(&["--plot=q.pdf", "--size", size], &[size, part]);
-    sized("85pt", "such as 85mm or 85x60mm");
+    sized("85pt", "such as 85mm or 180x120mm");
     sized("3m", "3000 mm: must be between 10 mm and 2000 mm");
     refused(
         &["--plot=q.pdf", "--size=20mm"],
