@@ -3,7 +3,7 @@
 //! `cargo run --release --example taper_sweep`
 #![allow(clippy::print_stdout, reason = "an example shows what it finds")]
 
-use whiskmap::classify::Regime;
+use whiskmap::Regime;
 use whiskmap::scene::Scene;
 use whiskmap::{Options, map};
 

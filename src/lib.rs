@@ -15,6 +15,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`curve`] returns pairs of a whisker's place in the sweep and a [`Detachment`](trace::Detachment): first all distances on CF, then those on
+//! CB. Values that do not exist are `None`. A loop over tapers:
+//!
+//! ```
+//! use whiskmap::scene::{Parameter, Scene};
+//! use whiskmap::Options;
+//!
+//! let scene = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
+//! for taper in [0.0, 0.5, 1.0] {
+//!     let own = scene.to_builder().set(Parameter::Taper, taper).distance_mm([15.66]).build()?;
+//!     for (_, end) in whiskmap::curve(&own, Options::default())? {
+//!         println!("{taper} {:?} {:?} {:?}", end.side, end.kind, end.push_angle_deg);
+//!     }
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) compute in memory; the modules below are the
 //! topics around them. All features are on by default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders,
 //! `render` the pictures, `zarr` the stores that many processes fill. `ndarray`, which is off by default, adds views of channels as

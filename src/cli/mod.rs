@@ -105,7 +105,7 @@ enum Command {
     Branch(branch::BranchArgs),
     /// Compute the shape of the whisker in one state
     Shape(shape::ShapeArgs),
-    /// Find the values of a parameter at which the whisker detaches at a given push angle
+    /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
     Design(design::DesignArgs),
     /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
     Reproduce(reproduce::ReproduceArgs),
