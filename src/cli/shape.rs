@@ -77,6 +77,13 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let stable = args.branch == BranchPart::Stable;
     let refused = |why| match why {
         NoState::OutOfReach { .. } | NoState::Failed { .. } => refuse(distance, why),
+        NoState::SlippedOff { at_deg } | NoState::PulledOff { at_deg }
+            if (at_deg - push_deg).abs() < 1e-8 =>
+        {
+            let before = (push_deg - at_deg).abs();
+            let why = format!("{why}, {before:.0e} deg earlier");
+            Failure::Input(format!("--push-angle {push_deg} deg: {why}"))
+        }
         _ => Failure::Input(format!("--push-angle {push_deg} deg: {why}")),
     };
     let branch = Branch::new(&whisker, &scene.pole, side, distance).map_err(refused)?;

@@ -103,6 +103,22 @@ fn states_that_do_not_exist_have_a_reason() {
         place.run(&[&arguments[..], more].concat())
     };
     shape("15.66", "20", &[]).assert_refused(&["--push-angle 20 deg: slipped off at 15.6094"]);
+    // An end that has the same nine decimals as the push angle is told apart.
+    let curve = place
+        .run(&["curve", "scene.toml", "--distance", "15.66"])
+        .out;
+    let end: f64 = curve
+        .lines()
+        .nth(2)
+        .unwrap()
+        .split(',')
+        .nth(4)
+        .unwrap()
+        .parse()
+        .unwrap();
+    let beyond = (end + 2e-10).to_string();
+    shape("15.66", &beyond, &[])
+        .assert_refused(&["slipped off at 15.6094", " deg, 2e-10 deg earlier"]);
     // The whisker has moved away from the pole.
     for (push, side, stays) in [
         ("-5", "cb", "between 0.000000000 and 15.6094"),
