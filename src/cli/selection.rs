@@ -39,6 +39,13 @@ impl SelectionArgs {
 
     /// Returns the selected part of the sweep of a scene, and prints the selected values.
     pub fn of_scene(&self, scene: &Scene) -> Result<Scene, Failure> {
+        if let Some(at) = self.at.iter().find(|at| at.axis == "distance_mm") {
+            let value = digits(at.value);
+            let why = format!(
+                "--at distance_mm={value}: selects a whisker of the sweep; --distance {value} selects the distance"
+            );
+            return Err(Failure::Input(why));
+        }
         let (scene, chosen) = scene_at(scene, &self.at, self.exact).map_err(refused)?;
         name(&chosen);
         Ok(scene)

@@ -171,4 +171,6 @@ fn a_part_of_a_sweep_is_selected() {
         .assert_refused(&["0.6 is no value of the axis"]);
     curve(&["one.toml", "--at", "taper=0.6"])
         .assert_refused(&["--at taper: there is no sweep axis"]);
+    curve(&["one.toml", "--at", "distance_mm=1.5cm"])
+        .assert_refused(&["--at distance_mm=15: selects a whisker of the sweep; --distance 15"]);
 }
