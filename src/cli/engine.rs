@@ -93,8 +93,16 @@ impl EngineArgs {
             }
             EngineChoice::Spectral => (Some(Box::new(spectral(scene, tolerance_deg))), selected()),
             EngineChoice::Cpu => (None, selected()),
-            EngineChoice::Gpu => (None, "in place of the GPU, which is not opened".to_owned()),
+            EngineChoice::Gpu => (
+                None,
+                "in place of the GPU, which is not opened; the time is the CPU's".to_owned(),
+            ),
         })
+    }
+
+    /// Returns true if the options name the GPU engine.
+    pub fn names_gpu(&self) -> bool {
+        self.engine == EngineChoice::Gpu
     }
 
     /// Returns an error if the options contradict each other.

@@ -75,6 +75,11 @@ pub fn run(args: &SubmitArgs) -> Result<(), Failure> {
     let whiskers = shares.iter().map(|share| share.whiskers).max();
     let limits = || args.limits(&scene, &map, whiskers.unwrap_or_default());
     let script = args.script(&scene.name, limits)?;
+    if map.engine.names_gpu() {
+        message(
+            "note: with --engine gpu, add the line that requests a GPU on your cluster, such as `#SBATCH --gres=gpu:1`",
+        );
+    }
     io::stdout().lock().write_all(script.as_bytes())?;
     Ok(())
 }

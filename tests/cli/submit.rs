@@ -183,6 +183,8 @@ fn time_and_memory_are_proposed() {
         assert!(run.err.contains(&note), "{run:?}");
     }
     assert_eq!(run.err.lines().count(), 2, "{run:?}");
+    let on_gpu = place.run(&["submit", "scene.toml", "--shards=8", "--", "--engine=gpu"]);
+    assert!(on_gpu.err.contains("#SBATCH --gres=gpu:1"), "{on_gpu:?}");
     let given = place.run(&["submit", "scene.toml", "--shards=8", "--time=1-12"]);
     assert!(given.out.contains("#SBATCH --time=1-12\n"), "{given:?}");
     assert!(!given.err.contains("--time"), "{given:?}");
