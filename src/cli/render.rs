@@ -81,13 +81,6 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
         map.fix_single_axes();
     }
     let missing = map.blank_missing()?;
-    if missing > 0 {
-        message(&format!(
-            "warning: {} is not finished: {missing} of {} panels are not computed and stay blank; `whiskmap status` lists their blocks",
-            args.file.display(),
-            map.grid().whisker_count()
-        ));
-    }
     let channel = args.channel.as_deref();
     if let Some(name) = &args.channel {
         let drawn = channels(&map, std::slice::from_ref(name))?;
@@ -113,6 +106,14 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     )?;
     let path = target.file.path.clone();
     target.write(&picture)?;
+    if missing > 0 {
+        message(&format!(
+            "warning: {} is not finished: {missing} of {} panels are not computed and are drawn without values; `whiskmap status` lists \
+             their blocks",
+            args.file.display(),
+            map.grid().whisker_count()
+        ));
+    }
     if path != Path::new(STDOUT) {
         writeln!(std::io::stdout(), "{}", path.display())?;
     }

@@ -134,7 +134,7 @@ fn stores_and_parts_are_drawn_like_maps() {
         .run(&["render", "scene.zarr", "--at=friction=0", "--exact"])
         .assert_said(
             0,
-            "warning: scene.zarr is not finished: 3 of 12 panels are not computed and stay blank",
+            "warning: scene.zarr is not finished: 3 of 12 panels are not computed and are drawn without values",
         );
     for (channel, said) in [
         ("regime", "not computed"),

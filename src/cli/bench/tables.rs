@@ -217,5 +217,8 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
 /// Formats the spread of a timing in percent; `!` marks a noisy one.
 fn spread(timing: &Timing) -> String {
     let mark = if timing.is_noisy { "!" } else { " " };
-    format!("{:4.0}{mark}", 100.0 * timing.spread)
+    match 100.0 * timing.spread {
+        percent if percent < 99.5 => format!("{percent:4.0}{mark}"),
+        _ => format!(" >99{mark}"),
+    }
 }
