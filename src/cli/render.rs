@@ -114,6 +114,9 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
             map.grid().whisker_count()
         ));
     }
+    if !map.channels().contains(&"margin_deg") {
+        message("note: no detachment line is drawn: the map has no channel margin_deg");
+    }
     if path != Path::new(STDOUT) {
         writeln!(std::io::stdout(), "{}", path.display())?;
     }

@@ -41,6 +41,18 @@ fn a_map_with_friction_keeps_the_status_of_loads() {
     place.map(&["scene.toml", "--no-png", "--channels=regime,margin_deg"]);
     let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
     assert_eq!(map.channels(), ["regime", "margin_deg"]);
+    // A picture draws the line of detachments by the margins, and says if there are none.
+    let render = || {
+        place
+            .run(&["render", "outputs/scene.exr", "-o", "map.png"])
+            .err
+    };
+    assert_eq!(render(), "");
+    place.map(&["scene.toml", "--no-png", "--channels=regime"]);
+    assert_eq!(
+        render(),
+        "note: no detachment line is drawn: the map has no channel margin_deg\n"
+    );
 }
 
 /// Returns the number of marked cells of a map.
