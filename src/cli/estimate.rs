@@ -15,6 +15,8 @@ use whiskmap::store::{MapWriter, ZarrStore};
 pub struct MapCost {
     /// Elapsed seconds of the map with all threads at work, scaled from samples.
     pub seconds: f64,
+    /// CPU seconds of the map on all threads, scaled from samples. Other load on this machine does not count.
+    pub cpu_seconds: f64,
     /// Newton steps per cell of the map, each one trajectory.
     pub steps_per_cell: f64,
 }
@@ -235,8 +237,15 @@ impl MapSample {
             Stage::Sheets => self.summary.stage_seconds(stage) * by_rows,
             _ => self.summary.stage_seconds(stage) * self.by_cells(plan),
         });
+        let seconds: f64 = seconds.iter().sum();
+        let threads = rayon::current_num_threads() as f64;
+        let used = self
+            .summary
+            .cpu_seconds
+            .map(|cpu| cpu / self.summary.wall_seconds);
         MapCost {
-            seconds: seconds.iter().sum(),
+            seconds,
+            cpu_seconds: seconds * used.unwrap_or(threads),
             steps_per_cell: self.summary.steps as f64 / self.summary.cells() as f64,
         }
     }

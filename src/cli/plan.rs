@@ -31,7 +31,7 @@ Trajectories of cells, seconds and bytes are scaled up from samples: at most 128
 all) and two values per sweep axis, fewer if these would take more than some seconds. They are computed and packed on this \
 machine's CPU and discarded. Nothing is written and no GPU is opened: with --engine gpu, the seconds are those of the CPU \
 engine. Seconds are wall seconds on all threads. The seconds of a file are the additional time for packing, without its \
-picture and without the disk. CPU-hours are these seconds times the threads. Finished blocks of a store are not subtracted.")]
+picture and without the disk. CPU-hours are CPU seconds of the samples: other load on this machine makes seconds longer, not CPU-hours. Finished blocks of a store are not subtracted.")]
 pub struct PlanArgs {
     #[command(flatten)]
     pub map: MapArgs,
@@ -75,7 +75,7 @@ impl PlanEstimate {
         let packing = file.map_or(0.0, |file| file.seconds);
         let threads = rayon::current_num_threads() as f64;
         let bytes = file.map_or(0.0, |file| file.bytes);
-        [(self.cost.seconds + packing) * threads, bytes].map(|all| all * share)
+        [self.cost.cpu_seconds + packing * threads, bytes].map(|all| all * share)
     }
 }
 
