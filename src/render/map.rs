@@ -150,17 +150,20 @@ fn quantities(
     })?;
     let marks = has_marks(map, channel)?.then(|| {
         let fill = Fill::BLANK.hatched();
-        LegendEntry::swatch(fill, "off: friction is not as assumed")
+        LegendEntry::swatch(fill, OFF)
     });
     Ok((Shading::Quantities(scale), marks.into_iter().collect()))
 }
 
+/// Name in legends of states whose friction is not the assumed one.
+pub const OFF: &str = "off: friction is not as assumed";
+
 /// Returns true if the states in `channel` include some whose friction is not the assumed one.
-fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
+pub fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
     let is_marked = STATE_CHANNELS.contains(&channel) && map.channels().contains(&"status");
     Ok(is_marked && map.codes("status")?.into_iter().any(is_mark))
 }
 
-fn is_mark(code: u32) -> bool {
+pub fn is_mark(code: u32) -> bool {
     Status::MARKS.iter().any(|status| status.code() == code)
 }

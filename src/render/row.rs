@@ -1,7 +1,8 @@
 //! Line charts of maps with one row: a channel over the push angle.
 
+use super::map::{OFF, has_marks, is_mark};
 use super::{MapOptions, RenderError, labels};
-use crate::store::MapSlice;
+use crate::store::{ChannelValues, MapSlice};
 use whiskmap_plot::{Chart, Ink, Line, Picture, Plot, Stroke};
 
 /// Maximum number of whiskers in a line chart. More lines would share colours.
@@ -25,6 +26,7 @@ pub fn chart(
     options: &MapOptions<'_>,
 ) -> Result<Picture, RenderError> {
     let grid = map.grid();
+    let has_marks = has_marks(map, channel)?;
     let mut lines = Vec::new();
     let mut names = vec![String::new()];
     if let [axis] = &*grid.sweep {
@@ -32,14 +34,19 @@ pub fn chart(
         names = axis.values.iter().map(name).collect();
     }
     for (index, name) in names.iter().enumerate() {
-        let values = map.read_panel(channel, index)?;
-        let points = grid.push_angle_deg.iter().copied().zip(values.values());
-        let points = points.map(|(angle, value)| [angle, value]).collect();
+        let values: Vec<f64> = map.read_panel(channel, index)?.values().collect();
+        let marks = has_marks.then(|| map.read_panel("status", index));
+        let marks = marks.transpose()?;
         let ink = match names.len() {
             1 => Ink::Black,
             _ => Ink::Series(index),
         };
-        lines.push(Line::new(points, ink, Stroke::Solid).named(name));
+        for (points, is_off) in parts(&grid.push_angle_deg, &values, marks.as_ref()) {
+            lines.push(match is_off {
+                false => Line::new(points, ink, Stroke::Solid).named(name),
+                true => Line::new(points, ink, Stroke::Dashed).named(OFF),
+            });
+        }
     }
     // The title of a slice has the distance.
     let title = match map.readable().any(|(name, _)| name == "distance_mm") {
@@ -57,4 +64,28 @@ pub fn chart(
         ..Plot::default()
     };
     Ok(Chart::single(map.title(), plot).picture(options.size)?)
+}
+
+/// Returns the parts of a row of `values` at `angles`, each with true if its states are marked: CF and CB apart, because the values between
+/// them are not those of first touch. Parts of one side share an end.
+fn parts(
+    angles: &[f64],
+    values: &[f64],
+    marks: Option<&ChannelValues>,
+) -> Vec<(Vec<[f64; 2]>, bool)> {
+    let is_off = |i: usize| matches!(marks, Some(ChannelValues::U32(codes)) if is_mark(codes[i]));
+    let mut parts: Vec<(Vec<[f64; 2]>, bool)> = Vec::new();
+    for (i, (angle, value)) in angles.iter().zip(values).enumerate() {
+        let point = [*angle, *value];
+        let crosses = i > 0 && angles[i - 1] < 0.0 && *angle > 0.0;
+        match parts.last_mut() {
+            Some((points, off)) if !crosses && *off == is_off(i) => points.push(point),
+            Some((points, _)) if !crosses => {
+                let shared = points.last().copied();
+                parts.push((shared.into_iter().chain([point]).collect(), is_off(i)));
+            }
+            _ => parts.push((vec![point], is_off(i))),
+        }
+    }
+    parts
 }

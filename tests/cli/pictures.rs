@@ -105,10 +105,26 @@ fn a_row_of_a_map_is_a_line_chart() {
     assert_eq!(run.code, Some(0), "{run:?}");
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
     assert!(svg.contains(">contact force (\u{b5}N)<") && !svg.contains("<image"));
-    assert_eq!(lines(&svg, "#222b33").len(), 1);
+    assert_eq!(
+        lines(&svg, "#222b33").len(),
+        2,
+        "one on each side of the push 0"
+    );
+    assert!(!svg.contains("off: friction"));
     place.run(&row).assert_said(0, "");
     let regimes = String::from_utf8(place.bytes("p.svg")).unwrap();
     assert!(regimes.contains("<image"), "regimes have no values");
+    // On CF the contact first slides toward the base, then sticks.
+    place.write(
+        "scene.toml",
+        &SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"),
+    );
+    place.map(&["scene.toml", "--no-png"]);
+    let run = place.run(&[&row[..], &["--channel", "force_un"]].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    assert!(svg.contains(">off: friction is not as assumed<"));
+    assert_eq!(lines(&svg, "#222b33").len(), 3);
 }
 
 #[test]

@@ -116,7 +116,12 @@ impl<'a> PlotLayout<'a> {
             };
             (symbol, &line.name)
         });
-        let dots = self.plot.dots.iter().map(|dot| match dot.open {
+        let shown = self
+            .plot
+            .dots
+            .iter()
+            .filter(|dot| self.window.holds(dot.at));
+        let dots = shown.map(|dot| match dot.open {
             true => (LegendSymbol::Ring(rim(dot)), &dot.name),
             false => (LegendSymbol::Dot(colour(dot.ink)), &dot.name),
         });
