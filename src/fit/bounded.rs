@@ -1,9 +1,10 @@
 //! Least squares inside the limits of the scene.
 
 use super::FitError;
+use super::covariance::FAINT;
 use super::least_squares::minimise;
 use super::misfit::Misfit;
-use super::svd::dot;
+use super::svd::{dot, norm};
 
 /// Relative change of the misfit, and of the parameters, below which the iteration ends.
 const TOLERANCE: f64 = 1e-12;
@@ -11,12 +12,45 @@ const TOLERANCE: f64 = 1e-12;
 /// Residual of each point where the scene refuses the parameters, so large that no step goes there.
 const REFUSED: f64 = 1e100;
 
-/// Returns the parameters with the smallest misfit, each over its unit: `[parameter]`. The search starts at the scene's values.
+/// Factors of a start value for further searches.
+const FACTORS: [f64; 6] = [0.25, 0.5, 0.75, 1.5, 2.0, 4.0];
+
+/// Relative difference of the misfits of two different minima.
+const LESS: f64 = 1e-6;
+
+/// Returns the parameters with the smallest misfit that is found, each over its unit: `[parameter]`. The search starts at the scene's
+/// values. It may end in a minimum that is only local: if a parameter is at a limit there, or a point detaches in another way than was
+/// measured, further searches start at multiples of each start value.
+pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
+    let start = misfit.start();
+    let (mut best, mut least) = search(misfit, &start)?;
+    let ranges = misfit.ranges(&misfit.scene(&best)?);
+    let mut pairs = best.iter().zip(&ranges);
+    if !pairs.any(|(x, range)| range.contains(x)) && !misfit.has_other_kinds(&best) {
+        return Ok(best);
+    }
+    for (i, [lowest, highest]) in ranges.into_iter().enumerate() {
+        for factor in FACTORS {
+            let mut from = start.clone();
+            from[i] = (factor * start[i]).clamp(lowest, highest);
+            // The scene may refuse a start.
+            if let Ok((end, sum)) = search(misfit, &from)
+                && sum < least * (1.0 - LESS)
+            {
+                (best, least) = (end, sum);
+            }
+        }
+    }
+    Ok(best)
+}
+
+/// Returns the parameters at the minimum to which a search from `start` leads, and the misfit there.
 ///
 /// Beyond a limit the misfit is continued as it is at the limit. Limits depend on the other parameters, and one that was
-/// met may be left again: while the misfit shrinks, the iteration starts again from where it has ended.
-pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
-    let (mut best, mut least) = (misfit.start(), f64::INFINITY);
+/// met may be left again: while the misfit shrinks, the iteration starts again from where it has ended. Parameters on which no residual
+/// depends stay.
+fn search(misfit: &Misfit<'_>, start: &[f64]) -> Result<(Vec<f64>, f64), FitError> {
+    let (mut best, mut least) = (start.to_vec(), f64::INFINITY);
     loop {
         let ranges = misfit.ranges(&misfit.scene(&best)?);
         let inside = |x: &[f64]| -> Vec<f64> {
@@ -32,6 +66,7 @@ pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
         // The columns of parameters that are beyond a limit, or would go there, are 0.
         let jacobian = |x: &[f64], residuals: &[f64]| {
             let mut columns = misfit.jacobian(&inside(x), residuals)?;
+            clear_faint(&mut columns);
             for ((column, [least, most]), x) in columns.iter_mut().zip(&ranges).zip(x) {
                 let growth = dot(column, residuals);
                 let is_held = x < least
@@ -53,7 +88,20 @@ pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
             (best, least) = (end, sum);
         }
         if !(is_better && is_at_limit) {
-            return Ok(best);
+            return Ok((best, least));
+        }
+    }
+}
+
+/// Clears the columns that are so short that rounding may have made them.
+fn clear_faint(columns: &mut [Vec<f64>]) {
+    let longest = columns
+        .iter()
+        .map(|column| norm(column))
+        .fold(0.0, f64::max);
+    for column in columns {
+        if norm(column) <= FAINT * longest {
+            column.fill(0.0);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::svd::{Svd, norm};
 
 /// Least singular value over the largest, and least column over the longest, that counts: the differences that the
 /// Jacobian is made of are not more exact.
-const FAINT: f64 = 1e-6;
+pub const FAINT: f64 = 1e-6;
 
 /// Largest component in directions without a singular value, of 1, of a parameter that is determined.
 const PART: f64 = 1e-3;

@@ -70,6 +70,14 @@ impl<'a> Misfit<'a> {
         Some(residuals)
     }
 
+    /// Returns true if a point detaches in another way than was measured.
+    pub fn has_other_kinds(&self, parameters: &[f64]) -> bool {
+        self.scene(parameters).is_ok_and(|scene| {
+            let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
+            self.points.beside(&whisker, &pole).of_another_kind() > 0
+        })
+    }
+
     /// Returns the derivatives of the residuals by the parameters over their units, `[parameter][point]`; `None` where neither side has
     /// one. `here` are the residuals at `parameters`.
     pub fn jacobian(&self, parameters: &[f64], here: &[f64]) -> Option<Vec<Vec<f64>>> {

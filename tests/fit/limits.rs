@@ -176,3 +176,66 @@ fn points_that_never_detach_are_left_out() {
     assert_eq!((left_out, found.comparison.count()), (vec![3], 1));
     assert_eq!(found.degrees_of_freedom, 1);
 }
+
+/// A whisker with measured radii and detachments, of which the last ones may be pull-offs.
+fn measured(extension: f64, points: &str) -> (Scene, MeasuredPoints) {
+    let text = format!(
+        r#"title = "measured"
+        [whisker]
+        length_mm = 23.5
+        youngs_modulus_gpa = 3.2
+        profile = {{ tip_extension_mm = {extension}, rows = [[0, 61.2], [3.5, 55.8], [7, 46.1], [10.5, 39.9], [14, 31.4], [17.5, 24.7], [21, 13.9], [23.5, 8.1]] }}
+        curvature = {{ parabola_per_mm = 0.01 }}
+        [pole]
+        radius_mm = 0.25
+        [grid]
+        push_angle_deg = [10]
+        distance_mm = [10]
+        "#
+    );
+    let scene = Scene::parse(&text, "measured").unwrap();
+    let header = "side,distance_mm,push_angle_deg,kind,sd_deg\n";
+    let points = MeasuredPoints::parse(&format!("{header}{points}"), "points").unwrap();
+    (scene, points)
+}
+
+const SLIPS: &str = "cf,8,-63.6,slip-off,1.2\ncf,11,-56.9,slip-off,1.2\ncf,14,-45.2,slip-off,1\ncf,17,-38.3,slip-off,1\n\
+                     cb,11,44.3,slip-off,1.2\ncb,14,36.0,slip-off,1\ncb,20,15.6,slip-off,0.8\ncb,22,10.9,slip-off,0.8\n";
+
+/// No slip-off depends on where the tip is: the extension keeps its start value, and is not determined.
+#[test]
+fn an_extension_without_pull_offs_stays() {
+    for start in [0.3, 1.0, 2.0] {
+        let (scene, points) = measured(start, SLIPS);
+        let found = fit(&scene, &points, &[ParabolaPerMm, TipExtensionMm]).unwrap();
+        let [_, extension] = found.estimates[..] else {
+            panic!("{found:?}");
+        };
+        assert_eq!(determined(&found), [ParabolaPerMm], "{start}");
+        assert_eq!((extension.value, extension.is_at_limit), (start, false));
+    }
+}
+
+/// From some starts, a search ends at the sharpest tip, where pull-offs are slip-offs. Further starts find the better minimum.
+#[test]
+fn a_local_minimum_at_a_limit_is_left() {
+    let pulls = format!("{SLIPS}cb,24,5.1,pull-off,0.5\ncb,24.3,4.2,pull-off,0.5\n");
+    let mut values = Vec::new();
+    for start in [1.5, 2.0, 2.5] {
+        let (scene, points) = measured(start, &pulls);
+        let found = fit(&scene, &points, &[ParabolaPerMm, TipExtensionMm]).unwrap();
+        assert_eq!(
+            determined(&found),
+            [ParabolaPerMm, TipExtensionMm],
+            "{start}"
+        );
+        assert_eq!(found.comparison.of_another_kind(), 0, "{start}");
+        values.push(found.estimates[1].value);
+    }
+    assert!(
+        values
+            .iter()
+            .all(|value| (value / values[0] - 1.0).abs() < 1e-6),
+        "{values:?}"
+    );
+}
