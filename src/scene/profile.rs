@@ -122,7 +122,7 @@ fn check_rows(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
     }
     if first[0] != 0.0 || (last[0] - length_mm).abs() > END_SLACK * length_mm {
         let must = format!(
-            "must begin at the base, at 0, and end at the tip, at length_mm ({length_mm}); \
+            "must begin at the base, at 0, and end at length_mm ({length_mm}), where a tip_extension_mm begins; \
              they go from {} to {}",
             digits(first[0]),
             digits(last[0])
