@@ -78,7 +78,7 @@ fn radii_that_are_refused() {
             "[[1, 30], [20, 1]]",
             "must begin at the base, at 0, and end at length_mm",
         ),
-        ("[[0, 30], [19, 1]]", "end at length_mm, at length_mm (20)"),
+        ("[[0, 30], [19, 1]]", "end at length_mm (20)"),
         ("[[0, 30], [20, 31]]", "the radius at the tip must be"),
         (
             "[[0, 30], [20, 0.02]]",
