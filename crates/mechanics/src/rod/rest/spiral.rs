@@ -73,14 +73,15 @@ impl SpiralRest {
         (point + (s - bent) * tangent, tangent)
     }
 
-    /// Returns the derivative of the spiral at the arclength `s` (whisker lengths, at most 1) by a variable, in the frame of the base.
+    /// Returns the derivative of the spiral at the arclength `s` (whisker lengths) by a variable, in the frame of the base.
     pub fn derivative(&self, s: f64, by: &RodDerivative) -> CurveDerivative {
         let [k0, k1] = by.spiral;
         let angle = |s: f64| s * (0.5 * k1).mul_add(s, k0);
         let turned = |s: f64| angle(s) * DVec2::from_angle(self.angle(s)).perp();
+        let bent = s.min(1.0);
         CurveDerivative {
-            point: self.integral(s, turned),
-            angle: angle(s),
+            point: self.integral(bent, turned) + (s - bent) * turned(bent),
+            angle: angle(bent),
         }
     }
 
