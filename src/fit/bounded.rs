@@ -31,7 +31,7 @@ pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
         };
         // The columns of parameters that are beyond a limit, or would go there, are 0.
         let jacobian = |x: &[f64], residuals: &[f64]| {
-            let mut columns = misfit.jacobian(&inside(x), residuals)?;
+            let mut columns = misfit.jacobian(&inside(x))?;
             for ((column, [least, most]), x) in columns.iter_mut().zip(&ranges).zip(x) {
                 let growth = dot(column, residuals);
                 let is_held = x < least

@@ -109,9 +109,10 @@ pub struct Curvature {
 }
 
 impl Curvature {
-    /// Returns true unless the parabola is a straight line.
-    pub(super) fn bends(&self) -> bool {
-        self.parabola_per_mm != 0.0
+    /// Returns true unless the parabola is a straight line with its vertex at the base. On any other line, derivatives by the coefficient
+    /// depend on the vertex.
+    pub(super) fn is_given(&self) -> bool {
+        *self != Self::default()
     }
 }
 

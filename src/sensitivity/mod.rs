@@ -11,16 +11,18 @@
 //! let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
 //! let variables = [Variable::from(Parameter::Taper), Variable::DistanceMm];
 //! let ends = detachments(&cone.whisker, &cone.pole, Side::Cb, &[15.66], &variables);
-//! let by_taper = ends[0].by[0]?;
-//! assert!((by_taper.push_angle_deg + 1.0).abs() < 1e3); // degrees per unit of the taper
+//! let [by_taper, by_distance] = ends[0].by[..] else { panic!("{ends:?}") };
+//! assert!(by_taper?.push_angle_deg < 0.0 && by_distance?.push_angle_deg < 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod effect;
 mod linearised;
 mod quantities;
 mod variable;
 mod whisker;
 
+pub use effect::{VariableEffect, effects};
 pub use quantities::Derivatives;
 pub use variable::Variable;
 
@@ -28,7 +30,9 @@ use crate::rod::{Rest, Rod, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Edge;
 use crate::shooting::Resolution;
-use crate::trace::{Detachment, DetachmentEnd, detachments as ends};
+use crate::trace::{
+    Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, detachments as ends,
+};
 use linearised::{Equations, Linearised, RodAxes};
 use whisker::WhiskerDerivative;
 
@@ -38,6 +42,16 @@ pub struct DetachmentDerivatives {
     /// End of the push, without the largest strain.
     pub end: Detachment,
     /// Derivatives of the end by each variable, `[variable]`, or the reason why there are none.
+    pub by: Vec<Result<Derivatives, NoDerivative>>,
+}
+
+/// A state of a branch with its derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateDerivatives {
+    /// State of the branch.
+    pub point: BranchPoint,
+    /// Derivatives of the state by each variable, `[variable]`, with the other variables and the push angle fixed, or the reason why there
+    /// are none.
     pub by: Vec<Result<Derivatives, NoDerivative>>,
 }
 
@@ -112,10 +126,65 @@ pub fn detachments_at(
     ends.into_iter().map(of_end).collect()
 }
 
+/// Computes `count` points of the branch of `whisker` at `pole` as [`Branch::points`] does, with their derivatives by each of `variables`:
+/// `[point]`. First touch is at `distance_mm` from the base.
+///
+/// # Errors
+/// The whisker at rest does not reach the pole, or the continuation fails.
+pub fn branch(
+    whisker: &Whisker,
+    pole: &Pole,
+    side: Side,
+    distance_mm: f64,
+    count: usize,
+    variables: &[Variable],
+) -> Result<Vec<StateDerivatives>, NoState> {
+    let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
+    let states = Branch::new(whisker, pole, side, distance_mm)?.states(count)?;
+    let states = states.into_iter().map(|(at, point)| StateDerivatives {
+        by: differentiated.at(Equations::Push, at.into(), distance_mm),
+        point,
+    });
+    Ok(states.collect())
+}
+
+/// Computes the stable state of `whisker` after a push of `push_angle_deg` from first touch at `distance_mm`, with its derivatives by each
+/// of `variables`. The sign of the push angle selects the side.
+///
+/// ```
+/// use whiskmap::scene::Scene;
+/// use whiskmap::sensitivity::{Variable, state};
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let found = state(&cone.whisker, &cone.pole, 15.66, 10.0, &[Variable::PushAngleDeg])?;
+/// assert!(found.by[0]?.force_un > 0.0); // stiffness in uN per degree
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If there is no such state. The error contains how the whisker left the pole.
+pub fn state(
+    whisker: &Whisker,
+    pole: &Pole,
+    distance_mm: f64,
+    push_angle_deg: f64,
+    variables: &[Variable],
+) -> Result<StateDerivatives, NoState> {
+    let side = Side::of_push(push_angle_deg);
+    let branch = Branch::new(whisker, pole, side, distance_mm)?;
+    let state = branch.state(push_angle_deg.to_radians(), true)?;
+    let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
+    Ok(StateDerivatives {
+        by: differentiated.at(Equations::Push, [state.tau, state.load], distance_mm),
+        point: branch.point_of(&state),
+    })
+}
+
 /// A whisker with its derivatives by some variables.
-pub(crate) struct Differentiated<'a> {
+struct Differentiated<'a> {
     resolution: Resolution,
     whisker: &'a Whisker,
+    side: Side,
     rod: Rod,
     rest: Rest,
     axes: RodAxes,
@@ -125,7 +194,7 @@ pub(crate) struct Differentiated<'a> {
 
 impl<'a> Differentiated<'a> {
     /// Differentiates `whisker` by `variables`.
-    pub fn new(
+    fn new(
         resolution: Resolution,
         whisker: &'a Whisker,
         pole: &Pole,
@@ -149,6 +218,7 @@ impl<'a> Differentiated<'a> {
         Self {
             resolution,
             whisker,
+            side,
             rest: Rest::new(&rod),
             axes: RodAxes::new(given()),
             rod,
@@ -163,7 +233,7 @@ impl<'a> Differentiated<'a> {
     }
 
     /// Returns the derivatives, `[variable]`, of the state at `(tau, load)`, which `equations` determine. First touch is at `distance_mm`.
-    pub fn at(
+    fn at(
         &self,
         equations: Equations,
         point: [f64; 2],
@@ -185,7 +255,7 @@ impl<'a> Differentiated<'a> {
             Ok(Derivatives::new(
                 &at,
                 &moved,
-                (&self.rest, units),
+                (&self.rest, units, self.side),
                 by,
                 touch.y,
             ))

@@ -2,7 +2,7 @@
 
 use super::linearised::{Linearised, Moved};
 use super::whisker::WhiskerDerivative;
-use crate::rod::{Rest, Units, arclength};
+use crate::rod::{Rest, Side, Units, arclength};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -32,11 +32,25 @@ pub struct Derivatives {
 }
 
 impl Derivatives {
+    /// Returns the derivatives of the push angle (deg), the force (uN), the moment (nN m) and the energy (nJ), the arclength (mm) and the
+    /// angle (deg) of the contact, in the order of [`Variable::columns`](super::Variable::columns).
+    #[must_use]
+    pub const fn columns(&self) -> [f64; 6] {
+        [
+            self.push_angle_deg,
+            self.force_un,
+            self.base_moment_nnm,
+            self.energy_nj,
+            self.arc_length_mm,
+            self.contact_angle_deg,
+        ]
+    }
+
     /// Converts the derivative of a state to physical units. `phi` at first touch changes by `by_touch`.
     pub(super) fn new(
         at: &Linearised,
         moved: &Moved,
-        (rest, units): (&Rest, Units),
+        (rest, units, side): (&Rest, Units, Side),
         by: &WhiskerDerivative,
         by_touch: f64,
     ) -> Self {
@@ -51,7 +65,7 @@ impl Derivatives {
 
         let normal = rod.contact_tangent();
         let by_tilt = by.rod.friction / (1.0 + rod.friction * rod.friction);
-        let (size, by_size) = (full.force.abs(), full.force.signum() * state.force);
+        let (size, by_size) = (full.force.abs(), side.sign() * state.force);
 
         let distance = position.length();
         let by_distance = position.dot(state.position) / distance;

@@ -1,7 +1,7 @@
 //! Variables: the numbers by which detachments and states are differentiated.
 
 use crate::input::did_you_mean;
-use crate::scene::{Parameter, Scene};
+use crate::scene::{Parameter, Scene, derivative_columns};
 use std::fmt;
 
 /// Variable of a derivative: a parameter of the scene, or a number of the push.
@@ -46,6 +46,28 @@ impl Variable {
             Self::DistanceMm => "mm",
             Self::PushAngleDeg => "deg",
             Self::ProfileRadiusUm(_) => "um",
+        }
+    }
+
+    /// Returns the names of the columns with [`Derivatives::columns`](super::Derivatives::columns) by the variable, such as `d_push_d_taper`.
+    #[must_use]
+    pub const fn columns(self) -> [&'static str; 6] {
+        match self {
+            Self::Parameter(parameter) => parameter.derivative_columns(),
+            Self::DistanceMm => derivative_columns!("distance_mm"),
+            Self::PushAngleDeg => derivative_columns!("push_angle_deg"),
+            Self::ProfileRadiusUm(_) => derivative_columns!("profile_radius_um"),
+        }
+    }
+
+    /// Returns the value of the variable in the scene, in its unit: a parameter, or the radius of a row. `None` if the scene does not give
+    /// it, and for numbers of a push.
+    #[must_use]
+    pub fn value(self, scene: &Scene) -> Option<f64> {
+        match self {
+            Self::Parameter(parameter) => parameter.value(scene),
+            Self::ProfileRadiusUm(row) => Some(scene.measured_rows()?.get(row)?[1]),
+            Self::DistanceMm | Self::PushAngleDeg => None,
         }
     }
 

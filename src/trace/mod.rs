@@ -26,7 +26,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 /// Resolution of branches and shapes, twice as fine as [`Resolution::FINE`]: unstable states have larger loads.
-const FINER: Resolution = Resolution::FINE.doubled();
+pub(crate) const FINER: Resolution = Resolution::FINE.doubled();
 
 /// Mark of a branch point that is special, such as its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
