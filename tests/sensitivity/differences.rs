@@ -142,12 +142,6 @@ pub fn compare(index: u64) -> Compared {
         let size = push.size(*variable);
         for ((own, difference), value) in listed(by).into_iter().zip(differences).zip(values) {
             let apart = (own - difference).abs() / (difference.abs() + value.abs() / size);
-            if !(apart < 1e-7) {
-                eprintln!(
-                    "{index} {variable} {own} {difference} value {value} {apart:e} {:?} size {size}",
-                    end.kind
-                );
-            }
             compared.worst = compared.worst.max(apart);
         }
     }
