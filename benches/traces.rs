@@ -5,7 +5,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use whiskmap::rod::Side;
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Scene, Whisker};
+use whiskmap::sensitivity::{Variable, detachments};
 use whiskmap::trace::{Branch, WhiskerShape, corner, curve};
 
 fn traces(criterion: &mut Criterion) {
@@ -22,6 +23,43 @@ fn traces(criterion: &mut Criterion) {
     group.bench_function("curve, 256 distances, both sides", |bench| {
         bench.iter(|| Side::BOTH.map(|side| curve(whisker, pole, side, black_box(&distances))));
     });
+    let variables = Variable::of_detachments(&scene);
+    let twelve: Vec<Variable> = variables.iter().copied().cycle().take(12).collect();
+    for (name, variables) in [
+        ("1 detachment, no derivative", &[][..]),
+        ("1 detachment, 12 derivatives", &twelve),
+    ] {
+        group.bench_function(name, |bench| {
+            bench.iter(|| detachments(black_box(whisker), pole, Side::Cb, &[15.66], variables));
+        });
+    }
+    for (name, variables) in [
+        ("256 detachments, no derivative", &[][..]),
+        ("256 detachments, 12 derivatives", &twelve),
+    ] {
+        group.bench_function(name, |bench| {
+            bench.iter(|| detachments(black_box(whisker), pole, Side::Cb, &distances, variables));
+        });
+    }
+    let five = &twelve[..5];
+    let whiskers: Vec<Whisker> = (0..100)
+        .map(|i| Whisker {
+            tip_radius_um: 1.0 + 0.1 * f64::from(i),
+            ..whisker.clone()
+        })
+        .collect();
+    for (name, variables) in [
+        ("100 whiskers, both sides", &[][..]),
+        ("100 whiskers, both sides, 5 derivatives", five),
+    ] {
+        group.bench_function(name, |bench| {
+            bench.iter(|| {
+                let ends =
+                    |own| Side::BOTH.map(|side| detachments(own, pole, side, &[15.66], variables));
+                whiskers.iter().map(ends).collect::<Vec<_>>()
+            });
+        });
+    }
     group.bench_function("corner", |bench| {
         bench.iter(|| corner(black_box(whisker), pole, Side::Cb));
     });

@@ -5,6 +5,7 @@ use assert_cmd::Command;
 use std::fs;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::ComparedPoint;
+use whiskmap::sensitivity::VariableEffect;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::uncertainty::EndSpread;
 
@@ -95,6 +96,7 @@ fn every_column_is_on_the_page_of_the_commands() {
         BranchPoint::COLUMNS,
         ShapePoint::COLUMNS,
         EndSpread::COLUMNS,
+        VariableEffect::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

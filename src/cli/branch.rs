@@ -1,6 +1,7 @@
 //! Command `whiskmap branch`.
 
 use super::arguments::{column_help, whole};
+use super::derivatives::{DerivativeArgs, DerivativeColumns};
 use super::failure::Failure;
 use super::files::Files;
 use super::outputs::OutputArgs;
@@ -9,18 +10,23 @@ use clap::{Args, ValueEnum};
 use whiskmap::render::{BranchAxis, DrawnBranch, Ink, PUSH_ANGLE, Plot, branches, regions};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
-use whiskmap::trace::{Branch, BranchPoint};
+use whiskmap::sensitivity::{Variable, branch};
+use whiskmap::trace::BranchPoint;
 
 const EXAMPLES: &str = "\
 Examples:
   whiskmap branch scenes/cone.toml --distance 15.66 | less
   whiskmap branch scenes/cone.toml --distance 15.66 --side cb --csv branch.csv --plot branch.png
+  whiskmap branch scenes/cone.toml --distance 15.66 --side cb --derivatives=taper,push_angle_deg --csv branch.csv
   whiskmap branch scenes/cone.toml --distance 10,13,15.66 --y force_un --plot force.svg
   whiskmap branch scenes/cone.toml --distance 15.66 --y force_un --whole --plot force.pdf --size 85mm
 
 Points are evenly spaced in push angle, contact angle and arclength together, from first touch (mark: first-touch) on. \
 Stable states end where they meet the unstable ones (slip-off), or with the tip at the pole (pull-off). Unstable states end \
-at their own fold (second-fold) or with the tip at the pole (tip). Lengths in det are whisker lengths.";
+at their own fold (second-fold) or with the tip at the pole (tip). Lengths in det are whisker lengths.
+
+With --derivatives, columns such as d_force_d_taper follow: exact derivatives of force, moment, energy, arc length and contact \
+angle at a fixed push angle. At a fold they are infinite, and the columns are empty.";
 
 #[derive(Debug, Args)]
 #[command(
@@ -47,6 +53,8 @@ pub struct BranchArgs {
     /// Show unstable states whole; otherwise the vertical axis of a force or a moment ends with the stable states
     #[arg(long, requires = "plot")]
     whole: bool,
+    #[command(flatten)]
+    derivatives: DerivativeArgs,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -117,15 +125,30 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
         SideChoice::Cf => &[Side::Cf],
         SideChoice::Both => &Side::BOTH,
     };
-    let mut points = Vec::new();
+    let variables = args
+        .derivatives
+        .variables(&scene, &[Variable::PushAngleDeg])?;
+    let mut states = Vec::new();
     for &distance in distances {
         for side in sides {
-            let branch = Branch::new(&whisker, &scene.pole, *side, distance);
-            let followed = branch.and_then(|branch| branch.points(args.points as usize));
-            points.extend(followed.map_err(|why| refuse(distance, why))?);
+            let (pole, count) = (&scene.pole, args.points as usize);
+            let by = variables.as_deref().unwrap_or_default();
+            let followed = branch(&whisker, pole, *side, distance, count, by);
+            states.extend(followed.map_err(|why| refuse(distance, why))?);
         }
     }
-    outputs.rows(&points)?;
+    let points: Vec<BranchPoint> = states.iter().map(|own| own.point).collect();
+    match &variables {
+        None => outputs.rows(&points)?,
+        Some(variables) => outputs.rows(states.into_iter().map(|own| {
+            let columns = DerivativeColumns {
+                variables,
+                by: own.by,
+                first: 1,
+            };
+            (own.point, columns)
+        }))?,
+    }
     outputs.finish(title(&scene, distances), || plot(&scene, &points, args))
 }
 

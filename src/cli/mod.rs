@@ -9,6 +9,7 @@ mod branch;
 mod compare;
 mod curve;
 mod data;
+mod derivatives;
 mod design;
 mod devices;
 mod digits;
@@ -28,6 +29,7 @@ mod progress;
 mod render;
 mod reproduce;
 mod selection;
+mod sensitivity;
 mod shape;
 mod sharded;
 mod signals;
@@ -73,6 +75,7 @@ Examples:
   whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um
   whiskmap branch scenes/cone.toml --distance 15.66  # stable and unstable states
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10
+  whiskmap sensitivity scenes/cone.toml --distance 15.66
   whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper
   whiskmap reproduce                                 # figures 1 to 5 of the paper
   whiskmap verify
@@ -105,6 +108,8 @@ enum Command {
     Branch(branch::BranchArgs),
     /// Compute the shape of the whisker in one state
     Shape(shape::ShapeArgs),
+    /// Differentiate the push angle at detachment by every number of a scene
+    Sensitivity(sensitivity::SensitivityArgs),
     /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
     Design(design::DesignArgs),
     /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
@@ -179,6 +184,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Fit(args) => fit::run(args, files),
         Command::Branch(args) => branch::run(args, files),
         Command::Shape(args) => shape::run(args, files),
+        Command::Sensitivity(args) => sensitivity::run(args, files),
         Command::Design(args) => design::run(args, files),
         Command::Reproduce(args) => reproduce::run(args, files),
         Command::Verify => verify::run(),

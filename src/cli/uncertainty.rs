@@ -13,7 +13,7 @@ use whiskmap::uncertainty::{DrawError, Draws, EndSpread};
 pub struct SampleArgs {
     /// Draw N whiskers from the scene's [uncertainty]; the table has percentiles of their push angles, and a plot shows them
     /// as bands
-    #[arg(long, value_name = "N", value_parser = whole(2..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = whole(2..=1_000_000), conflicts_with = "derivatives")]
     samples: Option<u32>,
     /// Seed of the samples
     #[arg(long, value_name = "S", default_value = "1", requires = "samples", value_parser = whole(0..=u32::MAX))]

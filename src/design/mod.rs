@@ -1,7 +1,8 @@
 //! Designs: values of a parameter with which a push reaches a target: a push angle at detachment, or a largest load.
 //!
 //! The search scans the range that the scene accepts. Between samples it finds changes of the kind of detachment, and turns of
-//! the target's quantity. It bisects between neighbours of all these values. Every solution is computed: a jump across the target is no
+//! the target's quantity. Between neighbours of all these values, it finds push angles by Newton's method with exact derivatives, and loads by
+//! bisection. Every solution is computed: a jump across the target is no
 //! solution.
 
 mod samples;

@@ -1,4 +1,4 @@
-//! Search of a design for ends at a push angle: a scan, changes of kind, and bisection between turns.
+//! Search of a design for ends at a push angle: a scan, changes of kind, and Newton's method between turns.
 
 use super::samples::samples;
 use super::{DesignEnd, DesignTarget, turn};
@@ -10,6 +10,9 @@ use std::convert::Infallible;
 
 /// Width of the interval of a change of kind, in parts of the interval between two samples: 50 halvings.
 const CHANGE_WIDTH: f64 = 1e-15;
+
+/// Longest last step of Newton's method, relative to the value: the error is about its square.
+const LAST_STEP: f64 = 1e-8;
 
 /// Search of a design: the scene, the parameter that varies, and the target.
 pub struct DesignSearch<'a> {
@@ -39,6 +42,16 @@ impl DesignSearch<'_> {
 
     fn miss_at(&self, value: f64) -> f64 {
         self.miss(&self.end(value))
+    }
+
+    /// The miss at a value of the parameter, and the next value by Newton's method: NaN for a bisection, without a derivative.
+    fn newton(&self, value: f64) -> (f64, f64) {
+        let miss = self.miss_at(value);
+        let moved = self.scene.with_parameters(&[(self.parameter, value)]);
+        let slope = moved
+            .ok()
+            .and_then(|scene| self.target.slope(&scene, self.parameter));
+        (miss, slope.map_or(f64::NAN, |slope| value - miss / slope))
     }
 
     /// Returns ends of pushes at values over the `range` of the parameter, in its unit, and on both sides of each change of kind.
@@ -101,7 +114,10 @@ impl DesignSearch<'_> {
             if after {
                 let [next, miss_there] = places[i + 1];
                 let bracket = Bracket::new([*value, next], [*miss, miss_there]);
-                solutions.push(bracket.bisect(|value| self.miss_at(value)));
+                let start = bracket.middle();
+                let last_step = |value: f64| LAST_STEP * value.abs();
+                let root = bracket.newton(start, last_step, |value| self.newton(value));
+                solutions.push(root.x);
             } else if !before && miss.abs() <= self.target.tolerance() {
                 solutions.push(*value);
             }

@@ -2,7 +2,8 @@
 
 use crate::input::Quantity;
 use crate::rod::Side;
-use crate::scene::Scene;
+use crate::scene::{Parameter, Scene};
+use crate::sensitivity::detachments;
 use crate::shooting::Resolution;
 use crate::trace::{Branch, BranchPoint, DetachmentKind, curve_without_strain};
 
@@ -110,6 +111,19 @@ impl DesignTarget {
             None => TOLERANCE_DEG,
             Some(_) => TOLERANCE * self.value.abs(),
         }
+    }
+
+    /// Returns the exact derivative of the push angle at detachment by `parameter`, in degrees per unit of the parameter. `None` for a load,
+    /// whose largest value may lie anywhere in the push, and without a derivative.
+    pub(super) fn slope(&self, scene: &Scene, parameter: Parameter) -> Option<f64> {
+        if self.goal.load().is_some() {
+            return None;
+        }
+        let (whisker, pole) = (&scene.whisker, &scene.pole);
+        let variables = [parameter.into()];
+        let ends = detachments(whisker, pole, self.side, &[self.distance_mm], &variables);
+        let by = ends.first()?.by.first()?.as_ref().ok()?;
+        Some(by.push_angle_deg)
     }
 
     /// Computes how a push ends with the whisker of `scene`, and the value of the goal's quantity, in its unit. The value is `None` without

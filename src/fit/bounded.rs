@@ -65,7 +65,7 @@ fn search(misfit: &Misfit<'_>, start: &[f64]) -> Result<(Vec<f64>, f64), FitErro
         };
         // The columns of parameters that are beyond a limit, or would go there, are 0.
         let jacobian = |x: &[f64], residuals: &[f64]| {
-            let mut columns = misfit.jacobian(&inside(x), residuals)?;
+            let mut columns = misfit.jacobian(&inside(x))?;
             clear_faint(&mut columns);
             for ((column, [least, most]), x) in columns.iter_mut().zip(&ranges).zip(x) {
                 let growth = dot(column, residuals);

@@ -2,8 +2,8 @@
 
 use super::svd::{Svd, norm};
 
-/// Least singular value over the largest, and least column over the longest, that counts: the differences that the
-/// Jacobian is made of are not more exact.
+/// Least singular value over the largest, and least column over the longest, that counts: the steps of least squares and the measured
+/// values are not more exact.
 pub const FAINT: f64 = 1e-6;
 
 /// Largest component in directions without a singular value, of 1, of a parameter that is determined.
@@ -68,7 +68,11 @@ impl Covariance {
 
     /// Returns the correlation of two parameters, between -1 and 1; `None` if one is not determined.
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
-        let deviations = self.deviation(i)? * self.deviation(j)?;
+        if !(self.is_determined[i] && self.is_determined[j]) {
+            return None;
+        }
+        // The root of a square is exact: the correlation of a parameter with itself is 1.
+        let deviations = (self.matrix[i][i] * self.matrix[j][j]).sqrt();
         Some((self.matrix[i][j] / deviations).clamp(-1.0, 1.0))
     }
 }
@@ -83,7 +87,7 @@ mod tests {
         all.map(|i| covariance.deviation(i).is_some()).collect()
     }
 
-    /// With differences that are less exact than 1e-6, a short column is like none, and two nearly parallel columns are like one.
+    /// A short column is like none, and two nearly parallel columns are like one.
     #[test]
     fn a_faint_column_or_direction_is_not_determined() {
         for (size, is_seen) in [(2e-6, true), (0.5e-6, false)] {

@@ -19,7 +19,7 @@ const RADIUS_SLACK: f64 = 0.1;
 const LEAST_RATIO: f64 = 1e-4;
 
 /// Message of a fit for which no Jacobian can be computed.
-pub(super) const NO_JACOBIAN: &str = "a parameter cannot be changed enough for a derivative: the scene refuses it, or a point is out of reach";
+pub(super) const NO_JACOBIAN: &str = "a point has no derivative by a parameter: it is out of reach, at the reach, or where slip-off turns into pull-off";
 
 /// Minimises the sum of squares of residuals from the parameters `x` on. Returns the parameters and the sum.
 ///

@@ -2,11 +2,8 @@
 
 use crate::measured::MeasuredPoints;
 use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, Whisker};
+use crate::sensitivity::Variable;
 use rayon::prelude::*;
-
-/// Step of central differences, in units of the parameters. Truncation and the rounding of curves then take at most
-/// 5e-9 of a cone's derivatives, by each of its parameters; with ten times the step, 5e-7.
-const STEP: f64 = 1e-5;
 
 /// Misfit of points: their residuals as a function of parameters. Parameters are in units of [`Misfit::units`], so that all are of order
 /// 1.
@@ -78,35 +75,24 @@ impl<'a> Misfit<'a> {
         })
     }
 
-    /// Returns the derivatives of the residuals by the parameters over their units, `[parameter][point]`; `None` where neither side has
-    /// one. `here` are the residuals at `parameters`.
-    pub fn jacobian(&self, parameters: &[f64], here: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let columns = (0..self.free.len()).into_par_iter().map(|i| {
-            let beside = |step: f64| {
-                let mut beside = parameters.to_vec();
-                beside[i] += step;
-                self.residuals(&beside)
-            };
-            let central = || {
-                let (after, before) = (beside(STEP)?, beside(-STEP)?);
-                let pairs = after.iter().zip(before);
-                Some(
-                    pairs
-                        .map(|(after, before)| (after - before) / (2.0 * STEP))
-                        .collect(),
-                )
-            };
-            let one_sided = |step: f64| {
-                let (near, far) = (beside(step)?, beside(2.0 * step)?);
-                let pairs = near.iter().zip(far).zip(here);
-                let slope = |((near, far), here)| (4.0 * near - far - 3.0 * here) / (2.0 * step);
-                Some(pairs.map(slope).collect())
-            };
-            central()
-                .or_else(|| one_sided(STEP))
-                .or_else(|| one_sided(-STEP))
-        });
-        columns.collect()
+    /// Returns the derivatives of the residuals by the parameters over their units, `[parameter][point]`; `None` where the scene refuses the
+    /// parameters, or an end has no derivative.
+    pub fn jacobian(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let SweptWhisker { whisker, pole, .. } = self.scene(parameters).ok()?.first_whisker();
+        let variables: Vec<Variable> = self.free.iter().map(|own| (*own).into()).collect();
+        let mut columns = self.points.derivatives(&whisker, &pole, &variables)?;
+        // With a free taper, the radius at the tip follows the one at the base. No detachment depends on the size of a cone.
+        if self.free.contains(&Parameter::Taper) {
+            let of_base = self.free.iter().zip(&mut columns);
+            let mut of_base = of_base.filter(|(own, _)| **own == Parameter::BaseRadiusUm);
+            of_base.by_ref().for_each(|(_, column)| column.fill(0.0));
+        }
+        for (column, unit) in columns.iter_mut().zip(&self.units) {
+            for (derivative, point) in column.iter_mut().zip(&self.points.points) {
+                *derivative *= unit / point.sd_deg;
+            }
+        }
+        Some(columns)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Fits of parameters of a scene to measured detachments, by nonlinear least squares.
 //!
 //! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and Marquardt's method
-//! (`least_squares`) minimises it inside the limits of the scene (`bounded`). Angles are continuous where slip-off turns into pull-off,
+//! (`least_squares`) minimises it inside the limits of the scene (`bounded`), with exact derivatives. Angles are continuous where slip-off turns into pull-off,
 //! but their derivatives are not: the trust region limits steps there.
 
 mod bounded;
@@ -132,9 +132,8 @@ pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result
     let best = best(&misfit)?;
     let fitted = misfit.scene(&best)?;
     let here = misfit.residuals(&best);
-    let jacobian = here.as_ref().and_then(|here| misfit.jacobian(&best, here));
     let (here, mut jacobian) = here
-        .zip(jacobian)
+        .zip(misfit.jacobian(&best))
         .ok_or(FitError::NotConverged(NO_JACOBIAN))?;
     let ranges = misfit.ranges(&fitted);
     let is_at_limit = |i: usize| ranges[i].contains(&best[i]);

@@ -3,6 +3,7 @@
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
+use crate::sensitivity::{Derivatives, Variable, detachments};
 use crate::shooting::Resolution;
 use crate::trace::row;
 use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
@@ -70,13 +71,48 @@ impl MeasuredPoints {
         }
     }
 
+    /// Returns the derivatives of the predicted angles by each of `variables`, in degrees per unit of the variable, `[variable][point]`.
+    /// `None` if one of them does not exist.
+    #[must_use]
+    pub fn derivatives(
+        &self,
+        whisker: &Whisker,
+        pole: &Pole,
+        variables: &[Variable],
+    ) -> Option<Vec<Vec<f64>>> {
+        let ends = Side::BOTH.map(|side| {
+            let distances = self.distances(side);
+            detachments(whisker, pole, side, &distances, variables)
+        });
+        let angle = |by: &Derivatives| match self.angle {
+            MeasuredAngle::Push => by.push_angle_deg,
+            MeasuredAngle::Chord => by.push_chord_deg,
+        };
+        let of_point = |point: &MeasuredPoint, variable: usize| {
+            let ends = &ends[usize::from(point.side == Side::Cb)];
+            let place = ends.partition_point(|own| own.end.distance_mm < point.distance_mm);
+            ends[place].by[variable].as_ref().ok().map(angle)
+        };
+        let of_variable = |variable: usize| {
+            let points = self.points.iter();
+            points.map(|point| of_point(point, variable)).collect()
+        };
+        (0..variables.len()).map(of_variable).collect()
+    }
+
     /// The predicted detachments on `side`, in growing order of the distances, each distance once.
     fn ends(&self, whisker: &Whisker, pole: &Pole, side: Side) -> Vec<Detachment> {
+        let distances = self.distances(side);
+        curve_without_strain(Resolution::FINE, whisker, pole, side, &distances)
+    }
+
+    /// The distances of the points on `side` in growing order, in mm, each once.
+    fn distances(&self, side: Side) -> Vec<f64> {
         let points = self.points.iter().filter(|point| point.side == side);
         let mut distances: Vec<f64> = points.map(|point| point.distance_mm).collect();
         distances.sort_by(f64::total_cmp);
         distances.dedup();
-        curve_without_strain(Resolution::FINE, whisker, pole, side, &distances)
+        distances
     }
 }
 

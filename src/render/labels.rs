@@ -1,5 +1,6 @@
 //! Labels of axes, channels and regions in words, with their units.
 
+use crate::rod::Side;
 use crate::scene::Parameter;
 use whiskmap_plot::Region;
 
@@ -22,6 +23,14 @@ pub fn regions(is_straight: bool) -> [Region; 2] {
         name: name.to_owned(),
         short: short.to_owned(),
     })
+}
+
+/// Returns the short name of a side.
+pub const fn side(side: Side) -> &'static str {
+    match side {
+        Side::Cb => "CB",
+        Side::Cf => "CF",
+    }
 }
 
 /// Returns the label of a parameter.

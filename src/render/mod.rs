@@ -9,6 +9,7 @@ mod map;
 mod options;
 mod plots;
 mod row;
+mod sensitivities;
 
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
 pub use map::map;
@@ -17,6 +18,7 @@ pub use plots::{
     BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves,
     designs, error_bars, measured, shapes,
 };
+pub use sensitivities::sensitivities;
 pub use whiskmap_plot::{
     Band, Chart, Disc, Dot, EncodeError, Ink, Inset, Line, Note, Picture, PictureFormat,
     PictureSize, Plot, PrintSize, Region, SizeError, Stroke,

@@ -41,7 +41,7 @@ impl SceneBuilder {
         sweep::check_corners(&grid, |place| at(&self.numbers.at(place)).map(drop))?;
         let (mut whisker, pole) = at(&self.numbers.at(&grid.place(0)))?;
         if grid.axis(Parameter::ParabolaPerMm).is_none() {
-            whisker.curvature = whisker.curvature.filter(Curvature::bends);
+            whisker.curvature = whisker.curvature.filter(Curvature::is_given);
         }
         check_name(self.name.as_deref())?;
         Ok(SceneData {
@@ -117,6 +117,7 @@ fn whisker(numbers: &Numbers, rows: Option<&[[f64; 2]]>) -> Result<Whisker, Scen
         curvature,
         euler_spiral,
         profile: radii.profile,
+        profile_scale: numbers.get(Parameter::ProfileScale).unwrap_or(1.0),
         modulus_tip_to_base,
         arc_stretch,
     })

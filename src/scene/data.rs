@@ -56,7 +56,7 @@ impl SceneData {
         if let Some(taper) = place.value(Parameter::Taper) {
             whisker.tip_radius_um = whisker.base_radius_um * (1.0 - taper);
         }
-        whisker.curvature = Some(curvature).filter(Curvature::bends);
+        whisker.curvature = Some(curvature).filter(Curvature::is_given);
         SweptWhisker {
             place,
             whisker,

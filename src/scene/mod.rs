@@ -35,6 +35,7 @@ pub use error::SceneError;
 pub use grid::{Grid, SweepAxis, SweepPlace};
 pub use limits::{digits, rounded};
 pub use parameter::Parameter;
+pub(crate) use parameter::derivative_columns;
 pub use scene::Scene;
 pub use toml::SceneText;
 pub use whisker::{Curvature, EulerSpiral, Pole, SweptWhisker, Whisker};

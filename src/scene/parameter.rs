@@ -1,5 +1,21 @@
 //! Parameters: the numbers of a scene by name.
 
+/// Columns of a table with the derivatives of the push angle, force, moment, energy, arclength and contact angle by a variable.
+macro_rules! derivative_columns {
+    ($name:expr) => {
+        [
+            concat!("d_push_d_", $name),
+            concat!("d_force_d_", $name),
+            concat!("d_moment_d_", $name),
+            concat!("d_energy_d_", $name),
+            concat!("d_arc_length_d_", $name),
+            concat!("d_contact_angle_d_", $name),
+        ]
+    };
+}
+
+pub(crate) use derivative_columns;
+
 /// Parameters, each with its name, its unit (`1` for a ratio), its key in a scene file and its title.
 macro_rules! parameters {
     ($(#[$outer:meta])* pub enum $kind:ident {
@@ -35,6 +51,11 @@ macro_rules! parameters {
             /// The name as a key of the table `grid`.
             const fn grid_key(self) -> &'static str {
                 match self { $(Self::$parameter => concat!("grid.", $name)),* }
+            }
+
+            /// Returns the names of the columns with derivatives by the parameter.
+            pub(crate) const fn derivative_columns(self) -> [&'static str; 6] {
+                match self { $(Self::$parameter => derivative_columns!($name)),* }
             }
 
             /// Returns the title of the parameter in charts.

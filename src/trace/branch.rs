@@ -110,6 +110,12 @@ impl Branch {
     /// # Errors
     /// The corrector fails at a point between two nodes of the continuation.
     pub fn points(&self, count: usize) -> Result<Vec<BranchPoint>, NoState> {
+        let states = self.states(count)?;
+        Ok(states.into_iter().map(|(_, point)| point).collect())
+    }
+
+    /// Returns the points of [`Branch::points`], each with `(tau, load)` of its contact.
+    pub(crate) fn states(&self, count: usize) -> Result<Vec<(DVec2, BranchPoint)>, NoState> {
         let Continuation { nodes, fold, end } = &self.continuation;
         let lengths = self.lengths();
         let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
@@ -149,10 +155,13 @@ impl Branch {
             .iter()
             .zip(self.slidings(&states, stable))
             .enumerate();
-        let points = points.map(|(i, ((node, mark), sliding))| BranchPoint {
-            mark: *mark,
-            sliding,
-            ..self.point(node, fold_at.is_none_or(|fold| i <= fold))
+        let points = points.map(|(i, ((node, mark), sliding))| {
+            let point = BranchPoint {
+                mark: *mark,
+                sliding,
+                ..self.point(node, fold_at.is_none_or(|fold| i <= fold))
+            };
+            (node.point, point)
         });
         Ok(points.collect())
     }

@@ -12,8 +12,8 @@ mod shape;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
-pub(crate) use curve::curve_without_strain;
 pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, reach_mm};
+pub(crate) use curve::{DetachmentEnd, curve_without_strain, detachments};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;
 
@@ -26,7 +26,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 /// Resolution of branches and shapes, twice as fine as [`Resolution::FINE`]: unstable states have larger loads.
-const FINER: Resolution = Resolution::FINE.doubled();
+pub(crate) const FINER: Resolution = Resolution::FINE.doubled();
 
 /// Mark of a branch point that is special, such as its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -1,51 +1,45 @@
 //! The spread of push angles to first order: `sd^2 = sum (d push/d value x sd of the value)^2`.
 
-use super::pushes_deg;
-use super::varying::{Varying, moved};
+use super::varying::Varying;
 use crate::rod::Side;
 use crate::scene::Scene;
+use crate::sensitivity::{DetachmentDerivatives, Variable, detachments_at};
 use crate::shooting::Resolution;
-use rayon::prelude::*;
 
-/// Step of the difference quotient, in standard deviations and relative to the value: far above the rounding of exact ends
-/// (1e-12), and so small that its truncation error (its square) is negligible.
-const STEP: [f64; 2] = [1e-3, 1e-6];
-
-/// Returns the standard deviation of the push angle in degrees, to first order, `[distance]`; `None` where a derivative lacks an end.
+/// Returns the standard deviation of the push angle in degrees, to first order, `[distance]`; `None` without a detachment or its
+/// derivatives.
 pub(super) fn deviations_deg(
     scene: &Scene,
     varying: &[Varying],
     resolution: Resolution,
     side: Side,
 ) -> Vec<Option<f64>> {
-    let pushes = |scene: &Scene| pushes_deg(scene, resolution, side);
-    let here = pushes(scene);
-    let parts: Vec<Vec<Option<f64>>> = varying
-        .par_iter()
-        .map(|one| {
-            let step = STEP[0] * one.deviation + STEP[1] * one.value.abs();
-            let moved = |step| {
-                moved(scene, &[(*one, step)])
-                    .ok()
-                    .map(|scene| pushes(&scene))
-            };
-            // At a limit of the scene there is one side only.
-            let (before, after, width) = match (moved(-step), moved(step)) {
-                (Some(before), Some(after)) => (before, after, 2.0 * step),
-                (Some(before), None) => (before, here.clone(), step),
-                (None, Some(after)) => (here.clone(), after, step),
-                (None, None) => return vec![None; here.len()],
-            };
-            let part = |(before, after): (Option<f64>, Option<f64>)| {
-                Some((after? - before?) / width * one.deviation)
-            };
-            before.into_iter().zip(after).map(part).collect()
-        })
+    let parts: Vec<Vec<(Variable, f64)>> = varying.iter().map(|one| one.variables(scene)).collect();
+    let variables: Vec<Variable> = parts
+        .iter()
+        .flatten()
+        .map(|(variable, _)| *variable)
         .collect();
-    let sum = |row: usize| {
-        here[row]?;
-        let squares = parts.iter().map(|part| Some(part[row]?.powi(2)));
-        Some(squares.sum::<Option<f64>>()?.sqrt())
+    let ends = detachments_at(
+        resolution,
+        &scene.whisker,
+        &scene.pole,
+        side,
+        &scene.grid.distance_mm,
+        &variables,
+    );
+    let deviation = |DetachmentDerivatives { end, by }: DetachmentDerivatives| {
+        end.push_angle_deg?;
+        let mut by = by.into_iter();
+        let mut square = 0.0;
+        for (one, parts) in varying.iter().zip(&parts) {
+            let mut slope = 0.0;
+            for (_, change) in parts {
+                slope += change * by.next()?.ok()?.push_angle_deg;
+            }
+            square += (slope * one.deviation).powi(2);
+        }
+        Some(square.sqrt())
     };
-    (0..here.len()).map(sum).collect()
+    ends.into_iter().map(deviation).collect()
 }

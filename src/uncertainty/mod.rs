@@ -179,10 +179,3 @@ fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn,
         }
     }
 }
-
-/// The push angles of the ends of `scene` in degrees, a value for each distance.
-fn pushes_deg(scene: &Scene, resolution: Resolution, side: Side) -> Vec<Option<f64>> {
-    let distances = &scene.grid.distance_mm;
-    let ends = curve_without_strain(resolution, &scene.whisker, &scene.pole, side, distances);
-    ends.iter().map(|end| end.push_angle_deg).collect()
-}

@@ -1,6 +1,7 @@
 //! Numbers of a scene that vary randomly.
 
 use crate::scene::{Deviations, Parameter, Scene, SceneError};
+use crate::sensitivity::Variable;
 
 /// Number of a scene that varies randomly.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +41,31 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
     });
     let all = parameters.chain(rows.into_iter().flatten());
     all.filter(|one| one.deviation > 0.0).collect()
+}
+
+impl Varying {
+    /// Returns the variables of the whisker that the number of `scene` changes, each with its change per unit of the number. The cone beyond
+    /// the last measured row follows the last two rows.
+    pub(super) fn variables(&self, scene: &Scene) -> Vec<(Variable, f64)> {
+        let row = match self.source {
+            VaryingSource::Parameter(parameter) => return vec![(parameter.into(), 1.0)],
+            VaryingSource::Row(row) => row,
+        };
+        let rows = rows(scene);
+        let mut variables = vec![(Variable::ProfileRadiusUm(row), 1.0)];
+        let extension = scene.whisker.length_mm - rows[rows.len() - 1][0];
+        let has_cone = scene.whisker.profile.as_ref().map_or(0, Vec::len) > rows.len();
+        if let ([.., [from, _], [end, _]], true) = (&rows[..], has_cone) {
+            let growth = extension / (end - from);
+            let change = match rows.len() - row {
+                1 => 1.0 + growth,
+                2 => -growth,
+                _ => return variables,
+            };
+            variables.push((Variable::ProfileRadiusUm(rows.len()), change));
+        }
+        variables
+    }
 }
 
 /// Returns the scene with each number moved by its step.

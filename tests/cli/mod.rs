@@ -34,6 +34,7 @@ mod protected;
 mod refused;
 mod render;
 use crate::sealed;
+mod sensitivity;
 mod shape;
 #[cfg(unix)]
 mod signals;

@@ -4,6 +4,7 @@ mod plot;
 
 use super::arguments::{column_help, length};
 use super::data;
+use super::derivatives::{DerivativeArgs, DerivativeColumns};
 use super::failure::{Failure, check_resolved, message};
 use super::files::Files;
 use super::outputs::{OpenOutputs, OutputArgs};
@@ -20,6 +21,7 @@ use whiskmap::measured::{ComparedPoint, MeasuredAngle};
 use whiskmap::render::{Plot, bands, error_bars, measured};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
+use whiskmap::sensitivity::{Variable, detachments_at};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 use whiskmap::uncertainty::{Draws, EndSpread};
@@ -30,6 +32,7 @@ Examples:
   whiskmap curve scenes/cone.toml --csv curve.csv --plot curve.svg
   whiskmap curve scenes/cone.toml --tolerance 1e-4deg
   whiskmap curve scenes/robot.toml --distance 60 --units mN,Nmm
+  whiskmap curve scenes/cone.toml --derivatives=taper,length_mm --csv curve.csv
   whiskmap curve scenes/cone.toml --corner
   whiskmap curve scenes/morphology.toml --at taper=0.95 --at curvature_per_mm=0.02 --plot curve.svg
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
@@ -41,6 +44,9 @@ The table has one line per side and distance of the scene, CF before CB. Angles 
 Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \
 sweep axes, such as grid.taper, the table has the curve of every whisker, with a leading column for each axis. A plot shows \
 one whisker, which --at selects.
+
+With --derivatives, columns such as d_push_d_taper follow: exact derivatives of the push angle, force, moment, energy, arc length \
+and contact angle at detachment, each in the unit of its quantity per unit of the variable. Without a derivative, they are empty.
 
 With --data, the table has measured points instead of the curve. They are read from a CSV file with the columns side (cb or \
 cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) and sd_deg. The plot \
@@ -64,10 +70,10 @@ pub struct CurveArgs {
     /// Scene file; - is standard input
     scene: PathBuf,
     /// Print only where slip-off turns into pull-off, or why it does not
-    #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples"])]
+    #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples", "derivatives"])]
     corner: bool,
     /// Compare the measured detachments in FILE with the curve; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance", "derivatives"])]
     data: Option<PathBuf>,
     /// Column on the horizontal axis of the plot
     #[arg(
@@ -84,6 +90,8 @@ pub struct CurveArgs {
     /// are separated by commas
     #[arg(long, value_name = "LENGTH", value_delimiter = ',', allow_hyphen_values = true, value_parser = length)]
     distance: Vec<f64>,
+    #[command(flatten)]
+    derivatives: DerivativeArgs,
     #[command(flatten)]
     sampling: SampleArgs,
     #[command(flatten)]
@@ -103,6 +111,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         distances.dedup();
         scene = scene.to_builder().distance_mm(distances).build()?;
     }
+    let variables = args.derivatives.variables(&scene, &[])?;
     let whiskers = scene.whisker_count();
     if args.outputs.has_plot() && whiskers > 1 {
         let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
@@ -157,7 +166,13 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             ends
         };
         let rows = trace::sides(&group, curve);
-        write(&scene, &mut outputs, &rows)?;
+        match &variables {
+            None => write(&scene, &mut outputs, &rows)?,
+            Some(variables) => {
+                let rows = differentiated(&rows, &group, resolution, variables);
+                write(&scene, &mut outputs, &rows)?;
+            }
+        }
         let kinds = rows.iter().map(|(_, row)| row.kind);
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
@@ -168,6 +183,39 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         scene_curve(&scene, resolution, args.x.axis())
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
+}
+
+/// Returns the ends of some whiskers, with columns of their derivatives by `variables`.
+fn differentiated<'a>(
+    ends: &[(SweepPlace, Detachment)],
+    whiskers: &[SweptWhisker],
+    resolution: Resolution,
+    variables: &'a [Variable],
+) -> Vec<(SweepPlace, (Detachment, DerivativeColumns<'a>))> {
+    let of_side = ends.len() / (whiskers.len() * Side::BOTH.len());
+    let distances: Vec<f64> = ends[..of_side]
+        .iter()
+        .map(|(_, end)| end.distance_mm)
+        .collect();
+    let by = trace::sides(whiskers, |own: &SweptWhisker, side| {
+        detachments_at(
+            resolution,
+            &own.whisker,
+            &own.pole,
+            side,
+            &distances,
+            variables,
+        )
+    });
+    let rows = ends.iter().zip(by).map(|((place, end), (_, own))| {
+        let columns = DerivativeColumns {
+            variables,
+            by: own.by,
+            first: 0,
+        };
+        (place.clone(), (*end, columns))
+    });
+    rows.collect()
 }
 
 /// Writes the rows of some whiskers, with a leading column for each sweep axis.

@@ -4,12 +4,12 @@ use glam::DVec2;
 use num_dual::{DualNum, HyperDual64, second_partial_derivative};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use whiskmap_mechanics::numerics::{Real, Vector};
-use whiskmap_mechanics::rod::{Effects, Rod};
+use whiskmap_mechanics::rod::{Effects, Rod, RodDerivative};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{
     Graded, Integrator, Intrinsic, Material, NoSensitivity, Nystrom8, Planar, Resolution,
     RodSystem, STAGES, Scales, SecondVariation, Section, Sensitivity, ShootingMap, Straight,
-    TrajectoryState, Uniform, integrate,
+    TrajectoryState, TrajectoryVariable, Uniform, differentiate, integrate,
 };
 
 const EFFECTS: Effects = Effects {
@@ -195,22 +195,32 @@ impl Real for Dual {
 
 /// `(ln D, phi)` of a straight, tapered, graded rod on a rough pole, differentiated by num-dual through the whole integration.
 fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
-    let rho = (tau * -rod.taper).exp();
+    let [taper, gradient] = [rod.taper, rod.gradient].map(HyperDual64::from);
+    ln_pole_of(rod, [taper, gradient], [tau, load])
+}
+
+/// `(ln D, phi)` as [`ln_pole`], for another taper and gradient.
+fn ln_pole_of(
+    rod: &Rod,
+    [taper, gradient]: [HyperDual64; 2],
+    [tau, load]: [HyperDual64; 2],
+) -> [HyperDual64; 2] {
+    let rho = (-tau * taper).exp();
     let steps = 256;
     let h = Dual(tau / f64::from(steps));
     let system = RodSystem {
         force: Dual(load * rho * rho),
         intrinsic: Straight,
         material: Graded {
-            gradient: Dual::of(rod.gradient),
+            gradient: Dual(gradient),
         },
     };
     let from = Section {
         rho: Dual(rho),
         inverse_cube: Dual((rho * rho * rho).recip()),
-        arclength: Dual((rho * -1.0 + 1.0) / rod.taper),
+        arclength: Dual((rho * -1.0 + 1.0) / taper),
     };
-    let scales = Scales::tapered::<Rk4>(Dual::of(rod.taper), h);
+    let scales = Scales::tapered::<Rk4>(Dual(taper), h);
     let DVec2 { x, y } = rod.contact_tangent();
     let contact: Planar<Dual> = [x, y, 0.0, 0.0, 0.0].map(Dual::of);
     let (_, (end, _)) = integrate::<Rk4, _, _, _, NoSensitivity>(
@@ -261,6 +271,54 @@ fn sensitivities_agree_with_num_dual() {
                         "{name}[{axis}] at taper {taper}, load {load}: {own}, num-dual {dual}"
                     );
                 }
+            }
+        }
+    }
+}
+
+/// Derivatives of the shooting map by taper and modulus, and those of its derivative by the load, against automatic differentiation of 256
+/// RK4 steps (measured difference: 3e-9, relative).
+#[test]
+fn derivatives_by_the_rod_agree_with_num_dual() {
+    for (taper, pole, load) in [(0.1, 0.0, 3.0), (0.7, 0.0125, 6.0), (0.95, -0.05, -6.0)] {
+        let rod = Rod {
+            taper,
+            pole,
+            gradient: 0.6 - 10.0 * pole,
+            friction: -6.0 * pole,
+            ..Rod::default()
+        };
+        let tau = rod.tau(0.8);
+        let condition = InitialCondition {
+            rod: &rod,
+            tau,
+            load,
+        };
+        let by_taper = RodDerivative {
+            taper: 1.0,
+            ..RodDerivative::default()
+        };
+        let by_gradient = RodDerivative {
+            gradient: 1.0,
+            ..RodDerivative::default()
+        };
+        let variables = [&by_taper, &by_gradient].map(TrajectoryVariable::Rod);
+        let (_, own) = differentiate(Resolution::of(128), &condition, &variables);
+        for (i, value) in [rod.taper, rod.gradient].into_iter().enumerate() {
+            let at = |axis: usize| {
+                let along = |(moved, load): (HyperDual64, HyperDual64)| {
+                    let mut numbers = [rod.taper, rod.gradient].map(HyperDual64::from);
+                    numbers[i] = moved;
+                    ln_pole_of(&rod, numbers, [HyperDual64::from(tau), load])[axis]
+                };
+                second_partial_derivative(along, (value, load))
+            };
+            let [ln_d, phi] = [0, 1].map(at);
+            let first = DVec2::new(ln_d.1, phi.1);
+            let mixed = DVec2::new(ln_d.3, phi.3);
+            for (own, dual) in [(own[i].ln_pole, first), (own[i].by_load, mixed)] {
+                let apart = own.distance(dual) / dual.length();
+                assert!(apart < 1e-7, "{i} at taper {taper}: {own}, num-dual {dual}");
             }
         }
     }

@@ -199,6 +199,8 @@ pub struct Plot {
     /// Axes of the plot that are logarithmic, `[x, y]`. On these, numbers that are not positive are not drawn; if any is logarithmic,
     /// neither are discs and insets.
     pub logarithmic: [bool; 2],
+    /// Names of the numbers 0, 1, 2, ... on the plot's vertical axis, `[number]`, in place of ticks; empty for ticks.
+    pub y_names: Vec<String>,
     /// True if the plot is drawn without frame, ticks and labels.
     pub bare: bool,
 }

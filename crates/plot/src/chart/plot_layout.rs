@@ -54,7 +54,10 @@ impl<'a> PlotLayout<'a> {
         let (x_label, x_unit) = units::readable(&plot.x_label, x.1);
         let (y_label, y_unit) = units::readable(&plot.y_label, y.1);
         let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], x.0);
-        let y_ticks = ticks::upwards(window.y.map(|end| end / y_unit), size[1], y.0);
+        let y_ticks = match &*plot.y_names {
+            [] => ticks::upwards(window.y.map(|end| end / y_unit), size[1], y.0),
+            names => ticks::named(names, window.y),
+        };
         let axes = Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size);
         let regions = RegionNames::plan(plot.regions.as_ref(), fraction(window.x, 0.0), size[0]);
         Self {

@@ -79,6 +79,14 @@ pub fn upwards(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     choose(range, (length / 80.0).clamp(1.0, 10.0))
 }
 
+/// Creates the ticks of the numbers 0, 1, 2, ... in a range, with `names` as their labels.
+pub fn named(names: &[String], range: [f64; 2]) -> Vec<Tick> {
+    let ticks = names.iter().enumerate();
+    ticks
+        .map(|(i, name)| Tick::new(fraction(range, i as f64), name.clone()))
+        .collect()
+}
+
 /// Returns about `wanted` round values in the range `[low, high]`: multiples of 1, 2 or 5 times a power of ten.
 pub fn round([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     let rough = (high - low) / wanted;

@@ -1,0 +1,73 @@
+//! Option `--derivatives`: columns with exact derivatives.
+
+use super::failure::Failure;
+use clap::Args;
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+use whiskmap::scene::Scene;
+use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable};
+
+#[derive(Debug, Args)]
+pub struct DerivativeArgs {
+    /// Append columns with derivatives, such as d_push_d_taper, by the named variables, separated by commas; without names, by all
+    /// variables of the scene
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        num_args = 0..,
+        require_equals = true,
+        conflicts_with = "units"
+    )]
+    derivatives: Option<Vec<Variable>>,
+}
+
+/// Derivatives of a table row, with columns for each variable.
+pub struct DerivativeColumns<'a> {
+    pub variables: &'a [Variable],
+    /// Derivatives by each variable; a column is empty without a derivative.
+    pub by: Vec<Result<Derivatives, NoDerivative>>,
+    /// Index of the first quantity: 1 leaves out the push angle, which states have in common.
+    pub first: usize,
+}
+
+impl DerivativeArgs {
+    /// Returns the variables of the columns, those of detachments and `more` by default. `None` without the option.
+    pub fn variables(
+        &self,
+        scene: &Scene,
+        more: &[Variable],
+    ) -> Result<Option<Vec<Variable>>, Failure> {
+        let Some(named) = &self.derivatives else {
+            return Ok(None);
+        };
+        let mut all = Variable::of_detachments(scene);
+        all.extend_from_slice(more);
+        if named.is_empty() {
+            return Ok(Some(all));
+        }
+        match named.iter().find(|own| !all.contains(own)) {
+            None => Ok(Some(named.clone())),
+            Some(other) => {
+                let all: Vec<String> = all.iter().map(ToString::to_string).collect();
+                let all = all.join(", ");
+                Err(Failure::Input(format!(
+                    "--derivatives {other}: must be one of {all}, which the scene has"
+                )))
+            }
+        }
+    }
+}
+
+impl Serialize for DerivativeColumns<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let count = self.variables.len() * (6 - self.first);
+        let mut columns = serializer.serialize_struct("DerivativeColumns", count)?;
+        for (variable, by) in self.variables.iter().zip(&self.by) {
+            let values = by.as_ref().ok().map(Derivatives::columns);
+            for (i, name) in variable.columns().iter().enumerate().skip(self.first) {
+                columns.serialize_field(name, &values.map(|values| values[i]))?;
+            }
+        }
+        columns.end()
+    }
+}

@@ -1,0 +1,90 @@
+//! Effects of single variables on the push angle at detachment, as rows of a table.
+
+use super::{NoDerivative, Variable, detachments};
+use crate::rod::Side;
+use crate::scene::Scene;
+use crate::trace::{DetachmentKind, row};
+use serde::{Serialize, Serializer};
+
+row! {
+    /// Effect of one variable on a detachment.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct VariableEffect {
+        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+        pub side: Side,
+        /// Distance from the base to the contact at first touch, in mm.
+        pub distance_mm: f64,
+        /// End of the push: slip-off, pull-off, out-of-reach or unresolved.
+        pub kind: DetachmentKind,
+        /// Push angle at detachment, in degrees: positive CB, negative CF.
+        pub push_angle_deg: Option<f64>,
+        /// Variable of the scene; its unit is at the end of its name.
+        pub variable: Variable,
+        /// Value of the variable in the scene, in its unit.
+        pub value: Option<f64>,
+        /// Derivative of the push angle by the variable, in degrees per unit of the variable.
+        pub d_push: Option<f64>,
+        /// Change of the push angle if the variable grows by 1 %, to first order, in degrees.
+        pub push_of_1_percent_deg: Option<f64>,
+        /// Reason why there is no derivative; empty for a derivative.
+        pub reason: Option<NoDerivative>,
+    }
+}
+
+impl Serialize for Variable {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl Serialize for NoDerivative {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// Computes the effects of all variables of the scene's whisker on its detachments at one distance, CF before CB: `[variable]` of each side.
+/// The grid is not used.
+#[must_use]
+pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
+    let variables = Variable::of_detachments(scene);
+    let whisker = scene.first_whisker();
+    let of_side = |side: Side| {
+        let ends = detachments(
+            &whisker.whisker,
+            &whisker.pole,
+            side,
+            &[distance_mm],
+            &variables,
+        );
+        let row = |own: super::DetachmentDerivatives| {
+            let rows: Vec<VariableEffect> = variables
+                .iter()
+                .zip(own.by)
+                .map(|(&variable, by)| {
+                    let value = match variable {
+                        Variable::DistanceMm => Some(distance_mm),
+                        _ => variable.value(scene),
+                    };
+                    let d_push = by.ok().map(|by| by.push_angle_deg);
+                    VariableEffect {
+                        side,
+                        distance_mm,
+                        kind: own.end.kind,
+                        push_angle_deg: own.end.push_angle_deg,
+                        variable,
+                        value,
+                        d_push,
+                        push_of_1_percent_deg: d_push
+                            .zip(value)
+                            .map(|(by, value)| 0.01 * value * by),
+                        reason: by.err(),
+                    }
+                })
+                .collect();
+            rows
+        };
+        ends.into_iter().flat_map(row).collect::<Vec<_>>()
+    };
+    Side::BOTH.into_iter().flat_map(of_side).collect()
+}

@@ -1,0 +1,122 @@
+//! `whiskmap sensitivity` and the columns of `--derivatives`.
+
+use super::traces::good;
+use super::{Place, SCENE};
+
+fn lines(out: &str) -> Vec<Vec<String>> {
+    let line = |line: &str| line.split(',').map(str::to_owned).collect();
+    out.lines().map(line).collect()
+}
+
+/// A cell of the column `name` in a line with these `cells`.
+fn cell<'a>(header: &[String], cells: &'a [String], name: &str) -> &'a str {
+    let column = header.iter().position(|own| own == name).unwrap();
+    &cells[column]
+}
+
+/// Lengths alone scale no angle: the products of derivatives and values of all lengths add up to 0.
+#[test]
+fn the_table_has_every_variable_of_the_scene() {
+    let place = Place::with(SCENE);
+    let run = good(
+        &place,
+        &[
+            "sensitivity",
+            "scene.toml",
+            "--distance",
+            "15.66",
+            "--csv",
+            "-",
+            "--plot",
+            "bars.svg",
+        ],
+    );
+    let table = lines(&run.out);
+    let (header, rows) = table.split_first().unwrap();
+    let sum = |side: &str| -> f64 {
+        let own = rows.iter().filter(|row| row[0] == side);
+        let part = |row: &Vec<String>| {
+            let [value, slope] =
+                ["value", "d_push"].map(|name| cell(header, row, name).parse::<f64>().unwrap());
+            match cell(header, row, "variable") {
+                "length_mm" | "vertex_mm" | "pole_radius_mm" | "distance_mm" => value * slope,
+                "parabola_per_mm" => -value * slope,
+                _ => 0.0,
+            }
+        };
+        own.map(part).sum()
+    };
+    assert!(
+        sum("cb").abs() < 1e-9 && sum("cf").abs() < 1e-9,
+        "{}",
+        run.out
+    );
+    let svg = String::from_utf8(place.bytes("bars.svg")).unwrap();
+    assert!(svg.contains("distance_mm") && svg.contains("+1 %"));
+}
+
+/// The columns of a curve are those of the table, and a fold of a branch has no derivatives.
+#[test]
+fn curves_and_branches_have_columns_of_derivatives() {
+    let place = Place::with(SCENE);
+    let all = good(
+        &place,
+        &["sensitivity", "scene.toml", "--distance", "15.66"],
+    );
+    let all = lines(&all.out);
+    let curve = good(
+        &place,
+        &[
+            "curve",
+            "scene.toml",
+            "--distance",
+            "15.66",
+            "--derivatives=taper",
+        ],
+    );
+    let curve = lines(&curve.out);
+    for (side, line) in [("cf", &curve[1]), ("cb", &curve[2])] {
+        let own = all
+            .iter()
+            .find(|row| row[0] == side && row[4] == "taper")
+            .unwrap();
+        assert_eq!(
+            cell(&curve[0], line, "d_push_d_taper"),
+            cell(&all[0], own, "d_push")
+        );
+    }
+    let branch = good(
+        &place,
+        &[
+            "branch",
+            "scene.toml",
+            "--distance",
+            "15.66",
+            "--side",
+            "cb",
+            "--points",
+            "9",
+            "--derivatives",
+        ],
+    );
+    let branch = lines(&branch.out);
+    let (header, rows) = branch.split_first().unwrap();
+    for row in rows {
+        let mark = cell(header, row, "mark");
+        let stiffness = cell(header, row, "d_moment_d_push_angle_deg");
+        assert_eq!(
+            stiffness.is_empty(),
+            mark.contains("slip-off") || mark.contains("fold"),
+            "{mark}"
+        );
+    }
+    let refused = place.run(&["curve", "scene.toml", "--derivatives=spiral_per_mm"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused
+            .err
+            .contains("--derivatives spiral_per_mm: must be one of length_mm"),
+        "{}",
+        refused.err
+    );
+}
