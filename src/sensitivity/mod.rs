@@ -226,7 +226,7 @@ impl<'a> Differentiated<'a> {
         }
     }
 
-    /// The same reason for every variable.
+    /// Returns one reason for every variable, `[variable]`.
     fn none(&self, why: NoDerivative) -> Vec<Result<Derivatives, NoDerivative>> {
         let each = |by: &Result<_, NoDerivative>| Err(by.as_ref().err().copied().unwrap_or(why));
         self.by.iter().map(each).collect()

@@ -103,7 +103,7 @@ fn has_room(push: &Push, variable: Variable) -> bool {
     }
 }
 
-/// Compares all derivatives of the push with this index.
+/// Compares every third derivative of the push with this index, from another one on for each index: differences take most of the time.
 pub fn compare(index: u64) -> Compared {
     let push = push(index);
     let variables = push.variables();
@@ -129,7 +129,8 @@ pub fn compare(index: u64) -> Compared {
         end.kind,
         DetachmentKind::SlipOff | DetachmentKind::PullOff
     ));
-    for (variable, by) in variables.iter().zip(&ends[0].by) {
+    let all = variables.iter().zip(&ends[0].by);
+    for (variable, by) in all.skip((index % 3) as usize).step_by(3) {
         let exact = by
             .as_ref()
             .ok()

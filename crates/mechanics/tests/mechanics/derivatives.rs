@@ -139,12 +139,11 @@ fn values(method: Method, condition: &InitialCondition, here: &FirstVariation) -
     ]
 }
 
-/// Measured: 3e-10, what differences leave.
+/// Measured: 1e-10, what differences leave.
 #[test]
 fn trajectories_are_differentiated_by_every_number() {
     let rods = rods();
     let fine = Method::fine();
-    let mut worst = 0.0_f64;
     for condition in conditions(&rods) {
         let InitialCondition { rod, tau, load } = condition;
         let here = Batch::new(fine).shoot::<FirstVariation>(&[condition])[0];
@@ -189,7 +188,6 @@ fn trajectories_are_differentiated_by_every_number() {
             let differences = richardson(1e-3 * size, at);
             for (k, (own, difference)) in numbers(&by[i]).into_iter().zip(differences).enumerate() {
                 let apart = (own - difference).abs() / (1.0 / size + difference.abs());
-                worst = worst.max(apart);
                 assert!(
                     apart < 1e-8,
                     "{rod:?} {variable:?} number {k}: {own} {difference}"
@@ -197,10 +195,9 @@ fn trajectories_are_differentiated_by_every_number() {
             }
         }
     }
-    println!("worst {worst:e}");
 }
 
-/// The pole at first touch moves with the rest shape, the pole's radius and the distance. Measured: 2e-12.
+/// The pole at first touch moves with the rest shape, the pole's radius and the distance.
 #[test]
 fn first_touch_is_differentiated() {
     for rod in rods() {
