@@ -60,6 +60,7 @@ pub mod scene;
 pub mod store;
 pub mod trace;
 pub mod uncertainty;
+pub mod whisk;
 
 // Internals, public for the command, the tests and the benches.
 #[doc(hidden)]

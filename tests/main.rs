@@ -30,3 +30,4 @@ mod ties;
 mod traces;
 mod uncertainty;
 mod variations;
+mod whisk;

@@ -41,6 +41,7 @@ mod tolerance;
 mod uncertainty;
 mod units;
 mod verify;
+mod whisk;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -105,6 +106,8 @@ enum Command {
     Branch(branch::BranchArgs),
     /// Compute the shape of the whisker in one state
     Shape(shape::ShapeArgs),
+    /// Compute the course of a whisker that whisks against one pole: touches, forces and detachments over time
+    Whisk(whisk::WhiskArgs),
     /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
     Design(design::DesignArgs),
     /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
@@ -179,6 +182,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Fit(args) => fit::run(args, files),
         Command::Branch(args) => branch::run(args, files),
         Command::Shape(args) => shape::run(args, files),
+        Command::Whisk(args) => whisk::run(args, files),
         Command::Design(args) => design::run(args, files),
         Command::Reproduce(args) => reproduce::run(args, files),
         Command::Verify => verify::run(),

@@ -4,12 +4,14 @@
 //! are read panel by panel.
 
 mod boundary;
+mod courses;
 mod labels;
 mod map;
 mod options;
 mod plots;
 mod row;
 
+pub use courses::courses;
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
 pub use map::map;
 pub use options::MapOptions;
