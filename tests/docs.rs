@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::measured::ComparedPoint;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::uncertainty::EndSpread;
+use whiskmap::whisk::{WhiskEvent, WhiskSample};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -95,6 +96,8 @@ fn every_column_is_on_the_page_of_the_commands() {
         BranchPoint::COLUMNS,
         ShapePoint::COLUMNS,
         EndSpread::COLUMNS,
+        WhiskSample::COLUMNS,
+        WhiskEvent::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

@@ -20,7 +20,7 @@ use phase::{Passage, Phase, Turns};
 use serde::Serialize;
 use states::SideStates;
 
-/// Whether the whisker touches the pole.
+/// Regime of a sample: whether the whisker touches the pole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WhiskRegime {

@@ -47,5 +47,6 @@ mod traces;
 mod uncertainty;
 mod units;
 mod verdict;
+mod whisk;
 
 use program::{Place, Run, SCENE, names};
