@@ -49,6 +49,7 @@ pub mod compare;
 pub mod design;
 #[cfg(feature = "fit")]
 pub mod fit;
+pub mod force;
 pub mod measured;
 #[cfg(feature = "render")]
 #[allow(

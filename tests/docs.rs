@@ -4,6 +4,7 @@
 use assert_cmd::Command;
 use std::fs;
 use std::path::{Path, PathBuf};
+use whiskmap::force::FrameForce;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::uncertainty::EndSpread;
@@ -98,6 +99,7 @@ fn every_column_is_on_the_page_of_the_commands() {
         EndSpread::COLUMNS,
         WhiskSample::COLUMNS,
         WhiskEvent::COLUMNS,
+        FrameForce::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

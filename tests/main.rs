@@ -12,6 +12,7 @@ mod effect_sets;
 mod effects;
 mod figures;
 mod fit;
+mod force;
 mod friction;
 mod hard_cases;
 mod hard_maps;

@@ -19,6 +19,7 @@ mod extract;
 mod failure;
 mod files;
 mod fit;
+mod force;
 mod manual;
 mod map;
 mod outputs;
@@ -108,6 +109,8 @@ enum Command {
     Shape(shape::ShapeArgs),
     /// Compute the course of a whisker that whisks against one pole: touches, forces and detachments over time
     Whisk(whisk::WhiskArgs),
+    /// Compute contact forces from the change of curvature in the frames of a film
+    Force(force::ForceArgs),
     /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
     Design(design::DesignArgs),
     /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
@@ -183,6 +186,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Branch(args) => branch::run(args, files),
         Command::Shape(args) => shape::run(args, files),
         Command::Whisk(args) => whisk::run(args, files),
+        Command::Force(args) => force::run(args, files),
         Command::Design(args) => design::run(args, files),
         Command::Reproduce(args) => reproduce::run(args, files),
         Command::Verify => verify::run(),

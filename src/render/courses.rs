@@ -1,7 +1,12 @@
 //! Charts of courses: angle of the base, force and moment over time.
 
 use super::{Chart, Dot, Ink, Line, Plot, Stroke};
+use crate::force::FrameForce;
 use crate::whisk::{Whisk, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
+
+const TIME: &str = "time (s)";
+const FORCE: &str = "contact force (\u{b5}N)";
+const MOMENT: &str = "moment at the base (nN m)";
 
 /// Quantity of a course over time.
 struct Curve {
@@ -20,13 +25,13 @@ const CURVES: [Curve; 3] = [
         free: |event| event.angle_deg,
     },
     Curve {
-        label: "contact force (\u{b5}N)",
+        label: FORCE,
         sample: |sample| sample.force_un,
         event: |event| event.force_un,
         free: |_| 0.0,
     },
     Curve {
-        label: "moment at the base (nN m)",
+        label: MOMENT,
         sample: |sample| sample.base_moment_nnm,
         event: |event| event.base_moment_nnm,
         free: |_| 0.0,
@@ -39,6 +44,31 @@ const CURVES: [Curve; 3] = [
 pub fn courses(title: &str, whisk: &Whisk) -> Chart {
     Chart {
         plots: CURVES.iter().map(|curve| plot(whisk, curve)).collect(),
+        title: title.to_owned(),
+        columns: 1,
+        ..Chart::default()
+    }
+}
+
+/// Returns a chart of measured forces: contact force and moment at the base over time. Lines break where there is no force.
+#[must_use]
+pub fn forces(title: &str, forces: &[FrameForce]) -> Chart {
+    let plot = |label: &str, value: fn(&FrameForce) -> Option<f64>| {
+        let points = forces
+            .iter()
+            .map(|force| [force.time_s, value(force).unwrap_or(f64::NAN)]);
+        Plot {
+            x_label: TIME.to_owned(),
+            y_label: label.to_owned(),
+            lines: vec![Line::new(points.collect(), Ink::Black, Stroke::Solid)],
+            ..Plot::default()
+        }
+    };
+    Chart {
+        plots: vec![
+            plot(FORCE, |force| force.force_un),
+            plot(MOMENT, |force| force.base_moment_nnm),
+        ],
         title: title.to_owned(),
         columns: 1,
         ..Chart::default()
@@ -60,7 +90,7 @@ fn plot(whisk: &Whisk, curve: &Curve) -> Plot {
         points.push([sample.time_s, value]);
     }
     Plot {
-        x_label: "time (s)".to_owned(),
+        x_label: TIME.to_owned(),
         y_label: curve.label.to_owned(),
         lines: vec![Line::new(points, Ink::Black, Stroke::Solid)],
         dots: whisk

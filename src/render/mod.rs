@@ -11,7 +11,7 @@ mod options;
 mod plots;
 mod row;
 
-pub use courses::courses;
+pub use courses::{courses, forces};
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
 pub use map::map;
 pub use options::MapOptions;

@@ -19,6 +19,7 @@ mod extract;
 #[cfg(unix)]
 mod files;
 mod fit;
+mod force;
 #[cfg(unix)]
 mod integrity;
 mod manual;
