@@ -49,6 +49,7 @@ pub mod compare;
 pub mod design;
 #[cfg(feature = "fit")]
 pub mod fit;
+pub mod force;
 pub mod measured;
 #[cfg(feature = "render")]
 #[allow(
@@ -61,6 +62,7 @@ pub mod sensitivity;
 pub mod store;
 pub mod trace;
 pub mod uncertainty;
+pub mod whisk;
 
 // Internals, public for the command, the tests and the benches.
 #[doc(hidden)]

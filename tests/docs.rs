@@ -4,10 +4,12 @@
 use assert_cmd::Command;
 use std::fs;
 use std::path::{Path, PathBuf};
+use whiskmap::force::FrameForce;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::sensitivity::VariableEffect;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::uncertainty::EndSpread;
+use whiskmap::whisk::{WhiskEvent, WhiskSample};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -97,6 +99,9 @@ fn every_column_is_on_the_page_of_the_commands() {
         ShapePoint::COLUMNS,
         EndSpread::COLUMNS,
         VariableEffect::COLUMNS,
+        WhiskSample::COLUMNS,
+        WhiskEvent::COLUMNS,
+        FrameForce::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

@@ -14,6 +14,7 @@ use whiskmap::render::{EncodeError, RenderError};
 use whiskmap::scene::SceneError;
 use whiskmap::store;
 use whiskmap::trace::NoState;
+use whiskmap::whisk::WhiskError;
 
 /// Failure of a command, with its message and exit code.
 #[derive(Debug, thiserror::Error)]
@@ -49,6 +50,8 @@ pub enum Failure {
     Encode(#[from] EncodeError),
     #[error(transparent)]
     State(NoState),
+    #[error(transparent)]
+    Course(WhiskError),
     /// Every result of the command is unresolved.
     #[error("all {all} {what} are unresolved: see {see}")]
     Unresolved {

@@ -20,6 +20,7 @@ mod extract;
 mod failure;
 mod files;
 mod fit;
+mod force;
 mod manual;
 mod map;
 mod outputs;
@@ -43,6 +44,7 @@ mod tolerance;
 mod uncertainty;
 mod units;
 mod verify;
+mod whisk;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -76,6 +78,8 @@ Examples:
   whiskmap branch scenes/cone.toml --distance 15.66  # stable and unstable states
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10
   whiskmap sensitivity scenes/cone.toml --distance 15.66
+  whiskmap whisk scenes/cone.toml --distance 15.66 --sine 40deg,10,0.2
+  whiskmap force scenes/cone.toml --frames scenes/frames.csv
   whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper
   whiskmap reproduce                                 # figures 1 to 5 of the paper
   whiskmap verify
@@ -110,6 +114,10 @@ enum Command {
     Shape(shape::ShapeArgs),
     /// Differentiate the push angle at detachment by every number of a scene
     Sensitivity(sensitivity::SensitivityArgs),
+    /// Compute the course of a whisker that whisks against one pole: touches, forces and detachments over time
+    Whisk(whisk::WhiskArgs),
+    /// Compute contact forces from the change of curvature in the frames of a film
+    Force(force::ForceArgs),
     /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
     Design(design::DesignArgs),
     /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
@@ -185,6 +193,8 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Branch(args) => branch::run(args, files),
         Command::Shape(args) => shape::run(args, files),
         Command::Sensitivity(args) => sensitivity::run(args, files),
+        Command::Whisk(args) => whisk::run(args, files),
+        Command::Force(args) => force::run(args, files),
         Command::Design(args) => design::run(args, files),
         Command::Reproduce(args) => reproduce::run(args, files),
         Command::Verify => verify::run(),

@@ -72,8 +72,13 @@ impl OpenOutputs {
 
     /// Finishes the CSV table, draws the plot below its title, and prints the names of regular files.
     pub fn finish(self, title: String, plot: impl FnOnce() -> Plot) -> Result<(), Failure> {
+        self.finish_chart(|| Chart::single(title, plot()))
+    }
+
+    /// Finishes the CSV table, draws the chart, and prints the names of regular files.
+    pub fn finish_chart(self, chart: impl FnOnce() -> Chart) -> Result<(), Failure> {
         let table = self.table.map(OutputTable::finish).transpose()?;
-        let plot = self.plot.map(|file| file.plot(title, plot())).transpose()?;
+        let plot = self.plot.map(|file| file.chart(&chart())).transpose()?;
         let mut out = io::stdout().lock();
         for path in [table, plot].into_iter().flatten().flatten() {
             writeln!(out, "{}", path.display())?;

@@ -4,6 +4,7 @@
 //! are read panel by panel.
 
 mod boundary;
+mod courses;
 mod labels;
 mod map;
 mod options;
@@ -11,6 +12,7 @@ mod plots;
 mod row;
 mod sensitivities;
 
+pub use courses::{courses, forces};
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
 pub use map::map;
 pub use options::MapOptions;

@@ -19,6 +19,7 @@ mod extract;
 #[cfg(unix)]
 mod files;
 mod fit;
+mod force;
 #[cfg(unix)]
 mod integrity;
 mod manual;
@@ -48,5 +49,6 @@ mod traces;
 mod uncertainty;
 mod units;
 mod verdict;
+mod whisk;
 
 use program::{Place, Run, SCENE, names};

@@ -1,0 +1,136 @@
+//! Reader of CSV files of frames.
+
+use super::{CurvatureFrame, ForceMethod, FrameContact};
+use crate::input::{CsvError, CsvTable};
+use std::path::Path;
+
+/// Frames of a film.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvatureFrames {
+    /// Frames in the order of time.
+    pub frames: Vec<CurvatureFrame>,
+    /// Note about columns of the file that are not used.
+    pub note: Option<String>,
+}
+
+/// Required columns of a file.
+const NEEDED: [&[&str]; 5] = [
+    &["time_s"],
+    &["curvature_per_mm"],
+    &["at_arc_length_mm"],
+    &["contact_x_mm"],
+    &["contact_y_mm"],
+];
+
+/// Column that the method [`ForceMethod::Lever`] needs, too.
+const ANGLE: &str = "contact_angle_deg";
+
+/// Optional columns: the position of the measured point.
+const AT: [&str; 2] = ["at_x_mm", "at_y_mm"];
+
+impl CurvatureFrames {
+    /// Reads the frames of a CSV file for a whisker of `length_mm`; `-` is standard input. Frames without contact have empty cells for it.
+    ///
+    /// # Errors
+    /// If the file cannot be read, a column that `method` needs is missing, a cell is no number or out of its range, or a time does not
+    /// grow.
+    pub fn read(
+        path: impl AsRef<Path>,
+        length_mm: f64,
+        method: ForceMethod,
+    ) -> Result<Self, CsvError> {
+        let path = path.as_ref();
+        let table = if path == Path::new("-") {
+            CsvTable::read_stdin()?
+        } else {
+            CsvTable::read(path)?
+        };
+        Self::of(&table, length_mm, method)
+    }
+
+    /// Reads the frames from the text of a CSV file, as [`CurvatureFrames::read`] does. Messages call the text `origin`.
+    ///
+    /// # Errors
+    /// Fails as [`CurvatureFrames::read`] does.
+    pub fn parse(
+        text: &str,
+        origin: &str,
+        length_mm: f64,
+        method: ForceMethod,
+    ) -> Result<Self, CsvError> {
+        Self::of(&CsvTable::parse(text, origin)?, length_mm, method)
+    }
+
+    fn of(table: &CsvTable, length_mm: f64, method: ForceMethod) -> Result<Self, CsvError> {
+        let angle: &[&str] = &[ANGLE];
+        let (needed, optional) = match method {
+            ForceMethod::Lever => ([&NEEDED[..], &[angle]].concat(), AT.to_vec()),
+            ForceMethod::Model => (NEEDED.to_vec(), [&AT[..], angle].concat()),
+        };
+        let note = table.require(&needed, &optional)?;
+        if table.has(AT[0]) != table.has(AT[1]) {
+            let what = format!(
+                "has one of {} and {}: must have both, or none",
+                AT[0], AT[1]
+            );
+            return Err(CsvError::whole(&table.origin, what));
+        }
+        let finite = |name: &str| table.numbers(name, "a finite number", f64::is_finite);
+        let times = finite("time_s")?.unwrap_or_default();
+        let falling = times.windows(2).zip(table.lines().skip(1));
+        if let Some((pair, line)) = falling.into_iter().find(|(pair, _)| pair[1] <= pair[0]) {
+            let [before, time] = [pair[0], pair[1]];
+            let what = format!("time_s = {time}: must be more than {before} of the line before");
+            return Err(CsvError::at(&table.origin, line, what));
+        }
+        let curvatures = finite("curvature_per_mm")?.unwrap_or_default();
+        let must =
+            format!("a number of at least 0 and less than {length_mm}, the whisker's length in mm");
+        let is_on_whisker = |mm: f64| (0.0..length_mm).contains(&mm);
+        let places = table
+            .numbers("at_arc_length_mm", &must, is_on_whisker)?
+            .unwrap_or_default();
+        let at = finite(AT[0])?.zip(finite(AT[1])?);
+        let optional = |name: &str| {
+            let is_good = |number: &f64| number.is_finite();
+            table.values(
+                name,
+                "a finite number, or empty without contact",
+                |cell| match cell {
+                    "" => Some(None),
+                    cell => cell.parse().ok().filter(is_good).map(Some),
+                },
+            )
+        };
+        let [xs, ys] =
+            [optional("contact_x_mm")?, optional("contact_y_mm")?].map(Option::unwrap_or_default);
+        let angles = optional(ANGLE)?;
+        let mut frames = Vec::with_capacity(times.len());
+        for (i, line) in table.lines().enumerate() {
+            let contact_angle_deg = angles.as_ref().and_then(|angles| angles[i]);
+            let needs_angle = method == ForceMethod::Lever;
+            let contact = match (xs[i], ys[i]) {
+                (None, None) => None,
+                (Some(x), Some(y)) if !needs_angle || contact_angle_deg.is_some() => {
+                    Some(FrameContact {
+                        contact_mm: [x, y],
+                        contact_angle_deg,
+                    })
+                }
+                _ => {
+                    let what = "has a part of a contact: must have all of its numbers, or none without contact";
+                    return Err(CsvError::at(&table.origin, line, what));
+                }
+            };
+            frames.push(CurvatureFrame {
+                line,
+                time_s: times[i],
+                curvature_per_mm: curvatures[i],
+                at_arc_length_mm: places[i],
+                at_mm: at.as_ref().map(|(x, y)| [x[i], y[i]]),
+                contact,
+            });
+        }
+        Ok(Self { frames, note })
+    }
+}

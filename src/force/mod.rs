@@ -1,0 +1,116 @@
+//! Forces from the change of curvature at one point of the whisker, as experiments measure them (the paper's Fig. 7B).
+//!
+//! The bending moment at a point is the bending stiffness there times the change of the curvature from that of the resting whisker. Divided
+//! by the lever of the contact it is the force, which is normal to the whisker at the contact: friction and inertia are left out.
+
+mod frames;
+mod lever;
+mod model;
+
+pub use frames::CurvatureFrames;
+
+use crate::scene::{Pole, Whisker};
+use crate::trace::row;
+use model::Model;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Contact in a frame, in the frame of the base: the first axis is the base's tangent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameContact {
+    /// Position of the contact, `[x, y]` in mm.
+    pub contact_mm: [f64; 2],
+    /// Angle of the whisker's tangent at the contact, in degrees; `None` if it was not measured.
+    pub contact_angle_deg: Option<f64>,
+}
+
+/// Frame of a film: curvature at one point, and the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvatureFrame {
+    /// Line of the frame in its file.
+    pub line: usize,
+    /// Time of the frame, in s.
+    pub time_s: f64,
+    /// Curvature of the whisker at the measured point, in 1/mm.
+    pub curvature_per_mm: f64,
+    /// Arclength from the base to the measured point, in mm.
+    pub at_arc_length_mm: f64,
+    /// Position of the measured point, `[x, y]` in mm; `None` for that of the resting whisker.
+    pub at_mm: Option<[f64; 2]>,
+    /// Contact; `None` without one.
+    pub contact: Option<FrameContact>,
+}
+
+/// Reason why a frame has no force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoForce {
+    /// The measured point is at the contact or beyond it, where there is no moment.
+    NoLever,
+    /// The contact is farther from the base than the whisker is long.
+    OutOfReach,
+    /// No stable state of the model has this contact distance and this curvature.
+    NoState,
+}
+
+row! {
+    /// Force in a frame. All values are 0 without contact.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct FrameForce {
+        /// Time of the frame, in s.
+        pub time_s: f64,
+        /// Change of the curvature at the measured point from that at rest, in 1/mm.
+        pub curvature_change_per_mm: f64,
+        /// Bending moment at the measured point, in nN m: positive turns the tip to the left.
+        pub moment_nnm: f64,
+        /// Force between pole and whisker, normal to both, in uN: positive to the left (CB).
+        pub force_un: Option<f64>,
+        /// Force that the pole puts on the base, along the base's tangent, in uN.
+        pub base_force_x_un: Option<f64>,
+        /// Force that the pole puts on the base, to the left of its tangent, in uN.
+        pub base_force_y_un: Option<f64>,
+        /// Moment of the pole on the base, in nN m: positive turns it to the left.
+        pub base_moment_nnm: Option<f64>,
+        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
+        pub contact_angle_deg: Option<f64>,
+        /// Distance of the measured contact from that of the model, in mm; with --model.
+        pub contact_off_mm: Option<f64>,
+        /// Reason of a frame without a force: no-lever, out-of-reach or no-state.
+        pub reason: Option<NoForce>,
+    }
+}
+
+/// Method by which forces follow from the curvature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForceMethod {
+    /// Moment over lever. Every frame in contact needs the angle of the contact.
+    Lever,
+    /// The stable state of the full model that has this curvature, and this distance of the contact from the base.
+    Model,
+}
+
+/// Computes the force in each of the `frames` of `whisker` at `pole`, whose friction is left out, `[frame]`. With [`ForceMethod::Lever`], a frame in contact without the angle of
+/// the contact has the reason [`NoForce::NoLever`].
+#[must_use]
+pub fn forces(
+    whisker: &Whisker,
+    pole: &Pole,
+    frames: &[CurvatureFrame],
+    method: ForceMethod,
+) -> Vec<FrameForce> {
+    let distances = frames.iter().filter_map(|frame| frame.contact);
+    let distances = distances.map(|contact| contact.contact_mm[0].hypot(contact.contact_mm[1]));
+    let nearest = distances.fold(whisker.length_mm, f64::min);
+    let model = (method == ForceMethod::Model).then(|| Model::new(whisker, pole, nearest));
+    let force = |frame: &CurvatureFrame| {
+        let lever = lever::Bending::new(whisker, frame);
+        let Some(contact) = &frame.contact else {
+            return lever.free(frame.time_s);
+        };
+        match &model {
+            Some(model) => model.force(&lever, frame, contact),
+            None => lever.force(frame, contact),
+        }
+    };
+    frames.par_iter().map(force).collect()
+}

@@ -1,0 +1,119 @@
+//! Charts of courses: angle of the base, force and moment over time.
+
+use super::{Chart, Dot, Ink, Line, Plot, Stroke};
+use crate::force::FrameForce;
+use crate::whisk::{Whisk, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
+
+const TIME: &str = "time (s)";
+const FORCE: &str = "contact force (\u{b5}N)";
+const MOMENT: &str = "moment at the base (nN m)";
+
+/// Quantity of a course over time.
+struct Curve {
+    label: &'static str,
+    sample: fn(&WhiskSample) -> Option<f64>,
+    event: fn(&WhiskEvent) -> Option<f64>,
+    /// Value of a free whisker right after the event.
+    free: fn(&WhiskEvent) -> f64,
+}
+
+const CURVES: [Curve; 3] = [
+    Curve {
+        label: "angle of the base (deg)",
+        sample: |sample| Some(sample.angle_deg),
+        event: |event| Some(event.angle_deg),
+        free: |event| event.angle_deg,
+    },
+    Curve {
+        label: FORCE,
+        sample: |sample| sample.force_un,
+        event: |event| event.force_un,
+        free: |_| 0.0,
+    },
+    Curve {
+        label: MOMENT,
+        sample: |sample| sample.base_moment_nnm,
+        event: |event| event.base_moment_nnm,
+        free: |_| 0.0,
+    },
+];
+
+/// Returns a chart of a course: angle of the base, force and moment over time, with the events as dots. Loads fall to those of the next
+/// state where the whisker detaches. Lines break where the state is undecided.
+#[must_use]
+pub fn courses(title: &str, whisk: &Whisk) -> Chart {
+    Chart {
+        plots: CURVES.iter().map(|curve| plot(whisk, curve)).collect(),
+        title: title.to_owned(),
+        columns: 1,
+        ..Chart::default()
+    }
+}
+
+/// Returns a chart of measured forces: contact force and moment at the base over time. Lines break where there is no force.
+#[must_use]
+pub fn forces(title: &str, forces: &[FrameForce]) -> Chart {
+    let plot = |label: &str, value: fn(&FrameForce) -> Option<f64>| {
+        let points = forces
+            .iter()
+            .map(|force| [force.time_s, value(force).unwrap_or(f64::NAN)]);
+        Plot {
+            x_label: TIME.to_owned(),
+            y_label: label.to_owned(),
+            lines: vec![Line::new(points.collect(), Ink::Black, Stroke::Solid)],
+            ..Plot::default()
+        }
+    };
+    Chart {
+        plots: vec![
+            plot(FORCE, |force| force.force_un),
+            plot(MOMENT, |force| force.base_moment_nnm),
+        ],
+        title: title.to_owned(),
+        columns: 1,
+        ..Chart::default()
+    }
+}
+
+fn plot(whisk: &Whisk, curve: &Curve) -> Plot {
+    let mut events = whisk.events.iter().peekable();
+    let mut points = Vec::new();
+    for sample in &whisk.samples {
+        let value = (curve.sample)(sample).unwrap_or(f64::NAN);
+        while let Some(event) = events.next_if(|event| event.time_s <= sample.time_s) {
+            points.push([event.time_s, (curve.event)(event).unwrap_or(f64::NAN)]);
+            let is_last = events.peek().is_none_or(|next| next.time_s > sample.time_s);
+            if is_last && sample.regime == WhiskRegime::Free {
+                points.push([event.time_s, (curve.free)(event)]);
+            }
+        }
+        points.push([sample.time_s, value]);
+    }
+    Plot {
+        x_label: TIME.to_owned(),
+        y_label: curve.label.to_owned(),
+        lines: vec![Line::new(points, Ink::Black, Stroke::Solid)],
+        dots: whisk
+            .events
+            .iter()
+            .filter_map(|event| dot(event, curve))
+            .collect(),
+        ..Plot::default()
+    }
+}
+
+/// The dot of an event: touches are open.
+fn dot(event: &WhiskEvent, curve: &Curve) -> Option<Dot> {
+    let (ink, open, name) = match event.event {
+        WhiskEventKind::Touch => (Ink::Grey, true, "touch"),
+        WhiskEventKind::Release => (Ink::Grey, false, "release"),
+        WhiskEventKind::SlipOff => (Ink::Black, false, "slip-off"),
+        WhiskEventKind::PullOff => (Ink::Blue, false, "pull-off"),
+    };
+    Some(Dot {
+        at: [event.time_s, (curve.event)(event)?],
+        ink,
+        open,
+        name: Some(name.to_owned()),
+    })
+}

@@ -1,0 +1,154 @@
+//! Angle of the base over time.
+
+use crate::input::{CsvError, CsvTable};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Angle of the base over time: samples, joined by straight lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AngleCourse {
+    /// Times of the samples in s; they grow.
+    pub(super) times_s: Vec<f64>,
+    /// Angles of the base in degrees, `[time]`: 0 at first touch on CB.
+    pub(super) angles_deg: Vec<f64>,
+    /// Note about columns of a file that are not used.
+    pub note: Option<String>,
+}
+
+/// Error of a course that is not one.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CourseError {
+    /// A course needs as many angles as times, at least two.
+    #[error("{times} times and {angles} angles: must be at least 2 of each, and equally many")]
+    Count {
+        /// Number of times.
+        times: usize,
+        /// Number of angles.
+        angles: usize,
+    },
+    /// A time does not grow.
+    #[error("time {time_s} s after {before_s} s: times must grow")]
+    Time {
+        /// Time of the sample, in s.
+        time_s: f64,
+        /// Time of the sample before it, in s.
+        before_s: f64,
+    },
+    /// A number is not finite or an angle is beyond a turn.
+    #[error("{0}: must be a finite time, or an angle between -360 and 360 degrees")]
+    Number(f64),
+    /// A sine would have too many samples.
+    #[error("{0:.0} samples: must be between 2 and {MOST_SAMPLES}")]
+    Samples(f64),
+}
+
+/// Largest number of samples of a sine.
+const MOST_SAMPLES: f64 = 1e7;
+
+impl AngleCourse {
+    /// Creates a course through `angles_deg`, in degrees, at `times_s`, in s.
+    ///
+    /// # Errors
+    /// If there are fewer than two samples, times do not grow, or a number is out of range.
+    pub fn new(times_s: Vec<f64>, angles_deg: Vec<f64>) -> Result<Self, CourseError> {
+        let [times, angles] = [times_s.len(), angles_deg.len()];
+        if times < 2 || times != angles {
+            return Err(CourseError::Count { times, angles });
+        }
+        let is_bad = |(time, angle): (&f64, &f64)| match (time.is_finite(), is_angle(*angle)) {
+            (false, _) => Some(*time),
+            (_, false) => Some(*angle),
+            _ => None,
+        };
+        if let Some(number) = times_s.iter().zip(&angles_deg).find_map(is_bad) {
+            return Err(CourseError::Number(number));
+        }
+        if let Some(pair) = times_s.windows(2).find(|pair| pair[1] <= pair[0]) {
+            let [before_s, time_s] = [pair[0], pair[1]];
+            return Err(CourseError::Time { time_s, before_s });
+        }
+        Ok(Self {
+            times_s,
+            angles_deg,
+            note: None,
+        })
+    }
+
+    /// Creates the course `amplitude sin(2 pi frequency t)` from 0 s on for `seconds`, with `rate` samples per second.
+    ///
+    /// # Errors
+    /// If a number is out of range, or there are fewer than 2 or more than 10,000,000 samples.
+    pub fn sine(
+        amplitude_deg: f64,
+        frequency_hz: f64,
+        seconds: f64,
+        rate_hz: f64,
+    ) -> Result<Self, CourseError> {
+        let intervals = (seconds * rate_hz).round();
+        if !(1.0..MOST_SAMPLES).contains(&intervals) {
+            return Err(CourseError::Samples(intervals + 1.0));
+        }
+        let times = (0..=intervals as u64).map(|i| i as f64 / rate_hz);
+        let times: Vec<f64> = times.collect();
+        let angle = |time: &f64| amplitude_deg * libm::sin(TAU * frequency_hz * time);
+        let angles = times.iter().map(angle).collect();
+        Self::new(times, angles)
+    }
+
+    /// Reads the course of a CSV file with the columns `time_s` and `angle_deg`; `-` is standard input.
+    ///
+    /// # Errors
+    /// If the file cannot be read, a column is missing, a cell is no number or out of its range, or a time does not grow.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
+        let path = path.as_ref();
+        Self::of(&if path == Path::new("-") {
+            CsvTable::read_stdin()?
+        } else {
+            CsvTable::read(path)?
+        })
+    }
+
+    /// Reads the course from the text of a CSV file, as [`AngleCourse::read`] does. Messages call the text `origin`.
+    ///
+    /// # Errors
+    /// Fails as [`AngleCourse::read`] does.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
+        Self::of(&CsvTable::parse(text, origin)?)
+    }
+
+    fn of(table: &CsvTable) -> Result<Self, CsvError> {
+        let note = table.require(&[&["time_s"], &["angle_deg"]], &[])?;
+        let times_s = table.numbers("time_s", "a finite number", f64::is_finite)?;
+        let angles_deg = table.numbers("angle_deg", "a number between -360 and 360", is_angle)?;
+        let (times_s, angles_deg) = (times_s.unwrap_or_default(), angles_deg.unwrap_or_default());
+        let pairs = times_s.windows(2).zip(table.lines().skip(1));
+        let mut falling = pairs.filter(|(pair, _)| pair[1] <= pair[0]);
+        if let Some((pair, line)) = falling.next() {
+            let what = format!(
+                "time_s = {}: must be more than {} of the line before",
+                pair[1], pair[0]
+            );
+            return Err(CsvError::at(&table.origin, line, what));
+        }
+        let course = Self::new(times_s, angles_deg);
+        let course = course.map_err(|why| CsvError::whole(&table.origin, why.to_string()))?;
+        Ok(Self { note, ..course })
+    }
+
+    /// Returns the times of the samples in s.
+    #[must_use]
+    pub fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    /// Returns the angles of the base in degrees, `[time]`.
+    #[must_use]
+    pub fn angles_deg(&self) -> &[f64] {
+        &self.angles_deg
+    }
+}
+
+fn is_angle(angle_deg: f64) -> bool {
+    angle_deg.abs() <= 360.0
+}

@@ -1,0 +1,116 @@
+//! `whiskmap whisk`.
+
+use super::traces::{cells, good};
+use super::{Place, SCENE};
+
+const AT: [&str; 4] = ["whisk", "scene.toml", "--distance", "15.66"];
+
+fn whisk(place: &Place, more: &[&str]) -> super::Run {
+    place.run(&[&AT[..], more].concat())
+}
+
+/// The first event of a sine is the slip-off of `curve`; a file with the same angles gives the same table.
+#[test]
+fn a_sine_and_its_angles_give_one_course() {
+    let place = Place::with(SCENE);
+    let sine = ["--sine", "40deg,10,0.1", "--rate", "500"];
+    let run = whisk(
+        &place,
+        &[
+            &sine[..],
+            &["--events", "e.csv", "--csv", "s.csv", "--plot", "w.svg"],
+        ]
+        .concat(),
+    );
+    assert_eq!(
+        (run.code, &*run.out),
+        (Some(0), "s.csv\nw.svg\ne.csv\n"),
+        "{run:?}"
+    );
+    assert!(
+        run.err
+            .contains("slip-offs 2, pull-offs 0; detachments lose 9.68466 nJ"),
+        "{run:?}"
+    );
+    let text = |name: &str| String::from_utf8(place.bytes(name)).unwrap();
+    let header = "time_s,event,side,angle_deg,push_angle_deg,force_un,base_moment_nnm,energy_nj";
+    let events = text("e.csv");
+    let events = cells(&events, header);
+    let kinds: Vec<_> = events.iter().map(|event| [event[1], event[2]]).collect();
+    assert_eq!(
+        kinds,
+        [
+            ["touch", "cb"],
+            ["slip-off", "cb"],
+            ["touch", "cf"],
+            ["slip-off", "cf"]
+        ]
+    );
+    let curve = good(&place, &["curve", "scene.toml", "--distance", "15.66"]).out;
+    let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
+    let [own, wanted]: [f64; 2] = [events[1][3], end[4]].map(|cell| cell.parse().unwrap());
+    assert!((own - wanted).abs() < 1e-9, "{own} {wanted}");
+    let svg = text("w.svg");
+    for label in [
+        "angle of the base (deg)",
+        "contact force (\u{b5}N)",
+        "moment at the base (nN m)",
+        "slip-off",
+    ] {
+        assert!(svg.contains(&format!(">{label}<")), "{label}");
+    }
+    let table = text("s.csv");
+    let angles = table
+        .lines()
+        .map(|line| line.splitn(3, ',').take(2).collect::<Vec<_>>().join(","));
+    place.write("angles.csv", &angles.collect::<Vec<_>>().join("\n"));
+    let again = whisk(&place, &["--angles", "angles.csv"]);
+    assert_eq!((again.code, again.out), (Some(0), table), "{}", again.err);
+}
+
+#[test]
+fn wrong_courses_are_refused() {
+    let place = Place::with(SCENE);
+    for (sine, said) in [
+        ("40", "such as 25deg,10,0.2"),
+        ("0,10,1", "must be between -360deg and 360deg, and not 0"),
+        ("400,10,1", "must be between -360deg and 360deg, and not 0"),
+        ("40,-1,1", "frequency in Hz -1: must be a positive number"),
+        ("40,1,inf", "duration in s inf: must be a positive number"),
+        ("40,1,1e9", "samples: must be between 2 and 10000000"),
+    ] {
+        whisk(&place, &["--sine", sine]).assert_refused(&["--sine", said]);
+    }
+    for (text, said) in [
+        ("time_s,angle\n0,1\n", "needed time_s, angle_deg, each once"),
+        (
+            "time_s,angle_deg\n0,0\n1,x\n",
+            "a.csv:3: angle_deg = x: must be a number between -360 and 360",
+        ),
+        (
+            "time_s,angle_deg\n0,0\n1,1\n1,2\n",
+            "a.csv:4: time_s = 1: must be more than 1 of the line before",
+        ),
+        ("time_s,angle_deg\n0,0\n", "must be at least 2 of each"),
+        (
+            "time_s,angle_deg\n0,1\n1,2\n",
+            "--angles a.csv: begins in contact: the first angle is 1 deg; must be at most 0 deg",
+        ),
+    ] {
+        place.write("a.csv", text);
+        whisk(&place, &["--angles", "a.csv"]).assert_refused(&[said]);
+    }
+    whisk(&place, &[]).assert_refused(&["--angles <FILE>|--sine"]);
+    place
+        .run(&[
+            "whisk",
+            "scene.toml",
+            "--distance",
+            "19.9",
+            "--sine",
+            "1,1,1",
+        ])
+        .assert_refused(&["--distance 19.9", "out of reach"]);
+    let rough = Place::with(&SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
+    whisk(&rough, &["--sine", "1,1,1"]).assert_refused(&["contact.friction = 0.3: must be 0"]);
+}
