@@ -11,14 +11,14 @@ mod plots;
 mod row;
 
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
-pub use map::map;
+pub use map::{map, regime_fill};
 pub use options::MapOptions;
 pub use plots::{
     BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves,
     designs, error_bars, measured, shapes,
 };
 pub use whiskmap_plot::{
-    Band, Chart, Disc, Dot, EncodeError, Ink, Inset, Line, Note, Picture, PictureFormat,
+    Band, Chart, Disc, Dot, EncodeError, Fill, Ink, Inset, Line, Note, Picture, PictureFormat,
     PictureSize, Plot, PrintSize, Region, SizeError, Stroke,
 };
 

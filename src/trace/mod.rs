@@ -12,8 +12,10 @@ mod shape;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
-pub(crate) use curve::curve_without_strain;
-pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, reach_mm};
+pub use curve::{
+    Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, curve_without_strain,
+    reach_mm,
+};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;
 
