@@ -15,7 +15,7 @@ pub struct SceneError {
     text: String,
     span: Option<Range<usize>>,
     message: String,
-    fault: Option<SceneFault>,
+    fault: Option<Box<SceneFault>>,
 }
 
 impl SceneError {
@@ -82,7 +82,7 @@ impl SceneError {
             None => format!("{key}: {must}"),
         };
         Self {
-            fault: Some(fault),
+            fault: Some(Box::new(fault)),
             ..Self::at(origin, text, None, message)
         }
     }
