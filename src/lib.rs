@@ -61,6 +61,7 @@ pub mod measured;
 )]
 pub mod render;
 pub mod scene;
+pub mod sensitivity;
 pub mod store;
 pub mod trace;
 pub mod uncertainty;

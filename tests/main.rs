@@ -24,6 +24,7 @@ mod regimes;
 mod render;
 mod scene;
 mod sealed;
+mod sensitivity;
 mod shaders;
 mod store;
 mod ties;

@@ -42,6 +42,7 @@ fn whisker(
         }),
         euler_spiral: None,
         profile: None,
+        profile_scale: 1.0,
         modulus_tip_to_base: 1.0,
         arc_stretch: 1.0,
     }

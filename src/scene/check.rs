@@ -117,6 +117,7 @@ fn whisker(numbers: &Numbers, rows: Option<&[[f64; 2]]>) -> Result<Whisker, Scen
         curvature,
         euler_spiral,
         profile: radii.profile,
+        profile_scale: numbers.get(Parameter::ProfileScale).unwrap_or(1.0),
         modulus_tip_to_base,
         arc_stretch,
     })

@@ -34,6 +34,8 @@ pub struct Whisker {
     /// Measured radii instead of those that fall linearly: `[row][arclength, radius]`, over the whisker's length and base radius. Rows go
     /// from `[0, 1]` to `[1, tip radius]`. `None` without a profile.
     pub profile: Option<Vec<[f64; 2]>>,
+    /// Factor by which the measured radii of the profile have been multiplied, in base and tip radius; 1 without a profile.
+    pub profile_scale: f64,
     /// Young's modulus at the arclength `length_mm` over that at the base, dimensionless; it is linear in the arclength.
     pub modulus_tip_to_base: f64,
     /// Real arclength over the arclength in the plane of contact, dimensionless: more than 1 if the whisker droops out of the plane.

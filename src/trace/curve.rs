@@ -116,7 +116,8 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    detachments(resolution, (whisker, pole, side), distances_mm, true)
+    let ends = detachments(resolution, (whisker, pole, side), distances_mm, true);
+    ends.into_iter().map(|own| own.end).collect()
 }
 
 /// Computes the detachment curve as [`curve_at`] does, but leaves out the largest strain, which takes a trajectory more for each end.
@@ -128,15 +129,24 @@ pub fn curve_without_strain(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    detachments(resolution, (whisker, pole, side), distances_mm, false)
+    let ends = detachments(resolution, (whisker, pole, side), distances_mm, false);
+    ends.into_iter().map(|own| own.end).collect()
 }
 
-fn detachments(
+/// A detachment with the crossing of the sheet's edge from which it was read.
+pub(crate) struct DetachmentEnd {
+    pub end: Detachment,
+    /// Crossing of the row over the edge of the sheet; `None` without a detachment.
+    pub crossing: Option<Crossing>,
+}
+
+/// Computes detachments with their crossings, `[distance]`, and the largest strain of each if `has_strain` is true.
+pub(crate) fn detachments(
     resolution: Resolution,
     (whisker, pole, side): (&Whisker, &Pole, Side),
     distances_mm: &[f64],
     has_strain: bool,
-) -> Vec<Detachment> {
+) -> Vec<DetachmentEnd> {
     let rod = &whisker.rod(pole, side);
     let method = Method::new(resolution);
     let units = whisker.units();
@@ -157,8 +167,8 @@ fn detachments(
     let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points);
     let mut states = states.into_iter();
     let rows = distances_mm.iter().zip(&sheet.rows).zip(&ends);
-    rows.map(|((distance_mm, row), end)| {
-        let reached = end.ok().and_then(|end| Some((end, states.next()?)));
+    rows.map(|((distance_mm, row), crossing)| {
+        let reached = crossing.ok().and_then(|end| Some((end, states.next()?)));
         let sliding = reached
             .as_ref()
             .and_then(|(end, variation)| Sliding::of(variation, rod, end.tau));
@@ -174,11 +184,11 @@ fn detachments(
             .filter(|_| has_strain)
             .map(|(end, _)| PeakStrain::new(rod, end.tau, end.load, resolution.doubled()));
         let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
-        Detachment {
+        let end = Detachment {
             side,
             distance_mm: *distance_mm,
             pole_distance_mm: row.pole_distance * whisker.length_mm,
-            kind: match end.map(|end| end.edge) {
+            kind: match crossing.map(|end| end.edge) {
                 Ok(Edge::Fold) => DetachmentKind::SlipOff,
                 Ok(Edge::Tip) => DetachmentKind::PullOff,
                 Err(kind) => kind,
@@ -197,7 +207,9 @@ fn detachments(
             contact_angle_deg: value(|reading| reading.contact_angle_deg),
             residual: reading.as_ref().map(|(_, residual, _)| *residual),
             sliding,
-        }
+        };
+        let crossing = crossing.ok().copied();
+        DetachmentEnd { end, crossing }
     })
     .collect()
 }

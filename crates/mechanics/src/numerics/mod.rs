@@ -2,6 +2,7 @@
 
 mod bracket;
 pub mod chebyshev;
+mod dual;
 pub mod expansion;
 pub mod gauss;
 mod golden;
@@ -14,6 +15,7 @@ pub mod tensor;
 mod vector;
 
 pub use bracket::{Bracket, Root, illinois};
+pub use dual::{Dual, Scalar};
 pub use golden::least_between;
 pub(crate) use real::horner;
 pub use real::{Real, expm1_over_small, hyperbolic_small, rotated_by_small};

@@ -1,6 +1,7 @@
 //! Properties of a whisker: radius, shape at rest, stiffness, contact, effects, units. Plain `f64`, lengths in whisker lengths.
 
 mod demands;
+mod derivative;
 mod effects;
 mod piece_weights;
 mod radius;
@@ -13,6 +14,7 @@ mod rod;
 mod units;
 
 pub use demands::{Demand, Demands};
+pub use derivative::RodDerivative;
 pub use effects::Effects;
 pub use radius::{Piece, RadiusProfile};
 pub use rest::Rest;

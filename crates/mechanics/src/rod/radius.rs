@@ -5,9 +5,11 @@
 //! the second derivative jumps.
 
 use crate::numerics::gauss::QUADRATURE;
+use crate::numerics::{Dual, Real, Scalar};
 use crate::rod::Demands;
 use crate::rod::piece_weights::PieceWeights;
-use crate::rod::rod::{arclength_at, pointed, tau_at};
+use crate::rod::rod::{arclength_at, pointed, tau_at, tau_derivative};
+use std::sync::Arc;
 
 /// A piece of a measured profile: the radius as a cubic polynomial of the arclength.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,26 +73,15 @@ impl RadiusProfile {
     pub fn new(rows: &[[f64; 2]], stretch: f64) -> Self {
         let rows: Vec<[f64; 2]> = rows.iter().map(|[s, r]| [s / stretch, *r]).collect();
         let mut widths: Vec<f64> = rows.windows(2).map(|w| w[1][0] - w[0][0]).collect();
-        let secants: Vec<f64> = rows
-            .windows(2)
-            .zip(&widths)
-            .map(|(w, width)| (w[1][1] - w[0][1]) / width)
-            .collect();
-        let slopes = slopes(&widths, &secants);
         let [end, last] = rows[rows.len() - 1];
         let taper = (1.0 - last) / end;
-        let mut pieces: Vec<Piece> = (0..widths.len())
-            .map(|i| {
-                let (h, secant, [d0, d1]) = (widths[i], secants[i], [slopes[i], slopes[i + 1]]);
-                let c2 = (3.0 * secant - 2.0 * d0 - d1) / h;
-                let c3 = (d0 + d1 - 2.0 * secant) / (h * h);
-                Piece {
-                    from: rows[i][0],
-                    tau: tau_at(taper, rows[i][0]),
-                    cubic: [rows[i][1], d0, c2, c3],
-                }
-            })
-            .collect();
+        let cubics = cubics(&rows).into_iter().zip(&rows);
+        let piece = |(cubic, [from, _]): ([f64; 4], &[f64; 2])| Piece {
+            from: *from,
+            tau: tau_at(taper, *from),
+            cubic,
+        };
+        let mut pieces: Vec<Piece> = cubics.map(piece).collect();
         let whole = pointed(taper);
         pieces.push(Piece {
             from: end,
@@ -126,6 +117,24 @@ impl RadiusProfile {
         }
         profile.demands = Demands::new(&profile, taper.recip());
         profile
+    }
+
+    /// Returns the derivatives of the profile's taper and of its pieces, `[piece]`, by a variable that changes the `rows` and the `stretch`
+    /// of [`RadiusProfile::new`]. The numbers of rows and stretch are dual.
+    #[must_use]
+    pub fn derivative(rows: &[[Dual<f64>; 2]], stretch: Dual<f64>) -> (f64, Arc<[Piece]>) {
+        let rows: Vec<[Dual<f64>; 2]> = rows.iter().map(|[s, r]| [*s / stretch, *r]).collect();
+        let [end, last] = rows[rows.len() - 1];
+        let taper = (Dual::of(1.0) - last) / end;
+        let mut all = cubics(&rows);
+        all.push([last, -taper, Dual::of(0.0), Dual::of(0.0)]);
+        let piece = |(cubic, [from, _]): ([Dual<f64>; 4], &[Dual<f64>; 2])| Piece {
+            from: from.derivative,
+            tau: tau_derivative(taper, *from),
+            cubic: cubic.map(|coefficient| coefficient.derivative),
+        };
+        let pieces = all.into_iter().zip(&rows).map(piece).collect();
+        (taper.derivative, pieces)
     }
 
     /// Returns the compliance at arclength `s`: the rotation there by a small unit load. It is the integral of `(s - x) radius(x)^-4`
@@ -185,20 +194,40 @@ impl RadiusProfile {
     }
 }
 
+/// Cubic coefficients of the piece after each of `rows` of arclength and radius but the last: `[piece][power]`.
+fn cubics<T: Scalar>(rows: &[[T; 2]]) -> Vec<[T; 4]> {
+    let pairs = || rows.windows(2);
+    let widths: Vec<T> = pairs().map(|w| w[1][0] - w[0][0]).collect();
+    let rises = pairs().map(|w| w[1][1] - w[0][1]);
+    let secants: Vec<T> = rises.zip(&widths).map(|(rise, h)| rise / *h).collect();
+    let slopes = slopes(&widths, &secants);
+    let cubic = |i: usize| {
+        let (h, secant, [d0, d1]) = (widths[i], secants[i], [slopes[i], slopes[i + 1]]);
+        let c2 = (T::of(3.0) * secant - T::of(2.0) * d0 - d1) / h;
+        let c3 = (d0 + d1 - T::of(2.0) * secant) / (h * h);
+        [rows[i][1], d0, c2, c3]
+    };
+    (0..widths.len()).map(cubic).collect()
+}
+
 /// Slopes at the rows: the harmonic mean of neighbouring secants of one sign, weighted by the widths; 0 at an extremum; at
-/// both ends the slope of a parabola, limited so that the curve stays monotone.
-fn slopes(widths: &[f64], secants: &[f64]) -> Vec<f64> {
+/// both ends the slope of a parabola, limited so that the curve stays monotone. A secant of 0 is on the border between two cases: the
+/// derivative of the slope is the mean of both.
+fn slopes<T: Scalar>(widths: &[T], secants: &[T]) -> Vec<T> {
     let n = widths.len();
     if n == 1 {
         return vec![secants[0]; 2];
     }
+    let (two, is_level) = (T::of(2.0), |secant: T| secant.value() == 0.0);
     let end = |at: usize, next: usize| {
         let (h0, h1, d0, d1) = (widths[at], widths[next], secants[at], secants[next]);
-        let slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
-        if slope * d0 <= 0.0 {
-            0.0
-        } else if d0 * d1 <= 0.0 && slope.abs() > 3.0 * d0.abs() {
-            3.0 * d0
+        let slope = ((two * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
+        if is_level(d0) && !is_level(d1) {
+            T::of(1.5) * d0
+        } else if (slope * d0).value() <= 0.0 {
+            T::of(0.0)
+        } else if (d0 * d1).value() <= 0.0 && slope.value().abs() > 3.0 * d0.value().abs() {
+            T::of(3.0) * d0
         } else {
             slope
         }
@@ -206,12 +235,15 @@ fn slopes(widths: &[f64], secants: &[f64]) -> Vec<f64> {
     let mut slopes = vec![end(0, 1)];
     slopes.extend((1..n).map(|i| {
         let (before, after) = (secants[i - 1], secants[i]);
-        if before * after <= 0.0 {
-            return 0.0;
+        let w1 = two * widths[i] + widths[i - 1];
+        let w2 = widths[i] + two * widths[i - 1];
+        let level = |secant: T, w: T| T::of(0.5) * (w1 + w2) / w * secant;
+        match [before, after].map(is_level) {
+            [true, false] => level(before, w1),
+            [false, true] => level(after, w2),
+            _ if (before * after).value() <= 0.0 => T::of(0.0),
+            _ => (w1 + w2) / (w1 / before + w2 / after),
         }
-        let w1 = 2.0 * widths[i] + widths[i - 1];
-        let w2 = widths[i] + 2.0 * widths[i - 1];
-        (w1 + w2) / (w1 / before + w2 / after)
     }));
     slopes.push(end(n - 1, n - 2));
     slopes

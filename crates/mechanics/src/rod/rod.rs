@@ -1,6 +1,8 @@
 //! A whisker and its pole in dimensionless form.
 
+use crate::numerics::{Dual, Real};
 use crate::rod::RadiusProfile;
+use crate::shooting::contact::radius_and_arclength;
 use glam::DVec2;
 use serde_core::{Serialize, Serializer};
 use std::sync::Arc;
@@ -82,6 +84,13 @@ pub(crate) fn tau_at(taper: f64, s: f64) -> f64 {
     } else {
         -libm::log1p(-taper * s) / taper
     }
+}
+
+/// Returns the derivative of [`tau_at`] by the variable of the dual numbers.
+pub(crate) fn tau_derivative(taper: Dual<f64>, s: Dual<f64>) -> f64 {
+    let tau = tau_at(taper.value, s.value);
+    let [radius, at_tau] = radius_and_arclength(taper, Dual::of(tau));
+    (s.derivative - at_tau.derivative) / radius.value
 }
 
 /// Returns the arclength of a rod at `tau`, `(1 - exp(-beta tau))/beta`, in whisker lengths, without cancellation.
@@ -166,6 +175,28 @@ impl Rod {
     #[must_use]
     pub fn tau_tip(&self) -> f64 {
         self.tau(pointed(self.taper))
+    }
+
+    /// Returns the derivative of [`Rod::tau_tip`] by a variable that changes the taper by `by_taper`.
+    #[must_use]
+    pub fn tau_tip_derivative(&self, by_taper: f64) -> f64 {
+        let s = pointed(self.taper);
+        // The cut of a perfect cone moves with the taper.
+        let by_s = if s < 1.0 {
+            -s / self.taper * by_taper
+        } else {
+            0.0
+        };
+        let dual = |value, derivative| Dual { value, derivative };
+        tau_derivative(dual(self.taper, by_taper), dual(s, by_s))
+    }
+
+    /// Returns the derivative of [`arclength`] by a variable that changes `tau` by `by_tau` and the taper by `by_taper`.
+    #[must_use]
+    pub fn arclength_derivative(&self, tau: f64, by_tau: f64, by_taper: f64) -> f64 {
+        let dual = |value, derivative| Dual { value, derivative };
+        let [_, s] = radius_and_arclength(dual(self.taper, by_taper), dual(tau, by_tau));
+        s.derivative
     }
 
     /// Returns the softness at `tau`, dimensionless: the whisker's rotation there under a small load, over that of the cone with the same

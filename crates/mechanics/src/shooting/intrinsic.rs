@@ -2,6 +2,7 @@
 
 use crate::numerics::{Real, Vector, horner, rotated_by_small};
 use crate::shooting::Section;
+use crate::shooting::contact::parabola_tangent;
 
 /// Curvature of the rod at rest, as the integrator evaluates it.
 pub trait Intrinsic<T: Real>: Copy {
@@ -55,6 +56,19 @@ impl<T: Real> Intrinsic<T> for Straight {
 pub struct Bent<T> {
     /// Twice the coefficient of the parabola at rest, `2 A*`, dimensionless.
     pub twice_bend: T,
+}
+
+impl<T: Real> Bent<T> {
+    /// Returns the rest shape of the parabola `y = bend x^2 + slope x`, and at the arclength `s` its state, its curvature and the
+    /// derivative of the curvature by the arclength. `at_base` is the [`arc`](crate::shooting::contact::arc) of `slope`.
+    #[inline(always)]
+    pub fn at(bend: T, at_base: T, s: T) -> (Self, [T; 2], [T; 2]) {
+        let twice_bend = bend + bend;
+        let [cos, sin] = parabola_tangent(bend, at_base, s);
+        let curvature = twice_bend * cos * cos * cos;
+        let slope = T::of(-3.0) * twice_bend * curvature * sin * cos * cos;
+        (Self { twice_bend }, [cos, sin], [curvature, slope])
+    }
 }
 
 /// Number of terms of the tangent's Taylor series along a parabola. It converges up to `2 A s = pi/4` at least. The remainder
@@ -154,6 +168,14 @@ pub struct Spiral<T> {
     pub at_base: T,
     /// Derivative `k1` of the spiral's curvature by the arclength, in radians per squared whisker length.
     pub slope: T,
+}
+
+impl<T: Real> Spiral<T> {
+    /// Returns the curvature of the spiral at the arclength `s`, and its derivative by the arclength.
+    #[inline(always)]
+    pub fn at(self, s: T) -> [T; 2] {
+        [self.slope.mul_add(s, self.at_base), self.slope]
+    }
 }
 
 impl<T: Real> Intrinsic<T> for Spiral<T> {

@@ -78,18 +78,31 @@ pub struct FullState {
     pub energy: f64,
 }
 
-/// Derivative of a [`FullState`] by one coordinate of the sheet: `tau` at fixed load, or the load `f/rho^2` at fixed `tau`. Each
-/// field has the unit of the state's value per unit of the coordinate.
+/// Derivative of a [`FullState`] by a variable, such as a coordinate of the sheet: `tau` at fixed load, or the load `f/rho^2` at fixed
+/// `tau`. Each field has the unit of the state's value per unit of the variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateDerivative {
-    /// Derivative of the angle of the base's tangent by `tau` or load, in radians.
+    /// Derivative of the angle of the base's tangent, in radians.
     pub angle: f64,
-    /// Derivative of the position of the base by `tau` or load, in whisker lengths.
+    /// Derivative of the position of the base, in whisker lengths.
     pub position: DVec2,
-    /// Derivative of the force at the contact by `tau` or load, in `E I_base/L_w^2`.
+    /// Derivative of the force at the contact, in `E I_base/L_w^2`.
     pub force: f64,
-    /// Derivative of the bending energy by `tau` or load, in `E I_base/L_w`.
+    /// Derivative of the bending energy, in `E I_base/L_w`.
     pub energy: f64,
+}
+
+impl StateDerivative {
+    /// Returns `self + h other`: the derivative along a sum of variables.
+    #[must_use]
+    pub fn plus(&self, h: f64, other: &Self) -> Self {
+        Self {
+            angle: self.angle + h * other.angle,
+            position: self.position + h * other.position,
+            force: self.force + h * other.force,
+            energy: self.energy + h * other.energy,
+        }
+    }
 }
 
 /// A state with its first derivatives by the contact coordinate `tau` and by the load `f/rho^2`, in the frame of [`FullState`].

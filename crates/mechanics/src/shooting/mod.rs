@@ -9,6 +9,7 @@
 
 pub mod batch;
 pub mod contact;
+mod derivative;
 mod integrator;
 mod intrinsic;
 mod map;
@@ -20,6 +21,7 @@ pub mod sensitivity;
 pub mod shape;
 mod strain;
 
+pub use derivative::{TrajectoryVariable, VariationDerivative, differentiate};
 pub use integrator::{
     BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, StepStage, collocate, integrate,
 };

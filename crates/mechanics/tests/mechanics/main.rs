@@ -5,6 +5,7 @@ mod batches;
 mod bytes;
 mod chebyshev;
 mod contact;
+mod derivatives;
 mod effects;
 mod integrators;
 mod radius;

@@ -1,6 +1,7 @@
 //! The whisker at rest: a parabola or an Euler spiral, by arclength and by chord, and the pole at first touch. The shape
 //! continues beyond the tip for distances that need it.
 
+mod derivative;
 mod parabola;
 mod spiral;
 

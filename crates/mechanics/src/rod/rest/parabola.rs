@@ -1,7 +1,8 @@
 //! Parabola at rest, `y = A (x - x0)^2` (paper, Eqs 7 and 10), or a straight line.
 
+use super::derivative::CurveDerivative;
 use crate::numerics::Bracket;
-use crate::rod::Rod;
+use crate::rod::{Rod, RodDerivative};
 use glam::DVec2;
 
 /// `t sqrt(1 + t^2) + asinh(t)`: `4 A` times the arclength from the vertex to the slope `t`.
@@ -86,6 +87,19 @@ impl Parabola {
         let tangent = DVec2::new(1.0, t).normalize();
         let to_base = DVec2::new(self.base.x, -self.base.y);
         (to_base.rotate(point), to_base.rotate(tangent))
+    }
+
+    /// Returns the derivative of the parabola at the abscissa `x` (whisker lengths) by a variable, in the frame of the base.
+    pub fn derivative(&self, x: f64, by: &RodDerivative) -> CurveDerivative {
+        let t = (2.0 * self.bend).mul_add(x, self.slope);
+        let at_base = by.slope / (1.0 + self.slope * self.slope);
+        let rise = DVec2::new(0.0, x * by.bend.mul_add(x, by.slope));
+        let (point, _) = self.at(x);
+        let to_base = DVec2::new(self.base.x, -self.base.y);
+        CurveDerivative {
+            point: to_base.rotate(rise) - at_base * point.perp(),
+            angle: (2.0 * by.bend).mul_add(x, by.slope) / (1.0 + t * t) - at_base,
+        }
     }
 
     /// Returns point and unit tangent of the parabola at arclength `s`, in whisker lengths, in the frame of the base.

@@ -1,6 +1,8 @@
 //! Euler spiral at rest, with curvature `k0 + k1 s`, straight beyond the tip.
 
+use super::derivative::CurveDerivative;
 use crate::numerics::Bracket;
+use crate::rod::RodDerivative;
 use glam::DVec2;
 
 /// Positive nodes and their weights of the Gauss-Legendre rule with 16 nodes on `[-1, 1]`.
@@ -45,25 +47,42 @@ impl SpiralRest {
         s * (0.5 * self.k1).mul_add(s, self.k0)
     }
 
-    /// Returns point and unit tangent of the spiral at arclength `s`, in whisker lengths, in the frame of the base.
-    pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
-        let bent = s.min(1.0);
+    /// Integral of `integrand` from the base to the arclength `to` on the spiral.
+    fn integral(&self, to: f64, integrand: impl Fn(f64) -> DVec2) -> DVec2 {
         let most = self.k0.abs().max((self.k0 + self.k1).abs());
-        let panels = (most * bent / TURN_PER_PANEL).ceil().max(1.0) as u32;
-        let half = 0.5 * bent / f64::from(panels);
-        let point: DVec2 = (0..panels)
+        let panels = (most * to / TURN_PER_PANEL).ceil().max(1.0) as u32;
+        let half = 0.5 * to / f64::from(panels);
+        (0..panels)
             .map(|panel| {
                 let middle = f64::from(2 * panel + 1) * half;
                 let pairs = GAUSS.map(|(node, weight)| {
-                    let [before, after] = [-node, node]
-                        .map(|node| DVec2::from_angle(self.angle(half.mul_add(node, middle))));
+                    let [before, after] =
+                        [-node, node].map(|node| integrand(half.mul_add(node, middle)));
                     weight * (before + after)
                 });
                 half * pairs.into_iter().sum::<DVec2>()
             })
-            .sum();
+            .sum()
+    }
+
+    /// Returns point and unit tangent of the spiral at arclength `s`, in whisker lengths, in the frame of the base.
+    pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
+        let bent = s.min(1.0);
+        let point = self.integral(bent, |s| DVec2::from_angle(self.angle(s)));
         let tangent = DVec2::from_angle(self.angle(bent));
         (point + (s - bent) * tangent, tangent)
+    }
+
+    /// Returns the derivative of the spiral at the arclength `s` (whisker lengths) by a variable, in the frame of the base.
+    pub fn derivative(&self, s: f64, by: &RodDerivative) -> CurveDerivative {
+        let [k0, k1] = by.spiral;
+        let angle = |s: f64| s * (0.5 * k1).mul_add(s, k0);
+        let turned = |s: f64| angle(s) * DVec2::from_angle(self.angle(s)).perp();
+        let bent = s.min(1.0);
+        CurveDerivative {
+            point: self.integral(bent, turned) + (s - bent) * turned(bent),
+            angle: angle(bent),
+        }
     }
 
     /// Returns the arclength at which the spiral's chord from the base is `chord`, both in whisker lengths. The chord grows along the

@@ -2,7 +2,7 @@
 
 use crate::numerics::{Lanes, WIDTH};
 use crate::shooting::batch::InitialCondition;
-use crate::shooting::contact::{arc, parabola_tangent};
+use crate::shooting::contact::arc;
 use crate::shooting::{
     Bent, Graded, Integrator, Intrinsic, Material, Resolution, RodSystem, Scales, Section,
     Sensitivity, Spiral, Straight, TrajectoryState, Uniform, integrate,
@@ -153,7 +153,6 @@ impl<T: Lanes> Gather<T> for Bent<T> {
     #[inline(always)]
     fn gather(conditions: &Conditions, s: T) -> (Self, [T; 2], [T; 2]) {
         let bend = lanes(conditions, |condition| condition.rod.bend);
-        let twice_bend = bend + bend;
         let is_level = conditions
             .iter()
             .all(|condition| condition.rod.slope == 0.0);
@@ -162,10 +161,7 @@ impl<T: Lanes> Gather<T> for Bent<T> {
         } else {
             arc(lanes(conditions, |condition| condition.rod.slope))
         };
-        let [cos, sin] = parabola_tangent(bend, at_base, s);
-        let curvature = twice_bend * cos * cos * cos;
-        let slope = T::of(-3.0) * twice_bend * curvature * sin * cos * cos;
-        (Self { twice_bend }, [cos, sin], [curvature, slope])
+        Self::at(bend, at_base, s)
     }
 
     #[inline(always)]
@@ -184,7 +180,7 @@ impl<T: Lanes> Gather<T> for Spiral<T> {
             at_base: lanes(conditions, coefficient(0)),
             slope: lanes(conditions, coefficient(1)),
         };
-        let curvature = spiral.slope.mul_add(s, spiral.at_base);
-        (spiral, (), [curvature, spiral.slope])
+        let curvature = spiral.at(s);
+        (spiral, (), curvature)
     }
 }

@@ -16,6 +16,7 @@ mod stream;
 
 pub use flops::flops_of_nystrom8;
 pub use output_set::OutputSet;
+pub(super) use pole::{Complex, PoleCentre};
 pub use steps::{StepStart, step_starts};
 
 use super::Resolution;

@@ -45,11 +45,11 @@ impl<T: Real> Complex<T> {
 /// Centre of the pole relative to the base, in lanes.
 pub struct PoleCentre<T> {
     /// In the frame of the base.
-    pole: Complex<T>,
+    pub pole: Complex<T>,
     inverse: Complex<T>,
 }
 
-impl<T: Lanes> PoleCentre<T> {
+impl<T: Real> PoleCentre<T> {
     #[inline(always)]
     pub fn new(arrival: &Arrival<T>, [to_x, to_y]: [T; 2]) -> Self {
         let [c, s, x, y, _] = arrival.rod;
@@ -78,7 +78,9 @@ impl<T: Lanes> PoleCentre<T> {
     pub fn ln_pole_by_twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
         self.ln_pole_by(of).minus(by.times(and))
     }
+}
 
+impl<T: Lanes> PoleCentre<T> {
     /// Returns the shooting map of each lane, `[lane]`.
     #[inline(always)]
     pub fn maps(&self, first: &BaseDerivatives<T>) -> [ShootingMap; WIDTH] {

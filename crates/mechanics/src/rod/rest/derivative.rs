@@ -1,0 +1,69 @@
+//! Derivatives of the whisker at rest by a variable: of the point at a distance from the base, and of the pole at first touch.
+//!
+//! A variable moves each point of the curve by `point`, and turns its tangent `t` by `angle`, at a fixed place along the curve. At a
+//! fixed distance `d` from the base, the place then moves by `ds = (d dd - r . dr)/(r . t)` along the curve.
+
+use super::{Form, Rest};
+use crate::rod::RodDerivative;
+use glam::DVec2;
+
+/// Derivative of the resting curve at a fixed place along it.
+#[derive(Clone, Copy, Debug)]
+pub struct CurveDerivative {
+    /// Derivative of the point, in whisker lengths, in the frame of the base.
+    pub point: DVec2,
+    /// Derivative of the angle of the tangent from the base's tangent, in radians.
+    pub angle: f64,
+}
+
+impl Rest {
+    /// Point, tangent, and their derivatives at a `distance` from the base that changes by `by_distance`.
+    fn derivative_at(
+        &self,
+        distance: f64,
+        by_distance: f64,
+        by: &RodDerivative,
+    ) -> (DVec2, DVec2, CurveDerivative) {
+        let (point, tangent, curvature, own) = match &self.form {
+            Form::Parabola(parabola) => {
+                let x = parabola.x_of_chord(distance);
+                let (point, tangent) = parabola.at(x);
+                let curvature = parabola.curvature(parabola.arclength_at(x));
+                (point, tangent, curvature, parabola.derivative(x, by))
+            }
+            Form::EulerSpiral(spiral) => {
+                let s = spiral.arclength_of_chord(distance);
+                let (point, tangent) = spiral.at_arclength(s);
+                (
+                    point,
+                    tangent,
+                    spiral.curvature(s),
+                    spiral.derivative(s, by),
+                )
+            }
+        };
+        let along = (distance * by_distance - point.dot(own.point)) / point.dot(tangent);
+        let total = CurveDerivative {
+            point: own.point + along * tangent,
+            angle: own.angle + along * curvature,
+        };
+        (point, tangent, total)
+    }
+
+    /// Returns the derivative of [`Rest::point_at_distance`] by a variable that changes the rod by `by` and the distance by `by_distance`.
+    #[must_use]
+    pub fn point_derivative(&self, distance: f64, by_distance: f64, by: &RodDerivative) -> DVec2 {
+        self.derivative_at(distance, by_distance, by).2.point
+    }
+
+    /// Returns the derivative of `(ln D, phi)` of the pole's centre at first touch ([`Rest::pole_at_distance`]) by a variable that changes
+    /// the rod by `by` and the distance by `by_distance`; `phi` in radians. The distance lies on the whisker, not beyond its tip.
+    #[must_use]
+    pub fn touch_derivative(&self, distance: f64, by_distance: f64, by: &RodDerivative) -> DVec2 {
+        let (point, tangent, own) = self.derivative_at(distance, by_distance, by);
+        let normal = tangent.perp();
+        let pole = point - self.pole * normal;
+        let moved = own.point - by.pole * normal + self.pole * own.angle * tangent;
+        DVec2::new(pole.dot(moved), pole.perp_dot(moved)) / pole.length_squared()
+    }
+}

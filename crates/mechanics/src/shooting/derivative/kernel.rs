@@ -1,0 +1,322 @@
+//! Kernels of trajectories in dual numbers. They have all effects of their rest shape and material, as a variable may bring in an effect
+//! that the rod itself lacks.
+
+use super::{TrajectoryVariable, VariationDerivative};
+use crate::numerics::gauss::Integrals;
+use crate::numerics::{Dual, Lanes, LanesTask, Real, WIDTH};
+use crate::rod::{Piece, RadiusProfile, Rod, RodDerivative};
+use crate::shooting::batch::{Complex, InitialCondition, PoleCentre};
+use crate::shooting::contact::{Contact, arc, radius_and_arclength};
+use crate::shooting::sensitivity::{Arrival, Energetic, GeneralFirst, SensitivitySet};
+use crate::shooting::{
+    BackwardCompliance, Bent, FullState, Graded, Intrinsic, Measured, Nystrom8, Resolution,
+    RodSystem, Scales, Section, ShootingMap, Spiral, StateDerivative, TrajectoryState, collocate,
+    integrate,
+};
+use glam::DVec2;
+use std::marker::PhantomData;
+
+/// Derivatives that a trajectory carries, each of them a dual number.
+type Carried = Energetic<GeneralFirst>;
+
+/// State of the trajectory, and its derivatives, `[lane]`.
+type Differentiated = (FullState, [VariationDerivative; WIDTH]);
+
+/// Differentiates the trajectory from `condition` by `variables`, at most as many as there are lanes.
+#[inline(always)]
+pub fn compute<T: Lanes>(
+    resolution: Resolution,
+    condition: &InitialCondition,
+    variables: &[TrajectoryVariable],
+) -> Differentiated {
+    macro_rules! kernel {
+        ($rest:ty) => {
+            T::outlined(Kernel::<$rest> {
+                resolution,
+                condition,
+                variables,
+                of: PhantomData,
+            })
+        };
+    }
+    match condition.rod.spiral {
+        Some(_) => kernel!(Spiral<Dual<T>>),
+        None => kernel!(Bent<Dual<T>>),
+    }
+}
+
+/// A rest shape whose numbers are dual.
+trait DualRest<T: Lanes>: Intrinsic<Dual<T>> {
+    /// Returns the rest shape of a trajectory and, at the arclength `s`: its state, and its curvature with the derivative by `s`.
+    fn start<I>(kernel: &Kernel<I>, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]);
+}
+
+impl<T: Lanes> DualRest<T> for Bent<Dual<T>> {
+    #[inline(always)]
+    fn start<I>(kernel: &Kernel<I>, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]) {
+        let bend = kernel.number(|rod| rod.bend, |by| by.bend);
+        let slope = kernel.number(|rod| rod.slope, |by| by.slope);
+        Self::at(bend, arc(slope), s)
+    }
+}
+
+impl<T: Lanes> DualRest<T> for Spiral<Dual<T>> {
+    #[inline(always)]
+    fn start<I>(kernel: &Kernel<I>, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]) {
+        let coefficient = |i: usize| {
+            kernel.number(
+                move |rod| rod.spiral.unwrap_or_default()[i],
+                move |by| by.spiral[i],
+            )
+        };
+        let spiral = Self {
+            at_base: coefficient(0),
+            slope: coefficient(1),
+        };
+        (spiral, (), spiral.at(s))
+    }
+}
+
+/// Task that integrates one trajectory in dual numbers.
+struct Kernel<'a, I> {
+    resolution: Resolution,
+    condition: &'a InitialCondition<'a>,
+    variables: &'a [TrajectoryVariable<'a>],
+    of: PhantomData<I>,
+}
+
+impl<I> Kernel<'_, I> {
+    /// A value with its derivative by the variable of each lane.
+    #[inline(always)]
+    fn dual<T: Lanes>(
+        &self,
+        value: f64,
+        derivative: impl Fn(TrajectoryVariable) -> f64,
+    ) -> Dual<T> {
+        let mut lanes = [0.0; WIDTH];
+        for (lane, variable) in lanes.iter_mut().zip(self.variables) {
+            *lane = derivative(*variable);
+        }
+        Dual {
+            value: T::of(value),
+            derivative: T::pack(lanes),
+        }
+    }
+
+    /// A number of the rod.
+    #[inline(always)]
+    fn number<T: Lanes>(
+        &self,
+        value: impl Fn(&Rod) -> f64,
+        derivative: impl Fn(&RodDerivative) -> f64,
+    ) -> Dual<T> {
+        self.dual(value(self.condition.rod), |variable| match variable {
+            TrajectoryVariable::Rod(by) => derivative(by),
+            TrajectoryVariable::Tau | TrajectoryVariable::Load => 0.0,
+        })
+    }
+
+    /// A number of the piece `k` of the measured profile.
+    #[inline(always)]
+    fn of_piece<T: Lanes>(
+        &self,
+        profile: &RadiusProfile,
+        k: usize,
+        number: impl Fn(&Piece) -> f64,
+    ) -> Dual<T> {
+        self.number(|_| number(&profile.pieces[k]), |by| number(&by.piece(k)))
+    }
+
+    /// The state at the base after `state` at the `contact`, in steps of equal length.
+    #[inline(always)]
+    fn evenly<T: Lanes, R: Intrinsic<Dual<T>>>(
+        &self,
+        system: &RodSystem<Dual<T>, R, Graded<Dual<T>>>,
+        contact: Section<Dual<T>>,
+        [taper, tau]: [Dual<T>; 2],
+        state: TrajectoryState<Dual<T>, R, Carried>,
+    ) -> TrajectoryState<Dual<T>, R, Carried> {
+        let InitialCondition { rod, tau: at, load } = *self.condition;
+        let steps = self.resolution.steps(rod, at, load);
+        let h = tau * Dual::of(1.0 / f64::from(steps));
+        let scales = Scales::tapered::<Nystrom8>(taper, h);
+        integrate::<Nystrom8, _, R, _, Carried>(system, &scales, contact, steps, state)
+    }
+
+    /// The state at the base after `state` at the contact, along the pieces of a measured `profile`.
+    #[inline(always)]
+    fn along<T: Lanes, R: Intrinsic<Dual<T>>>(
+        &self,
+        profile: &RadiusProfile,
+        system: &RodSystem<Dual<T>, R, Graded<Dual<T>>>,
+        contact: Section<Dual<T>>,
+        [taper, tau]: [Dual<T>; 2],
+        mut state: TrajectoryState<Dual<T>, R, Carried>,
+    ) -> TrajectoryState<Dual<T>, R, Carried> {
+        let InitialCondition { rod, tau: at, load } = *self.condition;
+        let needs = self.resolution.of_pieces(rod, at, load);
+        let [mut tau, mut from] = [tau, contact.arclength];
+        for k in (0..=rod.piece(crate::rod::arclength(rod, at))).rev() {
+            let steps = needs.of(profile, k);
+            let [end, start] = [
+                self.of_piece(profile, k, |piece| piece.tau),
+                self.of_piece(profile, k, |piece| piece.from),
+            ];
+            let mut cubic = [Dual::of(0.0); 4];
+            for (power, coefficient) in cubic.iter_mut().enumerate() {
+                *coefficient = self.of_piece(profile, k, |piece| piece.cubic[power]);
+            }
+            let system = RodSystem {
+                force: system.force,
+                intrinsic: system.intrinsic,
+                material: Measured {
+                    from: start,
+                    cubic,
+                    gradient: Some(system.material.gradient),
+                },
+            };
+            let h = (tau - end) * Dual::of(1.0 / f64::from(steps));
+            let scales = Scales::tapered::<Nystrom8>(taper, h);
+            let mut section = Section {
+                rho: (-taper).mul_add(from, Dual::of(1.0)),
+                arclength: from,
+                ..contact
+            };
+            for _ in 0..steps {
+                let weights: Integrals<Dual<T>> = BackwardCompliance {
+                    material: &system.material,
+                    from: section.arclength,
+                    length: section.rho * scales.end().along,
+                }
+                .weights();
+                state =
+                    collocate::<_, R, Carried>(&system, scales.end(), &section, &weights, state);
+                section = section.at(scales.end());
+            }
+            [tau, from] = [end, start];
+        }
+        state
+    }
+}
+
+impl<T: Lanes, R: DualRest<T>> LanesTask<T> for Kernel<'_, R> {
+    type Output = Differentiated;
+
+    #[inline(always)]
+    fn run(self) -> Differentiated {
+        let (zero, one) = (Dual::of(0.0), Dual::of(1.0));
+        let InitialCondition { rod, tau, load } = *self.condition;
+        let is = |wanted: bool| f64::from(u8::from(wanted));
+        let tau: Dual<T> = self.dual(tau, |by| is(matches!(by, TrajectoryVariable::Tau)));
+        let load: Dual<T> = self.dual(load, |by| is(matches!(by, TrajectoryVariable::Load)));
+        let taper = self.number(|rod| rod.taper, |by| by.taper);
+        let [radius, s] = radius_and_arclength(taper, tau);
+        let (intrinsic, at_rest, [curvature, curvature_slope]) = R::start(&self, s);
+        let friction: Dual<T> = self.number(|rod| rod.friction, |by| by.friction);
+        let cos = one / friction.mul_add(friction, one).sqrt();
+        let material = Graded {
+            gradient: self.number(|rod| rod.gradient, |by| by.gradient),
+        };
+        let contact = Contact {
+            radius,
+            force: load * radius * radius,
+            tangent: [cos, friction * cos],
+            // Only second derivatives start from the stiffness.
+            stiffness: one,
+            curvature,
+            curvature_slope,
+        };
+        let [c, sin] = contact.tangent;
+        let start = (
+            at_rest,
+            ([c, sin, zero, zero, zero], Carried::start(&contact)),
+        );
+        let section = Section {
+            rho: radius,
+            inverse_cube: one / (radius * radius * radius),
+            arclength: s,
+        };
+        let system = RodSystem {
+            force: contact.force,
+            intrinsic,
+            material,
+        };
+        let (_, (at_base, carried)) = match &rod.profile {
+            Some(profile) => self.along(profile, &system, section, [taper, tau], start),
+            None => self.evenly(&system, section, [taper, tau], start),
+        };
+        let arrival = Arrival {
+            contact,
+            taper,
+            rod: at_base,
+        };
+        let pole = self.number(|rod| rod.pole, |by| by.pole);
+        let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
+        let (first, energy) = Carried::at_base(&arrival, carried);
+        let centre = PoleCentre::new(&arrival, to_pole);
+        let maps = [first.by_tau, first.by_load].map(|of| centre.ln_pole_by(of));
+        spread(&arrival, [centre.pole, maps[0], maps[1]], energy)
+    }
+}
+
+/// State and derivatives of each lane from a trajectory that has arrived at the base. `poles` are the pole's centre, and the derivatives
+/// of `ln D + i phi` by contact and load.
+#[inline(always)]
+fn spread<T: Lanes>(
+    arrival: &Arrival<Dual<T>>,
+    [pole, by_tau, by_load]: [Complex<Dual<T>>; 3],
+    energy: Dual<T>,
+) -> Differentiated {
+    let [c, s, x, y, _] = arrival.rod;
+    let force = arrival.contact.force;
+    let columns = [
+        c, s, x, y, force, energy, pole.re, pole.im, by_tau.re, by_tau.im, by_load.re, by_load.im,
+    ];
+    let mut values = [0.0; 12];
+    let mut lanes = [[0.0; WIDTH]; 12];
+    for (i, column) in columns.iter().enumerate() {
+        values[i] = column.value.unpack()[0];
+        lanes[i] = column.derivative.unpack();
+    }
+    transposed(&values, &lanes)
+}
+
+/// State and derivatives of each lane from the numbers of [`spread`], `[column]` and `[column][lane]`. It is outside the kernels, because
+/// it computes little.
+#[inline(never)]
+fn transposed(values: &[f64; 12], columns: &[[f64; WIDTH]; 12]) -> Differentiated {
+    let pairs = |values: &[f64; 12]| {
+        let pair = |i: usize| DVec2::new(values[i], values[i + 1]);
+        [0, 2, 6, 8, 10].map(pair)
+    };
+    let [tangent, position, pole, by_tau, by_load] = pairs(values);
+    let full = FullState {
+        map: ShootingMap {
+            pole,
+            by_tau,
+            by_load,
+        },
+        tangent,
+        position,
+        force: values[4],
+        energy: values[5],
+    };
+    let mut derivatives = [VariationDerivative::default(); WIDTH];
+    for (lane, derivative) in derivatives.iter_mut().enumerate() {
+        let own = columns.map(|column| column[lane]);
+        let [turned, moved, pole, by_tau, by_load] = pairs(&own);
+        let centre = full.map.pole;
+        *derivative = VariationDerivative {
+            state: StateDerivative {
+                angle: tangent.perp_dot(turned),
+                position: moved,
+                force: own[4],
+                energy: own[5],
+            },
+            ln_pole: DVec2::new(centre.dot(pole), centre.perp_dot(pole)) / centre.length_squared(),
+            by_tau,
+            by_load,
+        };
+    }
+    (full, derivatives)
+}

@@ -1,0 +1,195 @@
+//! Exact derivatives of detachments and states by the numbers of a scene.
+//!
+//! A known state is integrated once more in dual numbers, and the implicit function theorem gives its derivatives. Nothing is
+//! differenced, and no sheet is computed. Parameters that only scale are differentiated in closed form.
+//!
+//! ```
+//! use whiskmap::rod::Side;
+//! use whiskmap::scene::{Parameter, Scene};
+//! use whiskmap::sensitivity::{Variable, detachments};
+//!
+//! let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+//! let variables = [Variable::from(Parameter::Taper), Variable::DistanceMm];
+//! let ends = detachments(&cone.whisker, &cone.pole, Side::Cb, &[15.66], &variables);
+//! let by_taper = ends[0].by[0]?;
+//! assert!((by_taper.push_angle_deg + 1.0).abs() < 1e3); // degrees per unit of the taper
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod linearised;
+mod quantities;
+mod variable;
+mod whisker;
+
+pub use quantities::Derivatives;
+pub use variable::Variable;
+
+use crate::rod::{Rest, Rod, Side};
+use crate::scene::{Pole, Whisker};
+use crate::sheet::Edge;
+use crate::shooting::Resolution;
+use crate::trace::{Detachment, DetachmentEnd, detachments as ends};
+use linearised::{Equations, Linearised, RodAxes};
+use whisker::WhiskerDerivative;
+
+/// A detachment with its derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DetachmentDerivatives {
+    /// End of the push, without the largest strain.
+    pub end: Detachment,
+    /// Derivatives of the end by each variable, `[variable]`, or the reason why there are none.
+    pub by: Vec<Result<Derivatives, NoDerivative>>,
+}
+
+/// Reason why a derivative does not exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoDerivative {
+    /// The whisker has no such number, such as the taper of measured radii.
+    #[error("the whisker has no such number")]
+    NotGiven,
+    /// The push does not end: the pole is out of reach, or the end is unknown.
+    #[error("no detachment")]
+    NoDetachment,
+    /// The push ends at first touch, with the tip of the resting whisker at the pole.
+    #[error("the push ends at first touch")]
+    AtTouch,
+    /// The fold meets the tip, so that slip-off turns into pull-off.
+    #[error("slip-off turns into pull-off here")]
+    Corner,
+    /// The equations of the state are singular: a state at a fold, or two folds that merge.
+    #[error("the equations are singular here")]
+    Singular,
+}
+
+/// Computes the detachments of `whisker` on one `side` at each of `distances_mm`, which must increase, with their derivatives by each of
+/// `variables`: `[distance]`.
+#[must_use]
+pub fn detachments(
+    whisker: &Whisker,
+    pole: &Pole,
+    side: Side,
+    distances_mm: &[f64],
+    variables: &[Variable],
+) -> Vec<DetachmentDerivatives> {
+    detachments_at(
+        Resolution::FINE,
+        whisker,
+        pole,
+        side,
+        distances_mm,
+        variables,
+    )
+}
+
+/// Computes detachments with derivatives as [`detachments`] does, at another resolution.
+#[must_use]
+pub fn detachments_at(
+    resolution: Resolution,
+    whisker: &Whisker,
+    pole: &Pole,
+    side: Side,
+    distances_mm: &[f64],
+    variables: &[Variable],
+) -> Vec<DetachmentDerivatives> {
+    let ends = ends(resolution, (whisker, pole, side), distances_mm, false);
+    let differentiated = Differentiated::new(resolution, whisker, pole, side, variables);
+    let of_end = |DetachmentEnd { end, crossing }| {
+        let by = match crossing {
+            None => differentiated.none(NoDerivative::NoDetachment),
+            Some(crossing) if crossing.is_at_touch() => differentiated.none(NoDerivative::AtTouch),
+            Some(crossing) => {
+                let equations = match crossing.edge {
+                    Edge::Fold => Equations::Fold,
+                    Edge::Tip => Equations::Tip,
+                };
+                let Detachment { distance_mm, .. } = end;
+                differentiated.at(equations, [crossing.tau, crossing.load], distance_mm)
+            }
+        };
+        DetachmentDerivatives { end, by }
+    };
+    ends.into_iter().map(of_end).collect()
+}
+
+/// A whisker with its derivatives by some variables.
+pub(crate) struct Differentiated<'a> {
+    resolution: Resolution,
+    whisker: &'a Whisker,
+    rod: Rod,
+    rest: Rest,
+    axes: RodAxes,
+    /// Derivatives of the whisker by each variable, `[variable]`.
+    by: Vec<Result<WhiskerDerivative, NoDerivative>>,
+}
+
+impl<'a> Differentiated<'a> {
+    /// Differentiates `whisker` by `variables`.
+    pub fn new(
+        resolution: Resolution,
+        whisker: &'a Whisker,
+        pole: &Pole,
+        side: Side,
+        variables: &[Variable],
+    ) -> Self {
+        let mut rod = whisker.rod(pole, side);
+        let of_variable =
+            |variable: &Variable| WhiskerDerivative::new(whisker, pole, side, *variable);
+        let mut by: Vec<_> = variables.iter().map(of_variable).collect();
+        // A straight whisker can become a spiral or a parabola, but not both at once.
+        if by.iter().flatten().any(|by| by.rod.spiral != [0.0; 2]) {
+            rod.spiral.get_or_insert([0.0; 2]);
+            for own in &mut by {
+                if own.as_ref().is_ok_and(|by| by.rod.bend != 0.0) {
+                    *own = Err(NoDerivative::NotGiven);
+                }
+            }
+        }
+        let given = || by.iter().flatten().map(|by| &by.rod);
+        Self {
+            resolution,
+            whisker,
+            rest: Rest::new(&rod),
+            axes: RodAxes::new(given()),
+            rod,
+            by,
+        }
+    }
+
+    /// The same reason for every variable.
+    fn none(&self, why: NoDerivative) -> Vec<Result<Derivatives, NoDerivative>> {
+        let each = |by: &Result<_, NoDerivative>| Err(by.as_ref().err().copied().unwrap_or(why));
+        self.by.iter().map(each).collect()
+    }
+
+    /// Returns the derivatives, `[variable]`, of the state at `(tau, load)`, which `equations` determine. First touch is at `distance_mm`.
+    pub fn at(
+        &self,
+        equations: Equations,
+        point: [f64; 2],
+        distance_mm: f64,
+    ) -> Vec<Result<Derivatives, NoDerivative>> {
+        let at = Linearised::new(self.resolution, &self.rod, &self.axes, point);
+        if let Err(why) = at.check(equations) {
+            return self.none(why);
+        }
+        let length = self.whisker.length_mm;
+        let units = self.whisker.units();
+        let mut place = 0..;
+        let derivatives = |by: &Result<WhiskerDerivative, NoDerivative>| {
+            let by = by.as_ref().map_err(|why| *why)?;
+            let variable = (place.next().unwrap_or_default(), by);
+            let distance = distance_mm / length;
+            let by_distance = (by.distance_mm - by.length_mm * distance) / length;
+            let (moved, touch) = at.moved(equations, variable, &self.rest, [distance, by_distance]);
+            Ok(Derivatives::new(
+                &at,
+                &moved,
+                (&self.rest, units),
+                by,
+                touch.y,
+            ))
+        };
+        self.by.iter().map(derivatives).collect()
+    }
+}

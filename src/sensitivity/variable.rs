@@ -1,0 +1,89 @@
+//! Variables: the numbers by which detachments and states are differentiated.
+
+use crate::input::did_you_mean;
+use crate::scene::{Parameter, Scene};
+use std::fmt;
+
+/// Variable of a derivative: a parameter of the scene, or a number of the push.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Variable {
+    /// Parameter of the scene, with all other parameters fixed. The radius at the base varies at a fixed radius at the tip, and the taper
+    /// at a fixed radius at the base.
+    Parameter(Parameter),
+    /// Distance from the base to the contact at first touch, in mm.
+    DistanceMm,
+    /// Push angle of a state, in degrees. Detachments do not depend on it.
+    PushAngleDeg,
+    /// Measured radius of this row of the whisker's profile, in um, before the factor of the radii. Where two neighbouring rows are equal,
+    /// the derivative is the mean of those on both sides.
+    ProfileRadiusUm(usize),
+}
+
+impl From<Parameter> for Variable {
+    fn from(parameter: Parameter) -> Self {
+        Self::Parameter(parameter)
+    }
+}
+
+impl Variable {
+    /// Returns the name of the variable, with its unit at the end.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::Parameter(parameter) => parameter.name().to_owned(),
+            Self::DistanceMm => "distance_mm".to_owned(),
+            Self::PushAngleDeg => "push_angle_deg".to_owned(),
+            Self::ProfileRadiusUm(row) => format!("profile_radius_um[{row}]"),
+        }
+    }
+
+    /// Returns the unit of the variable; `1` for a ratio.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Parameter(parameter) => parameter.unit(),
+            Self::DistanceMm => "mm",
+            Self::PushAngleDeg => "deg",
+            Self::ProfileRadiusUm(_) => "um",
+        }
+    }
+
+    /// Returns the variables of detachments of `scene`: the parameters that it gives, but for the length of a measured profile, then the
+    /// distance.
+    #[must_use]
+    pub fn of_detachments(scene: &Scene) -> Vec<Self> {
+        let given = |own: &Parameter| {
+            let is_measured = scene.whisker.profile.is_some();
+            own.value(scene).is_some() && !(is_measured && *own == Parameter::LengthMm)
+        };
+        let given = Parameter::ALL.into_iter().filter(given);
+        given
+            .map(Self::Parameter)
+            .chain([Self::DistanceMm])
+            .collect()
+    }
+}
+
+impl fmt::Display for Variable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name())
+    }
+}
+
+impl std::str::FromStr for Variable {
+    type Err = String;
+
+    /// Reads the name of a parameter, `distance_mm` or `push_angle_deg`.
+    fn from_str(name: &str) -> Result<Self, String> {
+        let others = [Self::DistanceMm, Self::PushAngleDeg];
+        let all = Parameter::ALL.into_iter().map(Self::Parameter);
+        let all: Vec<Self> = all.chain(others).collect();
+        let found = all.iter().find(|own| own.name() == name);
+        found.copied().ok_or_else(|| {
+            let names: Vec<String> = all.iter().map(|own| own.name()).collect();
+            let hint = did_you_mean(name, names.iter().map(String::as_str));
+            format!("must be one of {}{hint}", names.join(", "))
+        })
+    }
+}

@@ -1,0 +1,155 @@
+//! Exact derivatives of detachments against central differences of ends that are computed independently, in twice the steps.
+
+use super::random_whiskers::{Push, push};
+use whiskmap::scene::Parameter;
+use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable, detachments};
+use whiskmap::shooting::Resolution;
+use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
+
+/// Result of the comparison of one push.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Compared {
+    /// Number of derivatives that were compared.
+    pub count: usize,
+    /// Number of derivatives without differences: an end has another kind, or lies outside of what scenes accept.
+    pub left_out: usize,
+    /// Largest difference, relative to the derivative and to the quantity over the size of the variable.
+    pub worst: f64,
+}
+
+fn quantities(end: &Detachment) -> Option<[f64; 10]> {
+    Some([
+        end.push_angle_deg?,
+        end.push_chord_deg?,
+        end.contact_distance_mm?,
+        end.arc_length_mm?,
+        end.force_un?,
+        end.base_force_x_un?,
+        end.base_force_y_un?,
+        end.base_moment_nnm?,
+        end.energy_nj?,
+        end.contact_angle_deg?,
+    ])
+}
+
+fn listed(by: &Derivatives) -> [f64; 10] {
+    [
+        by.push_angle_deg,
+        by.push_chord_deg,
+        by.contact_distance_mm,
+        by.arc_length_mm,
+        by.force_un,
+        by.base_force_x_un,
+        by.base_force_y_un,
+        by.base_moment_nnm,
+        by.energy_nj,
+        by.contact_angle_deg,
+    ]
+}
+
+/// Largest relative error of differences, as estimated by their extrapolation. Next to the reach and to folds that merge, it is larger.
+const KNOWN: f64 = 1e-6;
+
+/// Central differences by `variable`, extrapolated twice to a step of 0, with an error of the sixth order of the step. `None` where an end
+/// next to `own` has another kind, or the last extrapolation changes a difference by more than [`KNOWN`].
+fn differences(push: &Push, variable: Variable, own: &Detachment) -> Option<[f64; 10]> {
+    let h = push.step(variable);
+    let at = |h: f64| {
+        let Push {
+            whisker,
+            pole,
+            side,
+            distance_mm,
+        } = push.moved(variable, h);
+        let finer = Resolution::FINE.doubled();
+        let end = curve_at(finer, &whisker, &pole, side, &[distance_mm]).pop()?;
+        quantities(&end).filter(|_| end.kind == own.kind)
+    };
+    let central = |h: f64| {
+        let (low, high) = (at(-h)?, at(h)?);
+        Some(std::array::from_fn::<f64, 10, _>(|i| {
+            (high[i] - low[i]) / (2.0 * h)
+        }))
+    };
+    let [d1, d2, d4] = [central(h)?, central(0.5 * h)?, central(0.25 * h)?];
+    let values = quantities(own)?;
+    let mut all = [0.0; 10];
+    for i in 0..10 {
+        let [first, second] = [(4.0 * d2[i] - d1[i]) / 3.0, (4.0 * d4[i] - d2[i]) / 3.0];
+        all[i] = (16.0 * second - first) / 15.0;
+        let scale = all[i].abs() + values[i].abs() / push.size(variable);
+        if (all[i] - second).abs() > KNOWN * scale {
+            return None;
+        }
+    }
+    Some(all)
+}
+
+/// Returns true if the numbers of the push stay within what scenes accept when the variable changes.
+fn has_room(push: &Push, variable: Variable) -> bool {
+    let h = push.step(variable);
+    match variable {
+        Variable::Parameter(Parameter::PoleRadiusMm) => push.pole.radius_mm > h,
+        Variable::Parameter(Parameter::Friction) => push.pole.friction > h,
+        Variable::Parameter(Parameter::ArcStretch) => push.whisker.arc_stretch - h > 1.0,
+        Variable::Parameter(Parameter::ParabolaPerMm | Parameter::VertexMm) => {
+            push.whisker.curvature.is_some()
+        }
+        Variable::Parameter(Parameter::Taper) => push.whisker.taper() > h,
+        Variable::Parameter(Parameter::BaseRadiusUm | Parameter::TipRadiusUm) => {
+            push.whisker.taper() > 0.02
+        }
+        _ => true,
+    }
+}
+
+/// Compares all derivatives of the push with this index.
+pub fn compare(index: u64) -> Compared {
+    let push = push(index);
+    let variables = push.variables();
+    let Push {
+        whisker,
+        pole,
+        side,
+        distance_mm,
+    } = &push;
+    let ends = detachments(whisker, pole, *side, &[*distance_mm], &variables);
+    let end = &ends[0].end;
+    let mut compared = Compared::default();
+    let Some(values) = quantities(end) else {
+        assert!(
+            ends[0]
+                .by
+                .iter()
+                .all(|by| *by == Err(NoDerivative::NoDetachment))
+        );
+        return compared;
+    };
+    assert!(matches!(
+        end.kind,
+        DetachmentKind::SlipOff | DetachmentKind::PullOff
+    ));
+    for (variable, by) in variables.iter().zip(&ends[0].by) {
+        let exact = by
+            .as_ref()
+            .ok()
+            .zip(differences(&push, *variable, end).filter(|_| has_room(&push, *variable)));
+        let Some((by, differences)) = exact else {
+            compared.left_out += 1;
+            continue;
+        };
+        compared.count += 1;
+        let size = push.size(*variable);
+        for ((own, difference), value) in listed(by).into_iter().zip(differences).zip(values) {
+            let apart = (own - difference).abs() / (difference.abs() + value.abs() / size);
+            if !(apart < 1e-7) {
+                eprintln!(
+                    "{index} {variable} {own} {difference} value {value} {apart:e} {:?} size {size}",
+                    end.kind
+                );
+            }
+            compared.worst = compared.worst.max(apart);
+        }
+    }
+    compared
+}
