@@ -8,6 +8,7 @@ use whiskmap::input::Quantity;
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::render::{Ink, regime_fill};
 use whiskmap::scene::Parameter;
+use whiskmap::sensitivity::Variable;
 use whiskmap::{Channels, Regime, store};
 
 /// Version of the package.
@@ -33,6 +34,18 @@ pub fn parameters() -> Vec<(
     let axis = |own: Parameter| Parameter::SWEPT.contains(&own).then(|| own.axis());
     let all = Parameter::ALL.into_iter();
     all.map(|own| (own.name(), own.unit(), axis(own), own.title()))
+        .collect()
+}
+
+/// Returns name, unit and value of each variable of a scene's detachments; the distance has no value.
+#[pyfunction]
+pub fn variables(scene: &CheckedScene) -> Vec<(String, &'static str, f64)> {
+    let value = |own: Variable| match own {
+        Variable::Parameter(parameter) => parameter.value(&scene.0).unwrap_or(f64::NAN),
+        _ => f64::NAN,
+    };
+    let all = Variable::of_detachments(&scene.0).into_iter();
+    all.map(|own| (own.name(), own.unit(), value(own)))
         .collect()
 }
 

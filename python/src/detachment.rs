@@ -2,7 +2,7 @@
 //!
 //! Rows with the same whisker and side are computed together: one sheet serves all their distances.
 
-use crate::arguments::parameter;
+use crate::arguments::{parameter, refused};
 use crate::errors::{SceneError, of_scene};
 use crate::scene::CheckedScene;
 use crate::threads;
@@ -15,28 +15,36 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene, SceneBuilder};
+use whiskmap::sensitivity::{Derivatives, DetachmentDerivatives, Variable, detachments};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{Detachment, curve_without_strain};
 
 /// Maximum number of distances of one sheet.
 const MOST_DISTANCES: usize = 4096;
 
-/// Quantity of a detachment; NaN where there is none.
-type Quantity = (&'static str, fn(&Detachment) -> Option<f64>);
+/// Name of a quantity, its value, and its derivative.
+type Quantity = (
+    &'static str,
+    fn(&Detachment) -> Option<f64>,
+    fn(&Derivatives) -> f64,
+);
 
-/// Quantities of the result, in the order of its fields.
-const QUANTITIES: [Quantity; 11] = [
-    ("push_angle_deg", |end| end.push_angle_deg),
-    ("push_chord_deg", |end| end.push_chord_deg),
-    ("contact_distance_mm", |end| end.contact_distance_mm),
-    ("arc_length_mm", |end| end.arc_length_mm),
-    ("contact_angle_deg", |end| end.contact_angle_deg),
-    ("force_un", |end| end.force_un),
-    ("base_force_x_un", |end| end.base_force_x_un),
-    ("base_force_y_un", |end| end.base_force_y_un),
-    ("base_moment_nnm", |end| end.base_moment_nnm),
-    ("energy_nj", |end| end.energy_nj),
-    ("residual", |end| end.residual),
+/// Defines the quantities of an end that have derivatives, by the names of their fields.
+macro_rules! quantities {
+    ($($name:ident),*) => { [$((stringify!($name), |end| end.$name, |by| by.$name)),*] };
+}
+
+const QUANTITIES: [Quantity; 10] = quantities![
+    push_angle_deg,
+    push_chord_deg,
+    contact_distance_mm,
+    arc_length_mm,
+    contact_angle_deg,
+    force_un,
+    base_force_x_un,
+    base_force_y_un,
+    base_moment_nnm,
+    energy_nj
 ];
 
 /// Arrays of whiskers, sides and distances, `[row]` each.
@@ -47,22 +55,42 @@ struct DetachmentRows<'a> {
     varying: Vec<(Parameter, &'a [f64])>,
     distance_mm: &'a [f64],
     is_cb: &'a [bool],
+    /// Variables of the derivatives, `[variable]`.
+    variables: Vec<Variable>,
+    /// True if the rows give a taper: then the radius at the base varies at a fixed taper, otherwise at a fixed radius at the tip.
+    have_taper: bool,
+}
+
+/// End of one row, and its derivatives, `[variable]`; `None` where there is none.
+struct RowEnd {
+    row: usize,
+    end: Detachment,
+    by: Vec<Option<Derivatives>>,
 }
 
 /// Error of a row whose numbers a scene refuses.
 struct RefusedRow {
     row: usize,
-    why: whiskmap::scene::SceneError,
+    why: Box<whiskmap::scene::SceneError>,
 }
 
-/// Kinds of the ends, and the quantities by name, `[row]`.
-type DetachmentArrays<'py> = (
-    Bound<'py, PyArray1<u8>>,
-    Vec<(&'static str, Bound<'py, PyArray1<f64>>)>,
+/// Name, values `[row]` and derivatives `[row][variable]` of a quantity; NaN where there is none.
+type QuantityArrays<'py> = (
+    &'static str,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
 );
 
-/// Computes one detachment for each row: `fixed` numbers, `varying` ones `[row]`, distances and sides.
+/// Kinds of the ends, residuals, and quantities.
+type DetachmentArrays<'py> = (
+    Bound<'py, PyArray1<u8>>,
+    Bound<'py, PyArray1<f64>>,
+    Vec<QuantityArrays<'py>>,
+);
+
+/// Computes one detachment for each row, from numbers that are `fixed` and others that are `varying`, `[row]`. Derivatives are by `variables`.
 #[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "one argument of Python each")]
 pub fn detachment<'py>(
     py: Python<'py>,
     scene: Option<PyRef<'py, CheckedScene>>,
@@ -70,6 +98,7 @@ pub fn detachment<'py>(
     varying: BTreeMap<String, PyReadonlyArray1<'py, f64>>,
     distance_mm: PyReadonlyArray1<'py, f64>,
     is_cb: PyReadonlyArray1<'py, bool>,
+    variables: Vec<String>,
     threads: Option<usize>,
 ) -> PyResult<DetachmentArrays<'py>> {
     let mut base = match &scene {
@@ -82,36 +111,55 @@ pub fn detachment<'py>(
     for (name, value) in &fixed {
         base = base.set(parameter("argument", name)?, *value);
     }
-    let columns: PyResult<Vec<_>> = varying
-        .iter()
-        .map(|(name, values)| Ok((parameter("argument", name)?, values.as_slice()?)))
-        .collect();
+    let columns = varying.iter();
+    let columns =
+        columns.map(|(name, values)| Ok((parameter("argument", name)?, values.as_slice()?)));
+    let variable = |name: String| {
+        name.parse()
+            .map_err(|must: String| refused("jac", &name, &must))
+    };
+    let taper = Parameter::Taper.name();
     let rows = DetachmentRows {
         base: base.push_angle_deg([0.0]),
-        varying: columns?,
+        varying: columns.collect::<PyResult<_>>()?,
         distance_mm: distance_mm.as_slice()?,
         is_cb: is_cb.as_slice()?,
+        variables: variables
+            .into_iter()
+            .map(variable)
+            .collect::<PyResult<_>>()?,
+        have_taper: fixed.contains_key(taper) || varying.contains_key(taper),
     };
-    let count = rows.distance_mm.len();
+    let (count, width) = (rows.distance_mm.len(), rows.variables.len());
     let ends = threads::run(py, threads, |_| Ok(()), |cancel| rows.ends(cancel))?;
     let ends = ends.map_err(|refused| of_row(py, &refused, count))?;
     let mut kinds = vec![0; count];
-    for (row, end) in &ends {
-        kinds[*row] = end.kind as u8;
+    for own in &ends {
+        kinds[own.row] = own.end.kind as u8;
     }
-    let quantities = QUANTITIES.map(|(name, value)| {
+    let values = |value: fn(&Detachment) -> Option<f64>| {
         let mut values = vec![f64::NAN; count];
-        for (row, end) in &ends {
-            values[*row] = value(end).unwrap_or(f64::NAN);
+        for own in &ends {
+            values[own.row] = value(&own.end).unwrap_or(f64::NAN);
         }
-        (name, PyArray1::from_vec(py, values))
+        PyArray1::from_vec(py, values)
+    };
+    let quantities = QUANTITIES.map(|(name, value, derivative)| {
+        let mut by = vec![f64::NAN; count * width];
+        for own in &ends {
+            for (place, derivatives) in by[own.row * width..].iter_mut().zip(&own.by) {
+                *place = derivatives.as_ref().map_or(f64::NAN, derivative);
+            }
+        }
+        (name, values(value), PyArray1::from_vec(py, by))
     });
-    Ok((PyArray1::from_vec(py, kinds), quantities.into()))
+    let kinds = PyArray1::from_vec(py, kinds);
+    Ok((kinds, values(|end| end.residual), quantities.into()))
 }
 
 impl DetachmentRows<'_> {
-    /// Returns the row and its end for every row, in any order. After a cancellation, rows are missing.
-    fn ends(&self, cancel: &Arc<AtomicBool>) -> Result<Vec<(usize, Detachment)>, RefusedRow> {
+    /// Returns the end of every row, in any order. After a cancellation, rows are missing.
+    fn ends(&self, cancel: &Arc<AtomicBool>) -> Result<Vec<RowEnd>, RefusedRow> {
         let groups = self.groups();
         let ends = groups
             .par_iter()
@@ -119,12 +167,10 @@ impl DetachmentRows<'_> {
                 true => Ok(Vec::new()),
                 false => self.ends_of(rows),
             });
-        let ends: Vec<Result<Vec<_>, RefusedRow>> = ends.collect();
-        let first = ends
-            .iter()
-            .filter_map(|own| own.as_ref().err())
-            .map(|refused| refused.row)
-            .min();
+        let ends: Vec<Result<Vec<RowEnd>, RefusedRow>> = ends.collect();
+        // The first refused row, on any number of threads.
+        let refused = ends.iter().filter_map(|own| own.as_ref().err());
+        let first = refused.map(|refused| refused.row).min();
         let mut all = Vec::with_capacity(self.distance_mm.len());
         for own in ends {
             match own {
@@ -157,7 +203,7 @@ impl DetachmentRows<'_> {
     }
 
     /// The ends of rows of one whisker and side.
-    fn ends_of(&self, rows: &[usize]) -> Result<Vec<(usize, Detachment)>, RefusedRow> {
+    fn ends_of(&self, rows: &[usize]) -> Result<Vec<RowEnd>, RefusedRow> {
         let first = rows[0];
         let mut distances: Vec<f64> = rows.iter().map(|row| self.distance_mm[*row]).collect();
         distances.dedup();
@@ -176,25 +222,60 @@ impl DetachmentRows<'_> {
             let of_distance =
                 |distance: &f64| rows.iter().find(|row| self.distance_mm[**row] == *distance);
             let row = distance.and_then(of_distance).copied().unwrap_or(first);
-            RefusedRow { row, why }
+            RefusedRow {
+                row,
+                why: Box::new(why),
+            }
         })?;
         let side = if self.is_cb[first] {
             Side::Cb
         } else {
             Side::Cf
         };
-        let ends = curve_without_strain(
-            Resolution::FINE,
-            &scene.whisker,
-            &scene.pole,
-            side,
-            &distances,
-        );
+        let ends = self.differentiated(&scene, side, &distances);
         let end = |row: &usize| {
             let place = distances.partition_point(|distance| *distance < self.distance_mm[*row]);
-            (*row, ends[place])
+            let (end, by) = &ends[place];
+            RowEnd {
+                row: *row,
+                end: *end,
+                by: by.clone(),
+            }
         };
         Ok(rows.iter().map(end).collect())
+    }
+
+    /// The ends of one whisker and side with their derivatives, `[distance]`.
+    fn differentiated(
+        &self,
+        scene: &Scene,
+        side: Side,
+        distances: &[f64],
+    ) -> Vec<(Detachment, Vec<Option<Derivatives>>)> {
+        let (whisker, pole) = (&scene.whisker, &scene.pole);
+        if self.variables.is_empty() {
+            let ends = curve_without_strain(Resolution::FINE, whisker, pole, side, distances);
+            return ends.into_iter().map(|end| (end, Vec::new())).collect();
+        }
+        let base = Variable::from(Parameter::BaseRadiusUm);
+        let base = self
+            .variables
+            .iter()
+            .position(|own| self.have_taper && *own == base);
+        let mut variables = self.variables.clone();
+        variables.extend(base.map(|_| Variable::from(Parameter::TipRadiusUm)));
+        let ends = detachments(whisker, pole, side, distances, &variables);
+        let end = |own: DetachmentDerivatives| {
+            let mut by: Vec<Option<Derivatives>> = own.by.into_iter().map(Result::ok).collect();
+            if let Some(base) = base {
+                let tip = by.pop().flatten();
+                by[base] = by[base]
+                    .zip(tip)
+                    .map(|(base, tip)| base.plus(1.0 - whisker.taper(), &tip));
+            }
+            (own.end, by)
+        };
+        ends.into_iter().map(end).collect()
     }
 }
 

@@ -21,7 +21,8 @@ mod traces;
 mod _whiskmap {
     #[pymodule_export]
     use super::about::{
-        arithmetic, channel_attributes, channels, coordinates, inks, parameters, regimes, version,
+        arithmetic, channel_attributes, channels, coordinates, inks, parameters, regimes,
+        variables, version,
     };
     #[pymodule_export]
     use super::command::run_command;
