@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from whiskmap._stored import open as open
     from whiskmap._traces import branch as branch
     from whiskmap._traces import curve as curve
+    from whiskmap._traces import sensitivity as sensitivity
     from whiskmap._traces import shape as shape
 
 __version__ = version()
@@ -63,6 +64,7 @@ _MODULES = {
     "open": "_stored",
     "plan": "_maps",
     "plot": "plot",
+    "sensitivity": "_traces",
     "shape": "_traces",
 }
 

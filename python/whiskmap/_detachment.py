@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -44,6 +45,11 @@ class Detachment:
         Bending energy of the whisker.
     residual : array of float
         Remaining error, relative to the distance of the pole.
+    variables : tuple of str
+        Names of the variables of `jac`.
+    jac : dict of str to array of float
+        Exact derivatives of each quantity by name, of the shape of the quantity and one axis more, `variables`. Units are those of
+        the names, such as degrees per um. NaN where slip-off turns into pull-off, and where the push ends at first touch.
     """
 
     kind: NDArray[np.str_]
@@ -58,6 +64,8 @@ class Detachment:
     base_moment_nnm: NDArray[np.float64]
     energy_nj: NDArray[np.float64]
     residual: NDArray[np.float64]
+    variables: tuple[str, ...]
+    jac: dict[str, NDArray[np.float64]]
 
 
 def detachment(
@@ -66,6 +74,7 @@ def detachment(
     *,
     distance_mm: ArrayLike,
     side: Literal["both", "cb", "cf"] | ArrayLike = "both",
+    jac: bool | Sequence[str] = False,
     threads: int | None = None,
     **parameters: ArrayLike,
 ) -> Detachment:
@@ -79,6 +88,10 @@ def detachment(
         Distances from the base to the contact at first touch.
     side : {"both", "cb", "cf"} or array_like of str
         Side of the whisker that the pole is on: convex or concave. "both" adds an axis of two values at the end: CF, then CB.
+    jac : bool or sequence of str
+        Variables of the derivatives: names of parameters, and "distance_mm". True selects all parameters that are given here, in
+        their order. A variable varies with all other values fixed that are given: with `taper`, the radius at the base varies at
+        a fixed taper.
     threads : int, optional
         Number of threads; one for each core if left out.
     **parameters : array_like
@@ -108,29 +121,56 @@ def detachment(
     >>> end = wm.detachment(taper=taper[:, None], distance_mm=[12, 15.66], side="cb", **cone)
     >>> end.push_angle_deg.shape
     (3, 2)
+
+    Residuals and Jacobian of a fit of two parameters, as `scipy.optimize.least_squares` takes them:
+
+    >>> scene = wm.Scene.read("scenes/cone.toml")  # doctest: +SKIP
+    >>> def end(x):  # doctest: +SKIP
+    ...     return wm.detachment(scene, distance_mm=d, side=sides, tip_radius_um=x[0], parabola_per_mm=x[1], jac=True)
+    >>> least_squares(  # doctest: +SKIP
+    ...     lambda x: end(x).push_angle_deg - measured, [3.0, 0.02], jac=lambda x: end(x).jac["push_angle_deg"]
+    ... )
     """
     arrays: dict[str, NDArray[Any]] = {"distance_mm": real_array("distance_mm", distance_mm)}
     for name, values in parameters.items():
-        if name not in _PARAMETERS:
+        if _PARAMETERS.get(name) != name:
             raise TypeError(f"detachment() got an unexpected keyword argument {name!r}{_resembling(name)}")
         arrays[name] = real_array(name, values)
     for name, array in arrays.items():
         if not np.isfinite(array).all():
             place = np.unravel_index(int(np.argmin(np.isfinite(array))), array.shape)
             raise ValueError(f"{name}{list(map(int, place)) or ''} = {array[place]}: must be finite")
+    variables = _variables(jac, tuple(parameters))
     is_cb = _is_cb(side)
-    both = isinstance(side, str) and side == "both"
-    if both:
+    if isinstance(side, str) and side == "both":
         arrays = {name: array[..., None] for name, array in arrays.items()}
     shape = _shape(arrays | {"side": is_cb})
-    fixed = {_PARAMETERS[name]: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
-    flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items()}
-    distances = flat.pop("distance_mm")
-    varying = {_PARAMETERS[name]: array for name, array in flat.items() if _PARAMETERS[name] not in fixed}
-    checked = None if scene is None else _checked(scene)
-    sides = np.broadcast_to(is_cb, shape).ravel()
-    kinds, quantities = _whiskmap.detachment(checked, fixed, varying, distances, sides, threads)
-    return Detachment(kind=_KINDS[kinds].reshape(shape), **{name: array.reshape(shape) for name, array in quantities})
+    fixed = {name: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
+    flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items() if name not in fixed}
+    kinds, residual, quantities = _whiskmap.detachment(
+        None if scene is None else _checked(scene),
+        fixed,
+        {name: array for name, array in flat.items() if name != "distance_mm"},
+        flat["distance_mm"],
+        np.broadcast_to(is_cb, shape).ravel(),
+        variables,
+        threads,
+    )
+    return Detachment(
+        kind=_KINDS[kinds].reshape(shape),
+        residual=residual.reshape(shape),
+        variables=variables,
+        jac={name: by.reshape(*shape, len(variables)) for name, _, by in quantities} if variables else {},
+        **{name: values.reshape(shape) for name, values, _ in quantities},
+    )
+
+
+def _variables(jac: bool | Sequence[str], given: tuple[str, ...]) -> tuple[str, ...]:
+    if isinstance(jac, (bool, np.bool_)):
+        return given if jac else ()
+    if isinstance(jac, str) or not all(isinstance(name, str) for name in jac):
+        raise TypeError(f"jac = {jac!r}: must be True, False or a list of names")
+    return tuple(jac)
 
 
 def _is_cb(side: Any) -> NDArray[np.bool_]:

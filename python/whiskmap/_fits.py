@@ -91,7 +91,7 @@ def fit(scene: Scene, points: str | os.PathLike[str] | Mapping[str, Any], free: 
     return Fit(
         scene=Scene._of(found["scene"]),
         estimates=estimates,
-        points=xr.Dataset(variables(found["points"], ("point",), (-1,))),
+        points=xr.Dataset(variables(found["points"], ("point",), (-1,), without=("line",))),
         chi_square=found["chi_square"],
         degrees_of_freedom=found["degrees_of_freedom"],
         is_explained=found["is_explained"],

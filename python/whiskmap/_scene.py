@@ -47,6 +47,10 @@ class Range:
     count: int
     scale: Literal["linear", "log"] = "linear"
 
+    def __repr__(self) -> str:
+        scale = "" if self.scale == "linear" else f", {self.scale!r}"
+        return f"Range({self.first!r}, {self.last!r}, {self.count!r}{scale})"
+
 
 AxisLike = Union[Range, Sequence[float], "NDArray[Any]"]
 

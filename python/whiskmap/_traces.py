@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+import numpy as np
 import xarray as xr
 
 from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, row, scene_coords, variables
+from whiskmap._detachment import detachment
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import number
+from whiskmap._values import number, real_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 Side = Literal["cb", "cf"]
 
@@ -120,3 +125,43 @@ def shape(
     own = variables(columns, ("point",), (-1,))
     about = {"pole_x_mm": pole[0], "pole_y_mm": pole[1], "pole_radius_mm": radius, "residual": residual}
     return xr.Dataset(own, attrs=attributes(scene) | about | dict(row(state, without=("stable",))))
+
+
+def sensitivity(scene: Scene, distance_mm: ArrayLike | None = None, *, threads: int | None = None) -> xr.Dataset:
+    """Compute the exact derivatives of detachments by every number of a scene, and by the distance.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene of one whisker.
+    distance_mm : array_like, optional
+        Distances from the base to the contact at first touch; those of the scene if left out.
+    threads : int, optional
+        Number of threads; one for each core if left out.
+
+    Returns
+    -------
+    xarray.Dataset
+        The quantities of `detachment` by `side` and `distance_mm`, and their derivatives `d_push_angle_deg`, `d_force_un` and so on by
+        `variable`, too. Coordinates of the variables are `value` and `units`. `d_push_angle_deg * value / 100` is the change for 1 %.
+        The radius at the base varies at a fixed radius at the tip. NaN where there is no derivative.
+
+    Raises
+    ------
+    SceneError
+        If the scene allows no pole at a distance.
+    """
+    checked = _checked(scene)
+    distances = scene.coords["distance_mm"] if distance_mm is None else real_array("distance_mm", distance_mm)
+    distances = np.atleast_1d(distances)
+    if distances.ndim != 1:
+        raise ValueError(f"distance_mm: must have one dimension, has {distances.ndim}")
+    names, units, values = zip(*_whiskmap.variables(checked))
+    ends = detachment(scene, distance_mm=distances[:, None], side=["cf", "cb"], jac=names, threads=threads)
+    own = {"kind": xr.Variable(("distance_mm", "side"), ends.kind)}
+    for name, by in ends.jac.items():
+        own[name] = xr.Variable(("distance_mm", "side"), getattr(ends, name))
+        own[f"d_{name}"] = xr.Variable(("distance_mm", "side", "variable"), by)
+    of_variable = {"variable": list(names), "value": ("variable", list(values)), "units": ("variable", list(units))}
+    coords = {"distance_mm": distances, "side": ["cf", "cb"], **of_variable}
+    return xr.Dataset(own, coords, attributes(scene)).transpose("variable", "side", "distance_mm", missing_dims="ignore")

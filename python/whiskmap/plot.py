@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
+    from matplotlib.container import BarContainer
     from matplotlib.lines import Line2D
 
 PUSH_ANGLE = "push angle (deg)"
@@ -146,6 +147,30 @@ def shape(ds: xr.Dataset, *, ax: Axes | None = None, **line: Any) -> list[Artist
     pole = axes.add_patch(Circle(centre, ds.attrs["pole_radius_mm"], color=inks()["background"]))
     axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
     return [whisker, pole]
+
+
+def sensitivity(ds: xr.Dataset, *, ax: Axes | None = None, **bars: Any) -> BarContainer:
+    """Draw by how much the push angle at detachment changes for 1 % of each variable.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A dataset of `sensitivity` at one distance and side: ``ds.sel(side="cb", distance_mm=15.66)``.
+    ax : matplotlib.axes.Axes, optional
+    **bars
+        Properties of the bars.
+
+    Returns
+    -------
+    matplotlib.container.BarContainer
+        A bar for each variable with a value that is not 0.
+    """
+    axes = _axes(ax)
+    change = (ds["d_push_angle_deg"] * ds["value"] / 100).squeeze()
+    change = change[(change.notnull() & (change != 0)).values][::-1]
+    drawn = axes.barh(list(change["variable"].values), change.values, **{"color": inks()["pull-off"]} | bars)
+    axes.set(xlabel="change of the push angle at detachment for 1 % (deg)")
+    return drawn
 
 
 def _axes(ax: Axes | None) -> Axes:
