@@ -15,15 +15,8 @@ import whiskmap as wm
 SELF = Path(__file__)
 
 
-def nothing(cone, tmp_path):
-    """A folder, a foreign file and a damaged map."""
-    foreign = tmp_path / "foreign.exr"
-    foreign.write_bytes(b"no map")
-    return foreign
-
-
 CASES = {
-    "broadcast": (ValueError, r"taper \(3,\), distance_mm \(2,\)", lambda s: wm.detachment(s, taper=[0, 0.5, 1], distance_mm=[1, 2], side="cb")),
+    "broadcast": (ValueError, r"do not broadcast: distance_mm \(2,\), taper \(3,\)", lambda s: wm.detachment(s, taper=[0, 0.5, 1], distance_mm=[1, 2], side="cb")),
     "dtype": (TypeError, "taper: must be real numbers", lambda s: wm.detachment(s, taper=[1j], distance_mm=1)),
     "objects": (TypeError, "taper: must be real numbers", lambda s: wm.detachment(s, taper=[None], distance_mm=1)),
     "ragged": (ValueError, "taper", lambda s: wm.detachment(s, taper=[[1], [1, 2]], distance_mm=1)),
@@ -36,15 +29,15 @@ CASES = {
     "unknown change": (TypeError, "'lenght_mm'; did you mean 'length_mm'", lambda s: s.replace(lenght_mm=1)),
     "unknown variable": (ValueError, "jac = 'tapr'.*did you mean `taper`", lambda s: wm.detachment(s, distance_mm=1, jac=["tapr"])),
     "side": (ValueError, "side = 'left'", lambda s: wm.detachment(s, distance_mm=1, side="left")),
-    "missing": (wm.SceneError, "whisker.length_mm: is left out", lambda s: wm.detachment(distance_mm=1, taper=0.5)),
+    "missing": (wm.SceneError, "whisker.base_radius_um: is left out", lambda s: wm.detachment(distance_mm=1, taper=0.5)),
     "scene": (TypeError, "scene = 3: must be a Scene", lambda s: wm.map(3)),
     "engine": (ValueError, "engine = 'fast'", lambda s: wm.map(s, engine="fast")),
     "channels": (ValueError, "channels = 'force'", lambda s: wm.map(s, channels=["force"])),
     "tolerance": (ValueError, "tolerance_deg = -1", lambda s: wm.map(s, tolerance_deg=-1.0)),
     "threads": (ValueError, "threads = 0", lambda s: wm.map(s, threads=0)),
-    "negative threads": (OverflowError, "", lambda s: wm.map(s, threads=-1)),
+    "negative threads": (OverflowError, "negative", lambda s: wm.map(s, threads=-1)),
     "points": (ValueError, "points = 1: must be between 3", lambda s: wm.branch(s, 15.0, points=1)),
-    "push": (ValueError, "push_angle_deg = nan", lambda s: wm.shape(s, 15.0, float("nan"))),
+    "push": (ValueError, "push_angle_deg = NaN", lambda s: wm.shape(s, 15.0, float("nan"))),
     "pole": (wm.SceneError, "distance_mm", lambda s: wm.branch(s, -15.0)),
     "sweep": (ValueError, "scene: sweeps 2 whiskers along taper", lambda s: wm.branch(s.replace(taper=[0, 1]), 15.0)),
     "axis": (wm.SceneError, r"grid.distance_mm\[1\] = 2: must be greater", lambda s: s.replace(distance_mm=[3, 2])),
@@ -58,7 +51,7 @@ CASES = {
     "target": (ValueError, "must be negative with side='cf'|must be positive", lambda s: wm.design(s, "taper", distance_mm=9, slip_off_deg=9, side="cf")),
     "file": (FileNotFoundError, "nowhere.exr", lambda s: wm.open("nowhere.exr")),
     "foreign file": (ValueError, "is not an EXR file", lambda s: wm.open(str(SELF))),
-    "foreign folder": (ValueError, "is not a store of whiskmap", lambda s: wm.open(str(SELF.parent))),
+    "foreign folder": (OSError, "zarr.json", lambda s: wm.open(str(SELF.parent))),
 }
 
 

@@ -37,7 +37,7 @@ def test_a_curve_is_the_programs_table():
         if other.dtype.kind == "f" and name != "sliding":
             np.testing.assert_array_equal(own, other, err_msg=name)
         else:
-            assert list(own) == list(other.fillna("")), name
+            assert list(own) == list(other.astype(object).fillna("")), name
 
 
 def test_a_sweep_of_curves_has_whiskers_in_their_places():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +9,6 @@ from pathlib import Path
 import pytest
 
 HERE = Path(__file__).parent
-PACKAGE = Path(importlib.util.find_spec("whiskmap").origin).parent
 
 
 @pytest.mark.parametrize(
@@ -18,7 +16,7 @@ PACKAGE = Path(importlib.util.find_spec("whiskmap").origin).parent
     [
         ["mypy.stubtest", "whiskmap._whiskmap"],
         ["mypy", "--strict", str(HERE / "sample.py")],
-        ["mypy", "--strict", str(PACKAGE)],
+        ["mypy", "--strict", "-p", "whiskmap"],
     ],
     ids=["stub", "sample", "package"],
 )

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from whiskmap._scene import Scene
-    from whiskmap._whiskmap import Column, Coordinate
+    from whiskmap._whiskmap import _Column, _Coordinate
 
 
-def coords(own: Iterable[Coordinate]) -> dict[str, xr.Variable]:
+def coords(own: Iterable[_Coordinate]) -> dict[str, xr.Variable]:
     """Return coordinates by name, with their CF attributes."""
     return {name: xr.Variable(name, values, json.loads(attributes)) for name, attributes, values in own}
 
@@ -36,7 +36,7 @@ def attributes(scene: Scene, engine: str | None = None) -> dict[str, Any]:
 
 
 def variables(
-    columns: Iterable[Column], dims: Sequence[str], shape: Sequence[int], without: Sequence[str] = ()
+    columns: Iterable[_Column], dims: Sequence[str], shape: Sequence[int], without: Sequence[str] = ()
 ) -> dict[str, xr.Variable]:
     """Return columns as variables of this shape, with their CF attributes. Sweep axes of the rows vary fastest first."""
     found = {}
@@ -57,7 +57,7 @@ def in_order(rows: NDArray[Any], shape: Sequence[int]) -> NDArray[Any]:
     return array.transpose(*range(count)[::-1], *range(count, len(shape)))
 
 
-def row(columns: Iterable[Column], without: Sequence[str] = ()) -> Mapping[str, Any]:
+def row(columns: Iterable[_Column], without: Sequence[str] = ()) -> Mapping[str, Any]:
     """Return the values of a table of one row by name, without those that do not exist."""
     found = {name: values[0] for name, values, *_ in columns if name not in without}
     plain = {name: value if isinstance(value, str) else value.item() for name, value in found.items()}

@@ -232,7 +232,7 @@ class Scene:
         title, given, rows, listed, uncertainty, name = self._checked.description()
         axes: dict[str, Any] = dict(listed)
         changed: dict[str, Any] = dict(given)
-        texts = {"title": title, "name": name, "uncertainty": uncertainty, "profile": rows}
+        texts: dict[str, Any] = {"title": title, "name": name, "uncertainty": uncertainty, "profile": rows}
         for key, value in changes.items():
             if key in texts:
                 texts[key] = value

@@ -50,7 +50,7 @@ class WhiskmapBackend(BackendEntrypoint):
     description = "Maps of whiskmap: EXR files and Zarr stores"
     open_dataset_parameters = ("filename_or_obj", "drop_variables")
 
-    def open_dataset(  # type: ignore[override]
+    def open_dataset(
         self, filename_or_obj: Any, *, drop_variables: str | Iterable[str] | None = None
     ) -> xr.Dataset:
         if not isinstance(filename_or_obj, (str, os.PathLike)):

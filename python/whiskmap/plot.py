@@ -106,7 +106,8 @@ def branch(ds: xr.Dataset, *, y: str = "arc_length_mm", ax: Axes | None = None, 
         The lines, then the dots.
     """
     axes = _axes(ax)
-    colours, artists = inks(), []
+    colours = inks()
+    artists: list[Artist] = []
     stable = ds["stable"].values
     # The last stable state also begins the unstable part.
     parts = [(stable, "-", "stable"), (~stable | np.append(~stable[1:], False), "--", "unstable")]
