@@ -39,6 +39,10 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+// The command line uses the library by the same paths as every other program.
+#[cfg(feature = "cli")]
+extern crate self as whiskmap;
+
 // Topics for users.
 #[cfg(feature = "zarr")]
 #[allow(
@@ -63,6 +67,15 @@ pub mod store;
 pub mod trace;
 pub mod uncertainty;
 pub mod whisk;
+
+/// The command line: `main` of the program and of the Python package.
+#[cfg(feature = "cli")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "messages and pictures need not have the same bits on every machine"
+)]
+#[doc(hidden)]
+pub mod cli;
 
 // Internals, public for the command, the tests and the benches.
 #[doc(hidden)]

@@ -1,13 +1,11 @@
 //! The program `whiskmap`: see `whiskmap --help`.
 
-mod cli;
-
 use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     quiet_wayland();
-    cli::main()
+    ExitCode::from(whiskmap::cli::main(std::env::args_os()))
 }
 
 /// Sets `XDG_RUNTIME_DIR` to `/` unless it is an absolute path. This is the only environment variable that the program sets.

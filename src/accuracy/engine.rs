@@ -1,7 +1,9 @@
 //! Share of a tolerance that is left to the engine, and the engines that keep it.
 
 use super::{Accuracy, bound_deg};
-use crate::engine::Spectral;
+use crate::engine::{Engine, Spectral};
+use crate::plan::Plan;
+use crate::refine::GOAL;
 use crate::scene::Scene;
 
 /// Largest bound on the residual of the spectral engine, in whisker lengths. Most of the first patches keep it, so a larger one saves nothing.
@@ -23,6 +25,16 @@ impl Accuracy {
 pub fn spectral(scene: &Scene, left_deg: Option<f64>) -> Spectral {
     let bound = left_deg.map(|left| (left / bound_deg(scene, 1.0)).min(LARGEST_BOUND));
     bound.map_or_else(Spectral::default, Spectral::new)
+}
+
+/// Returns the spectral engine within `left_deg`, if given; `None` where the CPU engine takes less time, as counted by `plan`.
+///
+/// It is also `None` where the residuals would have to be smaller than those of the CPU engine.
+#[must_use]
+pub fn cheaper(scene: &Scene, plan: &Plan, left_deg: Option<f64>) -> Option<Spectral> {
+    let pays = plan.expansions(scene).is_some_and(|count| count.pays());
+    let spectral = spectral(scene, left_deg);
+    (pays && spectral.residual_bound() >= GOAL).then_some(spectral)
 }
 
 /// Returns the bound on push-angle errors in degrees for an engine with this bound on its residuals, if it exceeds `left_deg`; otherwise

@@ -4,11 +4,10 @@ use super::estimate::{compare, estimate};
 use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
 use std::env;
-use whiskmap::accuracy::{excess_deg, spectral};
+use whiskmap::accuracy::{cheaper, excess_deg, spectral};
 use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
 use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
 use whiskmap::plan::{ExpansionCount, Plan};
-use whiskmap::refine::GOAL;
 use whiskmap::scene::Scene;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -218,11 +217,8 @@ impl EngineArgs {
 /// Returns the spectral engine, or the CPU engine where its trajectories take less time than expansions, as counted by `plan`.
 fn without_gpu(scene: &Scene, plan: &Plan, tolerance_deg: Option<f64>) -> OpenEngine {
     let why = format!("auto: {}", expansions(scene, plan));
-    let spectral = spectral(scene, tolerance_deg);
-    let pays = plan.expansions(scene).is_some_and(|count| count.pays());
-    let is_possible = spectral.residual_bound() >= GOAL;
-    let engine = (pays && is_possible).then(|| Box::new(spectral) as _);
-    (engine, why)
+    let spectral = cheaper(scene, plan, tolerance_deg);
+    (spectral.map(|own| Box::new(own) as _), why)
 }
 
 /// Returns why expansions pay for `scene`, or why they do not, in one line.

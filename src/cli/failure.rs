@@ -2,7 +2,6 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
-use std::process::ExitCode;
 use whiskmap::bench::PeersError;
 use whiskmap::compare::CompareError;
 use whiskmap::engine::EngineError;
@@ -15,6 +14,9 @@ use whiskmap::scene::SceneError;
 use whiskmap::store;
 use whiskmap::trace::NoState;
 use whiskmap::whisk::WhiskError;
+
+/// Exit code for invalid input.
+pub const INVALID_INPUT: u8 = 2;
 
 /// Failure of a command, with its message and exit code.
 #[derive(Debug, thiserror::Error)]
@@ -99,7 +101,7 @@ impl Failure {
             | Self::Render(RenderError::Store(error)) => error.is_unreadable(),
             _ => false,
         };
-        if is_input { 2 } else { 1 }
+        if is_input { INVALID_INPUT } else { 1 }
     }
 
     /// Returns true if the reader of an output has closed it.
@@ -113,14 +115,14 @@ impl Failure {
     }
 
     /// Prints the message of the failure and returns the exit code.
-    pub fn report(&self) -> ExitCode {
+    pub fn report(&self) -> u8 {
         match self {
             // A reader that stops early, like `head`, is not a failure.
-            _ if self.is_broken_pipe() => return ExitCode::SUCCESS,
+            _ if self.is_broken_pipe() => return 0,
             Self::Scene(error) => message(&error.render(color())),
             _ => message(&format!("error: {self}")),
         }
-        ExitCode::from(self.code())
+        self.code()
     }
 }
 

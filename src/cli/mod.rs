@@ -49,8 +49,8 @@ mod whisk;
 use clap::{Parser, Subcommand};
 use failure::Failure;
 use files::Files;
+use std::ffi::OsString;
 use std::io::{self, Write};
-use std::process::ExitCode;
 use whiskmap::store::TemporaryFiles;
 
 /// Compute where a whisker pushed against a pole stays in contact, slips off or is pulled off
@@ -134,19 +134,23 @@ enum Command {
     Man(manual::ManArgs),
 }
 
-/// Parses the arguments of the command line, runs the command and returns the exit code.
-pub fn main() -> ExitCode {
-    let result = match Arguments::try_parse() {
+/// Parses the arguments of a command line, of which the first is the name of the program. Runs the command and returns the exit code.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let result = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => stdout::check()
             .map_err(Failure::Output)
             .and_then(|()| start(&arguments.command)),
-        Err(wrong) if wrong.use_stderr() => wrong.exit(),
+        Err(wrong) if wrong.use_stderr() => {
+            // A closed standard error hides the message, not the code.
+            let _ = wrong.print();
+            return failure::INVALID_INPUT;
+        }
         Err(help) => stdout::check()
             .and_then(|()| help.print())
             .map_err(Failure::Output),
     };
     match result.and_then(|()| Ok(io::stdout().flush()?)) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => failure.report(),
     }
 }

@@ -49,7 +49,7 @@ impl fmt::Display for Precision {
 }
 
 /// Description of an engine: name and hardware, as printed and stored.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EngineDescription {
     /// Name of the engine: `cpu f64`, `spectral f64`, `gpu f32` or `gpu f64`.
     pub engine: String,

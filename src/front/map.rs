@@ -1,7 +1,7 @@
 //! Regime maps, computed in memory.
 
 use super::{Error, MapEngine, Options, accuracy};
-use crate::accuracy::{excess_deg, spectral};
+use crate::accuracy::{cheaper, excess_deg, spectral};
 use crate::classify::Regime;
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
@@ -10,7 +10,6 @@ use crate::map::{self as stages, Panel, Summary};
 use crate::plan::{Channel, Plan};
 use crate::scene::{Grid, Scene};
 use std::ops::ControlFlow;
-use std::sync::atomic::Ordering;
 
 /// A regime map in memory: one [`Panel`] for each whisker of the scene.
 #[derive(Clone, Debug)]
@@ -202,11 +201,15 @@ fn run<E: From<Error> + Send>(
     if let Some(accuracy) = &accuracy {
         plan.method.resolution = accuracy.resolution;
     }
+    if let Some(channels) = options.channels {
+        plan.channels = channels.with_marks(scene.has_friction());
+    }
     let left_deg = options.tolerance_deg.zip(accuracy);
     let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));
     let mut engine: Option<Box<dyn Engine>> = match options.engine {
         MapEngine::Cpu => None,
         MapEngine::Spectral => Some(Box::new(spectral(scene, left_deg))),
+        MapEngine::Auto => cheaper(scene, &plan, left_deg).map(|own| Box::new(own) as _),
         MapEngine::Gpu(precision) => Some(open(precision).map_err(Error::from)?),
     };
     let residual_bound = engine.as_ref().map(|engine| engine.residual_bound());
@@ -228,8 +231,7 @@ fn run<E: From<Error> + Send>(
         if let Some(on_progress) = &options.on_progress {
             on_progress(done, all);
         }
-        let cancel = options.cancel.as_ref();
-        match cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+        match options.is_cancelled() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }

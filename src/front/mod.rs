@@ -10,12 +10,12 @@ pub use traces::{branch, curve, shape};
 
 use crate::accuracy::{Accuracy, cheapest};
 use crate::engine::{EngineError, Precision};
-use crate::plan::PlanError;
+use crate::plan::{Channels, PlanError};
 use crate::rod::Side;
 use crate::scene::Scene;
 use crate::shooting::Resolution;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Accuracy, engine, progress and cancellation of a computation.
 ///
@@ -34,10 +34,21 @@ pub struct Options {
     pub tolerance_deg: Option<f64>,
     /// Engine that solves the cells of maps.
     pub engine: MapEngine,
+    /// Channels of maps to compute; `None` for all. Channels of states come with `status` where a whisker has friction.
+    pub channels: Option<Channels>,
     /// Function that is called with the number of finished cells and of all cells of a map, on the thread that computes it.
     pub on_progress: Option<Arc<dyn Fn(usize, usize) + Send + Sync>>,
-    /// Flag that cancels: if true, a map ends with [`Error::Cancelled`] after the current row batch.
+    /// Flag that cancels: if true, a map ends with [`Error::Cancelled`] after the current row batch, and curves after the current
+    /// whiskers.
     pub cancel: Option<Arc<AtomicBool>>,
+}
+
+impl Options {
+    /// Returns true if the computation is cancelled.
+    fn is_cancelled(&self) -> bool {
+        let cancel = self.cancel.as_ref();
+        cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
+    }
 }
 
 /// Engine that solves the cells of a map.
@@ -50,6 +61,8 @@ pub enum MapEngine {
     /// The spectral engine: certified polynomials along rows, in `f64` on all cores. Rows without a certificate fall back to the CPU
     /// engine, and so do all rows with measured radii.
     Spectral,
+    /// The spectral engine, or the CPU engine where its trajectories take less time than expansions. The choice depends on the scene alone.
+    Auto,
     /// The GPU engine: the preferred GPU in this precision; an error without the feature `gpu`.
     Gpu(Precision),
 }

@@ -26,7 +26,7 @@ use crate::trace::{Branch, Detachment, NoState, WhiskerShape, curve_at, sides, w
 /// ```
 ///
 /// # Errors
-/// When the tolerance cannot be kept.
+/// When the tolerance cannot be kept, or the computation is cancelled.
 pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachment)>, Error> {
     let resolution = resolution(scene, &options, &Side::BOTH)?;
     let distances = &scene.grid.distance_mm;
@@ -35,8 +35,14 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
             curve_at(resolution, &own.whisker, &own.pole, side, distances)
         })
     };
-    let groups = scene.whisker_groups(whiskers_at_once(distances.len()));
-    Ok(groups.flat_map(curves).collect())
+    let mut ends = Vec::with_capacity(2 * scene.whisker_count() * distances.len());
+    for group in scene.whisker_groups(whiskers_at_once(distances.len())) {
+        if options.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
+        ends.extend(curves(group));
+    }
+    Ok(ends)
 }
 
 /// Computes the branch of the scene's first whisker at one pole, from first touch at `distance_mm` through the fold.

@@ -10,7 +10,7 @@ mod sliding;
 mod stages;
 mod summary;
 
-use crate::engine::{Engine, EngineInput, Worker};
+use crate::engine::{Engine, EngineDescription, EngineInput, Worker};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
@@ -41,6 +41,7 @@ pub fn run<E: Send>(
     keep: &mut (dyn FnMut(&mut Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
     let (start, cpu_start) = (Instant::now(), process_seconds());
+    let description = EngineDescription::of(engine.as_deref());
     let input = engine.as_ref();
     let input = input.map(|own| own.input(plan.method.resolution));
     let has_thread = !matches!(input, Some(EngineInput::SpectralSheets(_)));
@@ -67,6 +68,7 @@ pub fn run<E: Send>(
     })?;
     let packing = packing.0[Stage::Packing as usize];
     summary.stages.0[Stage::Packing as usize] = packing;
+    summary.engine = description;
     summary.wall_seconds = start.elapsed().as_secs_f64();
     let cpu = process_seconds().zip(cpu_start);
     summary.cpu_seconds = cpu.map(|(end, start)| end - start);

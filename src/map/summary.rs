@@ -3,7 +3,7 @@
 use super::stages::StageTimes;
 use super::{Panel, Stage};
 use crate::classify::{Regime, Status};
-use crate::engine::{EngineError, Outcome};
+use crate::engine::{EngineDescription, EngineError, Outcome};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -96,6 +96,8 @@ pub struct Summary {
     pub toward_base: u64,
     /// Number of cells with a state whose contact sticks.
     pub sticking: u64,
+    /// Engine of the run, and its hardware.
+    pub engine: EngineDescription,
     /// Numbers of cells of the run by their outcome in the engine.
     pub engine_cells: EngineCells,
     /// Result of the audit of the run's engine.

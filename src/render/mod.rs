@@ -14,7 +14,7 @@ mod sensitivities;
 
 pub use courses::{courses, forces};
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
-pub use map::map;
+pub use map::{map, regime_fill};
 pub use options::MapOptions;
 pub use plots::{
     BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves,
@@ -22,7 +22,7 @@ pub use plots::{
 };
 pub use sensitivities::sensitivities;
 pub use whiskmap_plot::{
-    Band, Chart, Disc, Dot, EncodeError, Ink, Inset, Line, Note, Picture, PictureFormat,
+    Band, Chart, Disc, Dot, EncodeError, Fill, Ink, Inset, Line, Note, Picture, PictureFormat,
     PictureSize, Plot, PrintSize, Region, SizeError, Stroke,
 };
 

@@ -136,6 +136,17 @@ impl SceneBuilder {
         self
     }
 
+    /// Returns the name and the values of each axis as they are given: push angles, distances, and the sweep in order.
+    pub fn axes(&self) -> impl Iterator<Item = (&'static str, &AxisValues)> {
+        let inside = [
+            ("push_angle_deg", &self.push_angle_deg),
+            ("distance_mm", &self.distance_mm),
+        ];
+        let sweep = self.sweep.iter();
+        let sweep = sweep.map(|(parameter, values)| (parameter.axis(), values));
+        inside.into_iter().chain(sweep)
+    }
+
     /// Returns true if the scene has a sweep axis along which whiskers differ in `parameter`.
     pub(super) fn sweeps(&self, parameter: Parameter) -> bool {
         self.sweep.iter().any(|(own, _)| *own == parameter)

@@ -15,6 +15,7 @@ pub struct SceneError {
     text: String,
     span: Option<Range<usize>>,
     message: String,
+    fault: Option<Box<SceneFault>>,
 }
 
 impl SceneError {
@@ -30,6 +31,7 @@ impl SceneError {
             text: text.to_owned(),
             span: span.and_then(|span| within_a_line(text, span)),
             message: message.into(),
+            fault: None,
         }
     }
 
@@ -74,12 +76,33 @@ impl SceneError {
 
     /// Creates an error about a refused value of a scene: `key = value: must ...`.
     pub(super) fn of_fault(origin: &str, text: &str, fault: SceneFault) -> Self {
-        let SceneFault { key, value, must } = fault;
+        let SceneFault { key, value, must } = &fault;
         let message = match value {
             Some(value) => format!("{key} = {value}: {must}"),
             None => format!("{key}: {must}"),
         };
-        Self::at(origin, text, None, message)
+        Self {
+            fault: Some(Box::new(fault)),
+            ..Self::at(origin, text, None, message)
+        }
+    }
+
+    /// Returns the key of the refused value in a scene file, such as `whisker.length_mm`; `None` if the text is no scene.
+    #[must_use]
+    pub fn key(&self) -> Option<&str> {
+        self.fault.as_ref().map(|fault| &*fault.key)
+    }
+
+    /// Returns the refused value as text; `None` if it is missing or too long for a sentence, or the text is no scene.
+    #[must_use]
+    pub fn value(&self) -> Option<&str> {
+        self.fault.as_ref()?.value.as_deref()
+    }
+
+    /// Returns what is wrong with the value, and what is allowed; `None` if the text is no scene.
+    #[must_use]
+    pub fn allowed(&self) -> Option<&str> {
+        self.fault.as_ref().map(|fault| &*fault.must)
     }
 
     /// Returns the error with a range of bytes in the scene's text.
@@ -169,7 +192,7 @@ fn within_a_line(text: &str, span: Range<usize>) -> Option<Range<usize>> {
 }
 
 /// Fault of a scene: a value that the checks refuse, without the file's name and text.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct SceneFault {
     /// Key of the refused value in a scene file.
     pub key: String,

@@ -87,7 +87,8 @@ impl Scene {
     }
 
     /// Returns the measured rows as the scene gives them, `[row][arclength_mm, radius_um]`; `None` without a profile.
-    pub(crate) fn measured_rows(&self) -> Option<&[[f64; 2]]> {
+    #[must_use]
+    pub fn measured_rows(&self) -> Option<&[[f64; 2]]> {
         self.builder.rows.as_deref()
     }
 

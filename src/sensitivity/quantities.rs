@@ -46,6 +46,24 @@ impl Derivatives {
         ]
     }
 
+    /// Returns these derivatives plus `factor` times `other`.
+    #[must_use]
+    pub fn plus(&self, factor: f64, other: &Self) -> Self {
+        let sum = |own: f64, other: f64| own + factor * other;
+        Self {
+            push_angle_deg: sum(self.push_angle_deg, other.push_angle_deg),
+            push_chord_deg: sum(self.push_chord_deg, other.push_chord_deg),
+            contact_distance_mm: sum(self.contact_distance_mm, other.contact_distance_mm),
+            arc_length_mm: sum(self.arc_length_mm, other.arc_length_mm),
+            force_un: sum(self.force_un, other.force_un),
+            base_force_x_un: sum(self.base_force_x_un, other.base_force_x_un),
+            base_force_y_un: sum(self.base_force_y_un, other.base_force_y_un),
+            base_moment_nnm: sum(self.base_moment_nnm, other.base_moment_nnm),
+            energy_nj: sum(self.energy_nj, other.energy_nj),
+            contact_angle_deg: sum(self.contact_angle_deg, other.contact_angle_deg),
+        }
+    }
+
     /// Converts the derivative of a state to physical units. `phi` at first touch changes by `by_touch`.
     pub(super) fn new(
         at: &Linearised,

@@ -46,6 +46,8 @@ pub use temporary::TemporaryFiles;
 pub use temporary::TemporaryFolder;
 pub use writer::MapWriter;
 #[cfg(feature = "zarr")]
-pub use zarr::{BlockState, CheckDepth, PackedPanel, ZarrStore};
+pub use zarr::{
+    AxisCoordinate, BlockState, CheckDepth, PackedPanel, ZarrStore, channel_attributes, coordinates,
+};
 
 pub use crate::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};

@@ -42,7 +42,9 @@ impl MapSlice {
         Ok(slice)
     }
 
-    fn whole(stored: MapSource) -> Self {
+    /// Creates the slice that is the whole of `stored`.
+    #[must_use]
+    pub fn whole(stored: MapSource) -> Self {
         let grid = stored.grid().clone();
         Self {
             rows: (0..grid.distance_mm.len()).collect(),

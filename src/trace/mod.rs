@@ -12,8 +12,11 @@ mod shape;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
-pub use curve::{Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, reach_mm};
-pub(crate) use curve::{DetachmentEnd, curve_without_strain, detachments};
+pub use curve::{
+    Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, curve_without_strain,
+    reach_mm,
+};
+pub(crate) use curve::{DetachmentEnd, detachments};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;
 

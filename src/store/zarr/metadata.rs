@@ -109,9 +109,28 @@ fn word(name: &str) -> String {
 /// Array without axes whose attributes describe the rounding (CF conventions, 8.4).
 const QUANTIZATION: &str = "quantization";
 
-/// The coordinates along every axis, and the description of the rounding if there is any, with their values as bytes.
-pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)> {
-    let inside = [
+/// Returns the attributes of a channel of maps, by the CF conventions: unit, meaning, and flags of codes; `None` for another name.
+#[must_use]
+pub fn channel_attributes(name: &str) -> Option<Value> {
+    let (_, _, units, meaning) = CHANNELS.iter().find(|(own, ..)| *own == name)?;
+    Some(with_flags(name, about(*units, meaning)))
+}
+
+/// Coordinate of maps: values along one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisCoordinate<'a> {
+    /// Name of the coordinate and of its dimension.
+    pub name: &'static str,
+    /// Attributes of the coordinate by the CF conventions: unit and meaning.
+    pub attributes: Value,
+    /// Values of the coordinate in its unit, `[value]`.
+    pub values: &'a [f64],
+}
+
+/// Returns the coordinates of a grid in the order of the dimensions of channels: sweep axes, distances and push angles.
+#[must_use]
+pub fn coordinates(grid: &Grid) -> Vec<AxisCoordinate<'_>> {
+    let inside: [(_, _, _, &[f64]); 2] = [
         (
             "distance_mm",
             "mm",
@@ -128,13 +147,23 @@ pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)
     let sweep = grid.sweep.iter().map(|axis| {
         let parameter = axis.parameter;
         let title = parameter.title();
-        (parameter.axis(), parameter.unit(), title, &axis.values)
+        (parameter.axis(), parameter.unit(), title, &*axis.values)
     });
+    let all = sweep.chain(inside);
+    all.map(|(name, units, title, values)| AxisCoordinate {
+        name,
+        attributes: about(Some(units), title),
+        values,
+    })
+    .collect()
+}
+
+/// The coordinates along every axis, and the description of the rounding if there is any, with their values as bytes.
+pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)> {
     let mut all = Vec::new();
-    for (name, units, title, values) in sweep.chain(inside) {
-        let about = about(Some(units), title);
-        let array = ZarrArray::of_axis(name, Coordinate, values.len(), about);
-        all.push((array, bytemuck::cast_slice(values).to_vec()));
+    for own in coordinates(grid) {
+        let array = ZarrArray::of_axis(own.name, Coordinate, own.values.len(), own.attributes);
+        all.push((array, bytemuck::cast_slice(own.values).to_vec()));
     }
     let codes = Regime::ALL.map(|regime| regime.code() as u8).to_vec();
     let (_, _, units, meaning) = CHANNELS[0];

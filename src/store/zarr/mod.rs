@@ -20,6 +20,7 @@ mod read;
 mod shard;
 
 pub use self::check::{BlockState, CheckDepth};
+pub use self::metadata::{AxisCoordinate, channel_attributes, coordinates};
 pub use self::pack::PackedPanel;
 
 use self::array::ZarrArray;

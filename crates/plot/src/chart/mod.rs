@@ -10,6 +10,7 @@ mod window;
 
 use crate::frame::regions::Region;
 use crate::picture::Picture;
+use crate::picture::palette::{BLUE, GREY, INK, Rgb, SERIES};
 use crate::picture::size::{PictureSize, SizeError};
 
 /// The colour of a line, a dot or an arrow of a chart.
@@ -24,6 +25,19 @@ pub enum Ink {
     Grey,
     /// The ink of a series among several, counted from 0; after seven inks they repeat.
     Series(usize),
+}
+
+impl Ink {
+    /// Returns the sRGB colour of the ink.
+    #[must_use]
+    pub const fn rgb(self) -> Rgb {
+        match self {
+            Self::Black => INK,
+            Self::Blue => BLUE,
+            Self::Grey => GREY,
+            Self::Series(index) => SERIES[index % SERIES.len()],
+        }
+    }
 }
 
 /// The dash pattern of a line of a chart: solid or dashed.

@@ -1,6 +1,6 @@
 //! Layout of one plot of a chart: frame, ticks and contents.
 
-use super::viewport::{Viewport, colour, pen};
+use super::viewport::{Viewport, pen};
 use super::window::{Window, drawable_disc, drawable_span};
 use super::{Band, Dot, Plot, Shade};
 use crate::frame::axes::{Axes, FRAME};
@@ -24,7 +24,7 @@ const fn ground(shade: Shade) -> Rgb {
 
 /// The pen of an open dot.
 const fn rim(dot: &Dot) -> Pen {
-    Pen::solid(LINE, colour(dot.ink))
+    Pen::solid(LINE, dot.ink.rgb())
 }
 
 /// A plot with the ranges, units and ticks chosen for a body of known size.
@@ -96,7 +96,7 @@ impl<'a> PlotLayout<'a> {
             let at = viewport.place(dot.at);
             match dot.open {
                 true => picture.circle(at, DOT - 0.5 * LINE, WHITE, Some(rim(dot))),
-                false => picture.circle(at, DOT, colour(dot.ink), Some(Pen::solid(RING, WHITE))),
+                false => picture.circle(at, DOT, dot.ink.rgb(), Some(Pen::solid(RING, WHITE))),
             }
         }
         if let Some(inset) = &plot.inset {
@@ -114,7 +114,7 @@ impl<'a> PlotLayout<'a> {
     fn legend(&self) -> Vec<LegendEntry> {
         let lines = self.plot.lines.iter().map(|line| {
             let symbol = match line.points[..] {
-                [_] => LegendSymbol::Dot(colour(line.ink)),
+                [_] => LegendSymbol::Dot(line.ink.rgb()),
                 _ => LegendSymbol::Line(pen(line)),
             };
             (symbol, &line.name)
@@ -126,7 +126,7 @@ impl<'a> PlotLayout<'a> {
             .filter(|dot| self.window.holds(dot.at));
         let dots = shown.map(|dot| match dot.open {
             true => (LegendSymbol::Ring(rim(dot)), &dot.name),
-            false => (LegendSymbol::Dot(colour(dot.ink)), &dot.name),
+            false => (LegendSymbol::Dot(dot.ink.rgb()), &dot.name),
         });
         let bands = self.plot.bands.iter().map(|band| {
             let fill = Fill::plain(ground(band.shade));

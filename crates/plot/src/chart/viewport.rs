@@ -1,10 +1,10 @@
 //! Draws lines, discs, notes and insets, given in data units, into an area of the picture.
 
 use super::window::{Window, drawable};
-use super::{Disc, Ink, Inset, Line, Note, Plot, Stroke};
+use super::{Disc, Inset, Line, Note, Plot, Stroke};
 use crate::frame::axes::FRAME;
 use crate::frame::heading::{LINE, NAME};
-use crate::picture::palette::{BLANK, BLUE, GREY, INK, Rgb, SERIES};
+use crate::picture::palette::{BLANK, GREY, INK};
 use crate::picture::{Anchor, Area, Pen, Picture, font};
 use glam::DVec2;
 
@@ -25,20 +25,11 @@ const HEAD: f64 = 13.0;
 /// Half the angle between the strokes of an arrow's head, in radians.
 const HALF_ANGLE: f64 = 0.45;
 
-pub const fn colour(ink: Ink) -> Rgb {
-    match ink {
-        Ink::Black => INK,
-        Ink::Blue => BLUE,
-        Ink::Grey => GREY,
-        Ink::Series(index) => SERIES[index % SERIES.len()],
-    }
-}
-
 /// Returns the pen that draws a line of a chart.
 pub fn pen(line: &Line) -> Pen {
     Pen {
         width: LINE,
-        colour: colour(line.ink),
+        colour: line.ink.rgb(),
         dashed: line.stroke == Stroke::Dashed,
     }
 }
@@ -94,7 +85,7 @@ impl Viewport {
             let mut text = [at[0], at[1] - ABOVE];
             if let Some(to) = note.to.filter(|to| self.window.holds(*to)) {
                 let to = self.place(to);
-                arrow(picture, at, to, Pen::solid(ARROW, colour(note.ink)));
+                arrow(picture, at, to, Pen::solid(ARROW, note.ink.rgb()));
                 text = behind(at, to, &note.text);
             }
             picture.text(&note.text, text, NAME, Anchor::Centre);

@@ -53,6 +53,12 @@ impl Fill {
         Self { ground, stripes }
     }
 
+    /// Returns the colours of the fill: ground and stripes, which are equal in a fill of one colour.
+    #[must_use]
+    pub const fn colours(self) -> [Rgb; 2] {
+        [self.ground, self.stripes]
+    }
+
     /// Returns the fill's ground colour with black or white stripes, whichever contrast more.
     #[must_use]
     pub fn hatched(self) -> Self {

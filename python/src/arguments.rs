@@ -1,0 +1,67 @@
+//! Arguments of functions: sides, parameters and engines by name.
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use whiskmap::input::did_you_mean;
+use whiskmap::rod::Side;
+use whiskmap::scene::Parameter;
+use whiskmap::{Channels, MapEngine, Precision};
+
+/// Returns the side with this name.
+pub fn side(name: &str) -> PyResult<Side> {
+    match name {
+        "cb" => Ok(Side::Cb),
+        "cf" => Ok(Side::Cf),
+        _ => Err(refused("side", name, "must be 'cb' or 'cf'")),
+    }
+}
+
+/// Returns the parameter with this name; `argument` is the one that gives it.
+pub fn parameter(argument: &str, name: &str) -> PyResult<Parameter> {
+    Parameter::named(name).ok_or_else(|| {
+        let known = Parameter::ALL.map(Parameter::name);
+        let hint = did_you_mean(name, known);
+        refused(
+            argument,
+            name,
+            &format!("must be one of {}{hint}", known.join(", ")),
+        )
+    })
+}
+
+/// Returns the engine with this name.
+pub fn engine(name: &str) -> PyResult<MapEngine> {
+    match name {
+        "auto" => Ok(MapEngine::Auto),
+        "cpu" => Ok(MapEngine::Cpu),
+        "spectral" => Ok(MapEngine::Spectral),
+        "gpu" => Ok(MapEngine::Gpu(Precision::F32)),
+        _ => Err(refused(
+            "engine",
+            name,
+            "must be 'auto', 'cpu', 'spectral' or 'gpu'",
+        )),
+    }
+}
+
+/// Returns the selection of these channels.
+pub fn channels(names: &[String]) -> PyResult<Channels> {
+    let selected = names.join(",").parse();
+    selected.map_err(|must: String| refused("channels", &names.join(", "), &must))
+}
+
+/// Returns the maximum push-angle error, if it is a positive number.
+pub fn tolerance(degrees: Option<f64>) -> PyResult<Option<f64>> {
+    match degrees {
+        Some(degrees) if !(degrees > 0.0 && degrees.is_finite()) => {
+            let must = format!("tolerance_deg = {degrees}: must be a positive number");
+            Err(PyValueError::new_err(must))
+        }
+        _ => Ok(degrees),
+    }
+}
+
+/// Returns the exception of a refused text.
+pub fn refused(argument: &str, value: &str, must: &str) -> PyErr {
+    PyValueError::new_err(format!("{argument} = '{value}': {must}"))
+}

@@ -1,0 +1,45 @@
+//! Extension module `whiskmap._whiskmap`: the library in terms of plain Python values and numpy arrays.
+//!
+//! The package in `python/whiskmap` gives them names, units and documentation. Nothing here prints, and every error is an exception.
+
+mod about;
+mod arguments;
+mod columns;
+mod command;
+mod detachment;
+mod errors;
+mod fits;
+mod maps;
+mod plan;
+mod scene;
+mod stored;
+mod threads;
+mod traces;
+
+/// Functions and classes of the module; `_whiskmap.pyi` has their types.
+#[pyo3::pymodule(gil_used = false)]
+mod _whiskmap {
+    #[pymodule_export]
+    use super::about::{
+        arithmetic, channel_attributes, channels, coordinates, inks, parameters, regimes,
+        variables, version,
+    };
+    #[pymodule_export]
+    use super::command::run_command;
+    #[pymodule_export]
+    use super::detachment::detachment;
+    #[pymodule_export]
+    use super::errors::{SceneError, StateError};
+    #[pymodule_export]
+    use super::fits::{design, fit};
+    #[pymodule_export]
+    use super::maps::map;
+    #[pymodule_export]
+    use super::plan::plan;
+    #[pymodule_export]
+    use super::scene::CheckedScene;
+    #[pymodule_export]
+    use super::stored::StoredMap;
+    #[pymodule_export]
+    use super::traces::{branch, curve, shape};
+}

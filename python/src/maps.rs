@@ -1,0 +1,158 @@
+//! Regime maps as arrays that own the memory in which they were computed.
+
+use crate::arguments;
+use crate::errors::{of_front, of_plan};
+use crate::scene::CheckedScene;
+use crate::threads;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use whiskmap::plan::Plan;
+use whiskmap::scene::{Grid, Scene};
+use whiskmap::{Channel, Channels, Error, Options, Panel, Summary};
+
+/// Values of one channel of all whiskers, in the order of the axes: `[sweep axes.., distance, push angle]`.
+enum ChannelArray {
+    Codes(Vec<u8>),
+    Counts(Vec<u32>),
+    Quantities(Vec<f32>),
+}
+
+/// Arrays of channels by name.
+type ChannelArrays = Vec<(&'static str, ChannelArray)>;
+
+/// Names and arrays of channels, the name of the engine, and its hardware.
+type MapArrays<'py> = (Vec<(&'static str, Bound<'py, PyAny>)>, String, String);
+
+/// Computes the map of `scene`. `progress` is called with the numbers of finished cells and of all cells.
+#[pyfunction]
+pub fn map<'py>(
+    py: Python<'py>,
+    scene: &CheckedScene,
+    engine: &str,
+    tolerance_deg: Option<f64>,
+    channels: Option<Vec<String>>,
+    threads: Option<usize>,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<MapArrays<'py>> {
+    let scene = &scene.0;
+    let channels = channels
+        .map(|names| arguments::channels(&names))
+        .transpose()?;
+    let channels = channels
+        .unwrap_or(Channels::ALL)
+        .with_marks(scene.has_friction());
+    let done = Arc::new(AtomicUsize::new(0));
+    let mut options = Options::default();
+    options.engine = arguments::engine(engine)?;
+    options.tolerance_deg = arguments::tolerance(tolerance_deg)?;
+    options.channels = Some(channels);
+    let cells = Arc::clone(&done);
+    options.on_progress = Some(Arc::new(move |finished, _| {
+        cells.store(finished, Ordering::Relaxed)
+    }));
+    let all = Plan::in_memory(scene).map_err(|why| of_plan(&why))?.cells;
+    let report = |finished: usize| match &progress {
+        Some(progress) => progress.call1((finished, all)).map(drop),
+        None => Ok(()),
+    };
+    let (arrays, summary) = threads::run(
+        py,
+        threads,
+        |_| report(done.load(Ordering::Relaxed)),
+        |cancel| {
+            options.cancel = Some(Arc::clone(cancel));
+            gathered(scene, options, channels)
+        },
+    )?
+    .map_err(|why| of_front(&why))?;
+    report(all)?;
+    let arrays = arrays.into_iter().map(|(name, values)| {
+        let array = match values {
+            ChannelArray::Codes(codes) => PyArray1::from_vec(py, codes).into_any(),
+            ChannelArray::Counts(counts) => PyArray1::from_vec(py, counts).into_any(),
+            ChannelArray::Quantities(values) => PyArray1::from_vec(py, values).into_any(),
+        };
+        (name, array)
+    });
+    Ok((
+        arrays.collect(),
+        summary.engine.engine,
+        summary.engine.adapter,
+    ))
+}
+
+/// Computes the panels of all whiskers, and gathers the channels.
+fn gathered(
+    scene: &Scene,
+    options: Options,
+    channels: Channels,
+) -> Result<(ChannelArrays, Summary), Error> {
+    let mut arrays: ChannelArrays = Vec::new();
+    let whiskers = scene.whisker_count();
+    let summary = whiskmap::for_each_panel(scene, options, |whisker, mut panel| {
+        let place = place(&scene.grid, whisker);
+        for (index, name) in channels.names().enumerate() {
+            let own = taken(&mut panel, name);
+            if whisker == 0 {
+                arrays.push((name, own.spread(whiskers)));
+            } else if let Some((_, array)) = arrays.get_mut(index) {
+                array.put(place, &own);
+            }
+        }
+        Ok::<(), Error>(())
+    })?;
+    Ok((arrays, summary))
+}
+
+/// Takes a channel out of a panel.
+fn taken(panel: &mut Panel, name: &str) -> ChannelArray {
+    let codes = |codes: &[u32]| codes.iter().map(|code| code.to_le_bytes()[0]).collect();
+    match name {
+        "regime" => ChannelArray::Codes(codes(&panel.regime)),
+        "status" => ChannelArray::Codes(codes(&panel.status)),
+        "newton_steps" => ChannelArray::Counts(std::mem::take(&mut panel.newton_steps)),
+        "residual" => ChannelArray::Quantities(std::mem::take(&mut panel.residual)),
+        "margin_deg" => ChannelArray::Quantities(std::mem::take(&mut panel.margin_deg)),
+        _ => {
+            let place = Channel::ALL.iter().position(|own| own.name() == name);
+            let state = place.and_then(|place| panel.state.get_mut(place));
+            ChannelArray::Quantities(state.map(std::mem::take).unwrap_or_default())
+        }
+    }
+}
+
+impl ChannelArray {
+    /// Returns the array for all whiskers, with this one as the first. A single whisker keeps its memory.
+    fn spread(self, whiskers: usize) -> Self {
+        fn longer<T: Clone + Default>(mut own: Vec<T>, whiskers: usize) -> Vec<T> {
+            own.resize(own.len() * whiskers, T::default());
+            own
+        }
+        match self {
+            Self::Codes(own) => Self::Codes(longer(own, whiskers)),
+            Self::Counts(own) => Self::Counts(longer(own, whiskers)),
+            Self::Quantities(own) => Self::Quantities(longer(own, whiskers)),
+        }
+    }
+
+    /// Writes the values of one whisker at its place.
+    fn put(&mut self, place: usize, own: &Self) {
+        fn copy<T: Copy>(all: &mut [T], place: usize, own: &[T]) {
+            all[place * own.len()..][..own.len()].copy_from_slice(own);
+        }
+        match (self, own) {
+            (Self::Codes(all), Self::Codes(own)) => copy(all, place, own),
+            (Self::Counts(all), Self::Counts(own)) => copy(all, place, own),
+            (Self::Quantities(all), Self::Quantities(own)) => copy(all, place, own),
+            _ => {}
+        }
+    }
+}
+
+/// Returns the place of a whisker in an array whose last sweep axis varies fastest. In the sweep, the first one does.
+fn place(grid: &Grid, whisker: usize) -> usize {
+    let axes = grid.sweep.iter().zip(grid.indices(whisker));
+    axes.fold(0, |place, (axis, index)| place * axis.values.len() + index)
+}

@@ -1,0 +1,193 @@
+//! Checked scenes.
+
+use crate::arguments::{parameter, refused};
+use crate::errors::of_scene;
+use pyo3::prelude::*;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use whiskmap::scene::{AxisScale, AxisValues, Deviations, Parameter, Scene};
+
+/// Name of the standard deviation of measured radii.
+const PROFILE_RADIUS: &str = "profile_radius_um";
+
+/// A scene that has passed every check, with its description as plain values.
+#[pyclass(frozen, module = "whiskmap._whiskmap")]
+pub struct CheckedScene(pub Scene);
+
+/// Values of an axis: a list, or first value, last value, number of values and scale.
+#[derive(FromPyObject, IntoPyObject)]
+pub enum AxisTuple {
+    Range(f64, Option<f64>, usize, String),
+    #[pyo3(transparent)]
+    List(Vec<f64>),
+}
+
+/// Description of a scene: title, numbers by name, measured rows, axes by name, standard deviations by name, and name.
+type Description = (
+    String,
+    BTreeMap<String, f64>,
+    Option<Vec<[f64; 2]>>,
+    Vec<(String, AxisTuple)>,
+    Option<BTreeMap<String, f64>>,
+    Option<String>,
+);
+
+#[pymethods]
+impl CheckedScene {
+    /// Reads a scene file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        // Only a file that can be opened is a scene that is refused.
+        std::fs::File::open(&path).map_err(|cause| crate::errors::of_io(&path, &cause))?;
+        let scene = py.detach(|| Scene::read(&path));
+        scene.map(Self).map_err(|why| of_scene(py, &why))
+    }
+
+    /// Checks the text of a scene file, which messages call `origin`.
+    #[staticmethod]
+    fn parse(py: Python<'_>, text: &str, origin: &str) -> PyResult<Self> {
+        let scene = Scene::parse(text, origin);
+        scene.map(Self).map_err(|why| of_scene(py, &why))
+    }
+
+    /// Checks the description of a scene.
+    #[staticmethod]
+    fn build(py: Python<'_>, description: Description) -> PyResult<Self> {
+        let (title, numbers, rows, axes, deviations, name) = description;
+        let mut builder = Scene::builder(title);
+        for (name, value) in numbers {
+            builder = builder.set(parameter("whisker", &name)?, value);
+        }
+        if let Some(rows) = rows {
+            builder = builder.profile(rows);
+        }
+        for (name, values) in axes {
+            let values = axis_values(&name, values)?;
+            builder = match &*name {
+                "push_angle_deg" => builder.push_angle_deg(values),
+                "distance_mm" => builder.distance_mm(values),
+                _ => builder.sweep(swept(&name)?, values),
+            };
+        }
+        if let Some(deviations) = deviations {
+            builder = builder.uncertainty(uncertainty(&deviations)?);
+        }
+        if let Some(name) = name {
+            builder = builder.name(name);
+        }
+        builder.build().map(Self).map_err(|why| of_scene(py, &why))
+    }
+
+    /// Returns the description from which [`CheckedScene::build`] makes an equal scene.
+    fn description(&self) -> Description {
+        let builder = self.0.to_builder();
+        let given = Parameter::ALL
+            .into_iter()
+            .filter(|own| *own != Parameter::Taper);
+        let given = given.filter_map(|own| Some((own.name().to_owned(), own.value(&self.0)?)));
+        let axes = builder.axes();
+        (
+            self.0.title.clone(),
+            given.collect(),
+            self.0.measured_rows().map(<[_]>::to_vec),
+            axes.map(|(name, values)| (name.to_owned(), axis_tuple(values)))
+                .collect(),
+            self.0.uncertainty.as_ref().map(deviations_by_name),
+            Some(self.0.name.clone()),
+        )
+    }
+
+    /// Returns the scene as the text of a file.
+    fn to_toml(&self) -> String {
+        self.0.to_toml()
+    }
+
+    /// Returns one line for each number that looks like another unit.
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings()
+    }
+
+    /// Scenes are equal if all their values are, whatever their texts.
+    fn __eq__(&self, other: &Self) -> bool {
+        let (own, other) = (&*self.0, &*other.0);
+        own.title == other.title
+            && own.whisker == other.whisker
+            && own.pole == other.pole
+            && own.grid == other.grid
+            && own.uncertainty == other.uncertainty
+            && own.name == other.name
+    }
+}
+
+fn axis_values(name: &str, values: AxisTuple) -> PyResult<AxisValues> {
+    Ok(match values {
+        AxisTuple::List(list) => list.into(),
+        AxisTuple::Range(from, to, count, scale) => AxisValues::Range {
+            from,
+            to,
+            count,
+            scale: match &*scale {
+                "linear" => AxisScale::Linear,
+                "log" => AxisScale::Log,
+                _ => {
+                    return Err(refused(
+                        &format!("{name}.scale"),
+                        &scale,
+                        "must be 'linear' or 'log'",
+                    ));
+                }
+            },
+        },
+    })
+}
+
+fn axis_tuple(values: &AxisValues) -> AxisTuple {
+    match values {
+        AxisValues::List(list) => AxisTuple::List(list.clone()),
+        AxisValues::Range {
+            from,
+            to,
+            count,
+            scale,
+        } => {
+            let scale = if *scale == AxisScale::Log {
+                "log"
+            } else {
+                "linear"
+            };
+            AxisTuple::Range(*from, *to, *count, scale.to_owned())
+        }
+    }
+}
+
+/// Returns the parameter that a sweep axis of this name varies.
+fn swept(name: &str) -> PyResult<Parameter> {
+    let mut all = Parameter::SWEPT.into_iter();
+    all.find(|own| own.axis() == name).ok_or_else(|| {
+        let known = Parameter::SWEPT.map(Parameter::axis).join(", ");
+        refused("grid.sweep", name, &format!("must be one of {known}"))
+    })
+}
+
+fn uncertainty(by_name: &BTreeMap<String, f64>) -> PyResult<Deviations> {
+    let mut deviations = Deviations::default();
+    for (name, deviation) in by_name {
+        if name == PROFILE_RADIUS {
+            deviations.profile_radius_um = Some(*deviation);
+        } else {
+            deviations
+                .parameters
+                .push((parameter("uncertainty", name)?, *deviation));
+        }
+    }
+    Ok(deviations)
+}
+
+fn deviations_by_name(deviations: &Deviations) -> BTreeMap<String, f64> {
+    let parameters = deviations.parameters.iter();
+    let parameters = parameters.map(|(own, deviation)| (own.name().to_owned(), *deviation));
+    let rows = deviations
+        .profile_radius_um
+        .map(|deviation| (PROFILE_RADIUS.to_owned(), deviation));
+    parameters.chain(rows).collect()
+}

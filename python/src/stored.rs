@@ -1,0 +1,104 @@
+//! Stored maps, read panel by panel.
+
+use crate::about;
+use crate::errors::of_store;
+use numpy::PyArray1;
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use whiskmap::store::{ChannelValues, MapSlice, MapSource};
+
+/// Attributes of a stored map that every reader needs.
+const ATTRIBUTES: [&str; 5] = [
+    "whiskmap_version",
+    "engine",
+    "arithmetic",
+    "tolerances",
+    "scene",
+];
+
+/// An EXR map or a Zarr store that is open for reading.
+#[pyclass(frozen, module = "whiskmap._whiskmap")]
+pub struct StoredMap {
+    path: PathBuf,
+    map: MapSlice,
+    /// Index of each whisker in the file, in an order in which the last sweep axis varies fastest.
+    order: Vec<usize>,
+}
+
+#[pymethods]
+impl StoredMap {
+    /// Opens an EXR map, or a Zarr store if the path is that of a folder. Cells of a store that are not computed have fill values.
+    #[new]
+    fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let opened = py.detach(|| {
+            let source = MapSource::open(&path)?;
+            // Without a selected value, none can be refused.
+            let mut map = MapSlice::whole(source);
+            map.blank_missing()?;
+            Ok(map)
+        });
+        let map = opened.map_err(|why| of_store(&why))?;
+        let order = map.whiskers().collect();
+        Ok(Self { path, map, order })
+    }
+
+    /// Names of the channels of the map.
+    fn channels(&self) -> Vec<&'static str> {
+        self.map.channels()
+    }
+
+    /// Name, CF attributes as JSON, and values of each coordinate.
+    fn coordinates<'py>(&self, py: Python<'py>) -> Vec<about::Coordinate<'py>> {
+        about::of_grid(py, self.map.grid())
+    }
+
+    /// Title of the scene, and other attributes as JSON.
+    fn attributes(&self) -> PyResult<Vec<(&'static str, String)>> {
+        let stored = self.map.stored();
+        let title = ("title", serde_json::Value::from(stored.title()).to_string());
+        let others = ATTRIBUTES.into_iter().map(|name| {
+            let value = stored.attribute(name).map_err(|why| of_store(&why))?;
+            Ok((name, value.to_string()))
+        });
+        std::iter::once(Ok(title)).chain(others).collect()
+    }
+
+    /// Reads a channel of some whiskers, `[whisker, distance, push angle]` in one dimension. The last sweep axis varies fastest.
+    fn read<'py>(
+        &self,
+        py: Python<'py>,
+        channel: &str,
+        whiskers: Vec<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (mut codes, mut quantities) = (Vec::new(), Vec::new());
+        let read = |whisker: &usize| {
+            let index = self.order.get(*whisker);
+            let index = index
+                .ok_or_else(|| PyIndexError::new_err(format!("there is no whisker {whisker}")))?;
+            match self
+                .map
+                .read_panel(channel, *index)
+                .map_err(|why| of_store(&why))?
+            {
+                ChannelValues::U32(own) => codes.extend(own),
+                ChannelValues::F32(own) => quantities.extend(own),
+            }
+            Ok::<(), PyErr>(())
+        };
+        py.detach(|| whiskers.iter().try_for_each(read))?;
+        Ok(match (channel, codes.is_empty()) {
+            (_, true) => PyArray1::from_vec(py, quantities).into_any(),
+            ("newton_steps", false) => PyArray1::from_vec(py, codes).into_any(),
+            (_, false) => {
+                let codes = codes.iter().map(|code: &u32| code.to_le_bytes()[0]);
+                PyArray1::from_iter(py, codes).into_any()
+            }
+        })
+    }
+
+    /// A map is pickled as its path.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyAny>, (PathBuf,)) {
+        (slf.get_type().into_any(), (slf.get().path.clone(),))
+    }
+}

@@ -1,0 +1,114 @@
+//! Detachment curves, branches and shapes as columns.
+
+use crate::arguments;
+use crate::columns::{Column, columns};
+use crate::errors::{of_front, of_scene, of_state};
+use crate::scene::CheckedScene;
+use crate::threads;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::Arc;
+use whiskmap::rod::Side;
+use whiskmap::scene::Scene;
+use whiskmap::trace::{BranchPoint, Detachment, ShapePoint, WhiskerShape};
+use whiskmap::{Options, branch as branch_of};
+
+/// Maximum number of points of a branch or a shape.
+const MOST_POINTS: usize = 1_000_000;
+
+/// Computes the detachments of all whiskers: whisker by whisker, CF before CB, by distance.
+#[pyfunction]
+pub fn curve<'py>(
+    py: Python<'py>,
+    scene: &CheckedScene,
+    tolerance_deg: Option<f64>,
+    threads: Option<usize>,
+) -> PyResult<Vec<Column<'py>>> {
+    let mut options = Options::default();
+    options.tolerance_deg = arguments::tolerance(tolerance_deg)?;
+    let job = |cancel: &Arc<_>| {
+        options.cancel = Some(Arc::clone(cancel));
+        whiskmap::curve(&scene.0, options)
+    };
+    let ends = threads::run(py, threads, |_| Ok(()), job)?.map_err(|why| of_front(&why))?;
+    let ends: Vec<Detachment> = ends.into_iter().map(|(_, end)| end).collect();
+    columns(py, &ends, Detachment::COLUMNS)
+}
+
+/// Computes `points` points of the branch of the scene's only whisker at one pole.
+#[pyfunction]
+pub fn branch<'py>(
+    py: Python<'py>,
+    scene: &CheckedScene,
+    distance_mm: f64,
+    side: &str,
+    points: usize,
+) -> PyResult<Vec<Column<'py>>> {
+    let side = arguments::side(side)?;
+    check_points(points)?;
+    let scene = at_pole(py, scene, distance_mm)?;
+    let job = |_: &Arc<_>| branch_of(&scene, distance_mm, side)?.points(points);
+    let points = threads::run(py, None, |_| Ok(()), job)?;
+    columns(py, &points.map_err(of_state)?, BranchPoint::COLUMNS)
+}
+
+/// Columns of the points of a shape, centre and radius of the pole in mm, residual, and the columns of the state, of one row.
+type ShapeColumns<'py> = (Vec<Column<'py>>, [f64; 2], f64, f64, Vec<Column<'py>>);
+
+/// Computes the shape of the scene's only whisker in one state, at `points` points and at the contact.
+#[pyfunction]
+pub fn shape<'py>(
+    py: Python<'py>,
+    scene: &CheckedScene,
+    distance_mm: f64,
+    push_angle_deg: f64,
+    stable: bool,
+    points: usize,
+) -> PyResult<ShapeColumns<'py>> {
+    check_points(points)?;
+    if !(-360.0..=360.0).contains(&push_angle_deg) {
+        let must = format!("push_angle_deg = {push_angle_deg}: must be between -360 and 360");
+        return Err(PyValueError::new_err(must));
+    }
+    let scene = at_pole(py, scene, distance_mm)?;
+    let job = |_: &Arc<_>| {
+        let branch = branch_of(&scene, distance_mm, Side::of_push(push_angle_deg))?;
+        let state = branch.state(push_angle_deg.to_radians(), stable)?;
+        Ok(WhiskerShape::new(&branch, &state, points))
+    };
+    let shape = threads::run(py, None, |_| Ok(()), job)?.map_err(of_state)?;
+    Ok((
+        columns(py, &shape.points, ShapePoint::COLUMNS)?,
+        shape.pole_mm,
+        shape.pole_radius_mm,
+        shape.residual,
+        columns(py, &[shape.state], BranchPoint::COLUMNS)?,
+    ))
+}
+
+fn check_points(points: usize) -> PyResult<()> {
+    if (3..=MOST_POINTS).contains(&points) {
+        return Ok(());
+    }
+    let must = format!("points = {points}: must be between 3 and {MOST_POINTS}");
+    Err(PyValueError::new_err(must))
+}
+
+/// Returns the scene with the pole of this distance alone, if it has one whisker.
+fn at_pole(py: Python<'_>, scene: &CheckedScene, distance_mm: f64) -> PyResult<Scene> {
+    single(&scene.0)?;
+    let scene = scene.0.to_builder().distance_mm([distance_mm]).build();
+    scene.map_err(|why| of_scene(py, &why))
+}
+
+/// Refuses a scene with several whiskers.
+pub fn single(scene: &Scene) -> PyResult<()> {
+    let whiskers = scene.whisker_count();
+    if whiskers == 1 {
+        return Ok(());
+    }
+    let axes = scene.grid.sweep_names();
+    Err(PyValueError::new_err(format!(
+        "scene: sweeps {whiskers} whiskers along {axes}, must have one; scene.replace(...) gives an axis one number"
+    )))
+}

@@ -1,0 +1,79 @@
+"""Detachments of arrays: shapes, agreement with curves, Jacobians, and fits by scipy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from conftest import ROOT
+from scipy.optimize import least_squares
+
+import whiskmap as wm
+
+CONE = dict(length_mm=20.0, base_radius_um=30.0, tip_radius_um=1.5, youngs_modulus_gpa=3.0, parabola_per_mm=0.02, pole_radius_mm=0.25)
+
+
+def test_arguments_broadcast(cone):
+    assert wm.detachment(cone, distance_mm=15.66).push_angle_deg.shape == (2,)
+    assert wm.detachment(cone, distance_mm=15.66, side="cf").push_angle_deg.shape == ()
+    tapers = np.array([[0.5], [0.9]])
+    end = wm.detachment(cone, distance_mm=[12, 15, 25], taper=tapers, side="both", jac=True)
+    assert end.kind.shape == (2, 3, 2) and end.jac["force_un"].shape == (2, 3, 2, 1) and end.variables == ("taper",)
+    assert (end.kind[:, 2] == "out-of-reach").all() and np.isnan(end.jac["push_angle_deg"][:, 2]).all()
+    sides = wm.detachment(cone, distance_mm=[15, 15, 12], taper=tapers, side=["cb", "cf", "cb"])
+    # Other distances on a sheet change the last digits.
+    np.testing.assert_allclose(sides.push_angle_deg, end.push_angle_deg[:, [1, 1, 0], [1, 0, 1]], rtol=1e-12)
+    assert wm.detachment(cone, distance_mm=np.zeros((0, 3))).kind.shape == (0, 3, 2)
+    # An array of one value has one dimension.
+    assert wm.detachment(cone, distance_mm=[15.0], taper=[0.5], side="cb").kind.shape == (1,)
+
+
+def test_rows_of_any_order_are_those_of_the_curve(cone):
+    rng = np.random.default_rng(1)
+    distances = rng.permutation(np.repeat(np.linspace(5, 19, 20), 2))
+    tapers = rng.choice([0.5, 0.9, 0.95], distances.size)
+    end = wm.detachment(cone, distance_mm=distances, taper=tapers)
+    for taper in np.unique(tapers):
+        chosen = tapers == taper
+        curve = wm.curve(cone.replace(taper=taper, distance_mm=np.unique(distances[chosen])))
+        for name in ("push_angle_deg", "force_un", "base_moment_nnm", "energy_nj"):
+            expected = curve[name].sel(distance_mm=distances[chosen]).transpose("distance_mm", "side")
+            np.testing.assert_allclose(getattr(end, name)[chosen], expected, rtol=1e-9)
+    threads = wm.detachment(cone, distance_mm=distances, taper=tapers, threads=1)
+    np.testing.assert_array_equal(threads.force_un, end.force_un)
+
+
+@pytest.mark.parametrize("given", [{}, {"taper": 0.9}], ids=["tip", "taper"])
+def test_jacobians_are_those_of_the_arguments(given):
+    numbers = CONE | given
+    if given:
+        del numbers["tip_radius_um"]
+    numbers |= {"distance_mm": 15.0}
+    names = tuple(numbers)
+    ends = wm.detachment(side="cb", jac=names, **numbers)
+    for place, name in enumerate(names):
+        step = 1e-5 * numbers[name]
+        low, high = (wm.detachment(side="cb", **numbers | {name: numbers[name] + sign * step}) for sign in (-1, 1))
+        for quantity in ("push_angle_deg", "push_chord_deg", "force_un", "arc_length_mm", "base_moment_nnm"):
+            difference = (getattr(high, quantity) - getattr(low, quantity)) / (2 * step)
+            own = ends.jac[quantity][place]
+            assert own == pytest.approx(difference, rel=1e-6, abs=1e-7), (name, quantity)
+
+
+def test_least_squares_of_scipy_finds_the_whisker(cone):
+    points = pd.read_csv(ROOT / "scenes/cone_points.csv", comment="#")
+
+    def end(x):
+        return wm.detachment(
+            cone, distance_mm=points.distance_mm, side=points.side, tip_radius_um=x[0], parabola_per_mm=x[1], jac=True
+        )
+
+    found = least_squares(
+        lambda x: (end(x).push_angle_deg - points.push_angle_deg) / points.sd_deg,
+        [1.5, 0.02],
+        jac=lambda x: end(x).jac["push_angle_deg"] / points.sd_deg.to_numpy()[:, None],
+        x_scale=[1, 0.01],
+    )
+    fit = wm.fit(cone, points, ["tip_radius_um", "parabola_per_mm"])
+    np.testing.assert_allclose(found.x, fit.estimates.value, rtol=1e-4)
+    assert 2 * found.cost == pytest.approx(fit.chi_square, rel=1e-6)

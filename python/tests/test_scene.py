@@ -1,0 +1,75 @@
+"""Scenes: from files and from values, changed, pasted, pickled, refused."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from dataclasses import fields
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import whiskmap as wm
+from whiskmap import _whiskmap
+from whiskmap._scene import _PARAMETERS
+
+SCENES = sorted((ROOT / "scenes").glob("*.toml"))
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_every_scene_survives_paste_pickle_and_file(path):
+    scene = wm.Scene.read(path)
+    assert eval(repr(scene), {name: getattr(wm, name) for name in wm.__all__}) == scene
+    assert pickle.loads(pickle.dumps(scene)) == scene == copy.deepcopy(scene)
+    assert wm.Scene.parse(scene.to_toml(), scene.name) == scene
+    assert scene.name == path.stem or "name" in path.read_text()
+    assert hash(scene) == hash(pickle.loads(pickle.dumps(scene)))
+
+
+def test_values_make_the_scene_of_the_file(cone):
+    whisker = wm.Whisker(
+        length_mm=20, base_radius_um=30, taper=0.95, youngs_modulus_gpa=3, parabola_per_mm=0.02, vertex_mm=0
+    )
+    grid = wm.Grid(push_angle_deg=wm.Range(-70, 70, 512), distance_mm=wm.Range(2, 20, 512))
+    built = wm.Scene(whisker=whisker, pole=wm.Pole(radius_mm=0.25), grid=grid, title=cone.title, name="cone")
+    assert built.whisker.tip_radius_um == pytest.approx(1.5, abs=1e-14)
+    assert built.replace(tip_radius_um=1.5) == cone
+    arrays = built.replace(push_angle_deg=built.coords["push_angle_deg"], tip_radius_um=np.float32(1.5))
+    assert arrays == cone and arrays != built.replace(friction=0.1)
+
+
+def test_every_parameter_of_rust_is_an_argument():
+    own = {field.name for field in fields(wm.Whisker)} - {"profile"}
+    pole = {"pole_radius_mm", "friction"}
+    assert own | pole == {name for name, *_ in _whiskmap.parameters()}
+    assert "curvature_per_mm" in _PARAMETERS
+
+
+def test_replace_sets_sweeps_and_removes(cone):
+    assert cone.replace(taper=0.5).whisker.tip_radius_um == 15
+    sweep = cone.replace(taper=[0, 0.5, 1], pole_radius_mm=np.array([0.25, 0.5]))
+    assert list(sweep.coords) == ["taper", "pole_radius_mm", "distance_mm", "push_angle_deg"]
+    assert sweep.replace(taper=0.95, pole_radius_mm=0.25) == cone.replace(taper=0.95)
+    assert cone.replace(parabola_per_mm=None, vertex_mm=None).whisker.parabola_per_mm is None
+    assert cone.replace(uncertainty={"length_mm": 0.3}).uncertainty == {"length_mm": 0.3}
+    measured = wm.Scene.read(ROOT / "scenes/measured.toml")
+    rows = np.array(measured.whisker.profile)
+    assert measured.replace(profile=rows) == measured
+
+
+def test_refused_scenes_name_key_value_and_what_is_allowed(cone):
+    with pytest.raises(wm.SceneError, match="whisker.length_mm = -1: must be between") as refused:
+        cone.replace(length_mm=-1)
+    assert (refused.value.key, refused.value.value) == ("whisker.length_mm", "-1")
+    assert refused.value.allowed.startswith("must be between 0.001")
+    again = pickle.loads(pickle.dumps(refused.value))
+    assert (str(again), again.key) == (str(refused.value), refused.value.key)
+    with pytest.raises(wm.SceneError, match="not.toml") as refused:
+        wm.Scene.parse("length = ", "not")
+    assert refused.value.key is None
+    with pytest.raises(FileNotFoundError, match="nowhere.toml"):
+        wm.Scene.read("nowhere.toml")
+    assert cone.replace(youngs_modulus_gpa=3000).warnings == [
+        "whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?"
+    ]

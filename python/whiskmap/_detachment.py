@@ -1,0 +1,191 @@
+"""Detachments of many whiskers at many distances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from whiskmap import _whiskmap
+from whiskmap._maps import _checked
+from whiskmap._scene import _PARAMETERS, Scene, _resembling
+from whiskmap._values import real_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+_KINDS = np.array(["slip-off", "pull-off", "out-of-reach", "unresolved"])
+
+
+@dataclass(frozen=True)
+class Detachment:
+    """Ends of pushes, as arrays of the shape to which the arguments of `detachment` broadcast.
+
+    Values are NaN where there is no detachment.
+
+    Attributes
+    ----------
+    kind : array of str
+        "slip-off", "pull-off", "out-of-reach" (the resting whisker does not reach the pole) or "unresolved".
+    push_angle_deg : array of float
+        Rotation of the base since first touch: positive CB, negative CF.
+    push_chord_deg : array of float
+        Angle at the base between the contact and the resting whisker as far away.
+    contact_distance_mm, arc_length_mm : array of float
+        Straight distance, and arclength, from the base to the contact.
+    contact_angle_deg : array of float
+        Angle of the tangent at the contact, from the base's tangent.
+    force_un : array of float
+        Size of the force between pole and whisker, normal to both.
+    base_force_x_un, base_force_y_un, base_moment_nnm : array of float
+        Force that the pole puts on the base, along and to the left of its tangent, and its moment.
+    energy_nj : array of float
+        Bending energy of the whisker.
+    residual : array of float
+        Remaining error, relative to the distance of the pole.
+    variables : tuple of str
+        Names of the variables of `jac`.
+    jac : dict of str to array of float
+        Exact derivatives of each quantity by name, of the shape of the quantity and one axis more, `variables`. Units are those of
+        the names, such as degrees per um. NaN where slip-off turns into pull-off, and where the push ends at first touch.
+    """
+
+    kind: NDArray[np.str_]
+    push_angle_deg: NDArray[np.float64]
+    push_chord_deg: NDArray[np.float64]
+    contact_distance_mm: NDArray[np.float64]
+    arc_length_mm: NDArray[np.float64]
+    contact_angle_deg: NDArray[np.float64]
+    force_un: NDArray[np.float64]
+    base_force_x_un: NDArray[np.float64]
+    base_force_y_un: NDArray[np.float64]
+    base_moment_nnm: NDArray[np.float64]
+    energy_nj: NDArray[np.float64]
+    residual: NDArray[np.float64]
+    variables: tuple[str, ...]
+    jac: dict[str, NDArray[np.float64]]
+
+
+def detachment(
+    scene: Scene | None = None,
+    /,
+    *,
+    distance_mm: ArrayLike,
+    side: Literal["both", "cb", "cf"] | ArrayLike = "both",
+    jac: bool | Sequence[str] = False,
+    threads: int | None = None,
+    **parameters: ArrayLike,
+) -> Detachment:
+    """Compute where whiskers detach. All arrays broadcast against each other.
+
+    Parameters
+    ----------
+    scene : Scene, optional
+        A scene of one whisker, with the values of all parameters that are not given. Its grid is not used.
+    distance_mm : array_like
+        Distances from the base to the contact at first touch.
+    side : {"both", "cb", "cf"} or array_like of str
+        Side of the whisker that the pole is on: convex or concave. "both" adds an axis of two values at the end: CF, then CB.
+    jac : bool or sequence of str
+        Variables of the derivatives: names of parameters, and "distance_mm". True selects all parameters that are given here, in
+        their order. A variable varies with all other values fixed that are given: with `taper`, the radius at the base varies at
+        a fixed taper.
+    threads : int, optional
+        Number of threads; one for each core if left out.
+    **parameters : array_like
+        Parameters of whisker and pole by name, in the units of the names, such as `taper` or `pole_radius_mm`. Without a scene,
+        `length_mm`, `base_radius_um`, `youngs_modulus_gpa`, and `tip_radius_um` or `taper` are needed.
+
+    Returns
+    -------
+    Detachment
+        Arrays of the common shape.
+
+    Raises
+    ------
+    TypeError
+        If a name is unknown, or values are no real numbers.
+    SceneError
+        If a value is out of its range: the message names the element, in C order, and the value.
+    ValueError
+        If the arguments do not broadcast, or a value is not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import whiskmap as wm
+    >>> taper = np.linspace(0.5, 1, 3)
+    >>> cone = dict(length_mm=20, base_radius_um=30, youngs_modulus_gpa=3, parabola_per_mm=0.02, pole_radius_mm=0.25)
+    >>> end = wm.detachment(taper=taper[:, None], distance_mm=[12, 15.66], side="cb", **cone)
+    >>> end.push_angle_deg.shape
+    (3, 2)
+
+    Residuals and Jacobian of a fit of two parameters, as `scipy.optimize.least_squares` takes them:
+
+    >>> scene = wm.Scene.read("scenes/cone.toml")  # doctest: +SKIP
+    >>> def end(x):  # doctest: +SKIP
+    ...     return wm.detachment(scene, distance_mm=d, side=sides, tip_radius_um=x[0], parabola_per_mm=x[1], jac=True)
+    >>> least_squares(  # doctest: +SKIP
+    ...     lambda x: end(x).push_angle_deg - measured, [3.0, 0.02], jac=lambda x: end(x).jac["push_angle_deg"]
+    ... )
+    """
+    arrays: dict[str, NDArray[Any]] = {"distance_mm": real_array("distance_mm", distance_mm)}
+    for name, values in parameters.items():
+        if _PARAMETERS.get(name) != name:
+            raise TypeError(f"detachment() got an unexpected keyword argument {name!r}{_resembling(name)}")
+        arrays[name] = real_array(name, values)
+    for name, array in arrays.items():
+        if not np.isfinite(array).all():
+            place = np.unravel_index(int(np.argmin(np.isfinite(array))), array.shape)
+            raise ValueError(f"{name}{list(map(int, place)) or ''} = {array[place]}: must be finite")
+    variables = _variables(jac, tuple(parameters))
+    is_cb = _is_cb(side)
+    if isinstance(side, str) and side == "both":
+        arrays = {name: array[..., None] for name, array in arrays.items()}
+    shape = _shape(arrays | {"side": is_cb})
+    fixed = {name: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
+    flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items() if name not in fixed}
+    kinds, residual, quantities = _whiskmap.detachment(
+        None if scene is None else _checked(scene),
+        fixed,
+        {name: array for name, array in flat.items() if name != "distance_mm"},
+        flat["distance_mm"],
+        np.broadcast_to(is_cb, shape).ravel(),
+        variables,
+        threads,
+    )
+    return Detachment(
+        kind=_KINDS[kinds].reshape(shape),
+        residual=residual.reshape(shape),
+        variables=variables,
+        jac={name: by.reshape(*shape, len(variables)) for name, _, by in quantities} if variables else {},
+        **{name: values.reshape(shape) for name, values, _ in quantities},
+    )
+
+
+def _variables(jac: bool | Sequence[str], given: tuple[str, ...]) -> tuple[str, ...]:
+    if isinstance(jac, (bool, np.bool_)):
+        return given if jac else ()
+    if isinstance(jac, str) or not all(isinstance(name, str) for name in jac):
+        raise TypeError(f"jac = {jac!r}: must be True, False or a list of names")
+    return tuple(jac)
+
+
+def _is_cb(side: Any) -> NDArray[np.bool_]:
+    """True for CB, False for CF; "both" is one axis of both."""
+    if isinstance(side, str) and side == "both":
+        return np.array([False, True])
+    sides = np.asarray(side)
+    if sides.dtype.kind not in "UO" or not np.isin(sides, ["cb", "cf"]).all():
+        raise ValueError(f"side = {side!r}: must be 'both', 'cb', 'cf', or an array of 'cb' and 'cf'")
+    return np.asarray(sides == "cb")
+
+
+def _shape(arrays: dict[str, NDArray[Any]]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
+        raise ValueError(f"the arguments do not broadcast: {shapes}") from None

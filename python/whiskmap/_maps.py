@@ -1,0 +1,145 @@
+"""Regime maps, and their cost."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import xarray as xr
+
+from whiskmap import _whiskmap
+from whiskmap._datasets import attributes, scene_coords
+from whiskmap._scene import Scene
+
+Progress = Callable[[int, int], object]
+
+
+def map(
+    scene: Scene,
+    *,
+    engine: Literal["auto", "cpu", "spectral", "gpu"] = "auto",
+    tolerance_deg: float | None = None,
+    channels: Sequence[str] | None = None,
+    progress: bool | Progress = False,
+    threads: int | None = None,
+) -> xr.Dataset:
+    """Compute the regime map of a scene: every cell with its state.
+
+    Parameters
+    ----------
+    scene : Scene
+    engine : {"auto", "cpu", "spectral", "gpu"}
+        "auto" selects the faster one of the two engines for the CPU. Both compute in float64; "gpu" computes in float32.
+    tolerance_deg : float, optional
+        Maximum error of push angles, in degrees; the finest steps if left out.
+    channels : sequence of str, optional
+        Names of the variables to compute, such as ``["regime", "force_un"]``; all if left out. With friction, states come with
+        `status`.
+    progress : bool or callable
+        True shows a progress bar if tqdm is installed. A callable gets the number of finished cells and of all cells.
+    threads : int, optional
+        Number of threads; one for each core, or `RAYON_NUM_THREADS`, if left out.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions are the sweep axes, `distance_mm` and `push_angle_deg`, as in a Zarr store of the program. `regime` and
+        `status` are CF flags. Other values are float32, NaN where the whisker is not in contact; units are in their attributes.
+        A map of one whisker owns the memory in which it was computed.
+
+    Raises
+    ------
+    MemoryError
+        If the map takes more than 4 GiB.
+    ValueError
+        If the tolerance cannot be kept, or an argument is not allowed.
+    RuntimeError
+        If there is no GPU although one is required.
+    KeyboardInterrupt
+        On Ctrl-C, after the current rows.
+    """
+    if channels is not None and isinstance(channels, str):
+        raise TypeError(f"channels = {channels!r}: must be a list of names")
+    names = None if channels is None else list(channels)
+    with _progress(progress) as report:
+        arrays, used, _ = _whiskmap.map(_checked(scene), engine, tolerance_deg, names, threads, report)
+    coords = scene_coords(scene)
+    shape = tuple(own.size for own in coords.values())
+    variables = {}
+    for name, values in arrays:
+        about = json.loads(_whiskmap.channel_attributes(name) or "{}")
+        variables[name] = xr.Variable(tuple(coords), values.reshape(shape), about)
+    about = attributes(scene, used)
+    return xr.Dataset(variables, coords, about if tolerance_deg is None else about | {"tolerance_deg": tolerance_deg})
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Size of a map before it is computed.
+
+    Attributes
+    ----------
+    whiskers, cells : int
+        Numbers of whiskers of the sweep, and of cells of all their maps.
+    memory_bytes : int or None
+        Memory of `map`; None if it takes more than 4 GiB, so that only a store can hold the map.
+    effects : dict of str to str
+        Effects that are on, each with the key of the scene that decides it.
+    """
+
+    whiskers: int
+    cells: int
+    memory_bytes: int | None
+    effects: dict[str, str]
+
+
+def plan(scene: Scene) -> Plan:
+    """Return the size of a scene's map. Nothing is computed.
+
+    Raises
+    ------
+    MemoryError
+        If the map of one whisker takes more than 4 GiB.
+    """
+    whiskers, cells, memory, effects = _whiskmap.plan(_checked(scene))
+    on = {name: why for name, is_on, why in effects if is_on}
+    return Plan(whiskers, cells, memory, on)
+
+
+def _checked(scene: Scene) -> _whiskmap.CheckedScene:
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene = {scene!r}: must be a Scene")
+    return scene._checked
+
+
+def _progress(progress: bool | Progress) -> AbstractContextManager[Progress | None]:
+    if callable(progress):
+        return nullcontext(progress)
+    if progress:
+        try:
+            return _Bar()
+        except ImportError:
+            return nullcontext(None)
+    return nullcontext(None)
+
+
+class _Bar(AbstractContextManager[Progress]):
+    """A progress bar of tqdm."""
+
+    def __init__(self) -> None:
+        from tqdm.auto import tqdm
+
+        self._bar = tqdm(unit="cell", unit_scale=True)
+
+    def __enter__(self) -> Progress:
+        def report(done: int, all_cells: int) -> None:
+            self._bar.total = all_cells
+            self._bar.update(done - self._bar.n)
+
+        return report
+
+    def __exit__(self, *_: Any) -> None:
+        self._bar.close()

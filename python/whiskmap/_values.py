@@ -1,0 +1,45 @@
+"""Plain values of arguments: numbers, lists of numbers, and their refusal by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+def number(name: str, value: Any) -> float:
+    """Return a number as a float; a text, a truth or an array is refused by the name of its argument."""
+    if isinstance(value, (str, bytes, bool)) or not hasattr(value, "__float__"):
+        raise TypeError(f"{name} = {value!r}: must be a number, without a unit")
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise TypeError(f"{name} = {value!r}: must be one number") from None
+
+
+def numbers(name: str, values: Any) -> list[float]:
+    """Return a list, a tuple or a one-dimensional array as a list of floats."""
+    if hasattr(values, "__array__"):
+        array = real_array(name, values)
+        if array.ndim != 1:
+            raise ValueError(f"{name}: must have one dimension, has {array.ndim}")
+        listed: list[float] = array.tolist()
+        return listed
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise TypeError(f"{name} = {values!r}: must be a Range, or a list or an array of numbers")
+    return [number(f"{name}[{index}]", value) for index, value in enumerate(values)]
+
+
+def real_array(name: str, values: ArrayLike) -> NDArray[Any]:
+    """Return an array of float64; texts, truths, complex numbers and objects are refused by the name of their argument."""
+    import numpy as np
+
+    try:
+        array = np.asarray(values)
+    except ValueError as why:
+        raise ValueError(f"{name}: {why}") from None
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"{name}: must be real numbers without a unit, has the type {array.dtype}")
+    return array.astype(np.float64, copy=False)

@@ -1,0 +1,104 @@
+"""Types of the extension module. The package gives its functions names, units and documentation."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypedDict, final
+
+from numpy import bool_, float64, uint8
+from numpy.typing import NDArray
+
+__all__ = [
+    "CheckedScene", "SceneError", "StateError", "StoredMap", "arithmetic", "branch", "channel_attributes", "channels", "coordinates",
+    "curve", "design", "detachment", "fit", "inks", "map", "parameters", "plan", "regimes", "run_command", "shape", "variables",
+    "version",
+]
+
+_Coordinate = tuple[str, str, NDArray[float64]]
+_Column = tuple[str, NDArray[Any] | list[str], str | None, str]
+_Description = tuple[
+    str,
+    dict[str, float],
+    list[list[float]] | None,
+    list[tuple[str, Any]],
+    dict[str, float] | None,
+    str | None,
+]
+
+class SceneError(ValueError):
+    """A scene is refused: `key`, `value` and `allowed` say what is wrong."""
+
+    key: str | None
+    value: str | None
+    allowed: str | None
+
+class StateError(ValueError):
+    """A state of the whisker does not exist: the message says how the whisker left the pole."""
+
+@final
+class CheckedScene:
+    @staticmethod
+    def read(path: str) -> CheckedScene: ...
+    @staticmethod
+    def parse(text: str, origin: str) -> CheckedScene: ...
+    @staticmethod
+    def build(description: _Description) -> CheckedScene: ...
+    def description(self) -> _Description: ...
+    def to_toml(self) -> str: ...
+    def warnings(self) -> list[str]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class StoredMap:
+    def __new__(cls, path: str) -> StoredMap: ...
+    def channels(self) -> list[str]: ...
+    def coordinates(self) -> list[_Coordinate]: ...
+    def attributes(self) -> list[tuple[str, str]]: ...
+    def read(self, channel: str, whiskers: Sequence[int]) -> NDArray[Any]: ...
+    def __reduce__(self) -> tuple[type[StoredMap], tuple[str]]: ...
+
+class _FitResult(TypedDict):
+    scene: CheckedScene
+    estimates: list[tuple[str, str, float, float | None, bool]]
+    correlation: list[list[float | None]]
+    chi_square: float
+    degrees_of_freedom: int
+    is_explained: bool
+    not_a_fit: str | None
+    points: list[_Column]
+
+def version() -> str: ...
+def arithmetic() -> str: ...
+def parameters() -> list[tuple[str, str, str | None, str]]: ...
+def variables(scene: CheckedScene) -> list[tuple[str, str, float]]: ...
+def channels() -> list[str]: ...
+def channel_attributes(name: str) -> str | None: ...
+def coordinates(scene: CheckedScene) -> list[_Coordinate]: ...
+def regimes() -> list[tuple[int, str, str, str]]: ...
+def inks() -> dict[str, str]: ...
+def run_command(arguments: Sequence[str]) -> int: ...
+def map(
+    scene: CheckedScene,
+    engine: str,
+    tolerance_deg: float | None,
+    channels: Sequence[str] | None,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[list[tuple[str, NDArray[Any]]], str, str]: ...
+def plan(scene: CheckedScene) -> tuple[int, int, int | None, list[tuple[str, bool, str]]]: ...
+def curve(scene: CheckedScene, tolerance_deg: float | None, threads: int | None) -> list[_Column]: ...
+def branch(scene: CheckedScene, distance_mm: float, side: str, points: int) -> list[_Column]: ...
+def shape(
+    scene: CheckedScene, distance_mm: float, push_angle_deg: float, stable: bool, points: int
+) -> tuple[list[_Column], list[float], float, float, list[_Column]]: ...
+def fit(scene: CheckedScene, points: str, free: Sequence[str]) -> _FitResult: ...
+def design(
+    scene: CheckedScene, parameter: str, goal: str, value: float, distance_mm: float, side: str | None
+) -> tuple[list[float], list[float], list[float], list[str], list[float | None]]: ...
+def detachment(
+    scene: CheckedScene | None,
+    fixed: Mapping[str, float],
+    varying: Mapping[str, NDArray[float64]],
+    distance_mm: NDArray[float64],
+    is_cb: NDArray[bool_],
+    variables: Sequence[str],
+    threads: int | None,
+) -> tuple[NDArray[uint8], NDArray[float64], list[tuple[str, NDArray[float64], NDArray[float64]]]]: ...

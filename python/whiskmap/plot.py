@@ -1,0 +1,188 @@
+"""Maps, curves, branches and shapes on matplotlib axes, in the colours of the program."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from whiskmap._whiskmap import inks
+from whiskmap._whiskmap import regimes as _regimes
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
+    from matplotlib.container import BarContainer
+    from matplotlib.lines import Line2D
+
+PUSH_ANGLE = "push angle (deg)"
+DISTANCE = "distance of first touch (mm)"
+
+
+def regimes(ds: xr.Dataset, *, ax: Axes | None = None, legend: bool = True) -> QuadMesh:
+    """Draw the regimes of one whisker over push angle and distance.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A dataset of `map` or `open`. Of a sweep, one whisker is selected before: ``ds.sel(taper=0.5)``.
+    ax : matplotlib.axes.Axes, optional
+        The current axes if left out.
+    legend : bool
+        False draws no legend.
+
+    Returns
+    -------
+    matplotlib.collections.QuadMesh
+    """
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+    from matplotlib.patches import Patch
+
+    axes = _axes(ax)
+    regime = ds["regime"].transpose("distance_mm", "push_angle_deg")
+    known = _regimes()
+    codes = [code for code, *_ in known]
+    colours = [colour for _, _, colour, _ in known]
+    norm = BoundaryNorm([-0.5, *(code + 0.5 for code in codes)], len(codes))
+    mesh = axes.pcolormesh(ds["push_angle_deg"], ds["distance_mm"], regime, cmap=ListedColormap(colours), norm=norm)
+    # As in the program's pictures, the nearest distance is at the top.
+    axes.set(xlabel=PUSH_ANGLE, ylabel=DISTANCE, ylim=(ds["distance_mm"].max(), ds["distance_mm"].min()))
+    if legend:
+        present = np.unique(regime)
+        patches = [Patch(color=colour, label=name) for code, name, colour, _ in known if code in present]
+        axes.legend(handles=patches, loc="best", fontsize="small")
+    return mesh
+
+
+def curve(ds: xr.Dataset, *, x: str = "push_angle_deg", ax: Axes | None = None, **line: Any) -> list[Line2D]:
+    """Draw the detachment curves of one whisker: slip-off black, pull-off blue.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A dataset of `curve`. Of a sweep, one whisker is selected before.
+    x : str
+        Variable along the horizontal axis; the vertical axis is the distance.
+    ax : matplotlib.axes.Axes, optional
+    **line
+        Properties of the lines.
+
+    Returns
+    -------
+    list of matplotlib.lines.Line2D
+    """
+    axes = _axes(ax)
+    colours, lines, named = inks(), [], set()
+    for side in np.atleast_1d(ds["side"].values):
+        own = ds.sel(side=side) if "side" in ds.dims else ds
+        for kind in ("slip-off", "pull-off"):
+            values = own[x].where(own["kind"] == kind)
+            if values.notnull().any():
+                label = None if kind in named else kind
+                named.add(kind)
+                lines += axes.plot(values, own["distance_mm"], **{"color": colours[kind], "label": label} | line)
+    axes.set(xlabel=_label(ds, x), ylabel=DISTANCE)
+    return lines
+
+
+def branch(ds: xr.Dataset, *, y: str = "arc_length_mm", ax: Axes | None = None, **line: Any) -> list[Artist]:
+    """Draw a branch: solid where it is stable, dashed beyond the fold, with dots at the ends of the stable states.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A dataset of `branch`.
+    y : str
+        Variable along the vertical axis.
+    ax : matplotlib.axes.Axes, optional
+    **line
+        Properties of the lines.
+
+    Returns
+    -------
+    list of matplotlib.artist.Artist
+        The lines, then the dots.
+    """
+    axes = _axes(ax)
+    colours = inks()
+    artists: list[Artist] = []
+    stable = ds["stable"].values
+    # The last stable state also begins the unstable part.
+    parts = [(stable, "-", "stable"), (~stable | np.append(~stable[1:], False), "--", "unstable")]
+    for chosen, stroke, name in parts:
+        if chosen.any():
+            own = ds.isel(point=chosen)
+            look = {"color": colours["slip-off"], "linestyle": stroke, "label": name} | line
+            artists += axes.plot(own["push_angle_deg"], own[y], **look)
+    for mark in ("slip-off", "pull-off"):
+        own = ds.isel(point=ds["mark"].values == mark)
+        if own.sizes["point"]:
+            artists += axes.plot(own["push_angle_deg"], own[y], "o", color=colours[mark], label=mark)
+    axes.set(xlabel=PUSH_ANGLE, ylabel=_label(ds, y))
+    return artists
+
+
+def shape(ds: xr.Dataset, *, ax: Axes | None = None, **line: Any) -> list[Artist]:
+    """Draw the shape of a whisker and its pole.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A dataset of `shape`.
+    ax : matplotlib.axes.Axes, optional
+    **line
+        Properties of the line.
+
+    Returns
+    -------
+    list of matplotlib.artist.Artist
+        The line of the whisker, and the pole.
+    """
+    from matplotlib.patches import Circle
+
+    axes = _axes(ax)
+    [whisker] = axes.plot(ds["x_mm"], ds["y_mm"], **{"color": inks()["slip-off"]} | line)
+    centre = (ds.attrs["pole_x_mm"], ds.attrs["pole_y_mm"])
+    pole = axes.add_patch(Circle(centre, ds.attrs["pole_radius_mm"], color=inks()["background"]))
+    axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
+    return [whisker, pole]
+
+
+def sensitivity(ds: xr.Dataset, *, ax: Axes | None = None, **bars: Any) -> BarContainer:
+    """Draw by how much the push angle at detachment changes for 1 % of each variable.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A dataset of `sensitivity` at one distance and side: ``ds.sel(side="cb", distance_mm=15.66)``.
+    ax : matplotlib.axes.Axes, optional
+    **bars
+        Properties of the bars.
+
+    Returns
+    -------
+    matplotlib.container.BarContainer
+        A bar for each variable with a value that is not 0.
+    """
+    axes = _axes(ax)
+    change = (ds["d_push_angle_deg"] * ds["value"] / 100).squeeze()
+    change = change[(change.notnull() & (change != 0)).values][::-1]
+    drawn = axes.barh(list(change["variable"].values), change.values, **{"color": inks()["pull-off"]} | bars)
+    axes.set(xlabel="change of the push angle at detachment for 1 % (deg)")
+    return drawn
+
+
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt
+
+    return plt.gca()
+
+
+def _label(ds: xr.Dataset, name: str) -> str:
+    units = ds[name].attrs.get("units", "1")
+    plain = name.rsplit("_", 1)[0] if units != "1" else name
+    return plain.replace("_", " ") + (f" ({units})" if units != "1" else "")
