@@ -11,18 +11,36 @@ const REGIMES = {
 };
 
 const VIRIDIS = [0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e, 0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725];
+// Colours of a scale in a map.
+const STEPS = 512;
+
 const RED_BLUE = [0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b];
 
 export const isDark = () => matchMedia('(prefers-color-scheme: dark)').matches;
 
-// The colour of a regime in a pixel: stripes run from the lower left to the upper right.
-export function regimeColour(code, x = 0, y = 0) {
-    const { colour, dark, stripes } = REGIMES[code] ?? REGIMES[255];
-    if (stripes && (x + y) % 8 < 3) return stripes;
+// The colour of a regime, without the stripes that it may have.
+export function regimeColour(code) {
+    const { colour, dark } = REGIMES[code] ?? REGIMES[255];
     return isDark() ? (dark ?? colour) : colour;
 }
 
+export const stripesOf = (code) => REGIMES[code]?.stripes && css(REGIMES[code].stripes);
+
+// The colour of cells without a value.
 export const blank = () => (isDark() ? [0x2a, 0x30, 0x36] : [0xe9, 0xea, 0xeb]);
+
+// A colour as a pixel of an image.
+const pixel = ([red, green, blue]) => ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
+
+// The pixels of cells without a value.
+export const blankPixel = () => pixel(blank());
+
+// A function that returns the pixel of a regime: stripes run from the lower left to the upper right.
+export function regimePixels() {
+    const pixels = Object.fromEntries(Object.keys(REGIMES).map((code) => [code, pixel(regimeColour(code))]));
+    const stripes = Object.fromEntries(Object.entries(REGIMES).map(([code, own]) => [code, own.stripes ? pixel(own.stripes) : pixels[code]]));
+    return (code, x, y) => ((x - y + 4096) % 8 < 3 ? stripes : pixels)[code] ?? pixels[255];
+}
 
 export const css = ([red, green, blue]) => `rgb(${red} ${green} ${blue})`;
 
@@ -52,5 +70,9 @@ export function scaleOf(values, kind, range, isLoad) {
     if (!(to > from) || (isLog && !(from > 0))) return null;
     const stops = isDiverging ? RED_BLUE : VIRIDIS;
     const part = isLog ? (value) => Math.log(value / from) / Math.log(to / from) : (value) => (value - from) / (to - from);
-    return { from, to, isLog, part, colour: (at) => between(stops, at) };
+    const colour = (at) => between(stops, at);
+    const steps = Uint32Array.from({ length: STEPS }, (_, i) => pixel(colour(i / (STEPS - 1))));
+    const none = blankPixel();
+    const step = (at) => Math.round(Math.min(Math.max(at, 0), 1) * (STEPS - 1));
+    return { from, to, isLog, part, colour, pixel: (value) => (Number.isFinite(value) ? steps[step(part(value))] : none) };
 }

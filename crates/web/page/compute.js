@@ -16,8 +16,11 @@ const DRAFT_DEG = 0.01;
 const CURVE = 160;
 const BRANCH = 60;
 
+// A map is finished when nothing has moved for this long, in ms.
+const QUIET = 80;
+
 let maps, traces, shown;
-let draft = 0;
+let draft = 2;
 
 // Starts the solvers. `show` has a function for each result, and for errors.
 export async function start(show) {
@@ -69,13 +72,14 @@ async function computeMap() {
     const task = (cells, tolerance_deg) =>
         request({ map: { push_angle_deg: view.push, distance_mm: view.distance, size: [cells, cells], channel, tolerance_deg } });
     const take = (isDraft) => (map) => {
-        known.map = { ...map, channel, isDraft };
+        known.map = { ...map, channel, isDraft, whisker };
         shown.map();
         if (isDraft && map.ms > DRAFT_MS) draft = Math.min(draft + 1, DRAFTS.length - 1);
-        if (isDraft && map.ms < DRAFT_MS / 4) draft = Math.max(draft - 1, 0);
+        if (isDraft && map.ms < DRAFT_MS / 2.5) draft = Math.max(draft - 1, 0);
     };
-    const isCurrent = await answered(maps, 'map', task(DRAFTS[draft], DRAFT_DEG), take(true));
-    if (isCurrent && whisker === state.whisker && view === state.view && channel === state.channel) {
+    const isDrawn = await answered(maps, 'map', task(DRAFTS[draft], DRAFT_DEG), take(true));
+    await new Promise((resolve) => setTimeout(resolve, QUIET));
+    if (isDrawn && whisker === state.whisker && view === state.view && channel === state.channel) {
         await answered(maps, 'map', task(CELLS, null), take(false));
     }
 }

@@ -40,14 +40,12 @@ export function makeControls() {
     const names = Object.keys(PARAMETERS).filter((name) => name in of);
     find('numbers').replaceChildren(...names.map((name) => {
         const own = parameters.find((parameter) => parameter.name === name);
-        const [least, most] = PARAMETERS[name](of);
-        const from = Math.max(least, own.range[0]);
-        const to = Math.max(Math.min(most, own.range[1]), from);
+        const [from, to] = PARAMETERS[name](of);
         const field = el('input', { id: `field-${name}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false', 'aria-describedby': `error-${name}`, onchange: () => read(name) });
         const slider = el('input', { type: 'range', min: from, max: to, step: 'any', 'aria-label': own.title, oninput: (event) => set(name, Number(Number(event.target.value).toPrecision(4))) });
         const error = el('p', { class: 'error', id: `error-${name}`, role: 'alert' });
         rows.set(name, { field, slider, error });
-        return el('div', { class: 'control' }, el('label', { for: field.id }, own.title), el('span', { class: 'value' }, field, el('span', { class: 'unit' }, unit(name))), slider, error);
+        return el('div', { class: 'control' }, el('label', { for: field.id, title: `${own.title}: ${own.key}` }, own.title.replace(/ \(.*\)/, '')), el('span', { class: 'value' }, field, el('span', { class: 'unit' }, unit(name))), slider, error);
     }));
     showValues();
 }

@@ -30,9 +30,9 @@ const show = {
     },
     map() {
         const { ms, engine, size, unresolved } = known.map;
-        find('engine').textContent = `${size.join(' \u00d7 ')} cells, ${shown(ms, 2)} ms, ${engine}${unresolved ? `, ${unresolved} unresolved` : ''}`;
-        find('engine').dataset.drawn = `${known.map.id} ${known.map.isDraft}`;
+        find('engine').textContent = `${size.join(' \u00d7 ')} cells, ${Math.round(ms)} ms, ${engine}${unresolved ? `, ${unresolved} unresolved` : ''}`;
         drawMap();
+        find('engine').dataset.drawn = JSON.stringify([known.map.isDraft, known.map.whisker.values, known.map.push_angle_deg, known.map.distance_mm]);
     },
     curve() {
         drawPlane();

@@ -1,6 +1,6 @@
 // The map: its cells on a canvas, axes, boundary and points above them, zoom, and the place of the pointer.
 
-import { blank, css, regimeColour, scaleOf } from './colours.js';
+import { blank, blankPixel, css, regimeColour, regimePixels, scaleOf, stripesOf } from './colours.js';
 import { el, find, svg } from './dom.js';
 import { draw, logTicks, ticks } from './plot.js';
 import { change, known, on, state } from './state.js';
@@ -25,21 +25,17 @@ function paint() {
     const count = width * height;
     const values = channel ? numbers.subarray(2 * count) : null;
     scale = values && scaleOf(values, state.scale, state.range, isLoad(channel));
-    const pixels = new ImageData(width, height);
-    const none = blank();
+    const picture = new ImageData(width, height);
+    const pixels = new Uint32Array(picture.data.buffer);
+    const [none, ofRegime] = [blankPixel(), regimePixels()];
+    const colour = values ? (cell) => (scale ? scale.pixel(values[cell]) : none) : (cell, x, y) => ofRegime(numbers[cell], x, y);
     for (let row = 0; row < height; row++) {
-        for (let column = 0; column < width; column++) {
-            const cell = row * width + column;
-            const y = height - 1 - row;
-            let colour = none;
-            if (!values) colour = regimeColour(numbers[cell], column, row);
-            else if (scale && Number.isFinite(values[cell])) colour = scale.colour(scale.part(values[cell]));
-            pixels.data.set([...colour, 255], 4 * (y * width + column));
-        }
+        const from = (height - 1 - row) * width;
+        for (let column = 0; column < width; column++) pixels[from + column] = colour(row * width + column, column, row);
     }
     cells.width = width;
     cells.height = height;
-    cells.getContext('2d').putImageData(pixels, 0, 0);
+    cells.getContext('2d').putImageData(picture, 0, 0);
     const { push_angle_deg: [p0, p1], distance_mm: [d0, d1] } = known.map;
     const [half, tall] = [(p1 - p0) / (width - 1) / 2, (d1 - d0) / (height - 1) / 2];
     image = { push: [p0 - half, p1 + half], distance: [d0 - tall, d1 + tall] };
@@ -103,11 +99,12 @@ export function drawCross() {
 
 function drawLegend() {
     const { channel, numbers, size } = known.map;
-    const entry = (colour, name) => el('li', {}, svg('svg', { class: 'swatch', viewBox: '0 0 2 1' }, svg('rect', { width: 2, height: 1, fill: colour })), name);
+    const stripe = (colour, x) => svg('path', { d: `M${x} 9L${x + 9} 0h4L${x + 4} 9Z`, fill: colour });
+    const entry = (colour, name, stripes) => el('li', {}, svg('svg', { class: 'swatch', viewBox: '0 0 18 9' }, svg('rect', { width: 18, height: 9, fill: colour }), ...(stripes ? [-6, 3, 12].map((x) => stripe(stripes, x)) : [])), name);
     if (!channel) {
         const codes = new Set(numbers.subarray(0, size[0] * size[1]));
         const present = known.scene?.regimes.filter(({ code }) => codes.has(code)) ?? [];
-        find('legend').replaceChildren(...present.map(({ code, name }) => entry(css(regimeColour(code)), name)));
+        find('legend').replaceChildren(...present.map(({ code, name }) => entry(css(regimeColour(code)), name, stripesOf(code))));
         return;
     }
     if (!scale) {

@@ -5,10 +5,10 @@ import { debounced, el, find } from './dom.js';
 import { known, state } from './state.js';
 import { CHANNELS, exact, shown, sideOf, unit } from './text.js';
 
-// The values of a state: exact ones of its branch, or else those of its cell.
+// The values of a state.
 function values(own) {
     if (!own) return {};
-    return { ...Object.fromEntries(own.cell.filter(([, value]) => value !== null)), ...(own.stable.state ?? {}) };
+    return { ...own.verdict.values, ...own.stable.state };
 }
 
 function reason(own) {
@@ -19,11 +19,12 @@ function reason(own) {
 export function showState() {
     const own = known.state;
     const [mine, pinned] = [values(own), values(known.pinnedState)];
-    const code = known.scene.regimes.find(({ name }) => name === own.regime)?.code;
-    find('regime').replaceChildren(el('span', { class: 'dot' }), own.regime ?? 'unresolved');
+    const { regime, status } = own.verdict;
+    const code = known.scene.regimes.find(({ name }) => name === regime)?.code;
+    find('regime').replaceChildren(el('span', { class: 'dot' }), regime ?? 'unresolved');
     find('regime').firstChild.style.background = css(regimeColour(code));
     find('place').textContent = `${shown(own.push_angle_deg)}\u00b0 ${sideOf(own.push_angle_deg)}, ${shown(own.distance_mm)} mm`;
-    find('why').textContent = reason(own) ?? own.status;
+    find('why').textContent = reason(own) ?? status;
     const head = state.pinned ? [el('tr', {}, el('th', {}), el('th', { scope: 'col' }, 'this'), el('th', { scope: 'col' }, 'pinned'), el('th', {}))] : [];
     find('channels').replaceChildren(...head, ...Object.entries(CHANNELS).map(([name, title]) => el('tr', { 'data-channel': name },
         el('th', { scope: 'row' }, title),
@@ -48,7 +49,7 @@ const speak = debounced(500, () => {
     const mine = values(own);
     const numbers = ['force_un', 'base_moment_nnm', 'margin_deg'].filter((name) => mine[name] != null);
     const words = numbers.map((name) => `${CHANNELS[name]} ${shown(mine[name], 3)} ${unit(name)}`);
-    find('spoken').textContent = [`Push angle ${shown(own.push_angle_deg, 4)} degrees, distance ${shown(own.distance_mm, 4)} millimetres: ${own.regime}`, reason(own), ...words].filter(Boolean).join('. ');
+    find('spoken').textContent = [`Push angle ${shown(own.push_angle_deg, 4)} degrees, distance ${shown(own.distance_mm, 4)} millimetres: ${own.verdict.regime}`, reason(own), ...words].filter(Boolean).join('. ');
 });
 
 // Says that there is no state, with the reason.

@@ -22,7 +22,7 @@ export function drawWhisker() {
     if (!own || !width) return;
     const length = number('length_mm');
     const [x0, x1, middle] = [-0.16 * length, 1.06 * length, 0];
-    const scale = Math.min(width / (x1 - x0), height / (1.5 * length));
+    const scale = Math.min(width / (x1 - x0), height / (1.25 * length));
     const place = ([x, y]) => [(x - x0) * scale + (width - (x1 - x0) * scale) / 2, height / 2 - (y - middle) * scale];
     const line = (points, name) => svg('path', { class: `line ${name}`, d: points.map((point, i) => `${i ? 'L' : 'M'}${place(point).map((value) => value.toFixed(2)).join(' ')}`).join('') });
     const parts = [scaleBar(length, scale, height)];

@@ -23,7 +23,7 @@ pub struct Request {
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Task {
-    /// The numbers of the scene, with their limits.
+    /// The numbers and effects of the scene.
     Scene,
     /// The scene as TOML with the values of the request.
     Toml,

@@ -1,4 +1,4 @@
-//! Descriptions of scenes: numbers with limits, effects, and axes.
+//! Descriptions of scenes: numbers, effects, and axes.
 
 use serde_json::{Value, json};
 use whiskmap::Channel;
@@ -6,18 +6,16 @@ use whiskmap::classify::{Regime, Status};
 use whiskmap::plan::{Plan, effects};
 use whiskmap::scene::{Parameter, Scene};
 
-/// Returns title, numbers with limits, effects and axes of a scene, and the names of codes and channels.
+/// Returns title, numbers, effects and axes of a scene, and the names of codes and channels.
 pub fn description(scene: &Scene) -> Result<Value, String> {
     let parameters = Parameter::ALL.into_iter();
     let parameters = parameters.filter_map(|parameter| {
-        let (scene, value) = with_number(scene, parameter)?;
         Some(json!({
             "name": parameter.name(),
             "key": parameter.key(),
             "title": parameter.title(),
             "unit": parameter.unit(),
-            "value": value,
-            "range": parameter.range(&scene),
+            "value": number(scene, parameter)?,
         }))
     });
     let plan = Plan::new(scene).map_err(|why| why.to_string())?;
@@ -41,21 +39,18 @@ pub fn description(scene: &Scene) -> Result<Value, String> {
     }))
 }
 
-/// Returns a scene that gives a number for `parameter`, and the number: the scene's own, or else the one that changes nothing. `None` if the
-/// scene cannot have the parameter.
-fn with_number(scene: &Scene, parameter: Parameter) -> Option<(Scene, f64)> {
-    if let Some(value) = parameter.value(scene) {
-        return Some((scene.clone(), value));
-    }
+/// Returns the number of `parameter`: the scene's own, or else the one that changes nothing. `None` if the scene cannot have the parameter.
+fn number(scene: &Scene, parameter: Parameter) -> Option<f64> {
     let neutral = match parameter {
         Parameter::ParabolaPerMm
         | Parameter::VertexMm
         | Parameter::PoleRadiusMm
         | Parameter::Friction => 0.0,
         Parameter::ModulusTipToBase | Parameter::ArcStretch => 1.0,
-        _ => return None,
+        _ => return parameter.value(scene),
     };
-    Some((scene.with(parameter, neutral).ok()?, neutral))
+    let added = || scene.with(parameter, neutral).ok().map(|_| neutral);
+    parameter.value(scene).or_else(added)
 }
 
 /// Returns the text of `scene` with other `values`; its comments stay.

@@ -1,33 +1,34 @@
 //! States, branches and detachment curves of one whisker.
 
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use whiskmap::classify::Sliding;
 use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{AxisValues, Scene};
-use whiskmap::trace::{Branch, NoState, WhiskerShape};
+use whiskmap::trace::{NoState, WhiskerPart, WhiskerShape};
 use whiskmap::{Channel, Options, Regime, Status};
 
 /// Number of points of a whisker's shape.
 const POINTS: usize = 120;
 
-/// Returns the state of the whisker at one push angle and distance: its regime, the shapes of the resting whisker and of the stable and
-/// the unstable state, and the reasons why there are none. Shapes are `[point][x, y]` in mm, as from `whiskmap shape`.
+/// Returns the state of the whisker at one push angle and distance: regime, status and margin, and the shapes of the resting whisker and of
+/// the stable and the unstable state, or the reasons why there are none. Shapes are `[point][x, y]` in mm, as from `whiskmap shape`.
 pub fn state(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, String> {
-    let cell = scene.to_builder().push_angle_deg([push_deg]);
-    let cell = cell.distance_mm([distance_mm]).build();
-    let cell = cell.map_err(|why| why.to_string())?;
-    let map = whiskmap::map(&cell, Options::default()).map_err(|why| why.to_string())?;
-    let panel = &map.panels[0];
-    let status = Status::ALL.into_iter();
-    let status = status.filter(|status| status.code() == panel.status[0]);
-    let channels = Channel::ALL.map(|channel| json!([channel.name(), panel.channel(channel)[0]]));
     let side = Side::of_push(push_deg);
     let branch = whiskmap::branch(scene, distance_mm, side);
     let part = |stable| {
-        let branch = branch.as_ref().map_err(|why| *why);
-        match branch.and_then(|branch| shape(branch, push_deg, stable)) {
-            Ok(shape) => shape,
-            Err(why) => json!({ "none": why.to_string() }),
-        }
+        let branch = branch.as_ref().map_err(|why| *why)?;
+        let state = branch.state(push_deg.to_radians(), stable)?;
+        Ok(WhiskerShape::new(branch, &state, POINTS))
+    };
+    let stable: Result<WhiskerShape, NoState> = part(true);
+    let verdict = match (&branch, &stable) {
+        (Ok(branch), Ok(shape)) => json!({
+            "regime": Regime::Contact.name(),
+            "status": status(shape.state.sliding).name(),
+            "values": { "margin_deg": (branch.stable_end_deg() - push_deg).abs(), "residual": shape.residual },
+        }),
+        _ => cell(scene, push_deg, distance_mm)?,
     };
     let whisker = &scene.whisker;
     let rest = Rest::new(&whisker.rod(&scene.pole, side));
@@ -39,31 +40,53 @@ pub fn state(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, St
         "push_angle_deg": push_deg,
         "distance_mm": distance_mm,
         "side": side,
-        "regime": map.regime(0, 0, 0).map(Regime::name),
-        "status": status.map(Status::name).next(),
-        "cell": channels,
+        "verdict": verdict,
         "rest": at_rest.collect::<Vec<_>>(),
-        "stable": part(true),
-        "unstable": part(false),
+        "stable": drawn(stable),
+        "unstable": drawn(part(false)),
     }))
 }
 
-fn shape(branch: &Branch, push_deg: f64, stable: bool) -> Result<Value, NoState> {
-    let state = branch.state(push_deg.to_radians(), stable)?;
-    let shape = WhiskerShape::new(branch, &state, POINTS);
-    let points = shape.points.iter().map(|point| [point.x_mm, point.y_mm]);
-    let contact = shape
-        .points
-        .iter()
-        .position(|point| point.part == whiskmap::trace::WhiskerPart::Contact);
+/// Regime, status and values of a cell that no push from first touch reaches.
+fn cell(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, String> {
+    let cell = scene.to_builder().push_angle_deg([push_deg]);
+    let cell = cell.distance_mm([distance_mm]).build();
+    let cell = cell.map_err(|why| why.to_string())?;
+    let map = whiskmap::map(&cell, Options::default()).map_err(|why| why.to_string())?;
+    let panel = &map.panels[0];
+    let mut status = Status::ALL.into_iter();
+    let status = status.find(|status| status.code() == panel.status[0]);
+    let channels = Channel::ALL.map(|channel| (channel.name(), panel.channel(channel)[0]));
     Ok(json!({
+        "regime": map.regime(0, 0, 0).map(Regime::name),
+        "status": status.map(Status::name),
+        "values": BTreeMap::from(channels),
+    }))
+}
+
+/// The status of a state with this sliding direction.
+const fn status(sliding: Option<Sliding>) -> Status {
+    match sliding {
+        None | Some(Sliding::Tip) => Status::Solved,
+        Some(Sliding::Base) => Status::TowardBase,
+        Some(Sliding::Sticks) => Status::Sticking,
+    }
+}
+
+fn drawn(shape: Result<WhiskerShape, NoState>) -> Value {
+    let shape = match shape {
+        Ok(shape) => shape,
+        Err(why) => return json!({ "none": why.to_string() }),
+    };
+    let mut parts = shape.points.iter().map(|point| point.part);
+    let points = shape.points.iter().map(|point| [point.x_mm, point.y_mm]);
+    json!({
         "points": points.collect::<Vec<_>>(),
-        "contact": contact,
+        "contact": parts.position(|part| part == WhiskerPart::Contact),
         "pole_mm": shape.pole_mm,
         "pole_radius_mm": shape.pole_radius_mm,
-        "residual": shape.residual,
         "state": shape.state,
-    }))
+    })
 }
 
 /// Returns `count` points of the branch of each side at one distance, as from `whiskmap branch`, or the reason why there is none.
