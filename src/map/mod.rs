@@ -14,11 +14,11 @@ use crate::engine::{Engine, EngineInput, Worker};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
+use crate::stopwatch::Stopwatch;
 pub use panel::Panel;
 use pipeline::Pipeline;
 pub use stages::{Stage, thread_seconds};
 use stages::{StageTimes, process_seconds};
-use crate::stopwatch::Stopwatch;
 use std::ops::ControlFlow;
 pub use summary::{Audit, EngineCells, Summary};
 

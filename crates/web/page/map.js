@@ -90,6 +90,7 @@ export function drawCross() {
     const { pointer } = state;
     const cross = overlay.querySelector('.cross');
     if (!pointer || !cross) return;
+    plane.dataset.pointer = JSON.stringify(pointer);
     const [x, y] = [place.left + place.x(pointer.push), place.top + place.y(pointer.distance)];
     const [right, bottom] = [place.left + place.width, place.top + place.height];
     const isInside = x >= place.left && x <= right && y >= place.top && y <= bottom;

@@ -37,7 +37,7 @@ export function showState() {
 
 // The command line that computes the state at the pointer.
 function showCommand() {
-    const { push, distance } = state.pointer;
+    const { push_angle_deg: push, distance_mm: distance } = known.state;
     const changed = Object.keys(state.whisker.values).length > 0;
     const scene = `${known.scene.name}.toml`.replace(/'/g, "'\\''");
     find('command').textContent = `whiskmap shape '${scene}' --distance ${exact(distance)} --push-angle ${exact(push)}`;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use whiskmap::classify::Sliding;
 use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{AxisValues, Scene};
-use whiskmap::trace::{NoState, WhiskerPart, WhiskerShape};
+use whiskmap::trace::{NoState, StateAtPush, WhiskerPart, WhiskerShape};
 use whiskmap::{Channel, Options, Regime, Status};
 
 /// Number of points of a whisker's shape.
@@ -19,14 +19,14 @@ pub fn state(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, St
     let part = |stable| {
         let branch = branch.as_ref().map_err(|why| *why)?;
         let state = branch.state(push_deg.to_radians(), stable)?;
-        Ok(WhiskerShape::new(branch, &state, POINTS))
+        Ok((state, WhiskerShape::new(branch, &state, POINTS)))
     };
-    let stable: Result<WhiskerShape, NoState> = part(true);
+    let stable = part(true);
     let verdict = match (&branch, &stable) {
-        (Ok(branch), Ok(shape)) => json!({
+        (Ok(branch), Ok((found, shape))) => json!({
             "regime": Regime::Contact.name(),
             "status": status(shape.state.sliding).name(),
-            "values": { "margin_deg": (branch.stable_end_deg() - push_deg).abs(), "residual": shape.residual },
+            "values": { "margin_deg": (branch.stable_end_deg() - push_deg).abs(), "residual": shape.residual, "contact_distance_mm": branch.read(found).contact_distance_mm },
         }),
         _ => cell(scene, push_deg, distance_mm)?,
     };
@@ -73,9 +73,9 @@ const fn status(sliding: Option<Sliding>) -> Status {
     }
 }
 
-fn drawn(shape: Result<WhiskerShape, NoState>) -> Value {
-    let shape = match shape {
-        Ok(shape) => shape,
+fn drawn(found: Result<(StateAtPush, WhiskerShape), NoState>) -> Value {
+    let shape = match found {
+        Ok((_, shape)) => shape,
         Err(why) => return json!({ "none": why.to_string() }),
     };
     let mut parts = shape.points.iter().map(|point| point.part);
