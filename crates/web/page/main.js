@@ -25,7 +25,7 @@ const show = {
         opened = state.whisker.text;
         known.whole = { push, distance };
         makeControls();
-        const middle = ([from, to]) => from + 0.56 * (to - from);
+        const middle = ([from, to]) => Number((from + 0.56 * (to - from)).toPrecision(3));
         change({ view: state.view ?? known.whole, pointer: state.pointer ?? { push: middle(push), distance: middle(distance) } });
     },
     map() {

@@ -55,7 +55,7 @@ export function drawPlane() {
     place = draw(overlay, {
         x: push,
         y: distance,
-        xTitle: 'Push angle since first touch (\u00b0): pole on the concave side (CF) < 0 < convex side (CB)',
+        xTitle: plane.clientWidth > 600 ? 'Push angle since first touch (\u00b0): pole on the concave side (CF) < 0 < convex side (CB)' : 'Push angle (\u00b0): CF < 0 < CB',
         yTitle: 'Distance at first touch (mm)',
         lines: [...boundaries(known.pinnedCurve, 'pinned casing'), ...boundaries(known.pinnedCurve, 'pinned'), ...boundaries(known.curve, 'casing'), ...boundaries(known.curve, 'edge')],
         dots: measured.map((row) => ({
@@ -143,7 +143,9 @@ const at = (event) => {
 // Moves the pointer, within the view.
 export function point(push, distance) {
     const within = (value, [from, to]) => Math.min(Math.max(value, from), to);
-    change({ pointer: { push: within(push, state.view.push), distance: within(distance, state.view.distance) } });
+    // Six digits are finer than pixels, and people can copy them.
+    const rounded = (value, ends) => Number(within(value, ends).toPrecision(6));
+    change({ pointer: { push: rounded(push, state.view.push), distance: rounded(distance, state.view.distance) } });
 }
 
 function moved(event) {
