@@ -29,6 +29,13 @@ async function compareState(page, scene) {
     }
 }
 
+// Drops a file on the page.
+const drop = (page, name, text) => page.evaluate(([name, text]) => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([text], name));
+    dispatchEvent(new DragEvent('drop', { dataTransfer, cancelable: true }));
+}, [name, text]);
+
 // Moves the pointer to a part of the map, from the left and from the top.
 async function move(page, x, y) {
     const box = await page.locator('#plane > svg').boundingBox();
@@ -134,11 +141,7 @@ const tests = {
 
     async 'points are compared and fitted'(page) {
         const csv = readFileSync(`${root}/scenes/cone_points.csv`, 'utf8');
-        await page.evaluate((text) => {
-            const data = new DataTransfer();
-            data.items.add(new File([text], 'points.csv'));
-            dispatchEvent(new DragEvent('drop', { dataTransfer: data, cancelable: true }));
-        }, csv);
+        await drop(page, 'points.csv', csv);
         await page.waitForSelector('#fit-controls:not([hidden])');
         const rms = await until('misfit', () => page.$eval('#misfit', (own) => Number(own.dataset.rms)), (value) => value > 0);
         const text = run('fit', cone, '--data', `${root}/scenes/cone_points.csv`, '--free', 'tip_radius_um', '--json', '-');
@@ -184,9 +187,14 @@ const tests = {
         assert((await saved('#save-svg')).toString().startsWith('<svg'), 'SVG');
     },
 
-    async 'a title is text, and a page of the command has scene and points'(page) {
+    async 'a title is text, and a page of the command has scene and points'() {
         const title = '</script><img src=x onerror=alert(1)>';
         writeFileSync(`${folder}/evil.toml`, readFileSync(cone, 'utf8').replace(/^title = .*$/m, `title = '${title}'`));
+        const dropped = await open(built);
+        await drop(dropped, 'evil.toml', readFileSync(`${folder}/evil.toml`, 'utf8'));
+        await until('title', () => dropped.textContent('#title'), (text) => text === title);
+        assert((await dropped.locator('img').count()) === 0, 'an element');
+        await dropped.context().close();
         run('explore', 'evil.toml', '--data', `${root}/scenes/cone_points.csv`, '-o', 'evil.html', '--no-open');
         const other = await open(`file://${folder}/evil.html`);
         assert((await other.textContent('#title')) === title, 'title');

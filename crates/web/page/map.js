@@ -123,6 +123,7 @@ function drawLegend() {
 
 // Zoom by a factor around a place; the view stays within what the solver allows.
 export function zoom(factor, [push, distance]) {
+    if (!state.view) return;
     const around = ([from, to], at) => [at + (from - at) * factor, at + (to - at) * factor];
     setView(around(state.view.push, push), around(state.view.distance, distance));
 }
@@ -142,6 +143,7 @@ const at = (event) => {
 
 // Moves the pointer, within the view.
 export function point(push, distance) {
+    if (!state.view) return;
     const within = (value, [from, to]) => Math.min(Math.max(value, from), to);
     // Six digits are finer than pixels, and people can copy them.
     const rounded = (value, ends) => Number(within(value, ends).toPrecision(6));
@@ -183,6 +185,7 @@ function released(event) {
 const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 function pressed(event) {
+    if (!state.view) return;
     const { push, distance } = state.view;
     const step = event.shiftKey ? 0.05 : 0.004;
     const here = state.pointer ?? { push: (push[0] + push[1]) / 2, distance: (distance[0] + distance[1]) / 2 };
