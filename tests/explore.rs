@@ -35,7 +35,7 @@ fn the_page_is_built_from_its_sources() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let page = fs::read_to_string(root.join("outputs/explore.html")).unwrap();
     let of = |name: &str| {
-        let tag = format!("<meta name=\"{name}\" content=\"");
+        let tag = format!("=\"{name}\" content=\"");
         let (_, rest) = page.split_once(&tag).unwrap();
         rest.split('"').next().unwrap().to_owned()
     };

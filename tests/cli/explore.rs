@@ -34,8 +34,7 @@ fn a_page_has_scene_and_points() {
 fn a_map_and_a_store_have_their_scene() {
     let place = Place::with(SCENE);
     for format in ["exr", "zarr"] {
-        let words = ["map", "scene.toml", "--engine=cpu", "--no-png", "-o", "."];
-        good(&place, &[&words[..], &["--format", format]].concat());
+        place.map(&["scene.toml", "--no-png", "-o", ".", "--format", format]);
         let map = format!("scene.{format}");
         let page = good(&place, &["explore", &map, "-o", "-"]);
         assert_eq!(start(page.out.as_bytes())["scene"]["text"], SCENE);
