@@ -106,6 +106,7 @@ pub mod plan;
 pub mod refine;
 #[doc(hidden)]
 pub mod sheet;
+mod stopwatch;
 #[doc(hidden)]
 pub use whiskmap_mechanics::{numerics, rod, shooting};
 

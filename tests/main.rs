@@ -10,6 +10,7 @@ mod design;
 mod docs;
 mod effect_sets;
 mod effects;
+mod explore;
 mod figures;
 mod fit;
 mod force;

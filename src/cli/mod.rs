@@ -16,6 +16,7 @@ mod digits;
 mod disk;
 mod engine;
 mod estimate;
+mod explore;
 mod extract;
 mod failure;
 mod files;
@@ -64,6 +65,7 @@ struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   whiskmap map scenes/cone.toml                      # outputs/cone.exr and outputs/cone.png
+  whiskmap explore scenes/cone.toml                  # one page with the solver inside
   whiskmap plan scenes/cone.toml                     # cost of a map: memory, seconds, bytes
   whiskmap render outputs/cone.exr --channel force_un
   whiskmap map scenes/morphology.toml --format zarr --shard 0/8
@@ -102,6 +104,8 @@ enum Command {
     Submit(submit::SubmitArgs),
     /// Compare two maps or stores of one scene, channel by channel
     Compare(compare::CompareArgs),
+    /// Write a page on which a scene is explored in the browser, and open it
+    Explore(explore::ExploreArgs),
     /// Draw a stored map: its regimes or any channel
     Render(render::RenderArgs),
     /// Compute the exact detachment curve of a scene, as CSV or a picture
@@ -191,6 +195,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Status(args) => status::run(args, files.temporary()),
         Command::Submit(args) => submit::run(args),
         Command::Compare(args) => compare::run(args, files),
+        Command::Explore(args) => explore::run(args, files),
         Command::Render(args) => render::run(args, files),
         Command::Curve(args) => curve::run(args, files),
         Command::Fit(args) => fit::run(args, files),

@@ -3,10 +3,11 @@
 use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
 use crate::numerics::Unit;
 use crate::refine::{CellTarget, RefineOutcome, Refined, TOLERANCE, refine_into};
+use crate::stopwatch::Stopwatch;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The CPU engine. It works where it is called: [`Engine::submit`] keeps a batch, [`Engine::collect`] solves it.
 #[derive(Debug, Default)]
@@ -25,11 +26,11 @@ pub struct Cpu {
 impl Cpu {
     /// Solves the cells of `batch` on the CPU.
     pub fn solve(&mut self, batch: &RowBatch) -> Cells {
-        let begun = Instant::now();
+        let begun = Stopwatch::start();
         let rows = batch.rows.par_iter();
         let targets: Vec<Vec<Option<CellTarget>>> = rows.map(|row| targets(batch, row)).collect();
         self.guesses += begun.elapsed();
-        let begun = Instant::now();
+        let begun = Stopwatch::start();
         self.targets.clear();
         self.targets.extend(targets.iter().flatten().flatten());
         let sheets = batch.sheets();

@@ -4,6 +4,7 @@
 //! After its first failure an engine gets no further batch.
 
 use super::{Cells, Engine, EngineError, RowBatch};
+use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -112,7 +113,7 @@ impl<'e> Worker<'e> {
         let response = match self.connection.as_mut()? {
             Connection::Thread { responses, .. } => responses.recv().ok(),
             Connection::Call(engine) => {
-                let begun = Instant::now();
+                let begun = Stopwatch::start();
                 let taken = engine.submit(Arc::clone(&batch));
                 Some(Response {
                     cells: taken.and_then(|()| engine.collect()),

@@ -14,12 +14,12 @@ use crate::engine::{Engine, EngineDescription, EngineInput, Worker};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
+use crate::stopwatch::Stopwatch;
 pub use panel::Panel;
 use pipeline::Pipeline;
 pub use stages::{Stage, thread_seconds};
 use stages::{StageTimes, process_seconds};
 use std::ops::ControlFlow;
-use std::time::Instant;
 pub use summary::{Audit, EngineCells, Summary};
 
 /// Computes the panels of `scene` according to `plan`, on the threads of the current pool; call it within
@@ -40,8 +40,8 @@ pub fn run<E: Send>(
     on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
     keep: &mut (dyn FnMut(&mut Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
-    let (start, cpu_start) = (Instant::now(), process_seconds());
     let description = EngineDescription::of(engine.as_deref());
+    let (start, cpu_start) = (Stopwatch::start(), process_seconds());
     let input = engine.as_ref();
     let input = input.map(|own| own.input(plan.method.resolution));
     let has_thread = !matches!(input, Some(EngineInput::SpectralSheets(_)));

@@ -14,11 +14,11 @@ use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, SweptWhisker};
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
+use crate::stopwatch::Stopwatch;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Cells per thread in a batch for the CPU alone: nearly all blocks of the refinement are full, and little memory is new.
 const CELLS_PER_THREAD: usize = 8192;
@@ -159,7 +159,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             self.queue.push_back((batch, is_last));
         }
         let (batch, is_last) = self.queue.pop_front()?;
-        let begun = Instant::now();
+        let begun = Stopwatch::start();
         let cells = batch
             .is_for_engine()
             .then(|| self.worker.collect())

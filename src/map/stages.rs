@@ -1,6 +1,7 @@
 //! Stages of a run and their wall seconds.
 
-use std::time::{Duration, Instant};
+use crate::stopwatch::Stopwatch;
+use std::time::Duration;
 
 /// Stage of a run. Stages follow each other for one row batch; only packing runs beside the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +43,7 @@ pub(super) struct StageTimes(pub [Duration; Stage::ALL.len()]);
 impl StageTimes {
     /// Calls `work` and adds its wall time to `stage`. Returns its result.
     pub fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
-        let begun = Instant::now();
+        let begun = Stopwatch::start();
         let done = work();
         self.0[stage as usize] += begun.elapsed();
         done

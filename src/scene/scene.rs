@@ -104,6 +104,21 @@ impl Scene {
         self.note.as_deref()
     }
 
+    /// Returns the scene of whisker `index` of the sweep, in the order of [`SceneData::whiskers`], without sweep axes. Indices are taken
+    /// modulo [`SceneData::whisker_count`]. A scene without sweep axes stays as it is.
+    ///
+    /// # Errors
+    /// Never for a scene that was built: its whiskers have passed every check.
+    pub fn of_whisker(&self, index: usize) -> Result<Self, SceneError> {
+        if !self.is_sweep() {
+            return Ok(self.clone());
+        }
+        let mut builder = self.to_builder();
+        builder.numbers = builder.numbers.at(&self.grid.place(index));
+        builder.sweep.clear();
+        builder.build()
+    }
+
     /// Returns the scene with another value of a parameter, in the parameter's unit.
     ///
     /// # Errors

@@ -191,8 +191,7 @@ impl MapSlice {
 
     /// The scene of the map or store; `None` if this version cannot read it.
     fn scene(&self) -> Result<Option<Scene>, StoreError> {
-        let text = self.stored.attribute("scene")?;
-        Ok(Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map").ok())
+        Ok(self.stored.scene()?.ok())
     }
 
     /// Returns the indices of the slice's whiskers in the whole sweep, with the last axis varying fastest.

@@ -4,7 +4,7 @@ use super::{ChannelValues, StoreError, StoredMap};
 #[cfg(feature = "zarr")]
 use super::{ZarrStore, tally};
 use crate::plan::Digits;
-use crate::scene::Grid;
+use crate::scene::{Grid, Scene, SceneError};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -74,6 +74,18 @@ impl MapSource {
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.attribute(name),
         }
+    }
+
+    /// Returns the scene of the stored map, or why this version refuses it.
+    ///
+    /// # Errors
+    /// The map or store has no scene.
+    pub fn scene(&self) -> Result<Result<Scene, SceneError>, StoreError> {
+        let text = self.attribute("scene")?;
+        Ok(Scene::parse(
+            text.as_str().unwrap_or_default(),
+            "the scene of the map",
+        ))
     }
 
     /// Returns the digits to which the channels of the map are rounded.

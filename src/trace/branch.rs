@@ -104,6 +104,13 @@ impl Branch {
         &self.level.row
     }
 
+    /// Returns the signed push angle at which the stable states end, at the fold or at the tip, in degrees.
+    #[must_use]
+    pub fn stable_end_deg(&self) -> f64 {
+        let Continuation { nodes, fold, .. } = &self.continuation;
+        nodes[fold.unwrap_or(nodes.len() - 1)].push.to_degrees()
+    }
+
     /// Returns `count` points of the branch, at least 3, with the fold as one of them. They are evenly spaced on each side of the fold.
     /// Lengths are measured in push angle and contact angle (radians), and arclength of the contact (whisker lengths).
     ///

@@ -15,6 +15,7 @@ mod design;
 #[cfg(unix)]
 mod digits;
 mod engine;
+mod explore;
 mod extract;
 #[cfg(unix)]
 mod files;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Machines that this is not developed on: builds for aarch64 and runs the physics under qemu, and checks that the library
-# without default features builds for the web. Run by hand, on Debian 12 or later, as it needs compilers with sources:
+# Machines that this is not developed on: builds for aarch64 and runs the physics under qemu, and builds the page of
+# `whiskmap explore` with its solver. Run by hand, on Debian 12 or later, as it needs compilers with sources:
 #
-#     apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user rustc-web cargo-web rust-web-src
+#     apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user rustc-web cargo-web rust-web-src lld-19
 #
 # With arguments: only these steps, of `mechanics` (that crate alone), `physics` and `web`.
 set -euo pipefail
@@ -11,6 +11,7 @@ cd "$(dirname "$0")/../.."
 # Debian's compiler; the standard library is built from its sources, for which the compiler must allow what is unstable.
 export PATH="/usr/bin:$PATH" RUSTC_BOOTSTRAP=1
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-target}/portable"
+export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=wasm-ld-19
 export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc
 export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER="qemu-aarch64 -L /usr/aarch64-linux-gnu"
 
@@ -24,7 +25,7 @@ for step in ${*:-mechanics physics web}; do
         cargo test -Z build-std --target aarch64-unknown-linux-gnu --no-default-features --test portable
         ;;
     web)
-        cargo check -Z build-std --target wasm32-unknown-unknown --no-default-features --lib
+        CARGO_FLAGS="-Z build-std=std,panic_abort" crates/web/build.sh "$CARGO_TARGET_DIR/explore.html"
         ;;
     *)
         echo "$step: must be mechanics, physics or web" >&2

@@ -2,12 +2,18 @@
 //!
 //! Lanes fill two registers: operations wait for their operands most of the time, so two registers take hardly longer than one.
 
-#[cfg(any(target_arch = "aarch64", target_arch = "x86_64"))]
+#[cfg(any(
+    target_arch = "aarch64",
+    target_arch = "wasm32",
+    target_arch = "x86_64"
+))]
 #[macro_use]
 mod registers;
 
 #[cfg(target_arch = "aarch64")]
 mod aarch64;
+#[cfg(target_arch = "wasm32")]
+mod wasm32;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -15,11 +21,16 @@ use super::Real;
 #[cfg(target_arch = "aarch64")]
 use aarch64::Neon;
 use std::fmt;
+#[cfg(target_arch = "wasm32")]
+use wasm32::Simd128;
 #[cfg(target_arch = "x86_64")]
 use x86::{Avx2, Avx512};
 
 /// Largest number of SIMD lanes of any unit.
 pub const WIDTH: usize = 16;
+
+/// Largest count of numbers that take less time one after the other than in the lanes of SIMD128: there, eight take as long as three.
+const FEW: usize = 3;
 
 /// Several numbers on which each operation acts at once, or a single number.
 pub trait Lanes: Real {
@@ -120,6 +131,8 @@ enum Instructions {
     Avx2(Avx2),
     #[cfg(target_arch = "aarch64")]
     Neon(Neon),
+    #[cfg(target_arch = "wasm32")]
+    Simd128(Simd128),
     /// One number at a time. Products are rounded before they are added.
     Scalar,
 }
@@ -133,6 +146,8 @@ impl fmt::Display for Unit {
             Instructions::Avx2(_) => "AVX2",
             #[cfg(target_arch = "aarch64")]
             Instructions::Neon(_) => "NEON",
+            #[cfg(target_arch = "wasm32")]
+            Instructions::Simd128(_) => "SIMD128",
             Instructions::Scalar => "scalar",
         })
     }
@@ -148,6 +163,8 @@ impl Unit {
             Avx2::detect().map(Instructions::Avx2),
             #[cfg(target_arch = "aarch64")]
             Neon::detect().map(Instructions::Neon),
+            #[cfg(target_arch = "wasm32")]
+            Simd128::detect().map(Instructions::Simd128),
             Some(Instructions::Scalar),
         ];
         units.into_iter().flatten().map(Self)
@@ -165,6 +182,16 @@ impl Unit {
         Self(Instructions::Scalar)
     }
 
+    /// Returns the unit that computes `count` numbers with the same bits in the least time: one at a time if few lanes would be filled.
+    #[must_use]
+    pub fn for_count(self, count: usize) -> Self {
+        let scalar = Self::scalar();
+        match self.arithmetic() == scalar.arithmetic() && count <= FEW {
+            true => scalar,
+            false => self,
+        }
+    }
+
     /// Returns the rounding of `mul_add` in lanes of this unit.
     #[must_use]
     pub const fn arithmetic(self) -> ArithmeticClass {
@@ -173,6 +200,8 @@ impl Unit {
             Instructions::Avx512(_) | Instructions::Avx2(_) => ArithmeticClass::Fma,
             #[cfg(target_arch = "aarch64")]
             Instructions::Neon(_) => ArithmeticClass::Fma,
+            #[cfg(target_arch = "wasm32")]
+            Instructions::Simd128(_) => ArithmeticClass::NoFma,
             Instructions::Scalar => ArithmeticClass::NoFma,
         }
     }
@@ -187,6 +216,8 @@ impl Unit {
             Instructions::Avx2(unit) => unit.run(task),
             #[cfg(target_arch = "aarch64")]
             Instructions::Neon(unit) => unit.run(task),
+            #[cfg(target_arch = "wasm32")]
+            Instructions::Simd128(unit) => unit.run(task),
             Instructions::Scalar => task.run::<f64>(),
         }
     }

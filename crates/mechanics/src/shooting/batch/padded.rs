@@ -32,7 +32,7 @@ pub fn shoot<O: OutputSet>(
     let compute = |members: &&[(BlockKey, usize)]| {
         let (most_steps, _) = members[members.len() - 1];
         let block = Block::new(method, members.len(), |i| &conditions[members[i].1]);
-        O::shoot(unit, most_steps, &block)
+        O::shoot(unit.for_count(members.len()), most_steps, &block)
     };
     let mut keep = |members: &[(BlockKey, usize)], computed: [O; WIDTH]| {
         for ((_, i), output) in members.iter().zip(computed) {

@@ -15,7 +15,7 @@ pub fn shoot<'a, O: OutputSet>(
 ) {
     let mut compute = |key: BlockKey, members: &mut Vec<(usize, InitialCondition<'a>)>| {
         let block = Block::new(method, members.len(), |i| &members[i].1);
-        let outputs = O::shoot(unit, key, &block);
+        let outputs = O::shoot(unit.for_count(members.len()), key, &block);
         for ((i, _), output) in members.iter().zip(&outputs) {
             take(*i, output);
         }

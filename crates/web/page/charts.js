@@ -1,0 +1,82 @@
+// Charts: the branches at the row of the pointer, the detachment curve, and residuals of measured points.
+
+import { find } from './dom.js';
+import { draw, ends } from './plot.js';
+import { known, state } from './state.js';
+import { shown, titled } from './text.js';
+
+const PUSH = 'Push angle (\u00b0)';
+
+// Stable and unstable parts of both branches as lines of a value by push angle; the parts meet at the fold.
+function branchLines(name) {
+    return ['cf', 'cb'].flatMap((side) => {
+        const points = known.branches[side].points ?? [];
+        const fold = points.findIndex((point) => !point.stable);
+        const part = (own) => own.map((point) => [point.push_angle_deg, point[name]]);
+        const stable = { points: part(fold < 0 ? points : points.slice(0, fold)), class: 'stable' };
+        return fold < 0 ? [stable] : [stable, { points: part(points.slice(fold - 1)), class: 'unstable' }];
+    });
+}
+
+const MARKS = { 'slip-off': 'fold', 'pull-off': 'tip' };
+
+// Draws a bifurcation diagram and the force curve, with the pointer's push angle.
+export function drawBranches() {
+    if (!known.branches || !state.pointer) return;
+    const { distance } = state.pointer;
+    for (const [id, name] of [['bifurcation', 'arc_length_mm'], ['force', 'force_un']]) {
+        const lines = branchLines(name);
+        const all = lines.flatMap((line) => line.points);
+        const marked = ['cf', 'cb'].flatMap((side) => (known.branches[side].points ?? []).filter((point) => point.mark in MARKS));
+        draw(find(id), {
+            x: ends(all.map(([x]) => x), [0]),
+            y: ends(all.map(([, y]) => y), name === 'force_un' ? [0] : []),
+            xTitle: PUSH,
+            yTitle: titled(name),
+            lines,
+            dots: marked.map((point) => ({ at: [point.push_angle_deg, point[name]], class: 'end', title: `${point.mark} at ${shown(point.push_angle_deg)}\u00b0` })),
+            vertical: state.pointer.push,
+        });
+        find(`${id}-note`).textContent = `at ${shown(distance)} mm; stable solid, unstable dashed`;
+    }
+}
+
+const curveLine = (curve, side, name) =>
+    curve.rows.filter((row) => row.side === side && row.push_angle_deg != null).map((row) => [row.distance_mm, row[name]]);
+
+// Draws the detachment curve with measured points, and the residuals of the points below.
+export function drawDetachment() {
+    if (!known.curve || !state.view) return;
+    const name = known.points?.angle ?? 'push_angle_deg';
+    const lines = [[known.pinnedCurve, 'pinned'], [known.curve, 'stable']].flatMap(([curve, kind]) =>
+        curve ? ['cf', 'cb'].map((side) => ({ points: curveLine(curve, side, name), class: kind })) : []);
+    const rows = known.points?.beside.rows ?? [];
+    const bars = (value, row) => row.sd_deg && [[row.distance_mm, value - row.sd_deg], [row.distance_mm, value + row.sd_deg]];
+    const dots = (key) => rows.filter((row) => row[key] != null).map((row) => ({
+        at: [row.distance_mm, row[key]],
+        class: 'measured',
+        error: bars(row[key], row),
+        title: `line ${row.line}: measured ${shown(row.measured_deg)}\u00b0, computed ${shown(row.predicted_deg)}\u00b0`,
+    }));
+    const x = state.view.distance;
+    const inView = (points) => points.filter(([at]) => at >= x[0] && at <= x[1]).map(([, y]) => y);
+    draw(find('detachment'), {
+        x,
+        y: ends([...lines.flatMap((line) => inView(line.points)), ...inView(rows.map((row) => [row.distance_mm, row.measured_deg]))], [0]),
+        xTitle: 'Distance at first touch (mm)',
+        yTitle: name === 'push_angle_deg' ? PUSH : 'Chord angle (\u00b0)',
+        lines,
+        dots: dots('measured_deg'),
+        vertical: state.pointer?.distance,
+    });
+    find('residual-figure').hidden = !rows.length;
+    if (!rows.length) return;
+    draw(find('residuals'), {
+        x,
+        y: ends(rows.flatMap((row) => [row.residual_deg - (row.sd_deg ?? 0), row.residual_deg + (row.sd_deg ?? 0)]), [0]),
+        xTitle: 'Distance at first touch (mm)',
+        yTitle: 'Measured \u2212 computed (\u00b0)',
+        dots: dots('residual_deg'),
+        horizontal: 0,
+    });
+}

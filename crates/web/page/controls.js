@@ -1,0 +1,97 @@
+// Controls: a slider and a number field for each number of the scene.
+
+import { el, find } from './dom.js';
+import { change, changeValues, known, state } from './state.js';
+import { shown, unit } from './text.js';
+
+// Parameters with the ends of their sliders, by the whisker of the file: `of` has its numbers.
+const PARAMETERS = {
+    taper: () => [0, 1],
+    tip_radius_um: (of) => [0, of.base_radius_um],
+    base_radius_um: (of) => [of.base_radius_um / 3, of.base_radius_um * 3],
+    length_mm: (of) => [of.length_mm / 2, of.length_mm * 2],
+    profile_scale: (of) => [of.profile_scale / 3, of.profile_scale * 3],
+    tip_extension_mm: (of) => [0, Math.max(4 * of.tip_extension_mm, of.length_mm / 10)],
+    parabola_per_mm: (of) => [0, Math.max(0.8 / of.length_mm, 2 * of.parabola_per_mm)],
+    vertex_mm: (of) => [-of.length_mm / 2, of.length_mm / 2],
+    spiral_per_mm: (of) => [-3 / of.length_mm, 3 / of.length_mm],
+    spiral_per_mm2: (of) => [-4 / of.length_mm ** 2, 4 / of.length_mm ** 2],
+    pole_radius_mm: (of) => [0, Math.max(of.length_mm / 20, 2 * of.pole_radius_mm)],
+    friction: () => [0, 1],
+    youngs_modulus_gpa: (of) => [of.youngs_modulus_gpa / 5, of.youngs_modulus_gpa * 5],
+    modulus_tip_to_base: () => [0.2, 5],
+    arc_stretch: () => [1, 1.2],
+};
+
+const rows = new Map();
+let touched = null;
+
+// Sets a value that the reader has chosen.
+function set(name, value) {
+    touched = name;
+    changeValues({ [name]: value });
+}
+
+// Makes the controls of a scene that has just been opened.
+export function makeControls() {
+    const { parameters } = known.scene;
+    const of = Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
+    rows.clear();
+    const names = Object.keys(PARAMETERS).filter((name) => name in of);
+    find('numbers').replaceChildren(...names.map((name) => {
+        const own = parameters.find((parameter) => parameter.name === name);
+        const [from, to] = PARAMETERS[name](of);
+        const field = el('input', { id: `field-${name}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false', 'aria-describedby': `error-${name}`, onchange: () => read(name) });
+        const slider = el('input', { type: 'range', min: from, max: to, step: 'any', 'aria-label': own.title, oninput: (event) => set(name, Number(Number(event.target.value).toPrecision(4))) });
+        const error = el('p', { class: 'error', id: `error-${name}`, role: 'alert' });
+        rows.set(name, { field, slider, error });
+        return el('div', { class: 'control' }, el('label', { for: field.id, title: `${own.title}: ${own.key}` }, own.title.replace(/ \(.*\)/, '')), el('span', { class: 'value' }, field, el('span', { class: 'unit' }, unit(name))), slider, error);
+    }));
+    showValues();
+}
+
+function read(name) {
+    const { field } = rows.get(name);
+    const value = Number(field.value.trim().replace('\u2212', '-').replace(',', '.'));
+    touched = name;
+    if (field.value.trim() === '' || !Number.isFinite(value)) showError(`${name}: must be a number`);
+    else set(name, value);
+}
+
+// Shows the values of the scene, and takes away the error of a value that is now allowed.
+export function showValues() {
+    for (const { name, value } of known.scene.parameters) {
+        const row = rows.get(name);
+        if (!row) continue;
+        if (document.activeElement !== row.field || name !== touched) row.field.value = shown(value, 6);
+        row.slider.value = value;
+        row.slider.setAttribute('aria-valuetext', `${shown(value)} ${unit(name)}`);
+    }
+    showError('');
+    find('effects').replaceChildren(...known.scene.effects.map((effect) => el('li', { class: effect.on ? 'on' : 'off', title: effect.why }, effect.name)));
+    find('warnings').textContent = known.scene.warnings.join('\n');
+}
+
+// Shows an error at the control that was changed last, or else above the controls.
+export function showError(message) {
+    for (const [name, { field, error }] of rows) {
+        const own = name === touched ? message : '';
+        error.textContent = own;
+        field.setAttribute('aria-invalid', String(own !== ''));
+    }
+    find('scene-error').textContent = rows.has(touched) ? '' : message;
+}
+
+// Buttons for all values: back to the file, and a second whisker for comparison.
+export function startControls() {
+    find('reset').addEventListener('click', () => {
+        touched = null;
+        change({ whisker: { ...state.whisker, values: {} } });
+    });
+    find('pin').addEventListener('click', () => change({ pinned: state.pinned ? null : state.whisker }));
+}
+
+export function showPinned() {
+    find('pin').setAttribute('aria-pressed', String(Boolean(state.pinned)));
+    find('pin').textContent = state.pinned ? 'Unpin' : 'Pin for comparison';
+}

@@ -1,0 +1,70 @@
+// The whisker in equal scales: at rest, deformed, and in the unstable state, with the pole and its force.
+
+import { find, svg } from './dom.js';
+import { known, state } from './state.js';
+import { shown } from './text.js';
+import { ticks } from './plot.js';
+
+const picture = find('whisker');
+
+const number = (name) => known.scene.parameters.find((own) => own.name === name)?.value;
+
+// The force E I / L^2 of the whisker, in uN: the size of forces that bend it visibly.
+function unitForce() {
+    const [modulus, radius, length] = ['youngs_modulus_gpa', 'base_radius_um', 'length_mm'].map(number);
+    return (1e9 * modulus * (Math.PI / 4) * (radius * 1e-6) ** 4 * 1e6) / (length * 1e-3) ** 2;
+}
+
+// Draws the state at the pointer. The picture has the same extent for all states of a whisker, in whisker lengths.
+export function drawWhisker() {
+    const { width, height } = picture.getBoundingClientRect();
+    const own = known.state;
+    if (!own || !width) return;
+    const length = number('length_mm');
+    const [x0, x1, middle] = [-0.16 * length, 1.06 * length, 0];
+    const scale = Math.min(width / (x1 - x0), height / (1.25 * length));
+    const place = ([x, y]) => [(x - x0) * scale + (width - (x1 - x0) * scale) / 2, height / 2 - (y - middle) * scale];
+    const line = (points, name) => svg('path', { class: `line ${name}`, d: points.map((point, i) => `${i ? 'L' : 'M'}${place(point).map((value) => value.toFixed(2)).join(' ')}`).join('') });
+    const parts = [scaleBar(length, scale, height)];
+    const { stable, unstable } = own;
+    const { pole_mm, pole_radius_mm } = stable.points ? stable : unstable;
+    if (pole_mm) {
+        const [cx, cy] = place(pole_mm);
+        parts.push(svg('circle', { class: 'pole', cx, cy, r: Math.max(pole_radius_mm * scale, 2) }));
+    }
+    const pinned = known.pinnedState;
+    if (state.pinned && pinned?.stable.points) parts.push(line(pinned.stable.points, 'pinned'));
+    parts.push(line(own.rest, 'rest'));
+    if (unstable.points) parts.push(line(unstable.points, 'unstable'));
+    if (stable.points) parts.push(line(stable.points, 'stable'), ...force(stable, place, length));
+    const [bx, by] = place([0, 0]);
+    parts.push(svg('circle', { class: 'base', cx: bx, cy: by, r: 4 }));
+    picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
+    picture.setAttribute('aria-label', `Whisker at rest${stable.points ? ', deformed by the pole' : ''}${unstable.points ? ', and in its unstable state' : ''}`);
+    picture.replaceChildren(...parts);
+}
+
+// The force of the pole on the whisker, as an arrow at the contact that grows with the force up to a quarter of the whisker.
+function force({ points, contact, state: found }, place, length) {
+    const { force_un, base_force_x_un: along, base_force_y_un: across, push_angle_deg } = found;
+    if (!(force_un > 0)) return [];
+    const turn = (-push_angle_deg * Math.PI) / 180;
+    const [x, y] = [along * Math.cos(turn) - across * Math.sin(turn), along * Math.sin(turn) + across * Math.cos(turn)];
+    const size = (0.25 * length * force_un) / (force_un + unitForce()) / Math.hypot(x, y);
+    const [from, to] = [points[contact], points[contact].map((value, i) => value + size * [x, y][i])].map(place);
+    const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+    const span = Math.hypot(dx, dy) || 1;
+    const [ux, uy] = [(dx / span) * 7, (dy / span) * 7];
+    const head = `M${to[0]} ${to[1]}L${to[0] - ux - uy / 2} ${to[1] - uy + ux / 2}L${to[0] - ux + uy / 2} ${to[1] - uy - ux / 2}Z`;
+    return [
+        svg('line', { class: 'line force', x1: from[0], y1: from[1], x2: to[0] - ux / 2, y2: to[1] - uy / 2 }),
+        svg('path', { class: 'arrow', d: head }),
+        svg('text', { class: 'force', x: to[0] + ux, y: to[1] + uy + 4, 'text-anchor': ux < 0 ? 'end' : 'start' }, `${shown(force_un, 3)} \u00b5N`),
+    ];
+}
+
+function scaleBar(length, scale, height) {
+    const [, size] = ticks([0, length], 4);
+    const [x, y] = [10, height - 12];
+    return svg('g', { class: 'scale' }, svg('line', { x1: x, x2: x + size * scale, y1: y, y2: y }), svg('text', { x, y: y - 6 }, `${shown(size)} mm`));
+}

@@ -1,0 +1,65 @@
+//! Maps of one whisker.
+
+use crate::request::{Answer, MOST};
+use serde::Deserialize;
+use serde_json::json;
+use whiskmap::engine::{Engine, EngineDescription, Spectral};
+use whiskmap::scene::{AxisValues, Scene};
+use whiskmap::{Channel, MapEngine, Options};
+
+/// A map to compute.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapTask {
+    /// First and last push angle, in degrees.
+    push_angle_deg: [f64; 2],
+    /// First and last distance, in mm.
+    distance_mm: [f64; 2],
+    /// Number of push angles, and of distances.
+    size: [usize; 2],
+    /// Name of a channel whose values are wanted; `None` for the regimes alone.
+    channel: Option<String>,
+    /// Maximum push-angle error, in degrees; `None` for the finest steps.
+    tolerance_deg: Option<f64>,
+}
+
+impl MapTask {
+    /// Returns the map of the first whisker of `scene`: codes of regimes, codes of statuses, and the values of the channel if one is
+    /// wanted, `[array][distance][push_angle]`.
+    pub fn answer(&self, scene: &Scene) -> Result<Answer, String> {
+        let size = self.size.map(|count| count.clamp(1, MOST));
+        let axis = |[from, to]: [f64; 2], count| AxisValues::linear(from, to, count);
+        let scene = scene.to_builder();
+        let scene = scene.push_angle_deg(axis(self.push_angle_deg, size[0]));
+        let scene = scene.distance_mm(axis(self.distance_mm, size[1])).build();
+        let scene = scene.map_err(|why| why.to_string())?;
+        let mut options = Options::default();
+        options.engine = MapEngine::Spectral;
+        options.tolerance_deg = self.tolerance_deg;
+        let map = whiskmap::map(&scene, options).map_err(|why| why.to_string())?;
+        let panel = &map.panels[0];
+        let channels = Channel::ALL.into_iter();
+        let mut channel =
+            channels.filter(|channel| Some(channel.name()) == self.channel.as_deref());
+        let codes = [&panel.regime, &panel.status].into_iter().flatten();
+        let codes = codes.map(|code| *code as f32);
+        let values = channel
+            .next()
+            .map_or(&[][..], |channel| panel.channel(channel));
+        let spectral = Spectral::default();
+        let is_spectral = map.summary.engine_cells.solved > 0;
+        let engine = is_spectral.then_some(&spectral as &dyn Engine);
+        let engine = EngineDescription::of(engine);
+        Ok(Answer {
+            text: json!({
+                "size": size,
+                "push_angle_deg": self.push_angle_deg,
+                "distance_mm": self.distance_mm,
+                "engine": format!("{}, {}", engine.engine, engine.adapter),
+                "unresolved": map.summary.unresolved(),
+                "worst_residual": map.summary.worst_residual,
+            }),
+            numbers: codes.chain(values.iter().copied()).collect(),
+        })
+    }
+}

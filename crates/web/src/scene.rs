@@ -1,0 +1,59 @@
+//! Descriptions of scenes: numbers, effects, and axes.
+
+use serde_json::{Value, json};
+use whiskmap::Channel;
+use whiskmap::classify::{Regime, Status};
+use whiskmap::plan::{Plan, effects};
+use whiskmap::scene::{Parameter, Scene};
+
+/// Returns title, numbers, effects and axes of a scene, and the names of codes and channels.
+pub fn description(scene: &Scene) -> Result<Value, String> {
+    let parameters = Parameter::ALL.into_iter();
+    let parameters = parameters.filter_map(|parameter| {
+        Some(json!({
+            "name": parameter.name(),
+            "key": parameter.key(),
+            "title": parameter.title(),
+            "unit": parameter.unit(),
+            "value": number(scene, parameter)?,
+        }))
+    });
+    let plan = Plan::new(scene).map_err(|why| why.to_string())?;
+    let effects = effects(scene, plan.method.effects).into_iter();
+    let effects =
+        effects.map(|effect| json!({ "name": effect.name, "on": effect.on, "why": effect.why }));
+    let ends = |values: &[f64]| [values[0], values[values.len() - 1]];
+    let (nearest, farthest) = scene.distances_mm();
+    Ok(json!({
+        "title": scene.title,
+        "name": scene.name,
+        "parameters": parameters.collect::<Vec<_>>(),
+        "effects": effects.collect::<Vec<_>>(),
+        "warnings": scene.warnings(),
+        "push_angle_deg": ends(&scene.grid.push_angle_deg),
+        "distance_mm": ends(&scene.grid.distance_mm),
+        "distances_mm": [nearest.max(scene.pole.radius_mm), farthest],
+        "regimes": Regime::ALL.map(|regime| json!({ "code": regime.code(), "name": regime.name() })),
+        "statuses": Status::ALL.map(|status| json!({ "code": status.code(), "name": status.name() })),
+        "channels": Channel::ALL.map(Channel::name),
+    }))
+}
+
+/// Returns the number of `parameter`: the scene's own, or else the one that changes nothing. `None` if the scene cannot have the parameter.
+fn number(scene: &Scene, parameter: Parameter) -> Option<f64> {
+    let neutral = match parameter {
+        Parameter::ParabolaPerMm
+        | Parameter::VertexMm
+        | Parameter::PoleRadiusMm
+        | Parameter::Friction => 0.0,
+        Parameter::ModulusTipToBase | Parameter::ArcStretch => 1.0,
+        _ => return parameter.value(scene),
+    };
+    let added = || scene.with(parameter, neutral).ok().map(|_| neutral);
+    parameter.value(scene).or_else(added)
+}
+
+/// Returns the text of `scene` with other `values`; its comments stay.
+pub fn toml(scene: &Scene, values: &[(Parameter, f64)]) -> Result<String, String> {
+    scene.to_toml_with(values).map_err(|why| why.to_string())
+}

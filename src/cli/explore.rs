@@ -1,0 +1,136 @@
+//! Command `whiskmap explore`.
+
+use super::data;
+use super::failure::{Failure, message};
+use super::files::{Files, STDOUT};
+use clap::Args;
+use serde_json::json;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use whiskmap::measured::{MeasuredPoint, MeasuredPoints};
+use whiskmap::rod::Side;
+use whiskmap::store::MapSource;
+use whiskmap::trace::DetachmentKind;
+
+/// The page with the solver and an example scene, which `crates/web/build.sh` builds.
+const PAGE: &str = include_str!("../../outputs/explore.html");
+
+/// Element of the page that has the scene and the points, as JSON.
+const START: [&str; 2] = [
+    r#"<script type="application/json" id="start">"#,
+    "</script>",
+];
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  whiskmap explore scenes/cone.toml
+  whiskmap explore scenes/cone.toml --data scenes/cone_points.csv -o page.html
+  whiskmap explore outputs/cone.exr --no-open
+  whiskmap explore outputs/morphology.zarr
+
+The page is one file that computes in the browser: it needs no installation and no network, and sends nothing. Of a sweep, it \
+shows the first whisker. The browser opens if standard output is a terminal.")]
+pub struct ExploreArgs {
+    /// Scene file, or a map or store written by `whiskmap map`; - is a scene on standard input
+    file: PathBuf,
+    /// Write the page to FILE; - is standard output [default: outputs/NAME.html, named by the scene]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Put measured detachments on the page, in the format of curve --data
+    #[arg(long, value_name = "FILE")]
+    data: Option<PathBuf>,
+    /// Do not open the browser
+    #[arg(long)]
+    no_open: bool,
+}
+
+pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
+    let path = args.file.as_path();
+    let is_map = path.is_dir() || path.extension().is_some_and(|ending| ending == "exr");
+    let scene = match is_map {
+        true => {
+            files.input(path);
+            MapSource::open(path)?.scene()??
+        }
+        false => files.scene(path)?,
+    };
+    let points = args.data.as_deref().map(|data| {
+        data::check_stdin(path, data)?;
+        let points = data::read(files, data)?;
+        let whisker = scene.first_whisker();
+        points.check_reach(&whisker.whisker, &whisker.pole)?;
+        Ok::<_, Failure>(json!({ "name": points.origin, "csv": csv(&points) }))
+    });
+    let start = json!({
+        "scene": { "text": scene.to_toml(), "origin": format!("{}.toml", scene.name) },
+        "points": points.transpose()?,
+    });
+    let output = match &args.output {
+        Some(output) => output.clone(),
+        None => Path::new("outputs").join(format!("{}.html", scene.name)),
+    };
+    let file = files.output("--output", &output)?;
+    let Some(path) = file.write(page(&start.to_string()).as_bytes())? else {
+        return Ok(());
+    };
+    writeln!(std::io::stdout(), "{}", path.display())?;
+    if !args.no_open && path != Path::new(STDOUT) && std::io::stdout().is_terminal() {
+        open(&path);
+    }
+    Ok(())
+}
+
+/// Measured points as CSV, in the format of `--data`.
+fn csv(points: &MeasuredPoints) -> String {
+    let head = format!(
+        "side,distance_mm,{},kind{}\n",
+        points.angle.column(),
+        if points.have_deviations {
+            ",sd_deg"
+        } else {
+            ""
+        }
+    );
+    let row = |point: &MeasuredPoint| {
+        let side = if point.side == Side::Cb { "cb" } else { "cf" };
+        let kind = match point.kind {
+            Some(DetachmentKind::SlipOff) => "slip-off",
+            Some(DetachmentKind::PullOff) => "pull-off",
+            _ => "",
+        };
+        let sd = points.have_deviations.then(|| format!(",{}", point.sd_deg));
+        let sd = sd.unwrap_or_default();
+        format!(
+            "{side},{},{},{kind}{sd}\n",
+            point.distance_mm, point.angle_deg
+        )
+    };
+    let rows = points.points.iter().map(row);
+    std::iter::once(head).chain(rows).collect()
+}
+
+/// The page with another scene. Scripts end at `</script`, so that no `<` may stay in the JSON.
+fn page(start: &str) -> String {
+    let [begin, end] = START;
+    let (before, rest) = PAGE.split_once(begin).unwrap_or((PAGE, ""));
+    let after = rest.split_once(end).map_or(rest, |(_, after)| after);
+    let start = start.replace('<', "\\u003c");
+    [before, begin, &start, end, after].concat()
+}
+
+/// Opens a file in the browser of the desktop.
+fn open(path: &Path) {
+    let program = match std::env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    let mut command = Command::new(program);
+    command.arg(path).stdin(Stdio::null());
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    if let Err(error) = command.spawn() {
+        message(&format!("note: {program}: {error}; open the page yourself"));
+    }
+}

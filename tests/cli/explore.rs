@@ -1,0 +1,65 @@
+//! `whiskmap explore`.
+
+use super::traces::good;
+use super::{Place, SCENE};
+use serde_json::Value;
+
+/// Scene and points on a page, as its script reads them.
+fn start(page: &[u8]) -> Value {
+    let page = std::str::from_utf8(page).unwrap();
+    let (_, rest) = page.split_once("id=\"start\">").unwrap();
+    serde_json::from_str(rest.split("</script>").next().unwrap()).unwrap()
+}
+
+#[test]
+fn a_page_has_scene_and_points() {
+    let title = "title = '</script><script>alert(1)</script>'";
+    let scene = SCENE.lines().map(|line| match line.starts_with("title") {
+        true => format!("{title}\n"),
+        false => format!("{line}\n"),
+    });
+    let scene: String = scene.collect();
+    let place = Place::with(&scene);
+    let points = "side,distance_mm,push_angle_deg,kind\ncb,15,16.5,slip-off\ncf,10,-40.25,\n";
+    place.write("points.csv", points);
+    let words = ["explore", "scene.toml", "--data", "points.csv", "--no-open"];
+    let run = good(&place, &[&words[..], &["-o", "page.html"]].concat());
+    assert_eq!(run.out, "page.html\n");
+    let start = start(&place.bytes("page.html"));
+    assert_eq!(start["scene"]["text"], scene);
+    assert_eq!(start["points"]["csv"], points);
+}
+
+#[test]
+fn a_map_and_a_store_have_their_scene() {
+    let place = Place::with(SCENE);
+    for format in ["exr", "zarr"] {
+        place.map(&["scene.toml", "--no-png", "-o", ".", "--format", format]);
+        let map = format!("scene.{format}");
+        let page = good(&place, &["explore", &map, "-o", "-"]);
+        assert_eq!(start(page.out.as_bytes())["scene"]["text"], SCENE);
+    }
+}
+
+#[test]
+fn bad_inputs_are_refused() {
+    let place = Place::with(SCENE);
+    let far = "side,distance_mm,push_angle_deg\ncb,500,16\n";
+    place.write("far.csv", far);
+    for (words, why) in [
+        (&["explore", "none.toml"][..], "none.toml"),
+        (&["explore", "none.exr"], "none.exr"),
+        (
+            &["explore", "scene.toml", "--data", "far.csv"],
+            "distance_mm = 500: must be between",
+        ),
+        (
+            &["explore", "scene.toml", "-o", "scene.toml"],
+            "--output scene.toml",
+        ),
+    ] {
+        let run = place.run(words);
+        assert_ne!(run.code, Some(0), "{words:?}");
+        assert!(run.err.contains(why), "{words:?} {}", run.err);
+    }
+}

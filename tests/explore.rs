@@ -1,0 +1,69 @@
+//! The built page of `whiskmap explore`: it is not older than its sources. `tests/explore/run.sh` uses it in a browser.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Hash of what the page is made of, but for the library: FNV-1a of 64 bits over names and contents, as in `crates/web/assemble.py`.
+fn sources(root: &Path) -> String {
+    let folders = ["crates/web/page", "crates/web/src"].into_iter();
+    let below = folders.flat_map(|folder| fs::read_dir(root.join(folder)).unwrap());
+    let below = below.map(|entry| entry.unwrap().path());
+    let others = [
+        "crates/web/assemble.py",
+        "crates/web/build.sh",
+        "scenes/cone.toml",
+    ];
+    let others = others.map(|name| root.join(name));
+    let name = |path: PathBuf| {
+        let path = path.strip_prefix(root).unwrap().to_owned();
+        path.to_str().unwrap().replace('\\', "/")
+    };
+    let mut names: Vec<String> = below.chain(others).map(name).collect();
+    names.sort();
+    let bytes = names.iter().flat_map(|name| {
+        let content = fs::read(root.join(name)).unwrap();
+        [name.as_bytes(), b"\0", &content, b"\0"].concat()
+    });
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
+#[test]
+fn the_page_is_built_from_its_sources() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("outputs/explore.html")).unwrap();
+    let of = |name: &str| {
+        let tag = format!("=\"{name}\" content=\"");
+        let (_, rest) = page.split_once(&tag).unwrap();
+        rest.split('"').next().unwrap().to_owned()
+    };
+    let advice = "outputs/explore.html is stale: run crates/web/build.sh";
+    assert_eq!(of("whiskmap-sources"), sources(root), "{advice}");
+    let version = format!("whiskmap {}. Mechanics", env!("CARGO_PKG_VERSION"));
+    assert!(page.contains(&version), "{advice}");
+    let policy = of("Content-Security-Policy");
+    for rule in [
+        "default-src 'none'",
+        "connect-src 'none'",
+        "worker-src blob:",
+    ] {
+        assert!(policy.contains(rule), "{policy}");
+    }
+    assert!(!policy.contains("unsafe-inline"), "{policy}");
+    assert!(page.len() < 1_600_000, "{} bytes", page.len());
+}
+
+/// The size of the page's code that the project allows.
+#[test]
+fn the_page_stays_small() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/web/page");
+    let files = fs::read_dir(folder).unwrap();
+    let lines = files.map(|file| {
+        let text = fs::read_to_string(file.unwrap().path()).unwrap();
+        text.lines().count()
+    });
+    let lines: usize = lines.sum();
+    assert!(lines <= 1800, "{lines} lines");
+}

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Opens the page of `whiskmap explore` in Chromium, uses it, and compares its numbers with those of the program:
+#
+#     tests/explore/run.sh [WHISKMAP]
+#
+# Needs Chromium and Node.js; on Debian and Ubuntu it installs them if they are missing. Screenshots stay in target/explore.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+target="${CARGO_TARGET_DIR:-target}"
+whiskmap="$(realpath "${1:-$target/checked/whiskmap}")"
+folder="$(realpath -m "$target/explore")"
+mkdir -p "$folder"
+
+as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
+chromium="$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)"
+if [ -z "$chromium" ] || ! command -v npm >/dev/null; then
+    as_root apt-get update -q
+    as_root apt-get install -y -q --no-install-recommends chromium nodejs npm fonts-dejavu-core
+    chromium="$(command -v chromium)"
+fi
+if [ ! -d "$folder/node_modules/playwright-core" ]; then
+    npm install --silent --no-audit --no-fund --prefix "$folder" playwright-core@1.56
+fi
+cp tests/explore/*.mjs "$folder"
+rm -f "$folder"/*.png
+node "$folder/test.mjs" "$whiskmap" "$chromium" "$folder" "$PWD"
