@@ -11,6 +11,7 @@ pub use frames::CurvatureFrames;
 
 use crate::scene::{Pole, Whisker};
 use crate::trace::row;
+use glam::DVec2;
 use model::Model;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -99,7 +100,7 @@ pub fn forces(
     method: ForceMethod,
 ) -> Vec<FrameForce> {
     let distances = frames.iter().filter_map(|frame| frame.contact);
-    let distances = distances.map(|contact| contact.contact_mm[0].hypot(contact.contact_mm[1]));
+    let distances = distances.map(|contact| DVec2::from(contact.contact_mm).length());
     let nearest = distances.fold(whisker.length_mm, f64::min);
     let model = (method == ForceMethod::Model).then(|| Model::new(whisker, pole, nearest));
     let force = |frame: &CurvatureFrame| {
