@@ -23,7 +23,7 @@ row! {
         /// Value of the variable in the scene, in its unit.
         pub value: Option<f64>,
         /// Derivative of the push angle by the variable, in degrees per unit of the variable.
-        pub d_push: Option<f64>,
+        pub d_push_deg: Option<f64>,
         /// Change of the push angle if the variable grows by 1 %, to first order, in degrees.
         pub push_of_1_percent_deg: Option<f64>,
         /// Reason why there is no derivative; empty for a derivative.
@@ -66,7 +66,7 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
                         Variable::DistanceMm => Some(distance_mm),
                         _ => variable.value(scene),
                     };
-                    let d_push = by.ok().map(|by| by.push_angle_deg);
+                    let d_push_deg = by.ok().map(|by| by.push_angle_deg);
                     VariableEffect {
                         side,
                         distance_mm,
@@ -74,8 +74,8 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
                         push_angle_deg: own.end.push_angle_deg,
                         variable,
                         value,
-                        d_push,
-                        push_of_1_percent_deg: d_push
+                        d_push_deg,
+                        push_of_1_percent_deg: d_push_deg
                             .zip(value)
                             .map(|(by, value)| 0.01 * value * by),
                         reason: by.err(),

@@ -37,7 +37,7 @@ fn the_table_has_every_variable_of_the_scene() {
         let own = rows.iter().filter(|row| row[0] == side);
         let part = |row: &Vec<String>| {
             let [value, slope] =
-                ["value", "d_push"].map(|name| cell(header, row, name).parse::<f64>().unwrap());
+                ["value", "d_push_deg"].map(|name| cell(header, row, name).parse::<f64>().unwrap());
             match cell(header, row, "variable") {
                 "length_mm" | "vertex_mm" | "pole_radius_mm" | "distance_mm" => value * slope,
                 "parabola_per_mm" => -value * slope,
@@ -82,7 +82,7 @@ fn curves_and_branches_have_columns_of_derivatives() {
             .unwrap();
         assert_eq!(
             cell(&curve[0], line, "d_push_d_taper"),
-            cell(&all[0], own, "d_push")
+            cell(&all[0], own, "d_push_deg")
         );
     }
     let branch = good(
