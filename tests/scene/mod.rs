@@ -17,6 +17,7 @@ mod warnings;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use whiskmap::rod::Side;
 use whiskmap::scene::{Curvature, Parameter, Scene};
 
 /// A valid scene with every table and all axes but one, to be spoilt line by line. Lines are counted from 1.
@@ -162,10 +163,26 @@ fn a_parabola_of_zero_is_straight_but_lends_its_vertex_to_an_axis() {
     let own_zero = with_line(8, "parabola_per_mm = 0");
     let scene = parse(&own_zero).unwrap();
     let curvatures: Vec<_> = scene.whiskers().map(|own| own.whisker.curvature).collect();
-    assert_eq!(curvatures, [None, curvature(0.04, 2.5)]);
+    assert_eq!(curvatures, [curvature(0.0, 2.5), curvature(0.04, 2.5)]);
+    assert_eq!(
+        scene
+            .whiskers()
+            .next()
+            .unwrap()
+            .whisker
+            .rod(&scene.pole, Side::Cb)
+            .bend,
+        0.0
+    );
 
     let no_axis = own_zero.replace("curvature_per_mm = [0, 0.04]", "");
-    assert_eq!(parse(&no_axis).unwrap().whisker.curvature, None);
+    // The derivative by the curvature depends on the vertex.
+    assert_eq!(
+        parse(&no_axis).unwrap().whisker.curvature,
+        curvature(0.0, 2.5)
+    );
+    let at_base = no_axis.replace("vertex_mm = 2.5", "vertex_mm = 0");
+    assert_eq!(parse(&at_base).unwrap().whisker.curvature, None);
 }
 
 #[test]
@@ -179,11 +196,11 @@ fn whiskers_come_in_atlas_order_taper_first() {
         })
         .collect();
     assert!(scene.is_sweep());
-    let bent = curvature(0.04, 2.5);
+    let [straight, bent] = [0.0, 0.04].map(|per_mm| curvature(per_mm, 2.5));
     let expected = [
-        (0.0, 30.0, None),
-        (0.5, 15.0, None),
-        (1.0, 0.0, None),
+        (0.0, 30.0, straight),
+        (0.5, 15.0, straight),
+        (1.0, 0.0, straight),
         (0.0, 30.0, bent),
         (0.5, 15.0, bent),
         (1.0, 0.0, bent),
