@@ -12,7 +12,10 @@ import whiskmap as wm
 
 
 def for_jax(scene, names, side="cb", quantity="push_angle_deg"):
-    """Return `function(distance_mm, *values)` of JAX arrays in float64: `jit`, `vmap`, `grad` and `jvp` apply."""
+    """Return `function(distance_mm, *values)` of JAX arrays: `jit`, `vmap`, `grad` and `jvp` apply.
+
+    The values are float64, so ``jax.config.update("jax_enable_x64", True)`` must come first.
+    """
     import jax
     import jax.numpy as jnp
 

@@ -13,4 +13,4 @@ rm -rf "$target/wheels"
 "$environment/bin/pip" install -q --disable-pip-version-check --force-reinstall --no-deps "$target"/wheels/*.whl
 export MYPY_CACHE_DIR="$target/mypy" PYTHONDONTWRITEBYTECODE=1
 "$environment/bin/pytest" -q -p no:cacheprovider .
-../examples/run.sh
+CARGO_TARGET_DIR="$target" ../examples/run.sh
