@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the package and what its tests need into an environment below the target folder, and runs pytest and mypy.
+# Installs the package and what its tests need into an environment below the target folder, and runs pytest, mypy and the examples.
 set -euo pipefail
 cd "$(dirname "$0")"
 target="$(realpath -m "${CARGO_TARGET_DIR:-../../target}")"
@@ -13,3 +13,4 @@ rm -rf "$target/wheels"
 "$environment/bin/pip" install -q --disable-pip-version-check --force-reinstall --no-deps "$target"/wheels/*.whl
 export MYPY_CACHE_DIR="$target/mypy" PYTHONDONTWRITEBYTECODE=1
 "$environment/bin/pytest" -q -p no:cacheprovider .
+CARGO_TARGET_DIR="$target" ../examples/run.sh
