@@ -57,7 +57,7 @@ fn events_and_states_are_those_of_curves_and_branches() {
             };
             assert_eq!((event.event, event.side), (kind, side), "{name}");
             let ends = [
-                (event.push_angle_deg, end.push_angle_deg),
+                (event.push_angle_deg.unwrap(), end.push_angle_deg),
                 (event.force_un.unwrap(), end.force_un),
                 (event.energy_nj.unwrap(), end.energy_nj),
             ];
@@ -114,7 +114,17 @@ fn the_touches_of_a_straight_whisker_are_the_width_of_the_pole_apart() {
     let [_, cb, _, cf] = &found.events[..] else {
         panic!("{kinds:?}");
     };
-    assert!((cb.push_angle_deg + cf.push_angle_deg).abs() < 1e-9);
+    assert!((cb.push_angle_deg.unwrap() + cf.push_angle_deg.unwrap()).abs() < 1e-9);
+}
+
+/// In front of a point both touches are at the angle 0. A course that begins there pushes CB first.
+#[test]
+fn a_course_in_front_of_a_point_begins_on_cb() {
+    let point = scene("cone").with(Parameter::PoleRadiusMm, 0.0).unwrap();
+    let found = through(&point, DISTANCE, &[0.0, 20.0, -40.0]).unwrap();
+    use WhiskEventKind::{SlipOff, Touch};
+    let both = [Side::Cb, Side::Cf].map(|side| [(Touch, side), (SlipOff, side)]);
+    assert_eq!(kinds(&found.events), both.concat());
 }
 
 /// Without a detachment, a cycle returns to the same forces; with one, it does not.
@@ -153,17 +163,18 @@ fn the_work_of_the_base_is_the_lost_energy() {
             .filter(|event| event.event != WhiskEventKind::Touch);
         let mut work = 0.0;
         for end in detached {
-            let touch = end.angle_deg - end.push_angle_deg;
+            let push = end.push_angle_deg.unwrap();
+            let touch = end.angle_deg - push;
             let rest = (0..COUNT).map(|i| (i as f64 + 0.5) / COUNT as f64);
             let angles = rest
                 .clone()
-                .map(|u| touch + end.push_angle_deg * (1.0 - (1.0 - u).powi(2)));
+                .map(|u| touch + push * (1.0 - (1.0 - u).powi(2)));
             let angles: Vec<f64> = [touch].into_iter().chain(angles).collect();
             let found = through(&scene, distance, &angles).unwrap();
             let own: f64 = rest
                 .zip(&found.samples[1..])
                 .map(|(u, sample)| {
-                    let by_u = end.push_angle_deg.to_radians() * 2.0 * (1.0 - u);
+                    let by_u = push.to_radians() * 2.0 * (1.0 - u);
                     sample.base_moment_nnm.unwrap() * by_u / COUNT as f64
                 })
                 .sum();

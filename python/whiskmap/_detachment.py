@@ -132,6 +132,8 @@ def detachment(
     ... )
     """
     arrays: dict[str, NDArray[Any]] = {"distance_mm": real_array("distance_mm", distance_mm)}
+    if {"taper", "tip_radius_um"} <= parameters.keys():
+        raise TypeError("taper and tip_radius_um: give one of them, because taper is 1 - tip_radius_um / base_radius_um")
     for name, values in parameters.items():
         if _PARAMETERS.get(name) != name:
             raise TypeError(f"detachment() got an unexpected keyword argument {name!r}{_resembling(name)}")

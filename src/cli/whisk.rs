@@ -155,20 +155,21 @@ fn summarise(whisk: &Whisk) {
         WhiskEventKind::SlipOff,
         WhiskEventKind::PullOff,
     ]
-    .map(count);
+    .map(&count);
     let lost = digits(rounded(whisk.lost_nj(), 6));
     message(&format!(
         "touches {touches}, releases {releases}, slip-offs {slips}, pull-offs {pulls}; detachments lose {lost} nJ"
     ));
+    let spans = count(WhiskEventKind::Undecided);
     let undecided = whisk
         .samples
         .iter()
         .filter(|sample| sample.regime == WhiskRegime::Undecided);
     let undecided = undecided.count();
-    if undecided > 0 {
+    if undecided > 0 || spans > 0 {
         let all = whisk.samples.len();
         message(&format!(
-            "warning: {undecided} of {all} samples are undecided, for the reasons in the table"
+            "warning: {undecided} of {all} samples are undecided, for the reasons in the table; {spans} such spans begin"
         ));
     }
 }

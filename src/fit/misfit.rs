@@ -5,6 +5,9 @@ use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, Whisker};
 use crate::sensitivity::Variable;
 use rayon::prelude::*;
 
+/// Step of differences, in units of the parameters. Truncation and the rounding of curves take at most 5e-9 of a cone's central ones.
+const STEP: f64 = 1e-5;
+
 /// Misfit of points: their residuals as a function of parameters. Parameters are in units of [`Misfit::units`], so that all are of order
 /// 1.
 pub(super) struct Misfit<'a> {
@@ -75,9 +78,38 @@ impl<'a> Misfit<'a> {
         })
     }
 
-    /// Returns the derivatives of the residuals by the parameters over their units, `[parameter][point]`; `None` where the scene refuses the
-    /// parameters, or an end has no derivative.
+    /// Returns the derivatives of the residuals by the parameters over their units, `[parameter][point]`: exact ones, or differences where a
+    /// point has none, as at first touch. `None` where the scene refuses the parameters on both sides.
     pub fn jacobian(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
+        self.derivatives(parameters)
+            .or_else(|| self.differences(parameters))
+    }
+
+    /// Returns the columns of the Jacobian by differences; `None` where neither side has one.
+    fn differences(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let here = self.residuals(parameters)?;
+        let columns = (0..self.free.len()).into_par_iter().map(|i| {
+            let beside = |step: f64| {
+                let mut beside = parameters.to_vec();
+                beside[i] += step;
+                self.residuals(&beside)
+            };
+            let slope = |from: &[f64], to: &[f64], step: f64| {
+                let pairs = from.iter().zip(to);
+                pairs.map(|(from, to)| (to - from) / step).collect()
+            };
+            match (beside(-STEP), beside(STEP)) {
+                (Some(before), Some(after)) => Some(slope(&before, &after, 2.0 * STEP)),
+                (None, Some(after)) => Some(slope(&here, &after, STEP)),
+                (Some(before), None) => Some(slope(&before, &here, STEP)),
+                (None, None) => None,
+            }
+        });
+        columns.collect()
+    }
+
+    /// Returns the exact columns of the Jacobian; `None` where the scene refuses the parameters, or an end has no derivative.
+    fn derivatives(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
         let SweptWhisker { whisker, pole, .. } = self.scene(parameters).ok()?.first_whisker();
         let variables: Vec<Variable> = self.free.iter().map(|own| (*own).into()).collect();
         let mut columns = self.points.derivatives(&whisker, &pole, &variables)?;

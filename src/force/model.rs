@@ -151,12 +151,11 @@ impl Measured {
     ) -> Vec<DVec2> {
         let sign = self.change.signum();
         let step = SAMPLE_STEP / rod.softness(touch.x).max(1.0);
-        let mut before: Option<(DVec2, f64)> = None;
+        let mut before: [Option<(DVec2, f64)>; 2] = [None; 2];
         let mut starts = Vec::new();
-        let mut nearest = (touch, f64::INFINITY);
         for sample in 0..=SAMPLES {
             let w = sign * step * f64::from(sample);
-            let from = before.map_or(touch.x, |(point, _)| point.x);
+            let from = before[1].map_or(touch.x, |(point, _)| point.x);
             let start = DVec2::new(from, w / (from * from));
             let miss = |state: &ModelState| {
                 let DVec2 { x: tau, y: load } = state.point;
@@ -166,19 +165,22 @@ impl Measured {
                 break;
             };
             let miss = self.miss(&state).y;
-            if miss.abs() < nearest.1 {
-                nearest = (state.point, miss.abs());
+            let [last, middle] = before;
+            if let Some((point, other)) = middle {
+                if (other < 0.0) != (miss < 0.0) {
+                    let part = other / (other - miss);
+                    starts.push(point + part * (state.point - point));
+                } else if let Some((from, first)) = last
+                    && other.abs() <= first.abs().min(miss.abs())
+                {
+                    // Between these samples the curvature may turn back: two states or none.
+                    starts.extend([0.5 * (from + point), point, 0.5 * (point + state.point)]);
+                }
             }
-            if let Some((point, other)) = before
-                && (other < 0.0) != (miss < 0.0)
-            {
-                let part = other / (other - miss);
-                starts.push(point + part * (state.point - point));
-            }
-            before = Some((state.point, miss));
+            before = [middle, Some((state.point, miss))];
         }
-        // Beyond the last sample, or where the curvature turns back between two of them.
-        starts.push(nearest.0);
+        // The states end between the last sample and the next: look from there, and from the sample before.
+        starts.extend(before.into_iter().flatten().map(|(point, _)| point));
         starts
     }
 

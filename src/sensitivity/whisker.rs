@@ -74,7 +74,8 @@ impl WhiskerDerivative {
             | Parameter::Taper => !is_measured,
             Parameter::ProfileScale => is_measured,
             Parameter::TipExtensionMm => {
-                whisker.profile.as_ref().is_some_and(|rows| rows.len() > 2)
+                let rows = whisker.profile.as_deref().unwrap_or_default();
+                continues(rows)
             }
             Parameter::ParabolaPerMm | Parameter::VertexMm => whisker.euler_spiral.is_none(),
             Parameter::SpiralPerMm | Parameter::SpiralPerMm2 => whisker.curvature.is_none(),
@@ -169,5 +170,20 @@ impl WhiskerDerivative {
         let (taper, pieces) = RadiusProfile::derivative(&rows, stretch);
         self.rod.taper = taper;
         self.rod.pieces = Some(pieces);
+    }
+}
+
+/// Largest difference of the last radius from the cone through the two rows before, over the base radius, with which the last row is its
+/// continuation.
+const ON_CONE: f64 = 1e-12;
+
+/// Returns true if the last of the `rows` continues the cone through the two rows before, as a tip extension does.
+fn continues(rows: &[[f64; 2]]) -> bool {
+    match rows {
+        [.., [from, before], [end, last], [tip, radius]] => {
+            let slope = (last - before) / (end - from);
+            ((tip - end).mul_add(slope, *last) - radius).abs() <= ON_CONE
+        }
+        _ => false,
     }
 }

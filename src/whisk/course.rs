@@ -38,13 +38,23 @@ pub enum CourseError {
     /// A number is not finite or an angle is beyond a turn.
     #[error("{0}: must be a finite time, or an angle between -360 and 360 degrees")]
     Number(f64),
+    /// A sine has fewer than two samples in a period.
+    #[error(
+        "frequency {frequency_hz} Hz with {rate_hz} samples per second: must be at most half as large"
+    )]
+    Frequency {
+        /// Frequency of the sine, in Hz.
+        frequency_hz: f64,
+        /// Number of samples per second.
+        rate_hz: f64,
+    },
     /// A sine would have too many samples.
     #[error("{0:.0} samples: must be between 2 and {MOST_SAMPLES}")]
     Samples(f64),
 }
 
 /// Largest number of samples of a sine.
-const MOST_SAMPLES: f64 = 1e7;
+const MOST_SAMPLES: f64 = 1e6;
 
 impl AngleCourse {
     /// Creates a course through `angles_deg`, in degrees, at `times_s`, in s.
@@ -78,7 +88,7 @@ impl AngleCourse {
     /// Creates the course `amplitude sin(2 pi frequency t)` from 0 s on for `seconds`, with `rate` samples per second.
     ///
     /// # Errors
-    /// If a number is out of range, or there are fewer than 2 or more than 10,000,000 samples.
+    /// If a number is out of range, or there are fewer than 2 or more than 1,000,000 samples.
     pub fn sine(
         amplitude_deg: f64,
         frequency_hz: f64,
@@ -88,6 +98,12 @@ impl AngleCourse {
         let intervals = (seconds * rate_hz).round();
         if !(1.0..MOST_SAMPLES).contains(&intervals) {
             return Err(CourseError::Samples(intervals + 1.0));
+        }
+        if frequency_hz > 0.5 * rate_hz {
+            return Err(CourseError::Frequency {
+                frequency_hz,
+                rate_hz,
+            });
         }
         let times = (0..=intervals as u64).map(|i| i as f64 / rate_hz);
         let times: Vec<f64> = times.collect();

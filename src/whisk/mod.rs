@@ -89,6 +89,8 @@ pub enum WhiskEventKind {
     SlipOff,
     /// The whisker is pulled off with its tip at the pole.
     PullOff,
+    /// The model does not say where the whisker is from here on.
+    Undecided,
 }
 
 row! {
@@ -97,14 +99,14 @@ row! {
     pub struct WhiskEvent {
         /// Time of the event, in s, from the straight line between two samples.
         pub time_s: f64,
-        /// Kind of the event: touch, release, slip-off or pull-off.
+        /// Kind of the event: touch, release, slip-off, pull-off or undecided.
         pub event: WhiskEventKind,
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
         /// Angle of the base, in degrees.
         pub angle_deg: f64,
         /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
-        pub push_angle_deg: f64,
+        pub push_angle_deg: Option<f64>,
         /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: Option<f64>,
         /// Moment of the pole on the base, in nN m: positive turns it to the left.
@@ -305,13 +307,14 @@ impl Found<'_> {
 
     /// Returns the events at the `passages`, given with their times.
     fn events(&self, passages: &[(f64, Passage)]) -> Vec<WhiskEvent> {
-        let contacts = passages
-            .iter()
-            .map(|(_, passage)| Some((passage.side, passage.push)));
+        let contacts = passages.iter().map(|(_, passage)| {
+            Some((passage.side, passage.push)).filter(|(_, push)| !push.is_nan())
+        });
         let readings = self.readings(&contacts.collect::<Vec<_>>());
         let events = passages.iter().zip(readings);
         let events = events.map(|((time_s, passage), reading)| {
             let end = self.of(passage.side).map(SideStates::kind);
+            let push = Some(passage.push).filter(|push| !push.is_nan());
             WhiskEvent {
                 time_s: *time_s,
                 event: passage.event.unwrap_or(match end {
@@ -320,7 +323,7 @@ impl Found<'_> {
                 }),
                 side: passage.side,
                 angle_deg: passage.angle.to_degrees(),
-                push_angle_deg: signed_deg(passage.side, passage.push),
+                push_angle_deg: push.map(|push| signed_deg(passage.side, push)),
                 force_un: reading.map(|state| state.force_un),
                 base_moment_nnm: reading.map(|state| state.base_moment_nnm),
                 energy_nj: reading.map(|state| state.energy_nj),

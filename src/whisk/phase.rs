@@ -45,7 +45,12 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON * TAU;
 impl Turns {
     /// Returns the phase in which a course begins at `angle`, in radians; `None` in contact.
     pub fn begin(&self, angle: f64) -> Option<Phase> {
-        let turn = ((angle + ROUNDING - self.cf_touch) / TAU).floor();
+        // At a touch on CB the whisker is still on that side, in front of a point as well.
+        let cb_touch = (angle / TAU).round();
+        let turn = match (angle - TAU * cb_touch).abs() <= ROUNDING {
+            true => cb_touch - 1.0,
+            false => ((angle + ROUNDING - self.cf_touch) / TAU).floor(),
+        };
         let is_free = angle <= TAU * (turn + 1.0) + ROUNDING;
         // Courses have at most a turn to each side.
         is_free.then_some(Phase::Free { turn: turn as i32 })
@@ -71,6 +76,18 @@ impl Turns {
             }
             let before = std::mem::replace(phase, next);
             for (state, begins) in [(before, false), (next, true)] {
+                if let (Phase::Undecided { reason, .. }, true) = (state, begins) {
+                    event(Passage {
+                        angle,
+                        event: Some(WhiskEventKind::Undecided),
+                        side: match reason {
+                            Undecided::TipEdge => Side::Cf,
+                            _ if grows => Side::Cf,
+                            _ => Side::Cb,
+                        },
+                        push: f64::NAN,
+                    });
+                }
                 let Phase::Contact { side, turn } = state else {
                     continue;
                 };
@@ -238,6 +255,13 @@ mod tests {
         assert_eq!(TURNS.begin(0.05), None);
         assert_eq!(TURNS.begin(0.0), Some(Phase::Free { turn: -1 }));
         assert_eq!(TURNS.begin(0.1), Some(Phase::Free { turn: 0 }));
+        // In front of a point both touches are at the same angle, and a push to CB comes first.
+        let point = Turns {
+            cf_touch: 0.0,
+            ..TURNS
+        };
+        assert_eq!(point.begin(0.0), Some(Phase::Free { turn: -1 }));
+        assert_eq!(point.begin(0.1), Some(Phase::Free { turn: 0 }));
     }
 
     /// Before a thick pole, a short push ends where the resting whisker would cross the pole.
@@ -249,7 +273,9 @@ mod tests {
             cf_end: Some(0.1),
         };
         let mut phase = Phase::Free { turn: -1 };
-        thick.pass(&mut phase, -0.1, 0.35, |_| {});
+        let mut last = None;
+        thick.pass(&mut phase, -0.1, 0.35, |passage| last = passage.event);
+        assert_eq!(last, Some(WhiskEventKind::Undecided));
         let reason = Undecided::OnThePole;
         assert_eq!(phase, Phase::Undecided { turn: 0, reason });
         thick.pass(&mut phase, 0.35, 0.45, |_| {});

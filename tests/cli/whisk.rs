@@ -77,7 +77,11 @@ fn wrong_courses_are_refused() {
         ("400,10,1", "must be between -360deg and 360deg, and not 0"),
         ("40,-1,1", "frequency in Hz -1: must be a positive number"),
         ("40,1,inf", "duration in s inf: must be a positive number"),
-        ("40,1,1e9", "samples: must be between 2 and 10000000"),
+        ("40,1,1e9", "samples: must be between 2 and 1000000"),
+        (
+            "40,501,1",
+            "frequency 501 Hz with 1000 samples per second: must be at most half as large",
+        ),
     ] {
         whisk(&place, &["--sine", sine]).assert_refused(&["--sine", said]);
     }

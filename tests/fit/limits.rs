@@ -239,3 +239,22 @@ fn a_local_minimum_at_a_limit_is_left() {
         "{values:?}"
     );
 }
+
+/// A point whose push ends at first touch has no derivative. The fit goes on with differences.
+#[test]
+fn a_point_at_first_touch_does_not_end_a_fit() {
+    let straight = cone().with_parameters(&[(ParabolaPerMm, 0.0), (PoleRadiusMm, 0.0)]);
+    let straight = straight.unwrap();
+    let truth = straight.with(TipRadiusUm, 2.0).unwrap();
+    let mut points = detachments(&truth, MeasuredAngle::Push, &DISTANCES_MM);
+    let at_reach = "side,distance_mm,push_angle_deg\ncb,20,0\n";
+    points
+        .points
+        .extend(MeasuredPoints::parse(at_reach, "reach").unwrap().points);
+    let found = fit(&straight, &points, &[TipRadiusUm]).unwrap();
+    assert!(
+        (found.estimates[0].value - 2.0).abs() < 1e-6,
+        "{:?}",
+        found.estimates
+    );
+}

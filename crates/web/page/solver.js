@@ -23,14 +23,16 @@ export class Solver {
     }
 
     start() {
-        this.worker = new Worker(this.url);
+        const worker = new Worker(this.url);
+        this.worker = worker;
         this.isReady = false;
-        this.worker.addEventListener('message', ({ data }) => this.receive(data));
-        this.worker.addEventListener('error', (event) => {
+        // A message of an ended worker may still arrive.
+        worker.addEventListener('message', ({ data }) => worker === this.worker && this.receive(data));
+        worker.addEventListener('error', (event) => {
             event.preventDefault();
-            this.fail(new Error('the solver has failed; the last valid result stays'));
+            if (worker === this.worker) this.broke();
         });
-        this.worker.postMessage({ module: this.module });
+        worker.postMessage({ module: this.module });
     }
 
     // Computes the task of a request. The promise rejects with the message of the solver, or with `Superseded`.
@@ -58,13 +60,25 @@ export class Solver {
     receive({ ready, id, answer, numbers, ms }) {
         if (ready) {
             this.isReady = true;
-        } else {
+        } else if (id === this.running?.id) {
             const { resolve, reject } = this.running;
             this.running = null;
             if (answer.error) reject(new Error(answer.error));
             else resolve({ ...answer, numbers, ms, id });
         }
         this.next();
+    }
+
+    // Starts a new worker after an error of this one, unless it could not even start.
+    broke() {
+        if (this.isReady) {
+            this.fail(new Error('the solver has failed; the last valid result stays'));
+            return;
+        }
+        const error = new Error('the solver cannot start in this browser');
+        for (const { reject } of this.waiting.values()) reject(error);
+        this.waiting.clear();
+        this.onBusy?.(null);
     }
 
     // Ends the running request with an error, and starts a new worker.

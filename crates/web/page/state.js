@@ -47,8 +47,22 @@ export const request = (task, { text, origin, values } = state.whisker) => ({ te
 
 const STORED = ['whisker', 'pinned', 'view', 'channel', 'scale', 'range', 'pointer', 'points'];
 
+// Most bytes of the state in a link. A short link can unpack to a thousand times its length.
+const MOST_BYTES = 4 << 20;
+
 async function through(stream, bytes) {
-    return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+    const reader = new Blob([bytes]).stream().pipeThrough(stream).getReader();
+    const parts = [];
+    let size = 0;
+    for (let part = await reader.read(); !part.done; part = await reader.read()) {
+        size += part.value.length;
+        if (size > MOST_BYTES) {
+            await reader.cancel();
+            throw new RangeError('the link holds more than 4 MiB');
+        }
+        parts.push(part.value);
+    }
+    return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
 
 // The state as the part of a link after `#`.
