@@ -6,7 +6,7 @@ target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
 environment="$target/site-environment"
 [ -x "$environment/bin/python" ] || python3 -m venv "$environment"
 "$environment/bin/pip" install -q --disable-pip-version-check \
-    jupytext 'mkdocs>=1.6,<2' mkdocs-jupyter 'mkdocs-material>=9,<10' 'mkdocstrings[python]>=1,<2'
+    jupytext 'mkdocs>=1.6,<2' mkdocs-jupyter 'mkdocs-material>=9,<10' 'mkdocstrings[python]>=1,<2' ruff
 
 # The pages in the folders of the repository, so that links between them and to pictures work as they do there.
 export WHISKMAP_SITE_PAGES="$target/site-pages" WHISKMAP_SITE="$target/site"
