@@ -29,6 +29,11 @@ fi
 WHISKMAP_SITE_RUST=https://docs.rs/whiskmap
 [ ! -d "$target/doc/whiskmap" ] || WHISKMAP_SITE_RUST=rust/whiskmap/index.html
 export WHISKMAP_SITE_RUST
-NO_MKDOCS_2_WARNING=1 PYTHONDONTWRITEBYTECODE=1 "$environment/bin/mkdocs" build --quiet --config-file docs/site/mkdocs.yml
+# With `--quiet`, warnings would not count as errors.
+export NO_MKDOCS_2_WARNING=1 PYTHONDONTWRITEBYTECODE=1
+if ! log="$("$environment/bin/mkdocs" build --strict --config-file docs/site/mkdocs.yml 2>&1)"; then
+    echo "$log" >&2
+    exit 1
+fi
 [ ! -d "$target/doc/whiskmap" ] || cp -r "$target/doc" "$WHISKMAP_SITE/rust"
 "$environment/bin/python" docs/site/check_links.py "$WHISKMAP_SITE"
