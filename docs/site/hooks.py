@@ -1,8 +1,12 @@
-"""Adds to the navigation what `mkdocs.yml` cannot name: notebooks, further pages of `docs/`, and the Rust library."""
+"""Adds to the navigation what `mkdocs.yml` cannot name: notebooks, further pages of `docs/`, and the Rust library.
+Fails if the page of Python functions lacks a public name."""
 
+import ast
 import os
+import re
 from pathlib import Path
 
+from mkdocs.exceptions import PluginError
 from mkdocs.structure.nav import Link
 
 
@@ -25,3 +29,16 @@ def on_nav(nav, config, files):
     link.parent = reference
     reference.children.append(link)
     return nav
+
+
+def on_page_content(html, page, config, files):
+    """Compare the headings of the page of Python functions with the names that the package exports."""
+    if page.file.src_uri == "docs/site/api.md":
+        root = Path(config.config_file_path).parents[2]
+        package = ast.parse((root / "python/whiskmap/__init__.py").read_text())
+        exports = {node.targets[0].id: node.value for node in package.body if isinstance(node, ast.Assign)}
+        names = [*ast.literal_eval(exports["__all__"]), *ast.literal_eval(exports["_MODULES"])]
+        missing = [name for name in names if not re.search(rf'id="whiskmap\.(_\w+\.)?{name}[".]', html)]
+        if missing:
+            raise PluginError(f"docs/site/api.md: no section describes {', '.join(missing)}")
+    return html
