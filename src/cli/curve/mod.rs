@@ -269,7 +269,7 @@ fn compare(
         };
         let mut plot = scene_curve(scene, Resolution::FINE, x);
         plot.bands = bands(&spread, CurveColumn::PushAngleDeg.percentiles());
-        plot.lines.extend(error_bars(rows));
+        plot.bars = error_bars(rows);
         plot.dots = measured(rows);
         plot
     })?;

@@ -197,6 +197,8 @@ pub struct Plot {
     pub lines: Vec<Line>,
     /// Dots of the plot, drawn over its lines.
     pub dots: Vec<Dot>,
+    /// Lines drawn over the dots with a white rim, such as error bars; they have no legend.
+    pub bars: Vec<Line>,
     /// Discs of the plot, drawn over its bands.
     pub discs: Vec<Disc>,
     /// Notes of the plot, drawn last.
@@ -238,7 +240,12 @@ impl Plot {
         for point in plot.bands.iter_mut().flat_map(|band| &mut band.points) {
             *point = point.map(logarithm);
         }
-        for point in plot.lines.iter_mut().flat_map(|line| &mut line.points) {
+        for point in plot
+            .lines
+            .iter_mut()
+            .chain(&mut plot.bars)
+            .flat_map(|line| &mut line.points)
+        {
             *point = logarithm(*point);
         }
         for dot in &mut plot.dots {

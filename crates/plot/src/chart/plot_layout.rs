@@ -99,6 +99,12 @@ impl<'a> PlotLayout<'a> {
                 false => picture.circle(at, DOT, dot.ink.rgb(), Some(Pen::solid(RING, WHITE))),
             }
         }
+        for bar in &plot.bars {
+            let points = bar.points.iter().filter(|point| window.holds(**point));
+            let places: Vec<_> = points.map(|point| viewport.place(*point)).collect();
+            picture.polyline(&places, Pen::solid(LINE + RING, WHITE));
+            picture.polyline(&places, pen(bar));
+        }
         if let Some(inset) = &plot.inset {
             viewport.inset(picture, plot, inset);
         }

@@ -136,7 +136,8 @@ pub fn drawable_disc(disc: &Disc) -> bool {
 
 /// The smallest and the largest drawable number along an axis; 0 and 1 if there is none.
 fn extent(plot: &Plot, axis: usize) -> [f64; 2] {
-    let lines = plot.lines.iter().flat_map(|line| &line.points).copied();
+    let lines = plot.lines.iter().chain(&plot.bars);
+    let lines = lines.flat_map(|line| &line.points).copied();
     let bands = plot.bands.iter().flat_map(|band| &band.points);
     let bands = bands.copied().filter(|point| drawable_span(*point));
     let edges = bands.flatten();

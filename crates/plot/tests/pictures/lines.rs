@@ -2,7 +2,7 @@
 
 use crate::drawn::{Pixels, frame, line, polylines, single, svg};
 use crate::{BLACK, BLANK, BLUE, WHITE, arc, both};
-use whiskmap_plot::{Disc, Dot, Ink, PictureSize, Plot, Stroke};
+use whiskmap_plot::{Disc, Dot, Ink, Line, PictureSize, Plot, Stroke};
 
 #[test]
 fn a_line_is_where_its_numbers_are() {
@@ -233,4 +233,42 @@ fn an_open_dot_is_a_ring_and_so_it_is_in_the_legend() {
             assert_eq!(picture.at([x + away, y]), BLUE);
         }
     }
+}
+
+/// A bar shorter than its dot is seen on it: drawn after the dot, with a white rim.
+#[test]
+fn bars_are_drawn_over_dots() {
+    let bar = |half: f64| {
+        line(
+            &[[5.0 - half, 0.5], [5.0 + half, 0.5]],
+            Ink::Blue,
+            Stroke::Solid,
+        )
+    };
+    let chart = |bars: Vec<Line>| {
+        single(Plot {
+            lines: vec![line(&[[0.0, 0.0], [10.0, 1.0]], Ink::Grey, Stroke::Solid)],
+            dots: vec![Dot {
+                at: [5.0, 0.5],
+                ink: Ink::Blue,
+                ..Dot::default()
+            }],
+            bars,
+            ..Plot::default()
+        })
+    };
+    let after_dot = |bars| {
+        let svg = svg(&chart(bars).picture(PictureSize::Natural).unwrap());
+        svg[svg.find("<circle").unwrap()..]
+            .matches("<polyline")
+            .count()
+    };
+    assert_eq!(
+        after_dot(vec![bar(0.02)]),
+        after_dot(Vec::new()) + 2,
+        "the rim and the bar"
+    );
+    // A bar beyond all other contents widens the axis.
+    let pixels = |bars| Pixels::of(&chart(bars).picture(PictureSize::Natural).unwrap()).pixels;
+    assert!(pixels(vec![bar(20.0)]) != pixels(Vec::new()));
 }
