@@ -105,6 +105,23 @@ fn first_order_is_the_sum_of_squares() {
     }
 }
 
+/// With a taper that varies, the radius at the tip follows that at the base, and no angle depends on the size of a cone.
+#[test]
+fn a_base_that_varies_with_the_taper_moves_no_angle() {
+    let foretold = |uncertainty: &str| -> Vec<f64> {
+        let rows = spreads(&scene(uncertainty), 2, 1);
+        rows.iter()
+            .filter_map(|row| row.sd_first_order_deg)
+            .collect()
+    };
+    let both = foretold("base_radius_um = 5\ntaper = 0.001");
+    let alone = foretold("taper = 0.001");
+    assert!(!both.is_empty() && both.len() == alone.len());
+    for (both, alone) in both.iter().zip(alone) {
+        assert!((both / alone - 1.0).abs() < 1e-9, "{both} {alone}");
+    }
+}
+
 #[test]
 fn every_row_of_a_profile_varies() {
     let measured = include_str!("../scenes/measured.toml")

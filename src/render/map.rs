@@ -1,10 +1,11 @@
 //! Pictures of stored maps: the regimes, or any channel.
 
 use super::boundary::stretches;
+use super::marks::{OFF, has_marks, is_mark};
 use super::{MapOptions, RenderError, labels, row};
-use crate::classify::{Regime, Status};
+use crate::classify::Regime;
 use crate::scene::SweepAxis;
-use crate::store::{ChannelValues, MapSlice, NOT_COMPUTED, STATE_CHANNELS};
+use crate::store::{ChannelValues, MapSlice, NOT_COMPUTED};
 use std::collections::BTreeMap;
 use whiskmap_plot::{
     CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, Rgb,
@@ -153,17 +154,4 @@ fn quantities(
         LegendEntry::swatch(fill, OFF)
     });
     Ok((Shading::Quantities(scale), marks.into_iter().collect()))
-}
-
-/// Name in legends of states whose friction is not the assumed one.
-pub const OFF: &str = "off: friction is not as assumed";
-
-/// Returns true if the states in `channel` include some whose friction is not the assumed one.
-pub fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
-    let is_marked = STATE_CHANNELS.contains(&channel) && map.channels().contains(&"status");
-    Ok(is_marked && map.codes("status")?.into_iter().any(is_mark))
-}
-
-pub fn is_mark(code: u32) -> bool {
-    Status::MARKS.iter().any(|status| status.code() == code)
 }

@@ -7,6 +7,7 @@ mod boundary;
 mod courses;
 mod labels;
 mod map;
+mod marks;
 mod options;
 mod plots;
 mod row;

@@ -1,6 +1,6 @@
 //! Line charts of maps with one row: a channel over the push angle.
 
-use super::map::{OFF, has_marks, is_mark};
+use super::marks::{OFF, has_marks, is_mark};
 use super::{MapOptions, RenderError, labels};
 use crate::store::{ChannelValues, MapSlice};
 use whiskmap_plot::{Chart, Ink, Line, Picture, Plot, Stroke};

@@ -14,7 +14,10 @@ pub(super) fn deviations_deg(
     resolution: Resolution,
     side: Side,
 ) -> Vec<Option<f64>> {
-    let parts: Vec<Vec<(Variable, f64)>> = varying.iter().map(|one| one.variables(scene)).collect();
+    let parts: Vec<Vec<(Variable, f64)>> = varying
+        .iter()
+        .map(|one| one.variables(scene, varying))
+        .collect();
     let variables: Vec<Variable> = parts
         .iter()
         .flatten()

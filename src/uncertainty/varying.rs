@@ -46,8 +46,18 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
 impl Varying {
     /// Returns the variables of the whisker that the number of `scene` changes, each with its change per unit of the number. The cone beyond
     /// the last measured row follows the last two rows.
-    pub(super) fn variables(&self, scene: &Scene) -> Vec<(Variable, f64)> {
+    /// With a taper in `all`, the radius at the tip follows that at the base.
+    pub(super) fn variables(&self, scene: &Scene, all: &[Self]) -> Vec<(Variable, f64)> {
+        let is_taper =
+            |one: &Self| matches!(one.source, VaryingSource::Parameter(Parameter::Taper));
         let row = match self.source {
+            VaryingSource::Parameter(Parameter::BaseRadiusUm) if all.iter().any(is_taper) => {
+                let tip = 1.0 - scene.whisker.taper();
+                return vec![
+                    (Parameter::BaseRadiusUm.into(), 1.0),
+                    (Parameter::TipRadiusUm.into(), tip),
+                ];
+            }
             VaryingSource::Parameter(parameter) => return vec![(parameter.into(), 1.0)],
             VaryingSource::Row(row) => row,
         };

@@ -240,7 +240,7 @@ fn a_local_minimum_at_a_limit_is_left() {
     );
 }
 
-/// A point whose push ends at first touch has no derivative. The fit goes on with differences.
+/// A fit takes differences where the push of a point ends at first touch, because such a point has no derivative.
 #[test]
 fn a_point_at_first_touch_does_not_end_a_fit() {
     let straight = cone().with_parameters(&[(ParabolaPerMm, 0.0), (PoleRadiusMm, 0.0)]);

@@ -8,6 +8,7 @@
     reason = "exported functions need names; no function here reads or writes through a pointer"
 )]
 
+mod answer;
 mod map;
 mod points;
 mod request;

@@ -1,6 +1,6 @@
 //! Maps of one whisker.
 
-use crate::request::{Answer, MOST};
+use crate::answer::{Answer, MOST};
 use serde::Deserialize;
 use serde_json::json;
 use whiskmap::engine::{Engine, EngineDescription, Spectral};

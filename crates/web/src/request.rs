@@ -1,8 +1,9 @@
 //! Requests of the page, and their answers.
 
+use crate::answer::{Answer, MOST};
 use crate::{map, points, scene, traces};
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::json;
 use whiskmap::scene::{Parameter, Scene};
 
 /// Request: a scene, values that replace those in it, and a task.
@@ -52,26 +53,6 @@ pub enum Task {
     },
     /// Measured detachments beside those of the scene, after a fit of the free parameters if there are any.
     Points(points::PointsTask),
-}
-
-/// Largest number of points of a branch or a curve, and of cells of a map along one axis.
-pub const MOST: usize = 1024;
-
-/// Answer to a request.
-pub struct Answer {
-    /// Result or error, as JSON.
-    pub text: Value,
-    /// Numbers of a map, `[array][distance][push_angle]`; empty for other tasks.
-    pub numbers: Vec<f32>,
-}
-
-impl From<Value> for Answer {
-    fn from(text: Value) -> Self {
-        Self {
-            text,
-            numbers: Vec::new(),
-        }
-    }
 }
 
 /// Answers a request in JSON.
