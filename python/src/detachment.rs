@@ -5,7 +5,7 @@
 use crate::arguments::{parameter, refused};
 use crate::errors::{SceneError, of_scene};
 use crate::scene::CheckedScene;
-use crate::threads;
+use crate::threads::{self, ThreadCount};
 use crate::traces::single;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -99,7 +99,7 @@ pub fn detachment<'py>(
     distance_mm: PyReadonlyArray1<'py, f64>,
     is_cb: PyReadonlyArray1<'py, bool>,
     variables: Vec<String>,
-    threads: Option<usize>,
+    threads: Option<ThreadCount>,
 ) -> PyResult<DetachmentArrays<'py>> {
     let mut base = match &scene {
         Some(scene) => {

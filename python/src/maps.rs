@@ -3,7 +3,7 @@
 use crate::arguments;
 use crate::errors::{of_front, of_plan};
 use crate::scene::CheckedScene;
-use crate::threads;
+use crate::threads::{self, ThreadCount};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ pub fn map<'py>(
     engine: &str,
     tolerance_deg: Option<f64>,
     channels: Option<Vec<String>>,
-    threads: Option<usize>,
+    threads: Option<ThreadCount>,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<MapArrays<'py>> {
     let scene = &scene.0;

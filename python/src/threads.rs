@@ -1,6 +1,6 @@
 //! Threads of computations, which run without the interpreter's lock and end on Ctrl-C.
 
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
@@ -29,15 +29,28 @@ struct ThreadPools {
 
 static POOLS: Mutex<Option<ThreadPools>> = Mutex::new(None);
 
-fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
-    let threads = match threads {
-        None => 0,
-        Some(threads) if (1..=MOST_THREADS).contains(&threads) => threads,
-        Some(threads) => {
-            let must = format!("threads = {threads}: must be between 1 and {MOST_THREADS}");
-            return Err(PyValueError::new_err(must));
+/// Argument `threads` of a function: at least 1.
+#[derive(Clone, Copy, Debug)]
+pub struct ThreadCount(usize);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for ThreadCount {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match value.extract::<usize>() {
+            Ok(count) if (1..=MOST_THREADS).contains(&count) => Ok(Self(count)),
+            Err(why) if why.is_instance_of::<PyTypeError>(value.py()) => Err(why),
+            _ => {
+                let value = &*value;
+                let must = format!("threads = {value}: must be between 1 and {MOST_THREADS}");
+                Err(PyValueError::new_err(must))
+            }
         }
-    };
+    }
+}
+
+fn pool(threads: Option<ThreadCount>) -> PyResult<Arc<ThreadPool>> {
+    let threads = threads.map_or(0, |threads| threads.0);
     let mut all = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = process::id();
     if all.as_ref().is_none_or(|own| own.process != process) {
@@ -73,7 +86,7 @@ fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
 /// If the pool cannot be created, or the exception of a signal handler, such as `KeyboardInterrupt`, or of `on_tick`.
 pub fn run<R: Send>(
     py: Python<'_>,
-    threads: Option<usize>,
+    threads: Option<ThreadCount>,
     mut on_tick: impl FnMut(Python<'_>) -> PyResult<()>,
     job: impl FnOnce(&Arc<AtomicBool>) -> R + Send,
 ) -> PyResult<R> {

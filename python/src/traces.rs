@@ -4,7 +4,7 @@ use crate::arguments;
 use crate::columns::{Column, columns};
 use crate::errors::{of_front, of_scene, of_state};
 use crate::scene::CheckedScene;
-use crate::threads;
+use crate::threads::{self, ThreadCount};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub fn curve<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     tolerance_deg: Option<f64>,
-    threads: Option<usize>,
+    threads: Option<ThreadCount>,
 ) -> PyResult<Vec<Column<'py>>> {
     let mut options = Options::default();
     options.tolerance_deg = arguments::tolerance(tolerance_deg)?;

@@ -33,9 +33,11 @@ def numbers(name: str, values: Any) -> list[float]:
 
 
 def real_array(name: str, values: ArrayLike) -> NDArray[Any]:
-    """Return an array of float64; texts, truths, complex numbers and objects are refused by the name of their argument."""
+    """Return an array of float64; texts, truths, complex numbers, objects and masked values are refused by the name of their argument."""
     import numpy as np
 
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        raise ValueError(f"{name}: has {np.ma.count_masked(values)} masked values; leave them out")
     try:
         array = np.asarray(values)
     except ValueError as why:

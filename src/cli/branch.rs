@@ -132,23 +132,19 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
     for &distance in distances {
         for side in sides {
             let (pole, count) = (&scene.pole, args.points as usize);
-            let by = variables.as_deref().unwrap_or_default();
-            let followed = branch(&whisker, pole, *side, distance, count, by);
+            let followed = branch(&whisker, pole, *side, distance, count, &variables);
             states.extend(followed.map_err(|why| refuse(distance, why))?);
         }
     }
     let points: Vec<BranchPoint> = states.iter().map(|own| own.point).collect();
-    match &variables {
-        None => outputs.rows(&points)?,
-        Some(variables) => outputs.rows(states.into_iter().map(|own| {
-            let columns = DerivativeColumns {
-                variables,
-                by: own.by,
-                first: 1,
-            };
-            (own.point, columns)
-        }))?,
-    }
+    outputs.rows(states.into_iter().map(|own| {
+        let columns = DerivativeColumns {
+            variables: &variables,
+            by: own.by,
+            first: 1,
+        };
+        (own.point, columns)
+    }))?;
     outputs.finish(title(&scene, distances), || plot(&scene, &points, args))
 }
 

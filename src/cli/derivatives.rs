@@ -31,22 +31,18 @@ pub struct DerivativeColumns<'a> {
 }
 
 impl DerivativeArgs {
-    /// Returns the variables of the columns, those of detachments and `more` by default. `None` without the option.
-    pub fn variables(
-        &self,
-        scene: &Scene,
-        more: &[Variable],
-    ) -> Result<Option<Vec<Variable>>, Failure> {
+    /// Returns the variables of the columns, those of detachments and `more` by default; none without the option.
+    pub fn variables(&self, scene: &Scene, more: &[Variable]) -> Result<Vec<Variable>, Failure> {
         let Some(named) = &self.derivatives else {
-            return Ok(None);
+            return Ok(Vec::new());
         };
         let mut all = Variable::of_detachments(scene);
         all.extend_from_slice(more);
         if named.is_empty() {
-            return Ok(Some(all));
+            return Ok(all);
         }
         match named.iter().find(|own| !all.contains(own)) {
-            None => Ok(Some(named.clone())),
+            None => Ok(named.clone()),
             Some(other) => {
                 let all: Vec<String> = all.iter().map(ToString::to_string).collect();
                 let all = all.join(", ");

@@ -39,7 +39,7 @@ use whisker::WhiskerDerivative;
 /// A detachment with its derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DetachmentDerivatives {
-    /// End of the push, without the largest strain.
+    /// End of the push. [`detachments`] leaves out the largest strain.
     pub end: Detachment,
     /// Derivatives of the end by each variable, `[variable]`, or the reason why there are none.
     pub by: Vec<Result<Derivatives, NoDerivative>>,
@@ -86,17 +86,12 @@ pub fn detachments(
     distances_mm: &[f64],
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
-    detachments_at(
-        Resolution::FINE,
-        whisker,
-        pole,
-        side,
-        distances_mm,
-        variables,
-    )
+    let pushed = (whisker, pole, side);
+    let ends = ends(Resolution::FINE, pushed, distances_mm, false);
+    of_ends(Resolution::FINE, pushed, ends, variables)
 }
 
-/// Computes detachments with derivatives as [`detachments`] does, at another resolution.
+/// Computes detachments with derivatives as [`detachments`] does, at another resolution and with the largest strain.
 #[must_use]
 pub fn detachments_at(
     resolution: Resolution,
@@ -106,7 +101,18 @@ pub fn detachments_at(
     distances_mm: &[f64],
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
-    let ends = ends(resolution, (whisker, pole, side), distances_mm, false);
+    let pushed = (whisker, pole, side);
+    let ends = ends(resolution, pushed, distances_mm, true);
+    of_ends(resolution, pushed, ends, variables)
+}
+
+/// Differentiates the `ends` of pushes of one whisker by `variables`, `[distance]`.
+fn of_ends(
+    resolution: Resolution,
+    (whisker, pole, side): (&Whisker, &Pole, Side),
+    ends: Vec<DetachmentEnd>,
+    variables: &[Variable],
+) -> Vec<DetachmentDerivatives> {
     let differentiated = Differentiated::new(resolution, whisker, pole, side, variables);
     let of_end = |DetachmentEnd { end, crossing }| {
         let by = match crossing {
@@ -205,13 +211,11 @@ impl<'a> Differentiated<'a> {
         let of_variable =
             |variable: &Variable| WhiskerDerivative::new(whisker, pole, side, *variable);
         let mut by: Vec<_> = variables.iter().map(of_variable).collect();
-        // A straight whisker can become a spiral or a parabola, but not both at once.
+        // At a straight whisker, the parabola `y = a x^2` has the curvature `2 a` of a spiral everywhere.
         if by.iter().flatten().any(|by| by.rod.spiral != [0.0; 2]) {
             rod.spiral.get_or_insert([0.0; 2]);
-            for own in &mut by {
-                if own.as_ref().is_ok_and(|by| by.rod.bend != 0.0) {
-                    *own = Err(NoDerivative::NotGiven);
-                }
+            for by in by.iter_mut().flatten() {
+                by.rod.spiral[0] += 2.0 * std::mem::take(&mut by.rod.bend);
             }
         }
         let given = || by.iter().flatten().map(|by| &by.rod);
@@ -239,6 +243,9 @@ impl<'a> Differentiated<'a> {
         point: [f64; 2],
         distance_mm: f64,
     ) -> Vec<Result<Derivatives, NoDerivative>> {
+        if self.by.is_empty() {
+            return Vec::new();
+        }
         let at = Linearised::new(self.resolution, &self.rod, &self.axes, point);
         if let Err(why) = at.check(equations) {
             return self.none(why);

@@ -3,24 +3,25 @@
 mod differences;
 mod random_whiskers;
 
-use differences::compare;
+use differences::{Compared, compare};
+use rayon::prelude::*;
 use whiskmap::rod::Side;
 use whiskmap::scene::{Curvature, EulerSpiral, Parameter, Scene};
 use whiskmap::sensitivity::{NoDerivative, Variable, detachments};
 use whiskmap::trace::{corner, reach_mm};
 
-/// Random whiskers with all effects, by every variable. The worst difference of 1,174 was 1.2e-8, relative.
+/// Random whiskers with all effects, by every variable. Of 4,182 derivatives, every third one of each whisker, 4,038 could
+/// be compared; the worst difference was 8.8e-8, relative.
 #[test]
 fn detachments_of_random_whiskers_are_differentiated() {
-    let (mut count, mut left_out, mut worst) = (0, 0, 0.0_f64);
-    for index in 0..100 {
-        let compared = compare(index);
-        count += compared.count;
-        left_out += compared.left_out;
-        worst = worst.max(compared.worst);
-    }
+    let compared: Vec<Compared> = (0..1000).into_par_iter().map(compare).collect();
+    let count: usize = compared.iter().map(|own| own.count).sum();
+    let left_out: usize = compared.iter().map(|own| own.left_out).sum();
+    let worst = compared
+        .iter()
+        .fold(0.0, |worst: f64, own| worst.max(own.worst));
     assert!(worst < 1e-7, "{worst:e}");
-    assert!(count > 300 && left_out < count / 10, "{count} {left_out}");
+    assert!(count > 700 && left_out < count / 10, "{count} {left_out}");
 }
 
 /// Where a derivative does not exist, the result is the reason.
@@ -44,7 +45,7 @@ fn missing_derivatives_have_reasons() {
     assert_eq!(ends[0].by, [Err(NoDerivative::NotGiven); 2]);
 }
 
-/// A straight whisker has derivatives by the coefficients of the shapes that it can take.
+/// A straight whisker has derivatives by the coefficients of the shapes that it can take, alone and together.
 #[test]
 fn a_straight_whisker_begins_to_bend() {
     let mut straight = Scene::read("scenes/cone.toml").unwrap().whisker.clone();
@@ -66,19 +67,20 @@ fn a_straight_whisker_begins_to_bend() {
             .push_angle_deg
             .unwrap()
     };
-    for (parameter, spiral) in [
-        (Parameter::ParabolaPerMm, false),
-        (Parameter::SpiralPerMm, true),
-    ] {
-        let ends = detachments(&straight, &pole, Side::Cb, &[15.0], &[parameter.into()]);
+    let both = [Parameter::ParabolaPerMm, Parameter::SpiralPerMm].map(Variable::from);
+    let together = detachments(&straight, &pole, Side::Cb, &[15.0], &both);
+    for (variable, spiral) in both.into_iter().zip([false, true]) {
+        let ends = detachments(&straight, &pole, Side::Cb, &[15.0], &[variable]);
         let own = ends[0].by[0].unwrap().push_angle_deg;
+        let other = together[0].by[usize::from(spiral)].unwrap().push_angle_deg;
+        assert_eq!(other, own);
         let own = if spiral { 2.0 * own } else { own };
         let h = 1e-4;
         let one_sided = |h: f64| (push(h, spiral) - ends[0].end.push_angle_deg.unwrap()) / h;
         let difference = 2.0 * one_sided(0.5 * h) - one_sided(h);
         assert!(
             (own / difference - 1.0).abs() < 1e-4,
-            "{parameter:?}: {own} {difference}"
+            "{variable}: {own} {difference}"
         );
     }
 }

@@ -21,7 +21,7 @@ use whiskmap::measured::{ComparedPoint, MeasuredAngle};
 use whiskmap::render::{Plot, bands, error_bars, measured};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
-use whiskmap::sensitivity::{Variable, detachments_at};
+use whiskmap::sensitivity::{DetachmentDerivatives, detachments_at};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 use whiskmap::uncertainty::{Draws, EndSpread};
@@ -160,20 +160,23 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
             continue;
         }
-        let curve = |own: &SweptWhisker, side| {
-            let ends = trace::curve_at(resolution, &own.whisker, &own.pole, side, distances);
+        let ends = |own: &SweptWhisker, side| {
+            let (whisker, pole) = (&own.whisker, &own.pole);
+            let ends = detachments_at(resolution, whisker, pole, side, distances, &variables);
             bar.inc(ends.len());
-            ends
+            let row = |DetachmentDerivatives { end, by }| {
+                let columns = DerivativeColumns {
+                    variables: &variables,
+                    by,
+                    first: 0,
+                };
+                (end, columns)
+            };
+            ends.into_iter().map(row).collect()
         };
-        let rows = trace::sides(&group, curve);
-        match &variables {
-            None => write(&scene, &mut outputs, &rows)?,
-            Some(variables) => {
-                let rows = differentiated(&rows, &group, resolution, variables);
-                write(&scene, &mut outputs, &rows)?;
-            }
-        }
-        let kinds = rows.iter().map(|(_, row)| row.kind);
+        let rows: Vec<(SweepPlace, (Detachment, DerivativeColumns))> = trace::sides(&group, ends);
+        write(&scene, &mut outputs, &rows)?;
+        let kinds = rows.iter().map(|(_, (end, _))| end.kind);
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
         all += rows.len() as u64;
@@ -183,39 +186,6 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         scene_curve(&scene, resolution, args.x.axis())
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
-}
-
-/// Returns the ends of some whiskers, with columns of their derivatives by `variables`.
-fn differentiated<'a>(
-    ends: &[(SweepPlace, Detachment)],
-    whiskers: &[SweptWhisker],
-    resolution: Resolution,
-    variables: &'a [Variable],
-) -> Vec<(SweepPlace, (Detachment, DerivativeColumns<'a>))> {
-    let of_side = ends.len() / (whiskers.len() * Side::BOTH.len());
-    let distances: Vec<f64> = ends[..of_side]
-        .iter()
-        .map(|(_, end)| end.distance_mm)
-        .collect();
-    let by = trace::sides(whiskers, |own: &SweptWhisker, side| {
-        detachments_at(
-            resolution,
-            &own.whisker,
-            &own.pole,
-            side,
-            &distances,
-            variables,
-        )
-    });
-    let rows = ends.iter().zip(by).map(|((place, end), (_, own))| {
-        let columns = DerivativeColumns {
-            variables,
-            by: own.by,
-            first: 0,
-        };
-        (place.clone(), (*end, columns))
-    });
-    rows.collect()
 }
 
 /// Writes the rows of some whiskers, with a leading column for each sweep axis.
