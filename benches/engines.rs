@@ -149,7 +149,7 @@ fn files(criterion: &mut Criterion) {
         scene: &scene,
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::json!({}),
-        channels: whiskmap::map::Channels::ALL,
+        channels: whiskmap::map::Channels::STANDARD,
         digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     };

@@ -69,7 +69,7 @@ fn bands_are_the_rows_of_a_panel() {
         assert_eq!(summary.toward_base + summary.sticking > 0, name == "robot");
         let mut plan = Plan::new(&scene).unwrap();
         plan.band_rows = 10;
-        let mut joined = Panel::unresolved(0, Channels::ALL);
+        let mut joined = Panel::unresolved(0, Channels::STANDARD);
         let mut bands = Vec::new();
         let Ok(_) = map::run(
             &scene,
@@ -218,7 +218,7 @@ fn channels_have_the_names_of_files() {
     assert!(
         names
             .iter()
-            .all(|name| whiskmap::Channels::ALL.contains(name))
+            .all(|name| whiskmap::Channels::STANDARD.contains(name))
     );
     let scene = Scene::read("scenes/cone.toml").unwrap().thinned(8, 1);
     let map = whiskmap::map(&scene, Options::default()).unwrap();

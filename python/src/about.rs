@@ -52,7 +52,7 @@ pub fn variables(scene: &CheckedScene) -> Vec<(String, &'static str, f64)> {
 /// Returns the names of all channels of maps.
 #[pyfunction]
 pub fn channels() -> Vec<&'static str> {
-    Channels::ALL.names().collect()
+    Channels::STANDARD.names().collect()
 }
 
 /// Returns the CF attributes of a channel as JSON; `None` for another name.

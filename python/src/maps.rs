@@ -41,7 +41,7 @@ pub fn map<'py>(
         .map(|names| arguments::channels(&names))
         .transpose()?;
     let channels = channels
-        .unwrap_or(Channels::ALL)
+        .unwrap_or(Channels::STANDARD)
         .with_marks(scene.has_friction());
     let done = Arc::new(AtomicUsize::new(0));
     let mut options = Options::default();
@@ -117,8 +117,11 @@ fn taken(panel: &mut Panel, name: &str) -> ChannelArray {
         "margin_deg" => ChannelArray::Quantities(std::mem::take(&mut panel.margin_deg)),
         _ => {
             let place = Channel::ALL.iter().position(|own| own.name() == name);
-            let state = place.and_then(|place| panel.state.get_mut(place));
-            ChannelArray::Quantities(state.map(std::mem::take).unwrap_or_default())
+            let own = match place {
+                Some(place) => panel.state.get_mut(place),
+                None => panel.push_derivative_mut(name),
+            };
+            ChannelArray::Quantities(own.map(std::mem::take).unwrap_or_default())
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{MapComparison, QuantityComparison};
 use crate::input::{Quantity, did_you_mean};
-use crate::plan::{Channels, STATE_CHANNELS};
+use crate::plan::{Channels, STATE_CHANNELS, channel_names};
 use std::str::FromStr;
 
 /// Largest allowed differences of two maps: relative for all states, absolute for named channels.
@@ -82,12 +82,12 @@ impl FromStr for Within {
                 return Err(refused("must be at least 0".to_owned()));
             }
             let is_new = if entry.contains('=') {
-                let mut names = Channels::ALL.names();
-                let name = names.find(|own| *own == name.trim()).ok_or_else(|| {
-                    let hint = did_you_mean(name, Channels::ALL.names().collect::<Vec<_>>());
+                let found = channel_names().find(|own| *own == name.trim());
+                let name = found.ok_or_else(|| {
+                    let hint = did_you_mean(name, channel_names());
                     refused(format!(
                         "must be one of the channels, {}{hint}",
-                        Channels::ALL
+                        Channels::STANDARD
                     ))
                 })?;
                 let is_new = absolute.iter().all(|(own, _)| *own != name);

@@ -4,6 +4,7 @@ use super::{BasePoint, Cell, Outcome, SideColumns, SpectralSheet};
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
 use crate::rod::{Units, arclength};
+use crate::scene::Parameter;
 use crate::sheet::{Crossing, Row, Sheet};
 use crate::shooting::batch::Method;
 use crate::shooting::{FullState, Reader, Reading};
@@ -27,6 +28,9 @@ pub struct WhiskerSide {
     pub unit_values: Values,
     /// Expansions of the rows, if an engine needs them and rows have any.
     pub spectral: Option<SpectralSheet>,
+    /// Derivatives of the push angle at the detachment of each row, in degrees per unit of the parameter: `[row][parameter]`. Empty
+    /// without such channels.
+    pub push_derivatives: Vec<Vec<(Parameter, f32)>>,
     reader: Reader,
 }
 
@@ -40,6 +44,7 @@ impl WhiskerSide {
             columns,
             sheet,
             spectral: None,
+            push_derivatives: Vec::new(),
             reader,
         }
     }

@@ -2,7 +2,19 @@
 
 use crate::classify::{Regime, Status};
 use crate::plan::{Channel, Channels, STATE_CHANNELS};
+use crate::scene::Parameter;
 use std::ops::Range;
+use std::slice::ChunksMut;
+
+/// Names of the derivatives, `[parameter]`.
+const DERIVATIVES: [&str; Parameter::ALL.len()] = {
+    let (mut names, mut place) = ([""; Parameter::ALL.len()], 0);
+    while place < names.len() {
+        names[place] = Parameter::ALL[place].push_derivative();
+        place += 1;
+    }
+    names
+};
 
 /// Panel: the map of one whisker. Every vector has `distances * push_angles` cells; cell `(row, column)` is at `row * push_angles +
 /// column`. Row 0 is the first distance, column 0 the first push angle.
@@ -20,6 +32,9 @@ pub struct Panel {
     pub residual: Vec<f32>,
     /// Margin of each cell: push angle left until detachment, in degrees, `[distance][push_angle]`; NaN without contact.
     pub margin_deg: Vec<f32>,
+    /// Derivative of the push angle at detachment by each parameter, in degrees per unit of the parameter:
+    /// `[parameter][distance][push_angle]`, in the order of [`Parameter::ALL`]. NaN without contact; empty if it is not computed.
+    pub push_derivatives: [Vec<f32>; Parameter::ALL.len()],
     /// Number of Newton steps of each cell, engine and refinement together: `[distance][push_angle]`.
     pub newton_steps: Vec<u32>,
 }
@@ -33,7 +48,8 @@ impl Panel {
         panel.regime.fill(Regime::Unresolved.code());
         panel.status.fill(Status::NotConverged.code());
         let numbers = [&mut panel.residual, &mut panel.margin_deg];
-        for numbers in panel.state.iter_mut().chain(numbers) {
+        let on_demand = panel.state.iter_mut().chain(&mut panel.push_derivatives);
+        for numbers in on_demand.chain(numbers) {
             numbers.fill(f32::NAN);
         }
         panel
@@ -47,7 +63,9 @@ impl Panel {
         for numbers in [&mut self.residual, &mut self.margin_deg] {
             numbers.resize(cells, 0.0);
         }
-        for (name, numbers) in STATE_CHANNELS.iter().zip(&mut self.state) {
+        let names = STATE_CHANNELS.into_iter().chain(DERIVATIVES);
+        let on_demand = self.state.iter_mut().chain(&mut self.push_derivatives);
+        for (name, numbers) in names.zip(on_demand) {
             let cells = if channels.contains(name) { cells } else { 0 };
             numbers.resize(cells, 0.0);
         }
@@ -56,16 +74,17 @@ impl Panel {
 
     /// Creates a panel of zeros, of which every cell must be written. Zeroed memory costs nothing until it is written, on all threads.
     pub(super) fn unwritten(cells: usize, channels: Channels) -> Self {
-        let of_state = STATE_CHANNELS.map(|name| {
+        let on_demand = |name| {
             let cells = if channels.contains(name) { cells } else { 0 };
             vec![0.0; cells]
-        });
+        };
         Self {
             regime: vec![0; cells],
             status: vec![0; cells],
-            state: of_state,
+            state: STATE_CHANNELS.map(on_demand),
             residual: vec![0.0; cells],
             margin_deg: vec![0.0; cells],
+            push_derivatives: DERIVATIVES.map(on_demand),
             newton_steps: vec![0; cells],
         }
     }
@@ -81,6 +100,14 @@ impl Panel {
         }
     }
 
+    /// Returns the values of a derivative by the name of its channel, such as `d_push_d_taper`: `[distance][push_angle]`. `None` for other
+    /// channels.
+    #[must_use]
+    pub fn push_derivative_mut(&mut self, name: &str) -> Option<&mut Vec<f32>> {
+        let place = DERIVATIVES.iter().position(|own| *own == name)?;
+        Some(&mut self.push_derivatives[place])
+    }
+
     /// Returns the values of the channel `name` in the panel as bytes, 4 for each cell; none if the channel is not computed.
     pub(crate) fn bytes(&self, name: &str) -> &[u8] {
         let codes = match name {
@@ -88,8 +115,13 @@ impl Panel {
             "status" => &self.status,
             "newton_steps" => &self.newton_steps,
             _ => {
-                let channel = Channel::ALL.into_iter().find(|own| own.name() == name);
-                let values = channel.map_or(&[][..], |channel| self.channel(channel));
+                let mut own = Channel::ALL.into_iter();
+                let own = own.find(|own| own.name() == name);
+                let by = || DERIVATIVES.iter().position(|own| *own == name);
+                let values = match own {
+                    Some(channel) => self.channel(channel),
+                    None => by().map_or(&[][..], |place| &self.push_derivatives[place]),
+                };
                 return bytemuck::cast_slice(values);
             }
         };
@@ -111,14 +143,9 @@ impl Panel {
     /// Returns the `rows` of a panel that is `width` cells wide, which can be written in parallel.
     pub(super) fn rows_mut(&mut self, width: usize, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let cells = rows.start * width..rows.end * width;
-        let mut state = self.state.each_mut().map(|channel| {
-            let cells = if channel.is_empty() {
-                0..0
-            } else {
-                cells.clone()
-            };
-            channel[cells].chunks_mut(width)
-        });
+        let rows_of = |channel| rows_of(channel, &cells, width);
+        let mut state = self.state.each_mut().map(rows_of);
+        let mut push_derivatives = self.push_derivatives.each_mut().map(rows_of);
         let [regime, status, newton_steps] =
             [&mut self.regime, &mut self.status, &mut self.newton_steps]
                 .map(|codes| codes[cells.clone()].chunks_mut(width));
@@ -135,6 +162,9 @@ impl Panel {
                     .map(|channel| channel.next().unwrap_or_default()),
                 residual,
                 margin_deg,
+                push_derivatives: push_derivatives
+                    .each_mut()
+                    .map(|channel| channel.next().unwrap_or_default()),
                 newton_steps,
             },
         )
@@ -150,5 +180,21 @@ pub(super) struct RowMut<'a> {
     pub state: [&'a mut [f32]; STATE_CHANNELS.len()],
     pub residual: &'a mut [f32],
     pub margin_deg: &'a mut [f32],
+    /// Derivatives of the row: `[parameter][push_angle]`; empty if not computed.
+    pub push_derivatives: [&'a mut [f32]; Parameter::ALL.len()],
     pub newton_steps: &'a mut [u32],
+}
+
+/// The rows of these cells of a channel; none if it is not computed.
+fn rows_of<'a>(
+    channel: &'a mut Vec<f32>,
+    cells: &Range<usize>,
+    width: usize,
+) -> ChunksMut<'a, f32> {
+    let cells = if channel.is_empty() {
+        0..0
+    } else {
+        cells.clone()
+    };
+    channel[cells].chunks_mut(width)
 }

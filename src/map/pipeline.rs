@@ -11,7 +11,8 @@ use super::stages::Stage;
 use super::summary::{EngineCells, Summary};
 use crate::engine::{Cells, Cpu, EngineInput, RowBatch, SideColumns, WhiskerSide, Worker, on_gpu};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
-use crate::scene::{Scene, SweptWhisker};
+use crate::scene::{Parameter, Scene, SweptWhisker};
+use crate::sensitivity::of_rows;
 use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
 use crate::stopwatch::Stopwatch;
@@ -222,12 +223,19 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             whiskers.iter().flat_map(of_whisker).collect();
         let (grid, method) = (&self.scene.grid, self.method);
         let input = self.input.filter(|_| self.worker.is_working());
+        let derivatives: Vec<Parameter> = self.plan.channels.derivatives().collect();
         let sides = pairs.into_par_iter().map(|(swept, columns)| {
             let rod = swept.rod(columns.side);
             let distances = grid.distance_mm.iter();
             let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
             let sheet = Sheet::new(method, &rod, columns.side, &distances);
-            let side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
+            let mut side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
+            if !derivatives.is_empty() {
+                let (resolution, sheet) = (method.resolution, &side.sheet);
+                let pushed = (&swept.whisker, &swept.pole);
+                side.push_derivatives =
+                    of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
+            }
             match input {
                 Some(EngineInput::SpectralSheets(most)) => side.with_spectral_sheet(method, most),
                 _ => side,

@@ -144,13 +144,24 @@ impl RowWriter<'_> {
             Some(span) => {
                 let margin = |i: usize| span.margin_deg(ours[i].push.abs());
                 columns.write(into.margin_deg, &run, margin);
+                let derivatives = self.side.push_derivatives.get(self.row);
+                for (parameter, by) in derivatives.into_iter().flatten() {
+                    // Only a push from first touch ends at the row's detachment.
+                    let by = if regime == Regime::Contact {
+                        *by
+                    } else {
+                        f32::NAN
+                    };
+                    columns.write(into.push_derivatives[*parameter as usize], &run, |_| by);
+                }
                 for (channel, values) in into.state.iter_mut().zip(cells.values) {
                     columns.write(channel, &run, |i| values[i]);
                 }
             }
             None => {
                 clear(into.margin_deg);
-                into.state.iter_mut().for_each(|channel| clear(channel));
+                let on_demand = into.state.iter_mut().chain(&mut into.push_derivatives);
+                on_demand.for_each(|channel| clear(channel));
             }
         }
         // A run of several cells does not begin at first touch.

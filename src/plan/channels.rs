@@ -1,6 +1,7 @@
 //! Channels of a map, and the selection that is computed and stored.
 
 use crate::input::did_you_mean;
+use crate::scene::Parameter;
 use std::fmt;
 use std::str::FromStr;
 
@@ -75,17 +76,22 @@ impl Channel {
 /// Names of the channels that are not of a state.
 const OTHERS: [&str; 5] = ["regime", "status", "margin_deg", "newton_steps", "residual"];
 
+/// Number of channels of a map unless others are selected.
+const STANDARD: usize = OTHERS.len() + STATE_CHANNELS.len();
+
 /// Number of channels.
-const COUNT: usize = OTHERS.len() + STATE_CHANNELS.len();
+const COUNT: usize = STANDARD + Parameter::ALL.len();
 
 /// Selection of the channels of a map.
+///
+/// Derivatives, such as `d_push_d_taper`, are computed on demand: of the push angle at detachment, and so of the margin, by a parameter.
 ///
 /// ```
 /// use whiskmap::plan::Channels;
 ///
-/// let some: Channels = "regime,force_un".parse()?;
-/// assert!(some.contains("force_un") && !some.contains("energy_nj"));
-/// assert_eq!(some.to_string(), "regime, force_un");
+/// let some: Channels = "regime,d_push_d_taper".parse()?;
+/// assert!(some.contains("d_push_d_taper") && !some.contains("energy_nj"));
+/// assert_eq!(some.to_string(), "regime, d_push_d_taper");
 /// assert!("force".parse::<Channels>().is_err());
 /// # Ok::<(), String>(())
 /// ```
@@ -93,8 +99,15 @@ const COUNT: usize = OTHERS.len() + STATE_CHANNELS.len();
 pub struct Channels([bool; COUNT]);
 
 impl Channels {
-    /// The selection of all channels.
-    pub const ALL: Self = Self([true; COUNT]);
+    /// The selection of all channels but derivatives.
+    pub const STANDARD: Self = {
+        let (mut chosen, mut place) = ([false; COUNT], 0);
+        while place < STANDARD {
+            chosen[place] = true;
+            place += 1;
+        }
+        Self(chosen)
+    };
 
     /// Selects the channels for which `is_wanted` returns true.
     #[must_use]
@@ -129,7 +142,14 @@ impl Channels {
         self.names().any(|own| own == name)
     }
 
-    /// Returns the names of the selected channels: regime and status, channels of a state, channels of the numerics.
+    /// Returns the parameters by which the selection has derivatives.
+    pub fn derivatives(&self) -> impl Iterator<Item = Parameter> {
+        let chosen = self.0.into_iter().skip(STANDARD);
+        let all = Parameter::ALL.into_iter().zip(chosen);
+        all.filter_map(|(parameter, is_chosen)| is_chosen.then_some(parameter))
+    }
+
+    /// Returns the names of the selected channels: regime and status, channels of a state, channels of the numerics, derivatives.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         let chosen = names().zip(self.0);
         chosen.filter_map(|(name, is_chosen)| is_chosen.then_some(name))
@@ -143,10 +163,11 @@ impl Channels {
 }
 
 /// Returns the names of all channels.
-fn names() -> impl Iterator<Item = &'static str> + Clone {
+pub fn names() -> impl Iterator<Item = &'static str> + Clone {
     let (verdict, numerics) = OTHERS.split_at(2);
-    let all = verdict.iter().chain(&STATE_CHANNELS).chain(numerics);
-    all.copied()
+    let standard = verdict.iter().chain(&STATE_CHANNELS).chain(numerics);
+    let derivatives = Parameter::ALL.into_iter().map(Parameter::push_derivative);
+    standard.copied().chain(derivatives)
 }
 
 impl fmt::Display for Channels {
@@ -161,10 +182,10 @@ impl FromStr for Channels {
     /// Parses names with commas between them.
     fn from_str(list: &str) -> Result<Self, String> {
         let wanted: Vec<&str> = list.split(',').map(str::trim).collect();
-        match wanted.iter().find(|name| !Self::ALL.contains(name)) {
+        match wanted.iter().find(|name| !names().any(|own| own == **name)) {
             Some(unknown) => Err(format!(
-                "must be names with commas between them, out of {}{}",
-                Self::ALL,
+                "must be names with commas between them, out of {}, and derivatives such as d_push_d_taper{}",
+                Self::STANDARD,
                 did_you_mean(unknown, names())
             )),
             None => Ok(Self::those(|name| wanted.contains(&name))),

@@ -1,6 +1,6 @@
 //! Significant decimal digits of the stored quantities.
 
-use super::{Channel, Channels};
+use super::{Channel, Channels, channel_names};
 use crate::input::did_you_mean;
 use std::fmt;
 use std::str::FromStr;
@@ -148,8 +148,8 @@ impl FromStr for Digits {
 /// The message for a `name` that is not a channel of quantities.
 fn refused(name: &str) -> String {
     let names = Channel::ALL.map(Channel::name);
-    let kind = if Channels::ALL.contains(name) {
-        "is a channel of whole numbers, which are not rounded"
+    let kind = if channel_names().any(|own| own == name) {
+        "is a channel that is not rounded"
     } else {
         "is no channel"
     };

@@ -4,7 +4,9 @@ mod channels;
 mod digits;
 mod effects;
 mod expansions;
+mod selection;
 
+pub(crate) use channels::names as channel_names;
 pub use channels::{Channel, Channels, STATE_CHANNELS};
 pub use digits::{Digits, rounded};
 pub use effects::{Cost, Effect, effects};
@@ -18,8 +20,11 @@ use std::ops::Range;
 /// Limit on the memory of a run, in bytes; a plan that takes more is refused.
 pub const MEMORY_LIMIT: u64 = 4 << 30;
 
-/// Bytes per cell of a panel: 14 channels of 4 bytes.
-const BYTES_PER_CELL: u64 = 14 * 4;
+/// Bytes of a channel per cell of a panel.
+const BYTES_PER_VALUE: u64 = 4;
+
+/// Bytes per cell of a panel without derivatives: 14 channels.
+const BYTES_PER_CELL: u64 = 14 * BYTES_PER_VALUE;
 
 /// Bytes per cell of a packed panel. The shipped scenes take 21 to 32.
 const PACKED_BYTES_PER_CELL: u64 = 32;
@@ -97,13 +102,15 @@ pub struct Plan {
     pub rows_at_once: usize,
     /// Maximum number of batches for an engine.
     pub engine_calls: usize,
+    /// Number of cells of the panels that are in memory together.
+    pub cells_at_once: usize,
     /// Memory of panels, computed and packed, and of sheets, in bytes. Each thread adds [`BYTES_PER_THREAD`].
     pub bytes: u64,
     /// Memory of a GPU's base points, in bytes.
     pub gpu_bytes: u64,
 }
 
-/// Error of a run that takes more than [`MEMORY_LIMIT`].
+/// Error of a run that takes more than [`MEMORY_LIMIT`], or that has no such channels.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PlanError {
@@ -135,6 +142,28 @@ pub enum PlanError {
         cells: usize,
         /// Memory of the run, in MiB.
         needed: u64,
+    },
+    /// The derivatives of the panels take more memory than is allowed.
+    #[error(
+        "channels: with {derivatives} derivatives, {cells} cells in memory take {needed} MiB: must be at most {limit} MiB; \
+         select fewer derivatives",
+        limit = MEMORY_LIMIT >> 20
+    )]
+    Derivatives {
+        /// Number of parameters by which there are derivatives.
+        derivatives: usize,
+        /// Number of cells in memory together.
+        cells: usize,
+        /// Memory of the run, in MiB.
+        needed: u64,
+    },
+    /// A derivative is by a number that the scene does not give.
+    #[error("channels: {name} has no values: the scene has derivatives by {given}")]
+    NotGiven {
+        /// Name of the channel.
+        name: &'static str,
+        /// Names of the parameters by which there are derivatives.
+        given: String,
     },
 }
 
@@ -211,12 +240,13 @@ impl Plan {
                 + calls(whiskers % panels_at_once),
             cells: cells * whiskers,
             parts: std::iter::once(0..whiskers).collect(),
-            channels: Channels::ALL,
+            channels: Channels::STANDARD,
             digits: Digits::ALL,
             sides,
             panels_at_once,
             band_rows,
             rows_at_once,
+            cells_at_once: computed,
             bytes,
             gpu_bytes,
             whiskers,
@@ -239,7 +269,11 @@ impl Plan {
                 needed: bytes.div_ceil(1 << 20),
             });
         }
-        Ok(Self { bytes, ..plan })
+        Ok(Self {
+            bytes,
+            cells_at_once: plan.cells,
+            ..plan
+        })
     }
 
     /// Returns the whisker sides that the push angles of `scene` need, `[side]`.

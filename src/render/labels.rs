@@ -45,6 +45,15 @@ pub fn parameter(parameter: Parameter) -> String {
 /// Returns the label of a channel of quantities.
 #[must_use]
 pub fn channel(name: &str) -> String {
+    let mut all = Parameter::ALL.into_iter();
+    if let Some(own) = all.find(|own| own.push_derivative() == name) {
+        let unit = match own.unit() {
+            "1" => "deg".to_owned(),
+            unit => format!("deg per {unit}"),
+        };
+        let (title, _) = own.title().split_once(" (").unwrap_or((own.title(), ""));
+        return format!("d(push angle at detachment) / d({title}) ({unit})");
+    }
     let label = match name {
         "arc_length_mm" => "arc length from base to contact (mm)",
         "contact_angle_deg" => "contact angle (deg)",

@@ -53,6 +53,12 @@ macro_rules! parameters {
                 match self { $(Self::$parameter => concat!("grid.", $name)),* }
             }
 
+            /// Returns the name of the derivative of the push angle at detachment by the parameter, such as `d_push_d_taper`.
+            #[must_use]
+            pub const fn push_derivative(self) -> &'static str {
+                self.derivative_columns()[0]
+            }
+
             /// Returns the names of the columns with derivatives by the parameter.
             pub(crate) const fn derivative_columns(self) -> [&'static str; 6] {
                 match self { $(Self::$parameter => derivative_columns!($name)),* }

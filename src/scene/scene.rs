@@ -189,6 +189,14 @@ impl Parameter {
         })
     }
 
+    /// Returns true if detachments of the scene have derivatives by the parameter: the scene gives it, and it is not the length of measured
+    /// radii.
+    #[must_use]
+    pub fn has_derivative(self, scene: &Scene) -> bool {
+        let is_measured = scene.whisker.profile.is_some();
+        self.value(scene).is_some() && !(is_measured && self == Self::LengthMm)
+    }
+
     /// Returns the names of the parameters that the scene gives, with commas between them.
     pub(crate) fn given(scene: &Scene) -> String {
         let all = Self::ALL.into_iter();

@@ -27,11 +27,11 @@ pub use quantities::Derivatives;
 pub use variable::Variable;
 
 use crate::rod::{Rest, Rod, Side};
-use crate::scene::{Pole, Whisker};
-use crate::sheet::Edge;
+use crate::scene::{Parameter, Pole, Whisker};
+use crate::sheet::{Crossing, Edge, Sheet};
 use crate::shooting::Resolution;
 use crate::trace::{
-    Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, detachments as ends,
+    Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, crossing, detachments as ends,
 };
 use linearised::{Equations, Linearised, RodAxes};
 use whisker::WhiskerDerivative;
@@ -114,22 +114,34 @@ fn of_ends(
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let differentiated = Differentiated::new(resolution, whisker, pole, side, variables);
-    let of_end = |DetachmentEnd { end, crossing }| {
-        let by = match crossing {
-            None => differentiated.none(NoDerivative::NoDetachment),
-            Some(crossing) if crossing.is_at_touch() => differentiated.none(NoDerivative::AtTouch),
-            Some(crossing) => {
-                let equations = match crossing.edge {
-                    Edge::Fold => Equations::Fold,
-                    Edge::Tip => Equations::Tip,
-                };
-                let Detachment { distance_mm, .. } = end;
-                differentiated.at(equations, [crossing.tau, crossing.load], distance_mm)
-            }
-        };
-        DetachmentDerivatives { end, by }
+    let of_end = |DetachmentEnd { end, crossing }| DetachmentDerivatives {
+        by: differentiated.at_crossing(crossing.as_ref(), end.distance_mm),
+        end,
     };
     ends.into_iter().map(of_end).collect()
+}
+
+/// Returns the derivatives of the push angle at the detachments of `sheet`, whose rows have these distances, by each of `parameters`, in
+/// degrees per unit of the parameter: `[row][parameter]`. NaN where there is none.
+pub(crate) fn of_rows(
+    resolution: Resolution,
+    sheet: &Sheet,
+    (whisker, pole): (&Whisker, &Pole),
+    distances_mm: &[f64],
+    parameters: &[Parameter],
+) -> Vec<Vec<(Parameter, f32)>> {
+    let variables: Vec<Variable> = parameters.iter().copied().map(Variable::from).collect();
+    let differentiated = Differentiated::new(resolution, whisker, pole, sheet.side, &variables);
+    let of_row = |(row, distance): (usize, &f64)| {
+        let by = differentiated.at_crossing(crossing(sheet, row).ok(), *distance);
+        let push = |by: Result<Derivatives, _>| by.map_or(f32::NAN, |by| by.push_angle_deg as f32);
+        parameters
+            .iter()
+            .copied()
+            .zip(by.into_iter().map(push))
+            .collect()
+    };
+    distances_mm.iter().enumerate().map(of_row).collect()
 }
 
 /// Computes `count` points of the branch of `whisker` at `pole` as [`Branch::points`] does, with their derivatives by each of `variables`:
@@ -234,6 +246,25 @@ impl<'a> Differentiated<'a> {
     fn none(&self, why: NoDerivative) -> Vec<Result<Derivatives, NoDerivative>> {
         let each = |by: &Result<_, NoDerivative>| Err(by.as_ref().err().copied().unwrap_or(why));
         self.by.iter().map(each).collect()
+    }
+
+    /// Returns the derivatives, `[variable]`, of the detachment at a crossing. First touch is at `distance_mm`.
+    fn at_crossing(
+        &self,
+        crossing: Option<&Crossing>,
+        distance_mm: f64,
+    ) -> Vec<Result<Derivatives, NoDerivative>> {
+        match crossing {
+            None => self.none(NoDerivative::NoDetachment),
+            Some(crossing) if crossing.is_at_touch() => self.none(NoDerivative::AtTouch),
+            Some(crossing) => {
+                let equations = match crossing.edge {
+                    Edge::Fold => Equations::Fold,
+                    Edge::Tip => Equations::Tip,
+                };
+                self.at(equations, [crossing.tau, crossing.load], distance_mm)
+            }
+        }
     }
 
     /// Returns the derivatives, `[variable]`, of the state at `(tau, load)`, which `equations` determine. First touch is at `distance_mm`.

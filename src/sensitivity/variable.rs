@@ -75,11 +75,8 @@ impl Variable {
     /// distance.
     #[must_use]
     pub fn of_detachments(scene: &Scene) -> Vec<Self> {
-        let given = |own: &Parameter| {
-            let is_measured = scene.whisker.profile.is_some();
-            own.value(scene).is_some() && !(is_measured && *own == Parameter::LengthMm)
-        };
-        let given = Parameter::ALL.into_iter().filter(given);
+        let given = Parameter::ALL.into_iter();
+        let given = given.filter(|own| own.has_derivative(scene));
         given
             .map(Self::Parameter)
             .chain([Self::DistanceMm])

@@ -283,7 +283,12 @@ impl MapSlice {
                 (ChannelValues::U32(counts), ..) => panel.newton_steps = counts,
                 (ChannelValues::F32(values), _, Some(place)) => panel.state[place] = values,
                 (ChannelValues::F32(values), "margin_deg", _) => panel.margin_deg = values,
-                (ChannelValues::F32(values), ..) => panel.residual = values,
+                (ChannelValues::F32(values), "residual", _) => panel.residual = values,
+                (ChannelValues::F32(values), ..) => {
+                    if let Some(own) = panel.push_derivative_mut(name) {
+                        *own = values;
+                    }
+                }
             }
         }
         Ok(panel)

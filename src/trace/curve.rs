@@ -153,16 +153,9 @@ pub(crate) fn detachments(
     let reader = Reader::new(units, rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, rod, side, &distances);
-    let ends: Vec<Result<&Crossing, DetachmentKind>> = (0..distances.len())
-        .map(|row| {
-            if !sheet.touches(row) {
-                return Err(DetachmentKind::OutOfReach);
-            }
-            let boundary = RowBoundary::new(true, &sheet.crossings[row]);
-            let end = boundary.detachment().and(sheet.crossings[row].first());
-            end.ok_or(DetachmentKind::Unresolved)
-        })
-        .collect();
+    let rows = 0..distances.len();
+    let ends: Vec<Result<&Crossing, DetachmentKind>> =
+        rows.map(|row| crossing(&sheet, row)).collect();
     let points = ends.iter().flatten().map(|end| (end.tau, end.load));
     let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points);
     let mut states = states.into_iter();
@@ -212,6 +205,19 @@ pub(crate) fn detachments(
         DetachmentEnd { end, crossing }
     })
     .collect()
+}
+
+/// Returns the crossing of a row of `sheet` at which a push from first touch ends.
+///
+/// # Errors
+/// The reason why there is none.
+pub(crate) fn crossing(sheet: &Sheet, row: usize) -> Result<&Crossing, DetachmentKind> {
+    if !sheet.touches(row) {
+        return Err(DetachmentKind::OutOfReach);
+    }
+    let boundary = RowBoundary::new(true, &sheet.crossings[row]);
+    let end = boundary.detachment().and(sheet.crossings[row].first());
+    end.ok_or(DetachmentKind::Unresolved)
 }
 
 /// Computes the corner of the detachment curve of `whisker` on one `side`. Without a corner, distance and push angle are `None`, and

@@ -16,7 +16,7 @@ pub use curve::{
     Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, curve_without_strain,
     reach_mm,
 };
-pub(crate) use curve::{DetachmentEnd, detachments};
+pub(crate) use curve::{DetachmentEnd, crossing, detachments};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;
 

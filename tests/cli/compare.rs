@@ -24,7 +24,7 @@ fn change(place: &Place, source: &str, change: impl Fn(&mut Panel, usize)) {
         scene: &scene,
         engine: &EngineDescription::of(None),
         tolerances: &json!({}),
-        channels: Channels::ALL,
+        channels: Channels::STANDARD,
         digits: Digits::ALL,
         arithmetic: "fma",
     };
@@ -32,7 +32,7 @@ fn change(place: &Place, source: &str, change: impl Fn(&mut Panel, usize)) {
     let mut writer = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
     let slice = MapSlice::from(map);
     for whisker in 0..scene.whisker_count() {
-        let mut panel = slice.panel(Channels::ALL, whisker).unwrap();
+        let mut panel = slice.panel(Channels::STANDARD, whisker).unwrap();
         change(&mut panel, whisker);
         writer.write_panels(&[panel]).unwrap();
     }

@@ -130,7 +130,7 @@ fn impossible_digits_are_refused() {
         ("5,force_un=1", "`force_un=1`: must be"),
         ("=5", "`` is no channel"),
         ("5,force=3", "did you mean `force_un`?"),
-        ("status=5", "`status` is a channel of whole numbers"),
+        ("status=5", "`status` is a channel that is not rounded"),
         ("5,4", "`4`: must be given once"),
     ] {
         let run = place.run(&["map", "scene.toml", "--digits", list]);

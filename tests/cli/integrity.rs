@@ -165,7 +165,7 @@ fn sizes_that_a_store_claims_are_not_allocated() {
         scene: &scene,
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::Value::Null,
-        channels: whiskmap::plan::Channels::ALL,
+        channels: whiskmap::plan::Channels::STANDARD,
         digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     };

@@ -109,7 +109,7 @@ fn write_without_status(place: &Place) {
         scene: &scene,
         engine: &whiskmap::engine::EngineDescription::of(None),
         tolerances: &serde_json::json!({}),
-        channels: Channels::those(|name| name != "status"),
+        channels: Channels::those(|name| name != "status" && Channels::STANDARD.contains(name)),
         digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     };

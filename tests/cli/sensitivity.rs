@@ -120,3 +120,37 @@ fn curves_and_branches_have_columns_of_derivatives() {
         refused.err
     );
 }
+
+/// Both formats store derivatives, which come back as they are extracted; an absent parameter is refused.
+#[test]
+fn maps_store_derivatives_on_demand() {
+    let place = Place::with(SCENE);
+    let channels = "--channels=regime,margin_deg,d_push_d_taper";
+    for format in ["exr", "zarr"] {
+        place.map(&["scene.toml", "--no-png", channels, "--format", format]);
+    }
+    let tables = ["exr", "zarr"].map(|ending| {
+        let source = format!("outputs/scene.{ending}");
+        good(&place, &["extract", &source, "-o", "table.csv"]);
+        lines(&String::from_utf8(place.bytes("table.csv")).unwrap())
+    });
+    assert_eq!(tables[0], tables[1]);
+    let (header, rows) = tables[0].split_first().unwrap();
+    let known = rows.iter().filter(|row| {
+        let by = cell(header, row, "d_push_d_taper");
+        assert_eq!(by.is_empty(), cell(header, row, "regime") != "1", "{row:?}");
+        !by.is_empty()
+    });
+    assert!(known.count() > 20);
+    good(
+        &place,
+        &["render", "outputs/scene.exr", "--channel", "d_push_d_taper"],
+    );
+    let refused = place.run(&["map", "scene.toml", "--channels=regime,d_push_d_friction"]);
+    assert_eq!(refused.code, Some(2));
+    assert!(
+        refused.err.contains("d_push_d_friction has no values"),
+        "{}",
+        refused.err
+    );
+}

@@ -81,6 +81,7 @@ pub fn panel(scene: &SceneData, index: usize) -> Panel {
         state: [const { Vec::new() }; STATE_CHANNELS.len()],
         residual: Vec::with_capacity(cells),
         margin_deg: Vec::with_capacity(cells),
+        push_derivatives: Default::default(),
         newton_steps: Vec::with_capacity(cells),
     };
     for distance in &grid.distance_mm {
@@ -123,7 +124,7 @@ pub fn describe<'a>(scene: &'a SceneData, tolerances: &'a Value) -> MapDescripti
         scene,
         engine: &ENGINE,
         tolerances,
-        channels: Channels::ALL,
+        channels: Channels::STANDARD,
         digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     }

@@ -1,6 +1,7 @@
 //! Exact derivatives of detachments.
 
 mod differences;
+mod maps;
 mod random_whiskers;
 
 use differences::{Compared, compare};

@@ -5,11 +5,14 @@ use super::array::{ZarrArray, about};
 use super::blocks::Blocks;
 use super::identity::{AGREED, StoreIdentity};
 use crate::classify::{Regime, Status};
-use crate::plan::Digits;
-use crate::scene::{Grid, SceneData};
+use crate::plan::{Digits, STATE_CHANNELS};
+use crate::scene::{Grid, Parameter, SceneData};
 use crate::store::attributes::{DIGITS, digits};
 use crate::store::{Channels, MapDescription, NOT_COMPUTED};
 use serde_json::{Map, Value, json};
+
+/// Name, kind, unit and meaning of a channel.
+type ChannelLine = (&'static str, ValueKind, Option<&'static str>, &'static str);
 
 /// Name of the array with the number of cells of each regime: `[sweep axes.., regime]`.
 pub(super) const CELLS: &str = "regime_cells";
@@ -17,9 +20,9 @@ pub(super) const CELLS: &str = "regime_cells";
 /// Coordinate with the codes of the regimes, the last axis of [`CELLS`].
 const CODES: &str = "regime_code";
 
-/// Name, kind, unit and meaning of every channel.
+/// Name, kind, unit and meaning of every channel but the derivatives.
 #[rustfmt::skip]
-const CHANNELS: [(&str, ValueKind, Option<&str>, &str); 14] = [
+const CHANNELS: [ChannelLine; 14] = [
     ("regime", Code, None, "what becomes of the whisker"),
     ("status", Code, None, "how that was settled"),
     ("arc_length_mm", Quantity, Some("mm"), "arclength from the base to the contact"),
@@ -56,15 +59,14 @@ pub(super) fn arrays(
     )];
     let ([distances, push_angles], [chunk, filled]) = (blocks.panel, blocks.distances());
     let sizes = [[distances, filled, chunk], [push_angles; 3]];
-    let [regime, others @ ..] = &CHANNELS;
-    for &(name, kind, units, meaning) in others.iter().chain([regime]) {
-        if name != "regime" && !channels.contains(name) {
+    let others = channels.names().filter(|name| *name != "regime");
+    for name in others.chain(["regime"]) {
+        let Some((kind, mut about)) = channel(name) else {
             continue;
-        }
-        // Columns make quantities 8 % smaller, but a line of margins is the one before it, shifted.
-        let is_turned = kind == Quantity && name != "margin_deg";
+        };
+        // Columns make quantities 8 % smaller, but a line of margins is the one before it, shifted, and derivatives are equal along a line.
+        let is_turned = STATE_CHANNELS.contains(&name) || name == "residual";
         let sizes = (&sizes[..], is_turned.then_some(push_angles));
-        let mut about = with_flags(name, about(units, meaning));
         let kept_bits = digits.mantissa_bits(name);
         if let Some(bits) = kept_bits {
             about["quantization"] = json!(QUANTIZATION);
@@ -112,8 +114,25 @@ const QUANTIZATION: &str = "quantization";
 /// Returns the attributes of a channel of maps, by the CF conventions: unit, meaning, and flags of codes; `None` for another name.
 #[must_use]
 pub fn channel_attributes(name: &str) -> Option<Value> {
-    let (_, _, units, meaning) = CHANNELS.iter().find(|(own, ..)| *own == name)?;
-    Some(with_flags(name, about(*units, meaning)))
+    channel(name).map(|(_, about)| about)
+}
+
+/// Returns kind and attributes of a channel; `None` for another name.
+fn channel(name: &str) -> Option<(ValueKind, Value)> {
+    if let Some((_, kind, units, meaning)) = CHANNELS.iter().find(|(own, ..)| *own == name) {
+        return Some((*kind, with_flags(name, about(*units, meaning))));
+    }
+    let mut all = Parameter::ALL.into_iter();
+    let parameter = all.find(|own| own.push_derivative() == name)?;
+    let units = match parameter.unit() {
+        "1" => "degree".to_owned(),
+        unit => format!("degree/({unit})"),
+    };
+    let meaning = format!(
+        "derivative of the push angle at detachment by {}",
+        parameter.name()
+    );
+    Some((Quantity, about(Some(&units), &meaning)))
 }
 
 /// Coordinate of maps: values along one axis.
@@ -236,11 +255,13 @@ pub(super) fn group<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::channel_names;
 
     /// A channel that is missing here would be missing in every store.
     #[test]
     fn every_channel_of_a_map_has_a_line() {
         let names = CHANNELS.iter().map(|(name, ..)| *name);
-        assert!(names.eq(Channels::ALL.names()));
+        assert!(names.eq(Channels::STANDARD.names()));
+        assert!(channel_names().all(|name| channel(name).is_some()));
     }
 }
