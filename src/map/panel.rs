@@ -143,9 +143,11 @@ impl Panel {
     /// Returns the `rows` of a panel that is `width` cells wide, which can be written in parallel.
     pub(super) fn rows_mut(&mut self, width: usize, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let cells = rows.start * width..rows.end * width;
-        let rows_of = |channel| rows_of(channel, &cells, width);
-        let mut state = self.state.each_mut().map(rows_of);
-        let mut push_derivatives = self.push_derivatives.each_mut().map(rows_of);
+        let mut state = self.state.each_mut().map(|own| rows_of(own, &cells, width));
+        let mut push_derivatives = self
+            .push_derivatives
+            .each_mut()
+            .map(|own| rows_of(own, &cells, width));
         let [regime, status, newton_steps] =
             [&mut self.regime, &mut self.status, &mut self.newton_steps]
                 .map(|codes| codes[cells.clone()].chunks_mut(width));
@@ -186,11 +188,7 @@ pub(super) struct RowMut<'a> {
 }
 
 /// The rows of these cells of a channel; none if it is not computed.
-fn rows_of<'a>(
-    channel: &'a mut Vec<f32>,
-    cells: &Range<usize>,
-    width: usize,
-) -> ChunksMut<'a, f32> {
+fn rows_of<'a>(channel: &'a mut [f32], cells: &Range<usize>, width: usize) -> ChunksMut<'a, f32> {
     let cells = if channel.is_empty() {
         0..0
     } else {

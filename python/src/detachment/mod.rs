@@ -1,0 +1,140 @@
+//! Detachments of many whiskers at many distances, on all threads.
+
+mod rows;
+
+use crate::arguments::{parameter, refused};
+use crate::errors::{SceneError, of_scene};
+use crate::scene::CheckedScene;
+use crate::threads::{self, ThreadCount};
+use crate::traces::single;
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+use rows::{DetachmentRows, RefusedRow};
+use std::collections::BTreeMap;
+use whiskmap::scene::{Parameter, Scene};
+use whiskmap::sensitivity::Derivatives;
+use whiskmap::trace::Detachment;
+
+/// Name of a quantity, its value, and its derivative.
+type Quantity = (
+    &'static str,
+    fn(&Detachment) -> Option<f64>,
+    fn(&Derivatives) -> f64,
+);
+
+/// Defines the quantities of an end that have derivatives, by the names of their fields.
+macro_rules! quantities {
+    ($($name:ident),*) => { [$((stringify!($name), |end| end.$name, |by| by.$name)),*] };
+}
+
+const QUANTITIES: [Quantity; 10] = quantities![
+    push_angle_deg,
+    push_chord_deg,
+    contact_distance_mm,
+    arc_length_mm,
+    contact_angle_deg,
+    force_un,
+    base_force_x_un,
+    base_force_y_un,
+    base_moment_nnm,
+    energy_nj
+];
+
+/// Name, values `[row]` and derivatives `[row][variable]` of a quantity; NaN where there is none.
+type QuantityArrays<'py> = (
+    &'static str,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+);
+
+/// Kinds of the ends, residuals, and quantities.
+type DetachmentArrays<'py> = (
+    Bound<'py, PyArray1<u8>>,
+    Bound<'py, PyArray1<f64>>,
+    Vec<QuantityArrays<'py>>,
+);
+
+/// Computes one detachment for each row, from numbers that are `fixed` and others that are `varying`, `[row]`. Derivatives are by `variables`.
+#[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "one argument of Python each")]
+pub fn detachment<'py>(
+    py: Python<'py>,
+    scene: Option<PyRef<'py, CheckedScene>>,
+    fixed: BTreeMap<String, f64>,
+    varying: BTreeMap<String, PyReadonlyArray1<'py, f64>>,
+    distance_mm: PyReadonlyArray1<'py, f64>,
+    is_cb: PyReadonlyArray1<'py, bool>,
+    variables: Vec<String>,
+    threads: Option<ThreadCount>,
+) -> PyResult<DetachmentArrays<'py>> {
+    let mut base = match &scene {
+        Some(scene) => {
+            single(&scene.0)?;
+            scene.0.to_builder()
+        }
+        None => Scene::builder("detachment"),
+    };
+    for (name, value) in &fixed {
+        base = base.set(parameter("argument", name)?, *value);
+    }
+    let columns = varying.iter();
+    let columns =
+        columns.map(|(name, values)| Ok((parameter("argument", name)?, values.as_slice()?)));
+    let variable = |name: String| {
+        name.parse()
+            .map_err(|must: String| refused("jac", &name, &must))
+    };
+    let taper = Parameter::Taper.name();
+    let rows = DetachmentRows {
+        base: base.push_angle_deg([0.0]),
+        varying: columns.collect::<PyResult<_>>()?,
+        distance_mm: distance_mm.as_slice()?,
+        is_cb: is_cb.as_slice()?,
+        variables: variables
+            .into_iter()
+            .map(variable)
+            .collect::<PyResult<_>>()?,
+        have_taper: fixed.contains_key(taper) || varying.contains_key(taper),
+    };
+    let (count, width) = (rows.distance_mm.len(), rows.variables.len());
+    let ends = threads::run(py, threads, |_| Ok(()), |cancel| rows.ends(cancel))?;
+    let ends = ends.map_err(|refused| of_row(py, &refused, count))?;
+    let mut kinds = vec![0; count];
+    for own in &ends {
+        kinds[own.row] = own.end.kind as u8;
+    }
+    let values = |value: fn(&Detachment) -> Option<f64>| {
+        let mut values = vec![f64::NAN; count];
+        for own in &ends {
+            values[own.row] = value(&own.end).unwrap_or(f64::NAN);
+        }
+        PyArray1::from_vec(py, values)
+    };
+    let quantities = QUANTITIES.map(|(name, value, derivative)| {
+        let mut by = vec![f64::NAN; count * width];
+        for own in &ends {
+            for (place, derivatives) in by[own.row * width..].iter_mut().zip(&own.by) {
+                *place = derivatives.as_ref().map_or(f64::NAN, derivative);
+            }
+        }
+        (name, values(value), PyArray1::from_vec(py, by))
+    });
+    let kinds = PyArray1::from_vec(py, kinds);
+    Ok((kinds, values(|end| end.residual), quantities.into()))
+}
+
+/// Returns the exception of a refused row, with its index if there are several.
+fn of_row(py: Python<'_>, refused: &RefusedRow, count: usize) -> PyErr {
+    let plain = of_scene(py, &refused.why);
+    if count == 1 {
+        return plain;
+    }
+    let exception = SceneError::new_err(format!("element {}: {}", refused.row, plain.value(py)));
+    for name in ["key", "value", "allowed"] {
+        let copied = plain.value(py).getattr(name);
+        if let Err(why) = copied.and_then(|value| exception.value(py).setattr(name, value)) {
+            return why;
+        }
+    }
+    exception
+}
