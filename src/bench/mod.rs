@@ -176,7 +176,8 @@ pub struct Report {
 /// Effort of a measurement: size of the sample, and number of runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Maximum number of push angles, and of distances, of the sample. Engines share work along a row, so rows are as long as in maps.
+    /// Maximum number of push angles, and maximum number of distances, of the sample of cells: `[push angles, distances]`. Engines share
+    /// work along a row, so rows are as long as in maps.
     pub sample: [usize; 2],
     /// Maximum number of push angles, and of distances, of whole maps.
     pub map_lines: usize,

@@ -20,7 +20,7 @@ pub struct QuantityComparison {
     pub largest_value: f64,
     /// Median of the differences of all compared cells, to 0.2 % of itself; smaller ones than 1e-38 count as 0.
     pub median: f64,
-    /// Largest difference, exact for the stored values.
+    /// Largest difference between the two maps, in the channel's unit, without rounding.
     pub largest: f64,
     /// Place of the largest difference, the first of equal ones; `None` if all values are equal.
     pub place: Option<CellPlace>,

@@ -106,7 +106,8 @@ pub struct RowBatch {
     pub has_points: bool,
     /// Base points of all rows of the batch, `[base_point]`; none before [`RowBatch::with_base_points`].
     pub base_points: Vec<BasePoint>,
-    /// Starts of the integration steps of the base points' trajectories, one trajectory after the other, `[step]`.
+    /// States of the whisker at the starts of the integration steps of every base point's trajectory, one trajectory after the other,
+    /// `[step]`. [`BaseTrajectory::steps`] is the number of a trajectory's steps.
     pub starts: Vec<StepStart>,
 }
 

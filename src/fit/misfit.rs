@@ -78,8 +78,8 @@ impl<'a> Misfit<'a> {
         })
     }
 
-    /// Returns the derivatives of the residuals by the parameters over their units, `[parameter][point]`: exact ones, or differences where a
-    /// point has none, as at first touch. `None` where the scene refuses the parameters on both sides.
+    /// Returns the derivative of each point's residual by each scaled parameter, `[parameter][point]`. All are exact, or all are differences
+    /// if a point has no exact one, as at first touch. `None` where the scene refuses the parameters on both sides.
     pub fn jacobian(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
         self.derivatives(parameters)
             .or_else(|| self.differences(parameters))

@@ -38,7 +38,7 @@ pub struct CurvatureFrame {
     pub at_arc_length_mm: f64,
     /// Position of the measured point, `[x, y]` in mm; `None` for that of the resting whisker.
     pub at_mm: Option<[f64; 2]>,
-    /// Contact; `None` without one.
+    /// Position and tangent of the whisker at the contact in this frame; `None` if the whisker is free.
     pub contact: Option<FrameContact>,
 }
 

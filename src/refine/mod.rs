@@ -59,7 +59,7 @@ impl CellTarget {
 /// Refined cell: its last state and the outcome.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refined {
-    /// Last state computed for the cell.
+    /// Last iterate of Newton's method in the cell: its solution if the outcome is a solution.
     pub state: ContactState,
     /// Number of Newton steps taken for the cell.
     pub steps: u32,

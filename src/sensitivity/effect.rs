@@ -18,7 +18,7 @@ row! {
         pub kind: DetachmentKind,
         /// Push angle at detachment, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Variable of the scene; its unit is at the end of its name.
+        /// Variable by which the push angle is differentiated: a parameter or the distance, with its unit at the end of its name.
         pub variable: Variable,
         /// Value of the variable in the scene, in its unit.
         pub value: Option<f64>,

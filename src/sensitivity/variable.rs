@@ -4,7 +4,7 @@ use crate::input::did_you_mean;
 use crate::scene::{Parameter, Scene, derivative_columns};
 use std::fmt;
 
-/// Variable of a derivative: a parameter of the scene, or a number of the push.
+/// Variable of a derivative: a parameter of the scene, the distance, the push angle, or one measured radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Variable {

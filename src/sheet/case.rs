@@ -3,7 +3,7 @@
 use crate::rod::{Rod, Side};
 use crate::shooting::batch::{Batch, Method, OutputSet};
 
-/// Whisker side to sample, with the integration method.
+/// Description of the sheet to sample: method of integration, rod, and side.
 #[derive(Clone, Copy, Debug)]
 pub struct SheetCase<'a> {
     /// Integration method of the sheet's trajectories.

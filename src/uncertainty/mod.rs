@@ -94,7 +94,7 @@ impl Draws {
         })
     }
 
-    /// Returns the number of random whiskers.
+    /// Returns the number of whiskers that were drawn at random.
     #[must_use]
     pub fn len(&self) -> usize {
         self.drawn.len()

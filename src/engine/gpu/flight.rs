@@ -33,7 +33,7 @@ pub struct Buffers {
     readback: Option<wgpu::Buffer>,
 }
 
-/// Flight: a submission on the device.
+/// Flight: cells that were submitted to the device and whose results are not read yet, with their buffers.
 #[derive(Debug)]
 pub struct Flight {
     /// Number of cells of the flight.

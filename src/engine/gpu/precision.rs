@@ -39,11 +39,11 @@ impl Precision {
         }
     }
 
-    /// Returns the limits of the shaders' certificate, by their names in WGSL.
+    /// Returns the limits of the shaders' certificate as pairs of the name in WGSL and the value.
     ///
-    /// `LEFT_BY_STEP` and `LARGEST_Q` are the refinement's. `JACOBIAN_ERROR` bounds the relative error of the Jacobian, a polynomial through
-    /// 16 states of the row. With 1e-6 and 4e-6, single random cells in `f64` missed the pole by 1.6 and 1.2 times their bound; with 6e-6
-    /// none did (`tests/machine/bound.rs`).
+    /// `LEFT_BY_STEP` and `LARGEST_Q` have the values of the refinement in `f64`. `JACOBIAN_ERROR` bounds the relative error of the
+    /// Jacobian, a polynomial through 16 states of the row. Its value is the least of three tried for which no random cell in `f64` missed
+    /// the pole by more than its bound (`tests/machine/bound.rs`).
     /// `ROUNDING_OF_MOTION` bounds the residual over the motion of base and pole from the base point to the cell: on random whiskers at
     /// most 5.8e-7 in `f32`, in the median 5e-8. `FARTHEST_REST` keeps the remainder of the resting parabola's series, some 100 times
     /// its 9th power, below rounding.

@@ -42,8 +42,8 @@ impl Scene {
         from_source(file, &origin, path)
     }
 
-    /// Checks the text of a scene and opens no file. Messages call the text `origin`, whose stem is the name of the output
-    /// where the scene gives none.
+    /// Returns the checked scene that the TOML `text` describes; opens no file. Messages call the text `origin`, whose stem is the name of
+    /// the output where the scene gives none.
     ///
     /// # Errors
     /// If the text is not TOML, names a CSV file, or has a key too many or too few. If a value is out of its range or contradicts another

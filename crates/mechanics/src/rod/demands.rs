@@ -74,7 +74,8 @@ impl Demands {
         Self { by_reach, pieces }
     }
 
-    /// Returns the reach of contacts at arclength `s`, in whisker lengths: an index.
+    /// Returns the index of the interval of contacts, a reach, in which the arclength `s`, in whisker lengths, lies. Reaches have equal width
+    /// in `log s`, and demands are tabulated for each of them.
     #[must_use]
     pub fn reach(s: f64) -> u32 {
         ((-REACHES_PER_OCTAVE * libm::log2(s)) as u32).min(REACHES - 1)

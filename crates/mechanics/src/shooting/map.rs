@@ -20,7 +20,7 @@ fn over(a: DVec2, b: DVec2) -> DVec2 {
     DVec2::new(b.x, -b.y).rotate(a) / b.length_squared()
 }
 
-/// Position of the pole, and its first derivatives by contact and load.
+/// Shooting map at one contact and load: position of the pole in whisker lengths, and its first derivatives by contact and load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShootingMap {
     /// Centre of the pole in the frame of the base, in whisker lengths.

@@ -52,7 +52,8 @@ pub trait Lanes: Real {
     }
 }
 
-/// A computation in lanes of type `T`.
+/// Function object that computes in lanes of type `T`: its fields are the arguments, and [`LanesTask::run`] is the body. It is compiled
+/// once for each instruction set.
 pub trait LanesTask<T: Lanes> {
     /// Result of the computation in lanes.
     type Output;

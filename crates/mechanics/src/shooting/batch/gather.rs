@@ -27,7 +27,7 @@ pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialConditio
     T::pack(numbers(conditions, number))
 }
 
-/// Contacts at which the trajectories of a block start, in lanes.
+/// Contacts at which the trajectories of a block start: each field has one number of every trajectory, in lanes.
 pub struct Contacts<'a, T> {
     /// Initial conditions of the trajectories, one for each lane.
     pub conditions: &'a Conditions<'a>,
