@@ -52,7 +52,7 @@ pub struct MapArgs {
     pub threads: Option<u32>,
     #[command(flatten)]
     tolerance: ToleranceArgs,
-    /// Compute and store only these channels, separated by commas; with friction, channels of states come with `status`
+    /// Compute and store only these channels, separated by commas
     /// [default: all]
     #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
     channels: Option<Channels>,
@@ -177,8 +177,7 @@ impl MapArgs {
         }
         let left_deg = self.tolerance.degrees().zip(accuracy.as_ref());
         let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));
-        let channels = self.channels.unwrap_or(Channels::ALL);
-        plan.channels = channels.with_marks(scene.has_friction());
+        plan.channels = self.channels.unwrap_or(Channels::ALL);
         plan.digits = self.digits.of(plan.channels)?;
         Ok(PlannedMap {
             plan,

@@ -202,7 +202,7 @@ fn run<E: From<Error> + Send>(
         plan.method.resolution = accuracy.resolution;
     }
     if let Some(channels) = options.channels {
-        plan.channels = channels.with_marks(scene.has_friction());
+        plan.channels = channels;
     }
     let left_deg = options.tolerance_deg.zip(accuracy);
     let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));

@@ -26,6 +26,7 @@ pub use effect::{VariableEffect, effects};
 pub use quantities::Derivatives;
 pub use variable::Variable;
 
+use crate::friction::Sliding;
 use crate::rod::{Rest, Rod, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Edge;
@@ -71,6 +72,11 @@ pub enum NoDerivative {
     /// The fold meets the tip, so that slip-off turns into pull-off.
     #[error("slip-off turns into pull-off here")]
     Corner,
+    /// The contact sticks or slides toward the base: its state depends on the whole push.
+    #[error(
+        "the contact does not slide toward the tip, so that the state depends on the whole push"
+    )]
+    Course,
     /// The equations of the state are singular: a state at a fold, or two folds that merge.
     #[error("the equations are singular here")]
     Singular,
@@ -142,7 +148,7 @@ pub fn branch(
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
     let states = Branch::new(whisker, pole, side, distance_mm)?.states(count)?;
     let states = states.into_iter().map(|(at, point)| StateDerivatives {
-        by: differentiated.at(Equations::Push, at.into(), distance_mm),
+        by: differentiated.of_state(at.into(), point.sliding, point.stable, distance_mm),
         point,
     });
     Ok(states.collect())
@@ -175,7 +181,7 @@ pub fn state(
     let state = branch.state(push_angle_deg.to_radians(), true)?;
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
     Ok(StateDerivatives {
-        by: differentiated.at(Equations::Push, [state.tau, state.load], distance_mm),
+        by: differentiated.of_state([state.tau, state.load], state.sliding, true, distance_mm),
         point: branch.point_of(&state),
     })
 }
@@ -230,6 +236,21 @@ impl<'a> Differentiated<'a> {
     fn none(&self, why: NoDerivative) -> Vec<Result<Derivatives, NoDerivative>> {
         let each = |by: &Result<_, NoDerivative>| Err(by.as_ref().err().copied().unwrap_or(why));
         self.by.iter().map(each).collect()
+    }
+
+    /// Returns the derivatives, `[variable]`, of a state of a branch at `(tau, load)` with this sliding direction. First touch is at
+    /// `distance_mm`.
+    fn of_state(
+        &self,
+        point: [f64; 2],
+        sliding: Option<Sliding>,
+        is_stable: bool,
+        distance_mm: f64,
+    ) -> Vec<Result<Derivatives, NoDerivative>> {
+        match sliding {
+            Some(Sliding::Base | Sliding::Sticks) if is_stable => self.none(NoDerivative::Course),
+            _ => self.at(Equations::Push, point, distance_mm),
+        }
     }
 
     /// Returns the derivatives, `[variable]`, of the state at `(tau, load)`, which `equations` determine. First touch is at `distance_mm`.
