@@ -87,6 +87,8 @@ pub mod bench;
 pub mod classify;
 #[doc(hidden)]
 pub mod engine;
+#[doc(hidden)]
+pub mod friction;
 mod front;
 #[doc(hidden)]
 pub mod input;

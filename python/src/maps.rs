@@ -40,9 +40,7 @@ pub fn map<'py>(
     let channels = channels
         .map(|names| arguments::channels(&names))
         .transpose()?;
-    let channels = channels
-        .unwrap_or(Channels::STANDARD)
-        .with_marks(scene.has_friction());
+    let channels = channels.unwrap_or(Channels::STANDARD);
     let done = Arc::new(AtomicUsize::new(0));
     let mut options = Options::default();
     options.engine = arguments::engine(engine)?;

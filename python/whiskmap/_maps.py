@@ -37,7 +37,7 @@ def map(
         Maximum error of push angles, in degrees; the finest steps if left out.
     channels : sequence of str, optional
         Names of the variables to compute, such as ``["regime", "force_un", "d_push_d_taper"]``; all but derivatives if left out.
-        `d_push_d_taper` is the derivative of the push angle at the row's detachment. With friction, states come with `status`.
+        `d_push_d_taper` is the derivative of the push angle at the row's detachment.
     progress : bool or callable
         True shows a progress bar if tqdm is installed. A callable gets the number of finished cells and of all cells.
     threads : int, optional

@@ -1,15 +1,10 @@
-//! Regimes and statuses of map cells, sliding directions and sticking.
+//! Regimes and statuses of map cells.
 //!
 //! [`RowBoundary::classify`] is total: every push angle and every status has a regime, possibly `unresolved`.
 
-mod history;
-mod limit;
 mod row;
-mod sliding;
 
-pub use history::ContactHistory;
 pub use row::{PushSpan, RowBoundary, TIE};
-pub use sliding::Sliding;
 
 /// Defines an enum whose variants each have a code, for files, and a name, for files and messages.
 macro_rules! named {
@@ -71,22 +66,22 @@ named! {
         BeyondFold = 2, "beyond the fold";
         /// The state found for the cell lies beyond the tip.
         BeyondTip = 3, "beyond the tip";
-        /// A state was found, but its contact slides toward the base, against the assumed friction. Regime and margin hold;
-        /// force and moment do not.
-        TowardBase = 4, "state found, but it slides toward the base, against the friction assumed";
-        /// A state was found, but its contact sticks after sliding toward the base, with less friction than a sliding one.
-        /// Regime and margin hold; contact, force and moment do not: they depend on the history of the push.
-        Sticking = 5, "state found, but it sticks where it was dragged before, with less friction than assumed";
+        /// A state of the cell was found, and its contact slides toward the base.
+        TowardBase = 4, "state found, it slides toward the base";
+        /// A state of the cell was found, and its contact sticks where its last sliding ended.
+        Sticking = 5, "state found, it sticks";
         /// Newton's method failed for the cell, and the fold did not decide.
         NotConverged = 101, "unresolved: Newton's method did not converge";
         /// The cell and the boundary of its row contradict each other.
         Disagreement = 102, "unresolved: cell and boundary disagree";
         /// The boundary of the cell's row was not found, or only in part.
         NoBoundary = 103, "unresolved: boundary not found";
+        /// With friction, the course of the contact up to the cell was not found, or it does not lead to the row's detachment.
+        NoCourse = 104, "unresolved: course of the contact not found";
     }
 }
 
 impl Status {
-    /// Statuses of solved cells whose friction differs from the assumed one.
-    pub const MARKS: [Self; 2] = [Self::TowardBase, Self::Sticking];
+    /// Statuses of states whose contact does not slide toward the tip.
+    pub const NOT_TOWARD_TIP: [Self; 2] = [Self::TowardBase, Self::Sticking];
 }

@@ -52,7 +52,7 @@ pub struct MapArgs {
     pub threads: Option<u32>,
     #[command(flatten)]
     tolerance: ToleranceArgs,
-    /// Compute and store only these channels, separated by commas; with friction, channels of states come with `status`
+    /// Compute and store only these channels, separated by commas
     /// [default: all but derivatives, such as d_push_d_taper]
     #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
     channels: Option<Channels>,

@@ -4,7 +4,7 @@ use super::arguments::whole;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::PictureFile;
-use super::selection::{SelectionArgs, channels, with_marks};
+use super::selection::{SelectionArgs, channels};
 use super::size::SizeArgs;
 use clap::Args;
 use std::io::{IsTerminal, Write};
@@ -83,8 +83,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     let missing = map.blank_missing()?;
     let channel = args.channel.as_deref();
     if let Some(name) = &args.channel {
-        let drawn = channels(&map, std::slice::from_ref(name))?;
-        with_marks(&args.file, &map, &drawn)?;
+        channels(&map, std::slice::from_ref(name))?;
     }
     let ends = args.range.as_deref().zip(channel);
     let range = ends

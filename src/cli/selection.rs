@@ -6,7 +6,6 @@ use clap::Args;
 use std::path::Path;
 use std::str::FromStr;
 use whiskmap::input::did_you_mean;
-use whiskmap::map::Channels;
 use whiskmap::scene::{Scene, digits};
 use whiskmap::store::{AxisValue, InvalidAxisValue, MapSlice, MapSource, scene_at};
 
@@ -60,26 +59,6 @@ fn name(chosen: &[(&'static str, f64)]) {
     for (name, value) in chosen {
         message(&format!("{name} = {}", digits(*value)));
     }
-}
-
-/// Returns the names of `channels` of the slice of `source`, with friction also `status`; warns if the slice has no `status`.
-pub fn with_marks(
-    source: &Path,
-    slice: &MapSlice,
-    channels: &[&'static str],
-) -> Result<Vec<&'static str>, Failure> {
-    let chosen = Channels::those(|name| channels.contains(&name));
-    let has_friction = chosen.has_state() && slice.has_friction()?;
-    let known = slice.channels();
-    if has_friction && !known.contains(&"status") {
-        message(&format!(
-            "warning: {} has friction, but no channel status: states whose contact slides toward the base or sticks have \
-             inexact contacts, forces and moments, and are not marked",
-            source.display()
-        ));
-    }
-    let marked = chosen.with_marks(has_friction);
-    Ok(marked.names().filter(|name| known.contains(name)).collect())
 }
 
 /// Returns the names of the `wanted` channels, or of all if there are none.

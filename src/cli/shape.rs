@@ -1,14 +1,13 @@
 //! Command `whiskmap shape`.
 
 use super::arguments::{angle, column_help, side, whole};
-use super::failure::{Failure, message};
+use super::failure::Failure;
 use super::files::Files;
 use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{Args, ValueEnum};
 use std::io::{self, Write};
 use std::path::PathBuf;
-use whiskmap::classify::Sliding;
 use whiskmap::render::{DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::rod::Side;
 use whiskmap::scene::digits;
@@ -90,16 +89,6 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let state = branch.state(push_deg.to_radians(), stable);
     let count = args.points as usize;
     let shape = WhiskerShape::new(&branch, &state.map_err(refused)?, count);
-    let how = match shape.state.sliding {
-        Some(Sliding::Base) => Some("slides toward the base"),
-        Some(Sliding::Sticks) => Some("sticks at an earlier position"),
-        Some(Sliding::Tip) | None => None,
-    };
-    if let Some(how) = how {
-        message(&format!(
-            "warning: the contact {how}, but friction is computed for a contact that slides toward the tip"
-        ));
-    }
     outputs.rows(&shape.points)?;
     let state_file = state_table.map(|mut table| {
         table.rows([&shape.state])?;

@@ -87,14 +87,8 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
             summary.audit.differing,
             "of them differed by more than the audit allows",
         ),
-        (
-            summary.toward_base,
-            "slide toward the base, against the assumed friction: force and moment are inexact",
-        ),
-        (
-            summary.sticking,
-            "stick at an earlier position, with less friction than assumed: contact, force and moment are inexact",
-        ),
+        (summary.toward_base, "slide toward the base"),
+        (summary.sticking, "stick where their last sliding ended"),
     ] {
         if cells > 0 {
             writeln!(out, "{cells:>12}  {what}")?;

@@ -132,11 +132,11 @@ impl RowBatch {
                 base_points: 0..0,
             }
         });
-        let rows: Vec<BatchRow> = rows.collect();
+        let rows = rows.collect();
         Self {
             method,
             has_values: true,
-            has_points: rows.iter().any(|row| sides[row.side].has_friction()),
+            has_points: false,
             sides,
             rows,
             pushes,

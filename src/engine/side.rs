@@ -1,6 +1,7 @@
 //! Whisker sides: one side of one whisker, and the channel values of its states in map units.
 
 use super::{BasePoint, Cell, Outcome, SideColumns, SpectralSheet};
+use crate::friction::FrictionState;
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
 use crate::rod::{Units, arclength};
@@ -71,6 +72,15 @@ impl WhiskerSide {
     #[must_use]
     pub fn values_at(&self, row: &Row, tau: f64, full: &FullState, push: f64) -> Values {
         values(&self.reader.read(tau, full, row.touch, push))
+    }
+
+    /// Returns the channel values `[channel]` of a state with friction of `row` at the signed `push`, in radians.
+    #[must_use]
+    pub fn values_with_friction(&self, row: usize, push: f64, state: &FrictionState) -> Values {
+        let rod = state.rod(&self.sheet.rod);
+        let reader = self.reader.with_contact(&rod);
+        let touch = self.sheet.rows[row].touch;
+        values(&reader.read(state.at.point.x, &state.full, touch, push))
     }
 
     /// Returns sizes of the channel values `[channel]` along a row with this `end`. Components of the force are as large as the force,

@@ -34,7 +34,7 @@ pub struct Options {
     pub tolerance_deg: Option<f64>,
     /// Engine that solves the cells of maps.
     pub engine: MapEngine,
-    /// Channels of maps to compute; `None` for all. Channels of states come with `status` where a whisker has friction.
+    /// Channels of maps to compute; `None` for all.
     pub channels: Option<Channels>,
     /// Function that is called with the number of finished cells and of all cells of a map, on the thread that computes it.
     pub on_progress: Option<Arc<dyn Fn(usize, usize) + Send + Sync>>,

@@ -3,10 +3,10 @@
 mod audit;
 mod doubt;
 mod fallback;
+mod friction;
 mod panel;
 mod pipeline;
 mod rows;
-mod sliding;
 mod stages;
 mod summary;
 

@@ -1,7 +1,7 @@
 //! Conversion of the cells of a row batch to panels: regimes, statuses and values.
 
+use super::friction::{self, FrictionRow};
 use super::panel::RowMut;
-use super::sliding::{self, FoundRow, FoundState};
 use super::{Panel, doubt};
 use crate::classify::{Regime, RowBoundary, Status, TIE};
 use crate::engine::{Cell, CellRun, Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
@@ -34,13 +34,13 @@ pub fn fill(
                     row: row.row,
                     boundary: RowBoundary::new(side.sheet.touches(row.row), crossings),
                     into,
-                    found: Vec::new(),
+                    contacts: Vec::new(),
                     doubtful: Vec::new(),
                 };
                 writer.write(cells, row.first)
             });
-            let found: Vec<FoundRow> = found.flatten_iter().collect();
-            sliding::mark(side, &found, [width, first_row], &mut panel.status);
+            let found: Vec<FrictionRow> = found.flatten_iter().collect();
+            friction::replace(side, &found, [width, first_row], panel);
         }
     });
 }
@@ -69,15 +69,15 @@ struct RowWriter<'a> {
     row: usize,
     boundary: RowBoundary,
     into: RowMut<'a>,
-    /// States with friction, with their columns of the side, for the history of the contact.
-    found: Vec<(usize, FoundState)>,
+    /// Cells in contact with friction that a push from first touch reaches: column of the side, and magnitude of the push in radians.
+    contacts: Vec<(usize, f64)>,
     /// Cells whose regime may be found by continuation, with their columns of the side.
     doubtful: Vec<(usize, Cell)>,
 }
 
 impl RowWriter<'_> {
-    /// Writes the row whose cells begin at `first`; cells in doubt are solved once more. Returns the states found if there is friction.
-    fn write(mut self, cells: &Cells, first: usize) -> Option<FoundRow> {
+    /// Writes the row whose cells begin at `first`; cells in doubt are solved once more. Returns the cells in contact if there is friction.
+    fn write(mut self, cells: &Cells, first: usize) -> Option<FrictionRow> {
         let (side, row) = (self.side, self.row);
         let columns = &side.columns.columns;
         let is_reached = side.sheet.rows[row].is_reached();
@@ -106,17 +106,23 @@ impl RowWriter<'_> {
         let doubtful = std::mem::take(&mut self.doubtful);
         if !doubtful.is_empty() {
             for (index, cell) in doubt::solve(side, row, &self.boundary, doubtful) {
-                self.found.retain(|(own, _)| *own != index);
+                self.contacts.retain(|(own, _)| *own != index);
                 self.write_run(index, cell.run());
             }
-            self.found.sort_unstable_by_key(|(index, _)| *index);
+            self.contacts.sort_unstable_by_key(|(index, _)| *index);
         }
-        let states: Vec<FoundState> = self.found.into_iter().map(|(_, state)| state).collect();
-        (!states.is_empty()).then_some(FoundRow { row, states })
+        // Without a push from first touch there is no history.
+        let end = self.boundary.detachment().map(|span| span.to);
+        let end = end.filter(|end| side.has_friction() && *end > TIE)?;
+        Some(FrictionRow {
+            row,
+            end,
+            contacts: self.contacts,
+        })
     }
 
     /// Writes a run of cells with one verdict, the first of which is in the column `from` of the side. Keeps those in doubt and, with
-    /// friction, the states.
+    /// friction, those in contact.
     fn write_run(&mut self, from: usize, cells: CellRun) {
         let columns: &SideColumns = &self.side.columns;
         let run = from..from + cells.steps.len();
@@ -170,22 +176,9 @@ impl RowWriter<'_> {
             let cells = run.clone().map(|index| (index, cells.get(index - from)));
             self.doubtful.extend(cells);
         }
-        if self.side.has_friction() && status == Status::Solved {
-            let points = run.zip(ours).zip(cells.points);
-            let found = points.map(|((index, column), point)| {
-                let (push, point) = (column.push.abs(), *point);
-                let column = column.index;
-                (
-                    index,
-                    FoundState {
-                        column,
-                        regime,
-                        point,
-                        push,
-                    },
-                )
-            });
-            self.found.extend(found);
+        if self.side.has_friction() && regime == Regime::Contact {
+            let contacts = run.zip(ours).map(|(index, own)| (index, own.push.abs()));
+            self.contacts.extend(contacts);
         }
     }
 }

@@ -92,7 +92,7 @@ pub struct Summary {
     pub worst_residual: f64,
     /// Number of cells whose own verdict contradicts the boundary of their row.
     pub disagreements: u64,
-    /// Number of cells with a state whose contact slides toward the base, against the friction assumed.
+    /// Number of cells with a state whose contact slides toward the base.
     pub toward_base: u64,
     /// Number of cells with a state whose contact sticks.
     pub sticking: u64,

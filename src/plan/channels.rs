@@ -125,17 +125,6 @@ impl Channels {
         Self::those(|other| other == name || self.contains(other))
     }
 
-    /// Returns the channels to store: with friction, channels of a state are stored with `status`, which marks inexact states
-    /// ([`Status::MARKS`](crate::classify::Status::MARKS)).
-    #[must_use]
-    pub fn with_marks(self, has_friction: bool) -> Self {
-        if has_friction && self.has_state() {
-            self.with("status")
-        } else {
-            self
-        }
-    }
-
     /// Returns true if the selection has the channel `name`.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {

@@ -4,13 +4,13 @@ use super::{BYTES_PER_VALUE, Channels, Plan, PlanError, fits};
 use crate::scene::{Parameter, Scene};
 
 impl Plan {
-    /// Returns the plan of a run of `scene` that computes these `channels`. With friction, channels of states come with `status`.
+    /// Returns the plan of a run of `scene` that computes these `channels`.
     ///
     /// # Errors
     /// When a derivative is by a parameter that the scene does not give, or derivatives take more than
     /// [`MEMORY_LIMIT`](super::MEMORY_LIMIT).
     pub fn with_channels(mut self, channels: Channels, scene: &Scene) -> Result<Self, PlanError> {
-        self.channels = channels.with_marks(scene.has_friction());
+        self.channels = channels;
         let mut derivatives = channels.derivatives();
         if let Some(absent) = derivatives.find(|own| !own.has_derivative(scene)) {
             let all = Parameter::ALL.into_iter();

@@ -1,7 +1,7 @@
 //! Pictures of stored maps: the regimes, or any channel.
 
 use super::boundary::stretches;
-use super::marks::{OFF, has_marks, is_mark};
+use super::marks::{MARKED, has_marks, is_mark};
 use super::{MapOptions, RenderError, labels, row};
 use crate::classify::Regime;
 use crate::scene::SweepAxis;
@@ -151,7 +151,7 @@ fn quantities(
     })?;
     let marks = has_marks(map, channel)?.then(|| {
         let fill = Fill::BLANK.hatched();
-        LegendEntry::swatch(fill, OFF)
+        LegendEntry::swatch(fill, MARKED)
     });
     Ok((Shading::Quantities(scale), marks.into_iter().collect()))
 }

@@ -1,6 +1,6 @@
 //! Line charts of maps with one row: a channel over the push angle.
 
-use super::marks::{OFF, has_marks, is_mark};
+use super::marks::{MARKED, has_marks, is_mark};
 use super::{MapOptions, RenderError, labels};
 use crate::store::{ChannelValues, MapSlice};
 use whiskmap_plot::{Chart, Ink, Line, Picture, Plot, Stroke};
@@ -41,10 +41,10 @@ pub fn chart(
             1 => Ink::Black,
             _ => Ink::Series(index),
         };
-        for (points, is_off) in parts(&grid.push_angle_deg, &values, marks.as_ref()) {
-            lines.push(match is_off {
+        for (points, is_marked) in parts(&grid.push_angle_deg, &values, marks.as_ref()) {
+            lines.push(match is_marked {
                 false => Line::new(points, ink, Stroke::Solid).named(name),
-                true => Line::new(points, ink, Stroke::Dashed).named(OFF),
+                true => Line::new(points, ink, Stroke::Dashed).named(MARKED),
             });
         }
     }
@@ -73,18 +73,19 @@ fn parts(
     values: &[f64],
     marks: Option<&ChannelValues>,
 ) -> Vec<(Vec<[f64; 2]>, bool)> {
-    let is_off = |i: usize| matches!(marks, Some(ChannelValues::U32(codes)) if is_mark(codes[i]));
+    let is_marked =
+        |i: usize| matches!(marks, Some(ChannelValues::U32(codes)) if is_mark(codes[i]));
     let mut parts: Vec<(Vec<[f64; 2]>, bool)> = Vec::new();
     for (i, (angle, value)) in angles.iter().zip(values).enumerate() {
         let point = [*angle, *value];
         let crosses = i > 0 && angles[i - 1] < 0.0 && *angle > 0.0;
         match parts.last_mut() {
-            Some((points, off)) if !crosses && *off == is_off(i) => points.push(point),
+            Some((points, own)) if !crosses && *own == is_marked(i) => points.push(point),
             Some((points, _)) if !crosses => {
                 let shared = points.last().copied();
-                parts.push((shared.into_iter().chain([point]).collect(), is_off(i)));
+                parts.push((shared.into_iter().chain([point]).collect(), is_marked(i)));
             }
-            _ => parts.push((vec![point], is_off(i))),
+            _ => parts.push((vec![point], is_marked(i))),
         }
     }
     parts

@@ -26,12 +26,13 @@ pub use effect::{VariableEffect, effects};
 pub use quantities::Derivatives;
 pub use variable::Variable;
 
+use crate::friction::Sliding;
 use crate::rod::{Rest, Rod, Side};
 use crate::scene::{Parameter, Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
 use crate::shooting::Resolution;
 use crate::trace::{
-    Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, crossing, detachments as ends,
+    Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, crossings, detachments as ends,
 };
 use linearised::{Equations, Linearised, RodAxes};
 use whisker::WhiskerDerivative;
@@ -71,6 +72,11 @@ pub enum NoDerivative {
     /// The fold meets the tip, so that slip-off turns into pull-off.
     #[error("slip-off turns into pull-off here")]
     Corner,
+    /// The contact sticks or slides toward the base: its state depends on the whole push.
+    #[error(
+        "the contact does not slide toward the tip, so that the state depends on the whole push"
+    )]
+    Course,
     /// The equations of the state are singular: a state at a fold, or two folds that merge.
     #[error("the equations are singular here")]
     Singular,
@@ -132,16 +138,17 @@ pub(crate) fn of_rows(
 ) -> Vec<Vec<(Parameter, f32)>> {
     let variables: Vec<Variable> = parameters.iter().copied().map(Variable::from).collect();
     let differentiated = Differentiated::new(resolution, whisker, pole, sheet.side, &variables);
-    let of_row = |(row, distance): (usize, &f64)| {
-        let by = differentiated.at_crossing(crossing(sheet, row).ok(), *distance);
+    let of_row = |(crossing, distance): (Result<&Crossing, _>, &f64)| {
+        let by = differentiated.at_crossing(crossing.ok(), *distance);
         let push = |by: Result<Derivatives, _>| by.map_or(f32::NAN, |by| by.push_angle_deg as f32);
-        parameters
-            .iter()
-            .copied()
-            .zip(by.into_iter().map(push))
-            .collect()
+        let parameters = parameters.iter().copied();
+        parameters.zip(by.into_iter().map(push)).collect()
     };
-    distances_mm.iter().enumerate().map(of_row).collect()
+    crossings(sheet)
+        .into_iter()
+        .zip(distances_mm)
+        .map(of_row)
+        .collect()
 }
 
 /// Computes `count` points of the branch of `whisker` at `pole` as [`Branch::points`] does, with their derivatives by each of `variables`:
@@ -160,7 +167,7 @@ pub fn branch(
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
     let states = Branch::new(whisker, pole, side, distance_mm)?.states(count)?;
     let states = states.into_iter().map(|(at, point)| StateDerivatives {
-        by: differentiated.at(Equations::Push, at.into(), distance_mm),
+        by: differentiated.of_state(at.into(), point.sliding, point.stable, distance_mm),
         point,
     });
     Ok(states.collect())
@@ -193,7 +200,7 @@ pub fn state(
     let state = branch.state(push_angle_deg.to_radians(), true)?;
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
     Ok(StateDerivatives {
-        by: differentiated.at(Equations::Push, [state.tau, state.load], distance_mm),
+        by: differentiated.of_state([state.tau, state.load], state.sliding, true, distance_mm),
         point: branch.point_of(&state),
     })
 }
@@ -264,6 +271,21 @@ impl<'a> Differentiated<'a> {
                 };
                 self.at(equations, [crossing.tau, crossing.load], distance_mm)
             }
+        }
+    }
+
+    /// Returns the derivatives, `[variable]`, of a state of a branch at `(tau, load)` with this sliding direction. First touch is at
+    /// `distance_mm`.
+    fn of_state(
+        &self,
+        point: [f64; 2],
+        sliding: Option<Sliding>,
+        is_stable: bool,
+        distance_mm: f64,
+    ) -> Vec<Result<Derivatives, NoDerivative>> {
+        match sliding {
+            Some(Sliding::Base | Sliding::Sticks) if is_stable => self.none(NoDerivative::Course),
+            _ => self.at(Equations::Push, point, distance_mm),
         }
     }
 

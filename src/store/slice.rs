@@ -167,19 +167,6 @@ impl MapSlice {
         self.stored.channels()
     }
 
-    /// Returns true if a whisker of the slice has friction with its pole, or this version cannot read the scene.
-    ///
-    /// # Errors
-    /// The map or store has no scene.
-    pub fn has_friction(&self) -> Result<bool, StoreError> {
-        let scene = self.scene()?;
-        let mut chosen = self.chosen.iter();
-        Ok(match chosen.find(|(name, _)| *name == "friction") {
-            Some((_, friction)) => *friction != 0.0,
-            None => scene.is_none_or(|scene| scene.has_friction()),
-        })
-    }
-
     /// Returns true if all whiskers of the whole map or store are straight; false if this version cannot read the scene.
     ///
     /// # Errors

@@ -1,14 +1,15 @@
 //! Solution branch at one pole: stable states from first touch to the fold, then unstable states.
 
 use super::columns::row;
+use super::contact::BranchState;
 use super::resample::{interpolate, targets};
 use super::{BranchMark, FINER, NoState};
-use crate::classify::{ContactHistory, Sliding};
+use crate::friction::{ContactHistory, Sliding};
 use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row};
 use crate::shooting::batch::Method;
-use crate::shooting::{FullState, PeakStrain, Reader, Reading};
+use crate::shooting::{PeakStrain, Reader, Reading};
 use glam::DVec2;
 use serde::Serialize;
 
@@ -18,6 +19,8 @@ pub struct Branch {
     pub(super) level: LevelCurve,
     pub(super) units: Units,
     pub(super) continuation: Continuation,
+    /// Sliding history of the contact; `None` without friction, and if it is not found.
+    pub(super) history: Option<ContactHistory>,
     distance_mm: f64,
 }
 
@@ -57,7 +60,7 @@ row! {
         pub det: f64,
         /// Mark: first-touch; slip-off, pull-off (stable); second-fold, tip (unstable).
         pub mark: Option<BranchMark>,
-        /// Sliding direction, with friction: tip; base or sticks (loads are inexact).
+        /// Sliding direction of the contact, with friction: tip, base or sticks.
         pub sliding: Option<Sliding>,
     }
 }
@@ -90,7 +93,10 @@ impl Branch {
             true => NoState::PulledOff { at_deg: 0.0 },
             false => NoState::Failed { push_deg: 0.0 },
         };
+        let has_friction = rod.friction != 0.0;
+        let histories = has_friction.then(|| ContactHistory::of(std::slice::from_ref(&level)));
         Ok(Self {
+            history: histories.and_then(|mut histories| histories.pop()?),
             continuation: followed.ok_or(none)?,
             units: whisker.units(),
             level,
@@ -156,48 +162,37 @@ impl Branch {
             });
         }
         let stable = fold_at.map_or(marked.len(), |fold| fold + 1);
-        let states = marked.iter().map(|(node, _)| (node.point, node.push));
-        let states: Vec<(DVec2, f64)> = states.collect();
-        let points = marked
-            .iter()
-            .zip(self.slidings(&states, stable))
-            .enumerate();
-        let points = points.map(|(i, ((node, mark), sliding))| {
+        let nodes: Vec<CurveNode> = marked.iter().map(|(node, _)| *node).collect();
+        let mut states = self.pushed(&nodes[..stable])?;
+        states.extend(self.beyond_fold(&nodes[stable..]));
+        let is_detachment =
+            |mark: &BranchMark| matches!(mark, BranchMark::SlipOff | BranchMark::PullOff);
+        let points = marked.iter().zip(states).enumerate();
+        let points = points.map(|(i, ((_, mark), state))| {
+            let mark = mark.filter(|mark| self.detaches() || !is_detachment(mark));
             let point = BranchPoint {
-                mark: *mark,
-                sliding,
-                ..self.point(node, fold_at.is_none_or(|fold| i <= fold))
+                mark,
+                ..self.point(&state, i < stable)
             };
-            (node.point, point)
+            (state.node.point, point)
         });
         Ok(points.collect())
     }
 
-    /// Returns the sliding direction at each of `states`, given as `(tau, load)` and push angle in radians, `[state]`; `None` without
-    /// friction. The first `stable` states are stable.
-    pub(super) fn slidings(&self, states: &[(DVec2, f64)], stable: usize) -> Vec<Option<Sliding>> {
-        let level = &self.level;
-        if level.rod.friction == 0.0 {
-            return vec![None; states.len()];
-        }
-        let (stable, unstable) = states.split_at(stable);
-        let history = ContactHistory::of(std::slice::from_ref(level))
-            .pop()
-            .flatten();
-        let sliding = |(_, push): &(DVec2, f64)| {
-            let sliding = history.as_ref().map(|history| history.sliding(push.abs()));
-            // A contact without a history counts as sticking.
-            Some(sliding.unwrap_or(Sliding::Sticks))
-        };
-        let unstable: Vec<DVec2> = unstable.iter().map(|(point, _)| *point).collect();
-        let unstable = Sliding::at(level.method, &level.rod, &unstable);
-        stable.iter().map(sliding).chain(unstable).collect()
+    /// Returns true if a push detaches at the end of the stable states. With friction, it does not if the contact sticks there.
+    fn detaches(&self) -> bool {
+        let end = self.stable_end_deg().to_radians().abs();
+        let history = self.history.as_ref();
+        self.level.rod.friction == 0.0 || history.is_some_and(|own| own.detaches_at(end))
     }
 
-    /// Returns the state `full` of the branch in mm, deg, uN and nN m. Its contact is at `tau`, and its push angle is `push` in radians.
-    pub(super) fn reading(&self, tau: f64, full: &FullState, push: f64) -> Reading {
-        let LevelCurve { rod, row, .. } = &self.level;
-        Reader::new(self.units, rod).read(tau, full, row.touch, push)
+    /// Returns the `state` of the branch in mm, deg, uN and nN m.
+    pub(super) fn reading(&self, state: &BranchState) -> Reading {
+        let CurveNode {
+            point, full, push, ..
+        } = &state.node;
+        let reader = Reader::new(self.units, &self.rod(state.ratio));
+        reader.read(point.x, full, self.level.row.touch, *push)
     }
 
     /// Returns the error of a failed continuation or corrector.
@@ -220,10 +215,11 @@ impl Branch {
         std::iter::once(0.0).chain(rest).collect()
     }
 
-    /// State at `node` as a point without mark and sliding direction.
-    pub(super) fn point(&self, node: &CurveNode, stable: bool) -> BranchPoint {
-        let LevelCurve { rod, side, row, .. } = &self.level;
-        let reading = self.reading(node.point.x, &node.full, node.push);
+    /// Returns `state` as a point without a mark.
+    pub(super) fn point(&self, state: &BranchState, stable: bool) -> BranchPoint {
+        let LevelCurve { side, row, .. } = &self.level;
+        let (node, rod) = (&state.node, &self.rod(state.ratio));
+        let reading = self.reading(state);
         let peak = PeakStrain::new(rod, node.point.x, node.point.y, FINER);
         BranchPoint {
             distance_mm: self.distance_mm,
@@ -245,7 +241,7 @@ impl Branch {
             det: node.full.map.det() * row.pole_distance
                 / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
             mark: None,
-            sliding: None,
+            sliding: state.sliding,
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Detachment curves: the ends of pushes from first touch, for each distance.
 
 use super::columns::row;
-use crate::classify::{RowBoundary, Sliding};
+use crate::classify::{RowBoundary, TIE};
+use crate::friction::{ContactHistory, Sliding};
 use crate::numerics::Bracket;
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Crossing, Edge, Sheet};
+use crate::sheet::{Crossing, Edge, LevelCurve, Sheet};
 use crate::shooting::batch::{Batch, Method};
 use crate::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 use serde::{Deserialize, Serialize};
@@ -62,7 +63,7 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Remaining error of the detachment, relative to the distance of the pole.
         pub residual: Option<f64>,
-        /// Sliding direction, with friction: tip, or base (loads are inexact).
+        /// Sliding direction at the detachment, with friction: tip.
         pub sliding: Option<Sliding>,
     }
 }
@@ -153,9 +154,7 @@ pub(crate) fn detachments(
     let reader = Reader::new(units, rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
     let sheet = Sheet::new(method, rod, side, &distances);
-    let rows = 0..distances.len();
-    let ends: Vec<Result<&Crossing, DetachmentKind>> =
-        rows.map(|row| crossing(&sheet, row)).collect();
+    let ends = crossings(&sheet);
     let points = ends.iter().flatten().map(|end| (end.tau, end.load));
     let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points);
     let mut states = states.into_iter();
@@ -207,17 +206,39 @@ pub(crate) fn detachments(
     .collect()
 }
 
-/// Returns the crossing of a row of `sheet` at which a push from first touch ends.
-///
-/// # Errors
-/// The reason why there is none.
-pub(crate) fn crossing(sheet: &Sheet, row: usize) -> Result<&Crossing, DetachmentKind> {
-    if !sheet.touches(row) {
-        return Err(DetachmentKind::OutOfReach);
+/// Returns the crossing of each row of `sheet` at which a push from first touch ends, `[row]`, or the reason why there is none.
+pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>> {
+    let detaches = detach(sheet);
+    let of_row = |row: usize| {
+        if !sheet.touches(row) {
+            return Err(DetachmentKind::OutOfReach);
+        }
+        let boundary = RowBoundary::new(true, &sheet.crossings[row]);
+        let end = boundary.detachment().and(sheet.crossings[row].first());
+        end.filter(|_| detaches[row])
+            .ok_or(DetachmentKind::Unresolved)
+    };
+    (0..sheet.rows.len()).map(of_row).collect()
+}
+
+/// Returns true for each row whose push from first touch ends where the stable states end, `[row]`. With friction, the contact may stick
+/// there.
+fn detach(sheet: &Sheet) -> Vec<bool> {
+    let mut detaches = vec![true; sheet.rows.len()];
+    if sheet.rod.friction == 0.0 {
+        return detaches;
     }
-    let boundary = RowBoundary::new(true, &sheet.crossings[row]);
-    let end = boundary.detachment().and(sheet.crossings[row].first());
-    end.ok_or(DetachmentKind::Unresolved)
+    let is_pushed = |row: &usize| {
+        let end = sheet.crossings[*row].first();
+        sheet.touches(*row) && end.is_some_and(|end| end.push > TIE)
+    };
+    let rows: Vec<usize> = (0..detaches.len()).filter(is_pushed).collect();
+    let levels: Vec<LevelCurve> = rows.iter().map(|row| sheet.level(*row)).collect();
+    for (row, history) in rows.into_iter().zip(ContactHistory::of(&levels)) {
+        let end = sheet.crossings[row][0].push;
+        detaches[row] = history.is_some_and(|history| history.detaches_at(end));
+    }
+    detaches
 }
 
 /// Computes the corner of the detachment curve of `whisker` on one `side`. Without a corner, distance and push angle are `None`, and

@@ -5,6 +5,7 @@
 
 mod branch;
 mod columns;
+mod contact;
 mod curve;
 mod peak;
 mod resample;
@@ -16,7 +17,7 @@ pub use curve::{
     Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, curve_without_strain,
     reach_mm,
 };
-pub(crate) use curve::{DetachmentEnd, crossing, detachments};
+pub(crate) use curve::{DetachmentEnd, crossings, detachments};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use state::StateAtPush;
 
@@ -114,6 +115,12 @@ pub enum NoState {
     NotUnstable {
         /// Signed push angles of the fold and of the end of the branch, in degrees: `[fold, end]`.
         ends_deg: [f64; 2],
+    },
+    /// With friction, the course of the contact up to the push angle was not found.
+    #[error("the course of the contact up to {push_deg:.9} deg was not found")]
+    NoCourse {
+        /// Signed push angle of the state, in degrees.
+        push_deg: f64,
     },
     /// The continuation of the branch failed.
     #[error("the continuation of the branch failed near {push_deg} deg")]

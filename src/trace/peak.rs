@@ -12,7 +12,10 @@ impl Branch {
     pub fn largest(&self, size: fn(&BranchPoint) -> f64) -> f64 {
         let nodes = &self.continuation.nodes;
         let stable = &nodes[..self.continuation.fold.map_or(nodes.len(), |fold| fold + 1)];
-        let of = |node: &CurveNode| size(&self.point(node, true));
+        let of = |node: &CurveNode| {
+            let states = self.pushed(std::slice::from_ref(node));
+            states.map_or(f64::NAN, |states| size(&self.point(&states[0], true)))
+        };
         let sizes: Vec<f64> = stable.iter().map(of).collect();
         let Some(best) = (0..sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b])) else {
             return f64::NAN;

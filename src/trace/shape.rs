@@ -63,7 +63,7 @@ impl WhiskerShape {
     /// Computes the shape in the state `found` on `branch`, at `count` points evenly spaced along the whisker and at the contact.
     #[must_use]
     pub fn new(branch: &Branch, found: &StateAtPush, count: usize) -> Self {
-        let (rod, row, units) = (&branch.level.rod, branch.row(), &branch.units);
+        let (rod, row, units) = (&*branch.rod(found.ratio), branch.row(), &branch.units);
         let contact = arclength(rod, found.tau).min(1.0);
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);

@@ -1,6 +1,8 @@
 //! State of a branch at a push angle.
 
+use super::contact::BranchState;
 use super::{Branch, BranchPoint, NoState};
+use crate::friction::Sliding;
 use crate::sheet::{Continuation, CurveNode};
 use crate::shooting::{FullState, Reading};
 use glam::DVec2;
@@ -18,31 +20,40 @@ pub struct StateAtPush {
     pub angle: f64,
     /// True if the state at the push angle is stable.
     pub stable: bool,
+    /// Force ratio of the state: tangential over normal force at the contact, with the sign of the side; 0 without friction.
+    pub ratio: f64,
+    /// Sliding direction of the contact; `None` without friction.
+    pub sliding: Option<Sliding>,
     /// Pole, pose of the base, force and energy of the state, in the frame of the contact, dimensionless.
     pub full: FullState,
+}
+
+impl StateAtPush {
+    fn on_branch(&self) -> BranchState {
+        BranchState {
+            node: CurveNode {
+                point: DVec2::new(self.tau, self.load),
+                full: self.full,
+                push: self.push,
+                angle: self.angle,
+            },
+            ratio: self.ratio,
+            sliding: self.sliding,
+        }
+    }
 }
 
 impl Branch {
     /// Returns the values of `state` in mm, deg, uN and nN m.
     #[must_use]
     pub fn read(&self, state: &StateAtPush) -> Reading {
-        self.reading(state.tau, &state.full, state.push)
+        self.reading(&state.on_branch())
     }
 
-    /// Returns `state` as a point of the branch without a mark, with its sliding direction.
+    /// Returns `state` as a point of the branch without a mark.
     #[must_use]
     pub fn point_of(&self, state: &StateAtPush) -> BranchPoint {
-        let node = CurveNode {
-            point: DVec2::new(state.tau, state.load),
-            full: state.full,
-            push: state.push,
-            angle: state.angle,
-        };
-        let slidings = self.slidings(&[(node.point, node.push)], usize::from(state.stable));
-        BranchPoint {
-            sliding: slidings[0],
-            ..self.point(&node, state.stable)
-        }
+        self.point(&state.on_branch(), state.stable)
     }
 
     /// Returns the state at the signed `push`, in radians, on the stable or the unstable part of the branch.
@@ -86,12 +97,20 @@ impl Branch {
                 (true, None, _) => NoState::PulledOff { at_deg },
             });
         };
+        let node = CurveNode { push, ..node };
+        let state = match stable {
+            true => self.pushed(&[node])?[0],
+            false => self.beyond_fold(&[node])[0],
+        };
+        let node = state.node;
         Ok(StateAtPush {
             tau: node.point.x,
             load: node.point.y,
             push,
             angle: node.angle,
             stable,
+            ratio: state.ratio,
+            sliding: state.sliding,
             full: node.full,
         })
     }

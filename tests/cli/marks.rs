@@ -1,11 +1,8 @@
-//! With friction, states that do not slide toward the tip keep the status that marks them.
+//! With friction, pictures hatch states that do not slide toward the tip.
 
 use super::{Place, Run, SCENE};
-use whiskmap::classify::Status;
 use whiskmap::map::Channels;
-use whiskmap::store::{
-    ChannelValues, MapDescription, MapWriter, StoredMap, TemporaryFiles, ZarrStore,
-};
+use whiskmap::store::{MapDescription, MapWriter, TemporaryFiles};
 
 /// Writes the small map with this friction into its own folder, and returns its name.
 fn place(friction: f64) -> Place {
@@ -20,88 +17,7 @@ fn good(run: Run) -> Run {
     run
 }
 
-const FEW: [&str; 3] = ["scene.toml", "--no-png", "--channels=regime,force_un"];
-
-#[test]
-fn a_map_with_friction_keeps_the_status_of_loads() {
-    for (friction, wanted) in [
-        (0.3, &["regime", "status", "force_un"][..]),
-        (0.0, &["regime", "force_un"]),
-    ] {
-        let place = place(friction);
-        place.map(&FEW);
-        place.map(&[&FEW[..], &["--format=zarr"]].concat());
-        let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
-        assert_eq!(map.channels(), wanted);
-        let store = ZarrStore::open(&place.path("outputs/scene.zarr")).unwrap();
-        assert!(store.channels.names().eq(wanted.iter().copied()));
-    }
-    // Verdicts and margins are exact with friction, too.
-    let place = place(0.3);
-    place.map(&["scene.toml", "--no-png", "--channels=regime,margin_deg"]);
-    let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
-    assert_eq!(map.channels(), ["regime", "margin_deg"]);
-    // A picture draws the line of detachments by the margins, and says if there are none.
-    let render = || {
-        place
-            .run(&["render", "outputs/scene.exr", "-o", "map.png"])
-            .err
-    };
-    assert_eq!(render(), "");
-    place.map(&["scene.toml", "--no-png", "--channels=regime"]);
-    assert_eq!(
-        render(),
-        "note: no detachment line is drawn: the map has no channel margin_deg\n"
-    );
-}
-
-/// Returns the number of marked cells of a map.
-fn marked(place: &Place) -> usize {
-    let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
-    let ChannelValues::U32(codes) = map.read_channel("status").unwrap() else {
-        panic!("codes are u32");
-    };
-    let marks = Status::MARKS.map(Status::code);
-    codes.iter().filter(|code| marks.contains(code)).count()
-}
-
-#[test]
-fn a_slice_with_friction_keeps_the_status_of_loads() {
-    let place = place(0.3);
-    place.map(&["scene.toml", "--no-png"]);
-    let extract = |arguments: &[&str]| {
-        let source = ["extract", "outputs/scene.exr"];
-        good(place.run(&[&source[..], arguments].concat()))
-    };
-    let table = |arguments: &[&str]| {
-        let run = extract(&[arguments, &["-o", "s.csv"]].concat());
-        assert_eq!(run.err, "");
-        let text = String::from_utf8(place.bytes("s.csv")).unwrap();
-        text.lines().next().unwrap().to_owned()
-    };
-    let axes = "distance_mm,push_angle_deg";
-    assert_eq!(
-        table(&["--channel=force_un"]),
-        format!("{axes},status,status_name,force_un")
-    );
-    assert_eq!(
-        table(&["--channel=margin_deg"]),
-        format!("{axes},margin_deg")
-    );
-    extract(&["--channel=energy_nj", "-o", "s.zarr"]);
-    let store = ZarrStore::open(&place.path("s.zarr")).unwrap();
-    assert!(store.channels.contains("status"));
-
-    let marked = marked(&place);
-    assert!(marked > 10);
-    let run = extract(&["--channel=force_un", "-o", "s.npy"]);
-    let warning = format!("warning: {marked} of 576 cells of force_un are inexact");
-    assert!(run.err.starts_with(&warning), "{run:?}");
-    assert!(run.err.contains("--channel status"), "{run:?}");
-    assert_eq!(extract(&["--channel=regime", "-o", "s.npy"]).err, "");
-}
-
-/// Writes a map without `status`, as older versions did.
+/// Writes a map without `status`.
 fn write_without_status(place: &Place) {
     let scene = whiskmap::scene::Scene::read(place.path("scene.toml")).unwrap();
     let map = whiskmap::map(&scene, whiskmap::Options::default()).unwrap();
@@ -121,29 +37,8 @@ fn write_without_status(place: &Place) {
 }
 
 #[test]
-fn a_source_without_status_is_warned_of() {
-    let commands = [
-        ["extract", "old.exr", "--channel=force_un", "-o", "s.csv"],
-        ["extract", "old.exr", "--channel=force_un", "-o", "s.npy"],
-        ["extract", "old.exr", "--channel=force_un", "-o", "s.zarr"],
-        ["render", "old.exr", "--channel=force_un", "-o", "s.png"],
-    ];
-    for (friction, is_warned) in [(0.3, true), (0.0, false)] {
-        let place = place(friction);
-        write_without_status(&place);
-        for command in commands {
-            let run = good(place.run(&command));
-            let warning = "warning: old.exr has friction, but no channel status";
-            assert_eq!(run.err.contains(warning), is_warned, "{run:?}");
-        }
-        let run = good(place.run(&["render", "old.exr", "-o", "s.png"]));
-        assert_eq!(run.err, "");
-    }
-}
-
-#[test]
 fn a_picture_of_loads_is_hatched() {
-    const LEGEND: &str = "off: friction is not as assumed";
+    const LEGEND: &str = "slides to base, or sticks";
     for (friction, is_hatched) in [(0.3, true), (0.0, false)] {
         let place = place(friction);
         place.map(&["scene.toml", "--no-png"]);

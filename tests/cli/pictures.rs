@@ -110,7 +110,7 @@ fn a_row_of_a_map_is_a_line_chart() {
         2,
         "one on each side of the push 0"
     );
-    assert!(!svg.contains("off: friction"));
+    assert!(!svg.contains("slides to base"));
     place.run(&row).assert_said(0, "");
     let regimes = String::from_utf8(place.bytes("p.svg")).unwrap();
     assert!(regimes.contains("<image"), "regimes have no values");
@@ -123,7 +123,7 @@ fn a_row_of_a_map_is_a_line_chart() {
     let run = place.run(&[&row[..], &["--channel", "force_un"]].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
-    assert!(svg.contains(">off: friction is not as assumed<"));
+    assert!(svg.contains(">slides to base, or sticks<"));
     assert_eq!(lines(&svg, "#222b33").len(), 3);
 }
 

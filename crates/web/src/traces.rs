@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use whiskmap::classify::Sliding;
+use whiskmap::friction::Sliding;
 use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{AxisValues, Scene};
 use whiskmap::trace::{NoState, StateAtPush, WhiskerPart, WhiskerShape};

@@ -1,11 +1,10 @@
 //! Output of one channel of a slice as a NumPy array.
 
-use super::super::failure::{Failure, message};
+use super::super::failure::Failure;
 use super::super::files::{Files, unwritten};
 use super::refuse;
 use std::io::{BufWriter, IntoInnerError, Write};
 use std::path::Path;
-use whiskmap::classify::Status;
 use whiskmap::store::{ChannelValues, MapSlice, Output};
 
 /// Writes the only channel of `channels` of a slice as a NumPy array.
@@ -43,33 +42,6 @@ pub fn array(
     let output = file.into_inner().map_err(IntoInnerError::into_error);
     let done = output.and_then(Output::finish);
     done.map_err(unwritten(path))
-}
-
-/// Prints the number of inexact states in an array. The array does not contain `status`, which marks them.
-pub fn warn_of_marks(
-    slice: &MapSlice,
-    channels: &[&'static str],
-    marked: &[&'static str],
-) -> Result<(), Failure> {
-    if channels == marked {
-        return Ok(());
-    }
-    let marks = Status::MARKS.map(Status::code);
-    let (mut off, mut cells) = (0, 0);
-    for whisker in slice.whiskers() {
-        if let ChannelValues::U32(codes) = slice.read_panel("status", whisker)? {
-            off += codes.iter().filter(|code| marks.contains(code)).count();
-            cells += codes.len();
-        }
-    }
-    if off > 0 {
-        let [sliding, sticking] = marks;
-        message(&format!(
-            "warning: {off} of {cells} cells of {} are inexact: their friction is not as assumed; --channel status marks them with {sliding} and {sticking}",
-            channels.join(", ")
-        ));
-    }
-    Ok(())
 }
 
 /// Returns the header of a NumPy file, version 1.0.

@@ -3,11 +3,11 @@
 mod array;
 mod table;
 
-use self::array::{array, warn_of_marks};
+use self::array::array;
 use self::table::table;
 use super::failure::Failure;
 use super::files::{Files, unwritten};
-use super::selection::{SelectionArgs, channels, with_marks};
+use super::selection::{SelectionArgs, channels};
 use clap::Args;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -35,8 +35,7 @@ pub struct ExtractArgs {
     source: PathBuf,
     #[command(flatten)]
     selection: SelectionArgs,
-    /// Extract this channel; may be repeated. With friction, channels of states come with `status`, except in an array
-    /// [default: all]
+    /// Extract this channel; may be repeated [default: all]
     #[arg(long, value_name = "NAME")]
     channel: Vec<String>,
     /// Write FILE; the ending selects a table (.csv), an array of one channel (.npy), a store (.zarr) or a map (.exr)
@@ -47,16 +46,12 @@ pub struct ExtractArgs {
 pub fn run(args: &ExtractArgs, files: &mut Files) -> Result<(), Failure> {
     let slice = args.selection.open(files, &args.source)?;
     let channels = channels(&slice, &args.channel)?;
-    let marked = with_marks(&args.source, &slice, &channels)?;
     let path = &args.output;
     match path.extension().and_then(|ending| ending.to_str()) {
-        Some("csv") => table(&slice, &marked, path, files)?,
-        Some("npy") => {
-            array(&slice, &channels, path, files)?;
-            warn_of_marks(&slice, &channels, &marked)?;
-        }
-        Some("zarr") => store(&slice, &marked, path, files)?,
-        Some("exr") => map(&slice, &marked, path, files)?,
+        Some("csv") => table(&slice, &channels, path, files)?,
+        Some("npy") => array(&slice, &channels, path, files)?,
+        Some("zarr") => store(&slice, &channels, path, files)?,
+        Some("exr") => map(&slice, &channels, path, files)?,
         _ => return refuse(path, "must end in .csv, .npy, .zarr or .exr"),
     }
     writeln!(io::stdout(), "{}", path.display())?;

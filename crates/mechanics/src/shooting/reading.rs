@@ -45,14 +45,26 @@ impl Reader {
     /// Creates the converter from states of `rod` to `units`.
     #[must_use]
     pub fn new(units: Units, rod: &Rod) -> Self {
-        let tangent = rod.contact_tangent();
         Self {
             units,
             taper: rod.taper,
             rest: Rest::new(rod),
+            to_pole: DVec2::ZERO,
+            tilt: 0.0,
+            normal: 1.0,
+        }
+        .with_contact(rod)
+    }
+
+    /// Returns this converter with the pole and the friction of `rod`, which is the same rod otherwise.
+    #[must_use]
+    pub fn with_contact(&self, rod: &Rod) -> Self {
+        let tangent = rod.contact_tangent();
+        Self {
             to_pole: rod.to_pole(),
             tilt: tangent.to_angle(),
             normal: tangent.x,
+            ..*self
         }
     }
 

@@ -1,7 +1,4 @@
 //! Sliding direction of the contact along the whisker.
-//!
-//! States are computed with the friction of a contact that slides toward the tip. A contact that slides toward the base has the
-//! opposite friction, and a contact that sticks has less. The computed force and moment do not hold for these.
 
 use crate::rod::{Rod, arclength};
 use crate::sheet::CurveNode;
@@ -14,9 +11,9 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sliding {
-    /// The contact slides toward the tip, as the friction of computed states assumes.
+    /// The contact slides toward the tip, with the limiting friction.
     Tip,
-    /// The contact slides toward the base, with the opposite friction.
+    /// The contact slides toward the base, with the opposite limiting friction.
     Base,
     /// The contact sticks where its last sliding ended, with less than the limiting friction.
     Sticks,

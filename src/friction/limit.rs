@@ -4,6 +4,7 @@
 //! every stable row.
 
 use super::sliding::{rate, slid};
+use super::states::FrictionPoint;
 use crate::numerics::newton_form::{Polynomial, through_runs};
 use crate::sheet::{Continuation, LevelCurve, NODE_MISS, continuations};
 use crate::shooting::FirstVariation;
@@ -12,7 +13,11 @@ use crate::shooting::batch::{Batch, InitialCondition};
 /// Slid distance of one row's contact by push angle, from first touch to the end of its stable states. It is the arclength of the contact
 /// minus the distance rolled around the pole, in whisker lengths.
 #[derive(Clone, Debug)]
-pub struct SlidingLimit(Vec<LimitSegment>);
+pub struct SlidingLimit {
+    /// Level curve of the limit, with the friction of its direction.
+    pub level: LevelCurve,
+    segments: Vec<LimitSegment>,
+}
 
 /// State at which a limit is interpolated.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +26,8 @@ struct SlidingKnot {
     push: f64,
     /// Slid distance, in whisker lengths.
     slid: f64,
+    /// Contact and load of the state, with the friction of the limit.
+    state: FrictionPoint,
     /// Derivative of the slid distance by the push; infinite at the fold.
     by_push: f64,
 }
@@ -57,6 +64,7 @@ impl SlidingLimit {
                     SlidingKnot {
                         push: node.push.abs(),
                         slid: slid(&level.rod, node),
+                        state: FrictionPoint::of(level, node),
                         by_push: if Some(i) == fold {
                             f64::INFINITY
                         } else {
@@ -67,29 +75,51 @@ impl SlidingLimit {
                 let knots: Vec<SlidingKnot> = knots.collect();
                 let segments = knots.windows(2);
                 let segments = segments.map(|pair| LimitSegment::new(pair[0], pair[1]));
-                Some(Self(segments.collect()))
+                Some(Self {
+                    level: level.clone(),
+                    segments: segments.collect(),
+                })
             })
             .collect()
     }
 
     /// Returns the push angles, in radians, of the limit's knots, then those between them at which the limit reverses.
     pub fn pushes(&self) -> impl Iterator<Item = f64> {
-        let knots = self.0.first().map(|first| first.from);
-        let knots = knots.into_iter().chain(self.0.iter().map(|to| to.to));
-        let reversals = self.0.iter().flat_map(LimitSegment::reversals);
+        let knots = self.segments.first().map(|first| first.from.push);
+        let ends = self.segments.iter().map(|segment| segment.to.push);
+        let knots = knots.into_iter().chain(ends);
+        let reversals = self.segments.iter().flat_map(LimitSegment::reversals);
         knots.chain(reversals.flatten())
+    }
+
+    /// Returns the push angle at which the stable states of the limit end, in radians.
+    pub fn end(&self) -> f64 {
+        self.segments.last().map_or(0.0, |last| last.to.push)
     }
 
     /// Returns true if the sliding limit moves toward the base anywhere.
     pub fn falls(&self) -> bool {
-        self.0.iter().any(LimitSegment::falls)
+        self.segments.iter().any(LimitSegment::falls)
     }
 
     /// Returns the slid distance at the push angle `push` (radians), in whisker lengths; `None` beyond the end.
     pub fn slid(&self, push: f64) -> Option<f64> {
-        let at = self.0.partition_point(|segment| segment.to <= push);
-        let segment = self.0.get(at).or(self.0.last())?;
-        (push <= segment.to).then(|| segment.at(push))
+        Some(self.segment(push)?.at(push))
+    }
+
+    /// Returns a state near that of the limit at the push angle `push` (radians); `None` beyond the end.
+    pub fn near(&self, push: f64) -> Option<FrictionPoint> {
+        let LimitSegment { from, to, .. } = self.segment(push)?;
+        let part = self.segment(push)?.part(push);
+        Some(from.state.lerp(&to.state, part))
+    }
+
+    fn segment(&self, push: f64) -> Option<&LimitSegment> {
+        let at = self
+            .segments
+            .partition_point(|segment| segment.to.push <= push);
+        let segment = self.segments.get(at).or(self.segments.last())?;
+        (push <= segment.to.push).then_some(segment)
     }
 }
 
@@ -97,9 +127,8 @@ impl SlidingLimit {
 /// second knot is a fold, it is 1 minus the square root of the fraction that is left.
 #[derive(Clone, Debug)]
 struct LimitSegment {
-    /// Push angles of the knots, in radians.
-    from: f64,
-    to: f64,
+    from: SlidingKnot,
+    to: SlidingKnot,
     /// True if the second knot is a fold.
     is_to_fold: bool,
     /// Slid distance, with a value and a slope at each knot.
@@ -119,21 +148,25 @@ impl LimitSegment {
         };
         let differences = through_runs(&[[from.slid], [to.slid]], &slopes.map(|slope| [slope]))[0];
         Self {
-            from: from.push,
-            to: to.push,
+            from,
+            to,
             is_to_fold,
             cubic: Polynomial::on_even_nodes(2, differences.map(|[difference]| difference)),
         }
     }
 
-    fn at(&self, push: f64) -> f64 {
-        let fraction = (push - self.from) / (self.to - self.from);
-        let x = if self.is_to_fold {
+    /// Variable `x` at the push angle `push`, in radians.
+    fn part(&self, push: f64) -> f64 {
+        let fraction = (push - self.from.push) / (self.to.push - self.from.push);
+        if self.is_to_fold {
             1.0 - (1.0 - fraction).max(0.0).sqrt()
         } else {
             fraction
-        };
-        self.cubic.at(x).0
+        }
+    }
+
+    fn at(&self, push: f64) -> f64 {
+        self.cubic.at(self.part(push)).0
     }
 
     /// Returns true if the slid distance falls anywhere.
@@ -153,7 +186,7 @@ impl LimitSegment {
         [q / (3.0 * c3), c1 / q].map(|x| {
             let fraction = if self.is_to_fold { x * (2.0 - x) } else { x };
             let is_within = x > 0.0 && x < 1.0;
-            is_within.then_some(fraction.mul_add(self.to - self.from, self.from))
+            is_within.then_some(fraction.mul_add(self.to.push - self.from.push, self.from.push))
         })
     }
 }
@@ -166,6 +199,7 @@ mod tests {
         SlidingKnot {
             push,
             slid,
+            state: FrictionPoint::default(),
             by_push,
         }
     }

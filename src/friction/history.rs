@@ -1,0 +1,183 @@
+//! Sliding and sticking of the contact along a push (Prandtl's play operator).
+//!
+//! With friction the contact lies between two limits. At the tip limit it slides toward the tip. At the base limit it slides toward the
+//! base, with the opposite sign of friction. At first touch both limits coincide. A push moves the limits. A limit that reaches the
+//! contact moves it; between the limits the contact sticks.
+
+use super::Sliding;
+use super::limit::SlidingLimit;
+use crate::rod::Rod;
+use crate::sheet::LevelCurve;
+
+/// Sliding history of the contact of one row, along a push from first touch.
+#[derive(Clone, Debug)]
+pub struct ContactHistory {
+    tip: SlidingLimit,
+    /// The base limit; `None` if the tip limit never moves toward the base, so that it alone moves the contact.
+    base: Option<SlidingLimit>,
+    /// Contact at pushes between which neither limit reverses.
+    knots: Vec<HistoryKnot>,
+}
+
+/// Contact at a push of its history.
+#[derive(Clone, Copy, Debug)]
+struct HistoryKnot {
+    /// Push angle, a magnitude, in radians.
+    push: f64,
+    /// Slid distance, in whisker lengths.
+    slid: f64,
+    /// Last state in which the contact slid.
+    end: SlidingEnd,
+}
+
+/// State of a limit at which a contact slid last before it stuck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlidingEnd {
+    /// Direction in which the contact slid: toward the tip or the base.
+    pub limit: Sliding,
+    /// Push angle at which the sliding ended, a magnitude, in radians.
+    pub push: f64,
+}
+
+/// Phase of the contact at a push angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactPhase {
+    /// The contact slides toward the tip or the base, at that limit.
+    Slides(Sliding),
+    /// The contact sticks where its sliding ended.
+    Sticks(SlidingEnd),
+}
+
+impl ContactPhase {
+    /// Returns the sliding direction of the phase.
+    #[must_use]
+    pub const fn sliding(self) -> Sliding {
+        match self {
+            Self::Slides(limit) => limit,
+            Self::Sticks(_) => Sliding::Sticks,
+        }
+    }
+}
+
+impl ContactHistory {
+    /// Computes the sliding histories of rows that begin at first touch, `[row]`; `None` where the continuation fails. All rows have one
+    /// method, and their trajectories share batches.
+    #[must_use]
+    pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
+        let tips = SlidingLimit::of(levels);
+        let falls = |tip: &Option<SlidingLimit>| tip.as_ref().is_some_and(SlidingLimit::falls);
+        let falling = levels.iter().zip(&tips).filter(|(_, tip)| falls(tip));
+        let opposed: Vec<LevelCurve> = falling.map(|(level, _)| opposed(level)).collect();
+        let mut bases = SlidingLimit::of(&opposed).into_iter();
+        let with_base = |tip: Option<SlidingLimit>| {
+            let base = if falls(&tip) {
+                Some(bases.next()??)
+            } else {
+                None
+            };
+            Some(Self::new(tip?, base))
+        };
+        tips.into_iter().map(with_base).collect()
+    }
+
+    fn new(tip: SlidingLimit, base: Option<SlidingLimit>) -> Self {
+        let limits = [Some(&tip), base.as_ref()].into_iter().flatten();
+        let mut pushes: Vec<f64> = limits.flat_map(SlidingLimit::pushes).collect();
+        pushes.sort_by(f64::total_cmp);
+        let mut knot = HistoryKnot {
+            push: 0.0,
+            slid: tip.slid(0.0).unwrap_or_default(),
+            end: SlidingEnd {
+                limit: Sliding::Tip,
+                push: 0.0,
+            },
+        };
+        let mut history = Self {
+            knots: vec![knot],
+            tip,
+            base,
+        };
+        for push in pushes {
+            knot = history.advance(&knot, push).0;
+            history.knots.push(knot);
+        }
+        history
+    }
+
+    /// Contact at `push`, and the limit at the contact, if any. No limit may reverse between the push of `from` and `push`.
+    fn advance(&self, from: &HistoryKnot, push: f64) -> (HistoryKnot, Option<Sliding>) {
+        let slid = from.slid;
+        let tip = self.tip.slid(push).filter(|tip| *tip >= slid);
+        let base = self.base.as_ref().and_then(|base| base.slid(push));
+        let (slid, limit) = match (tip, base.filter(|base| *base <= slid)) {
+            (Some(tip), _) if tip > slid => (tip, Some(Sliding::Tip)),
+            (_, Some(base)) if base < slid => (base, Some(Sliding::Base)),
+            (Some(tip), _) => (tip, Some(Sliding::Tip)),
+            (_, base) => (slid, base.map(|_| Sliding::Base)),
+        };
+        let end = limit.map_or(from.end, |limit| SlidingEnd { limit, push });
+        (HistoryKnot { push, slid, end }, limit)
+    }
+
+    /// Returns the phase of the contact at `push`, a magnitude in radians.
+    #[must_use]
+    pub fn phase(&self, push: f64) -> ContactPhase {
+        let Some(base) = &self.base else {
+            return ContactPhase::Slides(Sliding::Tip);
+        };
+        // The end of the boundary may lie a rounding beyond that of the limit.
+        let push = push.min(self.tip.end());
+        let after = self.knots.partition_point(|knot| knot.push < push).max(1);
+        let before = &self.knots[after - 1];
+        // Where both limits coincide, as near first touch, rounding hides which one moves. The next push shows it.
+        let is_at = |limit: &SlidingLimit| {
+            limit
+                .slid(push)
+                .is_some_and(|at| (at - before.slid).abs() < f64::EPSILON)
+        };
+        let mut ahead = self.knots[after..].iter().filter(|knot| knot.push > push);
+        let limit = match ahead.next() {
+            Some(next) if is_at(&self.tip) && is_at(base) => self.advance(before, next.push).1,
+            _ => self.advance(before, push).1,
+        };
+        limit.map_or(ContactPhase::Sticks(before.end), ContactPhase::Slides)
+    }
+
+    /// Returns the limit of a sliding `direction`; `None` for a contact that sticks, and for a base limit that never moves the contact.
+    pub(super) fn limit(&self, direction: Sliding) -> Option<&SlidingLimit> {
+        match direction {
+            Sliding::Tip => Some(&self.tip),
+            Sliding::Base => self.base.as_ref(),
+            Sliding::Sticks => None,
+        }
+    }
+
+    /// Returns the first state in which the contact slides again after it stuck at `push`, approximately; `None` if it never does.
+    pub(super) fn next_sliding(&self, push: f64) -> Option<SlidingEnd> {
+        let ahead = self.knots.iter().filter(|knot| knot.push > push);
+        let mut ahead = ahead.map(|knot| knot.end);
+        ahead.find(|end| end.push > push)
+    }
+
+    /// Returns true if a push detaches at `push`, a magnitude in radians, where the stable states of the tip limit end. It does not if
+    /// the contact sticks or slides toward the base there.
+    #[must_use]
+    pub fn detaches_at(&self, push: f64) -> bool {
+        let end = self.tip.end();
+        let is_end = (push - end).abs() <= SAME_END * (1.0 + end);
+        is_end && self.phase(end) == ContactPhase::Slides(Sliding::Tip)
+    }
+}
+
+/// Maximum difference between the ends of a limit and of the boundary of its row, in parts of a radian and of the push. The two are
+/// computed apart, and may take different numbers of steps.
+const SAME_END: f64 = 1e-5;
+
+/// Level curve of the row of `level` with the opposite sign of friction.
+fn opposed(level: &LevelCurve) -> LevelCurve {
+    let rod = Rod {
+        friction: -level.rod.friction,
+        ..level.rod.clone()
+    };
+    LevelCurve::new(level.method, &rod, level.side, &level.row)
+}

@@ -1,0 +1,14 @@
+//! Friction of the contact along a push: limits of sliding, their history, and the states that follow from it.
+//!
+//! The force ratio is the tangential over the normal force at the contact, with the sign of the side. A contact that slides toward the tip
+//! has the force ratio `mu`, one that slides toward the base `-mu` (Coulomb). A contact that sticks has a force ratio between them, which
+//! follows from its slid distance. [`ContactHistory`] says which of the three holds at a push angle; [`states`] solves for the state.
+
+mod history;
+mod limit;
+mod sliding;
+mod states;
+
+pub use history::{ContactHistory, ContactPhase, SlidingEnd};
+pub use sliding::Sliding;
+pub use states::{ContactQuery, FrictionPoint, FrictionState, states};

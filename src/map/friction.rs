@@ -1,0 +1,163 @@
+//! States with friction that the engines do not compute: contacts that slide toward the base or stick. Engines compute all states with
+//! the friction of a contact that slides toward the tip.
+
+use super::Panel;
+use crate::classify::{Regime, Status};
+use crate::engine::{Values, WhiskerSide};
+use crate::friction::{ContactHistory, ContactPhase, ContactQuery, FrictionState, Sliding, states};
+use crate::sheet::{LevelCurve, rows_per_batch};
+use rayon::prelude::*;
+
+/// Row of a side with friction.
+pub struct FrictionRow {
+    /// Index of the row in the sheet.
+    pub row: usize,
+    /// Push angle at which a push from first touch detaches, a magnitude in radians.
+    pub end: f64,
+    /// Cells in contact that a push from first touch reaches: index of the column on the side, and magnitude of the push in radians.
+    pub contacts: Vec<(usize, f64)>,
+}
+
+/// Cell whose friction is not that of a contact that slides toward the tip.
+struct FrictionCell {
+    /// Index of the cell in the panel.
+    cell: usize,
+    /// Sliding direction of the contact; `None` if it is not found.
+    sliding: Option<Sliding>,
+    /// State of the cell and its channel values `[channel]`; `None` at first touch, where friction changes nothing, and if no state is
+    /// found.
+    state: Option<(FrictionState, Values)>,
+}
+
+/// Replaces the states of `rows` of `side` that do not slide toward the tip, in a `panel` that is `width` cells wide and begins with the
+/// row `first_row`. Cells beyond a detachment that the contact does not reach become unresolved.
+pub fn replace(
+    side: &WhiskerSide,
+    rows: &[FrictionRow],
+    [width, first_row]: [usize; 2],
+    panel: &mut Panel,
+) {
+    let found = rows.par_chunks(rows_per_batch(rows.len())).map(|rows| {
+        let levels: Vec<LevelCurve> = rows.iter().map(|row| side.sheet.level(row.row)).collect();
+        let histories = ContactHistory::of(&levels);
+        let cells = cells(side, rows, &histories, [width, first_row]);
+        let ends = rows.iter().zip(histories).filter(|(row, history)| {
+            let detaches = history.as_ref().map(|own| own.detaches_at(row.end));
+            detaches != Some(true)
+        });
+        let ends: Vec<usize> = ends.map(|(row, _)| row.row - first_row).collect();
+        (cells, ends)
+    });
+    for (cells, endless) in found.collect::<Vec<_>>() {
+        for cell in &cells {
+            write(cell, panel);
+        }
+        for row in endless {
+            let columns = side.columns.columns.iter();
+            for cell in columns.map(|column| row * width + column.index) {
+                leave_end_open(cell, panel);
+            }
+        }
+    }
+}
+
+/// The cells of `rows` that do not slide toward the tip, with their states.
+fn cells(
+    side: &WhiskerSide,
+    rows: &[FrictionRow],
+    histories: &[Option<ContactHistory>],
+    [width, first_row]: [usize; 2],
+) -> Vec<FrictionCell> {
+    let columns = &side.columns.columns;
+    let mut unsolved = Vec::new();
+    let mut queries = Vec::new();
+    let mut wanted = Vec::new();
+    for (row, history) in rows.iter().zip(histories) {
+        for (index, push) in &row.contacts {
+            let column = &columns[*index];
+            let cell = (row.row - first_row) * width + column.index;
+            let phase = history.as_ref().map(|history| history.phase(*push));
+            let sliding = phase.map(ContactPhase::sliding);
+            if let (Some(history), Some(phase)) = (history, phase)
+                && *push > 0.0
+            {
+                if sliding != Some(Sliding::Tip) {
+                    wanted.push((row.row, column.push, cell));
+                    queries.push(ContactQuery {
+                        history,
+                        push: *push,
+                        phase,
+                    });
+                }
+            } else if sliding != Some(Sliding::Tip) {
+                unsolved.push(FrictionCell {
+                    cell,
+                    sliding,
+                    state: None,
+                });
+            }
+        }
+    }
+    let solved = wanted.into_iter().zip(states(&queries));
+    let solved = solved.map(|((row, push, cell), state)| {
+        let state = state.map(|state| (state, side.values_with_friction(row, push, &state)));
+        FrictionCell {
+            cell,
+            sliding: state.as_ref().map(|(state, _)| state.sliding),
+            state,
+        }
+    });
+    unsolved.into_iter().chain(solved).collect()
+}
+
+/// Writes a cell into the `panel`.
+fn write(found: &FrictionCell, panel: &mut Panel) {
+    let cell = found.cell;
+    let status = match found.sliding {
+        Some(Sliding::Tip) => Status::Solved,
+        Some(Sliding::Base) => Status::TowardBase,
+        Some(Sliding::Sticks) => Status::Sticking,
+        None => Status::NoCourse,
+    };
+    panel.status[cell] = status.code();
+    if status == Status::NoCourse {
+        unresolve(cell, panel);
+        return;
+    }
+    let Some((state, values)) = &found.state else {
+        return;
+    };
+    panel.newton_steps[cell] += state.steps;
+    panel.residual[cell] = state.residual as f32;
+    for (channel, value) in panel.state.iter_mut().zip(values) {
+        if let Some(own) = channel.get_mut(cell) {
+            *own = *value as f32;
+        }
+    }
+}
+
+/// Makes a cell of the `panel` unresolved.
+fn unresolve(cell: usize, panel: &mut Panel) {
+    panel.regime[cell] = Regime::Unresolved.code();
+    panel.status[cell] = Status::NoCourse.code();
+    panel.margin_deg[cell] = f32::NAN;
+    for channel in &mut panel.state {
+        if let Some(own) = channel.get_mut(cell) {
+            *own = f32::NAN;
+        }
+    }
+}
+
+/// Removes the margin of a cell in contact from the `panel`, and makes a cell without contact unresolved: the push does not end where the
+/// boundary of the row is.
+fn leave_end_open(cell: usize, panel: &mut Panel) {
+    let regime = panel.regime[cell];
+    if regime == Regime::Contact.code() {
+        panel.margin_deg[cell] = f32::NAN;
+    } else if [Regime::SlipOff, Regime::PullOff]
+        .map(Regime::code)
+        .contains(&regime)
+    {
+        unresolve(cell, panel);
+    }
+}

@@ -1,0 +1,106 @@
+//! States of a branch with friction: those of the course of the contact in place of those that slide toward the tip.
+
+use super::{Branch, NoState};
+use crate::friction::{ContactPhase, ContactQuery, FrictionState, Sliding, states};
+use crate::rod::Rod;
+use crate::sheet::CurveNode;
+use glam::DVec2;
+use std::borrow::Cow;
+
+/// State of a branch with the friction of its contact.
+#[derive(Clone, Copy, Debug)]
+pub struct BranchState {
+    /// Contact, load, pose and angles of the state.
+    pub node: CurveNode,
+    /// Force ratio of the state: tangential over normal force, with the sign of the side.
+    pub ratio: f64,
+    /// Sliding direction of the contact; `None` without friction.
+    pub sliding: Option<Sliding>,
+}
+
+impl Branch {
+    /// Returns the stable states of a push at the push angles of `nodes`, `[node]`. A node is the state of a contact that slides toward the
+    /// tip.
+    ///
+    /// # Errors
+    /// With friction, the course of the contact up to a push angle, or the state there, is not found.
+    pub(super) fn pushed(&self, nodes: &[CurveNode]) -> Result<Vec<BranchState>, NoState> {
+        let sign = self.level.side.sign();
+        let friction = self.level.rod.friction;
+        let unmoved = |node: &CurveNode, sliding| BranchState {
+            node: *node,
+            ratio: friction,
+            sliding,
+        };
+        if friction == 0.0 {
+            return Ok(nodes.iter().map(|node| unmoved(node, None)).collect());
+        }
+        let lost = |node: &CurveNode| NoState::NoCourse {
+            push_deg: node.push.to_degrees(),
+        };
+        let Some(history) = &self.history else {
+            return Err(lost(&nodes[0]));
+        };
+        let phases = nodes.iter().map(|node| history.phase(sign * node.push));
+        let phases: Vec<ContactPhase> = phases.collect();
+        // At first touch there is no load, and so no friction.
+        let is_moved = |phase: &ContactPhase, node: &CurveNode| {
+            phase.sliding() != Sliding::Tip && sign * node.push > 0.0
+        };
+        let pairs = || nodes.iter().zip(&phases);
+        let moved = pairs().filter(|(node, phase)| is_moved(phase, node));
+        let queries = moved.map(|(node, phase)| ContactQuery {
+            history,
+            push: sign * node.push,
+            phase: *phase,
+        });
+        let mut found = states(&queries.collect::<Vec<_>>()).into_iter();
+        let pushed = pairs().map(|(node, phase)| {
+            if !is_moved(phase, node) {
+                return Ok(unmoved(node, Some(phase.sliding())));
+            }
+            let state: FrictionState = found.next().flatten().ok_or_else(|| lost(node))?;
+            Ok(BranchState {
+                node: CurveNode {
+                    point: state.at.point,
+                    full: state.full,
+                    push: node.push,
+                    angle: state.at.angle,
+                },
+                ratio: state.at.ratio,
+                sliding: Some(state.sliding),
+            })
+        });
+        pushed.collect()
+    }
+
+    /// Returns the unstable states `nodes` with the direction in which their contact slides in the direction of continuation, `[node]`.
+    /// They have the friction of a contact that slides toward the tip.
+    pub(super) fn beyond_fold(&self, nodes: &[CurveNode]) -> Vec<BranchState> {
+        let level = &self.level;
+        let points: Vec<DVec2> = nodes.iter().map(|node| node.point).collect();
+        let slidings = match level.rod.friction {
+            0.0 => vec![None; nodes.len()],
+            _ => Sliding::at(level.method, &level.rod, &points),
+        };
+        let states = nodes.iter().zip(slidings);
+        let states = states.map(|(node, sliding)| BranchState {
+            node: *node,
+            ratio: level.rod.friction,
+            sliding,
+        });
+        states.collect()
+    }
+
+    /// Returns the rod of the branch with the force ratio `ratio` as its friction.
+    pub(super) fn rod(&self, ratio: f64) -> Cow<'_, Rod> {
+        let rod = &self.level.rod;
+        if ratio == rod.friction {
+            return Cow::Borrowed(rod);
+        }
+        Cow::Owned(Rod {
+            friction: ratio,
+            ..rod.clone()
+        })
+    }
+}

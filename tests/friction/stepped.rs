@@ -1,0 +1,160 @@
+//! Independent integration of a push with friction: small steps of the push, each of which first tries a contact that sticks. It shares
+//! no code with the library: Runge-Kutta's method in the contact's frame, and Newton's method with difference quotients.
+
+/// Conical whisker with a parabola at rest in front of a pole. Lengths are in whisker lengths.
+#[derive(Clone, Copy)]
+pub struct SteppedWhisker {
+    pub taper: f64,
+    /// Coefficient of the parabola times the length.
+    pub bend: f64,
+    /// Radius of the pole.
+    pub pole: f64,
+    pub friction: f64,
+    /// +1 for CB, -1 for CF.
+    pub side: f64,
+}
+
+/// Contact with its loads: `tau`, normal force and force ratio, both with the sign of the side.
+pub type Loaded = [f64; 3];
+
+/// State of the whisker at a contact. Angles are in radians, forces in `E I_base/L^2`, energies in `E I_base/L`.
+#[derive(Clone, Copy, Debug)]
+pub struct SteppedState {
+    pub loaded: Loaded,
+    pub arclength: f64,
+    /// Distance and direction of the pole's centre from the base.
+    pub pole: [f64; 2],
+    /// Arclength minus the distance rolled around the pole; without a constant.
+    pub slid: f64,
+    /// Moment of the pole on the base.
+    pub moment: f64,
+    pub energy: f64,
+}
+
+/// Steps of Runge-Kutta's method for a trajectory.
+const STEPS: u32 = 400;
+
+impl SteppedWhisker {
+    /// Slope of the parabola at arclength `s`.
+    fn slope(&self, s: f64) -> f64 {
+        if self.bend == 0.0 {
+            return 0.0;
+        }
+        let mut t = 2.0 * self.bend * s;
+        for _ in 0..50 {
+            let root = (1.0 + t * t).sqrt();
+            let miss = (t * root + t.asinh()) / (4.0 * self.bend) - s;
+            t -= miss * 2.0 * self.bend / root;
+        }
+        t
+    }
+
+    /// State at the contact and the loads `loaded`.
+    pub fn state(&self, loaded: Loaded) -> SteppedState {
+        let [tau, force, ratio] = loaded;
+        let radius = |tau: f64| (-self.taper * tau).exp();
+        let arclength = match self.taper {
+            0.0 => tau,
+            taper => (1.0 - radius(tau)) / taper,
+        };
+        // By tau: tangent angle, position, slope of the rest shape, energy.
+        let rate = |tau: f64, [theta, x, y, t, _]: [f64; 5]| {
+            let r = radius(tau);
+            let moment = -force * (x - ratio * y);
+            let root = (1.0 + t * t).sqrt();
+            [
+                2.0 * self.bend / root.powi(3) + moment / r.powi(4),
+                theta.cos(),
+                theta.sin(),
+                2.0 * self.bend / root,
+                0.5 * moment * moment / r.powi(4),
+            ]
+            .map(|by_s| r * by_s)
+        };
+        let plus = |a: [f64; 5], h: f64, b: [f64; 5]| -> [f64; 5] {
+            std::array::from_fn(|i| a[i] + h * b[i])
+        };
+        let h = -tau / f64::from(STEPS);
+        let mut now = [0.0, 0.0, 0.0, self.slope(arclength), 0.0];
+        for step in 0..STEPS {
+            let at = tau + h * f64::from(step);
+            let k1 = rate(at, now);
+            let k2 = rate(at + 0.5 * h, plus(now, 0.5 * h, k1));
+            let k3 = rate(at + 0.5 * h, plus(now, 0.5 * h, k2));
+            let k4 = rate(at + h, plus(now, h, k3));
+            let mean = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
+            now = plus(now, h, mean);
+        }
+        let [theta, x, y, _, energy] = now;
+        let (px, py) = (-x, -y - self.side * self.pole);
+        let direction = py.atan2(px) - theta;
+        SteppedState {
+            loaded,
+            arclength,
+            pole: [px.hypot(py), direction],
+            slid: arclength - self.side * self.pole * (theta + direction),
+            moment: -force * (x - ratio * y),
+            energy: -energy,
+        }
+    }
+
+    /// State near `start` with the pole at `wanted`, and the slid distance `slid` or the ratio of `start`.
+    fn solve(&self, start: Loaded, wanted: [f64; 2], slid: Option<f64>) -> SteppedState {
+        let mut at = start;
+        let miss = |at: Loaded| {
+            let state = self.state(at);
+            let third = slid.map_or(at[2] - start[2], |slid| state.slid - slid);
+            [state.pole[0] - wanted[0], state.pole[1] - wanted[1], third]
+        };
+        for _ in 0..30 {
+            let here = miss(at);
+            if here.iter().all(|miss| miss.abs() < 1e-12) {
+                break;
+            }
+            let mut columns = [[0.0; 3]; 3];
+            for (i, column) in columns.iter_mut().enumerate() {
+                let step = 1e-6 * (1.0 + at[i].abs());
+                let [mut more, mut less] = [at, at];
+                (more[i], less[i]) = (at[i] + step, at[i] - step);
+                let [more, less] = [miss(more), miss(less)];
+                *column = std::array::from_fn(|k| (more[k] - less[k]) / (2.0 * step));
+            }
+            let det = |[a, b, c]: [[f64; 3]; 3]| {
+                a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+                    + a[2] * (b[0] * c[1] - b[1] * c[0])
+            };
+            let whole = det(columns);
+            for i in 0..3 {
+                let mut replaced = columns;
+                replaced[i] = here;
+                at[i] -= det(replaced) / whole;
+            }
+        }
+        self.state(at)
+    }
+
+    /// Moves the pole to the direction of each push of `pushes` after first touch of the resting whisker at `tau`, in small steps. Pushes
+    /// are magnitudes in radians. The contact sticks if the friction that this takes is in the cone of friction, and else slides.
+    pub fn course(&self, tau: f64, pushes: &[f64]) -> Vec<SteppedState> {
+        let touch = self.state([tau, 0.0, 0.0]);
+        let mut before = touch;
+        let mut last = 0.0;
+        let course = pushes.iter().map(|push| {
+            let wanted = [touch.pole[0], touch.pole[1] + self.side * push];
+            let mut start = before.loaded;
+            if start[1] == 0.0 {
+                // Any small load, because a contact without one cannot stick.
+                start[1] = self.side * (push - last);
+            }
+            let mut state = self.solve(start, wanted, Some(before.slid));
+            let needed = state.loaded[2];
+            if needed.abs() > self.friction {
+                start[2] = self.friction.copysign(needed);
+                state = self.solve(start, wanted, None);
+            }
+            (before, last) = (state, *push);
+            state
+        });
+        course.collect()
+    }
+}
