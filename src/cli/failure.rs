@@ -12,6 +12,7 @@ use whiskmap::plan::PlanError;
 use whiskmap::render::{EncodeError, RenderError};
 use whiskmap::scene::SceneError;
 use whiskmap::store;
+use whiskmap::texture::TextureError;
 use whiskmap::trace::NoState;
 use whiskmap::whisk::WhiskError;
 
@@ -54,6 +55,8 @@ pub enum Failure {
     State(NoState),
     #[error(transparent)]
     Course(WhiskError),
+    #[error(transparent)]
+    Texture(TextureError),
     /// Every result of the command is unresolved.
     #[error("all {all} {what} are unresolved: see {see}")]
     Unresolved {
