@@ -8,6 +8,7 @@ use whiskmap::engine::EngineError;
 use whiskmap::engine::gpu::DRIVER_CALL;
 use whiskmap::fit;
 use whiskmap::input::CsvError;
+use whiskmap::paper::FigureError;
 use whiskmap::plan::PlanError;
 use whiskmap::render::{EncodeError, RenderError};
 use whiskmap::scene::SceneError;
@@ -55,6 +56,8 @@ pub enum Failure {
     State(NoState),
     #[error(transparent)]
     Course(WhiskError),
+    #[error(transparent)]
+    Figure(FigureError),
     #[error(transparent)]
     Texture(TextureError),
     /// Every result of the command is unresolved.

@@ -86,7 +86,7 @@ Examples:
   whiskmap texture scenes/texture_cone.toml --plot texture.png
   whiskmap force scenes/cone.toml --frames scenes/frames.csv
   whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper
-  whiskmap reproduce                                 # figures 1 to 5 of the paper
+  whiskmap reproduce                                 # figures 1 to 7 of the paper
   whiskmap verify
   whiskmap bench scenes/cone.toml
   whiskmap devices
@@ -129,7 +129,7 @@ enum Command {
     Force(force::ForceArgs),
     /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
     Design(design::DesignArgs),
-    /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
+    /// Draw the theory of the paper's Figs. 1 to 7, with a table for each panel
     Reproduce(reproduce::ReproduceArgs),
     /// Compare with published, exact and independently computed values
     Verify,

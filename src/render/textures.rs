@@ -10,7 +10,7 @@ pub const STUCK: Ink = Ink::Series(1);
 const DWELL_BINS: usize = 30;
 
 /// Label of the position of the tip.
-const TIP: &str = "tip along the surface (mm)";
+pub const TIP: &str = "tip along the surface (mm)";
 
 /// Returns a chart of a course behind a rough surface: the position of the tip over time, red where it is stuck; the time that the tip
 /// spends at each position; and the histogram of dwell times.
@@ -39,17 +39,15 @@ pub fn tip_over_time(texture: &Texture) -> Plot {
     Plot {
         x_label: "time (s)".to_owned(),
         y_label: TIP.to_owned(),
-        lines: tip_lines(&texture.samples, |sample| Some(sample.time_s)),
+        lines: tip_lines(&texture.samples, |sample| sample.time_s),
         ..Plot::default()
     }
 }
 
 /// Returns the course of the tip over a coordinate, as a grey line with the stuck phases in red over it.
 #[must_use]
-pub fn tip_lines(samples: &[TextureSample], x: fn(&TextureSample) -> Option<f64>) -> Vec<Line> {
-    let place = |sample: &TextureSample| {
-        [x(sample), sample.tip_x_mm].map(|value| value.unwrap_or(f64::NAN))
-    };
+pub fn tip_lines(samples: &[TextureSample], x: fn(&TextureSample) -> f64) -> Vec<Line> {
+    let place = |sample: &TextureSample| [x(sample), sample.tip_x_mm.unwrap_or(f64::NAN)];
     let stuck = samples.chunk_by(|before, next| {
         let same = before.asperity == next.asperity && before.side == next.side;
         same && next.phase == TexturePhase::Stuck

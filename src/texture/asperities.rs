@@ -1,18 +1,16 @@
 //! Asperities of a surface as obstacles of a sweep.
 
 use super::TextureError;
+use super::tip::TipFrame;
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Surface, Whisker};
 use crate::sheet::Row;
 use crate::whisk::phase::{Obstacles, Phase, ROUNDING};
 use crate::whisk::states::{BothSides, SideStates};
-use std::f64::consts::FRAC_PI_2;
 
 /// Asperities that the resting whisker reaches, from left to right. The number of an obstacle is the index of its asperity here.
 pub struct Asperities {
     reached: Vec<Asperity>,
-    /// Direction of the base's tangent at the angle 0 of the base, in radians from the line of the surface.
-    pub tangent: f64,
 }
 
 /// Asperity within reach.
@@ -40,11 +38,13 @@ struct AsperityTouch {
 
 impl Asperities {
     /// Finds the asperities within reach of `whisker`, and computes the ends of all pushes against them.
-    pub fn new(whisker: &Whisker, surface: &Surface) -> Result<(Self, BothSides), TextureError> {
+    pub fn new(
+        whisker: &Whisker,
+        surface: &Surface,
+        tips: &TipFrame,
+    ) -> Result<(Self, BothSides), TextureError> {
         let pole = Pole::smooth(1e-3 * surface.asperity_radius_um);
         let rests = [Side::Cb, Side::Cf].map(|side| Rest::new(&whisker.rod(&pole, side)));
-        let (tip, _) = rests[0].at_arclength(rests[0].end());
-        let tangent = FRAC_PI_2 - tip.to_angle();
         let farthest_mm = whisker.length_mm + pole.radius_mm;
         let places = surface.asperities_mm().into_iter().enumerate();
         let reached = places.filter_map(|(number, x_mm)| {
@@ -58,7 +58,7 @@ impl Asperities {
                 let row = Row::new(rest, distance);
                 let distance_mm = row.is_reached().then_some(distance * whisker.length_mm);
                 AsperityTouch {
-                    angle: row.touch - direction + tangent,
+                    angle: row.touch - direction + tips.tangent,
                     distance_mm,
                     row: 0,
                     end: f64::NAN,
@@ -74,7 +74,6 @@ impl Asperities {
         });
         let mut asperities = Self {
             reached: reached.collect(),
-            tangent,
         };
         asperities.check_gaps()?;
         let states = BothSides {

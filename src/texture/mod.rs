@@ -10,10 +10,12 @@
 
 mod asperities;
 mod sample;
+mod shape;
 mod stays;
 mod tip;
 
 pub use sample::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
+pub use shape::shape;
 pub use stays::{AsperityStay, TipBin, histogram};
 
 use crate::rod::Side;
@@ -105,11 +107,12 @@ pub fn texture(
     if let Some(angle) = angles.iter().find(|angle| angle.abs() > 90.0) {
         return Err(TextureError::Angle(*angle));
     }
-    let (asperities, states) = Asperities::new(whisker, surface)?;
+    let tips = TipFrame::new(whisker, surface);
+    let (asperities, states) = Asperities::new(whisker, surface, &tips)?;
     let begin = asperities.begin(angles[0].to_radians())?;
     let (phases, passages) = asperities.follow(begin, course);
     let place = Placed {
-        tips: TipFrame::new(whisker, surface, asperities.tangent),
+        tips,
         asperities: &asperities,
     };
     let times = course.times_s().iter().zip(angles);
@@ -206,6 +209,7 @@ impl Texture {
     /// Returns the energy that the detachments of the course lose, in nJ.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
-        self.events.iter().filter_map(|event| event.lost_nj).sum()
+        let lost = self.events.iter().filter_map(|event| event.lost_nj);
+        lost.fold(0.0, |sum, lost| sum + lost)
     }
 }

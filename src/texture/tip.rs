@@ -1,9 +1,10 @@
 //! Position of the tip: the whisker beyond the contact is not bent, so that it has its shape at rest.
 
 use crate::rod::{Rest, Side};
-use crate::scene::{Surface, Whisker};
+use crate::scene::{Pole, Surface, Whisker};
 use crate::shooting::Reading;
 use glam::DVec2;
+use std::f64::consts::FRAC_PI_2;
 
 /// Whisker over a surface, with its shape at rest. Positions are in mm from the base: along the surface, and toward it.
 pub struct TipFrame {
@@ -11,8 +12,8 @@ pub struct TipFrame {
     length_mm: f64,
     distance_mm: f64,
     radius_mm: f64,
-    /// Direction of the base's tangent at the angle 0 of the base, in radians.
-    tangent: f64,
+    /// Direction of the base's tangent at the angle 0 of the base, in radians from the line of the surface.
+    pub tangent: f64,
 }
 
 /// Position of the tip of a whisker over a surface.
@@ -30,22 +31,27 @@ pub struct TipPlace {
 const ROUNDING_MM: f64 = 1e-9;
 
 impl TipFrame {
-    pub fn new(whisker: &Whisker, surface: &Surface, tangent: f64) -> Self {
-        let point = crate::scene::Pole::smooth(0.0);
+    pub fn new(whisker: &Whisker, surface: &Surface) -> Self {
+        let rest = Rest::new(&whisker.rod(&Pole::smooth(0.0), Side::Cb));
+        let (tip, _) = rest.at_arclength(rest.end());
         Self {
-            rest: Rest::new(&whisker.rod(&point, Side::Cb)),
+            tangent: FRAC_PI_2 - tip.to_angle(),
+            rest,
             length_mm: whisker.length_mm,
             distance_mm: surface.distance_mm,
             radius_mm: 1e-3 * surface.asperity_radius_um,
-            tangent,
         }
     }
 
     /// Returns the tip of the free whisker with the base at `angle`, in radians.
     pub fn free(&self, angle: f64) -> TipPlace {
-        let (tip, _) = self.rest.at_arclength(self.rest.end());
-        let tip = DVec2::from_angle(self.tangent - angle).rotate(tip) * self.length_mm;
-        self.place(tip, false)
+        self.place(self.resting(self.rest.end(), angle), false)
+    }
+
+    /// Returns the point at arclength `s`, in whisker lengths, of the free whisker with the base at `angle`, in radians.
+    pub fn resting(&self, s: f64, angle: f64) -> DVec2 {
+        let (at, _) = self.rest.at_arclength(s);
+        DVec2::from_angle(self.tangent - angle).rotate(at) * self.length_mm
     }
 
     /// Returns the tip of the whisker in the state `reading` against an asperity at `x_mm`, with the base at `angle`, in radians.
