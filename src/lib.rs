@@ -64,6 +64,7 @@ pub mod render;
 pub mod scene;
 pub mod sensitivity;
 pub mod store;
+pub mod texture;
 pub mod trace;
 pub mod uncertainty;
 pub mod whisk;
@@ -104,6 +105,7 @@ mod newton;
 pub mod paper;
 #[doc(hidden)]
 pub mod plan;
+mod random;
 #[doc(hidden)]
 pub mod refine;
 #[doc(hidden)]

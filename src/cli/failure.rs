@@ -8,10 +8,12 @@ use whiskmap::engine::EngineError;
 use whiskmap::engine::gpu::DRIVER_CALL;
 use whiskmap::fit;
 use whiskmap::input::CsvError;
+use whiskmap::paper::FigureError;
 use whiskmap::plan::PlanError;
 use whiskmap::render::{EncodeError, RenderError};
 use whiskmap::scene::SceneError;
 use whiskmap::store;
+use whiskmap::texture::TextureError;
 use whiskmap::trace::NoState;
 use whiskmap::whisk::WhiskError;
 
@@ -54,6 +56,10 @@ pub enum Failure {
     State(NoState),
     #[error(transparent)]
     Course(WhiskError),
+    #[error(transparent)]
+    Figure(FigureError),
+    #[error(transparent)]
+    Texture(TextureError),
     /// Every result of the command is unresolved.
     #[error("all {all} {what} are unresolved: see {see}")]
     Unresolved {

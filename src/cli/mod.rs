@@ -7,6 +7,7 @@ mod arguments;
 mod bench;
 mod branch;
 mod compare;
+mod course;
 mod curve;
 mod data;
 mod derivatives;
@@ -41,6 +42,7 @@ mod status;
 mod stdout;
 mod submit;
 mod summary;
+mod texture;
 mod tolerance;
 mod uncertainty;
 mod units;
@@ -81,9 +83,10 @@ Examples:
   whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10
   whiskmap sensitivity scenes/cone.toml --distance 15.66
   whiskmap whisk scenes/cone.toml --distance 15.66 --sine 40deg,10,0.2
+  whiskmap texture scenes/texture_cone.toml --plot texture.png
   whiskmap force scenes/cone.toml --frames scenes/frames.csv
   whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper
-  whiskmap reproduce                                 # figures 1 to 5 of the paper
+  whiskmap reproduce                                 # figures 1 to 7 of the paper
   whiskmap verify
   whiskmap bench scenes/cone.toml
   whiskmap devices
@@ -120,11 +123,13 @@ enum Command {
     Sensitivity(sensitivity::SensitivityArgs),
     /// Compute the course of a whisker that whisks against one pole: touches, forces and detachments over time
     Whisk(whisk::WhiskArgs),
+    /// Compute the course of a whisker behind a rough surface: stuck and slipping phases, and dwell times
+    Texture(texture::TextureArgs),
     /// Compute contact forces from the change of curvature in the frames of a film
     Force(force::ForceArgs),
     /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
     Design(design::DesignArgs),
-    /// Draw the theory of the paper's Figs. 1 to 5, with a table for each panel
+    /// Draw the theory of the paper's Figs. 1 to 7, with a table for each panel
     Reproduce(reproduce::ReproduceArgs),
     /// Compare with published, exact and independently computed values
     Verify,
@@ -203,6 +208,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Shape(args) => shape::run(args, files),
         Command::Sensitivity(args) => sensitivity::run(args, files),
         Command::Whisk(args) => whisk::run(args, files),
+        Command::Texture(args) => texture::run(args, files),
         Command::Force(args) => force::run(args, files),
         Command::Design(args) => design::run(args, files),
         Command::Reproduce(args) => reproduce::run(args, files),

@@ -20,7 +20,7 @@ Examples:
   whiskmap reproduce /tmp/figures --size 180mm
   whiskmap reproduce --fig5c-right scenes/cone_points.csv
 
-Writes fig1, fig2, fig3, fig4d and fig5c as PNG, SVG and PDF, and a CSV for each panel. Solid lines are stable states or \
+Writes fig1, fig2, fig3, fig4b, fig4d, fig5b, fig5c, fig6 and fig7b as PNG, SVG and PDF, and a CSV for each panel. Solid lines are stable states or \
 whiskers, dashed lines unstable states or cylinders. Slip-off is black and pull-off is blue, as in the paper. The push angle \
 is the rotation of the base since first touch.")]
 pub struct ReproduceArgs {
@@ -79,7 +79,7 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
     let measured = args.measurements(files)?;
     let folder = &args.folder;
     files.folder("DIR", folder)?;
-    let figures = paper::figures(&measured).map_err(Failure::State)?;
+    let figures = paper::figures(&measured).map_err(Failure::Figure)?;
     let mut open =
         |name: &str, ending| files.output("DIR", &folder.join(name).with_extension(ending));
     let mut opened = Vec::new();

@@ -12,7 +12,7 @@ mod reference;
 mod whiskers;
 
 pub use check::{Check, CheckVerdict, ExpectedNumber};
-pub use figures::{Figure, Measurements, TableRows, figures};
+pub use figures::{Figure, FigureError, Measurements, TableRows, figures};
 pub use whiskers::{FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE};
 
 /// Compares computed numbers with published ones, closed forms and independent solvers. Returns all checks, `[check]`.

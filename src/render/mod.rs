@@ -12,6 +12,7 @@ mod options;
 mod plots;
 mod row;
 mod sensitivities;
+mod textures;
 
 pub use courses::{courses, forces};
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
@@ -22,6 +23,7 @@ pub use plots::{
     designs, error_bars, measured, shapes,
 };
 pub use sensitivities::sensitivities;
+pub use textures::{STUCK, TIP, textures, tip_histogram, tip_lines};
 pub use whiskmap_plot::{
     Band, Chart, Disc, Dot, EncodeError, Fill, Ink, Inset, Line, Note, Picture, PictureFormat,
     PictureSize, Plot, PrintSize, Region, SizeError, Stroke,

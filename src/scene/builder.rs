@@ -3,6 +3,7 @@
 use super::axis::AxisValues;
 use super::grid::SweepPlace;
 use super::parameter::Parameter;
+use super::surface::Surface;
 
 /// Standard deviations of the numbers of a scene. The numbers vary independently of each other.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -82,6 +83,7 @@ pub struct SceneBuilder {
     pub(super) distance_mm: AxisValues,
     pub(super) sweep: Vec<(Parameter, AxisValues)>,
     pub(super) uncertainty: Option<Deviations>,
+    pub(super) surface: Option<Surface>,
     /// Stem of the names of the output files; `None` if the scene does not give it.
     pub(super) name: Option<String>,
     /// Stem of the names of the output files if the scene does not give one.
@@ -156,6 +158,13 @@ impl SceneBuilder {
     #[must_use]
     pub fn uncertainty(mut self, deviations: Deviations) -> Self {
         self.uncertainty = Some(deviations);
+        self
+    }
+
+    /// Sets the rough surface, over which the whisker sweeps.
+    #[must_use]
+    pub const fn surface(mut self, surface: Surface) -> Self {
+        self.surface = Some(surface);
         self
     }
 

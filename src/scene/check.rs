@@ -47,6 +47,7 @@ impl SceneBuilder {
         Ok(SceneData {
             title: self.title.clone(),
             uncertainty: deviations::checked(self)?,
+            surface: self.surface.map(|own| own.checked(&whisker)).transpose()?,
             whisker,
             pole,
             grid,

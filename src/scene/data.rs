@@ -3,6 +3,7 @@
 use super::builder::Deviations;
 use super::grid::{FARTHEST, Grid, NEAREST, SweepPlace};
 use super::parameter::Parameter;
+use super::surface::Surface;
 use super::toml::SceneText;
 use super::whisker::{Curvature, Pole, SweptWhisker, Whisker};
 
@@ -19,6 +20,8 @@ pub struct SceneData {
     pub grid: Grid,
     /// Standard deviations of the scene's numbers; `None` if the scene does not give them.
     pub uncertainty: Option<Deviations>,
+    /// Rough surface in front of the whisker; `None` if the scene does not give it.
+    pub surface: Option<Surface>,
     /// Name of the scene: the stem of its output files.
     pub name: String,
     /// TOML text of the scene.

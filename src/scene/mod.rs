@@ -19,6 +19,7 @@ mod profile;
 )]
 mod scene;
 mod shape;
+mod surface;
 mod sweep;
 mod toml;
 mod warnings;
@@ -37,5 +38,6 @@ pub use limits::{digits, rounded};
 pub use parameter::Parameter;
 pub(crate) use parameter::derivative_columns;
 pub use scene::Scene;
+pub use surface::Surface;
 pub use toml::SceneText;
 pub use whisker::{Curvature, EulerSpiral, Pole, SweptWhisker, Whisker};

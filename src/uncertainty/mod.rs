@@ -4,17 +4,16 @@
 //! refuses is repeated. Equal seeds give equal draws, whatever the number of threads.
 
 mod first_order;
-mod normal;
 mod spread;
 mod varying;
 
 pub use spread::EndSpread;
 
+use crate::random::RandomStream;
 use crate::rod::Side;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
 use crate::shooting::Resolution;
 use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
-use normal::Normal;
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
 
@@ -84,7 +83,7 @@ impl Draws {
         }
         let varying = varying(scene, deviations);
         let draws = (0..samples as u64).into_par_iter();
-        let draws = draws.map(|sample| draw(scene, &varying, Normal::new(seed, sample)));
+        let draws = draws.map(|sample| draw(scene, &varying, RandomStream::new(seed, sample)));
         let (drawn, refused): (Vec<_>, Vec<u64>) = draws.collect::<Result<_, _>>()?;
         Ok(Self {
             scene: scene.clone(),
@@ -162,10 +161,10 @@ impl PushEnd {
 type Drawn = ((Whisker, Pole), u64);
 
 /// The first whisker of a random stream that the scene accepts.
-fn draw(scene: &Scene, varying: &[Varying], mut normal: Normal) -> Result<Drawn, DrawError> {
+fn draw(scene: &Scene, varying: &[Varying], mut random: RandomStream) -> Result<Drawn, DrawError> {
     let mut refused = 0;
     loop {
-        let step = |one: &Varying| (*one, one.deviation * normal.draw());
+        let step = |one: &Varying| (*one, one.deviation * random.normal());
         let steps: Vec<_> = varying.iter().map(step).collect();
         match moved(scene, &steps) {
             Ok(drawn) => return Ok(((drawn.whisker.clone(), drawn.pole), refused)),

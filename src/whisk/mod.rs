@@ -6,8 +6,9 @@
 //! Inertia is left out.
 
 mod course;
-mod phase;
-mod states;
+pub(crate) mod phase;
+pub(crate) mod states;
+mod turns;
 
 pub use course::{AngleCourse, CourseError};
 
@@ -15,10 +16,11 @@ use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Row;
 use crate::shooting::Reading;
-use crate::trace::{DetachmentKind, NoState, row};
-use phase::{Passage, Phase, Turns};
+use crate::trace::{NoState, row};
+use phase::{Obstacles, Passage, Phase};
 use serde::Serialize;
-use states::SideStates;
+use states::{BothSides, RowPush, SideStates};
+use turns::Turns;
 
 /// Regime of a sample: whether the whisker touches the pole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -213,43 +215,36 @@ pub fn whisk(
     }
     let cf_distance = rests[1].distance_of_pole(cb.pole_distance);
     let cf = Row::new(&rests[1], cf_distance);
-    let cb_states = SideStates::new(whisker, pole, Side::Cb, distance_mm)
-        .ok_or(WhiskError::Unresolved(Side::Cb))?;
+    let cb_states = SideStates::new(whisker, pole, Side::Cb, vec![distance_mm]);
+    let cb_states = cb_states.map_err(|_| WhiskError::Unresolved(Side::Cb))?;
     let cf_states = match cf.is_reached() {
         true => {
-            let states = SideStates::new(whisker, pole, Side::Cf, cf_distance * whisker.length_mm);
-            Some(states.ok_or(WhiskError::Unresolved(Side::Cf))?)
+            let distances = vec![cf_distance * whisker.length_mm];
+            let states = SideStates::new(whisker, pole, Side::Cf, distances);
+            Some(states.map_err(|_| WhiskError::Unresolved(Side::Cf))?)
         }
         false => None,
     };
     let turns = Turns {
         cf_touch: cf.touch - cb.touch,
-        cb_end: cb_states.end(),
-        cf_end: cf_states.as_ref().map(SideStates::end),
+        cb_end: cb_states.end(0),
+        cf_end: cf_states.as_ref().map(|states| states.end(0)),
     };
     let first = course.angles_deg[0];
-    let mut phase = turns.begin(first.to_radians()).ok_or(WhiskError::Begin {
+    let begin = turns.begin(first.to_radians()).ok_or(WhiskError::Begin {
         angle_deg: first,
         cf_touch_deg: turns.cf_touch.to_degrees(),
     })?;
-    let mut phases = vec![phase];
-    let mut passages: Vec<(f64, Passage)> = Vec::new();
-    let times = course.times_s.windows(2);
-    for (angles, times) in course.angles_deg.windows(2).zip(times) {
-        let [from, to] = [angles[0], angles[1]].map(f64::to_radians);
-        turns.pass(&mut phase, from, to, |passage| {
-            let part = (passage.angle - from) / (to - from);
-            passages.push(((times[1] - times[0]).mul_add(part, times[0]), passage));
-        });
-        phases.push(phase);
-    }
-    let found = Found {
-        cb: &cb_states,
-        cf: cf_states.as_ref(),
+    let (phases, passages) = turns.follow(begin, course);
+    let found = BothSides {
+        cb: Some(cb_states),
+        cf: cf_states,
     };
     let angles = course.angles_deg.iter().map(|deg| deg.to_radians());
     let contacts = phases.iter().zip(angles).map(|(phase, angle)| match phase {
-        Phase::Contact { side, turn } => Some((*side, turns.push(*side, *turn, angle).max(0.0))),
+        Phase::Contact { side, obstacle } => {
+            Some((*side, (0, turns.push(*side, *obstacle, angle).max(0.0))))
+        }
         _ => None,
     });
     let contacts: Vec<Contact> = contacts.collect();
@@ -262,75 +257,41 @@ pub fn whisk(
     });
     Ok(Whisk {
         samples: samples.collect(),
-        events: found.events(&passages),
+        events: events(&found, &passages),
         cf_touch_deg: turns.cf_touch.to_degrees(),
     })
 }
 
-/// Side and push in radians, as a magnitude, of a state in contact; `None` without contact.
-type Contact = Option<(Side, f64)>;
+/// Side, row and push in radians, as a magnitude, of a state in contact; `None` without contact.
+type Contact = Option<(Side, RowPush)>;
 
 /// Returns a push in degrees with the sign of its side; 0 without one.
-fn signed_deg(side: Side, push: f64) -> f64 {
+pub(crate) fn signed_deg(side: Side, push: f64) -> f64 {
     side.sign() * push.to_degrees() + 0.0
 }
 
-/// States of both sides.
-struct Found<'a> {
-    cb: &'a SideStates,
-    cf: Option<&'a SideStates>,
-}
-
-impl Found<'_> {
-    fn of(&self, side: Side) -> Option<&SideStates> {
-        match side {
-            Side::Cb => Some(self.cb),
-            Side::Cf => self.cf,
-        }
-    }
-
-    /// Returns the state of each of the `contacts`; `None` where there is none.
-    fn readings(&self, contacts: &[Contact]) -> Vec<Option<Reading>> {
-        let mut readings = vec![None; contacts.len()];
-        for side in Side::BOTH {
-            let own = contacts.iter().enumerate();
-            let own =
-                own.filter_map(|(i, contact)| Some((i, contact.filter(|own| own.0 == side)?.1)));
-            let (places, pushes): (Vec<usize>, Vec<f64>) = own.unzip();
-            let states = self.of(side).map(|states| states.at(&pushes));
-            for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
-                readings[i] = state;
-            }
-        }
-        readings
-    }
-
-    /// Returns the events at the `passages`, given with their times.
-    fn events(&self, passages: &[(f64, Passage)]) -> Vec<WhiskEvent> {
-        let contacts = passages.iter().map(|(_, passage)| {
-            Some((passage.side, passage.push)).filter(|(_, push)| !push.is_nan())
-        });
-        let readings = self.readings(&contacts.collect::<Vec<_>>());
-        let events = passages.iter().zip(readings);
-        let events = events.map(|((time_s, passage), reading)| {
-            let end = self.of(passage.side).map(SideStates::kind);
-            let push = Some(passage.push).filter(|push| !push.is_nan());
-            WhiskEvent {
-                time_s: *time_s,
-                event: passage.event.unwrap_or(match end {
-                    Some(DetachmentKind::PullOff) => WhiskEventKind::PullOff,
-                    _ => WhiskEventKind::SlipOff,
-                }),
-                side: passage.side,
-                angle_deg: passage.angle.to_degrees(),
-                push_angle_deg: push.map(|push| signed_deg(passage.side, push)),
-                force_un: reading.map(|state| state.force_un),
-                base_moment_nnm: reading.map(|state| state.base_moment_nnm),
-                energy_nj: reading.map(|state| state.energy_nj),
-            }
-        });
-        events.collect()
-    }
+/// Returns the events at the `passages`.
+fn events(found: &BothSides, passages: &[Passage]) -> Vec<WhiskEvent> {
+    let contact = |passage: &Passage| {
+        let push = Some(passage.push).filter(|push| !push.is_nan());
+        push.map(|push| (passage.side, (0, push)))
+    };
+    let contacts: Vec<Contact> = passages.iter().map(contact).collect();
+    let readings = found.readings(&contacts);
+    let events = passages.iter().zip(contacts.iter().zip(readings));
+    let events = events.map(|(passage, (contact, reading))| WhiskEvent {
+        time_s: passage.time_s,
+        event: passage
+            .event
+            .unwrap_or_else(|| found.detachment(passage.side, 0)),
+        side: passage.side,
+        angle_deg: passage.angle.to_degrees(),
+        push_angle_deg: contact.map(|(side, (_, push))| signed_deg(side, push)),
+        force_un: reading.map(|state| state.force_un),
+        base_moment_nnm: reading.map(|state| state.base_moment_nnm),
+        energy_nj: reading.map(|state| state.energy_nj),
+    });
+    events.collect()
 }
 
 /// Returns the sample at `[time in s, angle in degrees]`.
@@ -358,7 +319,7 @@ fn sample(
             _ => WhiskRegime::Contact,
         },
         side: contact.map(|(side, _)| side),
-        push_angle_deg: contact.map(|(side, push)| signed_deg(side, push)),
+        push_angle_deg: contact.map(|(side, (_, push))| signed_deg(side, push)),
         arc_length_mm: reading.map(|state| state.arc_length_mm),
         contact_angle_deg: reading.map(|state| state.contact_angle_deg),
         force_un: load(|state| state.force_un),

@@ -1,72 +1,77 @@
-//! Phases of a course: on which side of the pole the whisker is, or free, and the angles at which that changes.
+//! Phases of a course: which obstacle holds the whisker on which side, or free, and the angles at which that changes.
 
-use super::{Undecided, WhiskEventKind};
+use super::{AngleCourse, Undecided, WhiskEventKind};
 use crate::rod::Side;
 use std::f64::consts::TAU;
 
-/// Phase of a course: what the angle of the base alone does not tell. `turn` counts whole turns of the base.
+/// Phase of a course: what the angle of the base alone does not determine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// The whisker is free between its CF touch of this turn and the CB touch of the next.
-    Free { turn: i32 },
-    /// The pole bends the whisker on this side.
-    Contact { side: Side, turn: i32 },
-    /// The whisker is somewhere between its two touches of this turn.
-    Undecided { turn: i32, reason: Undecided },
+    /// The whisker is free between the CF touch of the obstacle `after` and the CB touch of the next one.
+    Free { after: i32 },
+    /// An obstacle bends the whisker on this side.
+    Contact { side: Side, obstacle: i32 },
+    /// The whisker is somewhere between its two touches of this obstacle.
+    Undecided { obstacle: i32, reason: Undecided },
 }
+
+/// Largest error of an angle that was printed in degrees, in radians.
+pub const ROUNDING: f64 = 8.0 * f64::EPSILON * TAU;
 
 /// Change of the phase at an angle of the base, in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
+    /// Time of the change, in s.
+    pub time_s: f64,
     /// Angle of the base at which the phase changes, in radians.
     pub angle: f64,
     /// Kind of the event; `None` where a detachment's kind is that of the end of the push.
     pub event: Option<WhiskEventKind>,
-    /// Contact that begins or ends.
+    /// Side of the contact that begins or ends.
     pub side: Side,
-    /// Push since the touch of this contact, in radians, as a magnitude.
+    /// Obstacle of the contact that begins or ends.
+    pub obstacle: i32,
+    /// Push since the touch of this contact, in radians, as a magnitude; NaN where the phase is undecided.
     pub push: f64,
 }
 
-/// Angles of one turn at which phases change, in radians.
-#[derive(Clone, Copy, Debug)]
-pub struct Turns {
-    /// Angle of the base at first touch on CF. On CB it is 0.
-    pub cf_touch: f64,
-    /// Largest push on CB.
-    pub cb_end: f64,
-    /// Largest push on CF, as a magnitude; `None` if the resting whisker does not reach the pole on CF.
-    pub cf_end: Option<f64>,
-}
+/// Obstacles past which the base turns the whisker. They are numbered in the direction of growing angles, on CB. The resting whisker fits
+/// between neighbours: the CF touch of an obstacle has a smaller angle than the CB touch of the next one.
+pub trait Obstacles {
+    /// Returns the angle of the base, in radians, at which the resting whisker touches an obstacle on `side`. Beyond the last obstacle
+    /// it is infinite, beyond the first one minus infinity.
+    fn touch(&self, side: Side, obstacle: i32) -> f64;
 
-/// Largest error of an angle that was printed in degrees, in radians.
-const ROUNDING: f64 = 8.0 * f64::EPSILON * TAU;
+    /// Returns the largest push against an obstacle on `side`, in radians, as a magnitude. It is `None` if the resting whisker does not
+    /// reach the obstacle on that side.
+    fn end(&self, side: Side, obstacle: i32) -> Option<f64>;
 
-impl Turns {
-    /// Returns the phase in which a course begins at `angle`, in radians; `None` in contact.
-    pub fn begin(&self, angle: f64) -> Option<Phase> {
-        // At a touch on CB the whisker is still on that side, in front of a point as well.
-        let cb_touch = (angle / TAU).round();
-        let turn = match (angle - TAU * cb_touch).abs() <= ROUNDING {
-            true => cb_touch - 1.0,
-            false => ((angle + ROUNDING - self.cf_touch) / TAU).floor(),
-        };
-        let is_free = angle <= TAU * (turn + 1.0) + ROUNDING;
-        // Courses have at most a turn to each side.
-        is_free.then_some(Phase::Free { turn: turn as i32 })
+    /// Returns the push against an obstacle on `side` at `angle`, in radians, as a magnitude. It is negative before the touch.
+    fn push(&self, side: Side, obstacle: i32, angle: f64) -> f64 {
+        side.sign() * (angle - self.touch(side, obstacle))
     }
 
-    /// Returns the push of a contact on `side` at `angle`, in radians, as a magnitude.
-    pub fn push(&self, side: Side, turn: i32, angle: f64) -> f64 {
-        let from_turn = angle - TAU * f64::from(turn);
-        match side {
-            Side::Cb => from_turn,
-            Side::Cf => self.cf_touch - from_turn,
+    /// Returns the phase at each sample of `course`, which begins in the phase `first`, and the changes between samples.
+    fn follow(&self, first: Phase, course: &AngleCourse) -> (Vec<Phase>, Vec<Passage>) {
+        let mut phase = first;
+        let mut phases = vec![first];
+        let mut passages = Vec::new();
+        let times = course.times_s.windows(2);
+        for (angles, times) in course.angles_deg.windows(2).zip(times) {
+            let [from, to] = [angles[0], angles[1]].map(f64::to_radians);
+            self.pass(&mut phase, from, to, |passage| {
+                let part = (passage.angle - from) / (to - from);
+                let time_s = (times[1] - times[0]).mul_add(part, times[0]);
+                passages.push(Passage { time_s, ..passage });
+            });
+            phases.push(phase);
         }
+        (phases, passages)
     }
 
-    /// Moves the base from the angle `from` to `to`, in radians, and calls `event` at each touch, release and detachment.
-    pub fn pass(&self, phase: &mut Phase, from: f64, to: f64, mut event: impl FnMut(Passage)) {
+    /// Moves the base from the angle `from` to `to`, in radians, and calls `event` at each touch, release and detachment. The times of
+    /// the changes are NaN.
+    fn pass(&self, phase: &mut Phase, from: f64, to: f64, mut event: impl FnMut(Passage)) {
         let grows = to > from;
         loop {
             let (angle, next) = self.change(*phase, grows);
@@ -76,131 +81,124 @@ impl Turns {
             }
             let before = std::mem::replace(phase, next);
             for (state, begins) in [(before, false), (next, true)] {
-                if let (Phase::Undecided { reason, .. }, true) = (state, begins) {
-                    event(Passage {
-                        angle,
-                        event: Some(WhiskEventKind::Undecided),
-                        side: match reason {
-                            Undecided::TipEdge => Side::Cf,
-                            _ if grows => Side::Cf,
-                            _ => Side::Cb,
-                        },
-                        push: f64::NAN,
-                    });
+                if let Some(passage) = self.passage(state, angle, grows, begins) {
+                    event(passage);
                 }
-                let Phase::Contact { side, turn } = state else {
-                    continue;
-                };
-                let push = self.push(side, turn, angle).max(0.0);
-                let kind = match (begins, grows == (side == Side::Cb)) {
+            }
+        }
+    }
+
+    /// Returns the event at which the phase `state` begins or ends; `None` for a free whisker.
+    fn passage(&self, state: Phase, angle: f64, grows: bool, begins: bool) -> Option<Passage> {
+        let time_s = f64::NAN;
+        match state {
+            Phase::Undecided { obstacle, reason } if begins => Some(Passage {
+                time_s,
+                angle,
+                event: Some(WhiskEventKind::Undecided),
+                side: match reason {
+                    Undecided::TipEdge => ahead(grows),
+                    _ => ahead(!grows),
+                },
+                obstacle,
+                push: f64::NAN,
+            }),
+            Phase::Contact { side, obstacle } => Some(Passage {
+                time_s,
+                angle,
+                event: match (begins, side == ahead(grows)) {
                     (true, _) => Some(WhiskEventKind::Touch),
                     (false, false) => Some(WhiskEventKind::Release),
                     (false, true) => None,
-                };
-                event(Passage {
-                    angle,
-                    event: kind,
-                    side,
-                    push,
-                });
-            }
+                },
+                side,
+                obstacle,
+                push: self.push(side, obstacle, angle).max(0.0),
+            }),
+            _ => None,
         }
     }
 
     /// Returns the angle at which `phase` ends if the base turns on in one direction, and the next phase.
     fn change(&self, phase: Phase, grows: bool) -> (f64, Phase) {
-        let cf_touch = |turn: i32| self.cf_touch + TAU * f64::from(turn);
-        let cb_touch = |turn: i32| TAU * f64::from(turn);
-        let free = |turn: i32| Phase::Free { turn };
-        match (phase, grows) {
-            (Phase::Free { turn }, true) => {
-                let side = Side::Cb;
-                let turn = turn + 1;
-                (cb_touch(turn), Phase::Contact { side, turn })
-            }
-            (Phase::Free { turn }, false) => {
-                let reason = Undecided::TipEdge;
-                let next = match self.cf_end {
-                    Some(_) => Phase::Contact {
-                        side: Side::Cf,
-                        turn,
+        let side = ahead(grows);
+        match phase {
+            Phase::Free { after } => {
+                let obstacle = after + i32::from(grows);
+                let next = match self.end(side, obstacle) {
+                    Some(_) => Phase::Contact { side, obstacle },
+                    None => Phase::Undecided {
+                        obstacle,
+                        reason: Undecided::TipEdge,
                     },
-                    None => Phase::Undecided { turn, reason },
                 };
-                (cf_touch(turn), next)
+                (self.touch(side, obstacle), next)
             }
-            (
-                Phase::Contact {
-                    side: Side::Cb,
-                    turn,
-                },
-                true,
-            ) => {
-                let angle = cb_touch(turn) + self.cb_end;
-                let is_clear = angle >= cf_touch(turn);
-                let next = if is_clear {
-                    free(turn)
-                } else {
-                    self.over(Side::Cf, turn, angle)
-                };
-                (angle, next)
+            Phase::Contact {
+                side: held,
+                obstacle,
+            } if held == side => {
+                let end = self.end(side, obstacle).unwrap_or_default();
+                let angle = self.touch(side, obstacle) + side.sign() * end;
+                (angle, self.after_detachment(obstacle, angle, grows))
             }
-            (
-                Phase::Contact {
-                    side: Side::Cb,
-                    turn,
-                },
-                false,
-            ) => (cb_touch(turn), free(turn - 1)),
-            (
-                Phase::Contact {
-                    side: Side::Cf,
-                    turn,
-                },
-                true,
-            ) => (cf_touch(turn), free(turn)),
-            (
-                Phase::Contact {
-                    side: Side::Cf,
-                    turn,
-                },
-                false,
-            ) => {
-                let angle = cf_touch(turn) - self.cf_end.unwrap_or_default();
-                let is_clear = angle <= cb_touch(turn);
-                let next = if is_clear {
-                    free(turn - 1)
-                } else {
-                    self.over(Side::Cb, turn, angle)
-                };
-                (angle, next)
+            Phase::Contact { obstacle, .. } | Phase::Undecided { obstacle, .. } => {
+                // The whisker is free again on the side to which the base turns.
+                let touch = self.touch(ahead(!grows), obstacle);
+                (touch, rest(obstacle, grows))
             }
-            (Phase::Undecided { turn, .. }, true) => (cf_touch(turn), free(turn)),
-            (Phase::Undecided { turn, .. }, false) => (cb_touch(turn), free(turn - 1)),
         }
     }
 
-    /// Returns the phase after a detachment at `angle` where the resting whisker would cross the pole: contact on the other `side` if
-    /// that side holds the whisker.
-    fn over(&self, side: Side, turn: i32, angle: f64) -> Phase {
-        let end = match side {
-            Side::Cb => Some(self.cb_end),
-            Side::Cf => self.cf_end,
+    /// Returns the phase after a detachment from an obstacle at `angle`: contact with the first obstacle ahead that holds the whisker, or
+    /// rest before the next one. Where the resting whisker would cross an obstacle that it has passed, the other side of that obstacle
+    /// may hold it.
+    fn after_detachment(&self, obstacle: i32, angle: f64, grows: bool) -> Phase {
+        let (side, step) = (ahead(grows), if grows { 1 } else { -1 });
+        let holds = |side, obstacle| {
+            let push = self.push(side, obstacle, angle);
+            push >= 0.0 && self.end(side, obstacle).is_some_and(|end| push < end)
         };
-        let push = self.push(side, turn, angle);
-        match end.is_some_and(|end| push < end) {
-            true => Phase::Contact { side, turn },
+        let mut passed = obstacle;
+        while self.push(side, passed + step, angle) >= 0.0 {
+            let obstacle = passed + step;
+            if holds(side, obstacle) {
+                return Phase::Contact { side, obstacle };
+            }
+            passed = obstacle;
+        }
+        let side = ahead(!grows);
+        if self.push(side, passed, angle) <= 0.0 {
+            return rest(passed, grows);
+        }
+        match holds(side, passed) {
+            true => Phase::Contact {
+                side,
+                obstacle: passed,
+            },
             false => Phase::Undecided {
-                turn,
+                obstacle: passed,
                 reason: Undecided::OnThePole,
             },
         }
     }
 }
 
+/// Returns the side of the whisker on which obstacles are ahead if the angle grows, or falls.
+const fn ahead(grows: bool) -> Side {
+    if grows { Side::Cb } else { Side::Cf }
+}
+
+/// Returns the phase at rest beyond `obstacle` if the angle grows, or before it.
+fn rest(obstacle: i32, grows: bool) -> Phase {
+    let after = obstacle - i32::from(!grows);
+    Phase::Free { after }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::whisk::turns::Turns;
 
     const TURNS: Turns = Turns {
         cf_touch: 0.1,
@@ -211,7 +209,7 @@ mod tests {
     /// Events of a course through these angles: what happens, on which side, and at which angle.
     fn events(turns: &Turns, angles: &[f64]) -> Vec<(Option<WhiskEventKind>, Side, f64)> {
         let mut events = Vec::new();
-        let mut phase = turns.begin(angles[0]).unwrap_or(Phase::Free { turn: 99 });
+        let mut phase = turns.begin(angles[0]).unwrap_or(Phase::Free { after: 99 });
         for pair in angles.windows(2) {
             turns.pass(&mut phase, pair[0], pair[1], |passage| {
                 events.push((passage.event, passage.side, passage.angle));
@@ -253,15 +251,15 @@ mod tests {
     #[test]
     fn a_course_cannot_begin_in_contact() {
         assert_eq!(TURNS.begin(0.05), None);
-        assert_eq!(TURNS.begin(0.0), Some(Phase::Free { turn: -1 }));
-        assert_eq!(TURNS.begin(0.1), Some(Phase::Free { turn: 0 }));
+        assert_eq!(TURNS.begin(0.0), Some(Phase::Free { after: -1 }));
+        assert_eq!(TURNS.begin(0.1), Some(Phase::Free { after: 0 }));
         // In front of a point both touches are at the same angle, and a push to CB comes first.
         let point = Turns {
             cf_touch: 0.0,
             ..TURNS
         };
-        assert_eq!(point.begin(0.0), Some(Phase::Free { turn: -1 }));
-        assert_eq!(point.begin(0.1), Some(Phase::Free { turn: 0 }));
+        assert_eq!(point.begin(0.0), Some(Phase::Free { after: -1 }));
+        assert_eq!(point.begin(0.1), Some(Phase::Free { after: 0 }));
     }
 
     /// Before a thick pole, a short push ends where the resting whisker would cross the pole.
@@ -272,31 +270,43 @@ mod tests {
             cb_end: 0.2,
             cf_end: Some(0.1),
         };
-        let mut phase = Phase::Free { turn: -1 };
+        let mut phase = Phase::Free { after: -1 };
         let mut last = None;
         thick.pass(&mut phase, -0.1, 0.35, |passage| last = passage.event);
         assert_eq!(last, Some(WhiskEventKind::Undecided));
         let reason = Undecided::OnThePole;
-        assert_eq!(phase, Phase::Undecided { turn: 0, reason });
+        assert_eq!(
+            phase,
+            Phase::Undecided {
+                obstacle: 0,
+                reason
+            }
+        );
         thick.pass(&mut phase, 0.35, 0.45, |_| {});
-        assert_eq!(phase, Phase::Free { turn: 0 });
+        assert_eq!(phase, Phase::Free { after: 0 });
         // A side that holds the whisker takes it over.
         let held = Turns {
             cf_end: Some(0.3),
             ..thick
         };
-        let mut phase = Phase::Free { turn: -1 };
+        let mut phase = Phase::Free { after: -1 };
         held.pass(&mut phase, -0.1, 0.35, |_| {});
         let side = Side::Cf;
-        assert_eq!(phase, Phase::Contact { side, turn: 0 });
+        assert_eq!(phase, Phase::Contact { side, obstacle: 0 });
         // Without a touch on CF, the tip's edge meets the pole.
         let short = Turns {
             cf_end: None,
             ..thick
         };
-        let mut phase = Phase::Free { turn: 0 };
+        let mut phase = Phase::Free { after: 0 };
         short.pass(&mut phase, 0.5, 0.3, |_| {});
         let reason = Undecided::TipEdge;
-        assert_eq!(phase, Phase::Undecided { turn: 0, reason });
+        assert_eq!(
+            phase,
+            Phase::Undecided {
+                obstacle: 0,
+                reason
+            }
+        );
     }
 }

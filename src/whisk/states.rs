@@ -1,120 +1,186 @@
-//! States of a course on one side, in batches.
+//! States of a course on one side of its obstacles, in batches.
 
 use crate::classify::RowBoundary;
 use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
-use crate::sheet::Sheet;
-use crate::sheet::{Crossing, Edge};
+use crate::sheet::{Crossing, Edge, Sheet};
 use crate::shooting::batch::{Batch, Method};
 use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
 use crate::trace::{Branch, DetachmentKind};
 
-/// Stable states of one side, from first touch to the end of the push.
+/// Stable states on one side of poles at several distances, from first touch to the end of the push.
 pub struct SideStates {
     whisker: Whisker,
     pole: Pole,
-    distance_mm: f64,
+    distances_mm: Vec<f64>,
     sheet: Sheet,
     reader: Reader,
-    end: Crossing,
-    /// State at the end of the push.
-    pub at_end: Reading,
+    ends: Vec<RowEnd>,
 }
 
+/// End of the pushes of one row.
+struct RowEnd {
+    crossing: Crossing,
+    /// State at the end of the push.
+    state: Reading,
+}
+
+/// Contact with a pole: its row, and the push in radians, as a magnitude.
+pub type RowPush = (usize, f64);
+
 impl SideStates {
-    /// Computes the sheet and the end of the push on `side` for a first touch at `distance_mm`; `None` if the end is not found.
-    pub fn new(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Option<Self> {
+    /// Computes the sheet and the ends of the pushes on `side` for first touches at `distances_mm`, which must increase. The error is the
+    /// index of a distance without an end.
+    pub fn new(
+        whisker: &Whisker,
+        pole: &Pole,
+        side: Side,
+        distances_mm: Vec<f64>,
+    ) -> Result<Self, usize> {
         let rod = whisker.rod(pole, side);
         let method = Method::new(Resolution::FINE);
-        let sheet = Sheet::new(method, &rod, side, &[distance_mm / whisker.length_mm]);
-        let boundary = RowBoundary::new(true, &sheet.crossings[0]);
-        let end = *boundary.detachment().and(sheet.crossings[0].first())?;
+        let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
+        let sheet = Sheet::new(method, &rod, side, &distances);
+        let end = |(row, crossings): (usize, &Vec<Crossing>)| {
+            let boundary = RowBoundary::new(true, crossings);
+            let end = boundary.detachment().and(crossings.first());
+            end.copied().ok_or(row)
+        };
+        let ends = sheet.crossings.iter().enumerate().map(end);
+        let ends: Vec<Crossing> = ends.collect::<Result<_, _>>()?;
         let reader = Reader::new(whisker.units(), &rod);
-        let at_end: Vec<FirstVariation> = Batch::new(method).shoot_at(&rod, [(end.tau, end.load)]);
-        let at_end = at_end.first()?;
-        let push = side.sign() * end.push;
-        Some(Self {
-            at_end: reader.read(end.tau, &at_end.full, sheet.rows[0].touch, push),
+        let points = ends.iter().map(|end| (end.tau, end.load));
+        let at_ends: Vec<FirstVariation> = Batch::new(method).shoot_at(&rod, points);
+        let ends = ends.into_iter().zip(&sheet.rows).zip(at_ends);
+        let ends = ends.map(|((crossing, row), at_end)| {
+            let push = side.sign() * crossing.push;
+            RowEnd {
+                state: reader.read(crossing.tau, &at_end.full, row.touch, push),
+                crossing,
+            }
+        });
+        Ok(Self {
+            ends: ends.collect(),
             whisker: whisker.clone(),
             pole: *pole,
-            distance_mm,
+            distances_mm,
             sheet,
             reader,
-            end,
         })
     }
 
-    /// Returns the push at which the whisker detaches, in radians, as a magnitude.
-    pub fn end(&self) -> f64 {
-        self.end.push
+    /// Returns the push at which the whisker detaches from the pole of `row`, in radians, as a magnitude.
+    pub fn end(&self, row: usize) -> f64 {
+        self.ends[row].crossing.push
     }
 
-    /// Returns the kind of the detachment.
-    pub fn kind(&self) -> DetachmentKind {
-        match self.end.edge {
+    /// Returns the kind of the detachment from the pole of `row`.
+    pub fn kind(&self, row: usize) -> DetachmentKind {
+        match self.ends[row].crossing.edge {
             Edge::Fold => DetachmentKind::SlipOff,
             Edge::Tip => DetachmentKind::PullOff,
         }
     }
 
-    /// Returns the states at `pushes`, magnitudes in radians, `[push]`; `None` where no state is found.
-    pub fn at(&self, pushes: &[f64]) -> Vec<Option<Reading>> {
-        let row = &self.sheet.rows[0];
+    /// Returns the states at `contacts`, `[contact]`; `None` where no state is found.
+    pub fn at(&self, contacts: &[RowPush]) -> Vec<Option<Reading>> {
         let sign = self.sheet.side.sign();
-        let mut order: Vec<usize> = (0..pushes.len()).collect();
-        order.sort_by(|a, b| pushes[*a].total_cmp(&pushes[*b]));
-        let growing: Vec<f64> = order.iter().map(|i| pushes[*i]).collect();
-        let guesses = self.sheet.guesses(0, growing.iter().copied());
-        let guessed = order.iter().zip(guesses);
-        let guessed = guessed.filter_map(|(i, guess)| Some((*i, guess?)));
-        let (places, targets): (Vec<usize>, Vec<CellTarget>) = guessed
-            .map(|(i, guess)| {
-                let target = CellTarget {
+        let mut order: Vec<usize> = (0..contacts.len()).collect();
+        let of = |i: usize| contacts[i];
+        order.sort_by(|a, b| of(*a).0.cmp(&of(*b).0).then(of(*a).1.total_cmp(&of(*b).1)));
+        let (mut places, mut targets) = (Vec::new(), Vec::new());
+        for same in order.chunk_by(|a, b| of(*a).0 == of(*b).0) {
+            let row = of(same[0]).0;
+            let guesses = self.sheet.guesses(row, same.iter().map(|i| of(*i).1));
+            for (i, guess) in same.iter().zip(guesses) {
+                let Some(guess) = guess else { continue };
+                places.push(*i);
+                targets.push(CellTarget {
                     rod: 0,
                     tau: guess.tau,
                     load: guess.load,
-                    pole: row.pole(sign * pushes[i]),
-                };
-                (i, target)
-            })
-            .unzip();
-        let mut states = vec![None; pushes.len()];
+                    pole: self.sheet.rows[row].pole(sign * of(*i).1),
+                });
+            }
+        }
+        let mut states = vec![None; contacts.len()];
         let found = refine(Method::new(Resolution::FINE), &[&self.sheet], &targets);
         for (i, cell) in places.into_iter().zip(found) {
             if cell.outcome == RefineOutcome::Solved {
-                let state = cell.state;
-                let push = sign * pushes[i];
-                states[i] = Some(self.reader.read(state.tau, &state.full, row.touch, push));
+                let (state, (row, push)) = (cell.state, of(i));
+                let touch = self.sheet.rows[row].touch;
+                states[i] = Some(self.reader.read(state.tau, &state.full, touch, sign * push));
             }
         }
-        self.fill(pushes, &mut states);
+        self.fill(contacts, &mut states);
         states
     }
 
     /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation.
-    fn fill(&self, pushes: &[f64], states: &mut [Option<Reading>]) {
-        let row = &self.sheet.rows[0];
+    fn fill(&self, contacts: &[RowPush], states: &mut [Option<Reading>]) {
         let side = self.sheet.side;
-        let mut branch: Option<Option<Branch>> = None;
-        for (state, push) in states.iter_mut().zip(pushes) {
-            if *push <= 0.0 {
-                *state = Some(
-                    self.reader
-                        .at_first_touch(row.contact.min(row.end), row.touch),
-                );
-            } else if *push >= self.end.push {
-                *state = Some(self.at_end);
+        let mut last: Option<(usize, Option<Branch>)> = None;
+        for (state, &(row, push)) in states.iter_mut().zip(contacts) {
+            let place = &self.sheet.rows[row];
+            if push <= 0.0 {
+                let contact = place.contact.min(place.end);
+                *state = Some(self.reader.at_first_touch(contact, place.touch));
+            } else if push >= self.end(row) {
+                *state = Some(self.ends[row].state);
             } else if state.is_none() {
-                let branch = branch.get_or_insert_with(|| {
-                    Branch::new(&self.whisker, &self.pole, side, self.distance_mm).ok()
-                });
-                let found = branch.as_ref().and_then(|branch| {
+                let branch = match last.take() {
+                    Some((own, branch)) if own == row => branch,
+                    _ => {
+                        let distance = self.distances_mm[row];
+                        Branch::new(&self.whisker, &self.pole, side, distance).ok()
+                    }
+                };
+                *state = branch.as_ref().and_then(|branch| {
                     let state = branch.state(side.sign() * push, true).ok()?;
                     Some(branch.read(&state))
                 });
-                *state = found;
+                last = Some((row, branch));
             }
+        }
+    }
+}
+
+/// States of both sides; `None` for a side that the resting whisker does not reach.
+pub struct BothSides {
+    pub cb: Option<SideStates>,
+    pub cf: Option<SideStates>,
+}
+
+impl BothSides {
+    pub const fn of(&self, side: Side) -> Option<&SideStates> {
+        match side {
+            Side::Cb => self.cb.as_ref(),
+            Side::Cf => self.cf.as_ref(),
+        }
+    }
+
+    /// Returns the state of each of the `contacts`; `None` where there is none.
+    pub fn readings(&self, contacts: &[Option<(Side, RowPush)>]) -> Vec<Option<Reading>> {
+        let mut readings = vec![None; contacts.len()];
+        for side in Side::BOTH {
+            let own = contacts.iter().enumerate();
+            let own =
+                own.filter_map(|(i, contact)| Some((i, contact.filter(|own| own.0 == side)?.1)));
+            let (places, pushes): (Vec<usize>, Vec<RowPush>) = own.unzip();
+            let states = self.of(side).map(|states| states.at(&pushes));
+            for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
+                readings[i] = state;
+            }
+        }
+        readings
+    }
+
+    /// Returns the kind of the event at which a push against the pole of `row` ends.
+    pub fn detachment(&self, side: Side, row: usize) -> super::WhiskEventKind {
+        match self.of(side).map(|states| states.kind(row)) {
+            Some(DetachmentKind::PullOff) => super::WhiskEventKind::PullOff,
+            _ => super::WhiskEventKind::SlipOff,
         }
     }
 }

@@ -8,12 +8,17 @@ mod drawing;
 mod fig1;
 mod fig2;
 mod fig3;
+mod fig6;
+mod fig7;
+mod motion;
 
 pub use detachment::Measurements;
 
 use crate::render::{Chart, Plot};
 use crate::store::TableFile;
+use crate::texture::TextureError;
 use crate::trace::NoState;
+use crate::whisk::{CourseError, WhiskError};
 use serde::Serialize;
 use std::io;
 
@@ -25,6 +30,24 @@ pub struct Figure {
     pub chart: Chart,
     /// Tables of the figure, `[table]`: the stem of the file's name, and the function that writes the rows.
     pub tables: Vec<(String, TableRows)>,
+}
+
+/// Error of a figure that cannot be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FigureError {
+    /// A state on a branch is not found.
+    #[error(transparent)]
+    State(#[from] NoState),
+    /// The angles of a course are not accepted.
+    #[error(transparent)]
+    Course(#[from] CourseError),
+    /// The course of a whisker against a pole is not found.
+    #[error(transparent)]
+    Whisk(#[from] WhiskError),
+    /// The course of a whisker behind a surface is not found.
+    #[error(transparent)]
+    Texture(#[from] TextureError),
 }
 
 /// Function that writes the rows of one panel into a table.
@@ -50,14 +73,18 @@ impl FigurePanel {
 /// Computes every figure of the paper that shows theory, with measured detachments where the paper shows them, `[figure]`.
 ///
 /// # Errors
-/// A branch cannot be followed.
-pub fn figures(measured: &Measurements) -> Result<Vec<Figure>, NoState> {
+/// A branch or a course cannot be followed.
+pub fn figures(measured: &Measurements) -> Result<Vec<Figure>, FigureError> {
     Ok(vec![
         fig1::fig1()?,
         fig2::fig2()?,
         fig3::fig3()?,
+        motion::fig4b()?,
         detachment::fig4d(&measured.fig4d),
+        motion::fig5b()?,
         detachment::fig5c(measured),
+        fig6::fig6()?,
+        fig7::fig7b()?,
     ])
 }
 

@@ -24,11 +24,12 @@ enum KeyValue {
     Sweep(Parameter),
     OutputName,
     Deviations,
+    Surface,
     Table,
 }
 
 /// Keys that may be left out, also in a table that is given; the axes of the sweep may be left out, too.
-const OPTIONAL: [&str; 16] = [
+const OPTIONAL: [&str; 17] = [
     Parameter::BaseRadiusUm.key(),
     Parameter::TipRadiusUm.key(),
     "whisker.profile",
@@ -45,6 +46,7 @@ const OPTIONAL: [&str; 16] = [
     "output",
     "output.name",
     "uncertainty",
+    "surface",
 ];
 
 /// Every key of a scene file that is no table of keys.
@@ -63,6 +65,7 @@ fn keys() -> impl Iterator<Item = (&'static str, KeyValue)> {
     let after = [
         ("output.name", KeyValue::OutputName),
         ("uncertainty", KeyValue::Deviations),
+        ("surface", KeyValue::Surface),
     ];
     let all = before.into_iter().chain(numbers).chain(between);
     all.chain(axes).chain(after)
@@ -141,6 +144,7 @@ impl<'de> Visitor<'de> for TableReader<'_> {
                     builder.sweep.push((parameter, table.next_value()?));
                 }
                 KeyValue::OutputName => builder.name = Some(table.next_value()?),
+                KeyValue::Surface => builder.surface = Some(table.next_value()?),
                 KeyValue::Deviations => scene.deviations = Some(table.next_value()?),
                 KeyValue::Table => {
                     table.next_value_seed(TableReader(format!("{path}{name}."), scene))?;

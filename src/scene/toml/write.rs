@@ -113,6 +113,18 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
             put(root, &format!("uncertainty.{ROWS}"), deviation);
         }
     }
+    if let Some(surface) = &scene.surface {
+        for (key, value) in [
+            ("surface.distance_mm", surface.distance_mm),
+            ("surface.spacing_um", surface.spacing_um),
+            ("surface.asperity_radius_um", surface.asperity_radius_um),
+            ("surface.length_mm", surface.length_mm),
+            ("surface.jitter", surface.jitter),
+        ] {
+            put(root, key, value);
+        }
+        put(root, "surface.seed", i64::from(surface.seed));
+    }
     document
 }
 

@@ -2,14 +2,13 @@
 
 use std::f64::consts::TAU;
 
-/// Stream of random numbers with the normal distribution of mean 0 and standard deviation 1. They are made by SplitMix64 (Steele, Lea and
-/// Flood, OOPSLA 2014) and the method of Box and Muller (Ann. Math. Stat. 29, 610, 1958).
+/// Stream of random numbers, made by SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
 #[derive(Clone, Debug)]
-pub(super) struct Normal {
+pub struct RandomStream {
     state: u64,
 }
 
-impl Normal {
+impl RandomStream {
     /// Creates the stream of random numbers of a `seed` and a `sample`.
     pub fn new(seed: u64, sample: u64) -> Self {
         Self {
@@ -17,8 +16,14 @@ impl Normal {
         }
     }
 
-    /// Returns the next random number of the stream: mean 0, standard deviation 1.
-    pub fn draw(&mut self) -> f64 {
+    /// Returns a uniform random number of at least 0 and less than 1.
+    pub fn uniform(&mut self) -> f64 {
+        self.bits() as f64 / STEPS
+    }
+
+    /// Returns a normal random number of mean 0 and standard deviation 1, by the method of Box and Muller (Ann. Math. Stat. 29, 610,
+    /// 1958).
+    pub fn normal(&mut self) -> f64 {
         // The first is in (0, 1], whose logarithm is finite.
         let [radius, turn] = [1.0, 0.0].map(|shift| (self.bits() as f64 + shift) / STEPS);
         (-2.0 * libm::log(radius)).sqrt() * libm::cos(TAU * turn)
@@ -48,7 +53,7 @@ mod tests {
     /// Values of the published generator with the state 1234567.
     #[test]
     fn the_bits_are_those_of_splitmix64() {
-        let mut stream = Normal { state: 1_234_567 };
+        let mut stream = RandomStream { state: 1_234_567 };
         let expected = [6_457_827_717_110_365_317_u64, 3_203_168_211_198_807_973];
         assert_eq!(
             expected.map(|bits| bits >> 11),
@@ -60,7 +65,9 @@ mod tests {
     #[test]
     fn the_numbers_are_normal() {
         const COUNT: u64 = 100_000;
-        let numbers: Vec<f64> = (0..COUNT).map(|i| Normal::new(1, i).draw()).collect();
+        let numbers: Vec<f64> = (0..COUNT)
+            .map(|i| RandomStream::new(1, i).normal())
+            .collect();
         for (power, expected, variance) in
             [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0)]
         {

@@ -1,0 +1,84 @@
+//! Arguments of commands over time: the course of the angle of the base.
+
+use super::arguments::angle;
+use super::failure::{Failure, message};
+use super::files::{Files, STDOUT};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use whiskmap::scene::digits;
+use whiskmap::whisk::AngleCourse;
+
+#[derive(Debug, Args)]
+pub struct CourseArgs {
+    /// CSV file of the angle over time, with the columns time_s and angle_deg; - is standard input
+    #[arg(long, value_name = "FILE", conflicts_with = "sine")]
+    angles: Option<PathBuf>,
+    /// Sine of the angle: amplitude in degrees or with a unit, frequency in Hz, duration in s
+    #[arg(long, value_name = "AMPLITUDE,HZ,SECONDS", allow_hyphen_values = true, value_parser = sine)]
+    sine: Option<Sine>,
+    /// Number of samples per second of --sine
+    #[arg(long, value_name = "HZ", default_value = "1000", value_parser = positive, conflicts_with = "angles")]
+    rate: f64,
+}
+
+/// Amplitude in degrees, frequency in Hz and duration in s of a sine.
+type Sine = [f64; 3];
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "must be a positive number".to_owned())
+}
+
+fn sine(text: &str) -> Result<Sine, String> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let [amplitude, frequency, seconds] = parts[..] else {
+        return Err("must be amplitude, frequency and duration, such as 25deg,10,0.2".to_owned());
+    };
+    let amplitude = angle(amplitude)?;
+    if !(amplitude.abs() <= 360.0 && amplitude != 0.0) {
+        return Err("the amplitude must be between -360deg and 360deg, and not 0".to_owned());
+    }
+    let named = |name: &str, text| positive(text).map_err(|why| format!("{name} {text}: {why}"));
+    Ok([
+        amplitude,
+        named("frequency in Hz", frequency)?,
+        named("duration in s", seconds)?,
+    ])
+}
+
+impl CourseArgs {
+    /// Returns an error if the course and the `scene` are both standard input.
+    pub fn check_stdin(&self, scene: &Path) -> Result<(), Failure> {
+        let stdin = Path::new(STDOUT);
+        if self.angles.as_deref() == Some(stdin) && scene == stdin {
+            let why = "--angles -: standard input is the scene, and can be read once; name a file";
+            return Err(Failure::Input(why.to_owned()));
+        }
+        Ok(())
+    }
+
+    /// Reads or creates the course.
+    pub fn course(&self, files: &mut Files) -> Result<AngleCourse, Failure> {
+        if let (None, Some([amplitude, frequency, seconds])) = (&self.angles, self.sine) {
+            let sine = AngleCourse::sine(amplitude, frequency, seconds, self.rate);
+            return sine.map_err(|why| Failure::Input(format!("{}: {why}", self.source())));
+        }
+        let path = self.angles.as_deref().unwrap_or(Path::new(STDOUT));
+        let course = AngleCourse::read(path)?;
+        files.input(path);
+        if let Some(note) = &course.note {
+            message(&format!("note: {note}"));
+        }
+        Ok(course)
+    }
+
+    /// Returns the option that gives the course, with its value.
+    pub fn source(&self) -> String {
+        match (&self.angles, self.sine) {
+            (Some(path), _) => format!("--angles {}", path.display()),
+            (_, Some(sine)) => format!("--sine {}", sine.map(digits).join(",")),
+            _ => String::new(),
+        }
+    }
+}

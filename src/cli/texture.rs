@@ -1,0 +1,154 @@
+//! Command `whiskmap texture`.
+
+use super::arguments::column_help;
+use super::course::CourseArgs;
+use super::failure::{Failure, message};
+use super::files::{Files, OutputTable};
+use super::outputs::OutputArgs;
+use super::pole::check_single;
+use clap::Args;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use whiskmap::render::textures;
+use whiskmap::scene::{digits, rounded};
+use whiskmap::texture::{
+    AsperityStay, Texture, TextureError, TextureEvent, TexturePhase, TextureSample, TipBin, texture,
+};
+use whiskmap::whisk::WhiskEventKind;
+
+const EXAMPLES: &str = "\
+Examples:
+  whiskmap texture scenes/texture_cone.toml --csv texture.csv --plot texture.svg
+  whiskmap texture scenes/texture_hair.toml --sine 15deg,0.2,5 --dwells dwells.csv --plot hair.svg
+
+The scene's table [surface] puts asperities, small poles without friction, on a line. The angle of the base is 0 where the chord of \
+the resting whisker is normal to that line. A whisker that detaches from an asperity comes to rest against the first asperity ahead \
+that holds it at this angle of the base, else it is free. The paper has no model for this. This one leaves out inertia and friction, \
+and lets one asperity at a time bend the whisker, which passes between them.";
+
+#[derive(Debug, Args)]
+#[command(
+    mut_arg("sine", |sine| sine.default_value("15deg,0.2,15")),
+    after_help = EXAMPLES,
+    after_long_help = column_help(EXAMPLES, &[
+        ("Columns", TextureSample::COLUMNS),
+        ("Columns of --events", TextureEvent::COLUMNS),
+        ("Columns of --dwells", AsperityStay::COLUMNS),
+        ("Columns of --histogram", TipBin::COLUMNS),
+    ])
+)]
+pub struct TextureArgs {
+    /// Scene file; - is standard input
+    scene: PathBuf,
+    #[command(flatten)]
+    course: CourseArgs,
+    /// Write touches, releases, slip-offs and pull-offs to FILE, as CSV
+    #[arg(long, value_name = "FILE")]
+    events: Option<PathBuf>,
+    /// Write the stays on asperities with their dwell times to FILE, as CSV
+    #[arg(long, value_name = "FILE")]
+    dwells: Option<PathBuf>,
+    /// Write the histogram of the position of the tip to FILE, as CSV
+    #[arg(long, value_name = "FILE")]
+    histogram: Option<PathBuf>,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
+    args.course.check_stdin(&args.scene)?;
+    let scene = files.scene(&args.scene)?;
+    check_single(&scene, "texture")?;
+    let surface = scene.surface.ok_or_else(|| {
+        let path = args.scene.display();
+        let keys = "distance_mm, spacing_um, asperity_radius_um and length_mm";
+        Failure::Input(format!(
+            "{path}: the scene has no [surface]: add that table, with {keys}"
+        ))
+    })?;
+    let friction = scene.pole.friction;
+    if friction != 0.0 {
+        return Err(Failure::Input(format!(
+            "contact.friction = {friction}: must be 0, because asperities have no friction in this model"
+        )));
+    }
+    let course = args.course.course(files)?;
+    let mut outputs = args.outputs.open(files)?;
+    let mut table = |option, path: &Option<PathBuf>| {
+        let open = |path: &PathBuf| args.outputs.table(files, option, path);
+        path.as_ref().map(open).transpose()
+    };
+    let events = table("--events", &args.events)?;
+    let dwells = table("--dwells", &args.dwells)?;
+    let histogram = table("--histogram", &args.histogram)?;
+    let found = texture(&scene.whisker, &surface, &course).map_err(|why| match why {
+        TextureError::Unresolved { .. } => Failure::Texture(why),
+        TextureError::Blocked { .. } => Failure::Input(format!("{}: {why}", args.scene.display())),
+        why => Failure::Input(format!("{}: {why}", args.course.source())),
+    })?;
+    outputs.rows(&found.samples)?;
+    let paths = [
+        written(events, &found.events)?,
+        written(dwells, &found.stays())?,
+        written(histogram, &found.tip_histogram())?,
+    ];
+    summarise(&found);
+    outputs.finish_chart(|| textures(&scene.title, &found))?;
+    for path in paths.into_iter().flatten() {
+        writeln!(io::stdout(), "{}", path.display())?;
+    }
+    Ok(())
+}
+
+/// Writes the rows of a table, if there is one. Returns the path of a regular file.
+fn written<R: serde::Serialize>(
+    table: Option<OutputTable>,
+    rows: &[R],
+) -> Result<Option<PathBuf>, Failure> {
+    let Some(mut table) = table else {
+        return Ok(None);
+    };
+    table.rows(rows)?;
+    table.finish()
+}
+
+/// Prints the number of events, the energy that detachments lose, and the part of the samples in each phase.
+fn summarise(texture: &Texture) {
+    let count = |kind| {
+        let own = texture.events.iter().filter(|event| event.event == kind);
+        own.count()
+    };
+    let [touches, releases, slips, pulls] = [
+        WhiskEventKind::Touch,
+        WhiskEventKind::Release,
+        WhiskEventKind::SlipOff,
+        WhiskEventKind::PullOff,
+    ]
+    .map(count);
+    let lost = digits(rounded(texture.lost_nj(), 6));
+    let reached = texture.reached;
+    message(&format!(
+        "{reached} asperities within reach; touches {touches}, releases {releases}, slip-offs {slips}, pull-offs {pulls}; \
+         detachments lose {lost} nJ"
+    ));
+    let all = texture.samples.len();
+    let phase = |phase| {
+        let own = texture.samples.iter().filter(|own| own.phase == phase);
+        own.count()
+    };
+    let [stuck, slipping, free, undecided] = [
+        TexturePhase::Stuck,
+        TexturePhase::Slipping,
+        TexturePhase::Free,
+        TexturePhase::Undecided,
+    ]
+    .map(phase);
+    message(&format!(
+        "of {all} samples, {stuck} are stuck, {slipping} slipping, {free} free"
+    ));
+    if undecided > 0 {
+        message(&format!(
+            "warning: {undecided} of {all} samples are undecided, for the reasons in the table"
+        ));
+    }
+}

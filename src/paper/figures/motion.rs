@@ -1,0 +1,188 @@
+//! Courses of whiskers against one pole, as sequences of shapes: Figs. 4B, 4C and 5B.
+
+use super::{Figure, FigureError, FigurePanel, lettered};
+use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_RIGHT, POLE};
+use crate::render::{Disc, Ink, Line, Plot, STUCK, Stroke};
+use crate::rod::{Rest, Side};
+use crate::scene::Whisker;
+use crate::trace::{Branch, WhiskerShape};
+use crate::whisk::{AngleCourse, Whisk, WhiskEventKind, WhiskRegime, WhiskSample, whisk};
+use glam::DVec2;
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// Points along a whisker.
+const POINTS: usize = 60;
+
+/// Course of a whisker against the paper's pole, with the branches on which its states lie.
+pub struct Motion {
+    pub whisk: Whisk,
+    cb: Branch,
+    cf: Branch,
+    length_mm: f64,
+}
+
+/// Point of a shape in a frame, a row of a table.
+#[derive(Clone, Copy, Serialize)]
+struct FramePoint {
+    time_s: f64,
+    angle_deg: f64,
+    regime: WhiskRegime,
+    x_mm: f64,
+    y_mm: f64,
+}
+
+/// Returns the course `middle - amplitude cos(2 pi frequency t)` in degrees over half a period, in frames at `rate` per second.
+pub fn protraction(
+    [middle, amplitude]: [f64; 2],
+    frequency: f64,
+    rate: f64,
+) -> Result<AngleCourse, FigureError> {
+    let frames = (0.5 / frequency * rate).floor() as u32;
+    let times: Vec<f64> = (0..=frames).map(|i| f64::from(i) / rate).collect();
+    let angle = |time: &f64| middle - amplitude * libm::cos(TAU * frequency * time);
+    let angles = times.iter().map(angle).collect();
+    Ok(AngleCourse::new(times, angles)?)
+}
+
+impl Motion {
+    pub fn new(
+        whisker: &Whisker,
+        distance_mm: f64,
+        course: &AngleCourse,
+    ) -> Result<Self, FigureError> {
+        let whisk = whisk(whisker, &POLE, distance_mm, course)?;
+        let cb = Branch::new(whisker, &POLE, Side::Cb, distance_mm)?;
+        let rest = Rest::new(&whisker.rod(&POLE, Side::Cf));
+        let distance = rest.distance_of_pole(cb.row().pole_distance);
+        let cf = Branch::new(whisker, &POLE, Side::Cf, distance * whisker.length_mm)?;
+        Ok(Self {
+            whisk,
+            cb,
+            cf,
+            length_mm: whisker.length_mm,
+        })
+    }
+
+    /// Returns the shape of the bent whisker in a sample, in the axes of first touch on its side; `None` without contact.
+    pub fn bent(
+        &self,
+        sample: &WhiskSample,
+        count: usize,
+    ) -> Result<Option<WhiskerShape>, FigureError> {
+        let Some((side, push)) = sample.side.zip(sample.push_angle_deg) else {
+            return Ok(None);
+        };
+        let branch = match side {
+            Side::Cb => &self.cb,
+            Side::Cf => &self.cf,
+        };
+        let state = branch.state(push.to_radians(), true)?;
+        Ok(Some(WhiskerShape::new(branch, &state, count)))
+    }
+
+    /// Returns the points `[x, y]` of the whisker in a sample, in mm in the axes of first touch on CB, where the pole stands still.
+    fn points(&self, sample: &WhiskSample) -> Result<Vec<[f64; 2]>, FigureError> {
+        let (points, turn) = match (self.bent(sample, POINTS)?, sample.side) {
+            (Some(shape), Some(side)) => {
+                let points = shape.points.iter().map(|point| [point.x_mm, point.y_mm]);
+                let turn = match side {
+                    Side::Cb => 0.0,
+                    Side::Cf => -self.whisk.cf_touch_deg,
+                };
+                (points.collect(), turn)
+            }
+            _ => (WhiskerShape::at_rest(&self.cb, POINTS), -sample.angle_deg),
+        };
+        let turn = DVec2::from_angle(turn.to_radians());
+        let turned = points
+            .into_iter()
+            .map(|at| turn.rotate(DVec2::from(at)).to_array());
+        Ok(turned.collect())
+    }
+
+    /// Draws every `every`th frame in grey, the last one before the detachment in red, and the one after it in black.
+    fn panel(
+        &self,
+        letter: &'static str,
+        title: &str,
+        every: usize,
+    ) -> Result<FigurePanel, FigureError> {
+        let samples = &self.whisk.samples;
+        let kinds = [WhiskEventKind::SlipOff, WhiskEventKind::PullOff];
+        let mut events = self.whisk.events.iter();
+        let end = events.find(|event| kinds.contains(&event.event));
+        let after = samples.partition_point(|own| end.is_none_or(|end| own.time_s < end.time_s));
+        let (mut lines, mut rows) = (Vec::new(), Vec::new());
+        for (i, sample) in samples.iter().enumerate() {
+            let look = match i {
+                _ if i + 1 == after => Some((STUCK, "last frame before detachment")),
+                _ if i == after => Some((Ink::Black, "next frame")),
+                _ if i % every == 0 => Some((Ink::Grey, "other frames")),
+                _ => None,
+            };
+            let Some((ink, name)) = look else { continue };
+            let points = self.points(sample)?;
+            rows.extend(points.iter().map(|[x_mm, y_mm]| FramePoint {
+                time_s: sample.time_s,
+                angle_deg: sample.angle_deg,
+                regime: sample.regime,
+                x_mm: *x_mm,
+                y_mm: *y_mm,
+            }));
+            lines.push(Line::new(points, ink, Stroke::Solid).named(name));
+        }
+        // Grey lines first, so that the others lie over them.
+        lines.sort_by_key(|line| line.ink != Ink::Grey);
+        let pole = self.cb.row().pole(0.0) * self.length_mm;
+        let plot = Plot {
+            title: title.to_owned(),
+            x_label: "x (mm)".to_owned(),
+            y_label: "y (mm)".to_owned(),
+            lines,
+            discs: vec![Disc {
+                centre: pole.to_array(),
+                radius: POLE.radius_mm,
+                dark: true,
+            }],
+            equal_axes: true,
+            ..Plot::default()
+        };
+        Ok(FigurePanel::new(letter, plot, rows))
+    }
+}
+
+/// Draws the paper's Figs. 4B and 4C: an isolated whisker and a hair, rotated into a pole and past it.
+pub fn fig4b() -> Result<Figure, FigureError> {
+    const WHISKER_MM: f64 = 13.0;
+    const HAIR_MM: f64 = 14.2;
+    let course = protraction([12.0, 15.0], 0.2, 32.0)?;
+    let cone = Motion::new(&FIG4_WHISKER, WHISKER_MM, &course)?;
+    let hair = Motion::new(&FIG4_HAIR, HAIR_MM, &course)?;
+    let panels = vec![
+        cone.panel("B", "mouse whisker: slips off", 4)?,
+        hair.panel("C", "human hair: is pulled off", 4)?,
+    ];
+    let caption = vec![
+        "The base turns by 30 deg at 0.2 Hz as in the paper; every fourth frame of 32 per second. The pole stands still.".to_owned(),
+        format!("The paper gives no distance of the pole: here it is touched at {WHISKER_MM} mm (B) and {HAIR_MM} mm (C)."),
+        "Quasi-static model: a whisker that has detached is at rest in the next frame.".to_owned(),
+    ];
+    let title = "Figs. 4B, 4C: a whisker and a hair, rotated into a pole";
+    Ok(lettered("fig4b", title, caption, panels))
+}
+
+/// Draws the paper's Fig. 5B: a whisker of a behaving mouse that slips off a pole.
+pub fn fig5b() -> Result<Figure, FigureError> {
+    const DISTANCE_MM: f64 = 12.0;
+    let course = protraction([12.0, 18.0], 8.0, 250.0)?;
+    let motion = Motion::new(&FIG5_RIGHT, DISTANCE_MM, &course)?;
+    let panels = vec![motion.panel("B", "protraction, 250 frames per second", 1)?];
+    let caption = vec![
+        "A made-up protraction: the paper gives neither the course nor the distance of its example. The whisker is that of Fig. 5C, right;"
+            .to_owned(),
+        format!("the base turns by 36 deg at 8 Hz, and the pole is touched at {DISTANCE_MM} mm. Inertia is left out."),
+    ];
+    let title = "Fig. 5B: a whisker that slips off a pole";
+    Ok(lettered("fig5b", title, caption, panels))
+}

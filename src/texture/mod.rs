@@ -1,0 +1,215 @@
+//! Texture: the quasi-static course of a whisker whose base sweeps to and fro behind a rough surface (the paper's Fig. 6).
+//!
+//! The paper has no model for this. Here, the surface is a row of small poles, its asperities, on a line. The whisker touches one of them
+//! at a time, without friction and inertia, and passes between them. A detachment frees it. It comes to rest against the first asperity
+//! ahead that its stable states can lie on at this angle of the base, else it is free. The states are those of [`crate::whisk`] against one
+//! pole, which is the limit of a single asperity.
+//!
+//! Positions are `[x, y]` in mm: the base is at the origin, and the line of the asperities is at `y = distance`. The angle of the base is 0
+//! where the chord of the resting whisker is normal to that line. It grows toward `x`, and pushes CB then.
+
+mod asperities;
+mod sample;
+mod shape;
+mod stays;
+mod tip;
+
+pub use sample::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
+pub use shape::shape;
+pub use stays::{AsperityStay, TipBin, histogram};
+
+use crate::rod::Side;
+use crate::scene::{Surface, Whisker};
+use crate::whisk::phase::{Obstacles, Phase};
+use crate::whisk::states::{BothSides, RowPush};
+use crate::whisk::{AngleCourse, WhiskEventKind};
+use asperities::Asperities;
+use sample::{Crossing, Held};
+use tip::TipFrame;
+
+/// Course of a whisker behind a rough surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// Samples of the course, one for each of its times.
+    pub samples: Vec<TextureSample>,
+    /// Events of the course in the order of time.
+    pub events: Vec<TextureEvent>,
+    /// Number of asperities within reach of the resting whisker.
+    pub reached: usize,
+}
+
+/// Error of a course that cannot be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TextureError {
+    /// The base turns away from the surface.
+    #[error("angle {0} deg: must be between -90 and 90 deg from the normal of the surface")]
+    Angle(f64),
+    /// The resting whisker does not fit between two asperities.
+    #[error(
+        "the resting whisker does not fit between asperities {} and {}, at {} and {} mm: surface.spacing_um must be larger, or \
+         surface.asperity_radius_um or surface.jitter smaller", .asperities[0], .asperities[1], .x_mm[0], .x_mm[1]
+    )]
+    Blocked {
+        /// Numbers of the two asperities on the surface.
+        asperities: [usize; 2],
+        /// Positions of the two asperities along the surface, in mm.
+        x_mm: [f64; 2],
+    },
+    /// The resting whisker would cross an asperity at the first angle.
+    #[error(
+        "begins in contact: at the first angle of {angle_deg} deg the resting whisker meets asperity {asperity}; must be at most {:.6} \
+         deg or at least {:.6} deg", .touches_deg[0], .touches_deg[1]
+    )]
+    Begin {
+        /// First angle of the course, in degrees.
+        angle_deg: f64,
+        /// Number of the asperity on its surface.
+        asperity: usize,
+        /// Angles of the base at the touches of the asperity on CB and CF, in degrees.
+        touches_deg: [f64; 2],
+    },
+    /// The end of the push against an asperity was not found on this side.
+    #[error("the detachment from asperity {asperity} on {side:?} was not found")]
+    Unresolved {
+        /// Number of the asperity on its surface.
+        asperity: usize,
+        /// Side of the whisker that the asperity is on.
+        side: Side,
+    },
+}
+
+/// Computes the course of `whisker` behind `surface`.
+///
+/// ```
+/// use whiskmap::scene::Scene;
+/// use whiskmap::texture::texture;
+/// use whiskmap::whisk::AngleCourse;
+///
+/// let scene = Scene::parse(include_str!("../../scenes/texture_cone.toml"), "texture_cone.toml")?;
+/// let surface = scene.surface.ok_or("no surface")?;
+/// let course = AngleCourse::sine(15.0, 0.2, 5.0, 100.0)?;
+/// let found = texture(&scene.whisker, &surface, &course)?;
+/// assert_eq!(found.samples.len(), 501);
+/// assert!(found.stays().len() > 10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If the course begins in contact or turns the base away from the surface, the resting whisker does not fit between two asperities, or a
+/// detachment is not found.
+pub fn texture(
+    whisker: &Whisker,
+    surface: &Surface,
+    course: &AngleCourse,
+) -> Result<Texture, TextureError> {
+    let angles = course.angles_deg();
+    if let Some(angle) = angles.iter().find(|angle| angle.abs() > 90.0) {
+        return Err(TextureError::Angle(*angle));
+    }
+    let tips = TipFrame::new(whisker, surface);
+    let (asperities, states) = Asperities::new(whisker, surface, &tips)?;
+    let begin = asperities.begin(angles[0].to_radians())?;
+    let (phases, passages) = asperities.follow(begin, course);
+    let place = Placed {
+        tips,
+        asperities: &asperities,
+    };
+    let times = course.times_s().iter().zip(angles);
+    let moments = times.map(|(time_s, angle_deg)| [*time_s, angle_deg.to_radians()]);
+    let moments: Vec<[f64; 2]> = moments.collect();
+    let contacts = phases.iter().zip(&moments).map(|(phase, [_, angle])| {
+        let Phase::Contact { side, obstacle } = *phase else {
+            return None;
+        };
+        let push = asperities.push(side, obstacle, *angle).max(0.0);
+        place.contact(side, obstacle, push)
+    });
+    let contacts: Vec<Contact> = contacts.collect();
+    let held = place.held(&states, &contacts, &moments);
+
+    let changes = passages.iter().map(|own| [own.time_s, own.angle]);
+    let changes: Vec<[f64; 2]> = changes.collect();
+    let contacts = passages
+        .iter()
+        .map(|own| place.contact(own.side, own.obstacle, own.push));
+    let contacts: Vec<Contact> = contacts.collect();
+    let held_then = place.held(&states, &contacts, &changes);
+    let kinds = passages.iter().zip(&contacts).map(|(passage, contact)| {
+        let end = contact.map(|own| states.detachment(own.side, own.row_push.0));
+        passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
+    });
+    let kinds: Vec<WhiskEventKind> = kinds.collect();
+
+    let samples = held.iter().zip(&moments);
+    let crossed = Crossing::first(samples.chain(held_then.iter().zip(&changes)));
+    Ok(Texture {
+        samples: sample::samples(course, &phases, &passages, &held, &place.tips, crossed),
+        events: sample::events(&passages, &kinds, &held_then, crossed),
+        reached: asperities.len(),
+    })
+}
+
+/// Contact with an asperity.
+#[derive(Clone, Copy)]
+struct AsperityContact {
+    side: Side,
+    obstacle: i32,
+    row_push: RowPush,
+}
+
+type Contact = Option<AsperityContact>;
+
+/// Asperities of a surface with the frame of the tip.
+struct Placed<'a> {
+    tips: TipFrame,
+    asperities: &'a Asperities,
+}
+
+impl Placed<'_> {
+    /// Returns the contact with an obstacle after a push in radians, as a magnitude; `None` for a push that is NaN.
+    fn contact(&self, side: Side, obstacle: i32, push: f64) -> Contact {
+        (!push.is_nan()).then(|| AsperityContact {
+            side,
+            obstacle,
+            row_push: (self.asperities.row(side, obstacle), push),
+        })
+    }
+
+    /// Returns the state of each of the `contacts`, at its `[time in s, angle in radians]`; `None` without contact.
+    fn held(
+        &self,
+        states: &BothSides,
+        contacts: &[Contact],
+        moments: &[[f64; 2]],
+    ) -> Vec<Option<Held>> {
+        let row = |contact: &Contact| contact.map(|own| (own.side, own.row_push));
+        let readings = states.readings(&contacts.iter().map(row).collect::<Vec<_>>());
+        let held = contacts.iter().zip(readings).zip(moments);
+        let held = held.map(|((contact, reading), [_, angle])| {
+            let AsperityContact {
+                side,
+                obstacle,
+                row_push,
+            } = (*contact)?;
+            let (asperity, x_mm) = self.asperities.place(obstacle);
+            Some(Held {
+                asperity,
+                side,
+                push: row_push.1,
+                state: reading
+                    .map(|reading| (reading, self.tips.held(x_mm, side, *angle, &reading))),
+            })
+        });
+        held.collect()
+    }
+}
+
+impl Texture {
+    /// Returns the energy that the detachments of the course lose, in nJ.
+    #[must_use]
+    pub fn lost_nj(&self) -> f64 {
+        let lost = self.events.iter().filter_map(|event| event.lost_nj);
+        lost.fold(0.0, |sum, lost| sum + lost)
+    }
+}
