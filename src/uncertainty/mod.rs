@@ -8,7 +8,7 @@ mod normal;
 mod spread;
 mod varying;
 
-pub use spread::EndSpread;
+pub use spread::{EndSpread, PointSpread};
 
 use crate::rod::Side;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
