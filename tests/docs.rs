@@ -8,7 +8,7 @@ use whiskmap::force::FrameForce;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::sensitivity::VariableEffect;
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
-use whiskmap::uncertainty::EndSpread;
+use whiskmap::uncertainty::{EndSpread, PointSpread};
 use whiskmap::whisk::{WhiskEvent, WhiskSample};
 
 fn root() -> &'static Path {
@@ -98,6 +98,7 @@ fn every_column_is_on_the_page_of_the_commands() {
         BranchPoint::COLUMNS,
         ShapePoint::COLUMNS,
         EndSpread::COLUMNS,
+        PointSpread::COLUMNS,
         VariableEffect::COLUMNS,
         WhiskSample::COLUMNS,
         WhiskEvent::COLUMNS,

@@ -20,7 +20,7 @@ pub fn side(name: &str) -> PyResult<Side> {
 pub fn parameter(argument: &str, name: &str) -> PyResult<Parameter> {
     Parameter::named(name).ok_or_else(|| {
         let known = Parameter::ALL.map(Parameter::name);
-        let hint = did_you_mean(name, known);
+        let hint = Parameter::suggested(name).unwrap_or_else(|| did_you_mean(name, known));
         refused(
             argument,
             name,

@@ -165,8 +165,8 @@ pub struct Report {
     pub map_cells: usize,
     /// Whole maps on all threads: of the CPU engine, of the spectral engine, then of each GPU engine.
     pub maps: Vec<WholeMap>,
-    /// Comparison of the CPU engine with the fastest other engine, if there is one.
-    pub verdict: Option<Verdict>,
+    /// Comparison of the fastest two engines on the CPU, then of each GPU engine with the fastest engine on the CPU.
+    pub verdicts: Vec<Verdict>,
     /// Large maps on other machines: computed, not measured.
     pub computed: Vec<ComputedMap>,
     /// Engines that could not be measured, and why.

@@ -21,6 +21,8 @@ use std::ops::ControlFlow;
 pub struct WholeMap {
     /// Name of the engine, with its threads unless it is a GPU.
     pub engine: String,
+    /// Adapter of a GPU engine, with its driver; `None` for engines on the CPU.
+    pub adapter: Option<String>,
     /// Times from the plan to the last panel packed, in seconds.
     pub seconds: Timing,
     /// Wall milliseconds of the map by stage, medians of the runs: `sheets`, `base_points`, `expansions`, `guesses`, `refinement` and
@@ -40,13 +42,15 @@ pub struct WholeMap {
     pub packed_bytes_per_cell: f64,
 }
 
-/// Comparison of engines by their times for whole maps.
+/// Comparison of two engines by their times for whole maps.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
-    /// Name of the faster one of the CPU engine and the fastest other engine.
+    /// Name of the faster one of the two engines.
     pub faster: String,
-    /// Name of the slower one of the CPU engine and the fastest GPU engine.
+    /// Name of the slower one of the two engines.
     pub slower: String,
+    /// Adapter of the compared GPU engine, with its driver; `None` for two engines on the CPU.
+    pub adapter: Option<String>,
     /// Ratio of the median times of the slower and the faster engine, at least 1.
     pub times: f64,
     /// True if a run of the slower engine was as fast as a run of the faster one.
@@ -79,22 +83,32 @@ impl fmt::Display for Verdict {
 }
 
 impl Verdict {
-    /// Returns the verdict on whole maps: compares the CPU engine, which is first, with the fastest of the others; `None` without others.
-    pub fn of(maps: &[WholeMap]) -> Option<Self> {
-        let (cpu, others) = maps.split_first()?;
-        let by_time = |a: &&WholeMap, b: &&WholeMap| a.seconds.median.total_cmp(&b.seconds.median);
-        let other = others.iter().min_by(by_time)?;
-        let (faster, slower) = match by_time(&cpu, &other).is_le() {
-            true => (cpu, other),
-            false => (other, cpu),
+    /// Returns the verdicts on whole maps: one for the fastest two engines on the CPU, then one for each GPU engine, which is compared with
+    /// the fastest engine on the CPU.
+    pub fn all(maps: &[WholeMap]) -> Vec<Self> {
+        let (gpus, mut hosts): (Vec<_>, Vec<_>) =
+            maps.iter().partition(|map| map.adapter.is_some());
+        hosts.sort_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median));
+        let Some((fastest, others)) = hosts.split_first() else {
+            return Vec::new();
         };
-        Some(Self {
+        let others = others.first().into_iter().chain(&gpus);
+        others.map(|other| Self::of(fastest, other)).collect()
+    }
+
+    fn of(one: &WholeMap, other: &WholeMap) -> Self {
+        let (faster, slower) = match one.seconds.median <= other.seconds.median {
+            true => (one, other),
+            false => (other, one),
+        };
+        Self {
             faster: faster.engine.clone(),
             slower: slower.engine.clone(),
+            adapter: other.adapter.clone(),
             times: slower.seconds.median / faster.seconds.median,
             within_spread: slower.seconds.fastest <= faster.seconds.slowest,
             is_noisy: slower.seconds.is_noisy || faster.seconds.is_noisy,
-        })
+        }
     }
 }
 
@@ -165,14 +179,22 @@ pub fn measure(
         engines = working;
     }
     let maps = engines.into_iter();
-    let maps = maps.map(|(name, _, samples)| summed_up(name, plan.cells, &samples));
+    let adapter = |name: &str| {
+        let mut engines = report.engines.iter();
+        let own = engines.find(|own| own.name == name && own.threads.is_none());
+        own.map(|own| own.adapter.clone())
+    };
+    let maps = maps.map(|(name, _, samples)| WholeMap {
+        adapter: adapter(&name),
+        ..summed_up(name, plan.cells, &samples)
+    });
     report.maps = maps.collect();
     if let Some(cpu) = report.maps.first().map(|cpu| cpu.host_share) {
         for map in &mut report.maps {
             map.host_share = if cpu > 0.0 { map.host_share / cpu } else { 0.0 };
         }
     }
-    report.verdict = Verdict::of(&report.maps);
+    report.verdicts = Verdict::all(&report.maps);
     Ok(())
 }
 
@@ -249,6 +271,7 @@ fn summed_up(engine: String, cells: usize, samples: &[MapRun]) -> WholeMap {
     ]);
     WholeMap {
         engine,
+        adapter: None,
         seconds: Timing::of(samples.iter().map(|run| run.seconds)),
         host_us_per_cell: 1e6 * median(samples.iter().map(|run| run.host)) / cells as f64,
         host_share: median(samples.iter().map(|run| run.own)),
@@ -265,9 +288,10 @@ fn summed_up(engine: String, cells: usize, samples: &[MapRun]) -> WholeMap {
 mod tests {
     use super::*;
 
-    fn map(engine: &str, seconds: &[f64]) -> WholeMap {
+    fn map(engine: &str, adapter: Option<&str>, seconds: &[f64]) -> WholeMap {
         WholeMap {
             engine: engine.to_owned(),
+            adapter: adapter.map(str::to_owned),
             seconds: Timing::of(seconds.iter().copied()),
             stages_ms: StageTimes::new(),
             host_us_per_cell: 0.0,
@@ -279,48 +303,55 @@ mod tests {
     }
 
     #[test]
-    fn the_verdict_is_on_the_cpu_and_the_fastest_other_engine() {
-        let [cpu, fast, slow] = [
-            map("cpu", &[1.9, 2.0, 2.1]),
-            map("fast", &[0.9, 1.0, 1.1]),
-            map("slow", &[4.0]),
-        ];
-        let verdict = |maps: &[&WholeMap]| {
+    fn each_gpu_is_compared_with_the_fastest_engine_on_the_cpu() {
+        let cpu = map("cpu", None, &[1.9, 2.0, 2.1]);
+        let spectral = map("spectral", None, &[0.9, 1.0, 1.1]);
+        let slow = map("gpu 0", Some("lavapipe"), &[4.0]);
+        let near = map("gpu 1", Some("A card"), &[0.5, 0.8, 1.0]);
+        let verdicts = |maps: &[&WholeMap]| {
             let maps: Vec<WholeMap> = maps.iter().copied().cloned().collect();
-            let of = |one: Verdict| (one.faster, one.slower, one.times, one.within_spread);
-            Verdict::of(&maps).map(of)
+            let all = Verdict::all(&maps).into_iter();
+            let all = all.map(|one| (one.faster, one.slower, one.adapter, one.within_spread));
+            all.collect::<Vec<_>>()
         };
-        let wanted = |faster: &str, slower: &str, times, within_spread| {
-            Some((faster.to_owned(), slower.to_owned(), times, within_spread))
+        let wanted = |faster: &str, slower: &str, adapter: Option<&str>, within_spread| {
+            let [faster, slower] = [faster, slower].map(str::to_owned);
+            (faster, slower, adapter.map(str::to_owned), within_spread)
         };
-        assert_eq!(verdict(&[]), None);
-        assert_eq!(verdict(&[&cpu]), None);
-        let all = verdict(&[&cpu, &slow, &fast]);
-        assert_eq!(all, wanted("fast", "cpu", 2.0, false));
-        assert_eq!(verdict(&[&cpu, &slow]), wanted("cpu", "slow", 2.0, false));
-        let near = map("near", &[2.05, 2.5, 3.0]);
-        assert_eq!(verdict(&[&cpu, &near]), wanted("cpu", "near", 1.25, true));
+        let on_cpu = wanted("spectral", "cpu", None, false);
+        assert_eq!(verdicts(&[]), []);
+        assert_eq!(verdicts(&[&cpu]), []);
+        assert_eq!(verdicts(&[&cpu, &spectral]), [on_cpu.clone()]);
+        assert_eq!(
+            verdicts(&[&cpu, &spectral, &slow, &near]),
+            [
+                on_cpu,
+                wanted("spectral", "gpu 0", Some("lavapipe"), false),
+                wanted("gpu 1", "spectral", Some("A card"), true),
+            ]
+        );
+        let alone = wanted("cpu", "gpu 0", Some("lavapipe"), false);
+        assert_eq!(verdicts(&[&cpu, &slow]), [alone]);
     }
 
     #[test]
     fn a_verdict_on_noisy_timings_names_no_faster_engine() {
         let text = |cpu: &[f64], gpu: &[f64]| {
-            let verdict = Verdict::of(&[map("cpu", cpu), map("gpu", gpu)]);
-            verdict.map(|verdict| verdict.to_string())
+            let maps = [map("cpu", None, cpu), map("gpu", Some("A card"), gpu)];
+            Verdict::all(&maps)[0].to_string()
         };
         let quiet = text(&[1.95, 2.0, 2.05], &[2.0, 2.1, 2.2]);
-        let wanted = "cpu and gpu are equally fast, within their spread";
-        assert_eq!(quiet.as_deref(), Some(wanted));
+        assert_eq!(quiet, "cpu and gpu are equally fast, within their spread");
         for (cpu, gpu) in [
             ([1.0, 2.0, 3.0], [2.0, 2.1, 2.2]),
             ([1.95, 2.0, 2.05], [2.0, 2.5, 3.0]),
         ] {
-            let noisy = text(&cpu, &gpu).unwrap_or_default();
+            let noisy = text(&cpu, &gpu);
             assert!(noisy.starts_with("too noisy to tell"), "{noisy}");
             assert!(noisy.contains("an idle machine"), "{noisy}");
         }
         // Noise does not matter where no runs overlap.
         let apart = text(&[1.0, 2.0, 3.0], &[8.0, 9.0, 10.0]);
-        assert_eq!(apart.as_deref(), Some("cpu is 4.5 times as fast as gpu"));
+        assert_eq!(apart, "cpu is 4.5 times as fast as gpu");
     }
 }

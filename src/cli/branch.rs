@@ -7,6 +7,7 @@ use super::files::Files;
 use super::outputs::OutputArgs;
 use super::pole::{self, PolesArgs, refuse, title};
 use clap::{Args, ValueEnum};
+use whiskmap::input::each_once;
 use whiskmap::render::{BranchAxis, DrawnBranch, Ink, PUSH_ANGLE, Plot, branches, regions};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
@@ -117,7 +118,7 @@ const PUSH: BranchAxis = BranchAxis {
 };
 
 pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
-    let distances = &args.poles.distance;
+    let distances = &each_once(&args.poles.distance);
     let (scene, whisker) = pole::read(files, &args.poles.scene, "branch", distances)?;
     let mut outputs = args.outputs.open(files)?;
     let sides: &[Side] = match args.side {

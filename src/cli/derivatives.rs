@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use clap::Args;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
+use whiskmap::input::each_once;
 use whiskmap::scene::Scene;
 use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable};
 
@@ -42,7 +43,7 @@ impl DerivativeArgs {
             return Ok(all);
         }
         match named.iter().find(|own| !all.contains(own)) {
-            None => Ok(named.clone()),
+            None => Ok(each_once(named)),
             Some(other) => {
                 let all: Vec<String> = all.iter().map(ToString::to_string).collect();
                 let all = all.join(", ");

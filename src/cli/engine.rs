@@ -22,11 +22,11 @@ enum EngineChoice {
     Gpu,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct EngineArgs {
-    /// Engine that solves the cells
-    #[arg(long, value_enum, default_value = "auto")]
-    engine: EngineChoice,
+    /// Engine that solves the cells [default: auto]
+    #[arg(long, value_enum)]
+    engine: Option<EngineChoice>,
     /// Floating-point type of the shaders [default: f32]
     #[arg(long, value_enum)]
     precision: Option<Precision>,
@@ -56,7 +56,7 @@ impl EngineArgs {
         tolerance_deg: Option<f64>,
     ) -> Result<OpenEngine, Failure> {
         self.check()?;
-        match self.engine {
+        match self.choice() {
             EngineChoice::Cpu => Ok((None, "selected by --engine".to_owned())),
             EngineChoice::Spectral => {
                 if plan.method.effects.profile {
@@ -85,7 +85,7 @@ impl EngineArgs {
     ) -> Result<OpenEngine, Failure> {
         self.check()?;
         let selected = || "selected by --engine".to_owned();
-        Ok(match self.engine {
+        Ok(match self.choice() {
             EngineChoice::Auto => {
                 let (engine, _) = without_gpu(scene, plan, tolerance_deg);
                 (engine, expansions(scene, plan))
@@ -99,14 +99,36 @@ impl EngineArgs {
         })
     }
 
+    /// Returns the options of a task of `submit`: those given, with the CPU engine if none is named.
+    pub fn of_task(&self) -> Self {
+        Self {
+            engine: self.engine.or(Some(EngineChoice::Cpu)),
+            ..self.clone()
+        }
+    }
+
+    /// Returns true if the options name an engine.
+    pub fn is_named(&self) -> bool {
+        self.engine.is_some()
+    }
+
     /// Returns true if the options name the GPU engine.
     pub fn names_gpu(&self) -> bool {
-        self.engine == EngineChoice::Gpu
+        self.choice() == EngineChoice::Gpu
+    }
+
+    /// Returns true if a GPU may solve cells.
+    pub fn may_use_gpu(&self) -> bool {
+        matches!(self.choice(), EngineChoice::Auto | EngineChoice::Gpu)
+    }
+
+    fn choice(&self) -> EngineChoice {
+        self.engine.unwrap_or(EngineChoice::Auto)
     }
 
     /// Returns an error if the options contradict each other.
     fn check(&self) -> Result<(), Failure> {
-        let why = match (self.engine, self.precision, &self.adapter) {
+        let why = match (self.choice(), self.precision, &self.adapter) {
             (EngineChoice::Cpu | EngineChoice::Spectral, Some(Precision::F32), _) => {
                 "--precision f32: the CPU computes in f64; allowed with --engine gpu".to_owned()
             }
@@ -115,7 +137,7 @@ impl EngineArgs {
                     .to_owned()
             }
             (EngineChoice::Cpu | EngineChoice::Spectral, _, Some(adapter)) => {
-                let name = if self.engine == EngineChoice::Cpu { "CPU" } else { "spectral" };
+                let name = if self.choice() == EngineChoice::Cpu { "CPU" } else { "spectral" };
                 format!(
                     "--adapter {adapter}: the {name} engine has none; allowed with --engine gpu and --engine auto"
                 )
@@ -135,7 +157,7 @@ impl EngineArgs {
         if self.adapter.is_some() || env::var_os(NAME).is_some() {
             self.adapter()?;
         }
-        match (self.engine, self.refusal(scene, plan, tolerance_deg)) {
+        match (self.choice(), self.refusal(scene, plan, tolerance_deg)) {
             (EngineChoice::Auto, Some(_)) => Ok(without_gpu(scene, plan, tolerance_deg)),
             (EngineChoice::Auto, None) => self.faster(scene, plan, tolerance_deg),
             (_, Some(why)) => Ok((None, format!("--engine gpu is not possible: {why}"))),

@@ -71,9 +71,7 @@ pub enum Failure {
     #[error("{0}")]
     NoValue(String),
     /// A store has missing or damaged files.
-    #[error(
-        "{} is incomplete: {missing} blocks are missing, {damaged} are damaged, and {metadata} files of metadata", store.display()
-    )]
+    #[error("{} is incomplete: {}", store.display(), faults(*missing, *damaged, *metadata))]
     Incomplete {
         store: PathBuf,
         missing: usize,
@@ -130,6 +128,30 @@ impl Failure {
         }
         self.code()
     }
+}
+
+/// Returns the faults of a store that occur, with their counts, and the command that removes them.
+fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
+    let faults = [
+        (missing, ["block is", "blocks are"], "missing"),
+        (damaged, ["block is", "blocks are"], "damaged"),
+        (
+            metadata,
+            ["file of metadata is", "files of metadata are"],
+            "damaged",
+        ),
+    ];
+    let faults = faults.into_iter().filter(|(count, ..)| *count > 0);
+    let faults = faults.map(|(count, [one, several], state)| {
+        let what = if count == 1 { one } else { several };
+        format!("{count} {what} {state}")
+    });
+    let faults: Vec<String> = faults.collect();
+    let cure = match missing + damaged {
+        0 => "`whiskmap status --repair` writes them again",
+        _ => "`whiskmap map --format zarr --resume` with the scene computes the rest",
+    };
+    format!("{}; {cure}", faults.join(", "))
 }
 
 /// Prints a line on standard error, and ignores a closed one.

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::fit::{Estimate, Fit, FitError, fit};
 use whiskmap::measured::MeasuredPoints;
-use whiskmap::scene::{Parameter, digits, rounded};
+use whiskmap::scene::{Parameter, Scene, digits, rounded};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -21,7 +21,8 @@ Examples:
 
 Minimizes the squares of measured minus predicted angles, from the values of the scene and within its limits. The columns of \
 the data are side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) \
-and sd_deg, the standard deviation of the angle. Without sd_deg, the residuals give the standard deviation.
+and sd_deg, the standard deviation of the angle. Without sd_deg, the residuals give the standard deviation. If the scene's whisker \
+does not reach a point, a free parameter such as length_mm starts at a value with which it does; a note gives the value.
 
 A warning names parameters that the points do not determine. youngs_modulus_gpa and profile_scale are always among them, because no \
 detachment depends on them. These parameters and parameters at a limit of the scene have no standard error.
@@ -63,6 +64,7 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
         }
         _ => why.into(),
     })?;
+    name_moved(&points, &scene, &found);
     data::name_left_out(&points, &found.comparison);
     warn(&points, &found);
     let toml = toml.filter(|_| found.not_a_fit.is_none());
@@ -101,6 +103,21 @@ fn print(title: &str, fit: &Fit, outputs: Vec<(OutputFile, String)>) -> Result<(
         }
     }
     Ok(())
+}
+
+/// Prints the parameter that does not start at the value of the scene, whose whisker does not reach a point.
+fn name_moved(points: &MeasuredPoints, scene: &Scene, fit: &Fit) {
+    let Some(moved) = fit.moved else {
+        return;
+    };
+    let own = moved.parameter.value(scene).unwrap_or(f64::NAN);
+    let [distance, start, own] = [moved.distance_mm, moved.value, own].map(six_digits);
+    message(&format!(
+        "note: {}:{}: {distance} mm is out of reach of the scene's whisker: {} starts at {start} instead of {own}",
+        points.origin,
+        moved.line,
+        moved.parameter.name()
+    ));
 }
 
 /// Warns of parameters at a limit, parameters that the points do not determine, and too small standard deviations.

@@ -1,6 +1,7 @@
 //! Command `whiskmap plan`.
 
 use super::arguments::whole;
+use super::engine::EngineArgs;
 use super::estimate::{FileCost, MapCost, MapFormat, estimate, files};
 use super::failure::Failure;
 use super::files::read_scene;
@@ -35,7 +36,8 @@ picture and without the disk. CPU-hours are CPU seconds of the samples: other lo
 pub struct PlanArgs {
     #[command(flatten)]
     pub map: MapArgs,
-    /// Print the CPU-hours and bytes of each of N shards of a store
+    /// Print the CPU-hours and bytes of each of N shards of a store, and their sum; without --engine, by the CPU engine, as `submit`
+    /// runs them
     #[arg(long, value_name = "N", value_parser = whole(1..=1_000_000), conflicts_with = "shard")]
     shards: Option<u32>,
 }
@@ -51,20 +53,28 @@ pub struct PlanEstimate {
     pub files: Vec<FileCost>,
     /// Description of the engine that the samples use, and why.
     engine: (String, String),
+    /// True if a GPU may solve cells of the map.
+    may_use_gpu: bool,
 }
 
 impl PlanEstimate {
-    /// Measures samples of `scene` for a map in each of these formats.
-    pub fn measure(args: &MapArgs, scene: &Scene, formats: &[MapFormat]) -> Result<Self, Failure> {
+    /// Measures samples of `scene` for a map in each of these formats, by an engine of these options.
+    pub fn measure(
+        args: &MapArgs,
+        options: &EngineArgs,
+        scene: &Scene,
+        formats: &[MapFormat],
+    ) -> Result<Self, Failure> {
         let first = formats.first().copied().unwrap_or(MapFormat::Zarr);
         let PlannedMap { plan, left_deg, .. } = args.plan(scene, first)?;
-        let (mut engine, why) = args.engine.without_gpu(scene, &plan, left_deg)?;
+        let (mut engine, why) = options.without_gpu(scene, &plan, left_deg)?;
         let description = EngineDescription::of(engine.as_deref()).engine;
         Ok(Self {
             cost: estimate(scene, &plan, &mut engine, SAMPLE_SECONDS)?,
             files: files(scene, &plan, formats)?,
             plan,
             engine: (description, why),
+            may_use_gpu: options.may_use_gpu(),
         })
     }
 
@@ -94,7 +104,15 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
         let why = "--shards: an EXR file has one writer; give --format zarr";
         return Err(Failure::Input(why.to_owned()));
     }
-    let estimate = PlanEstimate::measure(&args.map, &scene, &formats)?;
+    let mut options = args.map.engine.clone();
+    let are_tasks = args.shards.is_some() && !options.is_named();
+    if are_tasks {
+        options = options.of_task();
+    }
+    let mut estimate = PlanEstimate::measure(&args.map, &options, &scene, &formats)?;
+    if are_tasks {
+        estimate.engine.1 = "that of `submit`, unless --engine names another".to_owned();
+    }
     print(&scene, &estimate)?;
     let own = shard.map_or(0..shares.len(), |shard| shard.index..shard.index + 1);
     print_shards(&scene, &estimate, &shares[own.clone()], own.start)?;
@@ -140,20 +158,9 @@ fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
     )?;
     let (engine, why) = &estimate.engine;
     writeln!(out, "engine        {engine}: {why}")?;
-    match on_gpu(plan.method.effects) {
-        Ok(()) => writeln!(
-            out,
-            "GPU calls     {}: groups of {}, {} of {}, {} a call",
-            plan.engine_calls,
-            counted(plan.panels_at_once, "whisker"),
-            counted(plan.sides.len(), "side"),
-            counted(distances, "row"),
-            counted(plan.rows_at_once, "row")
-        )?,
-        Err(why) => writeln!(out, "GPU calls     none: {why}")?,
+    if estimate.may_use_gpu {
+        print_gpu(&mut out, plan, distances)?;
     }
-    let gpu = mib(plan.gpu_bytes);
-    writeln!(out, "GPU memory    {gpu} MiB more than below, on the host")?;
     let (seconds, threads) = (two_digits(cost.seconds), rayon::current_num_threads());
     let on = counted(threads, "thread");
     writeln!(
@@ -175,6 +182,24 @@ fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Prints the calls and the memory of a GPU engine for maps with this number of distances.
+fn print_gpu(out: &mut impl Write, plan: &Plan, distances: usize) -> std::io::Result<()> {
+    match on_gpu(plan.method.effects) {
+        Ok(()) => writeln!(
+            out,
+            "GPU calls     {}: groups of {}, {} of {}, {} a call",
+            plan.engine_calls,
+            counted(plan.panels_at_once, "whisker"),
+            counted(plan.sides.len(), "side"),
+            counted(distances, "row"),
+            counted(plan.rows_at_once, "row")
+        )?,
+        Err(why) => writeln!(out, "GPU calls     none: {why}")?,
+    }
+    let gpu = mib(plan.gpu_bytes);
+    writeln!(out, "GPU memory    {gpu} MiB more than below, on the host")
+}
+
 /// Returns the memory of panels and cells of a map on this number of threads, in bytes.
 pub fn memory(plan: &Plan, threads: usize) -> u64 {
     plan.bytes + threads as u64 * BYTES_PER_THREAD
@@ -184,7 +209,7 @@ fn mib(bytes: u64) -> u64 {
     bytes.div_ceil(1 << 20)
 }
 
-/// Prints a line for each run of equal shards, of which the first one has the index `first`.
+/// Prints a line for each run of equal shards, of which the first one has the index `first`, and the sum of several.
 fn print_shards(
     scene: &Scene,
     estimate: &PlanEstimate,
@@ -193,19 +218,23 @@ fn print_shards(
 ) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
-    for run in shares.chunk_by(|one, next| one == next) {
-        let ShardShare { blocks, whiskers } = run[0];
-        let [seconds, bytes] = estimate.share(whiskers);
+    let mut line = |name: &str, share: ShardShare| {
+        let [seconds, bytes] = estimate.share(share.whiskers);
         writeln!(
             out,
-            "{:12}  {}, {} cells: about {} CPU-hours, {}",
-            named(first..first + run.len()),
-            counted(blocks, "block"),
-            panel * whiskers,
+            "{name:12}  {}, {} cells: about {} CPU-hours, {}",
+            counted(share.blocks, "block"),
+            panel * share.whiskers,
             significant(seconds / 3600.0),
             DecimalBytes(bytes as u64)
-        )?;
+        )
+    };
+    for run in shares.chunk_by(|one, next| one == next) {
+        line(&named(first..first + run.len()), run[0])?;
         first += run.len();
+    }
+    if shares.len() > 1 {
+        line("sum", shares.iter().copied().sum())?;
     }
     Ok(())
 }

@@ -8,6 +8,7 @@ use super::files::Files;
 use super::summary::{compute, report};
 use clap::Args;
 use rayon::prelude::*;
+use std::iter::Sum;
 use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
@@ -34,6 +35,15 @@ impl Shard {
 pub struct ShardShare {
     pub blocks: usize,
     pub whiskers: usize,
+}
+
+impl Sum for ShardShare {
+    fn sum<I: Iterator<Item = Self>>(shares: I) -> Self {
+        shares.fold(Self::default(), |sum, own| Self {
+            blocks: sum.blocks + own.blocks,
+            whiskers: sum.whiskers + own.whiskers,
+        })
+    }
 }
 
 /// Returns the shares of `count` shards of a store of `scene`, `[shard]`.

@@ -74,7 +74,7 @@ pub fn run(args: &SubmitArgs) -> Result<(), Failure> {
     let map = args.map()?;
     let whiskers = shares.iter().map(|share| share.whiskers).max();
     let limits = || args.limits(&scene, &map, whiskers.unwrap_or_default());
-    let script = args.script(&scene.name, limits)?;
+    let script = args.script(&scene.name, &map, limits)?;
     if map.engine.names_gpu() {
         message(
             "note: with --engine gpu, add the line that requests a GPU on your cluster, such as `#SBATCH --gres=gpu:1`",
@@ -100,12 +100,6 @@ impl SubmitArgs {
     /// If `map` does not accept its own options together with those of the script.
     fn map(&self) -> Result<MapArgs, Failure> {
         let given = "whiskmap map SCENE -o=DIR --format=zarr --shard=0/1 --resume --threads=1";
-        let engine = if self.has_engine() {
-            ""
-        } else {
-            " --engine=cpu"
-        };
-        let given = format!("{given}{engine}");
         let all = given.split(' ').chain(self.map.iter().map(String::as_str));
         let parsed = super::Arguments::try_parse_from(all).map_err(|why| why.to_string());
         match parsed.map(|parsed| parsed.command) {
@@ -120,11 +114,6 @@ impl SubmitArgs {
         })
     }
 
-    /// Returns true if the options of `map` select an engine.
-    fn has_engine(&self) -> bool {
-        self.map.iter().any(|own| own.starts_with("--engine"))
-    }
-
     /// Returns time limit and memory of a task: those given, or else those that an estimate of `whiskers` of the sweep proposes.
     fn limits(
         &self,
@@ -135,7 +124,8 @@ impl SubmitArgs {
         if let (Some(time), Some(memory)) = (&self.time, &self.mem) {
             return Ok([time.clone(), memory.clone()]);
         }
-        let estimate = PlanEstimate::measure(map, scene, &[MapFormat::Zarr])?;
+        let estimate =
+            PlanEstimate::measure(map, &map.engine.of_task(), scene, &[MapFormat::Zarr])?;
         let cpus = self.cpus_per_task.unwrap_or(1);
         let [cpu_seconds, _] = estimate.share(whiskers);
         let seconds = cpu_seconds / f64::from(cpus);
@@ -157,10 +147,11 @@ impl SubmitArgs {
         ])
     }
 
-    /// Returns the script for a store of this `name`, with the time and the memory that `limits` returns.
+    /// Returns the script for a store of this `name`, with these options of `map`, and the time and the memory that `limits` returns.
     fn script(
         &self,
         name: &str,
+        map: &MapArgs,
         limits: impl FnOnce() -> Result<[String; 2], Failure>,
     ) -> Result<String, Failure> {
         let program = std::env::current_exe()?;
@@ -188,7 +179,7 @@ impl SubmitArgs {
         let partition = self.partition.as_ref();
         let partition = partition.map_or_else(String::new, |name| format!(" --partition={name}"));
         // `auto` may select different engines on different nodes.
-        let engine = if self.has_engine() {
+        let engine = if map.engine.is_named() {
             ""
         } else {
             " --engine cpu"

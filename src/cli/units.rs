@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use serde::Serialize;
 use std::io;
-use whiskmap::input::{Quantity, did_you_mean};
+use whiskmap::input::{Quantity, did_you_mean, each_once};
 
 /// Units of the columns of a table, at most one of each kind.
 #[derive(Clone, Debug, Default)]
@@ -16,7 +16,7 @@ impl ColumnUnits {
     /// If a name is not one of a unit, or two units are of one kind.
     pub fn new(names: &[String]) -> Result<Self, Failure> {
         let mut units: Vec<&'static str> = Vec::new();
-        for name in names {
+        for name in &each_once(names) {
             let refused = |must: String| Failure::Input(format!("--units {name}: {must}"));
             let mut kinds = Quantity::KINDS.into_iter();
             let found = kinds.find_map(|kind| {

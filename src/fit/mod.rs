@@ -8,18 +8,21 @@ mod bounded;
 mod covariance;
 mod least_squares;
 mod misfit;
+mod start;
 mod svd;
 mod verdict;
 
+pub use start::MovedStart;
 pub use verdict::{LikelyCause, NotAFit};
 
-use crate::input::CsvError;
+use crate::input::{CsvError, each_once};
 use crate::measured::{Comparison, MeasuredPoints};
 use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, digits};
 use bounded::best;
 use covariance::Covariance;
 use least_squares::NO_JACOBIAN;
 use misfit::Misfit;
+use start::within_reach;
 
 /// Result of a fit: the fitted scene, parameters, correlations and chi-square.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +39,8 @@ pub struct Fit {
     pub degrees_of_freedom: usize,
     /// Measured points with the predictions of the fitted scene.
     pub comparison: Comparison,
+    /// Parameter that does not start at the scene's value, because the scene's whisker does not reach a point; `None` without one.
+    pub moved: Option<MovedStart>,
     /// Reason why the best values are not a fit; `None` for a fit. Without a fit there are no standard errors and no correlations.
     pub not_a_fit: Option<NotAFit>,
 }
@@ -112,15 +117,19 @@ pub enum FitError {
 /// Width of a range, relative to the value, below which there is nothing to fit.
 const NARROWEST: f64 = 1e-6;
 
-/// Fits the `free` parameters of the scene's first whisker and of its pole to `points`, starting at the scene's values.
+/// Fits the `free` parameters of the scene's first whisker and of its pole to `points`, starting at the scene's values. If the scene's
+/// whisker does not reach a point, one free parameter starts at a value with which it does: [`Fit::moved`].
 ///
 /// Points whose side never detaches at these values are left out; in [`Fit::comparison`] they have no residual.
 ///
 /// # Errors
-/// If a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
+/// If a parameter cannot be free, a point is beyond the whisker for every tried start, points are too few, or the iteration does not converge.
 pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<Fit, FitError> {
+    let free = &each_once(free)[..];
     check(scene, free)?;
-    let used = used(scene, points)?;
+    let (start, moved) = within_reach(scene, points, free)?;
+    let scene = &start;
+    let used = used(scene, points);
     if used.points.len() < free.len() {
         return Err(FitError::TooFew {
             origin: points.origin.clone(),
@@ -182,6 +191,7 @@ pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result
         chi_square,
         degrees_of_freedom,
         comparison,
+        moved,
         not_a_fit,
         scene: fitted,
         estimates,
@@ -213,14 +223,13 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
 }
 
 /// The points that detach at the values of `scene`.
-fn used(scene: &Scene, points: &MeasuredPoints) -> Result<MeasuredPoints, CsvError> {
+fn used(scene: &Scene, points: &MeasuredPoints) -> MeasuredPoints {
     let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    points.check_reach(&whisker, &pole)?;
     let rows = points.beside(&whisker, &pole).rows;
     let detaching = points.points.iter().zip(rows);
     let detaching = detaching.filter(|(_, row)| row.residual_deg.is_some());
-    Ok(MeasuredPoints {
+    MeasuredPoints {
         points: detaching.map(|(point, _)| *point).collect(),
         ..points.clone()
-    })
+    }
 }

@@ -6,7 +6,7 @@ mod quantity;
 mod source;
 mod table;
 
-pub use names::did_you_mean;
+pub use names::{did_you_mean, each_once};
 pub use quantity::Quantity;
 pub use table::{CsvError, CsvTable};
 

@@ -45,6 +45,22 @@ pub fn did_you_mean<'a>(
     found.map_or_else(String::new, |known| format!("; did you mean `{known}`?"))
 }
 
+/// Returns the values of a list in their order, each once: a name that is given twice counts once.
+///
+/// ```
+/// assert_eq!(whiskmap::input::each_once(&["taper", "length_mm", "taper"]), ["taper", "length_mm"]);
+/// ```
+#[must_use]
+pub fn each_once<T: Clone + PartialEq>(values: &[T]) -> Vec<T> {
+    let mut kept: Vec<T> = Vec::new();
+    for value in values {
+        if !kept.contains(value) {
+            kept.push(value.clone());
+        }
+    }
+    kept
+}
+
 /// Units at the ends of names, those of one quantity together.
 const UNITS: [&[&str]; 4] = [
     &["nm", "um", "mm", "cm", "m", "inch"],

@@ -112,26 +112,35 @@ impl MeasuredPoints {
     /// # Errors
     /// The first point that is out of reach.
     pub fn check_reach(&self, whisker: &Whisker, pole: &Pole) -> Result<(), CsvError> {
-        let rest = Rest::new(&whisker.rod(pole, Side::Cb));
-        let (tip, _) = rest.at_arclength(rest.end());
-        let nearest = whisker.length_mm / NEAREST;
-        let is_allowed = |distance_mm: f64| {
-            distance_mm >= nearest
-                && distance_mm > pole.radius_mm
-                && Row::new(&rest, distance_mm / whisker.length_mm).is_reached()
-        };
-        let mut points = self.points.iter();
-        let Some(point) = points.find(|point| !is_allowed(point.distance_mm)) else {
+        let Some(point) = self.first_out_of_reach(whisker, pole) else {
             return Ok(());
         };
+        let rest = Rest::new(&whisker.rod(pole, Side::Cb));
+        let (tip, _) = rest.at_arclength(rest.end());
         let what = format!(
             "distance_mm = {}: must be between {} (length_mm / 1000) and {} (the tip of the resting whisker), and more than \
              {} (pole.radius_mm)",
             digits(point.distance_mm),
-            digits(nearest),
+            digits(whisker.length_mm / NEAREST),
             digits(tip.length() * whisker.length_mm),
             digits(pole.radius_mm)
         );
         Err(CsvError::at(&self.origin, point.line, what))
+    }
+
+    /// Returns the first point whose distance the resting `whisker` does not touch the `pole` at; `None` if all are within reach.
+    pub(crate) fn first_out_of_reach(
+        &self,
+        whisker: &Whisker,
+        pole: &Pole,
+    ) -> Option<&MeasuredPoint> {
+        let rest = Rest::new(&whisker.rod(pole, Side::Cb));
+        let is_allowed = |distance_mm: f64| {
+            distance_mm >= whisker.length_mm / NEAREST
+                && distance_mm > pole.radius_mm
+                && Row::new(&rest, distance_mm / whisker.length_mm).is_reached()
+        };
+        let mut points = self.points.iter();
+        points.find(|point| !is_allowed(point.distance_mm))
     }
 }

@@ -38,12 +38,16 @@ const CURVES: [Curve; 3] = [
     },
 ];
 
-/// Returns a chart of a course: angle of the base, force and moment over time, with the events as dots. Loads fall to those of the next
+/// Returns a chart of a course: angle of the base, force and moment over time, with the events as dots, which the first plot names. Loads fall to those of the next
 /// state where the whisker detaches. Lines break where the state is undecided.
 #[must_use]
 pub fn courses(title: &str, whisk: &Whisk) -> Chart {
+    let mut plots: Vec<Plot> = CURVES.iter().map(|curve| plot(whisk, curve)).collect();
+    for dot in plots.iter_mut().skip(1).flat_map(|plot| &mut plot.dots) {
+        dot.name = None;
+    }
     Chart {
-        plots: CURVES.iter().map(|curve| plot(whisk, curve)).collect(),
+        plots,
         title: title.to_owned(),
         columns: 1,
         ..Chart::default()

@@ -126,6 +126,21 @@ impl Parameter {
         Self::ALL.into_iter().find(|one| one.name() == name)
     }
 
+    /// Returns the end of a message about a name that is not one of a parameter, but of its sweep axis; `None` for other names.
+    ///
+    /// ```
+    /// use whiskmap::scene::Parameter;
+    ///
+    /// let hint = Parameter::suggested("curvature_per_mm");
+    /// assert_eq!(hint.as_deref(), Some("; did you mean `parabola_per_mm`?"));
+    /// ```
+    #[must_use]
+    pub fn suggested(name: &str) -> Option<String> {
+        let mut all = Self::ALL.into_iter();
+        let own = all.find(|own| own.axis() == name)?;
+        Some(format!("; did you mean `{}`?", own.name()))
+    }
+
     /// Parameters that a sweep axis can vary.
     pub const SWEPT: [Self; 10] = [
         Self::Taper,

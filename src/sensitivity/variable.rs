@@ -101,7 +101,8 @@ impl std::str::FromStr for Variable {
         let found = all.iter().find(|own| own.name() == name);
         found.copied().ok_or_else(|| {
             let names: Vec<String> = all.iter().map(|own| own.name()).collect();
-            let hint = did_you_mean(name, names.iter().map(String::as_str));
+            let similar = || did_you_mean(name, names.iter().map(String::as_str));
+            let hint = Parameter::suggested(name).unwrap_or_else(similar);
             format!("must be one of {}{hint}", names.join(", "))
         })
     }

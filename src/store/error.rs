@@ -57,9 +57,18 @@ pub enum StoreError {
     /// The folder is a Zarr store of another program; the text says what is missing or different.
     #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
     NotAStore(PathBuf, String),
-    /// A file of a block does not exist: it is not computed, or lost.
-    #[error("{file} is missing: the store is not complete; compute the rest with `map --resume`", file = .0.display())]
+    /// The folder has no metadata at its root, so it is not a Zarr store.
+    #[error("{folder} is not a store: it has no zarr.json; give a folder that `map --format zarr` wrote", folder = .0.display())]
+    NoStore(PathBuf),
+    /// A file of a block of the store does not exist: it is not computed, or lost.
+    #[error("{file} is missing", file = .0.display())]
     NotComputed(PathBuf),
+    /// The store has no values for some of the requested whiskers, because a run has not finished their block.
+    #[error(
+        "{folder} is not finished: some requested whiskers are not computed; `whiskmap status` lists the missing blocks, and \
+         `whiskmap map --format zarr --resume` with the scene computes them", folder = .0.display()
+    )]
+    Unfinished(PathBuf),
     /// The path leads to a folder, a pipe or a device instead of a file.
     #[error("{file} is no regular file", file = .0.display())]
     NotAFile(PathBuf),
@@ -152,7 +161,9 @@ impl StoreError {
                 | Self::OtherBlocks(_)
                 | Self::OtherVersion(..)
                 | Self::NotAStore(..)
+                | Self::NoStore(_)
                 | Self::NotComputed(_)
+                | Self::Unfinished(_)
         )
     }
 }

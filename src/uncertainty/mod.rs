@@ -7,7 +7,7 @@ mod first_order;
 mod spread;
 mod varying;
 
-pub use spread::EndSpread;
+pub use spread::{EndSpread, PointSpread};
 
 use crate::random::RandomStream;
 use crate::rod::Side;

@@ -76,7 +76,36 @@ row! {
     }
 }
 
+row! {
+    /// Percentiles of the push angles of samples at the distance of a measured point, in degrees.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct PointSpread {
+        /// 5th percentile of the samples' push angles at the point's distance, in degrees.
+        pub p5_deg: Option<f64>,
+        /// 25th percentile of the samples' push angles at the point's distance, in degrees.
+        pub p25_deg: Option<f64>,
+        /// Median of the samples' push angles at the point's distance, in degrees.
+        pub p50_deg: Option<f64>,
+        /// 75th percentile of the samples' push angles at the point's distance, in degrees.
+        pub p75_deg: Option<f64>,
+        /// 95th percentile of the samples' push angles at the point's distance, in degrees.
+        pub p95_deg: Option<f64>,
+    }
+}
+
 impl EndSpread {
+    /// Returns the percentiles of the push angles.
+    #[must_use]
+    pub fn of_push_angles(&self) -> PointSpread {
+        PointSpread {
+            p5_deg: self.p5_deg,
+            p25_deg: self.p25_deg,
+            p50_deg: self.p50_deg,
+            p75_deg: self.p75_deg,
+            p95_deg: self.p95_deg,
+        }
+    }
+
     /// Computes the spread of the `ends` of samples around the scene's `own` one.
     pub(super) fn new(
         side: Side,

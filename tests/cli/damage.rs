@@ -30,13 +30,13 @@ fn torn_and_missing_files_are_found_and_computed_again() {
     // The length and the index show the torn file, not the flipped bit.
     let run = status(&place, "--");
     run.assert_said(1, "force_un/c.0.1.2.0.0 is damaged");
-    run.assert_said(1, "1 blocks are missing, 1 are damaged");
+    run.assert_said(1, "1 block is missing, 1 block is damaged");
     let run = status(&place, "--verify");
     run.assert_said(
         1,
         "status/c.0.1.0.0.0 is damaged: chunk 0 does not have its checksum",
     );
-    run.assert_said(1, "1 blocks are missing, 2 are damaged");
+    run.assert_said(1, "1 block is missing, 2 blocks are damaged");
     assert!(run.out.contains("damaged blocks: "), "{run:?}");
     let run = good(&place, "out", &["--resume"]);
     assert!(run.err.contains("blocks: 3 of 8"), "{run:?}");
@@ -45,10 +45,10 @@ fn torn_and_missing_files_are_found_and_computed_again() {
 
     damage();
     let run = status(&place, "--repair");
-    run.assert_said(1, "1 blocks are missing, 2 are damaged");
+    run.assert_said(1, "1 block is missing, 2 blocks are damaged");
     assert!(run.out.contains("blocks removed: 2\n"), "{run:?}");
     let run = status(&place, "--verify");
-    run.assert_said(1, "3 blocks are missing, 0 are damaged");
+    run.assert_said(1, "3 blocks are missing; ");
     good(&place, "out", &["--resume"]);
     assert_same(&place, "whole", "out");
 }

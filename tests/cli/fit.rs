@@ -196,6 +196,28 @@ fn limits_and_signs_are_reported() {
     assert!(line.unwrap().ends_with(" 0, at its limit"), "{run:?}");
 }
 
+/// The points go farther than the scene's whisker, and a name may be given twice.
+#[test]
+fn a_note_gives_a_start_that_reaches_all_points() {
+    let place = place();
+    place.write(
+        "scene.toml",
+        &SCENE.replace("length_mm = 20", "length_mm = 18"),
+    );
+    let free = ["--free", "length_mm,parabola_per_mm,length_mm"];
+    let run = fit(&place, &[&free[..], &["-o", "fitted.toml"]].concat());
+    let note =
+        "note: points.csv:7: 19.3 mm is out of reach of the scene's whisker: length_mm starts at ";
+    assert!(run.err.starts_with(note), "{run:?}");
+    assert!(run.err.contains(" instead of 18\n"), "{run:?}");
+    assert_eq!(run.out.matches("\nlength_mm").count(), 1, "{run:?}");
+    let beside = place.run(&["curve", "fitted.toml", "--data", "points.csv"]);
+    assert!(
+        beside.err.contains("points compared: 6, 0 left out"),
+        "{beside:?}"
+    );
+}
+
 #[test]
 fn wrong_input_is_refused_before_any_file_is_made() {
     let place = place();
@@ -210,6 +232,10 @@ fn wrong_input_is_refused_before_any_file_is_made() {
             "possible values: length_mm, base_radius_um,",
             "a similar value exists: 'tip_radius_um'",
         ],
+    );
+    refused(
+        &["--free", "curvature_per_mm"],
+        &["'curvature_per_mm'", "did you mean `parabola_per_mm`?"],
     );
     refused(
         &["--free", "friction", "-o", "f.toml"],

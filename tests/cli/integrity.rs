@@ -115,7 +115,10 @@ fn a_store_that_is_moved_or_removed_is_not_begun_twice() {
     let run = Run::of(&child.wait_with_output().unwrap());
     run.assert_said(1, "error: ");
     let run = place.run(&["status", "out/scene.zarr", "--verify"]);
-    run.assert_said(1, "7 blocks are missing, 0 are damaged");
+    run.assert_said(
+        1,
+        "7 blocks are missing; `whiskmap map --format zarr --resume`",
+    );
 }
 
 #[test]
@@ -125,7 +128,7 @@ fn a_failed_extract_leaves_no_store() {
     let lost = "out/scene.zarr/force_un/c.0.1.2.0.0";
     fs::remove_file(place.path(lost)).unwrap();
     let run = place.run(&["extract", "out/scene.zarr", "-o", "x.zarr"]);
-    run.assert_said(2, "c.0.1.2.0.0 is missing");
+    run.assert_said(2, "out/scene.zarr is not finished: ");
     assert!(!place.path("x.zarr").exists());
     assert!(!files(&place.path("")).keys().any(|path| is_hidden(path)));
     good(&place, "out", &["--resume"]);
@@ -179,10 +182,10 @@ fn sizes_that_a_store_claims_are_not_allocated() {
             &place,
             &["extract", "huge.zarr", "--channel=regime", "-o", output],
         );
-        run.assert_said(2, "is missing: the store is not complete");
+        run.assert_said(2, "error: huge.zarr is not finished: ");
     }
     let run = in_little_memory(&place, &["status", "huge.zarr"]);
-    run.assert_said(1, "blocks are missing, 0 are damaged");
+    run.assert_said(1, "blocks are missing; ");
 
     let root = fs::File::create(path.join("zarr.json")).unwrap();
     root.set_len(200 << 20).unwrap();

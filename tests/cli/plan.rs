@@ -199,6 +199,21 @@ fn shards_have_their_part_of_cells_hours_and_bytes() {
     let run = plan_with(&place, &["--shards", "3", "--channels", "regime,force_un"]);
     let lines = shards(&run);
     assert_eq!(lines.len(), 2, "{run:?}");
+    // Tasks of `submit` run the CPU engine, which needs no GPU.
+    let engine = "cpu f64: that of `submit`, unless --engine names another";
+    assert_eq!(fact(&run, "engine"), engine);
+    assert!(!run.out.contains("GPU"), "{run:?}");
+    let sum: Vec<&str> = fact(&run, "sum").split_whitespace().collect();
+    assert_eq!(sum[..4], ["8", "blocks,", "98304", "cells:"]);
+    let hours = |line: &[&str]| line[line.len() - 4].parse::<f64>().unwrap();
+    // Two digits of each number.
+    let parts = 2.0 * hours(&lines[0]) + hours(&lines[1]);
+    assert!((hours(&sum) / parts - 1.0).abs() < 0.06, "{run:?}");
+    let chosen = plan_with(&place, &["--shards", "3", "--engine", "spectral"]);
+    assert_eq!(
+        fact(&chosen, "engine"),
+        "spectral f64: selected by --engine"
+    );
     assert_eq!(
         lines[0][..6],
         ["shards", "0-1", "3", "blocks,", "36864", "cells:"]
@@ -217,6 +232,7 @@ fn shards_have_their_part_of_cells_hours_and_bytes() {
         &["--shard", "2/3", "--format", "zarr", "--threads", "1"],
     );
     assert_eq!(shards(&one)[0][..6], lines[1][..6]);
+    assert!(!one.out.contains("\nsum "), "{one:?}");
     assert!(fact(&one, "time").contains(" on 1 thread, "), "{one:?}");
     let plan = |options: &[&str]| place.run(&[&["plan", "scene.toml"], options].concat());
     plan(&["--shards", "9"])
@@ -236,6 +252,7 @@ fn the_options_of_a_map_change_its_estimate() {
     );
     assert!(bytes(&run, "EXR file") < 0.2 * all, "{run:?}");
     assert_eq!(fact(&run, "engine"), "cpu f64: selected by --engine");
+    assert!(!run.out.contains("GPU"), "{run:?}");
     assert!(!run.out.contains("Zarr store"), "{run:?}");
     let run = plan_with(
         &place,

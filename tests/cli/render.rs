@@ -165,7 +165,7 @@ fn stores_and_parts_are_drawn_like_maps() {
         .run(&["extract", "scene.zarr", "--at=friction=0", "-o", "part.csv"])
         .assert_said(
             2,
-            "regime/c.0.0.0.0.0 is missing: the store is not complete",
+            "error: scene.zarr is not finished: some requested whiskers are not computed; `whiskmap status` lists",
         );
 }
 

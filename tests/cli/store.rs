@@ -111,7 +111,7 @@ fn any_shards_in_any_order_give_one_store() {
         "{run:?}"
     );
     assert!(
-        run.err.contains("6 blocks are missing, 0 are damaged"),
+        run.err.contains("is incomplete: 6 blocks are missing; "),
         "{run:?}"
     );
 
@@ -242,7 +242,17 @@ fn a_store_is_resumed_with_its_own_settings_only() {
     ]);
     place
         .run(&["status", "nothing.zarr"])
-        .assert_refused(&["cannot read nothing.zarr/zarr.json"]);
+        .assert_refused(&["cannot read nothing.zarr: No such file or directory"]);
+    fs::create_dir(place.path("empty")).unwrap();
+    for command in [
+        &["status", "empty"][..],
+        &["render", "empty"],
+        &["extract", "empty", "-o", "t.csv"],
+    ] {
+        place
+            .run(command)
+            .assert_refused(&["error: empty is not a store: it has no zarr.json; give a folder"]);
+    }
     place.write("zarr.json", "{}");
     place
         .run(&["status", "."])

@@ -43,7 +43,7 @@ fn a_spread_is_a_table_and_bands() {
     assert!(svg.contains(">5 to 95 % of samples<") && svg.contains(">25 to 75 % of samples<"));
 }
 
-/// One picture has the bands, the points and their error bars; the table has the points.
+/// One picture has the bands, the points and their error bars; the table has the points, and the percentiles at each.
 #[test]
 fn samples_and_measured_points_share_a_plot() {
     let place = uncertain();
@@ -60,16 +60,28 @@ fn samples_and_measured_points_share_a_plot() {
     let run = place.run(&[&words[..], &["--csv", "t.csv", "--plot", "p.svg"]].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     let table = String::from_utf8(place.bytes("t.csv")).unwrap();
-    let rows = cells(&table, super::data::POINTS);
+    let columns = format!(
+        "{},p5_deg,p25_deg,p50_deg,p75_deg,p95_deg",
+        super::data::POINTS
+    );
+    let rows = cells(&table, &columns);
     assert_eq!([rows[0][4], rows[1][4]], ["1.5", "0.5"]);
+    // The same samples as without points.
+    let alone = [&words[..4], &["--distance", "10,15"]].concat();
+    let alone = good(&place, &alone).out;
+    let spread = cells(&alone, SPREAD);
+    assert_eq!(
+        (spread[0][0], spread[1][0], spread[2][0]),
+        ("cf", "cf", "cb")
+    );
+    assert_eq!(rows[0][9..], spread[2][8..13]);
+    assert_eq!(rows[1][9..], spread[1][8..13]);
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
     assert_eq!(svg.matches("<polygon").count(), 4, "two sides, two bands");
     // Both points and the sample in the legend.
     assert_eq!(svg.matches("<circle").count(), 3, "{svg}");
     assert!(svg.contains(" \u{b1} standard deviation<"), "{svg}");
-    place
-        .run(&words)
-        .assert_refused(&["--samples: with --data, bands are in the plot alone"]);
+    assert_eq!(place.run(&words).out, table);
     place.write(
         "points.csv",
         &data.replace("push_angle_deg", "push_chord_deg"),

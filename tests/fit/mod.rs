@@ -6,6 +6,7 @@ mod limits;
 mod noisy;
 mod points;
 mod refused;
+mod start;
 mod verdict;
 
 use whiskmap::measured::{MeasuredAngle, MeasuredPoint, MeasuredPoints};

@@ -20,8 +20,8 @@ pub fn tables(report: &Report) -> io::Result<()> {
     }
     writeln!(
         out,
-        "\n{:46}angle, deg     arc  force   of\n  \
-         engine          steps               us  +-%  worst   99 %  worst  worst peak",
+        "\n{:47}angle, deg     arc  force   of\n  \
+         engine          steps               us spread  worst   99 %  worst  worst peak",
         ""
     )?;
     for row in &report.rows {
@@ -69,7 +69,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
     }
     writeln!(
         out,
-        "\ndetachments, all threads    us a point  +-%    angle, deg: worst    99 %"
+        "\ndetachments, all threads    us a point spread   angle, deg: worst    99 %"
     )?;
     for row in &report.detachments {
         writeln!(
@@ -104,7 +104,7 @@ fn expansions(out: &mut impl Write, report: &Report) -> io::Result<()> {
     }
     writeln!(
         out,
-        "\nexpansions, one thread\n  bound  states  certified  ms a side  +-%  us a state  trajectories  pays from"
+        "\nexpansions, one thread\n  bound  states  certified  ms a side spread us a state  trajectories pays from"
     )?;
     for own in &report.expansions {
         let from = own
@@ -112,7 +112,7 @@ fn expansions(out: &mut impl Write, report: &Report) -> io::Result<()> {
             .map_or_else(|| "-".to_owned(), |from| format!("{from:.0}"));
         writeln!(
             out,
-            "{:7.0e} {:7} {:9.2}% {:10.2} {} {:11.3} {:13.3} {from:>10}",
+            "{:7.0e} {:7} {:9.2}% {:10.2} {} {:11.3} {:13.3} {from:>9}",
             own.bound,
             own.states,
             100.0 * own.certified,
@@ -163,11 +163,11 @@ fn computed(out: &mut impl Write, report: &Report) -> io::Result<()> {
     Ok(())
 }
 
-/// Prints the table of whole maps, and the verdict.
+/// Prints the table of whole maps, and the verdicts.
 fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     writeln!(
         out,
-        "\nwhole maps of {} cells, all threads\n{:20}      ms  +-%  host us/cell  share  for devices  fallback",
+        "\nwhole maps of {} cells, all threads\n{:20}      ms spread  host us/cell  share  for devices  fallback",
         report.map_cells, ""
     )?;
     for map in &report.maps {
@@ -208,17 +208,25 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
         "\nfor devices: part of the stages that a GPU could take over\n\
          waiting: for the GPU; device and packing run beside the other stages"
     )?;
-    match &report.verdict {
-        None => writeln!(out, "verdict: no other engine was measured"),
-        Some(verdict) => writeln!(out, "verdict: {verdict}"),
+    verdicts(out, report)
+}
+
+/// Prints which engine is the faster one of each pair, with the adapter of a GPU.
+fn verdicts(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    for verdict in &report.verdicts {
+        writeln!(out, "verdict: {verdict}")?;
+        if let Some(adapter) = &verdict.adapter {
+            writeln!(out, "{:20} on {adapter}", "")?;
+        }
     }
+    if report.maps.iter().all(|map| map.adapter.is_none()) {
+        writeln!(out, "verdict: no GPU was measured")?;
+    }
+    Ok(())
 }
 
 /// Formats the spread of a timing in percent; `!` marks a noisy one.
 fn spread(timing: &Timing) -> String {
     let mark = if timing.is_noisy { "!" } else { " " };
-    match 100.0 * timing.spread {
-        percent if percent < 99.5 => format!("{percent:4.0}{mark}"),
-        _ => format!(" >99{mark}"),
-    }
+    format!("{:4.0}%{mark}", 100.0 * timing.spread)
 }

@@ -14,7 +14,7 @@ use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
 use clap::Args;
-use plot::{CHORD, CurveColumn, scene_curve};
+use plot::{CHORD, CurveColumn, covering, scene_curve};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use whiskmap::measured::{ComparedPoint, MeasuredAngle};
@@ -24,7 +24,7 @@ use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
 use whiskmap::sensitivity::{DetachmentDerivatives, detachments_at};
 use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
-use whiskmap::uncertainty::{Draws, EndSpread};
+use whiskmap::uncertainty::{EndSpread, PointSpread};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -38,7 +38,7 @@ Examples:
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --x force_un --plot forces.svg
-  whiskmap curve scenes/uncertain.toml --samples 500 --data points.csv --plot beside.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --data points.csv --csv beside.csv --plot beside.svg
 
 The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
 Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \
@@ -51,7 +51,8 @@ and contact angle at detachment, each in the unit of its quantity per unit of th
 With --data, the table has measured points instead of the curve. They are read from a CSV file with the columns side (cb or \
 cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) and sd_deg. The plot \
 shows them on the curve, slip-offs as open circles and pull-offs as filled ones, with error bars of one standard deviation. \
-Their RMS and bias are printed on standard error. With --samples, the plot shows the bands, too.
+The curve reaches the distances of all points. Their RMS and bias are printed on standard error. With --samples, the plot shows \
+the bands, too, and the table has the percentiles at the distance of each point.
 
 With --samples, whiskers are drawn from the standard deviations in the scene's [uncertainty], independently and with normal \
 distributions. A draw outside the limits of the scene is repeated; standard error gives the number of such draws. \
@@ -62,6 +63,10 @@ const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns with --corner", Corner::COLUMNS),
     ("Columns with --data", ComparedPoint::COLUMNS),
     ("Columns with --samples", EndSpread::COLUMNS),
+    (
+        "More columns with --data and --samples",
+        PointSpread::COLUMNS,
+    ),
 ];
 
 #[derive(Debug, Args)]
@@ -128,10 +133,10 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             values.join(" ")
         )));
     }
-    let draws = args.sampling.draw(&scene)?;
     if let Some(path) = &args.data {
-        return compare(args, &scene, draws.as_ref(), path, files);
+        return compare(args, &scene, path, files);
     }
+    let draws = args.sampling.draw(&scene)?;
     let mut outputs = args.outputs.open(files)?;
     let accuracy = args.tolerance.find(&scene, &Side::BOTH)?;
     args.tolerance.report(accuracy);
@@ -201,23 +206,16 @@ fn write<R: Serialize>(
     }
 }
 
-/// Compares the measured points of the file at `path` with the curve. The plot has the bands of `draws`, too.
-fn compare(
-    args: &CurveArgs,
-    scene: &Scene,
-    draws: Option<&Draws>,
-    path: &Path,
-    files: &mut Files,
-) -> Result<(), Failure> {
+/// Compares the measured points of the file at `path` with the curve. With --samples, table and plot have the percentiles, too.
+fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
     let points = data::read(files, path)?;
     let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
-    if draws.is_some() && !args.outputs.has_plot() {
-        let must =
-            "--samples: with --data, bands are in the plot alone; give --plot, or leave out --data";
-        return Err(Failure::Input(must.to_owned()));
-    }
+    let measured_mm = points.points.iter().map(|point| point.distance_mm);
+    let distances = covering(&scene.grid.distance_mm, measured_mm);
+    let scene = &scene.to_builder().distance_mm(distances).build()?;
+    let draws = args.sampling.draw(scene)?;
     if draws.is_some() && points.angle == MeasuredAngle::Chord {
         let origin = &points.origin;
         let must = format!(
@@ -229,8 +227,13 @@ fn compare(
     let comparison = points.beside(&whisker, &pole);
     data::name_left_out(&points, &comparison);
     let rows = &comparison.rows;
-    outputs.rows(rows)?;
-    let spread = draws.map(|draws| uncertainty::spread(draws, Resolution::FINE));
+    let spread = draws
+        .as_ref()
+        .map(|draws| uncertainty::spread(draws, Resolution::FINE));
+    match &spread {
+        None => outputs.rows(rows)?,
+        Some(spread) => outputs.rows(rows.iter().map(|row| (row, at_point(spread, row))))?,
+    }
     let spread = spread.unwrap_or_default();
     outputs.finish(scene.title.clone(), || {
         let x = match points.angle {
@@ -254,4 +257,11 @@ fn compare(
         message(&format!("{name}: {value}"));
     }
     Ok(())
+}
+
+/// Returns the percentiles of the samples on the side and at the distance of a point, which `spread` has.
+fn at_point(spread: &[EndSpread], point: &ComparedPoint) -> Option<PointSpread> {
+    let mut rows = spread.iter();
+    let own = rows.find(|row| row.side == point.side && row.distance_mm == point.distance_mm);
+    own.map(EndSpread::of_push_angles)
 }

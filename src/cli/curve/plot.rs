@@ -42,6 +42,24 @@ pub fn scene_curve(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot 
     }
 }
 
+/// Rows between an end of the grid and a measured point beyond it.
+const TO_POINT: usize = 16;
+
+/// Returns the distances of a curve that covers the grid and the measured points, in mm, in growing order and each once.
+pub fn covering(grid: &[f64], measured_mm: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut distances: Vec<f64> = grid.iter().copied().chain(measured_mm).collect();
+    distances.sort_by(f64::total_cmp);
+    let (least, most) = (distances[0], distances[distances.len() - 1]);
+    for (end, point) in [(grid[0], least), (grid[grid.len() - 1], most)] {
+        let steps = if end == point { 0..0 } else { 1..TO_POINT };
+        let part = |step: usize| step as f64 / TO_POINT as f64;
+        distances.extend(steps.map(|step| end + part(step) * (point - end)));
+    }
+    distances.sort_by(f64::total_cmp);
+    distances.dedup();
+    distances
+}
+
 /// Columns that a plot can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]

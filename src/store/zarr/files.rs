@@ -110,7 +110,7 @@ impl ZarrStore {
                     BlockOwner::Nobody | BlockOwner::This => Ok(()),
                 }
             }
-            Err(StoreError::Read(_, why)) if why.kind() == io::ErrorKind::NotFound => {
+            Err(why) if is_absent(&why) => {
                 let (owner, is_empty) = (self.owner(), is_empty(&self.path));
                 // Another process may have created it meanwhile: the root first.
                 if Self::is_at(&self.path) {
@@ -169,14 +169,23 @@ impl ZarrStore {
     }
 }
 
+/// Returns true for the error of a path without a folder, or of a folder without metadata.
+fn is_absent(why: &StoreError) -> bool {
+    match why {
+        StoreError::Read(_, why) => why.kind() == io::ErrorKind::NotFound,
+        why => matches!(why, StoreError::NoStore(_)),
+    }
+}
+
 /// Reads the attributes of the store at `path` from its root.
 pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, StoreError> {
     let file = path.join(METADATA);
     let foreign =
         |why: &dyn std::fmt::Display| StoreError::NotAStore(path.to_owned(), why.to_string());
     let mut text = Vec::new();
+    fs::metadata(path).map_err(StoreError::at(path, StoreError::Read))?;
     let source = open_regular(&file).map_err(|why| match why {
-        StoreError::NotComputed(file) => StoreError::Read(file, io::ErrorKind::NotFound.into()),
+        StoreError::NotComputed(_) => StoreError::NoStore(path.to_owned()),
         why => why,
     })?;
     let read = source.take(MOST_METADATA + 1).read_to_end(&mut text);

@@ -60,7 +60,11 @@ impl ZarrStore {
             let (block, first) = self.blocks.find(next);
             let end = self.blocks.whiskers(block).end.min(whiskers.end);
             let file = self.file(array, block);
-            let (expected, packed) = self.read_file(array, &file)?;
+            let read = self.read_file(array, &file).map_err(|why| match why {
+                StoreError::NotComputed(_) => StoreError::Unfinished(self.path.clone()),
+                why => why,
+            });
+            let (expected, packed) = read?;
             let chunks = expected.chunks / self.blocks.slots();
             let frames: Vec<&[u8]> = expected.frames(&packed).collect();
             for index in first..first + (end - next) {

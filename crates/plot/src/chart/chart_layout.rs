@@ -2,7 +2,8 @@
 
 use super::Chart;
 use super::plot_layout::PlotLayout;
-use crate::frame::heading::{ALONE, HEAD_ROOM, Heading, NAME, SIDES, TITLE, TITLE_LINE};
+use crate::frame::heading::{ALONE, Heading, NAME, SIDES, TITLE};
+use crate::frame::spacing::Spacing;
 use crate::picture::size::{PictureSize, SizeError};
 use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Picture};
@@ -25,6 +26,9 @@ pub struct ChartLayout<'a> {
     caption: Vec<(TextBlock, f64)>,
     /// Room to the left of each body.
     left: f64,
+    /// Position of the title and the caption from the left.
+    head_left: f64,
+    spacing: Spacing,
     /// Each plot with its heading, the top of the heading, and the plot's body.
     plots: Vec<(PlotLayout<'a>, Heading, f64, Area)>,
     /// Width and height of the picture.
@@ -65,10 +69,11 @@ impl<'a> ChartLayout<'a> {
         least: [f64; 2],
         size: PictureSize,
     ) -> Self {
+        let spacing = Spacing::of(size);
         let columns = chart.columns();
         let layouts = chart.plots.iter();
         let layouts: Vec<_> = layouts
-            .map(|plot| PlotLayout::plan(plot, [width, height]))
+            .map(|plot| PlotLayout::plan(plot, [width, height], spacing))
             .collect();
         let [left, right] = layouts.iter().fold(least, |most, layout| {
             let sides = layout.axes.sides();
@@ -77,11 +82,11 @@ impl<'a> ChartLayout<'a> {
         let pitch = left + width + right;
         let across = pitch * columns as f64;
 
-        let room = across - left - right;
+        let [before, room] = spacing.head_span([left, across - left - right, right]);
         let title = TextBlock::new(&chart.title, TITLE, room);
         let mut top = match &*chart.title {
             "" => ABOVE,
-            _ => HEAD_ROOM + title.below_first(),
+            _ => spacing.head_room + title.below_first(),
         };
         let mut caption = Vec::new();
         for line in &chart.caption {
@@ -95,7 +100,9 @@ impl<'a> ChartLayout<'a> {
         let mut rest = layouts.into_iter().peekable();
         while rest.peek().is_some() {
             let row: Vec<_> = rest.by_ref().take(columns).collect();
-            let headings = row.iter().map(|layout| layout.heading(left, width));
+            let headings = row
+                .iter()
+                .map(|layout| layout.heading([left, width, right], spacing));
             let headings: Vec<_> = headings.collect();
             let most = |heights: &mut dyn Iterator<Item = f64>| heights.fold(0.0, f64::max);
             let head = most(&mut headings.iter().map(|heading| heading.height));
@@ -112,6 +119,8 @@ impl<'a> ChartLayout<'a> {
             title,
             caption,
             left,
+            head_left: left - before,
+            spacing,
             plots,
             units: [across, top],
             size,
@@ -120,9 +129,10 @@ impl<'a> ChartLayout<'a> {
 
     pub fn draw(&self) -> Picture {
         let mut picture = Picture::new(self.units, self.size);
-        picture.block(&self.title, [self.left, TITLE_LINE], Anchor::Left);
+        let title = [self.head_left, self.spacing.title_line];
+        picture.block(&self.title, title, Anchor::Left);
         for (line, middle) in &self.caption {
-            picture.block(line, [self.left, *middle], Anchor::Left);
+            picture.block(line, [self.head_left, *middle], Anchor::Left);
         }
         for (layout, heading, top, body) in &self.plots {
             heading.draw(&mut picture, [body.left, *top], self.left);

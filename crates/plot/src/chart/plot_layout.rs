@@ -6,6 +6,7 @@ use super::{Band, Dot, Plot, Shade};
 use crate::frame::axes::{Axes, FRAME};
 use crate::frame::heading::{DOT, Heading, LINE, LegendEntry, LegendSymbol};
 use crate::frame::regions::RegionNames;
+use crate::frame::spacing::Spacing;
 use crate::frame::ticks::{self, TickChooser, fraction};
 use crate::frame::units;
 use crate::picture::palette::{Fill, GREY, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
@@ -38,7 +39,7 @@ pub struct PlotLayout<'a> {
 
 impl<'a> PlotLayout<'a> {
     /// Chooses ranges, units and ticks of a plot for a body of this `size`, `[width, height]` in pixels.
-    pub fn plan(plot: &'a Plot, size: [f64; 2]) -> Self {
+    pub fn plan(plot: &'a Plot, size: [f64; 2], spacing: Spacing) -> Self {
         let plot = match plot.logarithmic {
             [false, false] => Cow::Borrowed(plot),
             _ => Cow::Owned(plot.logarithms()),
@@ -58,7 +59,7 @@ impl<'a> PlotLayout<'a> {
             [] => ticks::upwards(window.y.map(|end| end / y_unit), size[1], y.0),
             names => ticks::named(names, window.y),
         };
-        let axes = Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size);
+        let axes = Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size, spacing);
         let regions = RegionNames::plan(plot.regions.as_ref(), fraction(window.x, 0.0), size[0]);
         Self {
             plot,
@@ -68,10 +69,10 @@ impl<'a> PlotLayout<'a> {
         }
     }
 
-    /// Lays out the plot's letter, title and legend. The body is `width` pixels wide, with `left` pixels of space to its left.
-    pub fn heading(&self, left: f64, width: f64) -> Heading {
+    /// Lays out the plot's letter, title and legend above a body with `[left, width, right]`: its width and the space beside it.
+    pub fn heading(&self, body: [f64; 3], spacing: Spacing) -> Heading {
         let letter = self.plot.letter.as_deref().unwrap_or_default();
-        Heading::plan([letter, &self.plot.title], self.legend(), [left, width])
+        Heading::plan([letter, &self.plot.title], self.legend(), body, spacing)
     }
 
     /// Draws the plot into `body`, with `left` pixels of space to its left.

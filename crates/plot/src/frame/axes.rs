@@ -1,6 +1,7 @@
 //! Ticks and labels around the body of a plot or a heat map.
 
 use super::heading::{LABEL, TICK};
+use super::spacing::Spacing;
 use super::ticks::Tick;
 use crate::picture::palette::INK;
 use crate::picture::text::TextBlock;
@@ -8,12 +9,9 @@ use crate::picture::{Anchor, Area, Pen, Picture};
 
 /// Width of the lines of frames and ticks, in pixels.
 pub const FRAME: f64 = 1.5;
-/// Height of the space below a body for ticks and an axis label of one line, in pixels.
-const BELOW: f64 = 112.0;
-/// Distance of the middle of the horizontal axis' label from the frame, in pixels.
-const X_LABEL: f64 = 76.0;
-/// Distance of the middle of the vertical axis' label from the left end of the space, in pixels.
-const Y_LABEL: f64 = 34.0;
+
+/// Space beside a body without ticks and label.
+const FREE: f64 = 16.0;
 
 /// Ticks and labels of the two axes of a plot or a heat map.
 pub struct Axes {
@@ -21,6 +19,7 @@ pub struct Axes {
     y_ticks: Vec<Tick>,
     x_label: TextBlock,
     y_label: TextBlock,
+    spacing: Spacing,
 }
 
 impl Axes {
@@ -28,12 +27,14 @@ impl Axes {
     pub fn new(
         [(x_ticks, x_label), (y_ticks, y_label)]: [(Vec<Tick>, &str); 2],
         [width, height]: [f64; 2],
+        spacing: Spacing,
     ) -> Self {
         Self {
             x_ticks,
             y_ticks,
             x_label: TextBlock::new(x_label, LABEL, width),
             y_label: TextBlock::new(y_label, LABEL, height),
+            spacing,
         }
     }
 
@@ -41,7 +42,10 @@ impl Axes {
     pub fn sides(&self) -> [f64; 2] {
         let widest = self.y_ticks.iter().map(|tick| tick.width);
         let widest = widest.fold(0.0, f64::max);
-        let beside = Y_LABEL + self.y_label.below_first() + 0.6 * LABEL + 16.0;
+        if self.y_ticks.is_empty() && self.y_label.lines.concat().is_empty() {
+            return [FREE; 2];
+        }
+        let beside = self.spacing.y_label + self.y_label.below_first() + 0.6 * LABEL + 16.0;
         let last = self.x_ticks.last();
         let end = last.map_or(0.0, |last| 0.5 * last.width);
         [beside + widest + 15.0, end + 8.0]
@@ -49,7 +53,7 @@ impl Axes {
 
     /// Returns the height that ticks and label take below the body, in pixels.
     pub fn below(&self) -> f64 {
-        BELOW + self.x_label.below_first()
+        self.spacing.below + self.x_label.below_first()
     }
 
     /// Draws the axes around `body`, with `left` pixels of space to its left. Labels that would overlap are left out.
@@ -74,8 +78,12 @@ impl Axes {
             }
         }
         let [x, y] = body.point(0.5, 0.0);
-        picture.block(&self.x_label, [x, y + X_LABEL], Anchor::Centre);
+        picture.block(&self.x_label, [x, y + self.spacing.x_label], Anchor::Centre);
         let [x, y] = body.point(0.0, 0.5);
-        picture.block(&self.y_label, [x - left + Y_LABEL, y], Anchor::Upwards);
+        picture.block(
+            &self.y_label,
+            [x - left + self.spacing.y_label, y],
+            Anchor::Upwards,
+        );
     }
 }

@@ -3,5 +3,6 @@
 pub mod axes;
 pub mod heading;
 pub mod regions;
+pub mod spacing;
 pub mod ticks;
 pub mod units;

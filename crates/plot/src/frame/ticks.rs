@@ -74,9 +74,19 @@ pub fn across(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     }
 }
 
+/// Fewest ticks of a vertical axis with room for more.
+const FEWEST: usize = 3;
+
 /// Chooses the ticks of a vertical axis of this length in pixels.
 pub fn upwards(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
-    choose(range, (length / 80.0).clamp(1.0, 10.0))
+    let mut wanted = (length / 80.0).clamp(1.0, 10.0);
+    loop {
+        let ticks = choose(range, wanted);
+        if ticks.len() >= FEWEST || wanted + 1.0 > length / (2.0 * TICK) {
+            return ticks;
+        }
+        wanted += 1.0;
+    }
 }
 
 /// Creates the ticks of the numbers 0, 1, 2, ... in a range, with `names` as their labels.

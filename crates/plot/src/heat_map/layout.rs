@@ -1,11 +1,11 @@
 //! Layout of a heat map, in units of the picture: one panel, or a contact sheet of many.
 
-use super::{HeatMap, PanelAxis, PanelCells, Shading};
+use super::panels::PanelGrid;
+use super::{HeatMap, PanelCells, Shading};
 use crate::frame::axes::Axes;
-use crate::frame::heading::{
-    ALONE, HEAD_ROOM, Heading, LINE, LegendEntry, SIDES, TICK, TITLE, TITLE_LINE,
-};
+use crate::frame::heading::{ALONE, Heading, LINE, LegendEntry, SIDES, TICK, TITLE};
 use crate::frame::regions::RegionNames;
+use crate::frame::spacing::Spacing;
 use crate::frame::ticks::{self, Tick};
 use crate::picture::size::{PictureSize, SizeError};
 use crate::picture::text::TextBlock;
@@ -17,20 +17,13 @@ const SHEET: [f64; 2] = [1720.0, 1500.0];
 const PANEL: f64 = 560.0;
 /// Distance between notes, in pixels.
 const NOTE: f64 = 34.0;
-/// Gap between panels, as a fraction of their distance.
-const GAP: f64 = 0.06;
 /// Layouts until panels and the labels around them agree: the labels depend on the panels.
 const PASSES: usize = 3;
 
 /// A heat map with the positions of its panels, in units of the picture.
 pub struct HeatMapLayout<'a> {
     map: &'a HeatMap,
-    /// Columns and rows of panels.
-    counts: [usize; 2],
-    /// Distance from one panel to the next along x and y.
-    pitch: [f64; 2],
-    /// Gap between panels.
-    gap: f64,
+    panels: PanelGrid,
     axes: Axes,
     regions: RegionNames,
     /// Notes on the axes of the panels, where the axes of the picture are those of the contact sheet.
@@ -39,6 +32,9 @@ pub struct HeatMapLayout<'a> {
     heading: Heading,
     /// Space to the left of all panels.
     left: f64,
+    /// Position of the title and the notes from the left.
+    head_left: f64,
+    spacing: Spacing,
     /// The area of all panels.
     body: Area,
     /// Width of the curves in a panel.
@@ -50,14 +46,10 @@ pub struct HeatMapLayout<'a> {
 
 impl<'a> HeatMapLayout<'a> {
     pub fn plan(map: &'a HeatMap, size: PictureSize) -> Result<Self, SizeError> {
-        let counts = map.panel_counts();
-        let natural = match counts {
-            [1, 1] => ALONE,
-            counts => {
-                let panels = counts.map(|panels| panels as f64);
-                let pitch = PANEL.min(SHEET[0] / panels[0]).min(SHEET[1] / panels[1]);
-                panels.map(|panels| pitch * panels - gap(pitch))
-            }
+        let grid = PanelGrid::of(map);
+        let natural = match grid.is_sheet() {
+            false => ALONE,
+            true => grid.natural(SHEET, PANEL),
         };
         let PictureSize::Print(print) = size else {
             return Ok(Self::around(map, natural, SIDES, size));
@@ -65,7 +57,11 @@ impl<'a> HeatMapLayout<'a> {
         let mut layout = Self::around(map, natural, [0.0; 2], size);
         for _ in 0..PASSES {
             let bodies = [layout.body.width, layout.body.height];
-            let bodies = print.bodies(layout.units, bodies, natural[1] / natural[0]);
+            let ratio = match grid.is_sheet() {
+                false => natural[1] / natural[0],
+                true => grid.height(bodies[0]) / bodies[0],
+            };
+            let bodies = print.bodies(layout.units, bodies, ratio);
             layout = Self::around(map, bodies, [0.0; 2], size);
         }
         let bodies = [layout.body.width, layout.body.height];
@@ -75,24 +71,16 @@ impl<'a> HeatMapLayout<'a> {
 
     /// Lays a heat map out around panels that have the size `area` together, with at least `least` space `[left, right]` beside them.
     fn around(map: &'a HeatMap, area: [f64; 2], least: [f64; 2], size: PictureSize) -> Self {
-        let counts = map.panel_counts();
-        let is_sheet = counts != [1, 1];
-        let panels = counts.map(|panels| panels as f64);
-        let gap = match is_sheet {
-            true => gap([0, 1]
-                .map(|axis| area[axis] / (panels[axis] - GAP))
-                .into_iter()
-                .fold(f64::INFINITY, f64::min)),
-            false => 0.0,
-        };
-        let pitch = [0, 1].map(|axis| (area[axis] + gap) / panels[axis]);
+        let spacing = Spacing::of(size);
+        let panels = PanelGrid::of(map).in_area(area);
+        let is_sheet = panels.is_sheet();
         let axes = match is_sheet {
             false => {
                 let [(x_ticks, x_label), (y_ticks, y_label)] =
                     [(&map.x, area[0]), (&map.y, area[1])].map(|(axis, room)| axis.ticks(room));
-                Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], area)
+                Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], area, spacing)
             }
-            true => sheet_axes(map, area, pitch.map(|pitch| pitch - gap), pitch),
+            true => sheet_axes(map, area, &panels, spacing),
         };
         let [left, right] = axes.sides();
         let left = left.max(least[0]);
@@ -116,23 +104,27 @@ impl<'a> HeatMapLayout<'a> {
             }
         };
         let width = left + (area[0] + right).max(noted);
-        let room = width - left - right.min(SIDES[1]);
+        let right = width - left - area[0];
+        // On a screen, title and legend extend over the colour bar.
+        let beyond = match spacing.edge {
+            None => right - right.min(SIDES[1]),
+            Some(_) => 0.0,
+        };
+        let body = [left, area[0] + beyond, right - beyond];
+        let [before, room] = spacing.head_span(body);
         let notes: Vec<_> = texts
             .iter()
             .map(|note| TextBlock::new(note, TICK, room))
             .collect();
         let title = TextBlock::new(&map.title, TITLE, room);
-        let heading = Heading::plan([""; 2], legend, [left, room]);
+        let heading = Heading::plan([""; 2], legend, body, spacing);
         let alone = map.regions.as_ref().filter(|_| !is_sheet);
         let regions = RegionNames::plan(alone, map.x.fraction(0.0), area[0]);
-        let top = HEAD_ROOM + title.below_first() + heading.height + regions.height();
+        let top = spacing.head_room + title.below_first() + heading.height + regions.height();
         let body = Area::new([left, top], area);
         let noted: f64 = notes.iter().map(|note| NOTE + note.below_first()).sum();
         Self {
             map,
-            counts,
-            pitch,
-            gap,
             units: [width, body.bottom() + axes.below() + noted],
             axes,
             regions,
@@ -140,11 +132,14 @@ impl<'a> HeatMapLayout<'a> {
             title,
             heading,
             left,
+            head_left: left - before,
+            spacing,
             body,
             line: match is_sheet {
-                true => (pitch[0] / 140.0).clamp(0.8, 2.5),
+                true => (panels.pitch[0] / 140.0).clamp(0.8, 2.5),
                 false => LINE,
             },
+            panels,
             size,
         }
     }
@@ -156,13 +151,14 @@ impl<'a> HeatMapLayout<'a> {
     ) -> Result<Picture, E> {
         let (map, body, left) = (self.map, self.body, self.left);
         let mut picture = Picture::new(self.units, self.size);
-        picture.block(&self.title, [left, TITLE_LINE], Anchor::Left);
-        let head = HEAD_ROOM + self.title.below_first();
+        let title = [self.head_left, self.spacing.title_line];
+        picture.block(&self.title, title, Anchor::Left);
+        let head = self.spacing.head_room + self.title.below_first();
         self.heading.draw(&mut picture, [left, head], left);
-        let [columns, rows] = self.counts;
-        for index in 0..columns * rows {
-            let area = self.panel_area([index % columns, index / columns]);
+        for index in 0..self.panels.count {
+            let area = self.panels.area(body, index);
             map.draw_panel(&mut picture, area, &panel(index)?, self.line);
+            self.panels.draw_label(&mut picture, area, index);
         }
         if let Shading::Quantities(scale) = &map.shading {
             scale.draw_bar(&mut picture, body);
@@ -171,39 +167,29 @@ impl<'a> HeatMapLayout<'a> {
         self.regions.draw(&mut picture, body);
         let mut y = body.bottom() + self.axes.below() + 0.2 * NOTE;
         for note in &self.notes {
-            picture.block(note, [left, y], Anchor::Left);
+            picture.block(note, [self.head_left, y], Anchor::Left);
             y += NOTE + note.below_first();
         }
         Ok(picture)
     }
+}
 
-    /// The area of the panel in a column from the left and a row from below.
-    fn panel_area(&self, [column, row]: [usize; 2]) -> Area {
-        let left = self.body.left + self.pitch[0] * column as f64;
-        let top = self.body.top + self.pitch[1] * (self.counts[1] - 1 - row) as f64;
-        Area::new([left, top], self.pitch.map(|pitch| pitch - self.gap))
+/// The axes of a contact sheet of this `area`: ticks at the middles of its panels, or the name of the axis whose values are above them.
+fn sheet_axes(map: &HeatMap, area: [f64; 2], panels: &PanelGrid, spacing: Spacing) -> Axes {
+    let axes = map.panel_axes.each_ref();
+    if !panels.labels.is_empty() {
+        let label = axes.into_iter().flatten().map(|axis| &*axis.label);
+        let label = format!("{}, above each panel", label.collect::<String>());
+        return Axes::new([(Vec::new(), &label), (Vec::new(), "")], area, spacing);
     }
-}
-
-/// The gap between panels at this distance.
-fn gap(pitch: f64) -> f64 {
-    (GAP * pitch).min(10.0)
-}
-
-/// The axes of a contact sheet of this `area`: ticks at the middles of its panels.
-fn sheet_axes(map: &HeatMap, area: [f64; 2], panel: [f64; 2], pitch: [f64; 2]) -> Axes {
     let ticks = |side: usize| -> Vec<Tick> {
-        let axis: &Option<PanelAxis> = &map.panel_axes[side];
-        let middle = |place: usize| (pitch[side] * place as f64 + 0.5 * panel[side]) / area[side];
-        let labels = axis.iter().flat_map(|axis| ticks::labels(&axis.values));
+        let labels = axes[side]
+            .iter()
+            .flat_map(|axis| ticks::labels(&axis.values));
         let labels = labels.enumerate();
-        let ticks = labels.map(|(place, label)| Tick::new(middle(place), label));
+        let ticks = labels.map(|(place, label)| Tick::new(panels.middle(side, place, area), label));
         ticks.collect()
     };
-    let label = |side: usize| {
-        map.panel_axes[side]
-            .as_ref()
-            .map_or("", |axis| &*axis.label)
-    };
-    Axes::new([(ticks(0), label(0)), (ticks(1), label(1))], area)
+    let label = |side: usize| axes[side].as_ref().map_or("", |axis| &*axis.label);
+    Axes::new([(ticks(0), label(0)), (ticks(1), label(1))], area, spacing)
 }

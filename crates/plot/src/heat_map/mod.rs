@@ -5,6 +5,7 @@
 pub mod cell_axis;
 pub mod colour_scale;
 mod layout;
+mod panels;
 pub mod summary;
 
 use crate::frame::heading::LegendEntry;
@@ -50,7 +51,8 @@ pub struct HeatMap {
     pub x: CellAxis,
     /// Vertical axis of each panel of the heat map.
     pub y: CellAxis,
-    /// Axes `[x, y]` along which the panels of the heat map differ: between columns and between rows. `None` for a single column or row.
+    /// Axes `[x, y]` along which the panels of the heat map differ: between columns and between rows. `None` for a single value. With one
+    /// axis, panels fill rows from the upper left, each with its value above it.
     pub panel_axes: [Option<PanelAxis>; 2],
     /// Colouring of the cells of the heat map: by codes, or by a colour scale.
     pub shading: Shading,
@@ -108,7 +110,7 @@ impl Shading {
 }
 
 impl HeatMap {
-    /// Lays the heat map out as a picture of this size. `panel` returns the contents of panel `row * columns + column`; panels are drawn one by one.
+    /// Lays the heat map out as a picture of this size. `panel` returns the contents of panel `y * count of x + x`; panels are drawn one by one.
     ///
     /// # Errors
     /// The size on paper is too small, or an error of `panel`.
@@ -118,11 +120,6 @@ impl HeatMap {
         panel: impl FnMut(usize) -> Result<PanelCells, E>,
     ) -> Result<Picture, E> {
         HeatMapLayout::plan(self, size)?.draw(panel)
-    }
-
-    fn panel_counts(&self) -> [usize; 2] {
-        let count = |axis: &Option<PanelAxis>| axis.as_ref().map_or(1, |axis| axis.values.len());
-        self.panel_axes.each_ref().map(count)
     }
 
     /// Notes on the axes of the panels of a contact sheet.

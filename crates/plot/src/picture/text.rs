@@ -49,8 +49,8 @@ pub struct TextBlock {
 }
 
 impl TextBlock {
-    /// Sets a text into lines of length `room`: in one line, shrunk from `largest` if necessary, or in several of the smallest size. Words
-    /// that are longer than a line are cut.
+    /// Sets a text into lines of length `room`: in one line, shrunk from `largest` if necessary, or in several of the smallest size. A line
+    /// does not end beside `=` or before a unit, unless the name and its value are longer than a line. Words that are longer than a line are cut.
     pub fn new(text: &str, largest: f64, room: f64) -> Self {
         let size = shrunk(text, largest, room);
         if fits(text, size, room) {
@@ -60,11 +60,19 @@ impl TextBlock {
             };
         }
         let mut lines: Vec<String> = Vec::new();
-        for word in text.split(' ') {
+        let words = kept_together(text).into_iter().flat_map(|words| {
+            let is_line = fits(&words.join(" "), size, room);
+            if is_line {
+                vec![words.join(" ")]
+            } else {
+                words.into_iter().map(str::to_owned).collect()
+            }
+        });
+        for word in words {
             let longer = lines.last().map(|line| format!("{line} {word}"));
             match (lines.last_mut(), longer) {
                 (Some(last), Some(longer)) if fits(&longer, size, room) => *last = longer,
-                _ => lines.push(fitted(word, size, room).0),
+                _ => lines.push(fitted(&word, size, room).0),
             }
         }
         Self { lines, size }
@@ -79,6 +87,22 @@ impl TextBlock {
     pub fn leading(&self) -> f64 {
         LEADING * self.size
     }
+}
+
+/// Units before which no line ends.
+const UNITS: [&str; 4] = ["mm", "deg", "%", "pt"];
+
+/// Returns the words of a text in groups that stay in one line: name, `=` and value, and a number with its unit.
+fn kept_together(text: &str) -> Vec<Vec<&str>> {
+    let mut groups: Vec<Vec<&str>> = Vec::new();
+    for word in text.split(' ') {
+        let is_unit = UNITS.contains(&word.trim_end_matches([',', ';', ')', '.']));
+        match groups.last_mut() {
+            Some(last) if word == "=" || is_unit || last.last() == Some(&"=") => last.push(word),
+            _ => groups.push(vec![word]),
+        }
+    }
+    groups
 }
 
 #[cfg(test)]
@@ -118,5 +142,19 @@ mod tests {
                 .all(|line| width(line, SMALLEST) <= 261.0)
         );
         assert_eq!(TextBlock::new("", 23.0, 260.0).lines, [""]);
+    }
+
+    #[test]
+    fn a_name_and_its_value_stay_in_one_line() {
+        let text = "Taper and curvature, taper = 0.99, curvature_per_mm = 0.02, touched at 15.66 mm, and more";
+        for room in 200..600 {
+            let lines = TextBlock::new(text, 23.0, f64::from(room)).lines;
+            assert_eq!(lines.join(" "), text);
+            let ends = ["taper", "=", "curvature_per_mm", "15.66"];
+            let breaks = lines
+                .iter()
+                .filter(|line| ends.iter().any(|end| line.ends_with(end)));
+            assert_eq!(breaks.count(), usize::from(room < 242), "{room}: {lines:?}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Panels of heat maps: cells, hatching, curves and contact sheets.
 
-use crate::drawn::{Pixels, body, polylines, svg};
+use crate::drawn::{Pixels, body, polylines, rasters, svg};
 use crate::{BLACK, BLANK, WHITE};
 use whiskmap_plot::{
     CellAxis, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, PictureSize, Shading,
@@ -135,4 +135,42 @@ fn panels_stand_along_their_axes() {
         Ok::<_, SizeError>(PanelCells::default())
     });
     assert_eq!(narrow.unwrap().pixels()[0], 700);
+}
+
+/// Seven panels along one axis, in three columns, with their values above them.
+#[test]
+fn panels_along_one_axis_fill_rows() {
+    let values: Vec<f64> = (0..7).map(|i| 0.25 * f64::from(i)).collect();
+    for side in [0, 1] {
+        let mut map = coded(&[1.0, 2.0], &[1.0, 2.0]);
+        map.panel_axes[side] = Some(PanelAxis {
+            label: "taper".to_owned(),
+            values: values.clone(),
+        });
+        let mut drawn_panels = Vec::new();
+        let picture = drawn(&map, |index| {
+            drawn_panels.push(index);
+            PanelCells {
+                values: vec![[0.0, 1.0][index % 2]; 4],
+                ..PanelCells::default()
+            }
+        });
+        assert_eq!(drawn_panels, [0, 1, 2, 3, 4, 5, 6]);
+        let svg = svg(&picture);
+        assert!(svg.contains(">taper, above each panel<"), "{svg}");
+        let rasters: Vec<[f64; 4]> = rasters(&svg).into_iter().map(|(area, _)| area).collect();
+        let panels = &rasters[rasters.len() - 7..];
+        let column = |i: usize| (panels[i][0], panels[i][1]);
+        assert!((0..7).all(|i| column(i).0 == column(i % 3).0), "{panels:?}");
+        assert!(
+            (0..7).all(|i| column(i).1 == column(i / 3 * 3).1),
+            "{panels:?}"
+        );
+        assert!(column(0).1 < column(3).1 && column(0).0 < column(1).0);
+        // Panels take most of the width.
+        let [width, _] = picture.pixels();
+        let right = panels[2][0] + panels[2][2];
+        assert!(right - panels[0][0] > 0.8 * width as f64, "{panels:?}");
+        assert_eq!(svg.matches(">0.75<").count(), 1, "{svg}");
+    }
 }

@@ -1,0 +1,143 @@
+//! Panels of a heat map in columns and rows.
+//!
+//! Panels along two axes stand along both. Panels along one axis fill rows from the left, and have their value above them.
+
+use super::{HeatMap, PanelAxis};
+use crate::frame::heading::NAME;
+use crate::frame::ticks;
+use crate::picture::text::fitted;
+use crate::picture::{Anchor, Area, Picture};
+
+/// Gap between panels, as a fraction of their distance.
+const GAP: f64 = 0.06;
+/// Largest gap between panels.
+const LARGEST_GAP: f64 = 10.0;
+/// Height of the space above a panel for its label.
+const LABEL: f64 = 1.5 * NAME;
+/// Most panels along one axis that stand in one row.
+const IN_ONE_ROW: usize = 3;
+
+/// Columns and rows of panels, and their sizes in units.
+#[derive(Clone, Debug)]
+pub struct PanelGrid {
+    /// Number of panels.
+    pub count: usize,
+    /// Columns and rows of panels.
+    counts: [usize; 2],
+    /// Labels above the panels, `[panel]`; empty for panels along two axes.
+    pub labels: Vec<String>,
+    /// Distance from one panel to the next along x and y.
+    pub pitch: [f64; 2],
+    /// Gap between panels.
+    gap: f64,
+}
+
+impl PanelGrid {
+    /// Chooses columns and rows for the panels of a heat map, without sizes.
+    pub fn of(map: &HeatMap) -> Self {
+        let sizes = map.panel_axes.each_ref();
+        let sizes = sizes.map(|axis| axis.as_ref().map_or(1, |axis| axis.values.len()));
+        let count = sizes[0] * sizes[1];
+        let alone = match &map.panel_axes {
+            [Some(axis), None] | [None, Some(axis)] if count > 1 => Some(axis),
+            _ => None,
+        };
+        let columns = if count > IN_ONE_ROW {
+            (count as f64).sqrt().ceil() as usize
+        } else {
+            count
+        };
+        let labels = |axis: &PanelAxis| ticks::labels(&axis.values);
+        Self {
+            count,
+            counts: match alone {
+                Some(_) => [columns, count.div_ceil(columns)],
+                None => sizes,
+            },
+            labels: alone.map(labels).unwrap_or_default(),
+            pitch: [0.0; 2],
+            gap: 0.0,
+        }
+    }
+
+    /// Returns true for a contact sheet of several panels.
+    pub fn is_sheet(&self) -> bool {
+        self.counts != [1, 1]
+    }
+
+    /// Height of the label above a panel.
+    fn label(&self) -> f64 {
+        if self.labels.is_empty() { 0.0 } else { LABEL }
+    }
+
+    /// Returns the size of all square panels together, each with at most the side `panel`, and all at most with the size `sheet`.
+    pub fn natural(&self, sheet: [f64; 2], panel: f64) -> [f64; 2] {
+        let counts = self.counts.map(|count| count as f64);
+        let pitch = panel.min(sheet[0] / counts[0]).min(sheet[1] / counts[1]);
+        let width = pitch * counts[0] - gap(pitch);
+        [width, self.height(width)]
+    }
+
+    /// Returns the height of all square panels that have this width together.
+    pub fn height(&self, width: f64) -> f64 {
+        let [columns, rows] = self.counts.map(|count| count as f64);
+        let gap = gap(width / (columns - GAP));
+        let side = (width + gap) / columns - gap;
+        rows * (side + gap + self.label()) - gap
+    }
+
+    /// Returns the grid with the sizes of its panels in an area of this size.
+    pub fn in_area(self, area: [f64; 2]) -> Self {
+        let counts = self.counts.map(|count| count as f64);
+        let labels = [0.0, counts[1] * self.label()];
+        let gap = match self.is_sheet() {
+            true => gap([0, 1]
+                .map(|axis| (area[axis] - labels[axis]) / (counts[axis] - GAP))
+                .into_iter()
+                .fold(f64::INFINITY, f64::min)
+                .max(0.0)),
+            false => 0.0,
+        };
+        Self {
+            pitch: [0, 1].map(|axis| (area[axis] + gap) / counts[axis]),
+            gap,
+            ..self
+        }
+    }
+
+    /// Returns the middle of the panels at a place of an axis, as a fraction of the area.
+    pub fn middle(&self, axis: usize, place: usize, area: [f64; 2]) -> f64 {
+        let panel = self.pitch[axis] - self.gap;
+        (self.pitch[axis] * place as f64 + 0.5 * panel) / area[axis]
+    }
+
+    /// Returns the area of a panel in the area `body` of all.
+    pub fn area(&self, body: Area, index: usize) -> Area {
+        let [columns, rows] = self.counts;
+        let [column, row] = [index % columns, index / columns];
+        // Along an axis, panels stand upwards; in rows of one axis, they are read from the top.
+        let from_top = if self.labels.is_empty() {
+            rows - 1 - row
+        } else {
+            row
+        };
+        let left = body.left + self.pitch[0] * column as f64;
+        let top = body.top + self.pitch[1] * from_top as f64 + self.label();
+        let [width, height] = self.pitch.map(|pitch| pitch - self.gap);
+        Area::new([left, top], [width, height - self.label()])
+    }
+
+    /// Draws the label above a panel with this `area`, if it has one.
+    pub fn draw_label(&self, picture: &mut Picture, area: Area, index: usize) {
+        if let Some(label) = self.labels.get(index) {
+            let [x, y] = area.point(0.5, 1.0);
+            let at = [x, y - 0.5 * LABEL];
+            picture.fitted(&fitted(label, NAME, area.width), at, Anchor::Centre);
+        }
+    }
+}
+
+/// The gap between panels at this distance.
+fn gap(pitch: f64) -> f64 {
+    (GAP * pitch).min(LARGEST_GAP)
+}
