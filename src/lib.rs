@@ -65,6 +65,7 @@ pub mod scene;
 pub mod sensitivity;
 pub mod store;
 pub mod trace;
+pub mod traced;
 pub mod uncertainty;
 pub mod whisk;
 
@@ -90,6 +91,7 @@ pub mod engine;
 mod front;
 #[doc(hidden)]
 pub mod input;
+mod least_squares;
 #[doc(hidden)]
 pub mod map;
 mod newton;

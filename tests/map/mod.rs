@@ -35,6 +35,7 @@ pub fn scene(
             youngs_modulus_gpa: 3.0,
             curvature: None,
             euler_spiral: None,
+            traced: None,
             profile: None,
             profile_scale: 1.0,
             modulus_tip_to_base: 1.0,

@@ -59,6 +59,7 @@ pub fn push(index: u64) -> Push {
             youngs_modulus_gpa: between(1.0, 6.0),
             curvature,
             euler_spiral,
+            traced: None,
             profile: rows,
             profile_scale: if measured { between(0.5, 2.0) } else { 1.0 },
             modulus_tip_to_base: between(0.3, 3.0),
