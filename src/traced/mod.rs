@@ -176,11 +176,13 @@ impl TracedShape {
         self.curvature.legendre()[..=self.degree].to_vec()
     }
 
-    /// Returns the points in the frame of the base, where the tangent is the first axis: `[point][x, y]`, in millimetres.
+    /// Returns the points in the frame of the base of a whisker of this length, where the base's tangent is the first axis:
+    /// `[point][x, y]`, in millimetres.
     #[must_use]
-    pub fn points_at_rest_mm(&self) -> Vec<[f64; 2]> {
+    pub fn points_at_rest_mm(&self, length_mm: f64) -> Vec<[f64; 2]> {
         let (sin, cos) = libm::sincos(self.base_angle);
-        let (base, back) = (DVec2::from(self.base_mm), DVec2::new(cos, -sin));
+        let (base, scale) = (DVec2::from(self.base_mm), length_mm / self.length_mm);
+        let back = scale * DVec2::new(cos, -sin);
         let own = self.points_mm.iter();
         own.map(|point| back.rotate(DVec2::from(*point) - base).into())
             .collect()

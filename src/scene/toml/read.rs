@@ -18,9 +18,9 @@ use crate::scene::deviations;
 use crate::scene::error::{DECIMAL_POINTS, SceneError, SceneFault, has_tight_comma};
 use crate::scene::limits::digits;
 use crate::scene::parameter::Parameter;
-use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY, POINTS_KEY};
+use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY};
 use crate::scene::{Scene, SceneBuilder};
-use crate::traced::{MOST_DEGREE, TracedError, TracedShape};
+use crate::traced::{MOST_DEGREE, TracedShape};
 
 use super::rows::{GivenPairs, PairKind, PairList, PairsCsv};
 use super::tables::SceneTable;
@@ -132,11 +132,7 @@ fn build(
     if let Some(points) = rest {
         let points = pairs(points, folder, files)?;
         let degree = rest_degree.map(degree).transpose()?;
-        let whole = |why: TracedError| SceneFault::new(POINTS_KEY, why.must);
-        let traced = TracedShape::fit(points, degree).map_err(|why| match why.point {
-            Some(point) => SceneFault::new(format!("{POINTS_KEY}[{point}]"), why.must),
-            None => whole(why),
-        })?;
+        let traced = TracedShape::fit(points, degree).map_err(SceneFault::of_traced)?;
         let traced = match rest_curvature {
             None => traced,
             Some(own) => traced
