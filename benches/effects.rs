@@ -94,6 +94,7 @@ fn name(effects: Effects) -> String {
         (effects.profile, "profile"),
         (effects.curvature, "parabola"),
         (effects.spiral, "euler spiral"),
+        (effects.polynomial, "traced shape"),
         (effects.gradient, "modulus gradient"),
     ];
     let on: Vec<&str> = names

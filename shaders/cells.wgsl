@@ -25,7 +25,13 @@ fn solve(push: real, steps: u32) -> Cell {
     let load = base_point[CONTACT].y;
     let radius = base_point[CONTACT].z;
     let s = base_point[CONTACT].w;
-    let rod = Rod(base_point[ROD].x, base_point[ROD].y, base_point[ROD].zw);
+    let rod = Rod(
+        base_point[ROD].x,
+        base_point[ROD].y,
+        base_point[ROD].zw,
+        base_point[CURVATURE_TERMS],
+        base_point[CURVATURE_TERMS + 1u],
+    );
     let to_pole = base_point[POSITIONS].xy;
     let position = base_point[POSITIONS].zw;
     let distance = length(to_pole);
@@ -42,7 +48,7 @@ fn solve(push: real, steps: u32) -> Cell {
     let force = radius * radius * Both(load, by.y * (1.0 + squared) + load * squared);
     let ds = radius * by.x * expm1_over_small(widening);
     var rest_at_contact = real(0.0);
-    if CURVATURE || SPIRAL {
+    if CURVATURE || SPIRAL || POLYNOMIAL {
         rest_at_contact = rest_apart(rod, base_point[REST].xy, s, ds);
     }
     let trip = Path(

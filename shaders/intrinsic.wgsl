@@ -1,11 +1,80 @@
 // Shape at rest and equation of motion at one stage of a step, for a base point and a cell side by side. The twin of `intrinsic.rs` and
 // `material.rs` in `crates/mechanics/src/shooting/`, where the equations are.
 
+// Coefficients of the rotation over the arclength from `s` on, along a polynomial curvature: repeated synthetic division, integrated.
+fn polynomial_terms(rod: Rod, s: real) -> array<real, REST_TERMS> {
+    let x = s - 0.5;
+    var t: array<real, REST_TERMS>;
+    let g = rod.high.z;
+    var f = rod.high.y;
+    var e = rod.high.x;
+    var d = rod.low.w;
+    var c = rod.low.z;
+    var b = rod.low.y;
+    var a = rod.low.x;
+    f += g * x;
+    e += f * x;
+    d += e * x;
+    c += d * x;
+    b += c * x;
+    a += b * x;
+    t[0] = a;
+    f += g * x;
+    e += f * x;
+    d += e * x;
+    c += d * x;
+    b += c * x;
+    t[1] = b * real(1.0 / 2.0);
+    f += g * x;
+    e += f * x;
+    d += e * x;
+    c += d * x;
+    t[2] = c * real(1.0 / 3.0);
+    f += g * x;
+    e += f * x;
+    d += e * x;
+    t[3] = d * real(1.0 / 4.0);
+    f += g * x;
+    e += f * x;
+    t[4] = e * real(1.0 / 5.0);
+    f += g * x;
+    t[5] = f * real(1.0 / 6.0);
+    t[6] = g * real(1.0 / 7.0);
+    return t;
+}
+
+// Rotation along a polynomial curvature from arclength `s` to `s + ds`: the divided difference of the antiderivative, times `ds`.
+fn polynomial_apart(rod: Rod, s: real, ds: real) -> real {
+    let from = s - 0.5;
+    let to = from + ds;
+    // Partial values of the antiderivative at `from`, from the highest power on, and their divided differences.
+    var value = rod.high.z * real(1.0 / 7.0);
+    var divided = value;
+    value = value * from + rod.high.y * real(1.0 / 6.0);
+    divided = divided * to + value;
+    value = value * from + rod.high.x * real(1.0 / 5.0);
+    divided = divided * to + value;
+    value = value * from + rod.low.w * real(1.0 / 4.0);
+    divided = divided * to + value;
+    value = value * from + rod.low.z * real(1.0 / 3.0);
+    divided = divided * to + value;
+    value = value * from + rod.low.y * real(1.0 / 2.0);
+    divided = divided * to + value;
+    value = value * from + rod.low.x;
+    divided = divided * to + value;
+    return ds * divided;
+}
+
 // Rotation of the whisker at rest from the start of a step to a stage.
 fn rest_turn(path: Path, step: Step, stage: Stage) -> real {
     if SPIRAL {
         let along = -step.radius * stage.along;
         return along * (path.rod.spiral[0] + path.rod.spiral[1] * (step.arclength + 0.5 * along));
+    }
+    if POLYNOMIAL {
+        let p = step.rest_terms;
+        let along = -step.radius * stage.along;
+        return along * (p[0] + along * (p[1] + along * (p[2] + along * (p[3] + along * (p[4] + along * (p[5] + along * p[6]))))));
     }
     // A loop would keep the terms in memory.
     let t = step.rest_terms;
@@ -18,6 +87,9 @@ fn rest_turn(path: Path, step: Step, stage: Stage) -> real {
 fn rest_apart(rod: Rod, rest: vec2<real>, s: real, ds: real) -> real {
     if SPIRAL {
         return ds * (rod.spiral[0] + rod.spiral[1] * (s + 0.5 * ds));
+    }
+    if POLYNOMIAL {
+        return polynomial_apart(rod, s, ds);
     }
     let x = 2.0 * rod.bend * rest.x * rest.x * ds;
     let sin = rest.y;
@@ -42,7 +114,7 @@ fn pose_at(path: Path, step: Step, stage: Stage, chi: Both) -> Pose {
     let bent = step.bent + bend;
     var turn = bend.x;
     var apart = bent.y;
-    if CURVATURE || SPIRAL {
+    if CURVATURE || SPIRAL || POLYNOMIAL {
         let at_rest = rest_turn(path, step, stage);
         let left = step.left - stage.part;
         let radius = step.radius * stage.grown.x;

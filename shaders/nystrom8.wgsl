@@ -28,6 +28,9 @@ fn integrate(path: Path, first: u32, count: u32) -> Apart {
         if CURVATURE {
             rest_terms = rest_terms_at(rest.y);
         }
+        if POLYNOMIAL {
+            rest_terms = polynomial_terms(path.rod, start.place.y);
+        }
         let left = 1.0 - real(k) / steps;
         let wider = expm1_small(path.widening * left);
         let softer = expm1_small(-3.0 * path.widening * left);

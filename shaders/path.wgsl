@@ -5,6 +5,9 @@ struct Rod {
     bend: real,
     // [k0, k1] of an Euler spiral
     spiral: vec2<real>,
+    // coefficients of a polynomial curvature in s - 1/2: of the powers 0 to 3, and 4 to 6
+    low: vec4<real>,
+    high: vec4<real>,
 }
 
 // Start of a step of the base point's trajectory.
@@ -56,7 +59,7 @@ struct Step {
     reach: Both,
     // h^2 m''/m
     potential: Both,
-    // series of the resting whisker's tangent along the step: see `Bent` in Rust
+    // series of the resting whisker's tangent along the step: see `Bent` and `Polynomial` in Rust
     rest_rate: real,
     rest_terms: array<real, REST_TERMS>,
 }

@@ -66,6 +66,7 @@ pub mod sensitivity;
 pub mod store;
 pub mod texture;
 pub mod trace;
+pub mod traced;
 pub mod uncertainty;
 pub mod whisk;
 
@@ -93,6 +94,7 @@ pub mod friction;
 mod front;
 #[doc(hidden)]
 pub mod input;
+mod least_squares;
 #[doc(hidden)]
 pub mod map;
 mod newton;

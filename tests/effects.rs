@@ -34,9 +34,10 @@ fn conditions(effects: Effects, count: usize) -> Vec<InitialCondition<'static>> 
 fn plainly(condition: &InitialCondition, steps: u32) -> DVec2 {
     let InitialCondition { rod, tau, load } = condition;
     let force = load * rod.radius(*tau).powi(2);
-    let at_rest = |s: f64| match rod.spiral {
-        Some([k0, k1]) => k0 + k1 * s,
-        None => 0.0,
+    let at_rest = |s: f64| match (&rod.polynomial, rod.spiral) {
+        (Some(curvature), _) => curvature.at(s),
+        (None, Some([k0, k1])) => k0 + k1 * s,
+        (None, None) => 0.0,
     };
     let slope = |s: f64, [theta, x, _]: [f64; 3]| {
         let _ = theta;

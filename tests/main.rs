@@ -30,6 +30,7 @@ mod sensitivity;
 mod shaders;
 mod store;
 mod ties;
+mod traced;
 mod traces;
 mod uncertainty;
 mod variations;

@@ -41,6 +41,7 @@ fn whisker(
             vertex_mm,
         }),
         euler_spiral: None,
+        traced: None,
         profile: None,
         profile_scale: 1.0,
         modulus_tip_to_base: 1.0,

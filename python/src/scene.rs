@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use whiskmap::scene::{AxisScale, AxisValues, Deviations, Parameter, Scene};
+use whiskmap::traced::TracedShape;
 
 /// Name of the standard deviation of measured radii.
 const PROFILE_RADIUS: &str = "profile_radius_um";
@@ -22,11 +23,15 @@ pub enum AxisTuple {
     List(Vec<f64>),
 }
 
-/// Description of a scene: title, numbers by name, measured rows, axes by name, standard deviations by name, and name.
+/// Points of a traced shape, `[point][x, y]` in millimetres, and its degree; `None` if cross-validation chooses the degree.
+type Traced = (Vec<[f64; 2]>, Option<usize>);
+
+/// Description of a scene: title, numbers by name, measured rows, traced points, axes by name, standard deviations by name, and name.
 type Description = (
     String,
     BTreeMap<String, f64>,
     Option<Vec<[f64; 2]>>,
+    Option<Traced>,
     Vec<(String, AxisTuple)>,
     Option<BTreeMap<String, f64>>,
     Option<String>,
@@ -53,13 +58,17 @@ impl CheckedScene {
     /// Checks the description of a scene.
     #[staticmethod]
     fn build(py: Python<'_>, description: Description) -> PyResult<Self> {
-        let (title, numbers, rows, axes, deviations, name) = description;
+        let (title, numbers, rows, traced, axes, deviations, name) = description;
         let mut builder = Scene::builder(title);
         for (name, value) in numbers {
             builder = builder.set(parameter("whisker", &name)?, value);
         }
         if let Some(rows) = rows {
             builder = builder.profile(rows);
+        }
+        if let Some((points, degree)) = traced {
+            let shape = py.detach(|| TracedShape::fit(points, degree));
+            builder = builder.traced(shape.map_err(|why| of_scene(py, &why.into()))?);
         }
         for (name, values) in axes {
             let values = axis_values(&name, values)?;
@@ -90,6 +99,10 @@ impl CheckedScene {
             self.0.title.clone(),
             given.collect(),
             self.0.measured_rows().map(<[_]>::to_vec),
+            self.0.traced().map(|own| {
+                let degree = (!own.is_degree_chosen).then_some(own.degree);
+                (own.points_mm.clone(), degree)
+            }),
             axes.map(|(name, values)| (name.to_owned(), axis_tuple(values)))
                 .collect(),
             self.0.uncertainty.as_ref().map(deviations_by_name),

@@ -40,7 +40,7 @@ def test_values_make_the_scene_of_the_file(cone):
 
 
 def test_every_parameter_of_rust_is_an_argument():
-    own = {field.name for field in fields(wm.Whisker)} - {"profile"}
+    own = {field.name for field in fields(wm.Whisker)} - {"profile", "rest_points", "rest_degree"}
     pole = {"pole_radius_mm", "friction"}
     assert own | pole == {name for name, *_ in _whiskmap.parameters()}
     assert "curvature_per_mm" in _PARAMETERS
@@ -56,6 +56,24 @@ def test_replace_sets_sweeps_and_removes(cone):
     measured = wm.Scene.read(ROOT / "scenes/measured.toml")
     rows = np.array(measured.whisker.profile)
     assert measured.replace(profile=rows) == measured
+
+
+def test_traced_points_are_arrays():
+    traced = wm.Scene.read(ROOT / "scenes/traced.toml")
+    points = np.array(traced.whisker.rest_points)
+    assert points.shape == (90, 2)
+    own = wm.Whisker(base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, rest_points=points)
+    built = wm.Scene(whisker=own, pole=traced.pole, grid=traced.grid, title=traced.title, name=traced.name)
+    assert built == traced and built.whisker.length_mm == traced.whisker.length_mm
+    assert traced.replace(rest_degree=1) != traced == traced.replace(rest_points=points)
+    assert traced.replace(rest_points=None).whisker.rest_points is None
+    with pytest.raises(wm.SceneError, match="must not fold back") as refused:
+        traced.replace(rest_points=points[::-1][np.r_[:50, 40:90]])
+    assert refused.value.key.startswith("whisker.rest.points[")
+    with pytest.raises(ValueError, match="must have 2 numbers"):
+        traced.replace(rest_points=[[1, 2, 3]])
+    with pytest.raises(ValueError, match="must be left out without rest_points"):
+        traced.replace(rest_points=None, rest_degree=2)
 
 
 def test_refused_scenes_name_key_value_and_what_is_allowed(cone):

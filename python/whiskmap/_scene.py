@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 _AXES = {name: axis for name, _, axis, _ in parameters() if axis is not None}
 _TIPS = ("taper", "tip_radius_um")
+_PAIRS = {"profile": "rows of arclength and radius", "rest_points": "points of x and y"}
 _PARAMETERS = {axis: name for name, axis in _AXES.items()} | {name: name for name, *_ in parameters()}
 
 
@@ -61,8 +62,8 @@ class Whisker(_Parts):
 
     Parameters
     ----------
-    length_mm : float
-        Arclength from base to tip.
+    length_mm : float, optional
+        Arclength from base to tip; needed without `rest_points`. With them, it is that of the fitted curve if left out.
     youngs_modulus_gpa : float
         Young's modulus at the base. It scales forces, moments and energies, never an angle.
     base_radius_um, tip_radius_um : float, optional
@@ -77,12 +78,17 @@ class Whisker(_Parts):
         Resting shape ``y = A (x - vertex)^2``; straight if left out.
     spiral_per_mm, spiral_per_mm2 : float, optional
         Resting shape as an Euler spiral: curvature at the base, and its growth along the whisker.
+    rest_points : array_like, optional
+        Resting shape as points in mm that were traced from base to tip, of shape (points, 2): a curve of polynomial curvature is fitted.
+        It bends toward the CF side where it turns counterclockwise. A whisker of another length has the same shape at another scale.
+    rest_degree : int, optional
+        Degree of the curvature, 0 to 6; cross-validation chooses it if left out.
     modulus_tip_to_base, arc_stretch : float, optional
         Modulus at the tip over that at the base; real arclength over that in the plane of contact. Both are 1 if left out.
     """
 
-    length_mm: float
     youngs_modulus_gpa: float
+    length_mm: float | None = None
     base_radius_um: float | None = None
     tip_radius_um: float | None = None
     taper: float | None = None
@@ -93,14 +99,18 @@ class Whisker(_Parts):
     vertex_mm: float | None = None
     spiral_per_mm: float | None = None
     spiral_per_mm2: float | None = None
+    rest_points: Sequence[Sequence[float]] | NDArray[Any] | None = None
+    rest_degree: int | None = None
     modulus_tip_to_base: float | None = None
     arc_stretch: float | None = None
 
     def __post_init__(self) -> None:
         for own in fields(self):
             value = getattr(self, own.name)
-            if own.name == "profile":
-                _set(self, "profile", None if value is None else tuple(tuple(row) for row in _rows(value)))
+            if own.name in _PAIRS:
+                _set(self, own.name, None if value is None else tuple(tuple(row) for row in _rows(own.name, value)))
+            elif own.name == "rest_degree":
+                _set(self, own.name, _degree(value))
             elif value is not None:
                 _set(self, own.name, number(own.name, value))
 
@@ -190,10 +200,10 @@ class Scene:
         for argument, value, kind in (("whisker", whisker, Whisker), ("grid", grid, Grid), ("pole", pole, Pole)):
             if not isinstance(value, kind):
                 raise TypeError(f"{argument} = {value!r}: must be a {kind.__name__}")
-        given = {own.name: getattr(whisker, own.name) for own in fields(whisker) if own.name != "profile"}
+        given = {own.name: getattr(whisker, own.name) for own in fields(whisker) if own.name not in (*_PAIRS, "rest_degree")}
         given |= {"pole_radius_mm": pole.radius_mm or None, "friction": pole.friction or None}
         axes = {"push_angle_deg": grid.push_angle_deg, "distance_mm": grid.distance_mm, **grid.sweep}
-        self._checked = _build(title, given, whisker.profile, axes, uncertainty, name)
+        self._checked = _build(title, given, whisker.profile, (whisker.rest_points, whisker.rest_degree), axes, uncertainty, name)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Scene:
@@ -227,12 +237,13 @@ class Scene:
         **changes
             A number sets a parameter, such as ``taper=0.5`` or ``pole_radius_mm=1``; it ends a sweep of it. A `Range`, a list or
             an array makes the parameter a sweep axis. None leaves a value out. Also `push_angle_deg`, `distance_mm`, `profile`,
-            `title`, `name` and `uncertainty`.
+            `rest_points`, `rest_degree`, `title`, `name` and `uncertainty`.
         """
-        title, given, rows, listed, uncertainty, name = self._checked.description()
+        title, given, rows, traced, listed, uncertainty, name = self._checked.description()
         axes: dict[str, Any] = dict(listed)
         changed: dict[str, Any] = dict(given)
         texts: dict[str, Any] = {"title": title, "name": name, "uncertainty": uncertainty, "profile": rows}
+        texts["rest_points"], texts["rest_degree"] = traced or (None, None)
         for key, value in changes.items():
             if key in texts:
                 texts[key] = value
@@ -242,9 +253,10 @@ class Scene:
                 _replace(_PARAMETERS[key], value, changed, axes)
             else:
                 raise TypeError(f"replace() got an unexpected keyword argument {key!r}{_resembling(key)}")
-        profile = texts["profile"]
-        rows = None if profile is None else _rows(profile)
-        return Scene._of(_build(texts["title"], changed, rows, axes, texts["uncertainty"], texts["name"]))
+        rows, points = (None if texts[own] is None else _rows(own, texts[own]) for own in _PAIRS)
+        is_dropped = points is None and "rest_degree" not in changes
+        rest = (points, None if is_dropped else _degree(texts["rest_degree"]))
+        return Scene._of(_build(texts["title"], changed, rows, rest, axes, texts["uncertainty"], texts["name"]))
 
     @property
     def title(self) -> str:
@@ -254,14 +266,15 @@ class Scene:
     @property
     def name(self) -> str:
         """Stem of the names of files that are written."""
-        return self._checked.description()[5] or ""
+        return self._checked.description()[6] or ""
 
     @property
     def whisker(self) -> Whisker:
         """The whisker; a taper is given as the radius at the tip."""
-        _, given, rows, *_ = self._checked.description()
+        _, given, rows, traced, *_ = self._checked.description()
+        points, degree = traced or (None, None)
         own = {name: value for name, value in given.items() if name not in ("pole_radius_mm", "friction")}
-        return Whisker(**own, profile=rows)
+        return Whisker(**own, profile=rows, rest_points=points, rest_degree=degree)
 
     @property
     def pole(self) -> Pole:
@@ -272,13 +285,13 @@ class Scene:
     @property
     def grid(self) -> Grid:
         """The axes as they are given; `coords` has their values."""
-        axes = {name: _range(values) for name, values in self._checked.description()[3]}
+        axes = {name: _range(values) for name, values in self._checked.description()[4]}
         return Grid(push_angle_deg=axes.pop("push_angle_deg"), distance_mm=axes.pop("distance_mm"), sweep=axes)
 
     @property
     def uncertainty(self) -> dict[str, float] | None:
         """Standard deviations by name, or None."""
-        return self._checked.description()[4]
+        return self._checked.description()[5]
 
     @property
     def coords(self) -> dict[str, NDArray[np.float64]]:
@@ -312,15 +325,24 @@ def _set(own: object, name: str, value: object) -> None:
     object.__setattr__(own, name, value)
 
 
-def _rows(profile: Any) -> list[list[float]]:
-    """The measured rows as lists of two numbers."""
-    if isinstance(profile, (str, bytes)) or not isinstance(profile, Iterable):
-        raise TypeError(f"profile = {profile!r}: must be rows of arclength and radius")
-    rows = [numbers(f"profile[{index}]", row) for index, row in enumerate(profile)]
+def _rows(name: str, pairs: Any) -> list[list[float]]:
+    """Measured rows or traced points as lists of two numbers."""
+    if isinstance(pairs, (str, bytes)) or not isinstance(pairs, Iterable):
+        raise TypeError(f"{name} = {pairs!r}: must be {_PAIRS[name]}")
+    rows = [numbers(f"{name}[{index}]", row) for index, row in enumerate(pairs)]
     for index, row in enumerate(rows):
         if len(row) != 2:
-            raise ValueError(f"profile[{index}]: must have 2 numbers, has {len(row)}")
+            raise ValueError(f"{name}[{index}]: must have 2 numbers, has {len(row)}")
     return rows
+
+
+def _degree(value: Any) -> int | None:
+    """The degree of a traced curvature as a whole number that is not negative."""
+    if value is None:
+        return None
+    if isinstance(value, bool) or not hasattr(value, "__index__") or value.__index__() < 0:
+        raise TypeError(f"rest_degree = {value!r}: must be a whole number from 0 on")
+    return int(value.__index__())
 
 
 def _axis(name: str, values: Any) -> Range | list[float]:
@@ -344,6 +366,7 @@ def _build(
     title: str,
     given: Mapping[str, float | None],
     rows: Any,
+    rest: tuple[Any, int | None],
     axes: Mapping[str, Any],
     uncertainty: Mapping[str, float] | None,
     name: str | None,
@@ -362,7 +385,11 @@ def _build(
     ]
     present = {own: value for own, value in given.items() if value is not None}
     profile = None if rows is None else [list(row) for row in rows]
-    return CheckedScene.build((title, present, profile, listed, deviations, name))
+    points, degree = rest
+    if points is None and degree is not None:
+        raise ValueError(f"rest_degree = {degree}: must be left out without rest_points")
+    traced = None if points is None else ([list(point) for point in points], degree)
+    return CheckedScene.build((title, present, profile, traced, listed, deviations, name))
 
 
 def _replace(parameter: str, value: Any, given: dict[str, Any], axes: dict[str, Any]) -> None:

@@ -18,6 +18,7 @@ _Description = tuple[
     str,
     dict[str, float],
     list[list[float]] | None,
+    tuple[list[list[float]], int | None] | None,
     list[tuple[str, Any]],
     dict[str, float] | None,
     str | None,

@@ -6,8 +6,9 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::paper::TableRows;
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Scene, digits, rounded};
 use whiskmap::store::{FileId, Output, TableFile, TemporaryFiles};
+use whiskmap::traced::TracedShape;
 
 /// Path that stands for standard input or output.
 pub const STDOUT: &str = "-";
@@ -40,8 +41,8 @@ impl Files {
     pub fn scene(&mut self, path: &Path) -> Result<Scene, Failure> {
         let scene = read_scene(path)?;
         self.input(path);
-        if let Some(rows) = scene.rows_file() {
-            self.input(rows);
+        for file in scene.csv_files() {
+            self.input(file);
         }
         Ok(scene)
     }
@@ -128,13 +129,46 @@ impl Files {
 /// Reads a scene; prints notes about unused columns and warnings about values that look like another unit.
 pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let scene = Scene::read(path)?;
-    if let Some(note) = scene.note() {
+    for note in scene.notes() {
         message(&format!("note: {note}"));
+    }
+    if let Some(traced) = scene.traced() {
+        let length_mm = scene.whisker.length_mm;
+        message(&format!(
+            "note: whisker.rest: {}",
+            fitted(traced, length_mm)
+        ));
     }
     for warning in scene.warnings() {
         message(&format!("warning: {warning}"));
     }
     Ok(scene)
+}
+
+/// Describes the fit to traced points of a whisker with this length.
+fn fitted(traced: &TracedShape, length_mm: f64) -> String {
+    let TracedShape {
+        degree,
+        rms_mm,
+        points_mm,
+        ..
+    } = traced;
+    let chosen = if traced.is_degree_chosen {
+        ", chosen by cross-validation"
+    } else {
+        ""
+    };
+    let own = rounded(traced.length_mm, 6);
+    let scaled = if length_mm == traced.length_mm {
+        String::new()
+    } else {
+        format!(", at the scale of length_mm = {}", digits(length_mm))
+    };
+    format!(
+        "curvature of degree {degree}{chosen}; {} points, rms distance {} mm, length {own} mm{scaled}",
+        points_mm.len(),
+        digits(rounded(*rms_mm, 3))
+    )
 }
 
 const FOLDER_ADVICE: &str = "give a folder that can be written";

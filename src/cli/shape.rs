@@ -8,7 +8,7 @@ use super::pole::{self, PoleArgs, refuse, title};
 use clap::{Args, ValueEnum};
 use std::io::{self, Write};
 use std::path::PathBuf;
-use whiskmap::render::{DrawnShape, Ink, Line, Stroke, shapes};
+use whiskmap::render::{Dot, DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::rod::Side;
 use whiskmap::scene::digits;
 use whiskmap::trace::{Branch, NoState, ShapePoint, WhiskerShape};
@@ -111,6 +111,14 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         let at_rest = WhiskerShape::at_rest(&branch, count);
         let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid).named("first touch");
         plot.lines.insert(0, at_rest);
+        let traced = scene.traced().into_iter();
+        let points = traced.flat_map(|own| own.points_at_rest_mm(whisker.length_mm));
+        plot.dots.extend(points.map(|at| Dot {
+            at,
+            ink: Ink::Grey,
+            open: true,
+            name: Some("traced points".to_owned()),
+        }));
         plot
     })?;
     if let Some(path) = state_file {

@@ -2,9 +2,11 @@
 
 use super::FitError;
 use super::covariance::FAINT;
-use super::least_squares::minimise;
 use super::misfit::Misfit;
-use super::svd::{dot, norm};
+use crate::least_squares::{dot, minimise, norm};
+
+/// Message of a fit for which no Jacobian can be computed.
+pub(super) const NO_JACOBIAN: &str = "a point has no derivative by a parameter: it is out of reach, at the reach, or where slip-off turns into pull-off";
 
 /// Relative change of the misfit, and of the parameters, below which the iteration ends.
 const TOLERANCE: f64 = 1e-12;
@@ -65,7 +67,7 @@ fn search(misfit: &Misfit<'_>, start: &[f64]) -> Result<(Vec<f64>, f64), FitErro
         };
         // The columns of parameters that are beyond a limit, or would go there, are 0.
         let jacobian = |x: &[f64], residuals: &[f64]| {
-            let mut columns = misfit.jacobian(&inside(x))?;
+            let mut columns = misfit.jacobian(&inside(x)).ok_or(NO_JACOBIAN)?;
             clear_faint(&mut columns);
             for ((column, [least, most]), x) in columns.iter_mut().zip(&ranges).zip(x) {
                 let growth = dot(column, residuals);
@@ -77,7 +79,7 @@ fn search(misfit: &Misfit<'_>, start: &[f64]) -> Result<(Vec<f64>, f64), FitErro
                     column.fill(0.0);
                 }
             }
-            Some(columns)
+            Ok(columns)
         };
         let (end, sum) = minimise(residuals, jacobian, best.clone(), TOLERANCE)
             .map_err(FitError::NotConverged)?;

@@ -1,6 +1,6 @@
 //! The covariance of parameters, from the Jacobian of the residuals.
 
-use super::svd::{Svd, norm};
+use crate::least_squares::{Svd, norm};
 
 /// Least singular value over the largest, and least column over the longest, that counts: the steps of least squares and the measured
 /// values are not more exact.

@@ -1,26 +1,24 @@
 //! Fits of parameters of a scene to measured detachments, by nonlinear least squares.
 //!
 //! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and Marquardt's method
-//! (`least_squares`) minimises it inside the limits of the scene (`bounded`), with exact derivatives. Angles are continuous where slip-off turns into pull-off,
-//! but their derivatives are not: the trust region limits steps there.
+//! minimises it inside the limits of the scene (`bounded`), with exact derivatives. Angles are continuous where slip-off turns into
+//! pull-off, but their derivatives are not: the trust region limits steps there.
 
 mod bounded;
 mod covariance;
-mod least_squares;
 mod misfit;
 mod start;
-mod svd;
 mod verdict;
 
 pub use start::MovedStart;
 pub use verdict::{LikelyCause, NotAFit};
 
 use crate::input::{CsvError, each_once};
+use crate::least_squares::dot;
 use crate::measured::{Comparison, MeasuredPoints};
 use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, digits};
-use bounded::best;
+use bounded::{NO_JACOBIAN, best};
 use covariance::Covariance;
-use least_squares::NO_JACOBIAN;
 use misfit::Misfit;
 use start::within_reach;
 
@@ -151,7 +149,7 @@ pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result
         jacobian[i].fill(0.0);
     }
     let covariance = Covariance::new(&jacobian);
-    let chi_square = svd::dot(&here, &here);
+    let chi_square = dot(&here, &here);
     let degrees_of_freedom = used.points.len() - covariance.rank;
     // Without standard deviations, the residuals give the variance of the points.
     let variance = match (used.have_deviations, degrees_of_freedom) {

@@ -55,6 +55,7 @@ pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm:
             None
         },
         euler_spiral: None,
+        traced: None,
         profile: None,
         profile_scale: 1.0,
         modulus_tip_to_base: 1.0,

@@ -56,6 +56,13 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         || "euler_spiral is 0 or left out".to_owned(),
         |own| format!("per_mm {}, per_mm2 {}", own.per_mm, own.per_mm2),
     );
+    let traced = scene.traced().map_or_else(
+        || "no whisker.rest".to_owned(),
+        |own| {
+            let (degree, count, rms) = (own.degree, own.points_mm.len(), own.rms_mm);
+            format!("degree {degree}, rms {rms:.1e} mm, {count} points")
+        },
+    );
     let ratio = whisker.modulus_tip_to_base;
     let gradient = number(Parameter::ModulusTipToBase, "tip_to_base", ratio, 1.0);
     let radius = number(Parameter::PoleRadiusMm, "radius_mm", pole.radius_mm, 0.0);
@@ -82,6 +89,7 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         effect("measured radii", kernels.profile, Cost::Kernel, measured),
         effect("curvature", kernels.curvature, Cost::Kernel, parabola),
         effect("euler spiral", kernels.spiral, Cost::Kernel, spiral),
+        effect("traced shape", kernels.polynomial, Cost::Kernel, traced),
         effect("modulus gradient", kernels.gradient, Cost::Kernel, gradient),
         effect("pole radius", is_disc, Cost::Start, radius),
         effect("friction", scene.has_friction(), Cost::Start, friction),

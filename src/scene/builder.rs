@@ -4,6 +4,8 @@ use super::axis::AxisValues;
 use super::grid::SweepPlace;
 use super::parameter::Parameter;
 use super::surface::Surface;
+use crate::traced::TracedShape;
+use std::sync::Arc;
 
 /// Standard deviations of the numbers of a scene. The numbers vary independently of each other.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -79,6 +81,8 @@ pub struct SceneBuilder {
     pub(super) numbers: Numbers,
     /// Measured rows of arclength in millimetres and radius in micrometres, `[row][arclength, radius]`; `None` without a profile.
     pub(super) rows: Option<Vec<[f64; 2]>>,
+    /// Shape at rest through traced points; `None` without them.
+    pub(super) traced: Option<Arc<TracedShape>>,
     pub(super) push_angle_deg: AxisValues,
     pub(super) distance_mm: AxisValues,
     pub(super) sweep: Vec<(Parameter, AxisValues)>,
@@ -110,6 +114,17 @@ impl SceneBuilder {
     #[must_use]
     pub fn profile(mut self, rows: impl Into<Vec<[f64; 2]>>) -> Self {
         self.rows = Some(rows.into());
+        self
+    }
+
+    /// Sets a traced shape at rest instead of a parabola or a spiral. If no length is set, the whisker has the length of the curve;
+    /// otherwise it has the shape at its own scale.
+    #[must_use]
+    pub fn traced(mut self, shape: TracedShape) -> Self {
+        if self.numbers.get(Parameter::LengthMm).is_none() {
+            self.numbers.set(Parameter::LengthMm, shape.length_mm);
+        }
+        self.traced = Some(Arc::new(shape));
         self
     }
 

@@ -16,6 +16,7 @@ use super::sweep;
 use super::toml::SceneText;
 use super::warnings::{LENGTH_MM, LENGTH_UNITS, MODULUS_GPA, MODULUS_UNITS, other_unit};
 use super::whisker::{Curvature, Pole, Whisker};
+use crate::traced::TracedShape;
 
 /// Most cells of a scene: more than any disk holds, as a stored cell takes about 20 bytes.
 const MOST_CELLS: u128 = 1 << 44;
@@ -34,7 +35,7 @@ impl SceneBuilder {
         let grid = grid(self, lengths_mm)?;
         sweep::refuse_at_odds(self)?;
         let at = |numbers: &Numbers| {
-            let whisker = whisker(numbers, self.rows.as_deref())?;
+            let whisker = whisker(numbers, self.rows.as_deref(), self.traced.as_deref())?;
             let pole = pole(numbers, &whisker, &grid)?;
             Ok((whisker, pole))
         };
@@ -69,7 +70,11 @@ fn check_title(title: &str) -> Result<(), SceneFault> {
     Err(SceneFault::new("title", must))
 }
 
-fn whisker(numbers: &Numbers, rows: Option<&[[f64; 2]]>) -> Result<Whisker, SceneFault> {
+fn whisker(
+    numbers: &Numbers,
+    rows: Option<&[[f64; 2]]>,
+    traced: Option<&TracedShape>,
+) -> Result<Whisker, SceneFault> {
     let check = |limits: NumberLimits, parameter: Parameter| {
         let absent = || SceneFault::new(parameter.key(), "is left out");
         limits.check(parameter.key(), numbers.get(parameter).ok_or_else(absent)?)
@@ -87,6 +92,8 @@ fn whisker(numbers: &Numbers, rows: Option<&[[f64; 2]]>) -> Result<Whisker, Scen
     let modulus = Parameter::YoungsModulusGpa;
     let youngs_modulus_gpa = check(limits(modulus).remarks(unit), modulus)?;
     let (curvature, euler_spiral) = shape::shape(numbers, length_mm)?;
+    let traced = traced.map(|own| shape::traced(numbers, &own.curvature));
+    let traced = traced.transpose()?;
     let ratio = Parameter::ModulusTipToBase;
     let modulus_tip_to_base = check_or_one(limits(ratio), ratio)?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
@@ -117,6 +124,7 @@ fn whisker(numbers: &Numbers, rows: Option<&[[f64; 2]]>) -> Result<Whisker, Scen
         youngs_modulus_gpa,
         curvature,
         euler_spiral,
+        traced,
         profile: radii.profile,
         profile_scale: numbers.get(Parameter::ProfileScale).unwrap_or(1.0),
         modulus_tip_to_base,

@@ -1,7 +1,7 @@
 //! Scenes that have passed every check.
 
 use std::ops::Deref;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::builder::SceneBuilder;
@@ -10,6 +10,7 @@ use super::error::{SceneError, SceneFault};
 use super::limits::limits;
 use super::parameter::Parameter;
 use super::toml::SceneText;
+use crate::traced::TracedShape;
 
 /// A scene that has passed every check. It dereferences to its [`SceneData`], which only a new scene changes.
 ///
@@ -28,8 +29,8 @@ use super::toml::SceneText;
 pub struct Scene {
     pub(super) data: SceneData,
     pub(super) builder: Arc<SceneBuilder>,
-    pub(super) rows_file: Option<PathBuf>,
-    pub(super) note: Option<String>,
+    pub(super) csv_files: Vec<PathBuf>,
+    pub(super) notes: Vec<String>,
 }
 
 impl Deref for Scene {
@@ -63,8 +64,8 @@ impl SceneBuilder {
         Ok(Scene {
             data,
             builder,
-            rows_file: None,
-            note: None,
+            csv_files: Vec::new(),
+            notes: Vec::new(),
         })
     }
 }
@@ -92,16 +93,22 @@ impl Scene {
         self.builder.rows.as_deref()
     }
 
-    /// Returns the path of the CSV file from which the radii were read; `None` if the scene names none.
+    /// Returns the traced shape at rest with the fit to its points; `None` without points.
     #[must_use]
-    pub fn rows_file(&self) -> Option<&Path> {
-        self.rows_file.as_deref()
+    pub fn traced(&self) -> Option<&TracedShape> {
+        self.builder.traced.as_deref()
     }
 
-    /// Returns the message that names unused columns of the CSV file of the radii; `None` without such columns.
+    /// Returns the paths of the CSV files that the scene names: of radii and of traced points.
     #[must_use]
-    pub fn note(&self) -> Option<&str> {
-        self.note.as_deref()
+    pub fn csv_files(&self) -> &[PathBuf] {
+        &self.csv_files
+    }
+
+    /// Returns the messages that name unused columns of the CSV files: `[file]`.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// Returns the scene of whisker `index` of the sweep, in the order of [`SceneData::whiskers`], without sweep axes. Indices are taken

@@ -1,4 +1,4 @@
-//! The whisker's shape at rest: a parabola or an Euler spiral along which the distance from the base grows.
+//! The whisker's shape at rest: a parabola, an Euler spiral or a traced shape along which the distance from the base grows.
 
 use std::f64::consts::SQRT_2;
 
@@ -9,6 +9,19 @@ use super::error::SceneFault;
 use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
 use super::whisker::{Curvature, EulerSpiral};
+use crate::rod::CurvaturePolynomial;
+
+/// Key of the points of a traced shape in a scene file.
+pub(super) const POINTS_KEY: &str = "whisker.rest.points";
+
+/// Key of the degree of a traced curvature in a scene file.
+pub(super) const DEGREE_KEY: &str = "whisker.rest.degree";
+
+/// Key of the fitted coefficients of a traced curvature in a scene file.
+pub(super) const CURVATURE_KEY: &str = "whisker.rest.curvature";
+
+/// Reason why a parabola or a spiral is refused beside a traced shape.
+pub(super) const IS_TRACED: &str = "must be left out: the shape at rest is that of whisker.rest";
 
 /// Largest curvature of a spiral, in radians per length of the whisker: the same as of the largest parabola.
 const SHARPEST: f64 = 20.0;
@@ -112,20 +125,54 @@ fn euler_spiral(
     if per_mm == 0.0 && per_mm2 == 0.0 {
         return Ok(None);
     }
-    if !chord_grows(per_mm * length_mm, per_mm2 * length_mm * length_mm) {
+    let (k0, k1) = (per_mm * length_mm, per_mm2 * length_mm * length_mm);
+    if !chord_grows(|s| s * (k0 + 0.5 * k1 * s)) {
         let must = "must bend the whisker less: the distance from its base must grow all along it";
         return Err(SceneFault::of_value(key, digits(per_mm2), must));
     }
     Ok(Some(EulerSpiral { per_mm, per_mm2 }))
 }
 
-/// Returns true if the distance from the base grows along a spiral of curvature `k0 + k1 s`, by the midpoint rule.
-fn chord_grows(k0: f64, k1: f64) -> bool {
+/// Checks and returns the curvature of a traced shape.
+pub(super) fn traced(
+    numbers: &Numbers,
+    curvature: &CurvaturePolynomial,
+) -> Result<CurvaturePolynomial, SceneFault> {
+    for parameter in [
+        Parameter::ParabolaPerMm,
+        Parameter::VertexMm,
+        Parameter::SpiralPerMm,
+        Parameter::SpiralPerMm2,
+    ] {
+        if let Some(value) = numbers.get(parameter) {
+            return Err(SceneFault::of_value(
+                parameter.key(),
+                digits(value),
+                IS_TRACED,
+            ));
+        }
+    }
+    let sharpest = curvature.sharpest();
+    let must = if sharpest > SHARPEST {
+        format!(
+            "must bend less: the largest curvature of the fitted curve is {sharpest:.3} over its length, more than {SHARPEST}"
+        )
+    } else if !chord_grows(|s| curvature.angle(s)) {
+        "must bend less: the distance from the base must grow all along the fitted curve".to_owned()
+    } else {
+        return Ok(*curvature);
+    };
+    Err(SceneFault::new(POINTS_KEY, must))
+}
+
+/// Returns true if the distance from the base grows along a curve whose tangent has the `angle` at an arclength in whisker lengths, by
+/// the midpoint rule.
+fn chord_grows(angle: impl Fn(f64) -> f64) -> bool {
     let step = 1.0 / f64::from(CHORDS);
     let mut point = DVec2::ZERO;
     (0..CHORDS).all(|i| {
         let s = step * (f64::from(i) + 0.5);
-        let tangent = DVec2::from_angle(s * (k0 + 0.5 * k1 * s));
+        let tangent = DVec2::from_angle(angle(s));
         point += step * tangent;
         point.dot(tangent) > LEAST_COS * point.length()
     })

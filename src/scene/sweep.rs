@@ -68,6 +68,9 @@ pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
             Parameter::TipRadiusUm if scene.sweeps(Parameter::Taper) => {
                 "must be left out: grid.taper gives every whisker of the sweep its tip"
             }
+            Parameter::ParabolaPerMm | Parameter::VertexMm if scene.traced.is_some() => {
+                shape::IS_TRACED
+            }
             Parameter::ParabolaPerMm | Parameter::VertexMm if is_spiral => {
                 "must be left out: the whisker is an Euler spiral"
             }

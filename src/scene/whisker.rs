@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::grid::SweepPlace;
-use crate::rod::{RadiusProfile, Rod, Side, Units};
+use crate::rod::{CurvaturePolynomial, RadiusProfile, Rod, Side, Units};
 
 /// One whisker of a sweep, in front of its pole.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +31,8 @@ pub struct Whisker {
     pub curvature: Option<Curvature>,
     /// Shape of the whisker at rest as an Euler spiral, instead of the parabola; `None` without one.
     pub euler_spiral: Option<EulerSpiral>,
+    /// Curvature at rest over the length, of a curve through traced points, instead of parabola and spiral; `None` without them.
+    pub traced: Option<CurvaturePolynomial>,
     /// Measured radii instead of those that fall linearly: `[row][arclength, radius]`, over the whisker's length and base radius. Rows go
     /// from `[0, 1]` to `[1, tip radius]`. `None` without a profile.
     pub profile: Option<Vec<[f64; 2]>>,
@@ -68,6 +70,7 @@ impl Whisker {
                 let length = self.length_mm;
                 [spiral.per_mm * length, spiral.per_mm2 * length * length]
             }),
+            polynomial: self.traced.map(Arc::new),
             profile: self
                 .profile
                 .as_ref()
@@ -95,7 +98,8 @@ impl Whisker {
             let at_tip = own.per_mm + own.per_mm2 * self.length_mm;
             own.per_mm.abs().max(at_tip.abs())
         });
-        parabola.max(spiral)
+        let traced = self.traced.map_or(0.0, |own| own.sharpest());
+        parabola.max(spiral).max(traced / self.length_mm)
     }
 }
 

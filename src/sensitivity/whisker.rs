@@ -77,8 +77,12 @@ impl WhiskerDerivative {
                 let rows = whisker.profile.as_deref().unwrap_or_default();
                 continues(rows)
             }
-            Parameter::ParabolaPerMm | Parameter::VertexMm => whisker.euler_spiral.is_none(),
-            Parameter::SpiralPerMm | Parameter::SpiralPerMm2 => whisker.curvature.is_none(),
+            Parameter::ParabolaPerMm | Parameter::VertexMm => {
+                whisker.euler_spiral.is_none() && whisker.traced.is_none()
+            }
+            Parameter::SpiralPerMm | Parameter::SpiralPerMm2 => {
+                whisker.curvature.is_none() && whisker.traced.is_none()
+            }
             Parameter::YoungsModulusGpa
             | Parameter::ModulusTipToBase
             | Parameter::ArcStretch
@@ -133,7 +137,8 @@ impl WhiskerDerivative {
         }
     }
 
-    /// Changes the length of the whisker, in mm, by 1: everything that is divided by it.
+    /// Changes the length of the whisker, in mm, by 1: everything that is divided by it. A traced shape keeps its coefficients, which
+    /// have no unit.
     fn lengthen(&mut self, whisker: &Whisker, pole: &Pole, side: Side) {
         let length = whisker.length_mm;
         self.length_mm = 1.0;

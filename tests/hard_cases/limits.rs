@@ -27,6 +27,7 @@ impl Away {
                 vertex_mm: 0.0,
             }),
             euler_spiral: None,
+            traced: None,
             profile: None,
             profile_scale: 1.0,
             modulus_tip_to_base: 1.0,

@@ -65,9 +65,10 @@ pub fn rows_of_every_kind(rows: usize, count: usize) -> impl Iterator<Item = (St
                 taper,
                 curvature,
                 spiral,
+                polynomial,
                 ..
             } = effects;
-            let name = format!("{name}: taper {taper}, parabola {curvature}, spiral {spiral}");
+            let name = format!("{name}: taper {taper}, parabola {curvature}, spiral {spiral}, polynomial {polynomial}");
             (name, rows)
         })
 }

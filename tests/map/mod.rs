@@ -28,6 +28,7 @@ pub fn scene(
     SceneData {
         title: "A made-up whisker in front of a pole".to_owned(),
         uncertainty: None,
+        surface: None,
         whisker: Whisker {
             length_mm: 20.0,
             base_radius_um: 33.0,
@@ -35,6 +36,7 @@ pub fn scene(
             youngs_modulus_gpa: 3.0,
             curvature: None,
             euler_spiral: None,
+            traced: None,
             profile: None,
             profile_scale: 1.0,
             modulus_tip_to_base: 1.0,

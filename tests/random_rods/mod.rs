@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test program uses a part of this module")]
 
 use std::sync::{Arc, LazyLock};
-use whiskmap::rod::{Effects, RadiusProfile, Rod, arclength};
+use whiskmap::rod::{CurvaturePolynomial, Effects, RadiusProfile, Rod, arclength};
 use whiskmap::shooting::batch::InitialCondition;
 
 /// Reproducible stream of numbers in `[0, 1)` (splitmix64).
@@ -27,6 +27,7 @@ pub const USUAL: Effects = Effects {
     taper: true,
     curvature: true,
     spiral: false,
+    polynomial: false,
     gradient: false,
     profile: false,
 };
@@ -46,7 +47,7 @@ pub const ROWS: [[f64; 2]; 7] = [
 static PROFILE: LazyLock<Arc<RadiusProfile>> =
     LazyLock::new(|| Arc::new(RadiusProfile::new(&ROWS, 1.0)));
 
-/// Random rod with taper up to 0.99 or measured radii, `A*` up to 0.8 or an equally bent spiral, and up to twice the modulus at the
+/// Random rod with taper up to 0.99 or measured radii, `A*` up to 0.8, an equally bent spiral or a polynomial curvature, and up to twice the modulus at the
 /// tip, on a random side of a pole of radius up to 0.03 with friction up to 0.5.
 pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     let bend = f64::from(effects.curvature) * random.between(0.0, 0.8);
@@ -61,6 +62,7 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
         spiral: effects
             .spiral
             .then(|| [random.between(-0.8, 0.8), random.between(-0.8, 0.8)]),
+        polynomial: effects.polynomial.then(|| Arc::new(polynomial(random))),
         profile: None,
     };
     if effects.profile {
@@ -71,6 +73,16 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
         };
     }
     rod
+}
+
+/// Random curvature whose terms are as large as measured ones: a turn of up to 1 radian, and less from one degree to the next.
+fn polynomial(random: &mut Random) -> CurvaturePolynomial {
+    let mut size = 1.0;
+    CurvaturePolynomial::new(std::array::from_fn(|_| {
+        let own = size * random.between(-1.0, 1.0);
+        size *= 0.6;
+        own
+    }))
 }
 
 /// Random contact and load on `rod`, with `q = |load| s^2` up to `most_q`, on the side of its pole.

@@ -75,8 +75,8 @@ fn every_shipped_scene_is_accepted() {
     for path in shipped() {
         let scene = Scene::read(&path).unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(scene.name, path.file_stem().unwrap().to_str().unwrap());
-        assert_eq!((scene.note(), scene.warnings()), (None, vec![]));
-        if scene.whisker.profile.is_none() {
+        assert_eq!((scene.notes(), scene.warnings()), (&[][..], vec![]));
+        if scene.csv_files().is_empty() {
             assert_eq!(scene.to_toml(), fs::read_to_string(&path).unwrap());
         }
         let side = if scene.name == "morphology" { 96 } else { 512 };
@@ -95,6 +95,7 @@ fn every_shipped_scene_is_accepted() {
         "measured",
         "morphology",
         "robot",
+        "traced",
         "uncertain",
     ];
     assert_eq!(names, expected);

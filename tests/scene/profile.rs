@@ -185,7 +185,7 @@ fn a_bad_csv_file_is_named_with_its_line() {
     let read = Scene::read(&path).unwrap();
     let rows = read.whisker.profile.as_ref().unwrap();
     assert_eq!(rows[1], [5.0 / 20.0, 20.5 / 30.0]);
-    let note = read.note().unwrap();
+    let note = read.notes().first().unwrap();
     let wanted = "radii.csv:1: columns that are not used: day";
     assert!(note.ends_with(wanted), "{note}");
 

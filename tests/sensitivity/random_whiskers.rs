@@ -1,7 +1,7 @@
 //! Random whiskers with poles and distances, of every rest shape and material.
 
 use crate::random_rods::Random;
-use whiskmap::rod::Side;
+use whiskmap::rod::{CurvaturePolynomial, Side};
 use whiskmap::scene::{Curvature, EulerSpiral, Parameter, Pole, Whisker};
 use whiskmap::sensitivity::Variable;
 
@@ -14,14 +14,19 @@ pub struct Push {
     pub distance_mm: f64,
 }
 
-/// The push with this index: a parabola, a spiral or a straight whisker in turn, every tenth one with measured radii. Friction, modulus and
+/// The push with this index: a parabola, a spiral or a straight whisker in turn, every tenth one with measured radii,
+/// and every tenth one with a traced shape. Friction, modulus and
 /// stretch vary.
 pub fn push(index: u64) -> Push {
     let mut random = Random(index.wrapping_mul(0x9e37_79b9));
     let mut between = |low: f64, high: f64| random.between(low, high);
     let length_mm = between(8.0, 60.0);
     let base_radius_um = between(20.0, 120.0);
-    let shape = if index % 10 == 9 { 3 } else { index % 3 };
+    let shape = match index % 10 {
+        9 => 3,
+        8 => 4,
+        _ => index % 3,
+    };
     let measured = shape == 3;
     let taper = between(if measured { 0.5 } else { 0.0 }, 0.98);
     let arc_stretch = between(1.0, 1.02);
@@ -59,6 +64,10 @@ pub fn push(index: u64) -> Push {
             youngs_modulus_gpa: between(1.0, 6.0),
             curvature,
             euler_spiral,
+            traced: (shape == 4).then(|| {
+                let terms = [0.6, 0.4, 0.2, 0.1, 0.1, 0.05, 0.05];
+                CurvaturePolynomial::new(terms.map(|most| between(-most, most)))
+            }),
             profile: rows,
             profile_scale: if measured { between(0.5, 2.0) } else { 1.0 },
             modulus_tip_to_base: between(0.3, 3.0),
@@ -92,9 +101,10 @@ impl Push {
             Some(_) => all.extend([P::ProfileScale, P::TipExtensionMm]),
             None => all.extend([P::LengthMm, P::BaseRadiusUm, P::TipRadiusUm, P::Taper]),
         }
-        match self.whisker.euler_spiral {
-            Some(_) => all.extend([P::SpiralPerMm, P::SpiralPerMm2]),
-            None => all.extend([P::ParabolaPerMm, P::VertexMm]),
+        match (&self.whisker.traced, self.whisker.euler_spiral) {
+            (Some(_), _) => {}
+            (None, Some(_)) => all.extend([P::SpiralPerMm, P::SpiralPerMm2]),
+            (None, None) => all.extend([P::ParabolaPerMm, P::VertexMm]),
         }
         let rows = self.whisker.profile.as_ref().map_or(0, Vec::len);
         let all = all.into_iter().map(Variable::Parameter);

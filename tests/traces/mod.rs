@@ -20,6 +20,7 @@ fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
             vertex_mm: 0.0,
         }),
         euler_spiral: None,
+        traced: None,
         profile: None,
         profile_scale: 1.0,
         modulus_tip_to_base: 1.0,
@@ -34,6 +35,7 @@ fn everything() -> impl Iterator<Item = (Whisker, Pole)> {
         .flat_map(|tip| [0.0, 0.02, 0.04, 0.07].map(|a| whisker(tip, a)))
         .chain([0.1, 10.0].map(|ratio| Whisker {
             euler_spiral: None,
+            traced: None,
             profile: None,
             modulus_tip_to_base: ratio,
             ..whisker(1.5, 0.02)

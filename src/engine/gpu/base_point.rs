@@ -3,7 +3,7 @@
 use super::Precision;
 use crate::engine::{BasePoint, MOST_TRAJECTORY_STEPS, POWERS};
 use crate::numerics::Real;
-use crate::rod::{Rest, Rod, arclength};
+use crate::rod::{CURVATURE_TERMS, Rest, Rod, arclength};
 use crate::shooting::StateDerivative;
 use crate::shooting::batch::StepStart;
 use bytemuck::{Pod, Zeroable};
@@ -18,6 +18,11 @@ const JACOBIAN_POWERS: usize = 8;
 const _: () = assert!(
     MOST_TRAJECTORY_STEPS as usize <= Precision::F64.most_steps(),
     "a dispatch has room for every trajectory"
+);
+
+const _: () = assert!(
+    CURVATURE_TERMS == 7,
+    "shaders/intrinsic.wgsl writes them out"
 );
 
 const _: () = assert!(
@@ -62,6 +67,8 @@ pub struct GpuBasePoint<T> {
     contact: [T; 4],
     /// Taper, bend, and the two numbers of an Euler spiral.
     rod: [T; 4],
+    /// Coefficients of the powers of `s - 1/2` of a polynomial curvature: `[power]`, and 0.
+    curvature: [T; 8],
     /// The pole's centre from the base, and the base from the contact.
     positions: [T; 4],
     /// Tangent at the base, its rotation by bending, and twice the energy over the force.
@@ -84,7 +91,7 @@ pub struct GpuBasePoint<T> {
 }
 
 /// Name and position of each field of a base point in the shaders, in quads of numbers. The last pair is the number of quads.
-pub const QUADS: [(&str, usize); 13] = {
+pub const QUADS: [(&str, usize); 14] = {
     macro_rules! quads {
         ($($name:literal $member:ident)+) => {
             [
@@ -94,7 +101,7 @@ pub const QUADS: [(&str, usize); 13] = {
         };
     }
     quads!(
-        "CONTACT" contact "ROD" rod "POSITIONS" positions "BASE" base "REST" rest "BY_TAU" by_tau "BY_LOAD" by_load "PUSH" push
+        "CONTACT" contact "ROD" rod "CURVATURE_TERMS" curvature "POSITIONS" positions "BASE" base "REST" rest "BY_TAU" by_tau "BY_LOAD" by_load "PUSH" push
         "PUSH_BY_W" push_by_w "TAU_BY_W" tau_by_w "RESTING_BY_W" resting_by_w "JACOBIAN" jacobian
     )
 };
@@ -121,11 +128,17 @@ impl<T: Scalar> GpuBasePoint<T> {
         };
         let rest = Rest::parabola_tangent(rod, s);
         let [k0, k1] = rod.spiral.unwrap_or_default();
+        let mut curvature = [T::of(0.0); 8];
+        let polynomial = rod.polynomial.iter().flat_map(|own| own.centred());
+        for (own, term) in curvature.iter_mut().zip(polynomial) {
+            *own = T::of(*term);
+        }
         let [high, low] = halves(base.push);
         let steps = [base.trajectory.steps, first_step].map(|count| T::of(count.into()));
         Self {
             contact: [*tau, *load, rod.radius(*tau), s].map(T::of),
             rod: [rod.taper, rod.bend, k0, k1].map(T::of),
+            curvature,
             positions: [to_pole.x, to_pole.y, full.position.x, full.position.y].map(T::of),
             base: [full.tangent.x, full.tangent.y, base.trajectory.bent, energy].map(T::of),
             rest: [rest.x, rest.y, rod.tau_tip() - tau, base.load_per_w].map(T::of),

@@ -100,11 +100,12 @@ pub fn peak(precision: Precision) -> String {
 
 /// Returns the values of the shaders' `override` constants, by name.
 #[must_use]
-pub fn overrides(effects: Effects) -> [(&'static str, f64); 3] {
+pub fn overrides(effects: Effects) -> [(&'static str, f64); 4] {
     let flag = |on: bool| f64::from(u8::from(on));
     [
         ("TAPER", flag(effects.taper)),
         ("CURVATURE", flag(effects.curvature)),
         ("SPIRAL", flag(effects.spiral)),
+        ("POLYNOMIAL", flag(effects.polynomial)),
     ]
 }

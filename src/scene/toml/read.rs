@@ -18,12 +18,13 @@ use crate::scene::deviations;
 use crate::scene::error::{DECIMAL_POINTS, SceneError, SceneFault, has_tight_comma};
 use crate::scene::limits::digits;
 use crate::scene::parameter::Parameter;
-use crate::scene::profile::KEY as ROWS_KEY;
+use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY};
 use crate::scene::{Scene, SceneBuilder};
+use crate::traced::{MOST_DEGREE, TracedShape};
 
-use super::rows::{CsvRows, ListedRows};
+use super::rows::{GivenPairs, PairKind, PairList, PairsCsv};
 use super::tables::SceneTable;
-use super::write::{SceneText, rows_text};
+use super::write::SceneText;
 
 impl Scene {
     /// Reads and checks a scene file; `-` is standard input. Where the file does not name its output, the
@@ -82,36 +83,36 @@ fn checked(
     let refused = |why: toml_edit::de::Error| SceneError::of_toml(origin, text, &why);
     let document = Document::parse(text).map_err(|why| refused(why.into()))?;
     let table = SceneTable::deserialize(Deserializer::from(document)).map_err(refused)?;
-    let mut lines = None;
-    let built = build(table, text, folder, &mut lines);
+    let mut files = Vec::new();
+    let built = build(table, text, folder, &mut files);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     built
-        .and_then(|(mut builder, csv)| {
+        .and_then(|mut builder| {
             builder.stem = stem.into_owned();
-            let mut own = text.to_owned();
-            if let Some((csv, span)) = csv.as_ref().zip(place_in(text, ROWS_KEY)) {
-                own.replace_range(span, &rows_text(&csv.values));
-            }
+            let own = builder.standalone(text, &files);
             Ok(Scene {
                 data: builder.checked(SceneText::of_source(&own))?,
                 builder: Arc::new(builder),
-                rows_file: csv.as_ref().map(|csv| csv.path.clone()),
-                note: csv.and_then(|csv| csv.note),
+                notes: files.iter().filter_map(|csv| csv.note.clone()).collect(),
+                csv_files: files.iter().map(|csv| csv.path.clone()).collect(),
             })
         })
-        .map_err(|fault| located(fault, lines.as_deref(), origin, text))
+        .map_err(|fault| located(fault, &files, origin, text))
 }
 
-/// The description that the tables of `text` give, and the CSV file that it names. The lines of its rows are left in `lines`.
+/// The description that the tables of `text` give. The CSV files that it names are added to `files`.
 fn build(
     table: SceneTable,
     text: &str,
     folder: Option<&Path>,
-    lines: &mut Option<Vec<usize>>,
-) -> Result<(SceneBuilder, Option<CsvRows>), SceneFault> {
+    files: &mut Vec<PairsCsv>,
+) -> Result<SceneBuilder, SceneFault> {
     let SceneTable {
         mut builder,
         rows,
+        rest,
+        rest_degree,
+        rest_curvature,
         deviations,
     } = table;
     let mut bends = [
@@ -125,22 +126,44 @@ fn build(
         let must = "must have either parabola_per_mm, and vertex_mm if need be, or euler_spiral";
         return Err(SceneFault::new("whisker.curvature", must));
     }
-    let csv = match rows {
-        None => None,
-        Some(ListedRows::Listed(rows)) => {
-            builder.rows = Some(rows.into_iter().map(|row| row.0).collect());
-            None
-        }
-        Some(ListedRows::Named(name)) => {
-            let csv = CsvRows::read(&name, folder);
-            let csv = csv.map_err(|must| SceneFault::new(ROWS_KEY, must))?;
-            *lines = Some(csv.lines.clone());
-            builder.rows = Some(csv.values.clone());
-            Some(csv)
-        }
-    };
+    if let Some(rows) = rows {
+        builder.rows = Some(pairs(rows, folder, files)?);
+    }
+    if let Some(points) = rest {
+        let points = pairs(points, folder, files)?;
+        let degree = rest_degree.map(degree).transpose()?;
+        let traced = TracedShape::fit(points, degree).map_err(SceneFault::of_traced)?;
+        let traced = match rest_curvature {
+            None => traced,
+            Some(own) => traced
+                .with_coefficients(&own)
+                .map_err(|why| SceneFault::new(CURVATURE_KEY, why.must))?,
+        };
+        builder = builder.traced(traced);
+    }
     builder.uncertainty = deviations.as_ref().map(uncertainty).transpose()?;
-    Ok((builder, csv))
+    Ok(builder)
+}
+
+/// The pairs of a list of the scene. Its CSV file is added to `files`.
+fn pairs<K: PairKind>(
+    list: PairList<K>,
+    folder: Option<&Path>,
+    files: &mut Vec<PairsCsv>,
+) -> Result<Vec<[f64; 2]>, SceneFault> {
+    let read = list.read(folder);
+    let GivenPairs { values, csv } = read.map_err(|must| SceneFault::new(K::KEY, must))?;
+    files.extend(csv);
+    Ok(values)
+}
+
+/// The checked degree of a traced curvature.
+fn degree(given: i64) -> Result<usize, SceneFault> {
+    let degree = usize::try_from(given).ok();
+    degree.filter(|own| *own <= MOST_DEGREE).ok_or_else(|| {
+        let must = format!("must be between 0 and {MOST_DEGREE}");
+        SceneFault::of_value(DEGREE_KEY, given.to_string(), must)
+    })
 }
 
 /// The standard deviations of `[uncertainty]`.
@@ -163,18 +186,16 @@ fn uncertainty(table: &BTreeMap<String, f64>) -> Result<Deviations, SceneFault> 
     Ok(uncertainty)
 }
 
-/// Adds the place in the text to a fault, and the value as the text has it. Rows of a CSV file are named by their `lines`.
-fn located(mut fault: SceneFault, lines: Option<&[usize]>, origin: &str, text: &str) -> SceneError {
-    let row = fault.key.strip_prefix(ROWS_KEY);
-    let row = row.and_then(|row| {
-        row.strip_prefix('[')?
-            .strip_suffix(']')?
-            .parse::<usize>()
-            .ok()
+/// Adds the place in the text to a fault, and the value as the text has it. Pairs of a CSV file are named by their lines.
+fn located(mut fault: SceneFault, files: &[PairsCsv], origin: &str, text: &str) -> SceneError {
+    let of_file = files.iter().find_map(|csv| {
+        let pair = fault.key.strip_prefix(csv.key)?.strip_prefix('[')?;
+        let pair: usize = pair.strip_suffix(']')?.parse().ok()?;
+        Some((csv.key, csv.lines[pair]))
     });
-    if let Some((lines, row)) = lines.zip(row) {
-        let must = format!("line {}: {}", lines[row], fault.must);
-        fault = SceneFault::new(ROWS_KEY, must);
+    if let Some((key, line)) = of_file {
+        let must = format!("line {line}: {}", fault.must);
+        fault = SceneFault::new(key, must);
     }
     let span = place_in(text, &fault.key);
     let value = span.clone().and_then(|span| text.get(span));
@@ -200,7 +221,7 @@ fn is_short(value: &str) -> bool {
 }
 
 /// The place of the value of `key` in the text of a scene, such as `grid.distance_mm[1]` or `grid.friction.from`.
-fn place_in(text: &str, key: &str) -> Option<Range<usize>> {
+pub(super) fn place_in(text: &str, key: &str) -> Option<Range<usize>> {
     place(Document::parse(text).ok()?.as_item(), key)
 }
 

@@ -1,7 +1,8 @@
-//! Rows of radii in a scene file: a list, or the name of a CSV file.
+//! Lists of pairs of numbers in a scene file, measured radii and traced points: a list, or the name of a CSV file.
 
 use std::fmt;
 use std::fs;
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -9,18 +10,55 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 
 use crate::input::{CsvError, CsvTable};
-use crate::scene::profile::MOST;
+use crate::scene::{profile, shape};
 
-/// `rows` of `[whisker.profile]`: `[arc_length_mm, radius_um]` each, or the name of a CSV file with these columns.
-pub(super) enum ListedRows {
-    Named(String),
-    Listed(Vec<RowPair>),
+/// Kind of pairs in a scene file.
+pub(super) trait PairKind {
+    /// Key of the list in a scene file.
+    const KEY: &'static str;
+    /// Name of the pairs in messages.
+    const NAME: &'static str;
+    /// Columns of the CSV file.
+    const COLUMNS: [&'static str; 2];
+    /// Description of the value in messages.
+    const EXPECTED: &'static str;
+    /// Largest number of pairs that is read.
+    const MOST: usize;
 }
 
-/// Row of a measured profile: arclength in millimetres and radius in micrometres.
-pub(super) struct RowPair(pub [f64; 2]);
+/// Rows of `[whisker.profile]`: arclength in millimetres and radius in micrometres.
+pub(super) struct ProfileRows;
 
-impl<'de> Deserialize<'de> for RowPair {
+impl PairKind for ProfileRows {
+    const KEY: &'static str = profile::KEY;
+    const NAME: &'static str = "rows";
+    const COLUMNS: [&'static str; 2] = ["arc_length_mm", "radius_um"];
+    const EXPECTED: &'static str = "the name of a CSV file or a list of [arc_length_mm, radius_um]";
+    // One more than a scene may have.
+    const MOST: usize = profile::MOST + 1;
+}
+
+/// Points of `[whisker.rest]`, in millimetres.
+pub(super) struct RestPoints;
+
+impl PairKind for RestPoints {
+    const KEY: &'static str = shape::POINTS_KEY;
+    const NAME: &'static str = "points";
+    const COLUMNS: [&'static str; 2] = ["x_mm", "y_mm"];
+    const EXPECTED: &'static str = "the name of a CSV file or a list of [x_mm, y_mm]";
+    const MOST: usize = usize::MAX;
+}
+
+/// Pairs of a scene file: a list of them, or the name of a CSV file with their columns.
+pub(super) enum PairList<K> {
+    Named(String),
+    Listed(Vec<NumberPair>, PhantomData<K>),
+}
+
+/// Pair of numbers: a row of a measured profile, or a traced point.
+pub(super) struct NumberPair(pub [f64; 2]);
+
+impl<'de> Deserialize<'de> for NumberPair {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let numbers = Vec::<f64>::deserialize(deserializer)?;
         let pair = <[f64; 2]>::try_from(numbers);
@@ -30,47 +68,66 @@ impl<'de> Deserialize<'de> for RowPair {
     }
 }
 
-impl<'de> Deserialize<'de> for ListedRows {
+impl<'de, K: PairKind> Deserialize<'de> for PairList<K> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
+        struct Either<K>(PhantomData<K>);
 
-        impl<'de> Visitor<'de> for Either {
-            type Value = ListedRows;
+        impl<'de, K: PairKind> Visitor<'de> for Either<K> {
+            type Value = PairList<K>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("the name of a CSV file or a list of [arc_length_mm, radius_um]")
+                f.write_str(K::EXPECTED)
             }
 
-            fn visit_str<E>(self, name: &str) -> Result<ListedRows, E> {
-                Ok(ListedRows::Named(name.to_owned()))
+            fn visit_str<E>(self, name: &str) -> Result<PairList<K>, E> {
+                Ok(PairList::Named(name.to_owned()))
             }
 
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<ListedRows, A::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(ListedRows::Listed)
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PairList<K>, A::Error> {
+                let pairs = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
+                Ok(PairList::Listed(pairs, PhantomData))
             }
         }
 
-        deserializer.deserialize_any(Either)
+        deserializer.deserialize_any(Either(PhantomData))
     }
 }
 
-/// Rows of radii from a CSV file.
-pub(super) struct CsvRows {
-    pub path: PathBuf,
-    /// Arclength in millimetres and radius in micrometres: `[row][arclength, radius]`. There is at most one row more than a scene may have.
+/// Pairs of a scene, and where they come from.
+pub(super) struct GivenPairs {
+    /// Pairs of numbers: `[pair][column]`, in the units of the columns.
     pub values: Vec<[f64; 2]>,
-    /// Line numbers of the rows in the CSV file, from 1: `[row]`.
+    /// CSV file of the pairs; `None` if the scene lists them.
+    pub csv: Option<PairsCsv>,
+}
+
+/// CSV file of pairs.
+pub(super) struct PairsCsv {
+    /// Key of the list in a scene file.
+    pub key: &'static str,
+    pub path: PathBuf,
+    /// Line numbers of the pairs in the CSV file, from 1: `[pair]`.
     pub lines: Vec<usize>,
     /// Message that names unused columns of the CSV file; `None` without such columns.
     pub note: Option<String>,
 }
 
-impl CsvRows {
-    /// Reads rows of radii from the regular file `name` in `folder`. Without a folder, it refuses, because the text of a scene must not
-    /// name files.
-    pub fn read(name: &str, folder: Option<&Path>) -> Result<Self, String> {
+impl<K: PairKind> PairList<K> {
+    /// Returns the listed pairs, or reads those of the regular file in `folder` that is named. Without a folder, a name is refused,
+    /// because the text of a scene must not name files.
+    pub fn read(self, folder: Option<&Path>) -> Result<GivenPairs, String> {
+        let name = match self {
+            Self::Named(name) => name,
+            Self::Listed(pairs, _) => {
+                let values = pairs.into_iter().map(|pair| pair.0).collect();
+                return Ok(GivenPairs { values, csv: None });
+            }
+        };
         let Some(folder) = folder else {
-            return Err("must be a list of rows: only a scene file may name a CSV file".to_owned());
+            let name = K::NAME;
+            return Err(format!(
+                "must be a list of {name}: only a scene file may name a CSV file"
+            ));
         };
         let path = folder.join(name);
         // A pipe without a writer would never open.
@@ -80,18 +137,23 @@ impl CsvRows {
         Self::from_csv(path).map_err(|why| why.to_string())
     }
 
-    fn from_csv(path: PathBuf) -> Result<Self, CsvError> {
+    fn from_csv(path: PathBuf) -> Result<GivenPairs, CsvError> {
         let table = CsvTable::read(&path)?;
-        let note = table.require(&[&["arc_length_mm"], &["radius_um"]], &[])?;
+        let [first, second] = K::COLUMNS;
+        let note = table.require(&[&[first], &[second]], &[])?;
         let column = |name| table.numbers(name, "a number", f64::is_finite);
-        let arc_length_mm = column("arc_length_mm")?.unwrap_or_default();
-        let radius_um = column("radius_um")?.unwrap_or_default();
-        let rows = arc_length_mm.into_iter().zip(radius_um);
-        Ok(Self {
-            path,
-            values: rows.take(MOST + 1).map(|(s, radius)| [s, radius]).collect(),
-            lines: table.lines().collect(),
-            note,
+        let pairs = column(first)?
+            .unwrap_or_default()
+            .into_iter()
+            .zip(column(second)?.unwrap_or_default());
+        Ok(GivenPairs {
+            values: pairs.take(K::MOST).map(Into::into).collect(),
+            csv: Some(PairsCsv {
+                key: K::KEY,
+                path,
+                lines: table.lines().collect(),
+                note,
+            }),
         })
     }
 }

@@ -7,11 +7,12 @@ use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-use super::rows::ListedRows;
+use super::rows::{PairList, ProfileRows, RestPoints};
 use crate::scene::SceneBuilder;
 use crate::scene::axis::{AxisScale, AxisValues};
 use crate::scene::parameter::Parameter;
 use crate::scene::profile;
+use crate::scene::shape;
 
 /// The value of a key: its kind, and its place in the description.
 #[derive(Clone, Copy, PartialEq)]
@@ -19,6 +20,9 @@ enum KeyValue {
     Title,
     Number(Parameter),
     Rows,
+    RestPoints,
+    RestDegree,
+    RestCurvature,
     PushAngles,
     Distances,
     Sweep(Parameter),
@@ -29,10 +33,13 @@ enum KeyValue {
 }
 
 /// Keys that may be left out, also in a table that is given; the axes of the sweep may be left out, too.
-const OPTIONAL: [&str; 17] = [
+const OPTIONAL: [&str; 20] = [
     Parameter::BaseRadiusUm.key(),
     Parameter::TipRadiusUm.key(),
     "whisker.profile",
+    "whisker.rest",
+    shape::DEGREE_KEY,
+    shape::CURVATURE_KEY,
     Parameter::ProfileScale.key(),
     Parameter::TipExtensionMm.key(),
     "whisker.curvature",
@@ -59,6 +66,9 @@ fn keys() -> impl Iterator<Item = (&'static str, KeyValue)> {
     let before = [("title", KeyValue::Title)];
     let between = [
         (profile::KEY, KeyValue::Rows),
+        (shape::POINTS_KEY, KeyValue::RestPoints),
+        (shape::DEGREE_KEY, KeyValue::RestDegree),
+        (shape::CURVATURE_KEY, KeyValue::RestCurvature),
         ("grid.push_angle_deg", KeyValue::PushAngles),
         ("grid.distance_mm", KeyValue::Distances),
     ];
@@ -91,7 +101,12 @@ fn keys_in(path: &str) -> Vec<(&'static str, KeyValue)> {
 #[derive(Default)]
 pub(super) struct SceneTable {
     pub builder: SceneBuilder,
-    pub rows: Option<ListedRows>,
+    pub rows: Option<PairList<ProfileRows>>,
+    pub rest: Option<PairList<RestPoints>>,
+    /// Degree of the traced curvature; `None` if cross-validation chooses it.
+    pub rest_degree: Option<i64>,
+    /// Coefficients of the traced curvature; `None` if they are those of the fit.
+    pub rest_curvature: Option<Vec<f64>>,
     /// Standard deviations of the scene's numbers by name, each in its unit; `None` without the table.
     pub deviations: Option<BTreeMap<String, f64>>,
 }
@@ -138,6 +153,9 @@ impl<'de> Visitor<'de> for TableReader<'_> {
                 KeyValue::Title => builder.title = table.next_value()?,
                 KeyValue::Number(parameter) => builder.numbers.set(parameter, table.next_value()?),
                 KeyValue::Rows => scene.rows = Some(table.next_value()?),
+                KeyValue::RestPoints => scene.rest = Some(table.next_value()?),
+                KeyValue::RestDegree => scene.rest_degree = Some(table.next_value()?),
+                KeyValue::RestCurvature => scene.rest_curvature = Some(table.next_value()?),
                 KeyValue::PushAngles => builder.push_angle_deg = table.next_value()?,
                 KeyValue::Distances => builder.distance_mm = table.next_value()?,
                 KeyValue::Sweep(parameter) => {
@@ -151,6 +169,10 @@ impl<'de> Visitor<'de> for TableReader<'_> {
                 }
             }
         }
+        // Traced points have a length.
+        let is_traced = scene.rest.is_some();
+        missing
+            .retain(|(name, _)| !is_traced || format!("{path}{name}") != Parameter::LengthMm.key());
         let absent = missing.first();
         absent.map_or(Ok(()), |(name, _)| Err(A::Error::missing_field(name)))
     }

@@ -10,7 +10,12 @@ use crate::scene::deviations::ROWS;
 use crate::scene::error::SceneError;
 use crate::scene::parameter::Parameter;
 use crate::scene::profile::KEY as ROWS_KEY;
+use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY, POINTS_KEY};
 use crate::scene::{Scene, SceneBuilder};
+use crate::traced::TracedShape;
+
+use super::read::place_in;
+use super::rows::PairsCsv;
 
 /// TOML text of a scene: the source text of a scene that was read; otherwise it is written from the numbers when it is displayed.
 ///
@@ -90,8 +95,11 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
         }
     }
     if let Some(rows) = &scene.rows {
-        let rows = rows.iter().map(|row| Array::from_iter(*row));
-        put(root, ROWS_KEY, rows.collect::<Array>());
+        put(root, ROWS_KEY, pair_array(rows));
+    }
+    if let Some(traced) = &scene.traced {
+        put(root, POINTS_KEY, pair_array(&traced.points_mm));
+        put_fit(root, traced);
     }
     put(root, "grid.push_angle_deg", &scene.push_angle_deg);
     put(root, "grid.distance_mm", &scene.distance_mm);
@@ -126,6 +134,50 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
         put(root, "surface.seed", i64::from(surface.seed));
     }
     document
+}
+
+fn pair_array(pairs: &[[f64; 2]]) -> Array {
+    pairs.iter().map(|pair| Array::from_iter(*pair)).collect()
+}
+
+/// Sets degree and coefficients of a traced curvature.
+fn put_fit(root: &mut dyn TableLike, traced: &TracedShape) {
+    put(root, DEGREE_KEY, traced.degree as i64);
+    put(root, CURVATURE_KEY, Array::from_iter(traced.coefficients()));
+}
+
+impl SceneBuilder {
+    /// Returns the `text` of this scene with the pairs of CSV `files` in place of their names, and with the fit to traced points.
+    pub(super) fn standalone(&self, text: &str, files: &[PairsCsv]) -> String {
+        let mut own = text.to_owned();
+        for csv in files {
+            let points = self.traced.as_ref().map(|traced| &traced.points_mm);
+            let pairs = if csv.key == ROWS_KEY {
+                self.rows.as_ref()
+            } else {
+                points
+            };
+            if let Some((pairs, span)) = pairs.zip(place_in(&own, csv.key)) {
+                own.replace_range(span, &pairs_text(pairs));
+            }
+        }
+        let Some(traced) = &self.traced else {
+            return own;
+        };
+        // The text was read as TOML.
+        let Ok(mut document) = own.parse::<DocumentMut>() else {
+            return own;
+        };
+        let root = document.as_table_mut();
+        put_fit(root, traced);
+        let length = Parameter::LengthMm;
+        if let Some(length_mm) = self.numbers.get(length)
+            && place_in(text, length.key()).is_none()
+        {
+            put(root, length.key(), length_mm);
+        }
+        document.to_string()
+    }
 }
 
 /// Sets the value of a key with dots, and keeps what is around a value that is there.
@@ -171,12 +223,12 @@ impl From<&AxisValues> for Value {
     }
 }
 
-/// Returns rows of radii as a list in TOML, one row on a line.
-pub(super) fn rows_text(rows: &[[f64; 2]]) -> String {
+/// Returns pairs of numbers as a list in TOML, one pair on a line.
+fn pairs_text(pairs: &[[f64; 2]]) -> String {
     let mut list = String::from("[\n");
-    for [arc_length_mm, radius_um] in rows {
+    for [first, second] in pairs {
         // Writing to a String cannot fail.
-        let _ = writeln!(list, "    [{arc_length_mm:?}, {radius_um:?}],");
+        let _ = writeln!(list, "    [{first:?}, {second:?}],");
     }
     list.push(']');
     list

@@ -15,6 +15,8 @@ pub struct Effects {
     pub curvature: bool,
     /// True if the whisker is an Euler spiral at rest.
     pub spiral: bool,
+    /// True if the curvature of the whisker at rest is a polynomial of the arclength.
+    pub polynomial: bool,
     /// True if Young's modulus changes along the whisker.
     pub gradient: bool,
     /// True if the whisker's radii follow a measured profile.
@@ -25,13 +27,13 @@ impl Effects {
     /// Returns true if a property of the rod changes along it, so that integration steps have to advance the cross-section.
     #[must_use]
     pub fn advances(self) -> bool {
-        self.taper || self.spiral || self.gradient || self.profile
+        self.taper || self.spiral || self.polynomial || self.gradient || self.profile
     }
 
     /// Returns true if all parts of the rod toward the base are similar except for their size: see `shooting::sensitivity::similar`.
     #[must_use]
     pub const fn similar(self) -> bool {
-        !(self.curvature || self.spiral || self.gradient || self.profile)
+        !(self.curvature || self.spiral || self.polynomial || self.gradient || self.profile)
     }
 
     /// Returns the effects of the kernel for a contact at `beta tau = taper_tau`. Beyond 1.5 on a straight cone, `gradient` is set: its
@@ -49,21 +51,24 @@ impl Effects {
         rods.into_iter().fold(Self::default(), |set, rod| Self {
             curvature: set.curvature || rod.bend != 0.0,
             spiral: set.spiral || rod.spiral.is_some(),
+            polynomial: set.polynomial || rod.polynomial.is_some(),
             ..set.and(rod)
         })
     }
 
-    /// Returns these effects and all effects of `rod`. No kernel has two rest shapes: a parabola or spiral of `rod` replaces the rest
-    /// shape of this set.
+    /// Returns these effects and all effects of `rod`. No kernel has two rest shapes: that of `rod` replaces the rest shape of this
+    /// set.
     #[inline]
     #[must_use]
     pub fn and(self, rod: &Rod) -> Self {
-        let spiral = rod.spiral.is_some();
-        let curvature = rod.bend != 0.0 && !spiral;
+        let polynomial = rod.polynomial.is_some();
+        let spiral = rod.spiral.is_some() && !polynomial;
+        let curvature = rod.bend != 0.0 && !spiral && !polynomial;
         Self {
             taper: self.taper | (rod.taper != 0.0),
-            curvature: curvature | (self.curvature & !spiral),
-            spiral: spiral | (self.spiral & !curvature),
+            curvature: curvature | (self.curvature & !(spiral | polynomial)),
+            spiral: spiral | (self.spiral & !(curvature | polynomial)),
+            polynomial: polynomial | (self.polynomial & !(curvature | spiral)),
             gradient: self.gradient | (rod.gradient != 0.0),
             profile: self.profile | rod.profile.is_some(),
         }

@@ -1,5 +1,6 @@
 //! Properties of a whisker: radius, shape at rest, stiffness, contact, effects, units. Plain `f64`, lengths in whisker lengths.
 
+mod curvature_polynomial;
 mod demands;
 mod derivative;
 mod effects;
@@ -13,6 +14,7 @@ mod rest;
 mod rod;
 mod units;
 
+pub use curvature_polynomial::{CURVATURE_TERMS, CurvaturePolynomial};
 pub use demands::{Demand, Demands};
 pub use derivative::RodDerivative;
 pub use effects::Effects;

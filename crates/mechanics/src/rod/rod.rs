@@ -1,7 +1,7 @@
 //! A whisker and its pole in dimensionless form.
 
 use crate::numerics::{Dual, Real};
-use crate::rod::RadiusProfile;
+use crate::rod::{CurvaturePolynomial, RadiusProfile};
 use crate::shooting::contact::radius_and_arclength;
 use glam::DVec2;
 use serde_core::{Serialize, Serializer};
@@ -65,6 +65,8 @@ pub struct Rod {
     /// Coefficients `[k0, k1]` of an Euler spiral with curvature `k0 + k1 s` at rest, in radians per whisker length, instead of the
     /// parabola; `s` is in whisker lengths.
     pub spiral: Option<[f64; 2]>,
+    /// Curvature at rest as a polynomial of the arclength, instead of parabola and spiral; `None` without one.
+    pub polynomial: Option<Arc<CurvaturePolynomial>>,
     /// Measured radii instead of a linear taper. `taper` is then only the scale of the coordinates. `None` for a cone or cylinder.
     pub profile: Option<Arc<RadiusProfile>>,
 }
@@ -136,6 +138,9 @@ impl Rod {
     /// Returns the largest curvature of the whisker at rest, in radians per whisker length.
     #[must_use]
     pub fn sharpest_bend(&self) -> f64 {
+        if let Some(polynomial) = &self.polynomial {
+            return polynomial.sharpest();
+        }
         match self.spiral {
             Some([k0, k1]) => k0.abs().max((k0 + k1).abs()),
             None => 2.0 * self.bend,

@@ -1,6 +1,7 @@
-//! Rest shapes of the rod: straight, parabola, Euler spiral.
+//! Rest shapes of the rod: straight, parabola, Euler spiral, polynomial curvature.
 
 use crate::numerics::{Real, Vector, horner, rotated_by_small};
+use crate::rod::CURVATURE_TERMS;
 use crate::shooting::Section;
 use crate::shooting::contact::parabola_tangent;
 
@@ -203,4 +204,94 @@ impl<T: Real> Intrinsic<T> for Spiral<T> {
 
     #[inline(always)]
     fn after(_: &[T; 3], _: T) {}
+}
+
+/// A rod whose curvature at rest is a polynomial of the arclength. A traced shape has such a curvature.
+#[derive(Clone, Copy, Debug)]
+pub struct Polynomial<T> {
+    /// Coefficients `[power]` of the powers of `s - 1/2`, see [`CurvaturePolynomial`](crate::rod::CurvaturePolynomial).
+    pub centred: [T; CURVATURE_TERMS],
+}
+
+impl<T: Real> Polynomial<T> {
+    /// Returns the curvature at the arclength `s`, and its derivative by the arclength.
+    #[inline(always)]
+    pub fn at(self, s: T) -> [T; 2] {
+        let [curvature, slope, ..] = self.around(s);
+        [curvature, slope]
+    }
+
+    /// Coefficients `[power]` of the Taylor polynomial of the curvature around the arclength `s`: repeated synthetic division.
+    #[inline(always)]
+    fn around(self, s: T) -> [T; CURVATURE_TERMS] {
+        let x = s - T::of(0.5);
+        let [mut a, mut b, mut c, mut d, mut e, mut f, g] = self.centred;
+        macro_rules! divide {
+            ($higher:expr; $($lower:ident),*) => {{
+                let sum = $higher;
+                $(let sum = sum.mul_add(x, $lower); $lower = sum;)*
+                let _ = sum;
+            }};
+        }
+        divide!(g; f, e, d, c, b, a);
+        divide!(g; f, e, d, c, b);
+        divide!(g; f, e, d, c);
+        divide!(g; f, e, d);
+        divide!(g; f, e);
+        divide!(g; f);
+        [a, b, c, d, e, f, g]
+    }
+}
+
+/// Inverses `1/(power + 1)`, which integrate a polynomial.
+const INTEGRATED: [f64; CURVATURE_TERMS] = {
+    let mut inverses = [1.0; CURVATURE_TERMS];
+    let mut power = 0;
+    while power < CURVATURE_TERMS {
+        inverses[power] = 1.0 / (power + 1) as f64;
+        power += 1;
+    }
+    inverses
+};
+
+/// Rotation along a step of a rod with a polynomial curvature.
+pub struct PolynomialSeries<T> {
+    /// Arclength per `along`, see [`Intrinsic::turn`].
+    per_along: T,
+    /// Coefficients `[power]` of the rotation over the arclength from the start of the step.
+    terms: [T; CURVATURE_TERMS],
+}
+
+impl<T: Real> Intrinsic<T> for Polynomial<T> {
+    type State = ();
+    type Course = PolynomialSeries<T>;
+
+    #[inline(always)]
+    fn rhs(self, section: &Section<T>, (): ()) -> (T, ()) {
+        let x = section.arclength - T::of(0.5);
+        let [a, b, c, d, e, f, g] = self.centred;
+        (section.rho * horner!(x; g, f, e, d, c, b, a), ())
+    }
+
+    #[inline(always)]
+    fn course(self, from: &Section<T>, (): ()) -> PolynomialSeries<T> {
+        let mut terms = self.around(from.arclength);
+        for (term, inverse) in terms.iter_mut().zip(INTEGRATED) {
+            *term = *term * T::of(inverse);
+        }
+        PolynomialSeries {
+            per_along: -from.rho,
+            terms,
+        }
+    }
+
+    #[inline(always)]
+    fn turn(course: &PolynomialSeries<T>, along: T) -> Option<T> {
+        let way = course.per_along * along;
+        let [a, b, c, d, e, f, g] = course.terms;
+        Some(way * horner!(way; g, f, e, d, c, b, a))
+    }
+
+    #[inline(always)]
+    fn after(_: &PolynomialSeries<T>, _: T) {}
 }

@@ -26,7 +26,7 @@ pub use integrator::{
     BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, StepStage, collocate, integrate,
 };
 pub use intrinsic::{
-    Bent, Intrinsic, Spiral, Straight, TANGENT as REST_TANGENT, TERMS as REST_TERMS,
+    Bent, Intrinsic, Polynomial, Spiral, Straight, TANGENT as REST_TANGENT, TERMS as REST_TERMS,
 };
 pub use map::{
     FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative, limited,

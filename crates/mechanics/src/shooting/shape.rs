@@ -3,7 +3,8 @@
 use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::{
     BackwardCompliance, Bent, Graded, Intrinsic, Measured, NoSensitivity, Nystrom8, PieceSteps,
-    Resolution, RodSystem, Scales, Section, Spiral, TrajectoryState, collocate, integrate,
+    Polynomial, Resolution, RodSystem, Scales, Section, Spiral, TrajectoryState, collocate,
+    integrate,
 };
 use glam::DVec2;
 
@@ -42,6 +43,10 @@ pub fn profile(
         steps: resolution.steps(rod, tau, load),
         pieces: resolution.of_pieces(rod, tau, load),
     };
+    if let Some(polynomial) = &rod.polynomial {
+        let centred = *polynomial.centred();
+        return trajectory.points(Polynomial { centred }, (), at);
+    }
     match rod.spiral {
         Some([at_base, slope]) => trajectory.points(Spiral { at_base, slope }, (), at),
         None => {

@@ -61,7 +61,7 @@ fn changes(rod: &Rod) -> Vec<Change> {
                 ..zero()
             },
         ));
-    } else {
+    } else if rod.polynomial.is_none() {
         all.push((
             |rod, h| rod.bend += h,
             RodDerivative {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use whiskmap_mechanics::numerics::Unit;
-use whiskmap_mechanics::rod::{Effects, RadiusProfile, Rod};
+use whiskmap_mechanics::rod::{CurvaturePolynomial, Effects, RadiusProfile, Rod};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method, flops_of_nystrom8};
 use whiskmap_mechanics::shooting::{SecondVariation, ShootingMap};
 
@@ -45,6 +45,12 @@ pub fn rods() -> Vec<Rod> {
             [0.6, 0.3],
             [1.0, 0.1],
         ]),
+        Rod {
+            polynomial: Some(Arc::new(CurvaturePolynomial::new([
+                0.2, -0.4, 0.15, 0.1, -0.1, 0.05, 0.05,
+            ]))),
+            ..cone
+        },
     ]
 }
 
@@ -82,7 +88,9 @@ fn no_effect_is_dropped() {
 fn additional_effects_change_rounding_alone() {
     let rods = rods();
     let all = Effects::of(&rods);
-    assert!(all.taper && all.curvature && all.spiral && all.gradient && all.profile);
+    assert!(
+        all.taper && all.curvature && all.spiral && all.polynomial && all.gradient && all.profile
+    );
     for condition in conditions(&rods) {
         let shoot = |method| Batch::new(method).shoot::<SecondVariation>(&[condition])[0];
         let own = shoot(Method::fine());
@@ -100,10 +108,11 @@ fn operations_are_counted() {
     let first_on = |rod: usize| &all[3 * rod];
     let count = |rod, steps| flops_of_nystrom8(Effects::default(), steps, first_on(rod));
     assert_eq!(count(1, 20), 2 * count(1, 10));
-    // Taper 0, 0.9, curvature, spiral, gradient; then measured radii of two and five pieces.
-    let [cylinder, cone, bent, spiral, graded, two, five] =
-        [0, 1, 2, 3, 4, 5, 6].map(|rod| count(rod, 20));
+    // Taper 0, 0.9, curvature, spiral, gradient; then measured radii of two and five pieces, and polynomial curvature.
+    let [cylinder, cone, bent, spiral, graded, two, five, polynomial] =
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|rod| count(rod, 20));
     assert!(cylinder > 20 * 8 * 20, "{cylinder}");
     assert!(cylinder < cone && cone < spiral && spiral < bent && cone < graded);
+    assert!(spiral < polynomial && polynomial < bent, "{polynomial}");
     assert!(0 < two && two <= five, "{two} {five}");
 }

@@ -16,6 +16,7 @@ const EFFECTS: Effects = Effects {
     taper: true,
     curvature: true,
     spiral: false,
+    polynomial: false,
     gradient: true,
     profile: false,
 };

@@ -31,15 +31,10 @@ impl Rest {
                 let curvature = parabola.curvature(parabola.arclength_at(x));
                 (point, tangent, curvature, parabola.derivative(x, by))
             }
-            Form::EulerSpiral(spiral) => {
-                let s = spiral.arclength_of_chord(distance);
-                let (point, tangent) = spiral.at_arclength(s);
-                (
-                    point,
-                    tangent,
-                    spiral.curvature(s),
-                    spiral.derivative(s, by),
-                )
+            Form::Arc(curve) => {
+                let s = curve.arclength_of_chord(distance);
+                let (point, tangent) = curve.at_arclength(s);
+                (point, tangent, curve.curvature(s), curve.derivative(s, by))
             }
         };
         let along = (distance * by_distance - point.dot(own.point)) / point.dot(tangent);

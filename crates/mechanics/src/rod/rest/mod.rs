@@ -1,16 +1,16 @@
-//! The whisker at rest: a parabola or an Euler spiral, by arclength and by chord, and the pole at first touch. The shape
+//! The whisker at rest: a parabola, an Euler spiral or a curve of polynomial curvature, by arclength and by chord, and the pole at first touch. The shape
 //! continues beyond the tip for distances that need it.
 
+mod arc_curve;
 mod derivative;
 mod parabola;
-mod spiral;
 
 use crate::numerics::Bracket;
 use crate::rod::Rod;
 use crate::rod::rod::pointed;
+use arc_curve::ArcCurve;
 use glam::DVec2;
 use parabola::Parabola;
-use spiral::SpiralRest;
 
 /// The undeflected shape of a [`Rod`] in the frame of the base: the origin is the base, the first axis its tangent.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ pub struct Rest {
 #[derive(Clone, Copy, Debug)]
 enum Form {
     Parabola(Parabola),
-    EulerSpiral(SpiralRest),
+    Arc(ArcCurve),
 }
 
 impl Rest {
@@ -31,9 +31,10 @@ impl Rest {
     #[must_use]
     pub fn new(rod: &Rod) -> Self {
         Self {
-            form: match rod.spiral {
-                Some(coefficients) => Form::EulerSpiral(SpiralRest::new(coefficients)),
-                None => Form::Parabola(Parabola::new(rod)),
+            form: match (&rod.polynomial, rod.spiral) {
+                (Some(curvature), _) => Form::Arc(ArcCurve::polynomial(**curvature)),
+                (None, Some(coefficients)) => Form::Arc(ArcCurve::spiral(coefficients)),
+                (None, None) => Form::Parabola(Parabola::new(rod)),
             },
             pole: rod.pole,
             end: pointed(rod.taper),
@@ -64,7 +65,7 @@ impl Rest {
     pub fn curvature(&self, s: f64) -> f64 {
         match &self.form {
             Form::Parabola(parabola) => parabola.curvature(s),
-            Form::EulerSpiral(spiral) => spiral.curvature(s),
+            Form::Arc(curve) => curve.curvature(s),
         }
     }
 
@@ -73,7 +74,7 @@ impl Rest {
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         match &self.form {
             Form::Parabola(parabola) => parabola.at_arclength(s),
-            Form::EulerSpiral(spiral) => spiral.at_arclength(s),
+            Form::Arc(curve) => curve.at_arclength(s),
         }
     }
 
@@ -84,9 +85,9 @@ impl Rest {
                 let x = parabola.x_of_chord(distance);
                 (parabola.arclength_at(x), parabola.at(x))
             }
-            Form::EulerSpiral(spiral) => {
-                let s = spiral.arclength_of_chord(distance);
-                (s, spiral.at_arclength(s))
+            Form::Arc(curve) => {
+                let s = curve.arclength_of_chord(distance);
+                (s, curve.at_arclength(s))
             }
         };
         (s, point, tangent)
@@ -98,7 +99,7 @@ impl Rest {
     pub fn point_at_distance(&self, distance: f64) -> DVec2 {
         match &self.form {
             Form::Parabola(parabola) => parabola.at(parabola.x_of_chord(distance)).0,
-            Form::EulerSpiral(_) => self.at_distance(distance).1,
+            Form::Arc(_) => self.at_distance(distance).1,
         }
     }
 

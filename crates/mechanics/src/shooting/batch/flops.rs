@@ -2,12 +2,12 @@
 
 use crate::numerics::Real;
 use crate::numerics::gauss::NODES;
-use crate::rod::{Effects, arclength};
+use crate::rod::{CURVATURE_TERMS, Effects, arclength};
 use crate::shooting::batch::{InitialCondition, Method, block_key::BlockKey};
 use crate::shooting::sensitivity::{GeneralFirst, SimilarFirst};
 use crate::shooting::{
-    Bent, Graded, Intrinsic, Measured, Nystrom8, Resolution, RodSystem, Scales, Section, Spiral,
-    Straight, Uniform, collocate, integrate,
+    Bent, Graded, Intrinsic, Measured, Nystrom8, Polynomial, Resolution, RodSystem, Scales,
+    Section, Spiral, Straight, Uniform, collocate, integrate,
 };
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -73,13 +73,17 @@ pub fn flops_of_nystrom8(effects: Effects, steps: u32, condition: &InitialCondit
     let effects = BlockKey::new(method, condition, steps).effects;
     let counter = Cell::new(0);
     let x = Counted(Some(&counter));
-    let of_step = match (effects.spiral, effects.curvature) {
-        (true, _) => {
+    let of_step = match (effects.polynomial, effects.spiral, effects.curvature) {
+        (true, ..) => {
+            let centred = [x; CURVATURE_TERMS];
+            of_step(effects, &counter, Polynomial { centred }, ())
+        }
+        (false, true, _) => {
             let (at_base, slope) = (x, x);
             of_step(effects, &counter, Spiral { at_base, slope }, ())
         }
-        (false, true) => of_step(effects, &counter, Bent { twice_bend: x }, [x; 2]),
-        (false, false) => of_step(effects, &counter, Straight, ()),
+        (false, false, true) => of_step(effects, &counter, Bent { twice_bend: x }, [x; 2]),
+        (false, false, false) => of_step(effects, &counter, Straight, ()),
     };
     let InitialCondition { rod, tau, load } = condition;
     let steps = rod.profile.as_ref().map_or(steps, |profile| {

@@ -1,11 +1,12 @@
 //! Rest shapes and materials of the rods of a block, gathered into lanes.
 
 use crate::numerics::{Lanes, WIDTH};
+use crate::rod::CURVATURE_TERMS;
 use crate::shooting::batch::InitialCondition;
 use crate::shooting::contact::arc;
 use crate::shooting::{
-    Bent, Graded, Integrator, Intrinsic, Material, Resolution, RodSystem, Scales, Section,
-    Sensitivity, Spiral, Straight, TrajectoryState, Uniform, integrate,
+    Bent, Graded, Integrator, Intrinsic, Material, Polynomial, Resolution, RodSystem, Scales,
+    Section, Sensitivity, Spiral, Straight, TrajectoryState, Uniform, integrate,
 };
 
 /// One initial condition for each lane.
@@ -182,5 +183,21 @@ impl<T: Lanes> Gather<T> for Spiral<T> {
         };
         let curvature = spiral.at(s);
         (spiral, (), curvature)
+    }
+}
+
+impl<T: Lanes> Gather<T> for Polynomial<T> {
+    #[inline(always)]
+    fn gather(conditions: &Conditions, s: T) -> (Self, (), [T; 2]) {
+        let mut centred = [T::of(0.0); CURVATURE_TERMS];
+        for (power, own) in centred.iter_mut().enumerate() {
+            *own = lanes(conditions, |condition| {
+                let polynomial = condition.rod.polynomial.as_ref();
+                polynomial.map_or(0.0, |polynomial| polynomial.centred()[power])
+            });
+        }
+        let polynomial = Self { centred };
+        let curvature = polynomial.at(s);
+        (polynomial, (), curvature)
     }
 }

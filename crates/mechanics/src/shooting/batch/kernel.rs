@@ -7,7 +7,9 @@ use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::contact::{Contact, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
-use crate::shooting::{Bent, Graded, Integrator, Measured, Nystrom8, Spiral, Straight, Uniform};
+use crate::shooting::{
+    Bent, Graded, Integrator, Measured, Nystrom8, Polynomial, Spiral, Straight, Uniform,
+};
 use std::marker::PhantomData;
 
 /// Block of initial conditions of trajectories that are integrated together, at most as many as there are lanes.
@@ -162,6 +164,7 @@ fn by_effects<O: OutputSet, T: Lanes>(
     let Effects {
         curvature,
         spiral,
+        polynomial,
         gradient,
         ..
     } = key.effects;
@@ -171,6 +174,13 @@ fn by_effects<O: OutputSet, T: Lanes>(
             kernel!(Bent<T>, Uniform, General, false)
         } else {
             kernel!(Straight, Uniform, Similar, false)
+        };
+    }
+    if polynomial {
+        return if gradient {
+            kernel!(Polynomial<T>, Graded<T>, General, true)
+        } else {
+            kernel!(Polynomial<T>, Uniform, General, true)
         };
     }
     match (spiral, curvature, gradient) {
@@ -201,6 +211,9 @@ fn along_profile<O: OutputSet, T: Lanes>(
                 },
             )
         };
+    }
+    if key.effects.polynomial {
+        return kernel!(Polynomial<T>);
     }
     match (key.effects.spiral, key.effects.curvature) {
         (true, _) => kernel!(Spiral<T>),

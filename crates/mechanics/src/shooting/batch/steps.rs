@@ -5,8 +5,8 @@ use super::gather::{Conditions, Gather, lanes};
 use crate::numerics::{Lanes, LanesTask, SimdTask, Unit, WIDTH};
 use crate::shooting::contact::radius_and_arclength;
 use crate::shooting::{
-    Bent, NoSensitivity, Nystrom8, RodSystem, Scales, Section, Spiral, Straight, TrajectoryState,
-    Uniform, integrate,
+    Bent, NoSensitivity, Nystrom8, Polynomial, RodSystem, Scales, Section, Spiral, Straight,
+    TrajectoryState, Uniform, integrate,
 };
 use glam::DVec2;
 use std::marker::PhantomData;
@@ -50,6 +50,7 @@ impl SimdTask for StepStarts<'_> {
         let all: u32 = self.steps.iter().sum();
         let mut starts = Vec::with_capacity(all as usize);
         let mut bent = Vec::with_capacity(self.steps.len());
+        let has_polynomial = self.conditions.iter().any(|c| c.rod.polynomial.is_some());
         let has_spiral = self.conditions.iter().any(|c| c.rod.spiral.is_some());
         let has_bend = self.conditions.iter().any(|c| c.rod.bend != 0.0);
         let blocks = self.conditions.chunks(T::LANES);
@@ -66,10 +67,11 @@ impl SimdTask for StepStarts<'_> {
                     })
                 };
             }
-            let turned = match (has_spiral, has_bend) {
-                (true, _) => follow!(Spiral<T>),
-                (false, true) => follow!(Bent<T>),
-                (false, false) => follow!(Straight),
+            let turned = match (has_polynomial, has_spiral, has_bend) {
+                (true, ..) => follow!(Polynomial<T>),
+                (false, true, _) => follow!(Spiral<T>),
+                (false, false, true) => follow!(Bent<T>),
+                (false, false, false) => follow!(Straight),
             };
             bent.extend_from_slice(&turned[..steps.len()]);
         }

@@ -4,14 +4,14 @@
 use super::{TrajectoryVariable, VariationDerivative};
 use crate::numerics::gauss::Integrals;
 use crate::numerics::{Dual, Lanes, LanesTask, Real, WIDTH};
-use crate::rod::{Piece, RadiusProfile, Rod, RodDerivative};
+use crate::rod::{CURVATURE_TERMS, Piece, RadiusProfile, Rod, RodDerivative};
 use crate::shooting::batch::{Complex, InitialCondition, PoleCentre};
 use crate::shooting::contact::{Contact, arc, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, Energetic, GeneralFirst, SensitivitySet};
 use crate::shooting::{
-    BackwardCompliance, Bent, FullState, Graded, Intrinsic, Measured, Nystrom8, Resolution,
-    RodSystem, Scales, Section, ShootingMap, Spiral, StateDerivative, TrajectoryState, collocate,
-    integrate,
+    BackwardCompliance, Bent, FullState, Graded, Intrinsic, Measured, Nystrom8, Polynomial,
+    Resolution, RodSystem, Scales, Section, ShootingMap, Spiral, StateDerivative, TrajectoryState,
+    collocate, integrate,
 };
 use glam::DVec2;
 use std::marker::PhantomData;
@@ -38,6 +38,9 @@ pub fn compute<T: Lanes>(
                 of: PhantomData,
             })
         };
+    }
+    if condition.rod.polynomial.is_some() {
+        return kernel!(Polynomial<Dual<T>>);
     }
     match condition.rod.spiral {
         Some(_) => kernel!(Spiral<Dual<T>>),
@@ -74,6 +77,21 @@ impl<T: Lanes> DualRest<T> for Spiral<Dual<T>> {
             slope: coefficient(1),
         };
         (spiral, (), spiral.at(s))
+    }
+}
+
+/// No variable changes the coefficients: they are numbers without a unit, which a whisker of another length keeps.
+impl<T: Lanes> DualRest<T> for Polynomial<Dual<T>> {
+    #[inline(always)]
+    fn start<I>(kernel: &Kernel<I>, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]) {
+        let mut centred = [Dual::of(0.0); CURVATURE_TERMS];
+        if let Some(polynomial) = &kernel.condition.rod.polynomial {
+            for (own, value) in centred.iter_mut().zip(polynomial.centred()) {
+                *own = Dual::of(*value);
+            }
+        }
+        let polynomial = Self { centred };
+        (polynomial, (), polynomial.at(s))
     }
 }
 

@@ -1,8 +1,8 @@
-//! Euler spiral at rest, with curvature `k0 + k1 s`, straight beyond the tip.
+//! Curves at rest whose curvature is known by arclength, an Euler spiral or a polynomial. They are straight beyond the tip.
 
 use super::derivative::CurveDerivative;
 use crate::numerics::Bracket;
-use crate::rod::RodDerivative;
+use crate::rod::{CurvaturePolynomial, RodDerivative};
 use glam::DVec2;
 
 /// Positive nodes and their weights of the Gauss-Legendre rule with 16 nodes on `[-1, 1]`.
@@ -17,40 +17,72 @@ const GAUSS: [(f64, f64); 8] = [
     (0.989_400_934_991_649_9, 0.027_152_459_411_754_096),
 ];
 
-/// Largest rotation of the spiral per panel of the rule, in radians: the rule is then exact to rounding.
+/// Largest rotation of the curve per panel of the rule, in radians: the rule is then exact to rounding.
 const TURN_PER_PANEL: f64 = 1.0;
 
-/// Euler spiral at rest in the frame of the base.
+/// Fewest panels of the rule over a polynomial, whose curvature may change its sign six times.
+const FEWEST_PANELS: f64 = 4.0;
+
+/// Curvature of a curve at rest by arclength.
 #[derive(Clone, Copy, Debug)]
-pub struct SpiralRest {
-    k0: f64,
-    k1: f64,
+enum ArcCurvature {
+    /// Coefficients `[k0, k1]` of an Euler spiral.
+    Spiral([f64; 2]),
+    Polynomial(CurvaturePolynomial),
 }
 
-impl SpiralRest {
+/// Curve at rest in the frame of the base, from its curvature by arclength.
+#[derive(Clone, Copy, Debug)]
+pub struct ArcCurve(ArcCurvature);
+
+impl ArcCurve {
     /// Creates the spiral whose curvature is `k0 + k1 s` at arclength `s` (whisker lengths), in radians per whisker length.
-    pub fn new([k0, k1]: [f64; 2]) -> Self {
-        Self { k0, k1 }
+    pub fn spiral(coefficients: [f64; 2]) -> Self {
+        Self(ArcCurvature::Spiral(coefficients))
     }
 
-    /// Returns the curvature of the spiral at arclength `s` (whisker lengths), in radians per whisker length; 0 beyond the tip.
+    /// Creates the curve with this curvature.
+    pub fn polynomial(curvature: CurvaturePolynomial) -> Self {
+        Self(ArcCurvature::Polynomial(curvature))
+    }
+
+    /// Returns the curvature of the curve at arclength `s` (whisker lengths), in radians per whisker length; 0 beyond the tip.
     pub fn curvature(&self, s: f64) -> f64 {
         if s > 1.0 {
-            0.0
-        } else {
-            self.k1.mul_add(s, self.k0)
+            return 0.0;
+        }
+        match &self.0 {
+            ArcCurvature::Spiral([k0, k1]) => k1.mul_add(s, *k0),
+            ArcCurvature::Polynomial(curvature) => curvature.at(s),
         }
     }
 
     /// Angle of the tangent at arclength `s` from the base's tangent, in radians.
     fn angle(&self, s: f64) -> f64 {
-        s * (0.5 * self.k1).mul_add(s, self.k0)
+        match &self.0 {
+            ArcCurvature::Spiral([k0, k1]) => s * (0.5 * k1).mul_add(s, *k0),
+            ArcCurvature::Polynomial(curvature) => curvature.angle(s),
+        }
     }
 
-    /// Integral of `integrand` from the base to the arclength `to` on the spiral.
+    /// Number of panels of the rule between the base and the arclength `to`.
+    fn panels(&self, to: f64) -> u32 {
+        let panels = match &self.0 {
+            ArcCurvature::Spiral([k0, k1]) => {
+                let most = k0.abs().max((k0 + k1).abs());
+                (most * to / TURN_PER_PANEL).ceil().max(1.0)
+            }
+            ArcCurvature::Polynomial(curvature) => {
+                let turn = curvature.sharpest() * to / TURN_PER_PANEL;
+                turn.ceil().max((FEWEST_PANELS * to).ceil().max(1.0))
+            }
+        };
+        panels as u32
+    }
+
+    /// Integral of `integrand` from the base to the arclength `to` on the curve.
     fn integral(&self, to: f64, integrand: impl Fn(f64) -> DVec2) -> DVec2 {
-        let most = self.k0.abs().max((self.k0 + self.k1).abs());
-        let panels = (most * to / TURN_PER_PANEL).ceil().max(1.0) as u32;
+        let panels = self.panels(to);
         let half = 0.5 * to / f64::from(panels);
         (0..panels)
             .map(|panel| {
@@ -65,7 +97,7 @@ impl SpiralRest {
             .sum()
     }
 
-    /// Returns point and unit tangent of the spiral at arclength `s`, in whisker lengths, in the frame of the base.
+    /// Returns point and unit tangent of the curve at arclength `s`, in whisker lengths, in the frame of the base.
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
         let bent = s.min(1.0);
         let point = self.integral(bent, |s| DVec2::from_angle(self.angle(s)));
@@ -73,9 +105,18 @@ impl SpiralRest {
         (point + (s - bent) * tangent, tangent)
     }
 
-    /// Returns the derivative of the spiral at the arclength `s` (whisker lengths) by a variable, in the frame of the base.
+    /// Returns the derivative of the curve at the arclength `s` (whisker lengths) by a variable, in the frame of the base. No variable
+    /// changes a polynomial.
     pub fn derivative(&self, s: f64, by: &RodDerivative) -> CurveDerivative {
-        let [k0, k1] = by.spiral;
+        let [k0, k1] = match &self.0 {
+            ArcCurvature::Spiral(_) => by.spiral,
+            ArcCurvature::Polynomial(_) => {
+                return CurveDerivative {
+                    point: DVec2::ZERO,
+                    angle: 0.0,
+                };
+            }
+        };
         let angle = |s: f64| s * (0.5 * k1).mul_add(s, k0);
         let turned = |s: f64| angle(s) * DVec2::from_angle(self.angle(s)).perp();
         let bent = s.min(1.0);
@@ -85,8 +126,8 @@ impl SpiralRest {
         }
     }
 
-    /// Returns the arclength at which the spiral's chord from the base is `chord`, both in whisker lengths. The chord grows along the
-    /// spiral in every valid scene.
+    /// Returns the arclength at which the curve's chord from the base is `chord`, both in whisker lengths. The chord grows along the
+    /// curve in every valid scene.
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
         let reach = self.at_arclength(1.0).0.length();
         // The function is the chord less the length, which falls.

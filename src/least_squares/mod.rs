@@ -4,7 +4,9 @@
 //! `|r + J p|` subject to `|D p| <= radius`. `D` has the largest lengths so far of the columns of `J`. The singular values of
 //! `J D^-1` give the step for every damping, and so the damping at which the step reaches the radius.
 
-use super::svd::{Svd, dot, norm};
+mod svd;
+
+pub use svd::{Svd, dot, norm};
 
 /// Most evaluations of the residuals, per parameter.
 const MOST_STEPS: usize = 100;
@@ -18,20 +20,17 @@ const RADIUS_SLACK: f64 = 0.1;
 /// Least ratio of actual and predicted reduction with which a step is taken.
 const LEAST_RATIO: f64 = 1e-4;
 
-/// Message of a fit for which no Jacobian can be computed.
-pub(super) const NO_JACOBIAN: &str = "a point has no derivative by a parameter: it is out of reach, at the reach, or where slip-off turns into pull-off";
-
 /// Minimises the sum of squares of residuals from the parameters `x` on. Returns the parameters and the sum.
 ///
 /// `residuals_at` returns the residuals at a place. `jacobian_at` returns the columns of the Jacobian at a place with these
-/// residuals, or `None` where there is none. The iteration ends where the relative change of the sum, or of the scaled
+/// residuals, or the reason why there are none. The iteration ends where the relative change of the sum, or of the scaled
 /// parameters, is at most `tolerance`.
 ///
 /// # Errors
 /// The reason why the iteration ends before it converges.
-pub(super) fn minimise(
+pub fn minimise(
     residuals_at: impl Fn(&[f64]) -> Vec<f64>,
-    jacobian_at: impl Fn(&[f64], &[f64]) -> Option<Vec<Vec<f64>>>,
+    jacobian_at: impl Fn(&[f64], &[f64]) -> Result<Vec<Vec<f64>>, &'static str>,
     mut x: Vec<f64>,
     tolerance: f64,
 ) -> Result<(Vec<f64>, f64), &'static str> {
@@ -44,7 +43,7 @@ pub(super) fn minimise(
         return Err("numbers overflow");
     }
     loop {
-        let mut columns = jacobian_at(&x, &residuals).ok_or(NO_JACOBIAN)?;
+        let mut columns = jacobian_at(&x, &residuals)?;
         for (column, scale) in columns.iter_mut().zip(&mut scales) {
             *scale = norm(column).max(*scale);
             // A parameter on which nothing depends stays.

@@ -8,7 +8,7 @@ const ORTHOGONAL: f64 = 1e-14;
 
 /// Singular value decomposition of a matrix `A`: directions `v` in the space of columns, with their images `A v`. Images are orthogonal
 /// to each other.
-pub(super) struct Svd {
+pub struct Svd {
     /// Unit directions `v` in the space of columns: `[direction][column]`.
     pub directions: Vec<Vec<f64>>,
     /// Images `A v` of the directions `v` under the decomposed matrix: `[direction][row]`; the length of an image is a singular value.
@@ -68,12 +68,12 @@ fn rotate(columns: &mut [Vec<f64>], [i, j]: [usize; 2], [cos, sin]: [f64; 2]) {
 }
 
 /// Returns the scalar product of two vectors of the same length.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Returns the Euclidean length of a vector.
-pub(super) fn norm(a: &[f64]) -> f64 {
+pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
