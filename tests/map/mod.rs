@@ -28,6 +28,7 @@ pub fn scene(
     SceneData {
         title: "A made-up whisker in front of a pole".to_owned(),
         uncertainty: None,
+        surface: None,
         whisker: Whisker {
             length_mm: 20.0,
             base_radius_um: 33.0,
