@@ -9,12 +9,14 @@
 //! where the chord of the resting whisker is normal to that line. It grows toward `x`, and pushes CB then.
 
 mod asperities;
+mod event;
+mod rows;
 mod sample;
 mod shape;
 mod stays;
 mod tip;
 
-pub use sample::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
+pub use rows::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
 pub use shape::shape;
 pub use stays::{AsperityStay, TipBin, histogram};
 
@@ -145,7 +147,7 @@ pub fn texture(
     let crossed = Crossing::first(samples.chain(held_then.iter().zip(&changes)));
     Ok(Texture {
         samples: sample::samples(course, &phases, &passages, &held, &place.tips, crossed),
-        events: sample::events(&passages, &kinds, &held_then, crossed),
+        events: event::events(&passages, &kinds, &held_then, crossed),
         reached: asperities.len(),
     })
 }

@@ -1,6 +1,6 @@
 //! Figures of courses: 4B, 5B, 6 and 7B.
 
-use super::{figure, last, named_lines, plot};
+use super::{figure, last, named_lines, near, plot};
 use whiskmap::paper::Measurements;
 use whiskmap::render::{Ink, Line};
 
@@ -27,7 +27,7 @@ fn fig4b_shows_the_last_frame_before_the_detachment() {
         let from_tip = away(&last(before)) - pole.radius;
         assert_eq!(from_tip < 0.6, is_pulled_off, "{letter}: {from_tip}");
         for line in &plot.lines {
-            assert_eq!(line.points[0], [0.0; 2], "{letter}");
+            assert!(near(line.points[0], [0.0; 2], 1e-9), "{letter}");
         }
     }
 }
@@ -68,7 +68,7 @@ fn fig6_says_where_the_model_differs() {
     );
 }
 
-/// Without errors of the curvature both methods would give the true force; with them they scatter around it.
+/// The errors of the curvature make both forces scatter around the true one. Without errors, `force` returns it (`tests/force.rs`).
 #[test]
 fn fig7b_scatters_around_the_true_force() {
     let plot = plot("fig7b", "B");
@@ -89,10 +89,11 @@ fn fig7b_scatters_around_the_true_force() {
             .collect();
         let rms = (misses.iter().map(|miss| miss * miss).sum::<f64>() / misses.len() as f64).sqrt();
         let mean = misses.iter().sum::<f64>() / misses.len() as f64;
-        eprintln!("rms {rms} mean {mean} of {}", misses.len());
+        // Measured: root mean squares of 0.024 and 0.034 uN, means of -0.002 and -0.003 uN.
         assert!(
-            misses.len() > 440 && mean.abs() < 0.2 * rms && rms > 0.0,
+            misses.len() > 450 && rms < 0.05 && mean.abs() < 0.01,
             "{rms} {mean}"
         );
+        assert!(rms > 0.01, "{rms}");
     }
 }
