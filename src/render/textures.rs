@@ -86,7 +86,7 @@ pub fn tip_histogram(texture: &Texture) -> Plot {
 fn dwell_histogram(texture: &Texture) -> Plot {
     let stays = texture.stays();
     let dwells = stays.iter().filter_map(|stay| Some([stay.dwell_s?, 1.0]));
-    let bins = histogram(&dwells.collect::<Vec<_>>(), DWELL_BINS);
+    let bins = histogram(&dwells.collect::<Vec<_>>(), Some(0.0), DWELL_BINS);
     steps_plot(
         "dwell time on an asperity (s)",
         "number of stays",

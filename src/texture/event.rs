@@ -20,12 +20,11 @@ pub fn events(
     let events = before.map(|i| {
         let (passage, event) = (&passages[i], kinds[i]);
         let is_detachment = matches!(event, WhiskEventKind::SlipOff | WhiskEventKind::PullOff);
-        let next = passages.get(i + 1).filter(|next| {
-            next.angle == passage.angle && next.event == Some(WhiskEventKind::Touch)
-        });
-        let after = match next {
-            Some(_) => energy(i + 1),
-            None => Some(0.0),
+        // A whisker that is held or undecided at once after a detachment has the energy of that state, known or not.
+        let next = passages.get(i + 1);
+        let after = match next.is_some_and(|next| next.angle == passage.angle) {
+            true => energy(i + 1),
+            false => Some(0.0),
         };
         let lost = energy(i).zip(after).map(|(before, after)| before - after);
         TextureEvent {

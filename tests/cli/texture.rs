@@ -1,6 +1,6 @@
 //! `whiskmap texture`.
 
-use super::traces::{cells, good};
+use super::traces::cells;
 use super::{Place, SCENE};
 
 const SURFACE: &str = "\
@@ -30,10 +30,12 @@ fn a_sweep_gives_its_tables_and_its_picture() {
         "--plot",
         "t.svg",
     ];
-    let run = good(
-        &place,
-        &[&["texture", "scene.toml", "--rate", "50"], &files[..]].concat(),
-    );
+    let texture = |more: &[&str]| {
+        let run = place.run(&[&["texture", "scene.toml"], more].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run
+    };
+    let run = texture(&[&["--rate", "50"], &files[..]].concat());
     assert_eq!(run.out, "s.csv\nt.svg\ne.csv\nd.csv\nh.csv\n");
     let text = |name: &str| String::from_utf8(place.bytes(name)).unwrap();
     let samples = text("s.csv");
@@ -66,28 +68,13 @@ fn a_sweep_gives_its_tables_and_its_picture() {
         "a.csv",
         &format!("time_s,angle_deg\n{}", angles.collect::<String>()),
     );
-    let again = good(&place, &["texture", "scene.toml", "--angles", "a.csv"]);
+    let again = texture(&["--angles", "a.csv"]);
     assert_eq!(again.out, text("s.csv"));
-    let other = good(
-        &place,
-        &[
-            "texture",
-            "scene.toml",
-            "--angles",
-            "a.csv",
-            "--units",
-            "um,mN",
-        ],
-    );
+    let other = texture(&["--angles", "a.csv", "--units", "um,mN"]).out;
+    let header = other.lines().next().unwrap();
     assert!(
-        other
-            .out
-            .lines()
-            .next()
-            .unwrap()
-            .contains(",tip_x_um,tip_height_um,force_mn,"),
-        "{}",
-        other.out.lines().next().unwrap()
+        header.contains(",tip_x_um,tip_height_um,force_mn,"),
+        "{header}"
     );
 }
 

@@ -75,7 +75,7 @@ fn shapes_end_at_the_tip() {
 /// Histograms keep all weights, and the largest value lies in the last bin.
 #[test]
 fn histograms_keep_all_weights() {
-    let bins = histogram(&[[0.0, 1.0], [0.5, 2.0], [1.0, 4.0]], 4);
+    let bins = histogram(&[[0.0, 1.0], [0.5, 2.0], [1.0, 4.0]], None, 4);
     let wanted = [
         ([0.0, 0.25], 1.0),
         ([0.25, 0.5], 0.0),
@@ -83,8 +83,13 @@ fn histograms_keep_all_weights() {
         ([0.75, 1.0], 4.0),
     ];
     assert_eq!(bins, wanted);
-    assert_eq!(histogram(&[[2.0, 1.0], [2.0, 1.0]], 4), [([2.0, 2.0], 2.0)]);
-    assert_eq!(histogram(&[], 4), []);
+    assert_eq!(
+        histogram(&[[2.0, 1.0], [2.0, 1.0]], None, 4),
+        [([2.0, 2.0], 2.0)]
+    );
+    assert_eq!(histogram(&[], None, 4), []);
+    let from_0 = [([0.0, 1.0], 0.0), ([1.0, 2.0], 5.0)];
+    assert_eq!(histogram(&[[2.0, 5.0]], Some(0.0), 2), from_0);
     let found = texture(
         &scene("texture_cone").whisker,
         &scene("texture_cone").surface.unwrap(),

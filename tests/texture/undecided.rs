@@ -50,8 +50,8 @@ fn what_the_model_does_not_determine_has_a_reason() {
     // Next to the tip a push ends before the resting whisker is clear of the asperity, as in `whisk`.
     let cone = scene("texture_cone");
     let thick = Surface {
-        distance_mm: 16.15,
-        asperity_radius_um: 200.0,
+        distance_mm: 16.18,
+        asperity_radius_um: 100.0,
         ..SINGLE
     };
     let angles: Vec<f64> = (0..=200).map(|i| 0.02 * f64::from(i) - 2.0).collect();
@@ -88,6 +88,13 @@ fn courses_that_cannot_be_are_refused() {
     for touch in [cb, cf] {
         assert!(texture(&cone.whisker, &thick, &course(&[touch, touch + 1.0])).is_ok());
     }
+    // The numbers of a surface are checked when it is used.
+    let endless = Surface {
+        spacing_um: 0.0,
+        ..SINGLE
+    };
+    let why = refused(&endless, &[0.0, 1.0]).to_string();
+    assert!(why.contains("surface.spacing_um = 0: must be"), "{why}");
     // Far from the middle the whisker meets the line at a slant, and does not fit between asperities.
     let dense = Surface {
         spacing_um: 101.0,
