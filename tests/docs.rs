@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::force::FrameForce;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::sensitivity::VariableEffect;
+use whiskmap::texture::{AsperityStay, TextureEvent, TextureSample, TipBin};
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::uncertainty::{EndSpread, PointSpread};
 use whiskmap::whisk::{WhiskEvent, WhiskSample};
@@ -102,6 +103,10 @@ fn every_column_is_on_the_page_of_the_commands() {
         VariableEffect::COLUMNS,
         WhiskSample::COLUMNS,
         WhiskEvent::COLUMNS,
+        TextureSample::COLUMNS,
+        TextureEvent::COLUMNS,
+        AsperityStay::COLUMNS,
+        TipBin::COLUMNS,
         FrameForce::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {

@@ -29,6 +29,7 @@ mod sealed;
 mod sensitivity;
 mod shaders;
 mod store;
+mod texture;
 mod ties;
 mod traced;
 mod traces;

@@ -83,7 +83,9 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     let histogram = table("--histogram", &args.histogram)?;
     let found = texture(&scene.whisker, &surface, &course).map_err(|why| match why {
         TextureError::Unresolved { .. } => Failure::Texture(why),
-        TextureError::Blocked { .. } => Failure::Input(format!("{}: {why}", args.scene.display())),
+        TextureError::Blocked { .. } | TextureError::Surface(_) => {
+            Failure::Input(format!("{}: {why}", args.scene.display()))
+        }
         why => Failure::Input(format!("{}: {why}", args.course.source())),
     })?;
     outputs.rows(&found.samples)?;

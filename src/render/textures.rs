@@ -48,11 +48,15 @@ pub fn tip_over_time(texture: &Texture) -> Plot {
 #[must_use]
 pub fn tip_lines(samples: &[TextureSample], x: fn(&TextureSample) -> f64) -> Vec<Line> {
     let place = |sample: &TextureSample| [x(sample), sample.tip_x_mm.unwrap_or(f64::NAN)];
-    let stuck = samples.chunk_by(|before, next| {
+    let stays = samples.chunk_by(|before, next| {
         let same = before.asperity == next.asperity && before.side == next.side;
         same && next.phase == TexturePhase::Stuck
     });
-    let stuck = stuck.filter(|part| part.last().is_some_and(|last| last.asperity.is_some()));
+    // A stay that has one sample, to which the whisker has slipped, is part of the slipping.
+    let is_stuck = |part: &&[TextureSample]| {
+        part[part.len() - 1].phase == TexturePhase::Stuck && part[0].asperity.is_some()
+    };
+    let stuck = stays.filter(is_stuck);
     let red = stuck.flat_map(|part| {
         let points = part.iter().map(place);
         points.chain([[f64::NAN; 2]])
@@ -82,7 +86,7 @@ pub fn tip_histogram(texture: &Texture) -> Plot {
 fn dwell_histogram(texture: &Texture) -> Plot {
     let stays = texture.stays();
     let dwells = stays.iter().filter_map(|stay| Some([stay.dwell_s?, 1.0]));
-    let bins = histogram(&dwells.collect::<Vec<_>>(), DWELL_BINS);
+    let bins = histogram(&dwells.collect::<Vec<_>>(), Some(0.0), DWELL_BINS);
     steps_plot(
         "dwell time on an asperity (s)",
         "number of stays",

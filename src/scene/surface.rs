@@ -1,6 +1,6 @@
 //! Table `[surface]` of a scene: a rough surface, over which the whisker sweeps.
 
-use super::error::SceneFault;
+use super::error::{SceneError, SceneFault};
 use super::limits::NumberLimits;
 use super::whisker::Whisker;
 use crate::random::RandomStream;
@@ -44,10 +44,18 @@ impl Surface {
         (0..=last as u32).map(position).collect()
     }
 
+    /// Checks the numbers of the surface in front of `whisker`.
+    ///
+    /// # Errors
+    /// If a number is out of its range.
+    pub fn check(&self, whisker: &Whisker) -> Result<(), SceneError> {
+        let refused = |fault| SceneError::of_fault("", "", fault);
+        self.checked(whisker).map(drop).map_err(refused)
+    }
+
     /// Checks the numbers of a surface in front of `whisker`.
     pub(super) fn checked(self, whisker: &Whisker) -> Result<Self, SceneFault> {
         let length = whisker.length_mm;
-        let spacing_mm = 1e-3 * self.spacing_um;
         let reach = NumberLimits::between(
             ("length_mm / 1000", 1e-3 * length),
             ("whisker.length_mm", length),
@@ -55,7 +63,7 @@ impl Surface {
         reach.check("surface.distance_mm", self.distance_mm)?;
         NumberLimits::between(1e-3, 1e8).check("surface.spacing_um", self.spacing_um)?;
         NumberLimits::below(0.0, 1.0).check("surface.jitter", self.jitter)?;
-        let most = f64::from(MOST_ASPERITIES - 1) * spacing_mm;
+        let most = f64::from(MOST_ASPERITIES - 1) * self.spacing_um / 1e3;
         let most = ("99,999 spacings", most);
         NumberLimits::between(0.0, most).check("surface.length_mm", self.length_mm)?;
         let touching = 0.5 * self.spacing_um * (1.0 - self.jitter);

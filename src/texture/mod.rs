@@ -9,17 +9,19 @@
 //! where the chord of the resting whisker is normal to that line. It grows toward `x`, and pushes CB then.
 
 mod asperities;
+mod event;
+mod rows;
 mod sample;
 mod shape;
 mod stays;
 mod tip;
 
-pub use sample::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
+pub use rows::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
 pub use shape::shape;
 pub use stays::{AsperityStay, TipBin, histogram};
 
 use crate::rod::Side;
-use crate::scene::{Surface, Whisker};
+use crate::scene::{SceneError, Surface, Whisker};
 use crate::whisk::phase::{Obstacles, Phase};
 use crate::whisk::states::{BothSides, RowPush};
 use crate::whisk::{AngleCourse, WhiskEventKind};
@@ -42,6 +44,9 @@ pub struct Texture {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TextureError {
+    /// A number of the surface is out of its range.
+    #[error(transparent)]
+    Surface(#[from] SceneError),
     /// The base turns away from the surface.
     #[error("angle {0} deg: must be between -90 and 90 deg from the normal of the surface")]
     Angle(f64),
@@ -96,13 +101,14 @@ pub enum TextureError {
 /// ```
 ///
 /// # Errors
-/// If the course begins in contact or turns the base away from the surface, the resting whisker does not fit between two asperities, or a
+/// If a number of the surface is out of its range, the course begins in contact or turns the base away from the surface, the resting whisker does not fit between two asperities, or a
 /// detachment is not found.
 pub fn texture(
     whisker: &Whisker,
     surface: &Surface,
     course: &AngleCourse,
 ) -> Result<Texture, TextureError> {
+    surface.check(whisker)?;
     let angles = course.angles_deg();
     if let Some(angle) = angles.iter().find(|angle| angle.abs() > 90.0) {
         return Err(TextureError::Angle(*angle));
@@ -145,7 +151,7 @@ pub fn texture(
     let crossed = Crossing::first(samples.chain(held_then.iter().zip(&changes)));
     Ok(Texture {
         samples: sample::samples(course, &phases, &passages, &held, &place.tips, crossed),
-        events: sample::events(&passages, &kinds, &held_then, crossed),
+        events: event::events(&passages, &kinds, &held_then, crossed),
         reached: asperities.len(),
     })
 }
@@ -206,10 +212,12 @@ impl Placed<'_> {
 }
 
 impl Texture {
-    /// Returns the energy that the detachments of the course lose, in nJ.
+    /// Returns the energy that the detachments of the course lose, in nJ; NaN if the loss of one is not known.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
-        let lost = self.events.iter().filter_map(|event| event.lost_nj);
+        let kinds = [WhiskEventKind::SlipOff, WhiskEventKind::PullOff];
+        let ends = self.events.iter().filter(|own| kinds.contains(&own.event));
+        let lost = ends.map(|event| event.lost_nj.unwrap_or(f64::NAN));
         lost.fold(0.0, |sum, lost| sum + lost)
     }
 }

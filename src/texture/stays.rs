@@ -75,7 +75,7 @@ impl Texture {
             let weight = 0.5 * (time(i + 1) - time(i.saturating_sub(1)));
             Some([samples[i].tip_x_mm?, weight])
         });
-        let bins = histogram(&places.collect::<Vec<_>>(), TIP_BINS);
+        let bins = histogram(&places.collect::<Vec<_>>(), None, TIP_BINS);
         let bins = bins.into_iter().map(|(ends, tip_time_s)| TipBin {
             tip_from_mm: ends[0],
             tip_to_mm: ends[1],
@@ -85,15 +85,14 @@ impl Texture {
     }
 }
 
-/// Returns the histogram of values, given as `[value, weight]`, in `bins` equal bins from the least to the largest: the ends of each bin
-/// and the sum of its weights. Equal values make one bin without width; without values there is none.
+/// Returns the histogram of values, given as `[value, weight]`, in `bins` equal bins: the ends of each bin and the sum of its weights. The
+/// bins begin at `least`, which no value is below, or at the least value, and end at the largest. Equal ends make one bin without width;
+/// without values there is none.
 #[must_use]
-pub fn histogram(values: &[[f64; 2]], bins: usize) -> Vec<([f64; 2], f64)> {
+pub fn histogram(values: &[[f64; 2]], least: Option<f64>, bins: usize) -> Vec<([f64; 2], f64)> {
     let all = || values.iter().map(|[value, _]| *value);
-    let (least, most) = (
-        all().fold(f64::INFINITY, f64::min),
-        all().fold(-f64::INFINITY, f64::max),
-    );
+    let least = least.unwrap_or_else(|| all().fold(f64::INFINITY, f64::min));
+    let most = all().fold(f64::NEG_INFINITY, f64::max);
     let bins = match (values.is_empty(), least < most) {
         (true, _) => 0,
         (_, true) => bins.max(1),

@@ -47,3 +47,119 @@ impl Obstacles for Turns {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::whisk::{Undecided, WhiskEventKind};
+
+    const TURNS: Turns = Turns {
+        cf_touch: 0.1,
+        cb_end: 0.5,
+        cf_end: Some(0.7),
+    };
+
+    /// Events of a course through these angles: what happens, on which side, and at which angle.
+    fn events(turns: &Turns, angles: &[f64]) -> Vec<(Option<WhiskEventKind>, Side, f64)> {
+        let mut events = Vec::new();
+        let mut phase = turns.begin(angles[0]).unwrap_or(Phase::Free { after: 99 });
+        for pair in angles.windows(2) {
+            turns.pass(&mut phase, pair[0], pair[1], |passage| {
+                events.push((passage.event, passage.side, passage.angle));
+            });
+        }
+        events
+    }
+
+    #[test]
+    fn a_whisker_that_slips_off_comes_back_on_the_other_side() {
+        use WhiskEventKind::{Release, Touch};
+        let found = events(&TURNS, &[-0.2, 1.0, -1.0]);
+        let end = 0.1 - 0.7;
+        let wanted = [
+            (Some(Touch), Side::Cb, 0.0),
+            (None, Side::Cb, 0.5),
+            (Some(Touch), Side::Cf, 0.1),
+            (None, Side::Cf, end),
+        ];
+        assert_eq!(found, wanted);
+        // A push that turns back is released where it began.
+        let found = events(&TURNS, &[0.0, 0.4, -0.2, 0.5]);
+        let wanted = [
+            (Some(Touch), Side::Cb, 0.0),
+            (Some(Release), Side::Cb, 0.0),
+            (Some(Touch), Side::Cb, 0.0),
+        ];
+        assert_eq!(found, wanted);
+    }
+
+    #[test]
+    fn a_whole_turn_touches_from_behind() {
+        let found = events(&TURNS, &[0.2, 6.0, 7.0]);
+        assert_eq!(found[0], (Some(WhiskEventKind::Touch), Side::Cb, TAU));
+        assert_eq!(found[1], (None, Side::Cb, TAU + 0.5));
+        assert_eq!(found.len(), 2);
+    }
+
+    #[test]
+    fn a_course_cannot_begin_in_contact() {
+        assert_eq!(TURNS.begin(0.05), None);
+        assert_eq!(TURNS.begin(0.0), Some(Phase::Free { after: -1 }));
+        assert_eq!(TURNS.begin(0.1), Some(Phase::Free { after: 0 }));
+        // In front of a point both touches are at the same angle, and a push to CB comes first.
+        let point = Turns {
+            cf_touch: 0.0,
+            ..TURNS
+        };
+        assert_eq!(point.begin(0.0), Some(Phase::Free { after: -1 }));
+        assert_eq!(point.begin(0.1), Some(Phase::Free { after: 0 }));
+    }
+
+    /// Before a thick pole, a short push ends where the resting whisker would cross the pole.
+    #[test]
+    fn a_whisker_on_the_pole_is_undecided() {
+        let thick = Turns {
+            cf_touch: 0.4,
+            cb_end: 0.2,
+            cf_end: Some(0.1),
+        };
+        let mut phase = Phase::Free { after: -1 };
+        let mut last = None;
+        thick.pass(&mut phase, -0.1, 0.35, |passage| last = passage.event);
+        assert_eq!(last, Some(WhiskEventKind::Undecided));
+        let reason = Undecided::OnThePole;
+        assert_eq!(
+            phase,
+            Phase::Undecided {
+                obstacle: 0,
+                reason
+            }
+        );
+        thick.pass(&mut phase, 0.35, 0.45, |_| {});
+        assert_eq!(phase, Phase::Free { after: 0 });
+        // A side that holds the whisker takes it over.
+        let held = Turns {
+            cf_end: Some(0.3),
+            ..thick
+        };
+        let mut phase = Phase::Free { after: -1 };
+        held.pass(&mut phase, -0.1, 0.35, |_| {});
+        let side = Side::Cf;
+        assert_eq!(phase, Phase::Contact { side, obstacle: 0 });
+        // Without a touch on CF, the tip's edge meets the pole.
+        let short = Turns {
+            cf_end: None,
+            ..thick
+        };
+        let mut phase = Phase::Free { after: 0 };
+        short.pass(&mut phase, 0.5, 0.3, |_| {});
+        let reason = Undecided::TipEdge;
+        assert_eq!(
+            phase,
+            Phase::Undecided {
+                obstacle: 0,
+                reason
+            }
+        );
+    }
+}

@@ -45,6 +45,7 @@ mod store;
 #[cfg(unix)]
 mod submit;
 mod sweep;
+mod texture;
 mod tolerance;
 mod traces;
 mod uncertainty;

@@ -14,15 +14,25 @@ fn figures_come_with_their_tables() {
         .collect();
     files.sort_unstable();
     assert_eq!(files, names(&place.path("new/folder")));
-    let pictures = ["fig1", "fig2", "fig3", "fig4d", "fig5c"];
+    let pictures = [
+        "fig1", "fig2", "fig3", "fig4b", "fig4d", "fig5b", "fig5c", "fig6", "fig7b",
+    ];
     let pictures =
         pictures.map(|figure| ["pdf", "png", "svg"].map(|ending| format!("{figure}.{ending}")));
     let mut expected = pictures.concat();
     let branch = |shown: &str| format!("distance_mm,side,stable,push_angle_deg,{shown},mark");
     let shape = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,strain,part";
+    let frame = "time_s,angle_deg,regime,x_mm,y_mm";
+    let (swept, tip) = (
+        "time_s,angle_deg,phase,x_mm,y_mm",
+        "tip_from_mm,tip_to_mm,tip_time_s",
+    );
+    let trial = "time_s,angle_deg,curvature_per_mm,force_un,lever_force_un,model_force_un";
     let (section, sketch) = ("arc_length_mm,x_mm,y_mm,radius_um", "whisker,x_mm,y_mm");
     let solution = format!("solution,push_angle_deg,{shape}");
     let ends = "whisker,side,kind,push_angle_deg,distance_mm,contact_distance_mm";
+    let samples = whiskmap::texture::TextureSample::COLUMNS.iter();
+    let samples = samples.map(|(name, _)| *name).collect::<Vec<_>>().join(",");
     for (tables, header) in [
         (&["1a", "3a", "3f"][..], section),
         (&["1b"], shape),
@@ -32,6 +42,39 @@ fn figures_come_with_their_tables() {
         (&["3c", "3h"], &branch("force_un")),
         (&["3d", "3i"], &branch("s_obj_mm")),
         (&["3e", "3j", "4d", "5c_left", "5c_right"], ends),
+        (&["4b", "4c", "5b"], frame),
+        (
+            &[
+                "6b_free",
+                "6b_330um",
+                "6b_1500um",
+                "6b_4500um",
+                "6e_free",
+                "6e_2000um",
+            ],
+            swept,
+        ),
+        (&["6e_330um", "6e_3300um"], swept),
+        (
+            &[
+                "6c_histogram_free",
+                "6c_histogram_330um",
+                "6c_histogram_1500um",
+            ],
+            tip,
+        ),
+        (
+            &[
+                "6c_histogram_4500um",
+                "6f_histogram_free",
+                "6f_histogram_330um",
+            ],
+            tip,
+        ),
+        (&["6f_histogram_2000um", "6f_histogram_3300um"], tip),
+        (&["6c_free", "6c_330um", "6c_1500um", "6c_4500um"], &samples),
+        (&["6f_free", "6f_330um", "6f_2000um", "6f_3300um"], &samples),
+        (&["7b"], trial),
     ] {
         for table in tables {
             let name = format!("fig{table}.csv");

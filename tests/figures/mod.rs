@@ -3,6 +3,7 @@
 
 mod detachment;
 mod fig3;
+mod motion;
 
 use whiskmap::paper::{Figure, Measurements, figures};
 use whiskmap::render::{Dot, Ink, Line, Plot, Stroke};
@@ -24,6 +25,11 @@ fn plot(name: &str, letter: &str) -> Plot {
 fn named<'a>(dots: &'a [Dot], name: &str) -> Vec<&'a Dot> {
     let has_name = |dot: &&Dot| dot.name.as_deref() == Some(name);
     dots.iter().filter(has_name).collect()
+}
+
+fn named_lines<'a>(plot: &'a Plot, name: &str) -> Vec<&'a Line> {
+    let has_name = |line: &&Line| line.name.as_deref() == Some(name);
+    plot.lines.iter().filter(has_name).collect()
 }
 
 fn looks(lines: &[Line]) -> Vec<(Ink, Stroke)> {
@@ -57,8 +63,12 @@ fn every_panel_has_its_letter_and_a_table() {
         ("fig1", "ABCD", 4),
         ("fig2", "ABCD", 4),
         ("fig3", "AFBGCHDIEJ", 10),
+        ("fig4b", "BC", 2),
         ("fig4d", "D", 1),
+        ("fig5b", "B", 1),
         ("fig5c", "C", 2),
+        ("fig6", "BCEF", 24),
+        ("fig7b", "B", 1),
     ];
     assert_eq!(
         shown,

@@ -95,6 +95,8 @@ fn every_shipped_scene_is_accepted() {
         "measured",
         "morphology",
         "robot",
+        "texture_cone",
+        "texture_hair",
         "traced",
         "uncertain",
     ];

@@ -49,6 +49,8 @@ struct Sweep<'a> {
     whisker: &'a Whisker,
     surface: Surface,
     texture: Texture,
+    /// Same sweep with more samples, for the histogram.
+    fine: Texture,
     /// Name of the sweep in files.
     name: String,
     /// Title of the panels of the sweep.
@@ -59,7 +61,7 @@ impl<'a> Sweep<'a> {
     fn new(
         whisker: &'a Whisker,
         push_mm: Option<f64>,
-        course: &AngleCourse,
+        [course, fine]: &[AngleCourse; 2],
     ) -> Result<Self, FigureError> {
         let rest = Rest::new(&whisker.rod(&Pole::smooth(0.0), Side::Cb));
         let reach_mm = rest.at_arclength(rest.end()).0.length() * whisker.length_mm;
@@ -75,6 +77,7 @@ impl<'a> Sweep<'a> {
         };
         Ok(Self {
             texture: texture(whisker, &surface, course)?,
+            fine: texture(whisker, &surface, fine)?,
             whisker,
             surface,
             name: format!("_{of_file}"),
@@ -142,23 +145,24 @@ impl<'a> Sweep<'a> {
     fn histogram(&self) -> FigurePanel {
         let plot = Plot {
             title: self.title.clone(),
-            ..tip_histogram(&self.texture)
+            ..tip_histogram(&self.fine)
         };
-        FigurePanel::new("", plot, self.texture.tip_histogram())
+        FigurePanel::new("", plot, self.fine.tip_histogram())
     }
 }
 
 /// Draws the paper's Figs. 6B, 6C, 6E and 6F.
 pub fn fig6() -> Result<Figure, FigureError> {
     let [amplitude, frequency] = SWEEP;
-    let course = AngleCourse::sine(amplitude, frequency, PERIODS / frequency, RATE)?;
+    let course = |rate| AngleCourse::sine(amplitude, frequency, PERIODS / frequency, rate);
+    let courses = [course(RATE)?, course(10.0 * RATE)?];
     let mut panels = Vec::new();
     for (whisker, pushes, letters) in [
         (&FIG6_WHISKER, CONE_MM, [("b", "B"), ("c", "C")]),
         (&FIG4_HAIR, HAIR_MM, [("e", "E"), ("f", "F")]),
     ] {
         let [(shapes, of_shapes), (tips, of_tips)] = letters;
-        let sweep = |push| Sweep::new(whisker, push, &course);
+        let sweep = |push| Sweep::new(whisker, push, &courses);
         let sweeps: Vec<Sweep> = pushes.into_iter().map(sweep).collect::<Result<_, _>>()?;
         let first = |i: usize, letter| if i == 0 { letter } else { "" };
         for (i, sweep) in sweeps.iter().enumerate() {

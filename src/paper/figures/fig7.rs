@@ -115,17 +115,25 @@ pub fn fig7b() -> Result<Figure, FigureError> {
         x_label: "time (s)".to_owned(),
         y_label: "contact force (\u{b5}N)".to_owned(),
         lines: vec![
-            line(&|row| row.lever_force_un, Ink::Grey).named("moment over lever"),
-            line(&|row| row.model_force_un, Ink::Blue).named("full model"),
             line(&|row| row.force_un, Ink::Black).named("true force"),
+            line(&|row| row.lever_force_un, Ink::Series(1)).named("moment over lever"),
+            line(&|row| row.model_force_un, Ink::Blue).named("full model"),
         ],
         ..Plot::default()
     };
     let without = |all: &[FrameForce]| all.iter().filter(|own| own.force_un.is_none()).count();
     let caption = vec![
-        format!("A made-up trial, as the paper's film is not published: the whisker of Fig. 4 against a pole at {DISTANCE_MM} mm, five touches,"),
-        "a slip-off in the last one. The curvature near the base (1.525 mm) is that of the states with seeded normal errors of".to_owned(),
-        format!("{NOISE_PER_MM} per mm; contacts are exact. Near the slip-off, {} frames have no state of the full model with their curvature.", without(&model)),
+        "A made-up trial: the paper's film is not published.".to_owned(),
+        format!(
+            "The whisker of Fig. 4 touches a pole at {DISTANCE_MM} mm five times, and slips off the last time."
+        ),
+        format!(
+            "The curvature near the base (1.525 mm) has seeded normal errors of {NOISE_PER_MM} per mm; contacts are exact."
+        ),
+        format!(
+            "{} frames have no force of the full model: no stable state has their curvature.",
+            without(&model)
+        ),
     ];
     let title = "Fig. 7B: contact forces from the change of curvature";
     let panels = vec![

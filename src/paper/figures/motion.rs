@@ -1,6 +1,6 @@
 //! Courses of whiskers against one pole, as sequences of shapes: Figs. 4B, 4C and 5B.
 
-use super::{Figure, FigureError, FigurePanel, lettered};
+use super::{Figure, FigureError, FigurePanel, figure};
 use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_RIGHT, POLE};
 use crate::render::{Disc, Ink, Line, Plot, STUCK, Stroke};
 use crate::rod::{Rest, Side};
@@ -160,8 +160,14 @@ pub fn fig4b() -> Result<Figure, FigureError> {
     let cone = Motion::new(&FIG4_WHISKER, WHISKER_MM, &course)?;
     let hair = Motion::new(&FIG4_HAIR, HAIR_MM, &course)?;
     let panels = vec![
-        cone.panel("B", "mouse whisker: slips off", 4)?,
-        hair.panel("C", "human hair: is pulled off", 4)?,
+        (
+            "fig4b".to_owned(),
+            cone.panel("B", "mouse whisker: slips off", 4)?,
+        ),
+        (
+            "fig4c".to_owned(),
+            hair.panel("C", "human hair: is pulled off", 4)?,
+        ),
     ];
     let caption = vec![
         "The base turns by 30 deg at 0.2 Hz as in the paper; every fourth frame of 32 per second. The pole stands still.".to_owned(),
@@ -169,7 +175,7 @@ pub fn fig4b() -> Result<Figure, FigureError> {
         "Quasi-static model: a whisker that has detached is at rest in the next frame.".to_owned(),
     ];
     let title = "Figs. 4B, 4C: a whisker and a hair, rotated into a pole";
-    Ok(lettered("fig4b", title, caption, panels))
+    Ok(figure("fig4b", title, caption, panels))
 }
 
 /// Draws the paper's Fig. 5B: a whisker of a behaving mouse that slips off a pole.
@@ -177,12 +183,15 @@ pub fn fig5b() -> Result<Figure, FigureError> {
     const DISTANCE_MM: f64 = 12.0;
     let course = protraction([12.0, 18.0], 8.0, 250.0)?;
     let motion = Motion::new(&FIG5_RIGHT, DISTANCE_MM, &course)?;
-    let panels = vec![motion.panel("B", "protraction, 250 frames per second", 1)?];
+    let panels = vec![(
+        "fig5b".to_owned(),
+        motion.panel("B", "protraction, 250 frames per second", 1)?,
+    )];
     let caption = vec![
         "A made-up protraction: the paper gives neither the course nor the distance of its example. The whisker is that of Fig. 5C, right;"
             .to_owned(),
         format!("the base turns by 36 deg at 8 Hz, and the pole is touched at {DISTANCE_MM} mm. Inertia is left out."),
     ];
     let title = "Fig. 5B: a whisker that slips off a pole";
-    Ok(lettered("fig5b", title, caption, panels))
+    Ok(figure("fig5b", title, caption, panels))
 }

@@ -1,0 +1,76 @@
+//! Events of a course behind a surface.
+
+use super::rows::TextureEvent;
+use super::sample::{Crossing, Held};
+use crate::rod::Side;
+use crate::shooting::Reading;
+use crate::whisk::phase::Passage;
+use crate::whisk::{WhiskEventKind, signed_deg};
+
+/// Returns the events of a course, up to the first crossing.
+pub fn events(
+    passages: &[Passage],
+    kinds: &[WhiskEventKind],
+    held: &[Option<Held>],
+    crossed: Option<Crossing>,
+) -> Vec<TextureEvent> {
+    let energy = |i: usize| held[i].and_then(|own| own.value(|state| state.energy_nj));
+    let is_before = |time_s: f64| crossed.is_none_or(|own| time_s < own.time_s);
+    let before = (0..passages.len()).take_while(|i| is_before(passages[*i].time_s));
+    let events = before.map(|i| {
+        let (passage, event) = (&passages[i], kinds[i]);
+        let is_detachment = matches!(event, WhiskEventKind::SlipOff | WhiskEventKind::PullOff);
+        // A whisker that is held or undecided at once after a detachment has the energy of that state, known or not.
+        let next = passages.get(i + 1);
+        let after = match next.is_some_and(|next| next.angle == passage.angle) {
+            true => energy(i + 1),
+            false => Some(0.0),
+        };
+        let lost = energy(i).zip(after).map(|(before, after)| before - after);
+        TextureEvent {
+            lost_nj: lost.filter(|_| is_detachment),
+            ..TextureEvent::new(
+                event,
+                [passage.time_s, passage.angle],
+                passage.side,
+                held[i],
+            )
+        }
+    });
+    let end = crossed.map(|own| {
+        let moment = [own.time_s, own.angle];
+        TextureEvent::new(
+            WhiskEventKind::Undecided,
+            moment,
+            own.held.side,
+            Some(own.held),
+        )
+    });
+    events.chain(end).collect()
+}
+
+impl TextureEvent {
+    /// Creates an event at `[time in s, angle in radians]` that loses no energy.
+    fn new(
+        event: WhiskEventKind,
+        [time_s, angle]: [f64; 2],
+        side: Side,
+        held: Option<Held>,
+    ) -> Self {
+        let value = |of: fn(&Reading) -> f64| held.and_then(|own| own.value(of));
+        let tip = held.and_then(|own| own.state).map(|(_, tip)| tip);
+        Self {
+            time_s,
+            event,
+            asperity: held.map(|own| own.asperity),
+            side,
+            angle_deg: angle.to_degrees(),
+            push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
+            tip_x_mm: tip.map(|tip| tip.x_mm),
+            force_un: value(|state| state.force_un),
+            base_moment_nnm: value(|state| state.base_moment_nnm),
+            energy_nj: value(|state| state.energy_nj),
+            lost_nj: None,
+        }
+    }
+}

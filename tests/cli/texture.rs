@@ -1,0 +1,187 @@
+//! `whiskmap texture`.
+
+use super::traces::cells;
+use super::{Place, SCENE};
+
+const SURFACE: &str = "\
+[surface]
+distance_mm = 18.0
+spacing_um = 200.0
+asperity_radius_um = 20.0
+length_mm = 20.0
+";
+
+fn place(surface: &str) -> Place {
+    Place::with(&format!("{SCENE}\n{surface}"))
+}
+
+#[test]
+fn a_sweep_gives_its_tables_and_its_picture() {
+    let place = place(SURFACE);
+    let files = [
+        "--csv",
+        "s.csv",
+        "--events",
+        "e.csv",
+        "--dwells",
+        "d.csv",
+        "--histogram",
+        "h.csv",
+        "--plot",
+        "t.svg",
+    ];
+    let texture = |more: &[&str]| {
+        let run = place.run(&[&["texture", "scene.toml"], more].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        run
+    };
+    let run = texture(&[&["--rate", "50"], &files[..]].concat());
+    assert_eq!(run.out, "s.csv\nt.svg\ne.csv\nd.csv\nh.csv\n");
+    let text = |name: &str| String::from_utf8(place.bytes(name)).unwrap();
+    let samples = text("s.csv");
+    let header = samples.lines().next().unwrap().to_owned();
+    // Three periods of 0.2 Hz by default.
+    let samples = cells(&samples, &header);
+    assert_eq!(samples.len(), 751);
+    assert_eq!((samples[0][1], samples[0][2]), ("0.0", "free"));
+    let events = text("e.csv");
+    let header = "time_s,event,asperity,side,angle_deg,push_angle_deg,tip_x_mm,force_un,base_moment_nnm,energy_nj,lost_nj";
+    let events = cells(&events, header);
+    let touches = events.iter().filter(|event| event[1] == "touch").count();
+    let dwells = text("d.csv");
+    let dwells = cells(&dwells, "asperity,side,begin_s,end_s,dwell_s,end");
+    assert_eq!(dwells.len(), touches);
+    assert!(run.err.contains(&format!("touches {touches}, ")), "{run:?}");
+    let bins = text("h.csv");
+    assert_eq!(cells(&bins, "tip_from_mm,tip_to_mm,tip_time_s").len(), 80);
+    let svg = text("t.svg");
+    for label in [
+        "tip along the surface (mm)",
+        "dwell time on an asperity (s)",
+        "stuck",
+    ] {
+        assert!(svg.contains(&format!(">{label}<")), "{label}");
+    }
+    // The same angles from a file, in other units.
+    let angles = samples.iter().map(|row| format!("{},{}\n", row[0], row[1]));
+    place.write(
+        "a.csv",
+        &format!("time_s,angle_deg\n{}", angles.collect::<String>()),
+    );
+    let again = texture(&["--angles", "a.csv"]);
+    assert_eq!(again.out, text("s.csv"));
+    let other = texture(&["--angles", "a.csv", "--units", "um,mN"]).out;
+    let header = other.lines().next().unwrap();
+    assert!(
+        header.contains(",tip_x_um,tip_height_um,force_mn,"),
+        "{header}"
+    );
+}
+
+#[test]
+fn wrong_surfaces_are_refused() {
+    for (key, value, said) in [
+        (
+            "distance_mm",
+            "30.0",
+            "surface.distance_mm = 30.0: must be between length_mm / 1000 (0.02) and whisker.length_mm (20)",
+        ),
+        (
+            "spacing_um",
+            "0.0",
+            "surface.spacing_um = 0.0: must be between 0.001 and 100000000",
+        ),
+        (
+            "asperity_radius_um",
+            "100.0",
+            "surface.asperity_radius_um = 100.0: must be at least 0 and less than spacing_um * (1 - jitter) / 2, at which asperities touch (100)",
+        ),
+        (
+            "length_mm",
+            "1e9",
+            "surface.length_mm = 1e9: must be between 0 and 99,999 spacings (19999.8)",
+        ),
+        (
+            "length_mm",
+            "\"long\"",
+            "invalid type: string \"long\", expected f64",
+        ),
+    ] {
+        let line = |line: &str| match line.starts_with(key) {
+            true => format!("{key} = {value}\n"),
+            false => format!("{line}\n"),
+        };
+        let surface: String = SURFACE.lines().map(line).collect();
+        place(&surface)
+            .run(&["texture", "scene.toml"])
+            .assert_refused(&["scene.toml:", said]);
+    }
+    for (more, said) in [
+        (
+            "jitter = 1.0\n",
+            "surface.jitter = 1.0: must be at least 0 and less than 1",
+        ),
+        (
+            "jitter = -0.1\n",
+            "surface.jitter = -0.1: must be at least 0 and less than 1",
+        ),
+        ("seed = -1\n", "invalid value: integer `-1`, expected u32"),
+        (
+            "noise = 1\n",
+            "unknown field `noise`, expected one of `distance_mm`, `spacing_um`",
+        ),
+    ] {
+        place(&format!("{SURFACE}{more}"))
+            .run(&["texture", "scene.toml"])
+            .assert_refused(&["scene.toml:", said]);
+    }
+    let without = SURFACE.replace("spacing_um = 200.0\n", "");
+    place(&without)
+        .run(&["texture", "scene.toml"])
+        .assert_refused(&["missing field `spacing_um`"]);
+    Place::with(SCENE)
+        .run(&["texture", "scene.toml"])
+        .assert_refused(&["scene.toml: the scene has no [surface]: add that table"]);
+    let rough = format!(
+        "{}\n{SURFACE}",
+        SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]")
+    );
+    Place::with(&rough)
+        .run(&["texture", "scene.toml"])
+        .assert_refused(&["contact.friction = 0.3: must be 0"]);
+}
+
+#[test]
+fn wrong_sweeps_are_refused() {
+    let place = place(SURFACE);
+    let texture = |more: &[&str]| place.run(&[&["texture", "scene.toml"], more].concat());
+    texture(&["--sine", "95deg,0.2,5"])
+        .assert_refused(&["--sine 95,0.2,5: angle", "must be between -90 and 90 deg"]);
+    place.write("a.csv", "time_s,angle_deg\n0,0\n1,x\n");
+    texture(&["--angles", "a.csv"])
+        .assert_refused(&["a.csv:3: angle_deg = x: must be a number between -360 and 360"]);
+    texture(&["--angles", "a.csv", "--sine", "1,1,1"]).assert_refused(&["cannot be used with"]);
+    texture(&["--histogram", "scene.toml"]).assert_refused(&["--histogram", "scene.toml"]);
+    // The first touch is an angle at which a course may begin; between the touches of an asperity it may not.
+    let run = texture(&["--rate", "20", "--csv", "s.csv", "--events", "e.csv"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let events = String::from_utf8(place.bytes("e.csv")).unwrap();
+    let touch: f64 = events
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .nth(4)
+        .unwrap()
+        .parse()
+        .unwrap();
+    let begin = |angle: f64| {
+        place.write(
+            "a.csv",
+            &format!("time_s,angle_deg\n0,{angle:?}\n1,{:?}\n", angle + 1.0),
+        );
+        texture(&["--angles", "a.csv"])
+    };
+    assert_eq!(begin(touch).code, Some(0));
+    begin(touch + 0.01).assert_refused(&["--angles a.csv: begins in contact", "must be at most"]);
+}
