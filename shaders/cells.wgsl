@@ -29,8 +29,8 @@ fn solve(push: real, steps: u32) -> Cell {
         base_point[ROD].x,
         base_point[ROD].y,
         base_point[ROD].zw,
-        base_point[CURVATURE_TERMS],
-        base_point[CURVATURE_TERMS + 1u],
+        base_point[POWERS_AT_REST],
+        base_point[POWERS_AT_REST + 1u],
     );
     let to_pole = base_point[POSITIONS].xy;
     let position = base_point[POSITIONS].zw;

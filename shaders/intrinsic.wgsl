@@ -45,23 +45,23 @@ fn polynomial_terms(rod: Rod, s: real) -> array<real, REST_TERMS> {
 
 // Rotation along a polynomial curvature from arclength `s` to `s + ds`: the divided difference of the antiderivative, times `ds`.
 fn polynomial_apart(rod: Rod, s: real, ds: real) -> real {
-    let from = s - 0.5;
-    let to = from + ds;
-    // Partial values of the antiderivative at `from`, from the highest power on, and their divided differences.
+    let here = s - 0.5;
+    let there = here + ds;
+    // Partial values of the antiderivative at `s`, from the highest power on, and their divided differences.
     var value = rod.high.z * real(1.0 / 7.0);
     var divided = value;
-    value = value * from + rod.high.y * real(1.0 / 6.0);
-    divided = divided * to + value;
-    value = value * from + rod.high.x * real(1.0 / 5.0);
-    divided = divided * to + value;
-    value = value * from + rod.low.w * real(1.0 / 4.0);
-    divided = divided * to + value;
-    value = value * from + rod.low.z * real(1.0 / 3.0);
-    divided = divided * to + value;
-    value = value * from + rod.low.y * real(1.0 / 2.0);
-    divided = divided * to + value;
-    value = value * from + rod.low.x;
-    divided = divided * to + value;
+    value = value * here + rod.high.y * real(1.0 / 6.0);
+    divided = divided * there + value;
+    value = value * here + rod.high.x * real(1.0 / 5.0);
+    divided = divided * there + value;
+    value = value * here + rod.low.w * real(1.0 / 4.0);
+    divided = divided * there + value;
+    value = value * here + rod.low.z * real(1.0 / 3.0);
+    divided = divided * there + value;
+    value = value * here + rod.low.y * real(1.0 / 2.0);
+    divided = divided * there + value;
+    value = value * here + rod.low.x;
+    divided = divided * there + value;
     return ds * divided;
 }
 

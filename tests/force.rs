@@ -60,6 +60,7 @@ fn forces_of_states_come_back() {
         ),
         ("robot", 60.0, [-49.9, -20.0, -1.0, 1.0, 20.0, 36.0]),
         ("measured", 12.0, [-45.0, -10.0, -1.0, 1.0, 10.0, 32.8]),
+        ("traced", 12.0, [-39.9, -10.0, -1.0, 1.0, 10.0, 28.9]),
     ];
     for (name, distance, pushes) in ends {
         let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();

@@ -158,6 +158,7 @@ fn nothing_is_on_that_no_line_asks_for() {
             "-measured radii: no whisker.profile",
             "-curvature: parabola_per_mm is 0 or left out",
             "-euler spiral: euler_spiral is 0 or left out",
+            "-traced shape: no whisker.rest",
             "-modulus gradient: tip_to_base is 1 or left out",
             "-pole radius: radius_mm is 0 or left out",
             "-friction: friction is 0 or left out",
@@ -182,14 +183,19 @@ fn every_line_turns_its_own_effect_on() {
         ),
         (
             "whisker.modulus_gradient.tip_to_base = 1.5",
-            4,
+            5,
             "tip_to_base 1.5",
         ),
-        ("pole.radius_mm = 0.25", 5, "radius_mm 0.25"),
-        ("contact.friction = 0.2", 6, "friction 0.2"),
+        (
+            "whisker.rest = { degree = 0, points = [[0, 0], [5, 0], [10, 0], [20, 0]] }",
+            4,
+            "degree 0, rms 0.0e0 mm, 4 points",
+        ),
+        ("pole.radius_mm = 0.25", 6, "radius_mm 0.25"),
+        ("contact.friction = 0.2", 7, "friction 0.2"),
         (
             "whisker.projection.arc_stretch = 1.03",
-            7,
+            8,
             "arc_stretch 1.03",
         ),
     ];

@@ -162,6 +162,7 @@ fn residuals_are_bounds() {
         "measured",
         "cylinder",
         "euler_spiral",
+        "traced",
         "fig4_whisker",
     ];
     let shipped = scenes.map(|name| {

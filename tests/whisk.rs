@@ -38,7 +38,7 @@ fn cf_distance(scene: &Scene, distance_mm: f64) -> f64 {
 /// Events are the ends of the detachment curves of both sides, at one distance of the pole. Every state is that of the branch.
 #[test]
 fn events_and_states_are_those_of_curves_and_branches() {
-    for name in ["cone", "cylinder", "measured"] {
+    for name in ["cone", "cylinder", "measured", "traced"] {
         let scene = scene(name);
         let angles: Vec<f64> = (0..=200).map(|i| f64::from(i) - 30.0).collect();
         let back: Vec<f64> = angles.iter().rev().map(|deg| deg - 120.0).collect();

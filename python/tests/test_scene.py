@@ -61,7 +61,7 @@ def test_replace_sets_sweeps_and_removes(cone):
 def test_traced_points_are_arrays():
     traced = wm.Scene.read(ROOT / "scenes/traced.toml")
     points = np.array(traced.whisker.rest_points)
-    assert points.shape == (90, 2)
+    assert points.shape == (45, 2)
     own = wm.Whisker(base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, rest_points=points)
     built = wm.Scene(whisker=own, pole=traced.pole, grid=traced.grid, title=traced.title, name=traced.name)
     assert built == traced and built.whisker.length_mm == traced.whisker.length_mm

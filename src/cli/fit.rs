@@ -234,6 +234,14 @@ fn document(fit: &Fit) -> Value {
     let rows = fit.correlation.iter();
     let rows = rows.map(|row| Value::Object(keyed(row.iter().map(|own| json!(own)).collect())));
     let comparison = &fit.comparison;
+    let traced = fit.scene.traced().map(|own| {
+        json!({
+            "degree": own.degree,
+            "curvature": own.coefficients(),
+            "length_mm": own.length_mm,
+            "rms_mm": own.rms_mm,
+        })
+    });
     json!({
         "not_a_fit": fit.not_a_fit.as_ref().map(ToString::to_string),
         "values": keyed(values),
@@ -245,6 +253,7 @@ fn document(fit: &Fit) -> Value {
         "bias_deg": comparison.bias_deg(),
         "left_out": comparison.left_out().count(),
         "points": comparison.rows,
+        "traced": traced,
     })
 }
 

@@ -56,6 +56,7 @@ fn a_straight_cylinder_has_no_effects() {
         "measured radii | off | own kernel | no whisker.profile",
         "curvature | off | own kernel | parabola_per_mm is 0 or left out",
         "euler spiral | off | own kernel | euler_spiral is 0 or left out",
+        "traced shape | off | own kernel | no whisker.rest",
         "modulus gradient | off | own kernel | tip_to_base is 1 or left out",
         "pole radius | off | free: start | radius_mm is 0 or left out",
         "friction | off | free: start | friction is 0 or left out",
@@ -89,6 +90,7 @@ fn the_cone_scene() {
         "measured radii | off | own kernel | no whisker.profile",
         "curvature | on | own kernel | parabola_per_mm 0.02",
         "euler spiral | off | own kernel | euler_spiral is 0 or left out",
+        "traced shape | off | own kernel | no whisker.rest",
         "modulus gradient | off | own kernel | tip_to_base is 1 or left out",
         "pole radius | on | free: start | radius_mm 0.25",
         "friction | off | free: start | friction is 0 or left out",
@@ -102,7 +104,7 @@ fn the_cone_scene() {
     assert_eq!(fact(&run, "GPU calls"), calls);
 
     // Only the seconds change, and they are positive.
-    let same = |run: &Run| run.out.lines().take(16).collect::<Vec<_>>().join("\n");
+    let same = |run: &Run| run.out.lines().take(17).collect::<Vec<_>>().join("\n");
     let again = plan(&place);
     assert_eq!(same(&run), same(&again));
     let words: Vec<&str> = fact(&run, "time").split(' ').collect();
@@ -285,8 +287,8 @@ fn everything_on() {
         .filter(|line| !line.contains(" | on | "))
         .map(|line| line.split(" | ").next().unwrap())
         .collect();
-    // Measured radii and the spiral replace taper and parabola.
-    assert_eq!(off, ["measured radii", "euler spiral"], "{run:?}");
+    // Measured radii replace the taper; a spiral and a traced shape the parabola.
+    assert_eq!(off, ["measured radii", "euler spiral", "traced shape"], "{run:?}");
 }
 
 #[test]

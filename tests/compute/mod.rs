@@ -240,6 +240,7 @@ pub fn assert_no_load_at_touch(mut solve: impl FnMut(&Scene) -> Panel) {
         cone.with(Parameter::TipRadiusUm, 0.0),
         Scene::read("scenes/euler_spiral.toml"),
         Scene::read("scenes/measured.toml"),
+        Scene::read("scenes/traced.toml"),
     ];
     let pushes = [-1e-3, -0.0, 1e-3, 2.0, 5.0];
     let distances = [4.0, 7.0, 11.0, 15.0];

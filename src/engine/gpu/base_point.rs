@@ -101,7 +101,7 @@ pub const QUADS: [(&str, usize); 14] = {
         };
     }
     quads!(
-        "CONTACT" contact "ROD" rod "CURVATURE_TERMS" curvature "POSITIONS" positions "BASE" base "REST" rest "BY_TAU" by_tau "BY_LOAD" by_load "PUSH" push
+        "CONTACT" contact "ROD" rod "POWERS_AT_REST" curvature "POSITIONS" positions "BASE" base "REST" rest "BY_TAU" by_tau "BY_LOAD" by_load "PUSH" push
         "PUSH_BY_W" push_by_w "TAU_BY_W" tau_by_w "RESTING_BY_W" resting_by_w "JACOBIAN" jacobian
     )
 };

@@ -20,9 +20,6 @@ const GAUSS: [(f64, f64); 8] = [
 /// Largest rotation of the curve per panel of the rule, in radians: the rule is then exact to rounding.
 const TURN_PER_PANEL: f64 = 1.0;
 
-/// Fewest panels of the rule over a polynomial, whose curvature may change its sign six times.
-const FEWEST_PANELS: f64 = 4.0;
-
 /// Curvature of a curve at rest by arclength.
 #[derive(Clone, Copy, Debug)]
 enum ArcCurvature {
@@ -67,17 +64,11 @@ impl ArcCurve {
 
     /// Number of panels of the rule between the base and the arclength `to`.
     fn panels(&self, to: f64) -> u32 {
-        let panels = match &self.0 {
-            ArcCurvature::Spiral([k0, k1]) => {
-                let most = k0.abs().max((k0 + k1).abs());
-                (most * to / TURN_PER_PANEL).ceil().max(1.0)
-            }
-            ArcCurvature::Polynomial(curvature) => {
-                let turn = curvature.sharpest() * to / TURN_PER_PANEL;
-                turn.ceil().max((FEWEST_PANELS * to).ceil().max(1.0))
-            }
+        let most = match &self.0 {
+            ArcCurvature::Spiral([k0, k1]) => k0.abs().max((k0 + k1).abs()),
+            ArcCurvature::Polynomial(curvature) => curvature.sharpest(),
         };
-        panels as u32
+        (most * to / TURN_PER_PANEL).ceil().max(1.0) as u32
     }
 
     /// Integral of `integrand` from the base to the arclength `to` on the curve.
