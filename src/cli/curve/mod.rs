@@ -290,8 +290,8 @@ fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> R
 }
 
 /// Returns the percentiles of the samples on the side and at the distance of a point, which `spread` has.
-fn at_point(spread: &[EndSpread], point: &ComparedPoint) -> Option<PointSpread> {
+fn at_point(spread: &[EndSpread], point: &ComparedPoint) -> PointSpread {
     let mut rows = spread.iter();
     let own = rows.find(|row| row.side == point.side && row.distance_mm == point.distance_mm);
-    own.map(EndSpread::of_push_angles)
+    own.map(EndSpread::of_push_angles).unwrap_or_default()
 }
