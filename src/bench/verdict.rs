@@ -113,7 +113,7 @@ mod tests {
         let on_cpu = wanted("spectral", "cpu", None, false);
         assert_eq!(verdicts(&[]), []);
         assert_eq!(verdicts(&[&cpu]), []);
-        assert_eq!(verdicts(&[&cpu, &spectral]), [on_cpu.clone()]);
+        assert_eq!(verdicts(&[&cpu, &spectral]), std::slice::from_ref(&on_cpu));
         assert_eq!(
             verdicts(&[&cpu, &spectral, &slow, &near]),
             [
