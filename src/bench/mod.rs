@@ -15,6 +15,7 @@ mod solver;
 mod spectral;
 mod task;
 mod timing;
+mod verdict;
 mod whole;
 
 pub use detachment::Detachments;
@@ -24,7 +25,8 @@ pub use solver::Solver;
 pub use spectral::Expansions;
 pub use task::{Errors, Spread};
 pub use timing::{NOISY, Timing};
-pub use whole::{Verdict, WholeMap};
+pub use verdict::Verdict;
+pub use whole::WholeMap;
 
 use crate::engine::EngineError;
 use crate::plan::SAMPLE_VALUES;

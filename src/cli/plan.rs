@@ -162,10 +162,13 @@ fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
         print_gpu(&mut out, plan, distances)?;
     }
     let (seconds, threads) = (two_digits(cost.seconds), rayon::current_num_threads());
-    let on = counted(threads, "thread");
+    let (on, hours) = (
+        counted(threads, "thread"),
+        significant(cost.cpu_seconds / 3600.0),
+    );
     writeln!(
         out,
-        "time          about {seconds} s on {on}, without the files"
+        "time          about {seconds} s on {on}, {hours} CPU-hours, without the files"
     )?;
     for own in &estimate.files {
         let name = match own.format {

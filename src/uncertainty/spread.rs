@@ -78,7 +78,7 @@ row! {
 
 row! {
     /// Percentiles of the push angles of samples at the distance of a measured point, in degrees.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
     pub struct PointSpread {
         /// 5th percentile of the samples' push angles at the point's distance, in degrees.
         pub p5_deg: Option<f64>,

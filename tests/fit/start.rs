@@ -20,10 +20,10 @@ fn a_free_length_starts_where_all_points_are_in_reach() {
         assert_eq!(moved.parameter, start[0].0);
         assert!(points.points.iter().any(|point| point.line == moved.line
             && point.distance_mm == moved.distance_mm
-            && point.distance_mm > 14.0));
+            && point.distance_mm > 12.0));
         for estimate in &found.estimates {
             let truth = estimate.parameter.value(&cone()).unwrap();
-            // Measured: at most 1e-12.
+            // Measured: at most 6e-14.
             let off = estimate.value / truth - 1.0;
             assert!(off.abs() < 1e-9, "{start:?}: {estimate:?}");
         }

@@ -27,7 +27,7 @@ of states per whisker side from which on it pays. Each GPU adapter computes in f
 points, and cells that an engine cannot certify, do not count. Errors are differences from four times the default steps: of the \
 push angle, of the contact's arclength in whisker lengths, and of its force. * marks rows that no other row beats in time and \
 worst push-angle error. Times are medians of at least 5 runs after one that does not count. The spread is the difference \
-of the slowest and the fastest run over the median; ! marks rows in which it is more than 20 %.
+of the slowest and the fastest run over the median, in percent or from 10 times on as a multiple; ! marks rows in which it is more than 20 %.
 
 Then the CPU engine, the spectral engine and the GPUs compute whole maps in turn, packed but not written: at most 1024 x 1024 cells (--quick: 256 x 256) and two \
 values per sweep axis. host is the CPU time per cell of all threads, including those of a software adapter. for devices is the \

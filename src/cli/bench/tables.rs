@@ -225,8 +225,11 @@ fn verdicts(out: &mut impl Write, report: &Report) -> io::Result<()> {
     Ok(())
 }
 
-/// Formats the spread of a timing in percent; `!` marks a noisy one.
+/// Formats the spread of a timing in percent, or as a multiple of the median from 10 times on; `!` marks a noisy one.
 fn spread(timing: &Timing) -> String {
     let mark = if timing.is_noisy { "!" } else { " " };
-    format!("{:4.0}%{mark}", 100.0 * timing.spread)
+    match timing.spread {
+        part if part < 9.995 => format!("{:4.0}%{mark}", 100.0 * part),
+        times => format!("{times:4.0}x{mark}"),
+    }
 }

@@ -1,24 +1,24 @@
 //! Command `whiskmap curve`.
 
 mod plot;
+mod points;
 
 use super::arguments::{column_help, length};
 use super::data;
 use super::derivatives::{DerivativeArgs, DerivativeColumns};
-use super::failure::{Failure, check_resolved, message};
+use super::failure::{Failure, check_resolved};
 use super::files::Files;
 use super::outputs::{OpenOutputs, OutputArgs};
-use super::pole::check_single;
 use super::progress::Progress;
 use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
 use clap::Args;
-use plot::{CHORD, CurveColumn, covering, scene_curve};
+use plot::{CurveColumn, scene_curve};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
-use whiskmap::measured::{ComparedPoint, MeasuredAngle};
-use whiskmap::render::{Plot, bands, error_bars, measured};
+use std::path::PathBuf;
+use whiskmap::measured::ComparedPoint;
+use whiskmap::render::{Plot, bands};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
 use whiskmap::sensitivity::{DetachmentDerivatives, detachments_at};
@@ -134,7 +134,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         )));
     }
     if let Some(path) = &args.data {
-        return compare(args, &scene, path, files);
+        return points::compare(args, &scene, path, files);
     }
     let draws = args.sampling.draw(&scene)?;
     let mut outputs = args.outputs.open(files)?;
@@ -204,64 +204,4 @@ fn write<R: Serialize>(
     } else {
         outputs.rows(rows.iter().map(|(_, row)| row))
     }
-}
-
-/// Compares the measured points of the file at `path` with the curve. With --samples, table and plot have the percentiles, too.
-fn compare(args: &CurveArgs, scene: &Scene, path: &Path, files: &mut Files) -> Result<(), Failure> {
-    check_single(scene, "curve --data")?;
-    let points = data::read(files, path)?;
-    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    points.check_reach(&whisker, &pole)?;
-    let measured_mm = points.points.iter().map(|point| point.distance_mm);
-    let distances = covering(&scene.grid.distance_mm, measured_mm);
-    let scene = &scene.to_builder().distance_mm(distances).build()?;
-    let draws = args.sampling.draw(scene)?;
-    if draws.is_some() && points.angle == MeasuredAngle::Chord {
-        let origin = &points.origin;
-        let must = format!(
-            "--samples: bands are of push angles, and {origin} has push_chord_deg; give push_angle_deg"
-        );
-        return Err(Failure::Input(must));
-    }
-    let mut outputs = args.outputs.open(files)?;
-    let comparison = points.beside(&whisker, &pole);
-    data::name_left_out(&points, &comparison);
-    let rows = &comparison.rows;
-    let spread = draws
-        .as_ref()
-        .map(|draws| uncertainty::spread(draws, Resolution::FINE));
-    match &spread {
-        None => outputs.rows(rows)?,
-        Some(spread) => outputs.rows(rows.iter().map(|row| (row, at_point(spread, row))))?,
-    }
-    let spread = spread.unwrap_or_default();
-    outputs.finish(scene.title.clone(), || {
-        let x = match points.angle {
-            MeasuredAngle::Push => CurveColumn::PushAngleDeg.axis(),
-            MeasuredAngle::Chord => CHORD,
-        };
-        let mut plot = scene_curve(scene, Resolution::FINE, x);
-        plot.bands = bands(&spread, CurveColumn::PushAngleDeg.percentiles());
-        plot.bars = error_bars(rows);
-        plot.dots = measured(rows);
-        plot
-    })?;
-    if comparison.count() == 0 {
-        return Err(Failure::Unresolved {
-            all: rows.len() as u64,
-            what: "points",
-            see: "the column `predicted_kind`",
-        });
-    }
-    for (name, value) in data::summary(&comparison) {
-        message(&format!("{name}: {value}"));
-    }
-    Ok(())
-}
-
-/// Returns the percentiles of the samples on the side and at the distance of a point, which `spread` has.
-fn at_point(spread: &[EndSpread], point: &ComparedPoint) -> Option<PointSpread> {
-    let mut rows = spread.iter();
-    let own = rows.find(|row| row.side == point.side && row.distance_mm == point.distance_mm);
-    own.map(EndSpread::of_push_angles)
 }

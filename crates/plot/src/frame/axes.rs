@@ -42,7 +42,7 @@ impl Axes {
     pub fn sides(&self) -> [f64; 2] {
         let widest = self.y_ticks.iter().map(|tick| tick.width);
         let widest = widest.fold(0.0, f64::max);
-        if self.y_ticks.is_empty() && self.y_label.lines.concat().is_empty() {
+        if is_bare(&self.y_ticks, &self.y_label) && is_bare(&self.x_ticks, &self.x_label) {
             return [FREE; 2];
         }
         let beside = self.spacing.y_label + self.y_label.below_first() + 0.6 * LABEL + 16.0;
@@ -53,7 +53,10 @@ impl Axes {
 
     /// Returns the height that ticks and label take below the body, in pixels.
     pub fn below(&self) -> f64 {
-        self.spacing.below + self.x_label.below_first()
+        match is_bare(&self.x_ticks, &self.x_label) {
+            true => 2.0 * FREE,
+            false => self.spacing.below + self.x_label.below_first(),
+        }
     }
 
     /// Draws the axes around `body`, with `left` pixels of space to its left. Labels that would overlap are left out.
@@ -86,4 +89,9 @@ impl Axes {
             Anchor::Upwards,
         );
     }
+}
+
+/// Returns true for an axis without ticks and label.
+fn is_bare(ticks: &[Tick], label: &TextBlock) -> bool {
+    ticks.is_empty() && label.lines.iter().all(String::is_empty)
 }

@@ -174,13 +174,11 @@ impl<'a> HeatMapLayout<'a> {
     }
 }
 
-/// The axes of a contact sheet of this `area`: ticks at the middles of its panels, or the name of the axis whose values are above them.
+/// The axes of a contact sheet of this `area`: ticks at the middles of its panels, or none if the values are above them.
 fn sheet_axes(map: &HeatMap, area: [f64; 2], panels: &PanelGrid, spacing: Spacing) -> Axes {
     let axes = map.panel_axes.each_ref();
     if !panels.labels.is_empty() {
-        let label = axes.into_iter().flatten().map(|axis| &*axis.label);
-        let label = format!("{}, above each panel", label.collect::<String>());
-        return Axes::new([(Vec::new(), &label), (Vec::new(), "")], area, spacing);
+        return Axes::new([(Vec::new(), ""), (Vec::new(), "")], area, spacing);
     }
     let ticks = |side: usize| -> Vec<Tick> {
         let labels = axes[side]

@@ -124,6 +124,12 @@ impl HeatMap {
 
     /// Notes on the axes of the panels of a contact sheet.
     fn notes(&self) -> Vec<String> {
+        let above = match &self.panel_axes {
+            [Some(axis), None] | [None, Some(axis)] => {
+                Some(format!("above each panel: {}", axis.label))
+            }
+            _ => None,
+        };
         let across = format!("each panel, to the right: {}", self.x.summary());
         let upwards = format!("each panel, upwards: {}", self.y.summary());
         let regions = self.regions.iter();
@@ -133,7 +139,8 @@ impl HeatMap {
                 left.name, right.name
             )
         });
-        [across, upwards].into_iter().chain(regions).collect()
+        let inside = [across, upwards].into_iter().chain(regions);
+        above.into_iter().chain(inside).collect()
     }
 
     /// Draws a panel into `area` with curves of the given width.

