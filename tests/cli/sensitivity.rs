@@ -134,7 +134,14 @@ fn maps_store_derivatives_on_demand() {
         good(&place, &["extract", &source, "-o", "table.csv"]);
         lines(&String::from_utf8(place.bytes("table.csv")).unwrap())
     });
-    assert_eq!(tables[0], tables[1]);
+    // Channels of an EXR file are sorted by name.
+    let [exr, zarr] = tables.each_ref().map(|table| {
+        let (header, rows) = table.split_first().unwrap();
+        let of_row =
+            |row| ["regime", "margin_deg", "d_push_d_taper"].map(|name| cell(header, row, name));
+        rows.iter().map(|row| of_row(row)).collect::<Vec<_>>()
+    });
+    assert_eq!(exr, zarr);
     let (header, rows) = tables[0].split_first().unwrap();
     let known = rows.iter().filter(|row| {
         let by = cell(header, row, "d_push_d_taper");
