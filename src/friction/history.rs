@@ -21,13 +21,13 @@ pub struct ContactHistory {
 
 /// Contact at a push of its history.
 #[derive(Clone, Copy, Debug)]
-struct HistoryKnot {
+pub(super) struct HistoryKnot {
     /// Push angle, a magnitude, in radians.
-    push: f64,
+    pub push: f64,
     /// Slid distance, in whisker lengths.
-    slid: f64,
+    pub slid: f64,
     /// Last state in which the contact slid.
-    end: SlidingEnd,
+    pub end: SlidingEnd,
 }
 
 /// State of a limit at which a contact slid last before it stuck.
@@ -80,6 +80,14 @@ impl ContactHistory {
         tips.into_iter().map(with_base).collect()
     }
 
+    /// Computes the sliding history of the row of `level` with its base limit, and the unstable states of the base limit; `None` where the
+    /// continuation fails.
+    pub(super) fn with_retreat(level: &LevelCurve) -> Option<(Self, Option<SlidingLimit>)> {
+        let tip = SlidingLimit::of(std::slice::from_ref(level)).pop()??;
+        let (base, retreat) = SlidingLimit::with_unstable(&opposed(level))?;
+        Some((Self::new(tip, Some(base)), retreat))
+    }
+
     fn new(tip: SlidingLimit, base: Option<SlidingLimit>) -> Self {
         let limits = [Some(&tip), base.as_ref()].into_iter().flatten();
         let mut pushes: Vec<f64> = limits.flat_map(SlidingLimit::pushes).collect();
@@ -105,7 +113,7 @@ impl ContactHistory {
     }
 
     /// Contact at `push`, and the limit at the contact, if any. No limit may reverse between the push of `from` and `push`.
-    fn advance(&self, from: &HistoryKnot, push: f64) -> (HistoryKnot, Option<Sliding>) {
+    pub(super) fn advance(&self, from: &HistoryKnot, push: f64) -> (HistoryKnot, Option<Sliding>) {
         let slid = from.slid;
         let tip = self.tip.slid(push).filter(|tip| *tip >= slid);
         let base = self.base.as_ref().and_then(|base| base.slid(push));
@@ -150,13 +158,6 @@ impl ContactHistory {
             Sliding::Base => self.base.as_ref(),
             Sliding::Sticks => None,
         }
-    }
-
-    /// Returns the first state in which the contact slides again after it stuck at `push`, approximately; `None` if it never does.
-    pub(super) fn next_sliding(&self, push: f64) -> Option<SlidingEnd> {
-        let ahead = self.knots.iter().filter(|knot| knot.push > push);
-        let mut ahead = ahead.map(|knot| knot.end);
-        ahead.find(|end| end.push > push)
     }
 
     /// Returns true if a push detaches at `push`, a magnitude in radians, where the stable states of the tip limit end. It does not if

@@ -6,7 +6,7 @@
 use super::sliding::{rate, slid};
 use super::states::FrictionPoint;
 use crate::numerics::newton_form::{Polynomial, through_runs};
-use crate::sheet::{Continuation, LevelCurve, NODE_MISS, continuations};
+use crate::sheet::{Continuation, CurveNode, LevelCurve, NODE_MISS, continuations};
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition};
 
@@ -38,49 +38,75 @@ impl SlidingLimit {
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
         let starts = levels.iter().map(|level| Some((level, level.touch()?)));
         let continued = continuations(&starts.collect::<Vec<_>>(), false, NODE_MISS);
-        let pairs = levels.iter().zip(&continued);
-        let nodes = pairs.flat_map(|(level, continued)| {
-            let nodes = continued.iter().flat_map(|curve| &curve.nodes);
-            nodes.map(move |node| InitialCondition {
+        let nodes = continued.into_iter().map(|continued| {
+            let Continuation { nodes, fold, .. } = continued?;
+            Some((nodes, fold.is_some()))
+        });
+        Self::through(levels.iter().zip(nodes).collect())
+    }
+
+    /// Computes the sliding limit of `level`, and the limit of its unstable states up to the fold if there is one; `None` if the
+    /// continuation fails.
+    pub fn with_unstable(level: &LevelCurve) -> Option<(Self, Option<Self>)> {
+        let start = Some((level, level.touch()?));
+        let Continuation {
+            nodes: mut stable,
+            fold,
+            ..
+        } = continuations(&[start], true, NODE_MISS).pop()??;
+        let mut unstable = fold.map(|fold| stable[fold..].to_vec());
+        if let (Some(unstable), Some(fold)) = (&mut unstable, fold) {
+            unstable.reverse();
+            stable.truncate(fold + 1);
+        }
+        let has_fold = fold.is_some();
+        let parts = [Some(stable), unstable].map(|nodes| (level, nodes.map(|own| (own, has_fold))));
+        let [stable, unstable]: [Option<Self>; 2] = Self::through(parts.into()).try_into().ok()?;
+        Some((stable?, unstable))
+    }
+
+    /// Makes limits through nodes of their level curves, whose push angles grow; the last node may be a fold.
+    fn through(limits: Vec<(&LevelCurve, Option<(Vec<CurveNode>, bool)>)>) -> Vec<Option<Self>> {
+        let conditions = limits.iter().flat_map(|(level, nodes)| {
+            let nodes = nodes.iter().flat_map(|(nodes, _)| nodes);
+            nodes.map(|node| InitialCondition {
                 rod: &level.rod,
                 tau: node.point.x,
                 load: node.point.y,
             })
         });
-        let nodes: Vec<InitialCondition> = nodes.collect();
-        let shot = levels
-            .first()
-            .map(|level| Batch::new(level.method).shoot::<FirstVariation>(&nodes));
+        let conditions: Vec<InitialCondition> = conditions.collect();
+        let shot = limits.first().map(|(level, _)| {
+            let batch = Batch::new(level.method);
+            batch.shoot::<FirstVariation>(&conditions)
+        });
         let mut shot = shot.into_iter().flatten();
-        levels
-            .iter()
-            .zip(continued)
-            .map(|(level, continued)| {
-                let Continuation { nodes, fold, .. } = continued?;
-                let knots = nodes.iter().zip(&mut shot).enumerate();
-                let knots = knots.map(|(i, (node, variation))| {
-                    let by_phi =
-                        rate(&variation, &level.rod, node.point.x) / variation.full.map.det();
-                    SlidingKnot {
-                        push: node.push.abs(),
-                        slid: slid(&level.rod, node),
-                        state: FrictionPoint::of(level, node),
-                        by_push: if Some(i) == fold {
-                            f64::INFINITY
-                        } else {
-                            level.side.sign() * by_phi
-                        },
+        let limits = limits.iter().map(|(level, nodes)| {
+            let (nodes, has_fold) = nodes.as_ref()?;
+            let fold = has_fold.then(|| nodes.len() - 1);
+            let knots = nodes.iter().zip(&mut shot).enumerate();
+            let sign = level.side.sign();
+            let knots = knots.map(|(i, (node, variation))| SlidingKnot {
+                push: sign * node.push,
+                slid: slid(&level.rod, node),
+                state: FrictionPoint::of(level, node),
+                by_push: match Some(i) == fold {
+                    true => f64::INFINITY,
+                    false => {
+                        let det = variation.full.map.det();
+                        sign * rate(&variation, &level.rod, node.point.x) / det
                     }
-                });
-                let knots: Vec<SlidingKnot> = knots.collect();
-                let segments = knots.windows(2);
-                let segments = segments.map(|pair| LimitSegment::new(pair[0], pair[1]));
-                Some(Self {
-                    level: level.clone(),
-                    segments: segments.collect(),
-                })
+                },
+            });
+            let knots: Vec<SlidingKnot> = knots.collect();
+            let segments = knots.windows(2);
+            let segments = segments.map(|pair| LimitSegment::new(pair[0], pair[1]));
+            Some(Self {
+                level: (*level).clone(),
+                segments: segments.collect(),
             })
-            .collect()
+        });
+        limits.collect()
     }
 
     /// Returns the push angles, in radians, of the limit's knots, then those between them at which the limit reverses.
@@ -102,25 +128,44 @@ impl SlidingLimit {
         self.segments.iter().any(LimitSegment::falls)
     }
 
-    /// Returns the slid distance at the push angle `push` (radians), in whisker lengths; `None` beyond the end.
+    /// Returns the slid distance at the push angle `push` (radians), in whisker lengths; `None` beyond the ends.
     pub fn slid(&self, push: f64) -> Option<f64> {
-        Some(self.segment(push)?.at(push))
+        let (segment, x) = self.place(push)?;
+        Some(self.segments[segment].cubic.at(x).0)
     }
 
-    /// Returns a state near that of the limit at the push angle `push` (radians); `None` beyond the end.
+    /// Returns a state near that of the limit at the push angle `push` (radians); `None` beyond the ends.
     pub fn near(&self, push: f64) -> Option<FrictionPoint> {
-        let LimitSegment { from, to, .. } = self.segment(push)?;
-        let part = self.segment(push)?.part(push);
-        Some(from.state.lerp(&to.state, part))
+        let (segment, x) = self.place(push)?;
+        let LimitSegment { from, to, .. } = &self.segments[segment];
+        Some(from.state.lerp(&to.state, x))
     }
 
-    fn segment(&self, push: f64) -> Option<&LimitSegment> {
-        let at = self
-            .segments
-            .partition_point(|segment| segment.to.push <= push);
-        let segment = self.segments.get(at).or(self.segments.last())?;
-        (push <= segment.to.push).then_some(segment)
+    /// Returns the index of the segment at the push angle `push` (radians), and its variable there; `None` beyond the ends.
+    pub fn place(&self, push: f64) -> Option<(usize, f64)> {
+        let last = self.segments.len().checked_sub(1)?;
+        let after = self.segments.partition_point(|own| own.to.push <= push);
+        let at = after.min(last);
+        let segment = &self.segments[at];
+        let is_inside = segment.from.push <= push && push <= segment.to.push;
+        is_inside.then(|| (at, segment.part(push)))
     }
+
+    /// Returns the places of all segments at the variables `parts`, `[segment][part]`, flat.
+    pub fn inner(&self, parts: &[f64]) -> Vec<LimitPlace> {
+        let segments = self.segments.iter();
+        let places = segments.flat_map(|segment| parts.iter().map(|part| segment.inner(*part)));
+        places.collect()
+    }
+}
+
+/// Place on a limit.
+#[derive(Clone, Copy, Debug)]
+pub struct LimitPlace {
+    /// Push angle of the place, a magnitude, in radians.
+    pub push: f64,
+    /// Derivative of the push angle by the variable of the segment, in radians.
+    pub push_by_x: f64,
 }
 
 /// Polynomial of the slid distance between two knots. Its variable `x` grows from 0 to 1. It is the fraction of the interval. If the
@@ -165,8 +210,18 @@ impl LimitSegment {
         }
     }
 
-    fn at(&self, push: f64) -> f64 {
-        self.cubic.at(self.part(push)).0
+    /// Place at the variable `x`.
+    fn inner(&self, x: f64) -> LimitPlace {
+        let length = self.to.push - self.from.push;
+        let (fraction, by_x) = if self.is_to_fold {
+            (x * (2.0 - x), 2.0 - 2.0 * x)
+        } else {
+            (x, 1.0)
+        };
+        LimitPlace {
+            push: fraction.mul_add(length, self.from.push),
+            push_by_x: by_x * length,
+        }
     }
 
     /// Returns true if the slid distance falls anywhere.
@@ -184,9 +239,8 @@ impl LimitSegment {
         // The second root follows by division, so that neither root cancels.
         let q = -(c2 + root.copysign(c2));
         [q / (3.0 * c3), c1 / q].map(|x| {
-            let fraction = if self.is_to_fold { x * (2.0 - x) } else { x };
             let is_within = x > 0.0 && x < 1.0;
-            is_within.then_some(fraction.mul_add(self.to.push - self.from.push, self.from.push))
+            is_within.then(|| self.inner(x).push)
         })
     }
 }
@@ -202,6 +256,10 @@ mod tests {
             state: FrictionPoint::default(),
             by_push,
         }
+    }
+
+    fn at(segment: &LimitSegment, push: f64) -> f64 {
+        segment.cubic.at(segment.part(push)).0
     }
 
     fn sorted_reversals(segment: &LimitSegment) -> Vec<f64> {
@@ -223,7 +281,8 @@ mod tests {
             let [from, to] = [from, to].map(|x| knot(x, slid(x), 3.0 * x * x - 3.0));
             LimitSegment::new(from, to)
         };
-        assert!((segment(-2.0, 2.0).at(0.3) - slid(0.3)).abs() < 1e-14);
+        let found = at(&segment(-2.0, 2.0), 0.3);
+        assert!((found - slid(0.3)).abs() < 1e-14);
         assert!(near(&sorted_reversals(&segment(-2.0, 2.0)), &[-1.0, 1.0]));
         assert!(near(&sorted_reversals(&segment(0.0, 1.5)), &[1.0]));
         assert!(near(&sorted_reversals(&segment(-0.5, 0.5)), &[]));
@@ -244,7 +303,8 @@ mod tests {
         let fold = knot(2.0, 1.0, f64::INFINITY);
         let segment = |from: f64| LimitSegment::new(knot(from, slid(from), slope(from)), fold);
         for push in [1.1, 1.5, 1.99, 2.0] {
-            assert!((segment(1.0).at(push) - slid(push)).abs() < 1e-14, "{push}");
+            let found = at(&segment(1.0), push);
+            assert!((found - slid(push)).abs() < 1e-14, "{push}");
         }
         assert!(near(
             &sorted_reversals(&segment(1.0)),

@@ -268,6 +268,8 @@ fn everything_on() {
         .filter(|line| !line.contains(" | on | "))
         .map(|line| line.split(" | ").next().unwrap())
         .collect();
+    let line = "the CPU solves contacts that stick or slide toward the base";
+    assert_eq!(fact(&run, "friction"), line);
     // Measured radii and the spiral replace taper and parabola.
     assert_eq!(off, ["measured radii", "euler spiral"], "{run:?}");
 }

@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod course;
+mod random;
 mod stepped;
+mod whisk;
 
 use crate::compute;
 
