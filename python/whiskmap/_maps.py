@@ -36,8 +36,7 @@ def map(
     tolerance_deg : float, optional
         Maximum error of push angles, in degrees; the finest steps if left out.
     channels : sequence of str, optional
-        Names of the variables to compute, such as ``["regime", "force_un"]``; all if left out. With friction, states come with
-        `status`.
+        Names of the variables to compute, such as ``["regime", "force_un"]``; all if left out.
     progress : bool or callable
         True shows a progress bar if tqdm is installed. A callable gets the number of finished cells and of all cells.
     threads : int, optional

@@ -142,6 +142,8 @@ impl ContactCourse<'_> {
         // Without unstable states the base limit ends at the tip, and nothing is known of contacts beyond.
         let fold = base.map_or(push, SlidingLimit::end);
         self.is_lost |= meets_base && limits.retreat.is_none() && self.knot.push > fold;
+        let is_unknown = |retreat: &SlidingLimit| push < retreat.begin();
+        self.is_lost |= meets_base && limits.retreat.as_ref().is_some_and(is_unknown);
         let is_held = meets_base && limits.is_beyond(push, slid);
         if meets_base && !is_held {
             let from = self.knot.push.min(fold);

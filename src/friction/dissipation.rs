@@ -2,7 +2,7 @@
 
 use super::limit::SlidingLimit;
 use super::sliding::rate;
-use super::states::{FrictionPoint, at_limit};
+use super::states::{FrictionPoint, at_limits};
 use crate::numerics::gauss::QUADRATURE;
 use crate::numerics::newton_form::{Polynomial, through_nodes};
 use crate::shooting::FirstVariation;
@@ -35,9 +35,9 @@ impl Dissipation {
     pub fn new(limit: &SlidingLimit) -> Option<Self> {
         let level = &limit.level;
         let nodes = limit.inner(&QUADRATURE.map(|[at, _]| at));
-        let pushes: Vec<f64> = nodes.iter().map(|node| node.push).collect();
-        let points: Option<Vec<FrictionPoint>> = at_limit(limit, &pushes).into_iter().collect();
-        let points = points?;
+        let pairs: Vec<_> = nodes.iter().map(|node| (limit, node.push)).collect();
+        let points = at_limits(&pairs).into_iter().map(|state| Some(state?.at));
+        let points: Vec<FrictionPoint> = points.collect::<Option<_>>()?;
         let conditions = points.iter().map(|at| InitialCondition {
             rod: &level.rod,
             tau: at.point.x,

@@ -1,6 +1,6 @@
 //! States of a contact with friction: sliding with the limiting force ratio, or sticking at a slid distance.
 
-use super::history::{ContactHistory, ContactPhase};
+use super::history::{ContactHistory, ContactPhase, SlidingEnd};
 use super::limit::SlidingLimit;
 use super::newton::{FrictionTarget, solve};
 use super::sliding::Sliding;
@@ -54,7 +54,7 @@ pub struct FrictionState {
     pub full: FullState,
     /// Slid distance of the contact, in whisker lengths.
     pub slid: f64,
-    /// Distance of the pole from its target, in whisker lengths; at least the miss of the slid distance.
+    /// Distance of the pole from its target, in whisker lengths.
     pub residual: f64,
     /// Number of Newton steps that led to the state.
     pub steps: u32,
@@ -82,29 +82,42 @@ pub struct ContactQuery<'a> {
     pub phase: ContactPhase,
 }
 
+/// Rounding error of slid distances, in whisker lengths.
+const SLID_ROUNDING: f64 = 1e-14;
+
 /// Returns the states at `queries`, `[query]`; `None` where no stable state is found. All rows have one method.
 #[must_use]
 pub fn states(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
     let mut found = held(queries);
     // The limits are interpolated; the force ratio decides whether a contact next to a limit still sticks.
-    let slides_again = queries.iter().zip(&found).enumerate();
-    let slides_again = slides_again.filter_map(|(i, (query, state))| {
-        let ContactPhase::Sticks(_) = query.phase else {
+    let doubtful = queries.iter().zip(&found).enumerate();
+    let doubtful = doubtful.filter_map(|(i, (query, state))| {
+        let ContactPhase::Sticks(end) = query.phase else {
             return None;
         };
-        let level = &query.history.limit(Sliding::Tip)?.level;
-        let ratio = state.as_ref()?.at.ratio * level.side.sign();
-        let limit = if ratio > 0.0 {
-            Sliding::Tip
-        } else {
-            Sliding::Base
-        };
-        let phase = ContactPhase::Slides(limit);
-        (ratio.abs() > level.rod.friction.abs()).then_some((i, ContactQuery { phase, ..*query }))
+        let friction = query.history.limit(Sliding::Tip)?.level.rod.friction;
+        let holds = state.is_some_and(|state| state.at.ratio.abs() <= friction.abs());
+        (!holds).then_some((i, end))
     });
-    let (places, again): (Vec<usize>, Vec<ContactQuery>) = slides_again.unzip();
-    for (i, state) in places.into_iter().zip(held(&again)) {
-        found[i] = state;
+    let doubtful: Vec<(usize, SlidingEnd)> = doubtful.collect();
+    let again = doubtful.iter().flat_map(|(i, end)| {
+        let query = queries[*i];
+        let slides = [Sliding::Tip, Sliding::Base].map(|limit| ContactQuery {
+            phase: ContactPhase::Slides(limit),
+            ..query
+        });
+        let end = ContactQuery {
+            phase: ContactPhase::Slides(end.limit),
+            push: end.push,
+            ..query
+        };
+        [slides[0], slides[1], end]
+    });
+    let again = held(&again.collect::<Vec<_>>());
+    for ((i, _), states) in doubtful.iter().zip(again.chunks_exact(3)) {
+        let slid = states[2].map_or(f64::NAN, |end| end.slid);
+        let tip = states[0].filter(|tip| tip.slid >= slid - SLID_ROUNDING);
+        found[*i] = tip.or(states[1].filter(|base| base.slid <= slid + SLID_ROUNDING));
     }
     found
 }
@@ -140,13 +153,11 @@ pub fn held(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
     found
 }
 
-/// Returns states near those of `limit` at `pushes`, magnitudes in radians, solved, `[push]`; `None` where none is found.
-pub(super) fn at_limit(limit: &SlidingLimit, pushes: &[f64]) -> Vec<Option<FrictionPoint>> {
-    let targets = pushes
-        .iter()
-        .map(|push| FrictionTarget::sliding(limit, *push));
-    let found = solve_known(&targets.collect::<Vec<_>>()).into_iter();
-    found.map(|state| Some(state?.at)).collect()
+/// Returns the states of limits at pushes, magnitudes in radians, `[pair]`; `None` where none is found.
+pub(super) fn at_limits(pairs: &[(&SlidingLimit, f64)]) -> Vec<Option<FrictionState>> {
+    let targets = pairs.iter();
+    let targets = targets.map(|(limit, push)| FrictionTarget::sliding(limit, *push));
+    solve_known(&targets.collect::<Vec<_>>())
 }
 
 impl ContactHistory {

@@ -78,6 +78,7 @@ impl<'a> StuckPath<'a> {
                 push: level.side.sign() * run.end.push,
                 slid: Some(end.slid),
                 start: end.at,
+                is_stable: true,
             })
         });
         let starts: Vec<Option<FrictionTarget>> = starts.collect();
