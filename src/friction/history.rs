@@ -239,7 +239,7 @@ fn polished(limits: Vec<Option<SlidingLimit>>) -> Vec<Option<SlidingLimit>> {
 
 /// Slid distance by which a limit must pass a contact that sticks, in whisker lengths, to move it without doubt. Limits are interpolated with
 /// smaller errors. In doubt the contact sticks, and the force ratio of its state decides.
-const CLEAR_OF_CONTACT: f64 = 1e-8;
+pub(super) const CLEAR_OF_CONTACT: f64 = 1e-8;
 
 /// Maximum difference between the ends of a limit and of the boundary of its row, in parts of a radian and of the push. The two are
 /// computed apart, and may take different numbers of steps.

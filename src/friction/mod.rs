@@ -7,9 +7,11 @@
 
 mod course;
 mod dissipation;
+mod division;
 mod history;
 mod limit;
 mod newton;
+mod segment;
 mod sliding;
 mod states;
 mod stuck;

@@ -1,6 +1,6 @@
 //! States of a contact with friction: sliding with the limiting force ratio, or sticking at a slid distance.
 
-use super::history::{ContactHistory, ContactPhase, SlidingEnd};
+use super::history::{CLEAR_OF_CONTACT, ContactHistory, ContactPhase, SlidingEnd};
 use super::limit::SlidingLimit;
 use super::newton::{FrictionTarget, solve};
 use super::sliding::Sliding;
@@ -116,8 +116,12 @@ pub fn states(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
     let again = held(&again.collect::<Vec<_>>());
     for ((i, _), states) in doubtful.iter().zip(again.chunks_exact(3)) {
         let slid = states[2].map_or(f64::NAN, |end| end.slid);
-        let tip = states[0].filter(|tip| tip.slid >= slid - SLID_ROUNDING);
-        found[*i] = tip.or(states[1].filter(|base| base.slid <= slid + SLID_ROUNDING));
+        // Without a force ratio, only a limit at the contact decides.
+        let reach = found[*i].map_or(CLEAR_OF_CONTACT, |_| f64::INFINITY);
+        let is_near = |state: &FrictionState| (state.slid - slid).abs() <= reach;
+        let [tip, base] = [states[0].filter(is_near), states[1].filter(is_near)];
+        let tip = tip.filter(|tip| tip.slid >= slid - SLID_ROUNDING);
+        found[*i] = tip.or(base.filter(|base| base.slid <= slid + SLID_ROUNDING));
     }
     found
 }
