@@ -156,6 +156,10 @@ fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
         out,
         "trajectories  about {most:.0} at most: {steps:.2} Newton steps a cell and 1 to confirm"
     )?;
+    if scene.has_friction() {
+        let line = "the CPU solves contacts that stick or slide toward the base";
+        writeln!(out, "friction      {line}")?;
+    }
     let (engine, why) = &estimate.engine;
     writeln!(out, "engine        {engine}: {why}")?;
     if estimate.may_use_gpu {

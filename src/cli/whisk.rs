@@ -35,7 +35,7 @@ pub struct WhiskArgs {
     pole: PoleArgs,
     #[command(flatten)]
     course: CourseArgs,
-    /// Write touches, releases, slip-offs and pull-offs to FILE, as CSV
+    /// Write touches, releases, slip-offs, pull-offs and snaps to FILE, as CSV
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
     #[command(flatten)]
@@ -55,7 +55,6 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
         whisk::whisk(&whisker, &scene.pole, distance, &course).map_err(|why| match why {
             WhiskError::Pole(why) => refuse(distance, why),
             WhiskError::Unresolved(_) => Failure::Course(why),
-            WhiskError::Friction(_) => Failure::Input(why.to_string()),
             why => Failure::Input(format!("{}: {why}", args.course.source())),
         })?;
     outputs.rows(&found.samples)?;
@@ -72,7 +71,8 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints the number of events of each kind and the energy that detachments lose, and warns of samples without a state.
+/// Prints the number of events of each kind, and the energies that detachments lose and that friction dissipates, and warns of samples
+/// without a state.
 fn summarise(whisk: &Whisk) {
     let count = |kind| {
         whisk
@@ -81,17 +81,24 @@ fn summarise(whisk: &Whisk) {
             .filter(|event| event.event == kind)
             .count()
     };
-    let [touches, releases, slips, pulls] = [
+    let [touches, releases, slips, pulls, snaps] = [
         WhiskEventKind::Touch,
         WhiskEventKind::Release,
         WhiskEventKind::SlipOff,
         WhiskEventKind::PullOff,
+        WhiskEventKind::Snap,
     ]
     .map(&count);
-    let lost = digits(rounded(whisk.lost_nj(), 6));
+    let [lost, taken] = [whisk.lost_nj(), whisk.dissipated_nj()];
+    let [lost, dissipated] = [lost, taken].map(|energy| digits(rounded(energy, 6)));
     message(&format!(
         "touches {touches}, releases {releases}, slip-offs {slips}, pull-offs {pulls}; detachments lose {lost} nJ"
     ));
+    if taken != 0.0 {
+        message(&format!(
+            "snaps {snaps}; friction dissipates {dissipated} nJ"
+        ));
+    }
     let spans = count(WhiskEventKind::Undecided);
     let undecided = whisk
         .samples

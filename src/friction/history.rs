@@ -21,13 +21,13 @@ pub struct ContactHistory {
 
 /// Contact at a push of its history.
 #[derive(Clone, Copy, Debug)]
-struct HistoryKnot {
+pub(super) struct HistoryKnot {
     /// Push angle, a magnitude, in radians.
-    push: f64,
+    pub push: f64,
     /// Slid distance, in whisker lengths.
-    slid: f64,
+    pub slid: f64,
     /// Last state in which the contact slid.
-    end: SlidingEnd,
+    pub end: SlidingEnd,
 }
 
 /// State of a limit at which a contact slid last before it stuck.
@@ -77,7 +77,62 @@ impl ContactHistory {
             };
             Some(Self::new(tip?, base))
         };
-        tips.into_iter().map(with_base).collect()
+        let histories: Vec<Option<Self>> = tips.into_iter().map(with_base).collect();
+        Self::refined(&histories)
+    }
+
+    /// Histories with exact states where the contact changes its phase. A small error of a slid distance changes the force ratio of a contact
+    /// that sticks there by much.
+    fn refined(histories: &[Option<Self>]) -> Vec<Option<Self>> {
+        let limits = histories.iter().flatten().filter_map(|own| {
+            let base = own.base.as_ref()?;
+            let tip = (&own.tip, own.met(&own.tip, Sliding::Tip));
+            Some([tip, (base, own.met(base, Sliding::Base))])
+        });
+        let limits: Vec<(&SlidingLimit, Vec<usize>)> = limits.flatten().collect();
+        let divided = SlidingLimit::divided(&limits);
+        let mut divided = polished(divided).into_iter();
+        let refined = histories.iter().map(|own| {
+            let own = own.as_ref()?;
+            if own.base.is_none() {
+                return Some(own.clone());
+            }
+            let (tip, base) = (divided.next()?, divided.next()?);
+            Some(Self::new(tip?, Some(base?)))
+        });
+        refined.collect()
+    }
+
+    /// Segments of a `limit` on which the contact stops or begins to slide in its direction.
+    fn met(&self, limit: &SlidingLimit, direction: Sliding) -> Vec<usize> {
+        let begins = self.knots.windows(2).filter(|pair| {
+            let was_held = pair[0].end.push < pair[0].push;
+            let SlidingEnd { limit, push } = pair[1].end;
+            was_held && limit == direction && push == pair[1].push
+        });
+        let begins = begins.flat_map(|pair| limit.between(pair[0].push, pair[1].push));
+        let mut met: Vec<usize> = begins.chain(limit.around_reversals()).collect();
+        met.sort_unstable();
+        met.dedup();
+        met
+    }
+
+    /// Computes the sliding history of the row of `level` with its base limit, and the unstable states of the base limit; `None` where the
+    /// continuation fails.
+    pub(super) fn with_retreat(level: &LevelCurve) -> Option<(Self, Option<SlidingLimit>)> {
+        let tip = SlidingLimit::of(std::slice::from_ref(level)).pop()??;
+        let (base, retreat) = SlidingLimit::with_unstable(&opposed(level))?;
+        let limits = [Some(&tip), Some(&base), retreat.as_ref()];
+        let limits = limits.into_iter().flatten();
+        let whole: Vec<_> = limits.map(|limit| (limit, limit.segments())).collect();
+        let divided = SlidingLimit::divided(&whole);
+        let mut divided = polished(divided).into_iter();
+        let (tip, base) = (divided.next()??, divided.next()??);
+        let retreat = match retreat {
+            Some(_) => Some(divided.next()??),
+            None => None,
+        };
+        Some((Self::new(tip, Some(base)), retreat))
     }
 
     fn new(tip: SlidingLimit, base: Option<SlidingLimit>) -> Self {
@@ -105,7 +160,7 @@ impl ContactHistory {
     }
 
     /// Contact at `push`, and the limit at the contact, if any. No limit may reverse between the push of `from` and `push`.
-    fn advance(&self, from: &HistoryKnot, push: f64) -> (HistoryKnot, Option<Sliding>) {
+    pub(super) fn advance(&self, from: &HistoryKnot, push: f64) -> (HistoryKnot, Option<Sliding>) {
         let slid = from.slid;
         let tip = self.tip.slid(push).filter(|tip| *tip >= slid);
         let base = self.base.as_ref().and_then(|base| base.slid(push));
@@ -140,6 +195,16 @@ impl ContactHistory {
             Some(next) if is_at(&self.tip) && is_at(base) => self.advance(before, next.push).1,
             _ => self.advance(before, push).1,
         };
+        let is_clear = |limit: &SlidingLimit| {
+            let passed = limit.slid(push).map(|at| (at - before.slid).abs());
+            passed.is_some_and(|passed| passed > CLEAR_OF_CONTACT)
+        };
+        // The contact stops at an exact reversal, but begins to slide at an interpolated place.
+        let is_begun = limit.and_then(|way| self.limit(way)).is_none_or(is_clear);
+        let begins = limit.is_some_and(|way| before.end.limit != way && before.end.push > 0.0);
+        if begins && !is_begun {
+            return ContactPhase::Sticks(before.end);
+        }
         limit.map_or(ContactPhase::Sticks(before.end), ContactPhase::Slides)
     }
 
@@ -152,13 +217,6 @@ impl ContactHistory {
         }
     }
 
-    /// Returns the first state in which the contact slides again after it stuck at `push`, approximately; `None` if it never does.
-    pub(super) fn next_sliding(&self, push: f64) -> Option<SlidingEnd> {
-        let ahead = self.knots.iter().filter(|knot| knot.push > push);
-        let mut ahead = ahead.map(|knot| knot.end);
-        ahead.find(|end| end.push > push)
-    }
-
     /// Returns true if a push detaches at `push`, a magnitude in radians, where the stable states of the tip limit end. It does not if
     /// the contact sticks or slides toward the base there.
     #[must_use]
@@ -168,6 +226,20 @@ impl ContactHistory {
         is_end && self.phase(end) == ContactPhase::Slides(Sliding::Tip)
     }
 }
+
+/// Limits with exact reversals, `[limit]`.
+fn polished(limits: Vec<Option<SlidingLimit>>) -> Vec<Option<SlidingLimit>> {
+    let known: Vec<SlidingLimit> = limits.iter().flatten().cloned().collect();
+    let mut known = SlidingLimit::polished(known).into_iter();
+    let limits = limits.into_iter();
+    limits
+        .map(|limit| limit.and_then(|_| known.next()?))
+        .collect()
+}
+
+/// Slid distance by which a limit must pass a contact that sticks, in whisker lengths, to move it without doubt. Limits are interpolated with
+/// smaller errors. In doubt the contact sticks, and the force ratio of its state decides.
+pub(super) const CLEAR_OF_CONTACT: f64 = 1e-8;
 
 /// Maximum difference between the ends of a limit and of the boundary of its row, in parts of a radian and of the push. The two are
 /// computed apart, and may take different numbers of steps.

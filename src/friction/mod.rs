@@ -2,13 +2,21 @@
 //!
 //! The force ratio is the tangential over the normal force at the contact, with the sign of the side. A contact that slides toward the tip
 //! has the force ratio `mu`, one that slides toward the base `-mu` (Coulomb). A contact that sticks has a force ratio between them, which
-//! follows from its slid distance. [`ContactHistory`] says which of the three holds at a push angle; [`states`] solves for the state.
+//! follows from its slid distance. [`ContactHistory`] says which of the three holds at a push angle, [`ContactCourse`] along
+//! pushes that go to and fro. [`states`] solves for the states.
 
+mod course;
+mod dissipation;
+mod division;
 mod history;
 mod limit;
+mod newton;
+mod segment;
 mod sliding;
 mod states;
+mod stuck;
 
+pub use course::{ContactCourse, CourseLimits, Snap};
 pub use history::{ContactHistory, ContactPhase, SlidingEnd};
 pub use sliding::Sliding;
-pub use states::{ContactQuery, FrictionPoint, FrictionState, states};
+pub use states::{ContactQuery, FrictionPoint, FrictionState, held, states};

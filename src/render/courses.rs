@@ -113,6 +113,7 @@ fn dot(event: &WhiskEvent, curve: &Curve) -> Option<Dot> {
         WhiskEventKind::Release => (Ink::Grey, false, "release"),
         WhiskEventKind::SlipOff => (Ink::Black, false, "slip-off"),
         WhiskEventKind::PullOff => (Ink::Blue, false, "pull-off"),
+        WhiskEventKind::Snap => (Ink::Series(2), false, "snap"),
         WhiskEventKind::Undecided => (Ink::Series(1), true, "undecided from here"),
     };
     Some(Dot {

@@ -1,7 +1,8 @@
 //! Line charts of maps with one row: a channel over the push angle.
 
-use super::marks::{MARKED, has_marks, is_mark};
+use super::marks::has_marks;
 use super::{MapOptions, RenderError, labels};
+use crate::classify::Status;
 use crate::store::{ChannelValues, MapSlice};
 use whiskmap_plot::{Chart, Ink, Line, Picture, Plot, Stroke};
 
@@ -41,10 +42,13 @@ pub fn chart(
             1 => Ink::Black,
             _ => Ink::Series(index),
         };
-        for (points, is_marked) in parts(&grid.push_angle_deg, &values, marks.as_ref()) {
-            lines.push(match is_marked {
-                false => Line::new(points, ink, Stroke::Solid).named(name),
-                true => Line::new(points, ink, Stroke::Dashed).named(MARKED),
+        for (points, mark) in parts(&grid.push_angle_deg, &values, marks.as_ref()) {
+            lines.push(match mark {
+                None => Line::new(points, ink, Stroke::Solid).named(name),
+                Some(Status::TowardBase) => {
+                    Line::new(points, ink, Stroke::Dashed).named("slides to base")
+                }
+                Some(_) => Line::new(points, Ink::Grey, Stroke::Solid).named("sticks"),
             });
         }
     }
@@ -66,26 +70,30 @@ pub fn chart(
     Ok(Chart::single(map.title(), plot).picture(options.size)?)
 }
 
-/// Returns the parts of a row of `values` at `angles`, each with true if its states are marked: CF and CB apart, because the values between
-/// them are not those of first touch. Parts of one side share an end.
-fn parts(
-    angles: &[f64],
-    values: &[f64],
-    marks: Option<&ChannelValues>,
-) -> Vec<(Vec<[f64; 2]>, bool)> {
-    let is_marked =
-        |i: usize| matches!(marks, Some(ChannelValues::U32(codes)) if is_mark(codes[i]));
-    let mut parts: Vec<(Vec<[f64; 2]>, bool)> = Vec::new();
+/// Part of a line, and the status of its states if their contact does not slide toward the tip.
+type RowPart = (Vec<[f64; 2]>, Option<Status>);
+
+/// Returns the parts of a row of `values` at `angles`, each of one mark: CF and CB apart, because the values between them are not those of
+/// first touch. Parts of one side share an end.
+fn parts(angles: &[f64], values: &[f64], marks: Option<&ChannelValues>) -> Vec<RowPart> {
+    let mark = |i: usize| {
+        let Some(ChannelValues::U32(codes)) = marks else {
+            return None;
+        };
+        let mut marks = Status::NOT_TOWARD_TIP.into_iter();
+        marks.find(|status| status.code() == codes[i])
+    };
+    let mut parts: Vec<RowPart> = Vec::new();
     for (i, (angle, value)) in angles.iter().zip(values).enumerate() {
         let point = [*angle, *value];
         let crosses = i > 0 && angles[i - 1] < 0.0 && *angle > 0.0;
         match parts.last_mut() {
-            Some((points, own)) if !crosses && *own == is_marked(i) => points.push(point),
+            Some((points, own)) if !crosses && *own == mark(i) => points.push(point),
             Some((points, _)) if !crosses => {
                 let shared = points.last().copied();
-                parts.push((shared.into_iter().chain([point]).collect(), is_marked(i)));
+                parts.push((shared.into_iter().chain([point]).collect(), mark(i)));
             }
-            _ => parts.push((vec![point], is_marked(i))),
+            _ => parts.push((vec![point], mark(i))),
         }
     }
     parts

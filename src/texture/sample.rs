@@ -75,7 +75,8 @@ pub fn samples(
             Phase::Undecided { reason, .. } => Some(match reason {
                 Undecided::OnThePole => NoTextureState::OnAnAsperity,
                 Undecided::TipEdge => NoTextureState::TipEdge,
-                Undecided::NotFound => NoTextureState::NotFound,
+                // Only a contact with friction is stuck, and textures have none.
+                Undecided::NotFound | Undecided::Stuck => NoTextureState::NotFound,
             }),
             Phase::Contact { .. } if held.is_none_or(|own| own.state.is_none()) => {
                 Some(NoTextureState::NotFound)

@@ -2,121 +2,30 @@
 //!
 //! The angle of the base is 0 where the resting whisker first touches the pole on the CB side, and grows with the push there. The pole stays:
 //! its centre has the same distance from the base on both sides. A whisker that detaches swings to the other side of the pole. On the way
-//! back it touches the pole there, on CF. Between detachments the state depends on the angle alone, so that only the side is history.
-//! Inertia is left out.
+//! back it touches the pole there, on CF. Without friction the state between detachments depends on the angle alone, so that only the side
+//! is history. With friction the contact slides or sticks, and its place is history, too. Inertia is left out.
 
 mod course;
+mod friction;
+mod legs;
 pub(crate) mod phase;
+mod readings;
+mod rows;
 pub(crate) mod states;
 mod turns;
 
 pub use course::{AngleCourse, CourseError};
+pub(crate) use readings::signed_deg;
+pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Row;
-use crate::shooting::Reading;
-use crate::trace::{NoState, row};
-use phase::{Obstacles, Passage, Phase};
-use serde::Serialize;
-use states::{BothSides, RowPush, SideStates};
+use crate::trace::NoState;
+use legs::Legs;
+use readings::Found;
+use states::SideStates;
 use turns::Turns;
-
-/// Regime of a sample: whether the whisker touches the pole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum WhiskRegime {
-    /// The whisker is at rest in the frame of its base.
-    Free,
-    /// The pole bends the whisker.
-    Contact,
-    /// The model does not say where the whisker is.
-    Undecided,
-}
-
-/// Reason why a sample of a course has no state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Undecided {
-    /// The whisker detached where neither side holds it, and the resting whisker would cross the pole.
-    OnThePole,
-    /// The edge of the tip meets the pole: the resting whisker is too short to be touched on this side.
-    TipEdge,
-    /// No state was found although the push has not ended.
-    NotFound,
-}
-
-row! {
-    /// Sample of a course: the state of the whisker at one time. Loads are 0 if the whisker is free.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct WhiskSample {
-        /// Time of the sample, in s.
-        pub time_s: f64,
-        /// Angle of the base, in degrees: 0 at first touch on CB, positive pushes CB.
-        pub angle_deg: f64,
-        /// Regime: free, contact or undecided.
-        pub regime: WhiskRegime,
-        /// Side of the whisker that the pole is on in contact: cb (convex) or cf (concave).
-        pub side: Option<Side>,
-        /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
-        pub push_angle_deg: Option<f64>,
-        /// Arclength from the base to the contact, in mm.
-        pub arc_length_mm: Option<f64>,
-        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-        pub contact_angle_deg: Option<f64>,
-        /// Size of the force between pole and whisker, normal to both, in uN.
-        pub force_un: Option<f64>,
-        /// Force that the pole puts on the base, along the base's tangent, in uN.
-        pub base_force_x_un: Option<f64>,
-        /// Force that the pole puts on the base, to the left of its tangent, in uN.
-        pub base_force_y_un: Option<f64>,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: Option<f64>,
-        /// Bending energy of the whisker, in nJ.
-        pub energy_nj: Option<f64>,
-        /// Reason of an undecided sample: on-the-pole, tip-edge or not-found.
-        pub reason: Option<Undecided>,
-    }
-}
-
-/// Kind of an event of a course.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum WhiskEventKind {
-    /// The whisker touches the pole.
-    Touch,
-    /// The whisker leaves the pole, unloaded.
-    Release,
-    /// The whisker slips off the pole at the fold.
-    SlipOff,
-    /// The whisker is pulled off with its tip at the pole.
-    PullOff,
-    /// The model does not say where the whisker is from here on.
-    Undecided,
-}
-
-row! {
-    /// Event of a course, between samples. Its loads and energy are those of the last state before it, and of the first one after a touch.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct WhiskEvent {
-        /// Time of the event, in s, from the straight line between two samples.
-        pub time_s: f64,
-        /// Kind of the event: touch, release, slip-off, pull-off or undecided.
-        pub event: WhiskEventKind,
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
-        pub side: Side,
-        /// Angle of the base, in degrees.
-        pub angle_deg: f64,
-        /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
-        pub push_angle_deg: Option<f64>,
-        /// Size of the force between pole and whisker, normal to both, in uN.
-        pub force_un: Option<f64>,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: Option<f64>,
-        /// Bending energy of the whisker, in nJ; it is lost if the whisker detaches.
-        pub energy_nj: Option<f64>,
-    }
-}
 
 /// Course of a whisker in front of one pole.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,6 +39,13 @@ pub struct Whisk {
 }
 
 impl Whisk {
+    /// Returns the energy that friction dissipates along the course, in nJ; NaN if a part of the course is undecided.
+    #[must_use]
+    pub fn dissipated_nj(&self) -> f64 {
+        let last = self.samples.last().and_then(|sample| sample.dissipated_nj);
+        last.unwrap_or(f64::NAN)
+    }
+
     /// Returns the energy that the detachments of the course lose, in nJ: that of the last states before them, without that of a state
     /// on the other side that follows at once.
     #[must_use]
@@ -171,11 +87,6 @@ pub enum WhiskError {
         /// Angle of the base at first touch on CF, in degrees.
         cf_touch_deg: f64,
     },
-    /// With friction, the force depends on the whole course.
-    #[error(
-        "contact.friction = {0}: must be 0, because the force of a contact that sticks depends on the course"
-    )]
-    Friction(f64),
     /// The end of the push was not found on this side.
     #[error("the detachment on {0:?} was not found")]
     Unresolved(Side),
@@ -195,7 +106,7 @@ pub enum WhiskError {
 /// ```
 ///
 /// # Errors
-/// If the resting whisker does not reach the pole, the course begins in contact, the contact has friction, or a detachment is not found.
+/// If the resting whisker does not reach the pole, the course begins in contact, or a detachment is not found.
 pub fn whisk(
     whisker: &Whisker,
     pole: &Pole,
@@ -203,9 +114,6 @@ pub fn whisk(
     course: &AngleCourse,
 ) -> Result<Whisk, WhiskError> {
     let rods = [Side::Cb, Side::Cf].map(|side| whisker.rod(pole, side));
-    if rods[0].friction != 0.0 {
-        return Err(WhiskError::Friction(rods[0].friction));
-    }
     let rests = rods.each_ref().map(Rest::new);
     let cb = Row::new(&rests[0], distance_mm / whisker.length_mm);
     if !cb.is_reached() {
@@ -215,14 +123,13 @@ pub fn whisk(
     }
     let cf_distance = rests[1].distance_of_pole(cb.pole_distance);
     let cf = Row::new(&rests[1], cf_distance);
-    let cb_states = SideStates::new(whisker, pole, Side::Cb, vec![distance_mm]);
-    let cb_states = cb_states.map_err(|_| WhiskError::Unresolved(Side::Cb))?;
+    let states = |side, distance_mm| {
+        let states = SideStates::new(whisker, pole, side, vec![distance_mm]);
+        states.map_err(|_| WhiskError::Unresolved(side))
+    };
+    let cb_states = states(Side::Cb, distance_mm)?;
     let cf_states = match cf.is_reached() {
-        true => {
-            let distances = vec![cf_distance * whisker.length_mm];
-            let states = SideStates::new(whisker, pole, Side::Cf, distances);
-            Some(states.map_err(|_| WhiskError::Unresolved(Side::Cf))?)
-        }
+        true => Some(states(Side::Cf, cf_distance * whisker.length_mm)?),
         false => None,
     };
     let turns = Turns {
@@ -231,102 +138,33 @@ pub fn whisk(
         cf_end: cf_states.as_ref().map(|states| states.end(0)),
     };
     let first = course.angles_deg[0];
-    let begin = turns.begin(first.to_radians()).ok_or(WhiskError::Begin {
+    let phase = turns.begin(first.to_radians()).ok_or(WhiskError::Begin {
         angle_deg: first,
         cf_touch_deg: turns.cf_touch.to_degrees(),
     })?;
-    let (phases, passages) = turns.follow(begin, course);
-    let found = BothSides {
-        cb: Some(cb_states),
-        cf: cf_states,
+    let found = Found {
+        cb: &cb_states,
+        cf: cf_states.as_ref(),
     };
-    let angles = course.angles_deg.iter().map(|deg| deg.to_radians());
-    let contacts = phases.iter().zip(angles).map(|(phase, angle)| match phase {
-        Phase::Contact { side, obstacle } => {
-            Some((*side, (0, turns.push(*side, *obstacle, angle).max(0.0))))
-        }
-        _ => None,
-    });
-    let contacts: Vec<Contact> = contacts.collect();
-    let readings = found.readings(&contacts);
+    let mut legs = Legs::new(&turns, phase, [Some(found.cb), found.cf]);
+    legs.sample(first.to_radians(), course.times_s[0]);
+    let times = course.times_s.windows(2);
+    for (angles, times) in course.angles_deg.windows(2).zip(times) {
+        let angles = [angles[0], angles[1]].map(f64::to_radians);
+        legs.leg(angles, [times[0], times[1]]);
+    }
+    let samples = found.samples(&legs.samples);
     let times = course.times_s.iter().zip(&course.angles_deg);
-    let states = phases.iter().zip(contacts.iter().zip(readings));
-    let samples = times.zip(states);
-    let samples = samples.map(|((time_s, angle_deg), (phase, (contact, reading)))| {
-        sample([*time_s, *angle_deg], *phase, *contact, reading)
-    });
+    let samples = times
+        .zip(samples)
+        .map(|((time_s, angle_deg), own)| WhiskSample {
+            time_s: *time_s,
+            angle_deg: *angle_deg,
+            ..own
+        });
     Ok(Whisk {
         samples: samples.collect(),
-        events: events(&found, &passages),
+        events: found.events(&legs.events),
         cf_touch_deg: turns.cf_touch.to_degrees(),
     })
-}
-
-/// Side, row and push in radians, as a magnitude, of a state in contact; `None` without contact.
-type Contact = Option<(Side, RowPush)>;
-
-/// Returns a push in degrees with the sign of its side; 0 without one.
-pub(crate) fn signed_deg(side: Side, push: f64) -> f64 {
-    side.sign() * push.to_degrees() + 0.0
-}
-
-/// Returns the events at the `passages`.
-fn events(found: &BothSides, passages: &[Passage]) -> Vec<WhiskEvent> {
-    let contact = |passage: &Passage| {
-        let push = Some(passage.push).filter(|push| !push.is_nan());
-        push.map(|push| (passage.side, (0, push)))
-    };
-    let contacts: Vec<Contact> = passages.iter().map(contact).collect();
-    let readings = found.readings(&contacts);
-    let events = passages.iter().zip(contacts.iter().zip(readings));
-    let events = events.map(|(passage, (contact, reading))| WhiskEvent {
-        time_s: passage.time_s,
-        event: passage
-            .event
-            .unwrap_or_else(|| found.detachment(passage.side, 0)),
-        side: passage.side,
-        angle_deg: passage.angle.to_degrees(),
-        push_angle_deg: contact.map(|(side, (_, push))| signed_deg(side, push)),
-        force_un: reading.map(|state| state.force_un),
-        base_moment_nnm: reading.map(|state| state.base_moment_nnm),
-        energy_nj: reading.map(|state| state.energy_nj),
-    });
-    events.collect()
-}
-
-/// Returns the sample at `[time in s, angle in degrees]`.
-fn sample(
-    [time_s, angle_deg]: [f64; 2],
-    phase: Phase,
-    contact: Contact,
-    reading: Option<Reading>,
-) -> WhiskSample {
-    let reason = match phase {
-        Phase::Undecided { reason, .. } => Some(reason),
-        Phase::Contact { .. } if reading.is_none() => Some(Undecided::NotFound),
-        _ => None,
-    };
-    let load = |of: fn(&Reading) -> f64| match phase {
-        Phase::Free { .. } => Some(0.0),
-        _ => reading.as_ref().map(of),
-    };
-    WhiskSample {
-        time_s,
-        angle_deg,
-        regime: match (phase, reason) {
-            (_, Some(_)) => WhiskRegime::Undecided,
-            (Phase::Free { .. }, _) => WhiskRegime::Free,
-            _ => WhiskRegime::Contact,
-        },
-        side: contact.map(|(side, _)| side),
-        push_angle_deg: contact.map(|(side, (_, push))| signed_deg(side, push)),
-        arc_length_mm: reading.map(|state| state.arc_length_mm),
-        contact_angle_deg: reading.map(|state| state.contact_angle_deg),
-        force_un: load(|state| state.force_un),
-        base_force_x_un: load(|state| state.base_force_un.x),
-        base_force_y_un: load(|state| state.base_force_un.y),
-        base_moment_nnm: load(|state| state.base_moment_nnm),
-        energy_nj: load(|state| state.energy_nj),
-        reason,
-    }
 }

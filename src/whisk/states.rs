@@ -1,6 +1,8 @@
 //! States of a course on one side of its obstacles, in batches.
 
+use super::friction::CourseContact;
 use crate::classify::RowBoundary;
+use crate::friction::{ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
@@ -17,7 +19,12 @@ pub struct SideStates {
     sheet: Sheet,
     reader: Reader,
     ends: Vec<RowEnd>,
+    /// Limits of sliding, `[row]`; empty without friction.
+    limits: Vec<CourseLimits>,
 }
+
+/// Solver for states with friction: [`states`](crate::friction::states) or [`held`](crate::friction::held).
+pub type SolveContacts = fn(&[ContactQuery]) -> Vec<Option<FrictionState>>;
 
 /// End of the pushes of one row.
 struct RowEnd {
@@ -30,8 +37,8 @@ struct RowEnd {
 pub type RowPush = (usize, f64);
 
 impl SideStates {
-    /// Computes the sheet and the ends of the pushes on `side` for first touches at `distances_mm`, which must increase. The error is the
-    /// index of a distance without an end.
+    /// Computes the sheet and the ends of the pushes on `side` for first touches at `distances_mm`, which must increase; with friction, also
+    /// the limits of sliding. The error is the index of a distance without an end, or where the contact sticks at the end.
     pub fn new(
         whisker: &Whisker,
         pole: &Pole,
@@ -49,6 +56,20 @@ impl SideStates {
         };
         let ends = sheet.crossings.iter().enumerate().map(end);
         let ends: Vec<Crossing> = ends.collect::<Result<_, _>>()?;
+        let limits = |(row, end): (usize, &Crossing)| {
+            let limits = CourseLimits::new(&sheet.level(row));
+            limits
+                .filter(|limits| limits.detaches_at(end.push))
+                .ok_or(row)
+        };
+        let limits: Vec<CourseLimits> = match rod.friction {
+            0.0 => Vec::new(),
+            _ => ends
+                .iter()
+                .enumerate()
+                .map(limits)
+                .collect::<Result<_, _>>()?,
+        };
         let reader = Reader::new(whisker.units(), &rod);
         let points = ends.iter().map(|end| (end.tau, end.load));
         let at_ends: Vec<FirstVariation> = Batch::new(method).shoot_at(&rod, points);
@@ -62,6 +83,7 @@ impl SideStates {
         });
         Ok(Self {
             ends: ends.collect(),
+            limits,
             whisker: whisker.clone(),
             pole: *pole,
             distances_mm,
@@ -83,8 +105,57 @@ impl SideStates {
         }
     }
 
-    /// Returns the states at `contacts`, `[contact]`; `None` where no state is found.
-    pub fn at(&self, contacts: &[RowPush]) -> Vec<Option<Reading>> {
+    /// Returns the limits of sliding in `row`; `None` without friction.
+    pub fn limits(&self, row: usize) -> Option<&CourseLimits> {
+        self.limits.get(row)
+    }
+
+    /// Returns the energy of a dimensionless energy of 1, in nJ.
+    pub fn energy_nj(&self) -> f64 {
+        self.whisker.units().moment_nnm
+    }
+
+    /// Returns the states of `contacts` in the first row, with their sliding directions if there is friction, `[contact]`; `None` where no
+    /// state is found. States with friction are solved by `solve`.
+    pub fn at(
+        &self,
+        contacts: &[CourseContact],
+        solve: SolveContacts,
+    ) -> Vec<Option<(Reading, Option<Sliding>)>> {
+        let Some(limits) = self.limits(0) else {
+            let pushes: Vec<RowPush> = contacts.iter().map(|contact| (0, contact.push)).collect();
+            let states = self.without_friction(&pushes).into_iter();
+            return states.map(|state| Some((state?, None))).collect();
+        };
+        let is_inside = |push: f64| push > 0.0 && push < self.end(0);
+        let inside = contacts.iter().filter(|own| is_inside(own.push));
+        let queries = inside.filter_map(|own| Some(limits.query(own.phase?, own.push)));
+        let mut solved = solve(&queries.collect::<Vec<_>>()).into_iter();
+        let states = contacts.iter().map(|own| {
+            if is_inside(own.push) {
+                let state = own.phase.and_then(|_| solved.next()?)?;
+                let reader = self.reader.with_contact(&state.rod(&self.sheet.rod));
+                let (touch, push) = (self.sheet.rows[0].touch, self.sheet.side.sign() * own.push);
+                let reading = reader.read(state.at.point.x, &state.full, touch, push);
+                return Some((reading, Some(state.sliding)));
+            }
+            let reading = match own.push > 0.0 {
+                true => self.ends[0].state,
+                false => self.at_touch(0),
+            };
+            Some((reading, own.phase.map(|phase| phase.sliding())))
+        });
+        states.collect()
+    }
+
+    fn at_touch(&self, row: usize) -> Reading {
+        let row = &self.sheet.rows[row];
+        let contact = row.contact.min(row.end);
+        self.reader.at_first_touch(contact, row.touch)
+    }
+
+    /// Returns the states without friction at `contacts`, `[contact]`; `None` where no state is found.
+    fn without_friction(&self, contacts: &[RowPush]) -> Vec<Option<Reading>> {
         let sign = self.sheet.side.sign();
         let mut order: Vec<usize> = (0..contacts.len()).collect();
         let of = |i: usize| contacts[i];
@@ -122,10 +193,8 @@ impl SideStates {
         let side = self.sheet.side;
         let mut last: Option<(usize, Option<Branch>)> = None;
         for (state, &(row, push)) in states.iter_mut().zip(contacts) {
-            let place = &self.sheet.rows[row];
             if push <= 0.0 {
-                let contact = place.contact.min(place.end);
-                *state = Some(self.reader.at_first_touch(contact, place.touch));
+                *state = Some(self.at_touch(row));
             } else if push >= self.end(row) {
                 *state = Some(self.ends[row].state);
             } else if state.is_none() {
@@ -168,7 +237,7 @@ impl BothSides {
             let own =
                 own.filter_map(|(i, contact)| Some((i, contact.filter(|own| own.0 == side)?.1)));
             let (places, pushes): (Vec<usize>, Vec<RowPush>) = own.unzip();
-            let states = self.of(side).map(|states| states.at(&pushes));
+            let states = self.of(side).map(|states| states.without_friction(&pushes));
             for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
                 readings[i] = state;
             }

@@ -287,6 +287,8 @@ fn everything_on() {
         .filter(|line| !line.contains(" | on | "))
         .map(|line| line.split(" | ").next().unwrap())
         .collect();
+    let line = "the CPU solves contacts that stick or slide toward the base";
+    assert_eq!(fact(&run, "friction"), line);
     // Measured radii replace the taper; a spiral and a traced shape the parabola.
     assert_eq!(
         off,

@@ -115,6 +115,4 @@ fn wrong_courses_are_refused() {
             "1,1,1",
         ])
         .assert_refused(&["--distance 19.9", "out of reach"]);
-    let rough = Place::with(&SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
-    whisk(&rough, &["--sine", "1,1,1"]).assert_refused(&["contact.friction = 0.3: must be 0"]);
 }

@@ -19,21 +19,32 @@ pub fn stepped(scene: &Scene, side: Side) -> SteppedWhisker {
     }
 }
 
-/// Number of steps of the push. The reversal of a limit lies between two steps; the error of its slid distance is quadratic in the step.
-const PUSHES: u32 = 2000;
+/// Number of steps of the push.
+const PUSHES: u32 = 1500;
 
-/// Forces, moments and energies of all three phases are those of the independent integration. Sticking: 20 degrees of a push that ends at
-/// 25 degrees with friction 1.
+/// Largest relative difference of a contact that slides. Measured: 2e-11 with twice the steps of the trajectories.
+const SLIDES: f64 = 1e-9;
+
+/// Largest relative difference of a contact that sticks. Measured: 7.8e-7, from the slid distance at which the small steps let it stick.
+pub const STICKS: f64 = 3e-6;
+
+/// Returns the largest relative difference of a state in a phase from that of small steps.
+pub fn allowed(sliding: Sliding) -> f64 {
+    match sliding {
+        Sliding::Sticks => STICKS,
+        _ => SLIDES,
+    }
+}
+
+/// Forces, moments, contacts and energies of all three phases are those of the independent integration.
 #[test]
 fn states_are_those_of_small_steps() {
     let mut counts = [0; 3];
-    let mut worst = [0.0_f64; 3];
     for (a_per_mm, radius_mm, friction, side, distance) in [
         (0.02, 0.25, 0.3, Side::Cf, 15.66),
         (0.02, 0.25, 0.3, Side::Cb, 15.66),
         (0.02, 0.0, 0.9, Side::Cf, 9.0),
         (0.04, 1.0, 0.3, Side::Cf, 15.0),
-        (0.02, 0.25, 0.3, Side::Cf, 18.0),
     ] {
         let scene = cone(a_per_mm, radius_mm, friction);
         let own = stepped(&scene, side);
@@ -42,11 +53,11 @@ fn states_are_those_of_small_steps() {
         let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
         let end = branch.stable_end_deg().abs().to_radians();
         // The fold is singular, where difference quotients fail.
-        let pushes = (1..=PUSHES).map(|i| 0.98 * end * f64::from(i) / f64::from(PUSHES));
+        let pushes = (1..=PUSHES).map(|i| 0.9 * end * f64::from(i) / f64::from(PUSHES));
         let pushes: Vec<f64> = pushes.collect();
         let course = own.course(rod.tau(touch), &pushes);
         let units = scene.whisker.units();
-        for (push, wanted) in pushes.iter().zip(&course).skip(20).step_by(27) {
+        for (push, wanted) in pushes.iter().zip(&course).skip(20).step_by(7) {
             let state = branch.state(side.sign() * push, true).unwrap();
             let found = branch.read(&state);
             let sliding = state.sliding.unwrap();
@@ -58,10 +69,9 @@ fn states_are_those_of_small_steps() {
             ];
             for (found, wanted) in pairs {
                 let error = (found / wanted - 1.0).abs();
-                worst[sliding as usize] = worst[sliding as usize].max(error);
                 assert!(
-                    error < 1e-6,
-                    "{a_per_mm} {radius_mm} {friction} {side:?} {distance}: {} {sliding:?} {found} {wanted}",
+                    error < allowed(sliding),
+                    "{a_per_mm} {radius_mm} {friction} {side:?} {distance}: {} {sliding:?} {error:e}",
                     push.to_degrees()
                 );
             }
@@ -69,7 +79,4 @@ fn states_are_those_of_small_steps() {
         }
     }
     assert!(counts.iter().all(|count| *count > 10), "{counts:?}");
-    // Measured.
-    assert!(worst[Sliding::Tip as usize] < 1e-6, "{worst:?}");
-    println!("{counts:?} {worst:?}");
 }

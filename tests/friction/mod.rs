@@ -2,16 +2,21 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod course;
+mod random;
 mod stepped;
+mod whisk;
 
 use crate::compute;
 
 use compute::compute;
+use whiskmap::Channel;
 use whiskmap::classify::{Regime, Status};
+use whiskmap::engine::Spectral;
 use whiskmap::friction::Sliding;
 use whiskmap::map::{Panel, Summary};
 use whiskmap::rod::{Rest, Rod, Side, arclength};
 use whiskmap::scene::Scene;
+use whiskmap::sensitivity::{NoDerivative, Variable, detachments, state};
 use whiskmap::sheet::{CurveNode, LevelCurve, Row};
 use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, WhiskerShape};
@@ -220,6 +225,72 @@ fn where_the_contact_sticks_less_friction_holds_it() {
         }
     }
     assert!(counts.iter().all(|count| *count > 10), "{counts:?}");
+}
+
+/// Cells of maps have the states of the branch in all channels, by every engine on the CPU.
+#[test]
+fn cells_have_the_states_of_their_phase() {
+    let scene = cone(0.02, 0.25, 0.3);
+    let mut spectral = Spectral::default();
+    let by_cpu = compute(&scene, None).1.remove(0);
+    let by_spectral = compute(&scene, Some(&mut spectral)).1.remove(0);
+    let pushes = &scene.grid.push_angle_deg;
+    let mut counts = [0; 3];
+    for (row, distance) in scene.grid.distance_mm.iter().enumerate().step_by(3) {
+        for side in Side::BOTH {
+            let Ok(branch) = Branch::new(&scene.whisker, &scene.pole, side, *distance) else {
+                continue;
+            };
+            for (column, push) in pushes.iter().enumerate() {
+                let at = row * pushes.len() + column;
+                let is_contact = by_cpu.regime[at] == Regime::Contact.code();
+                if !is_contact || Side::of_push(*push) != side {
+                    continue;
+                }
+                let state = branch.state(push.to_radians(), true).unwrap();
+                let wanted = branch.read(&state);
+                for panel in [&by_cpu, &by_spectral] {
+                    for (channel, wanted) in [
+                        (Channel::ArcLength, wanted.arc_length_mm),
+                        (Channel::ContactAngle, wanted.contact_angle_deg),
+                        (Channel::Force, wanted.force_un),
+                        (Channel::BaseForceX, wanted.base_force_un.x),
+                        (Channel::BaseForceY, wanted.base_force_un.y),
+                        (Channel::BaseMoment, wanted.base_moment_nnm),
+                        (Channel::Energy, wanted.energy_nj),
+                    ] {
+                        let found = f64::from(panel.channel(channel)[at]);
+                        let case = format!("{distance} {push} {:?} {channel:?}", state.sliding);
+                        // Channels have single precision.
+                        assert!(
+                            (found - wanted).abs() <= 1e-6 * wanted.abs().max(1e-3),
+                            "{case}: {found} {wanted}"
+                        );
+                    }
+                }
+                counts[state.sliding.unwrap() as usize] += 1;
+            }
+        }
+    }
+    assert!(counts.iter().all(|count| *count > 1), "{counts:?}");
+}
+
+/// A state whose place is history has no derivatives; its detachment has.
+#[test]
+fn states_of_the_course_have_no_derivatives() {
+    let scene = cone(0.02, 0.25, 0.3);
+    let variables = [Variable::PushAngleDeg];
+    let by = |push: f64| {
+        let found = state(&scene.whisker, &scene.pole, 15.66, push, &variables).unwrap();
+        found.by[0]
+    };
+    for push in [-5.0, -10.0] {
+        assert_eq!(by(push), Err(NoDerivative::Course), "{push}");
+    }
+    assert!(by(-20.0).is_ok() && by(5.0).is_ok());
+    let variables = [Variable::DistanceMm];
+    let ends = detachments(&scene.whisker, &scene.pole, Side::Cf, &[15.66], &variables);
+    assert!(ends[0].by[0].is_ok(), "{ends:?}");
 }
 
 /// On CF the contact first slides toward the base, then sticks. On CB it does neither.

@@ -32,7 +32,7 @@ pub struct SteppedState {
 }
 
 /// Steps of Runge-Kutta's method for a trajectory.
-const STEPS: u32 = 400;
+const STEPS: u32 = 200;
 
 impl SteppedWhisker {
     /// Slope of the parabola at arclength `s`.
@@ -106,14 +106,13 @@ impl SteppedWhisker {
             let third = slid.map_or(at[2] - start[2], |slid| state.slid - slid);
             [state.pole[0] - wanted[0], state.pole[1] - wanted[1], third]
         };
+        // The force ratio changes by much with a small slid distance: the iteration ends when steps no longer help.
+        let mut last = f64::INFINITY;
         for _ in 0..30 {
             let here = miss(at);
-            if here.iter().all(|miss| miss.abs() < 1e-12) {
-                break;
-            }
             let mut columns = [[0.0; 3]; 3];
             for (i, column) in columns.iter_mut().enumerate() {
-                let step = 1e-6 * (1.0 + at[i].abs());
+                let step = 1e-5 * (1.0 + at[i].abs());
                 let [mut more, mut less] = [at, at];
                 (more[i], less[i]) = (at[i] + step, at[i] - step);
                 let [more, less] = [miss(more), miss(less)];
@@ -124,37 +123,69 @@ impl SteppedWhisker {
                     + a[2] * (b[0] * c[1] - b[1] * c[0])
             };
             let whole = det(columns);
-            for i in 0..3 {
+            let step: Loaded = std::array::from_fn(|i| {
                 let mut replaced = columns;
                 replaced[i] = here;
-                at[i] -= det(replaced) / whole;
+                det(replaced) / whole
+            });
+            at = std::array::from_fn(|i| at[i] - step[i]);
+            let size = step.iter().map(|step| step.abs()).sum::<f64>();
+            if size < 1e-6 && size > 0.3 * last {
+                break;
             }
+            last = size;
         }
         self.state(at)
     }
 
     /// Moves the pole to the direction of each push of `pushes` after first touch of the resting whisker at `tau`, in small steps. Pushes
-    /// are magnitudes in radians. The contact sticks if the friction that this takes is in the cone of friction, and else slides.
+    /// are magnitudes in radians. The contact sticks if the friction that this takes is in the cone of friction, and else slides. Where
+    /// sliding ends between two steps, the slid distance is the extremum of the parabola through the last steps.
     pub fn course(&self, tau: f64, pushes: &[f64]) -> Vec<SteppedState> {
         let touch = self.state([tau, 0.0, 0.0]);
         let mut before = touch;
+        // Pushes and slid distances of the last steps, while the contact slides in one direction and the push does not turn.
+        let mut slides: Vec<[f64; 2]> = Vec::new();
         let mut last = 0.0;
-        let course = pushes.iter().map(|push| {
-            let wanted = [touch.pole[0], touch.pole[1] + self.side * push];
+        let mut held = touch.slid;
+        let at = |push: f64| [touch.pole[0], touch.pole[1] + self.side * push];
+        let course = pushes.iter().enumerate().map(|(i, push)| {
+            let wanted = at(*push);
             let mut start = before.loaded;
             if start[1] == 0.0 {
                 // Any small load, because a contact without one cannot stick.
                 start[1] = self.side * (push - last);
             }
-            let mut state = self.solve(start, wanted, Some(before.slid));
+            let turns = i > 1 && (pushes[i - 1] - pushes[i - 2]) * (push - pushes[i - 1]) < 0.0;
+            if turns {
+                slides.clear();
+            }
+            let mut state = self.solve(start, wanted, Some(held));
             let needed = state.loaded[2];
             if needed.abs() > self.friction {
                 start[2] = self.friction.copysign(needed);
                 state = self.solve(start, wanted, None);
+                held = state.slid;
+                slides.push([*push, held]);
+            } else if let [.., a, b] = slides[..] {
+                start[2] = before.loaded[2];
+                let c = [*push, self.solve(start, wanted, None).slid];
+                held = extremum([a, b, c]);
+                state = self.solve(state.loaded, wanted, Some(held));
+                slides.clear();
             }
             (before, last) = (state, *push);
             state
         });
         course.collect()
     }
+}
+
+/// Extremum of the parabola through three points `[x, y]`.
+fn extremum([a, b, c]: [[f64; 2]; 3]) -> f64 {
+    let first = (b[1] - a[1]) / (b[0] - a[0]);
+    let second = ((c[1] - b[1]) / (c[0] - b[0]) - first) / (c[0] - a[0]);
+    // y = a + first (x - a) + second (x - a) (x - b).
+    let x = 0.5 * (a[0] + b[0] - first / second);
+    a[1] + (x - a[0]) * (first + second * (x - b[0]))
 }

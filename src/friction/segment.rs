@@ -1,0 +1,179 @@
+//! Segment of a limit: the slid distance between two states as a polynomial.
+
+use crate::numerics::newton_form::{Polynomial, through_runs};
+use crate::sheet::CurveNode;
+
+/// State at which a limit is interpolated.
+#[derive(Clone, Copy, Debug)]
+pub struct SlidingKnot {
+    /// Push angle, a magnitude, in radians.
+    pub push: f64,
+    /// Slid distance, in whisker lengths.
+    pub slid: f64,
+    /// State of the knot, with the friction of the limit.
+    pub node: CurveNode,
+    /// Derivative of the slid distance by the push; infinite at the fold.
+    pub by_push: f64,
+}
+
+/// Place on a limit.
+#[derive(Clone, Copy, Debug)]
+pub struct LimitPlace {
+    /// Push angle of the place, a magnitude, in radians.
+    pub push: f64,
+    /// Derivative of the push angle by the variable of the segment, in radians.
+    pub push_by_x: f64,
+}
+
+/// Polynomial of the slid distance between two knots. Its variable `x` grows from 0 to 1. It is the fraction of the interval. If the
+/// second knot is a fold, it is 1 minus the square root of the fraction that is left.
+#[derive(Clone, Debug)]
+pub struct LimitSegment {
+    pub from: SlidingKnot,
+    pub to: SlidingKnot,
+    /// True if the second knot is a fold.
+    is_to_fold: bool,
+    /// Slid distance, with a value and a slope at each knot.
+    pub cubic: Polynomial<4>,
+}
+
+impl LimitSegment {
+    /// Cubic Hermite polynomial or, next to a fold, the parabola that has the slope of the first knot.
+    pub fn new(from: SlidingKnot, to: SlidingKnot) -> Self {
+        let is_to_fold = to.by_push.is_infinite();
+        let [begin, end] = [from, to].map(|knot| knot.by_push * (to.push - from.push));
+        let slopes = if is_to_fold {
+            // At the first knot, the fraction changes twice as fast as `x`. The slopes of a parabola have the secant as their mean.
+            [2.0 * begin, 2.0 * (to.slid - from.slid - begin)]
+        } else {
+            [begin, end]
+        };
+        let differences = through_runs(&[[from.slid], [to.slid]], &slopes.map(|slope| [slope]))[0];
+        Self {
+            from,
+            to,
+            is_to_fold,
+            cubic: Polynomial::on_even_nodes(2, differences.map(|[difference]| difference)),
+        }
+    }
+
+    /// Variable `x` at the push angle `push`, in radians.
+    pub fn part(&self, push: f64) -> f64 {
+        let fraction = (push - self.from.push) / (self.to.push - self.from.push);
+        if self.is_to_fold {
+            1.0 - (1.0 - fraction).max(0.0).sqrt()
+        } else {
+            fraction
+        }
+    }
+
+    /// Place at the variable `x`.
+    pub fn inner(&self, x: f64) -> LimitPlace {
+        let length = self.to.push - self.from.push;
+        let (fraction, by_x) = if self.is_to_fold {
+            (x * (2.0 - x), 2.0 - 2.0 * x)
+        } else {
+            (x, 1.0)
+        };
+        LimitPlace {
+            push: fraction.mul_add(length, self.from.push),
+            push_by_x: by_x * length,
+        }
+    }
+
+    /// Returns true if the slid distance falls anywhere.
+    pub fn falls(&self) -> bool {
+        let slopes = [0.0, 1.0].map(|x| self.cubic.at(x).1);
+        slopes.iter().any(|slope| *slope < 0.0) || self.reversals().iter().any(Option::is_some)
+    }
+
+    /// Push angles at which the slid distance reverses, in radians.
+    pub fn reversals(&self) -> [Option<f64>; 2] {
+        // The slope is `c1 + 2 c2 x + 3 c3 x^2`.
+        let [_, c1, second, c3] = self.cubic.differences;
+        let c2 = second - c3;
+        let root = c2.mul_add(c2, -3.0 * c1 * c3).sqrt();
+        // The second root follows by division, so that neither root cancels.
+        let q = -(c2 + root.copysign(c2));
+        [q / (3.0 * c3), c1 / q].map(|x| {
+            let is_within = x > 0.0 && x < 1.0;
+            is_within.then(|| self.inner(x).push)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shooting::FullState;
+    use glam::DVec2;
+
+    fn knot(push: f64, slid: f64, by_push: f64) -> SlidingKnot {
+        SlidingKnot {
+            push,
+            slid,
+            node: CurveNode {
+                point: DVec2::ZERO,
+                full: FullState::default(),
+                push,
+                angle: 0.0,
+            },
+            by_push,
+        }
+    }
+
+    fn at(segment: &LimitSegment, push: f64) -> f64 {
+        segment.cubic.at(segment.part(push)).0
+    }
+
+    fn sorted_reversals(segment: &LimitSegment) -> Vec<f64> {
+        let mut reversals: Vec<f64> = segment.reversals().into_iter().flatten().collect();
+        reversals.sort_by(f64::total_cmp);
+        reversals
+    }
+
+    fn near(found: &[f64], wanted: &[f64]) -> bool {
+        let pairs = found.iter().zip(wanted);
+        found.len() == wanted.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12)
+    }
+
+    /// `(x - 1)^2 (x + 2)` reverses at 1 and -1.
+    #[test]
+    fn a_cubic_is_reproduced_and_reverses_where_its_slope_is_zero() {
+        let slid = |x: f64| (x - 1.0) * (x - 1.0) * (x + 2.0);
+        let segment = |from: f64, to: f64| {
+            let [from, to] = [from, to].map(|x| knot(x, slid(x), 3.0 * x * x - 3.0));
+            LimitSegment::new(from, to)
+        };
+        let found = at(&segment(-2.0, 2.0), 0.3);
+        assert!((found - slid(0.3)).abs() < 1e-14);
+        assert!(near(&sorted_reversals(&segment(-2.0, 2.0)), &[-1.0, 1.0]));
+        assert!(near(&sorted_reversals(&segment(0.0, 1.5)), &[1.0]));
+        assert!(near(&sorted_reversals(&segment(-0.5, 0.5)), &[]));
+    }
+
+    /// With `r` the square root of the distance from the fold at 2, `1 - r + 0.8 r^2` reverses at `r = 0.625`.
+    #[test]
+    fn a_parabola_in_the_root_of_the_distance_from_a_fold_is_reproduced() {
+        let slid = |push: f64| {
+            let root = (2.0 - push).sqrt();
+            1.0 - root + 0.8 * root * root
+        };
+        // The derivative of the root by the push is -1/(2 r).
+        let slope = |push: f64| {
+            let root = (2.0 - push).sqrt();
+            (1.0 - 1.6 * root) / (2.0 * root)
+        };
+        let fold = knot(2.0, 1.0, f64::INFINITY);
+        let segment = |from: f64| LimitSegment::new(knot(from, slid(from), slope(from)), fold);
+        for push in [1.1, 1.5, 1.99, 2.0] {
+            let found = at(&segment(1.0), push);
+            assert!((found - slid(push)).abs() < 1e-14, "{push}");
+        }
+        assert!(near(
+            &sorted_reversals(&segment(1.0)),
+            &[2.0 - 0.625 * 0.625]
+        ));
+        assert!(near(&sorted_reversals(&segment(1.8)), &[]));
+    }
+}

@@ -1,0 +1,140 @@
+//! Samples and events of a course with their states.
+
+use super::friction::CourseContact;
+use super::legs::{LegEvent, LegSample};
+use super::phase::Phase;
+use super::rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
+use super::states::{SideStates, SolveContacts};
+use crate::friction::{ContactPhase, Sliding, held, states};
+use crate::rod::Side;
+use crate::shooting::Reading;
+use crate::trace::DetachmentKind;
+
+/// States of both sides.
+pub struct Found<'a> {
+    /// States on CB.
+    pub cb: &'a SideStates,
+    /// States on CF; `None` if the resting whisker does not reach the pole there.
+    pub cf: Option<&'a SideStates>,
+}
+
+/// State of a contact in physical units, with its sliding direction if there is friction.
+type ContactReading = Option<(Reading, Option<Sliding>)>;
+
+/// Returns a push in degrees with the sign of its side; 0 without one.
+pub fn signed_deg(side: Side, push: f64) -> f64 {
+    side.sign() * push.to_degrees() + 0.0
+}
+
+impl Found<'_> {
+    fn of(&self, side: Side) -> Option<&SideStates> {
+        match side {
+            Side::Cb => Some(self.cb),
+            Side::Cf => self.cf,
+        }
+    }
+
+    /// Returns the state of each of the `contacts`; `None` where there is none. States with friction are solved by `solve`.
+    fn readings(
+        &self,
+        contacts: &[Option<CourseContact>],
+        solve: SolveContacts,
+    ) -> Vec<ContactReading> {
+        let mut readings = vec![None; contacts.len()];
+        for side in Side::BOTH {
+            let own = contacts.iter().enumerate();
+            let own =
+                own.filter_map(|(i, contact)| Some((i, contact.filter(|own| own.side == side)?)));
+            let (places, contacts): (Vec<usize>, Vec<CourseContact>) = own.unzip();
+            let states = self.of(side).map(|states| states.at(&contacts, solve));
+            for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
+                readings[i] = state;
+            }
+        }
+        readings
+    }
+
+    /// Returns the samples with their states, without times and angles.
+    pub fn samples(&self, samples: &[LegSample]) -> Vec<WhiskSample> {
+        let contacts: Vec<Option<CourseContact>> =
+            samples.iter().map(|sample| sample.contact).collect();
+        let readings = self.readings(&contacts, states);
+        let unit = self.cb.energy_nj();
+        let samples = samples.iter().zip(readings);
+        samples
+            .map(|(own, reading)| sample(own, reading, unit))
+            .collect()
+    }
+
+    /// Returns the events with their states.
+    pub fn events(&self, events: &[LegEvent]) -> Vec<WhiskEvent> {
+        let contacts = events.iter();
+        let contacts = contacts.map(|event| Some(event.contact).filter(|own| !own.push.is_nan()));
+        // A snap begins at a limit, where rounding may hide that the contact still sticks.
+        let readings = self.readings(&contacts.collect::<Vec<_>>(), held);
+        let events = events.iter().zip(readings).map(|(event, reading)| {
+            let CourseContact { side, push, .. } = event.contact;
+            let end = self.of(side).map(|states| states.kind(0));
+            let push = Some(push).filter(|push| !push.is_nan());
+            let reading = reading.map(|(reading, _)| reading);
+            WhiskEvent {
+                time_s: event.time_s,
+                event: event.kind.unwrap_or(match end {
+                    Some(DetachmentKind::PullOff) => WhiskEventKind::PullOff,
+                    _ => WhiskEventKind::SlipOff,
+                }),
+                side,
+                angle_deg: event.angle.to_degrees(),
+                push_angle_deg: push.map(|push| signed_deg(side, push)),
+                force_un: reading.map(|state| state.force_un),
+                base_moment_nnm: reading.map(|state| state.base_moment_nnm),
+                energy_nj: reading.map(|state| state.energy_nj),
+            }
+        });
+        events.collect()
+    }
+}
+
+/// Returns a sample without time and angle. `unit` is that of energies, in nJ.
+fn sample(own: &LegSample, reading: ContactReading, unit: f64) -> WhiskSample {
+    let LegSample {
+        phase,
+        contact,
+        dissipated,
+    } = *own;
+    let reason = match phase {
+        Phase::Undecided { reason, .. } => Some(reason),
+        Phase::Contact { .. } if reading.is_none() => Some(Undecided::NotFound),
+        _ => None,
+    };
+    let (reading, sliding) = reading.unzip();
+    let load = |of: fn(&Reading) -> f64| match phase {
+        Phase::Free { .. } => Some(0.0),
+        _ => reading.as_ref().map(of),
+    };
+    let is_known = dissipated.is_finite() && reason != Some(Undecided::Stuck);
+    WhiskSample {
+        time_s: f64::NAN,
+        angle_deg: f64::NAN,
+        regime: match (phase, reason) {
+            (_, Some(_)) => WhiskRegime::Undecided,
+            (Phase::Free { .. }, _) => WhiskRegime::Free,
+            _ => WhiskRegime::Contact,
+        },
+        side: contact.map(|own| own.side),
+        push_angle_deg: contact.map(|own| signed_deg(own.side, own.push)),
+        arc_length_mm: reading.map(|state| state.arc_length_mm),
+        contact_angle_deg: reading.map(|state| state.contact_angle_deg),
+        force_un: load(|state| state.force_un),
+        base_force_x_un: load(|state| state.base_force_un.x),
+        base_force_y_un: load(|state| state.base_force_un.y),
+        base_moment_nnm: load(|state| state.base_moment_nnm),
+        energy_nj: load(|state| state.energy_nj),
+        dissipated_nj: is_known.then_some(dissipated * unit),
+        sliding: sliding.flatten().or_else(|| {
+            let phase = contact?.phase.filter(|_| reading.is_some());
+            phase.map(ContactPhase::sliding)
+        }),
+        reason,
+    }
+}

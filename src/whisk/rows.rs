@@ -1,0 +1,110 @@
+//! Rows of a course: samples and events.
+
+use crate::friction::Sliding;
+use crate::rod::Side;
+use crate::trace::row;
+use serde::Serialize;
+
+/// Regime of a sample: whether the whisker touches the pole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WhiskRegime {
+    /// The whisker is at rest in the frame of its base.
+    Free,
+    /// The pole bends the whisker.
+    Contact,
+    /// The model does not say where the whisker is.
+    Undecided,
+}
+
+/// Reason why a sample of a course has no state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Undecided {
+    /// The whisker detached where neither side holds it, and the resting whisker would cross the pole.
+    OnThePole,
+    /// The edge of the tip meets the pole: the resting whisker is too short to be touched on this side.
+    TipEdge,
+    /// No state was found although the push has not ended.
+    NotFound,
+    /// The contact has stuck where the push should have ended, and the course from there is not known.
+    Stuck,
+}
+
+row! {
+    /// Sample of a course: the state of the whisker at one time. Loads are 0 if the whisker is free.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct WhiskSample {
+        /// Time of the sample, in s.
+        pub time_s: f64,
+        /// Angle of the base, in degrees: 0 at first touch on CB, positive pushes CB.
+        pub angle_deg: f64,
+        /// Regime: free, contact or undecided.
+        pub regime: WhiskRegime,
+        /// Side of the whisker that the pole is on in contact: cb (convex) or cf (concave).
+        pub side: Option<Side>,
+        /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
+        pub push_angle_deg: Option<f64>,
+        /// Arclength from the base to the contact, in mm.
+        pub arc_length_mm: Option<f64>,
+        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
+        pub contact_angle_deg: Option<f64>,
+        /// Size of the force between pole and whisker, normal to both, in uN.
+        pub force_un: Option<f64>,
+        /// Force that the pole puts on the base, along the base's tangent, in uN.
+        pub base_force_x_un: Option<f64>,
+        /// Force that the pole puts on the base, to the left of its tangent, in uN.
+        pub base_force_y_un: Option<f64>,
+        /// Moment of the pole on the base, in nN m: positive turns it to the left.
+        pub base_moment_nnm: Option<f64>,
+        /// Bending energy of the whisker, in nJ.
+        pub energy_nj: Option<f64>,
+        /// Energy that friction has dissipated since the start, in nJ.
+        pub dissipated_nj: Option<f64>,
+        /// Sliding direction of a contact with friction: tip, base or sticks.
+        pub sliding: Option<Sliding>,
+        /// Reason of an undecided sample: on-the-pole, tip-edge, not-found or stuck.
+        pub reason: Option<Undecided>,
+    }
+}
+
+/// Kind of an event of a course.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WhiskEventKind {
+    /// The whisker touches the pole.
+    Touch,
+    /// The whisker leaves the pole, unloaded.
+    Release,
+    /// The whisker slips off the pole at the fold.
+    SlipOff,
+    /// The whisker is pulled off with its tip at the pole.
+    PullOff,
+    /// With friction, the contact that stuck snaps toward the base, and stays on the pole.
+    Snap,
+    /// The model does not say where the whisker is from here on.
+    Undecided,
+}
+
+row! {
+    /// Event of a course, between samples. Its loads and energy are those of the last state before it, and of the first one after a touch.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct WhiskEvent {
+        /// Time of the event, in s, from the straight line between two samples.
+        pub time_s: f64,
+        /// Kind of the event: touch, release, slip-off, pull-off, snap or undecided.
+        pub event: WhiskEventKind,
+        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+        pub side: Side,
+        /// Angle of the base, in degrees.
+        pub angle_deg: f64,
+        /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
+        pub push_angle_deg: Option<f64>,
+        /// Size of the force between pole and whisker, normal to both, in uN.
+        pub force_un: Option<f64>,
+        /// Moment of the pole on the base, in nN m: positive turns it to the left.
+        pub base_moment_nnm: Option<f64>,
+        /// Bending energy of the whisker, in nJ; it is lost if the whisker detaches.
+        pub energy_nj: Option<f64>,
+    }
+}
