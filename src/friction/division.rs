@@ -6,8 +6,9 @@ use super::states::{FrictionState, at_limits};
 use crate::sheet::CurveNode;
 
 impl SlidingLimit {
-    /// Divides segments of `limits`, given by index, at exact states, `[limit]`; `None` where such a state is not found.
-    pub fn divided(limits: &[(&Self, Vec<usize>)]) -> Vec<Option<Self>> {
+    /// Divides segments of `limits`, given by index, at exact states, `[limit]`. A segment without such states, as at a corner of fold and
+    /// tip, stays whole.
+    pub fn divided(limits: &[(&Self, Vec<usize>)]) -> Vec<Self> {
         let pushes = limits.iter().map(|(limit, segments)| {
             let parts = (0..=DIVISIONS).map(|i| f64::from(i) / f64::from(DIVISIONS));
             let parts: Vec<f64> = parts.collect();
@@ -35,45 +36,31 @@ impl SlidingLimit {
                     let states: Vec<Option<FrictionState>> = states.by_ref().take(each).collect();
                     limit.run(*segment, &states)
                 });
-                runs.collect::<Option<Vec<LimitPart>>>()
+                runs.collect::<Vec<Option<LimitPart>>>()
             });
-        let parts: Vec<Option<Vec<LimitPart>>> = parts.collect();
-        let flat: Vec<Option<LimitPart>> = parts
-            .iter()
-            .flatten()
-            .flatten()
-            .map(|part| Some(part.clone()))
-            .collect();
-        let mut divided = through(&flat).into_iter();
-        let limits = limits.iter().zip(&parts).map(|((limit, segments), parts)| {
-            let runs = parts.as_ref()?.iter().map(|_| divided.next()?);
-            let runs: Vec<Self> = runs.collect::<Option<_>>()?;
-            let mut runs = segments.iter().zip(runs);
-            let mut next = runs.next();
+        let parts: Vec<Vec<Option<LimitPart>>> = parts.collect();
+        let mut divided = through(&parts.concat()).into_iter();
+        let limits = limits.iter().map(|(limit, segments)| {
+            let runs: Vec<Option<Self>> = divided.by_ref().take(segments.len()).collect();
+            let mut runs = segments.iter().zip(runs).peekable();
             let mut own = Vec::new();
             for (index, segment) in limit.segments.iter().enumerate() {
-                match next {
-                    Some((at, run)) if *at == index => {
-                        own.extend(run.segments);
-                        next = runs.next();
-                    }
-                    other => {
-                        own.push(segment.clone());
-                        next = other;
-                    }
+                match runs.next_if(|(at, _)| **at == index) {
+                    Some((_, Some(run))) => own.extend(run.segments),
+                    _ => own.push(segment.clone()),
                 }
             }
-            Some(Self {
+            Self {
                 segments: own,
                 ..(*limit).clone()
-            })
+            }
         });
         limits.collect()
     }
 
-    /// Divides the segments of `limits` in which the limit reverses at the reversal, `[limit]`; `None` where the state there is not found.
+    /// Divides the segments of `limits` in which the limit reverses at the reversal, `[limit]`. A segment without the state there stays whole.
     /// The reversal is exact to the square of its error before.
-    pub fn polished(limits: Vec<Self>) -> Vec<Option<Self>> {
+    pub fn polished(limits: &[Self]) -> Vec<Self> {
         let reversals = limits.iter().map(|limit| {
             let of = |(index, segment): (usize, &LimitSegment)| {
                 let turns = segment.reversals().into_iter().flatten().next();
@@ -109,21 +96,21 @@ impl SlidingLimit {
             let mut turns = own.iter().zip(found).peekable();
             for (index, segment) in limit.segments.iter().enumerate() {
                 match turns.next_if(|((at, _), _)| *at == index) {
-                    Some((_, knot)) => {
+                    Some((_, Some(knot))) => {
                         let knot = SlidingKnot {
                             by_push: 0.0,
-                            ..knot?
+                            ..knot
                         };
                         segments.push(LimitSegment::new(segment.from, knot));
                         segments.push(LimitSegment::new(knot, segment.to));
                     }
-                    None => segments.push(segment.clone()),
+                    _ => segments.push(segment.clone()),
                 }
             }
-            Some(Self {
+            Self {
                 segments,
                 ..limit.clone()
-            })
+            }
         });
         polished.collect()
     }

@@ -91,14 +91,14 @@ impl ContactHistory {
         });
         let limits: Vec<(&SlidingLimit, Vec<usize>)> = limits.flatten().collect();
         let divided = SlidingLimit::divided(&limits);
-        let mut divided = polished(divided).into_iter();
+        let mut divided = SlidingLimit::polished(&divided).into_iter();
         let refined = histories.iter().map(|own| {
             let own = own.as_ref()?;
             if own.base.is_none() {
                 return Some(own.clone());
             }
             let (tip, base) = (divided.next()?, divided.next()?);
-            Some(Self::new(tip?, Some(base?)))
+            Some(Self::new(tip, Some(base)))
         });
         refined.collect()
     }
@@ -126,13 +126,9 @@ impl ContactHistory {
         let limits = limits.into_iter().flatten();
         let whole: Vec<_> = limits.map(|limit| (limit, limit.segments())).collect();
         let divided = SlidingLimit::divided(&whole);
-        let mut divided = polished(divided).into_iter();
-        let (tip, base) = (divided.next()??, divided.next()??);
-        let retreat = match retreat {
-            Some(_) => Some(divided.next()??),
-            None => None,
-        };
-        Some((Self::new(tip, Some(base)), retreat))
+        let mut divided = SlidingLimit::polished(&divided).into_iter();
+        let (tip, base) = (divided.next()?, divided.next()?);
+        Some((Self::new(tip, Some(base)), divided.next()))
     }
 
     fn new(tip: SlidingLimit, base: Option<SlidingLimit>) -> Self {
@@ -225,16 +221,6 @@ impl ContactHistory {
         let is_end = (push - end).abs() <= SAME_END * (1.0 + end);
         is_end && self.phase(end) == ContactPhase::Slides(Sliding::Tip)
     }
-}
-
-/// Limits with exact reversals, `[limit]`.
-fn polished(limits: Vec<Option<SlidingLimit>>) -> Vec<Option<SlidingLimit>> {
-    let known: Vec<SlidingLimit> = limits.iter().flatten().cloned().collect();
-    let mut known = SlidingLimit::polished(known).into_iter();
-    let limits = limits.into_iter();
-    limits
-        .map(|limit| limit.and_then(|_| known.next()?))
-        .collect()
 }
 
 /// Slid distance by which a limit must pass a contact that sticks, in whisker lengths, to move it without doubt. Limits are interpolated with

