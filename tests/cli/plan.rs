@@ -271,7 +271,11 @@ fn everything_on() {
         .map(|line| line.split(" | ").next().unwrap())
         .collect();
     // Measured radii replace the taper; a spiral and a traced shape the parabola.
-    assert_eq!(off, ["measured radii", "euler spiral", "traced shape"], "{run:?}");
+    assert_eq!(
+        off,
+        ["measured radii", "euler spiral", "traced shape"],
+        "{run:?}"
+    );
 }
 
 #[test]
