@@ -23,9 +23,7 @@ fn arc(count: u32) -> Vec<[f64; 2]> {
 }
 
 fn refusal(text: &str) -> String {
-    Scene::parse(text, "scene.toml")
-        .expect_err(text)
-        .to_string()
+    Scene::parse(text, "scene.toml").unwrap_err().to_string()
 }
 
 #[test]
