@@ -228,7 +228,7 @@ fn axes_stand_in_for_the_whiskers_own_values() {
 fn a_projected_cylinder_is_a_cylinder() {
     let projection = "-projection: arc_stretch 1.03 does nothing without taper or modulus gradient";
     assert_eq!(
-        listed(30.0, "whisker.projection.arc_stretch = 1.03")[7],
+        listed(30.0, "whisker.projection.arc_stretch = 1.03")[8],
         projection
     );
 }

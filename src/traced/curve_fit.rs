@@ -129,8 +129,9 @@ impl<'a> TracedPoints<'a> {
             let end = feet[last].place;
             let distances = feet.iter().map(|foot| length * foot.distance).collect();
             // The curve is the same in units of its own length.
-            let part = table.part(end);
+            let mut part = table.part(end);
             let count = unknowns.len() - 2;
+            part[count..].fill(0.0);
             unknowns[2..].copy_from_slice(&part[..count]);
             unknowns[1] /= end;
             length *= end;

@@ -209,7 +209,7 @@ fn most_degree(count: usize, degree: Option<usize>) -> Result<usize, TracedError
     }
     // A fold of the cross-validation leaves out a tenth.
     let kept = count - count.div_ceil(10);
-    Ok(degree.unwrap_or((kept - MORE_POINTS).min(MOST_DEGREE)))
+    Ok(degree.unwrap_or_else(|| (kept - MORE_POINTS).min(MOST_DEGREE)))
 }
 
 /// Checks each point, and returns the largest distance from the first one, in millimetres.

@@ -19,9 +19,11 @@ fn kinds() -> Vec<Kind> {
         ..tapered
     };
     let as_they_are = |_: &mut Rod, _: &mut Random| ();
-    let mut kinds: Vec<Kind> = effect_sets::on_gpu()
-        .map(|effects| ("any", effects, as_they_are as fn(&mut Rod, &mut Random)))
-        .collect();
+    let sets = effect_sets::on_gpu();
+    let any = sets.map(|effects| ("any", effects, as_they_are as fn(&mut Rod, &mut Random)));
+    // A kind's place is its seed: these came last.
+    let (polynomial, mut kinds): (Vec<Kind>, Vec<Kind>) =
+        any.partition(|(_, effects, _)| effects.polynomial);
     kinds.extend([
         ("slender", tapered, slender as fn(&mut Rod, &mut Random)),
         ("slender", bent, slender),
@@ -42,6 +44,7 @@ fn kinds() -> Vec<Kind> {
             rod.bend = random.between(0.8, 1.5)
         }),
     ]);
+    kinds.extend(polynomial);
     kinds
 }
 

@@ -243,17 +243,6 @@ impl<T: Real> Polynomial<T> {
     }
 }
 
-/// Inverses `1/(power + 1)`, which integrate a polynomial.
-const INTEGRATED: [f64; CURVATURE_TERMS] = {
-    let mut inverses = [1.0; CURVATURE_TERMS];
-    let mut power = 0;
-    while power < CURVATURE_TERMS {
-        inverses[power] = 1.0 / (power + 1) as f64;
-        power += 1;
-    }
-    inverses
-};
-
 /// Rotation along a step of a rod with a polynomial curvature.
 pub struct PolynomialSeries<T> {
     /// Arclength per `along`, see [`Intrinsic::turn`].
@@ -275,13 +264,18 @@ impl<T: Real> Intrinsic<T> for Polynomial<T> {
 
     #[inline(always)]
     fn course(self, from: &Section<T>, (): ()) -> PolynomialSeries<T> {
-        let mut terms = self.around(from.arclength);
-        for (term, inverse) in terms.iter_mut().zip(INTEGRATED) {
-            *term = *term * T::of(inverse);
-        }
+        let [a, b, c, d, e, f, g] = self.around(from.arclength);
         PolynomialSeries {
             per_along: -from.rho,
-            terms,
+            terms: [
+                a,
+                b * T::of(1.0 / 2.0),
+                c * T::of(1.0 / 3.0),
+                d * T::of(1.0 / 4.0),
+                e * T::of(1.0 / 5.0),
+                f * T::of(1.0 / 6.0),
+                g * T::of(1.0 / 7.0),
+            ],
         }
     }
 
