@@ -61,7 +61,7 @@ fn maps_of_a_class_have_equal_bits() {
 }
 
 /// Hashes with fused arithmetic.
-const FMA: [(&str, u64); 11] = [
+const FMA: [(&str, u64); 13] = [
     ("cone", 0x75d0_c0e3_acc3_81de),
     ("cylinder", 0xe973_6cb5_3e32_1a5d),
     ("euler_spiral", 0xc749_89f9_7f11_f2ac),
@@ -72,11 +72,13 @@ const FMA: [(&str, u64); 11] = [
     ("measured", 0xca9b_f324_eb36_5b7a),
     ("morphology", 0x3011_ce30_50d4_6f72),
     ("robot", 0x3202_710d_7ca5_e150),
+    ("texture_cone", 0x91d1_57ce_2b2b_348e),
+    ("texture_hair", 0x4f8a_9598_3fc1_c025),
     ("uncertain", 0x60b8_1e36_8cbb_8646),
 ];
 
 /// Hashes without fused arithmetic.
-const NO_FMA: [(&str, u64); 11] = [
+const NO_FMA: [(&str, u64); 13] = [
     ("cone", 0x2c1e_0474_562a_dd66),
     ("cylinder", 0xdaca_3456_3cdd_e335),
     ("euler_spiral", 0xfcc8_bb35_b063_ea47),
@@ -87,5 +89,7 @@ const NO_FMA: [(&str, u64); 11] = [
     ("measured", 0xa361_3e0d_dcc7_a66f),
     ("morphology", 0xb557_743e_9986_dbc5),
     ("robot", 0x502d_a2b3_8a44_e515),
+    ("texture_cone", 0x3ee4_68df_2c67_9963),
+    ("texture_hair", 0x0274_6520_07cb_3837),
     ("uncertain", 0x6f1a_7d23_d635_ef4e),
 ];

@@ -127,11 +127,14 @@ fn summarise(texture: &Texture) {
         WhiskEventKind::PullOff,
     ]
     .map(count);
-    let lost = digits(rounded(texture.lost_nj(), 6));
+    let lost = match texture.lost_nj() {
+        lost if lost.is_nan() => "an energy that is not known".to_owned(),
+        lost => format!("{} nJ", digits(rounded(lost, 6))),
+    };
     let reached = texture.reached;
     message(&format!(
         "{reached} asperities within reach; touches {touches}, releases {releases}, slip-offs {slips}, pull-offs {pulls}; \
-         detachments lose {lost} nJ"
+         detachments lose {lost}"
     ));
     let all = texture.samples.len();
     let phase = |phase| {

@@ -1,6 +1,7 @@
 //! Table `[surface]` of a scene: a rough surface, over which the whisker sweeps.
 
 use super::error::{SceneError, SceneFault};
+use super::grid::{FARTHEST, NEAREST};
 use super::limits::NumberLimits;
 use super::whisker::Whisker;
 use crate::random::RandomStream;
@@ -56,10 +57,9 @@ impl Surface {
     /// Checks the numbers of a surface in front of `whisker`.
     pub(super) fn checked(self, whisker: &Whisker) -> Result<Self, SceneFault> {
         let length = whisker.length_mm;
-        let reach = NumberLimits::between(
-            ("length_mm / 1000", 1e-3 * length),
-            ("whisker.length_mm", length),
-        );
+        let near = ("length_mm / 1000", length / NEAREST);
+        let far = ("10 * length_mm", FARTHEST * length);
+        let reach = NumberLimits::between(near, far);
         reach.check("surface.distance_mm", self.distance_mm)?;
         NumberLimits::between(1e-3, 1e8).check("surface.spacing_um", self.spacing_um)?;
         NumberLimits::below(0.0, 1.0).check("surface.jitter", self.jitter)?;

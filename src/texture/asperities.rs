@@ -48,7 +48,7 @@ impl Asperities {
         let farthest_mm = whisker.length_mm + pole.radius_mm;
         let places = surface.asperities_mm().into_iter().enumerate();
         let reached = places.filter_map(|(number, x_mm)| {
-            let pole_mm = x_mm.hypot(surface.distance_mm);
+            let pole_mm = libm::hypot(x_mm, surface.distance_mm);
             if pole_mm > farthest_mm {
                 return None;
             }

@@ -9,7 +9,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TexturePhase {
-    /// The same asperity has bent the whisker since the sample before, or since a touch after it.
+    /// An asperity bends the whisker, which has not detached since the sample before.
     Stuck,
     /// The whisker has detached from an asperity since the sample before.
     Slipping,

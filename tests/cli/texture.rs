@@ -83,8 +83,8 @@ fn wrong_surfaces_are_refused() {
     for (key, value, said) in [
         (
             "distance_mm",
-            "30.0",
-            "surface.distance_mm = 30.0: must be between length_mm / 1000 (0.02) and whisker.length_mm (20)",
+            "300.0",
+            "surface.distance_mm = 300.0: must be between length_mm / 1000 (0.02) and 10 * length_mm (200)",
         ),
         (
             "spacing_um",
@@ -104,7 +104,7 @@ fn wrong_surfaces_are_refused() {
         (
             "length_mm",
             "\"long\"",
-            "invalid type: string \"long\", expected f64",
+            "invalid type: string \"long\", expected a number",
         ),
     ] {
         let line = |line: &str| match line.starts_with(key) {

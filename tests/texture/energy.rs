@@ -77,7 +77,7 @@ fn the_work_of_the_base_is_stored_or_lost() {
             .map(|(moment, weight)| moment * weight)
             .sum();
         let energies = || found.samples.iter().map(|own| own.energy_nj.unwrap());
-        let (stored, lost) = (energies().last().unwrap(), found.lost_nj());
+        let (stored, lost) = (energies().next_back().unwrap(), found.lost_nj());
         let largest = energies().fold(lost, f64::max);
         let miss = (work - stored - lost) / largest;
         // Measured: 1.2e-11.

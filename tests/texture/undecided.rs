@@ -54,13 +54,11 @@ fn what_the_model_does_not_determine_has_a_reason() {
         asperity_radius_um: 100.0,
         ..SINGLE
     };
-    let angles: Vec<f64> = (0..=200).map(|i| 0.02 * f64::from(i) - 2.0).collect();
-    let found = texture(&cone.whisker, &thick, &course(&angles)).unwrap();
-    let reasons: Vec<_> = found.samples.iter().filter_map(|own| own.reason).collect();
-    assert!(
-        reasons.contains(&NoTextureState::OnAnAsperity),
-        "{reasons:?}"
-    );
+    let found = texture(&cone.whisker, &thick, &course(&[-1.0, 0.35, 1.0])).unwrap();
+    let reasons: Vec<_> = found.samples.iter().map(|own| own.reason).collect();
+    assert_eq!(reasons, [None, Some(NoTextureState::OnAnAsperity), None]);
+    // The energy of the undecided state is not known, and neither is that which the detachment loses.
+    assert!(found.lost_nj().is_nan());
 }
 
 #[test]
