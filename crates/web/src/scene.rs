@@ -1,9 +1,8 @@
 //! Descriptions of scenes: numbers, effects, and axes.
 
 use serde_json::{Value, json};
-use whiskmap::Channel;
 use whiskmap::classify::{Regime, Status};
-use whiskmap::plan::{Plan, effects};
+use whiskmap::plan::{Plan, STATE_CHANNELS, effects};
 use whiskmap::scene::{Parameter, Scene};
 
 /// Returns title, numbers, effects and axes of a scene, and the names of codes and channels.
@@ -35,7 +34,8 @@ pub fn description(scene: &Scene) -> Result<Value, String> {
         "distances_mm": [nearest.max(scene.pole.radius_mm), farthest],
         "regimes": Regime::ALL.map(|regime| json!({ "code": regime.code(), "name": regime.name() })),
         "statuses": Status::ALL.map(|status| json!({ "code": status.code(), "name": status.name() })),
-        "channels": Channel::ALL.map(Channel::name),
+        "marks": Status::MARKS.map(Status::code),
+        "state_channels": STATE_CHANNELS,
     }))
 }
 
