@@ -2,7 +2,7 @@
 
 import { find } from './dom.js';
 import { draw, ends, rem } from './plot.js';
-import { known, state } from './state.js';
+import { known, state, title } from './state.js';
 import { shown, titled } from './text.js';
 
 const PUSH = 'Push angle (\u00b0)';
@@ -42,10 +42,9 @@ export function drawBranches() {
 }
 
 // Variables with the largest effects that are shown, and half the height of a bar.
-const MOST = 12;
-const HALF = 0.2;
+const [MOST, HALF] = [12, 0.2];
 
-const variable = (name) => (name === 'distance_mm' ? 'Distance' : (known.scene.parameters.find((own) => own.name === name)?.title ?? name).replace(/ \(.*\)/, ''));
+const variable = (name) => (name === 'distance_mm' ? 'distance' : title(name).replace(/ \(.*\)/, ''));
 
 // Draws what a change of 1 % of each number does to the detachments, with one bar for each side; the largest is at the top.
 export function drawSensitivities() {

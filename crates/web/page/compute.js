@@ -73,7 +73,6 @@ const fill = (solver, part, own, fail) => responded(solver, part, own, (response
 }, fail);
 
 const quiet = () => {};
-
 async function computeMap() {
     const { view, channel, whisker } = state;
     if (!view) return;
@@ -94,9 +93,7 @@ async function computeMap() {
 
 const curve = (whisker) => request({ curve: { distance_mm: state.view.distance, count: CURVE } }, whisker);
 
-function computeCurve() {
-    if (state.view) fill(courses, 'curve', curve(), quiet);
-}
+const computeCurve = () => state.view && fill(courses, 'curve', curve(), quiet);
 
 function computePinned() {
     known.pinnedCurve = null;

@@ -16,6 +16,9 @@ export const state = {
 // Responses of the solver; `scene` is `description` in the solver.
 export const known = { scene: null, whole: null, map: null, curve: null, pinnedCurve: null, state: null };
 
+// The title of a parameter.
+export const title = (name) => known.scene.parameters.find((own) => own.name === name)?.title ?? name;
+
 const listeners = [];
 
 // Calls `f` after each change of one of these parts of the state.

@@ -10,8 +10,7 @@ const PER_MS = 0.03;
 
 const LIMITS = 'must be above 0, and at most 180\u00b0 and 1000 Hz';
 const [picture, slider] = [find('whisk-shape'), find('whisk-time')];
-let playing = null;
-let box;
+let [playing, box] = [null, null];
 
 // Shows a new course, or the message why there is none.
 export function showCourse(message) {
