@@ -4,7 +4,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 
-export const [whiskmap, executablePath, folder, root] = process.argv.slice(2);
+export const [whiskmap, executablePath, folder, root, only = ''] = process.argv.slice(2);
 
 export const built = `file://${root}/outputs/explore.html`;
 export const cone = `${root}/scenes/cone.toml`;
@@ -16,8 +16,8 @@ export const faults = [];
 
 let browser;
 
-// Opens a page at an address, in a window of some size and colour scheme, and waits for its finished map.
-export async function open(url, { size = [1280, 900], colorScheme = 'light', hasTouch = false } = {}) {
+// Opens a page at an address, in a window of some size and colour scheme, runs `onStart` in it, and waits for its finished map.
+export async function open(url, { size = [1280, 900], colorScheme = 'light', hasTouch = false, onStart = null } = {}) {
     browser ??= await chromium.launch({ executablePath, args: FLAGS });
     const [width, height] = size;
     const context = await browser.newContext({ viewport: { width, height }, colorScheme, hasTouch, acceptDownloads: true });
@@ -28,6 +28,7 @@ export async function open(url, { size = [1280, 900], colorScheme = 'light', has
     page.on('request', (request) => {
         if (!/^(file|blob|data):/.test(request.url())) faults.push(`request: ${request.url()}`);
     });
+    if (onStart) await page.addInitScript(onStart);
     await page.goto(url);
     await finished(page);
     return page;
@@ -46,7 +47,7 @@ export async function finished(page, is = () => true) {
 
 // Waits for a value of the page that satisfies `is`, and returns it.
 export async function until(what, get, is) {
-    const end = Date.now() + 20000;
+    const end = Date.now() + 60000;
     for (;;) {
         const value = await get();
         if (is(value)) return value;

@@ -1,10 +1,12 @@
 // Tests of the charts at the pointer's distance, whose numbers the program gives too: branches, sensitivities, whisking.
 
+import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { assert, cone, finished, folder, near, respond, run, shownAt, table, until, whiskmap } from './page.mjs';
-import { spawnSync } from 'node:child_process';
 
 const DISTANCE = 15.66;
+
+const read = (name) => table(readFileSync(`${folder}/${name}`, 'utf8'));
 
 // Compares columns of a response's rows with those of the program.
 function compareRows(own, program, columns) {
@@ -39,12 +41,12 @@ export const rows = {
     async 'whisking is that of whiskmap whisk'(page) {
         const own = await respond(page, { whisk: { distance_mm: DISTANCE, amplitude_deg: 25, frequency_hz: 10 } });
         const course = ['whisk', cone, `--distance=${DISTANCE}`, '--sine=25,10,0.2', '--rate=1200'];
-        const samples = table(run(...course, '--events', 'events.csv', '--csv', '-'));
-        compareRows(own.samples, samples, ['time_s', 'angle_deg', 'regime', 'side', 'push_angle_deg', 'force_un', 'base_moment_nnm', 'energy_nj']);
-        compareRows(own.events, table(readFileSync(`${folder}/events.csv`, 'utf8')), ['time_s', 'event', 'side', 'angle_deg', 'force_un']);
+        run(...course, '--events', 'events.csv', '--csv', 'samples.csv');
+        compareRows(own.samples, read('samples.csv'), ['time_s', 'angle_deg', 'regime', 'side', 'push_angle_deg', 'force_un', 'base_moment_nnm', 'energy_nj']);
+        compareRows(own.events, read('events.csv'), ['time_s', 'event', 'side', 'angle_deg', 'force_un']);
         const contact = own.samples.findIndex((sample) => sample.side === 'cb');
         run('shape', cone, `--distance=${DISTANCE}`, `--push-angle=${own.samples[contact].push_angle_deg}`, '--csv', 'whisker.csv');
-        const tip = table(readFileSync(`${folder}/whisker.csv`, 'utf8')).at(-1);
+        const tip = read('whisker.csv').at(-1);
         const [x, y] = own.numbers.slice(2 * own.points * (contact + 1) - 2);
         near(x, Number(tip.x_mm), 'tip', 1e-7);
         near(y, Number(tip.y_mm), 'tip', 1e-7);

@@ -2,8 +2,9 @@
 
 import { readFileSync, writeFileSync } from 'node:fs';
 import { gestures } from './gestures.mjs';
-import { assert, built, close, compareState, cone, drop, faults, finished, folder, move, near, open, respond, root, run, shownAt, table, until } from './page.mjs';
+import { assert, built, close, compareState, cone, drop, faults, finished, folder, move, near, open, only, respond, root, run, shownAt, table, until } from './page.mjs';
 import { rows } from './rows.mjs';
+import { times } from './times.mjs';
 
 const tests = {
     async 'the page shows the map, and states as whiskmap shape'(page) {
@@ -156,6 +157,7 @@ const tests = {
 
     ...rows,
     ...gestures,
+    ...times,
 
     async 'screenshots'() {
         for (const colorScheme of ['light', 'dark']) {
@@ -174,7 +176,7 @@ const tests = {
 };
 
 const page = await open(built);
-for (const [name, test] of Object.entries(tests)) {
+for (const [name, test] of Object.entries(tests).filter(([name]) => name.includes(only))) {
     const begun = Date.now();
     await test(page);
     assert(faults.length === 0, `${name}: ${faults.join('\n')}`);

@@ -1,6 +1,6 @@
 """A scene's whisker as a dynamic rod of PyElastica, clamped to a base that turns, and a pole.
 
-Units are mm, uN, s and g. Bending stiffness and mass are the true ones at every node. Stretch and shear are softened, and rotary
+Units are mm, uN, s and g. Bending flexibility and mass are the true ones of each step. Stretch and shear are softened, and rotary
 inertia is artificial, as their waves would need steps a hundred times shorter; neither changes what is measured.
 """
 
@@ -101,9 +101,12 @@ class Rod:
         rod.mass_second_moment_of_inertia[:] = np.eye(3)[:, :, None] * inertia
         rod.inv_mass_second_moment_of_inertia[:] = np.eye(3)[:, :, None] / inertia
         rod.shear_matrix[:] = np.eye(3)[:, :, None] * (STRETCH * unit * (middle / base) ** 2)
-        stiffness = modulus * pi / 4 * self.radius(places[1:-1]) ** 4
-        # The half step between the base and the first element bends; that before the base does not.
-        stiffness[0] = 2 * modulus * pi / 4 * self.radius(1.25) ** 4
+        # Mean flexibility between the middles of neighbouring elements; the half step before the base does not bend.
+        one, two = middle[:-1].copy(), middle[1:]
+        one[0] = base
+        flexibility = (one**2 + one * two + two**2) / (3 * one**3 * two**3)
+        flexibility[0] /= 2
+        stiffness = modulus * pi / 4 / flexibility
         rod.bend_matrix[:] = np.eye(3)[:, :, None] * stiffness
         rod.compute_internal_forces_and_torques(0.0)
         rod.rest_kappa[:] = rod.kappa

@@ -87,7 +87,7 @@ def detachment(rod, rate, detach, damping, limit):
 
 def held(rod, angles, damping):
     """Yields angle, force, base moment and arc length of the contact, after rest at each push angle."""
-    rise, rest = 0.03, 12 / damping
+    rise, rest = 0.03, max(12 / damping, 0.08)
     steps = [-0.5, *angles]
 
     def course(t):

@@ -57,7 +57,7 @@ export function draw(node, spec) {
         value: (px, py) => [x0 + ((px - left) / w) * (x1 - x0), y1 - ((py - top) / h) * (y1 - y0)],
     };
     const axes = svg('g', { class: 'axes', transform: `translate(${left} ${top})` });
-    for (const value of ticks(spec.x, w / 70)) {
+    for (const value of ticks(spec.x, Math.max(w / 70, 3))) {
         const x = place.x(value);
         axes.append(svg('line', { class: 'grid', x1: x, x2: x, y1: 0, y2: h }), svg('text', { x, y: h + 1.15 * em, 'text-anchor': 'middle' }, shown(value)));
     }

@@ -5,7 +5,7 @@ use whiskmap::classify::{Regime, Status};
 use whiskmap::plan::{Plan, STATE_CHANNELS, effects};
 use whiskmap::scene::{Parameter, Scene};
 
-/// Returns title, numbers, effects and axes of a scene, and the names of codes and channels.
+/// Returns title, units, numbers, effects and axes of a scene, and the names of codes and channels.
 pub fn description(scene: &Scene) -> Result<Value, String> {
     let parameters = Parameter::ALL.into_iter();
     let parameters = parameters.filter_map(|parameter| {
@@ -23,9 +23,12 @@ pub fn description(scene: &Scene) -> Result<Value, String> {
         effects.map(|effect| json!({ "name": effect.name, "on": effect.on, "why": effect.why }));
     let ends = |values: &[f64]| [values[0], values[values.len() - 1]];
     let (nearest, farthest) = scene.distances_mm();
+    let units = scene.whisker.units();
     Ok(json!({
         "title": scene.title,
         "name": scene.name,
+        "length_mm": units.length_mm,
+        "unit_force_un": units.force_un,
         "parameters": parameters.collect::<Vec<_>>(),
         "effects": effects.collect::<Vec<_>>(),
         "warnings": scene.warnings(),
