@@ -1,6 +1,9 @@
 // Tests of two fingers, of the stop button, and of workers that are replaced while they compute.
 
-import { built, compareState, finished, folder, open, root, run, until } from './page.mjs';
+import { readFileSync } from 'node:fs';
+import { assert, built, compareState, drop, finished, folder, open, root, run, until } from './page.mjs';
+
+const measured = `${root}/scenes/measured.toml`;
 
 // Sends two fingers to the map, `apart` pixels from each other.
 async function fingers(page, session, type, apart) {
@@ -8,6 +11,16 @@ async function fingers(page, session, type, apart) {
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const touchPoints = type === 'touchEnd' ? [] : [{ x: x - apart / 2, y, id: 1 }, { x: x + apart / 2, y, id: 2 }];
     await session.send('Input.dispatchTouchEvent', { type, touchPoints });
+}
+
+// Opens the built page, and drops the scene with measured radii on it.
+async function openMeasured() {
+    run('explore', measured, '-o', 'measured.html', '--no-open');
+    const [, start] = readFileSync(`${folder}/measured.html`, 'utf8').match(/ id="start">(.*?)<\/script>/);
+    const page = await open(built);
+    await drop(page, 'measured.toml', JSON.parse(start).scene.text);
+    await until('the title', () => page.title(), (title) => title.startsWith('A whisker with measured radii'));
+    return page;
 }
 
 async function setField(page, name, value) {
@@ -27,10 +40,8 @@ export const gestures = {
     },
 
     async 'measured radii have the states of whiskmap shape'() {
-        const scene = `${root}/scenes/measured.toml`;
-        run('explore', scene, '-o', 'measured.html', '--no-open');
-        const page = await open(`file://${folder}/measured.html`);
-        await compareState(page, scene);
+        const page = await openMeasured();
+        await compareState(page, measured);
         // Each value replaces a map that is still computed, and the last one is drawn.
         for (const friction of [0.9, 0.8, 0.7, 0.6]) await setField(page, 'friction', friction);
         await finished(page, (values) => values.friction === 0.6);
@@ -38,13 +49,16 @@ export const gestures = {
     },
 
     async 'stop ends the work, and the next change computes again'() {
-        const page = await open(`file://${folder}/measured.html`);
+        const page = await openMeasured();
         await setField(page, 'friction', 0.9);
         await page.waitForSelector('#stop:not([hidden])');
         await page.click('#stop');
         await until('stopped', () => page.textContent('#error-friction'), (text) => text.startsWith('stopped'));
+        await page.waitForSelector('#stop', { state: 'hidden' });
+        const [isDraft, values] = JSON.parse(await page.$eval('#engine', (own) => own.dataset.drawn));
+        assert(isDraft || values.friction !== 0.9, 'the work went on to its end');
         await setField(page, 'friction', 0.8);
-        await finished(page, (values) => values.friction === 0.8);
+        await finished(page, (own) => own.friction === 0.8);
         await page.context().close();
     },
 };

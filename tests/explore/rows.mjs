@@ -20,6 +20,16 @@ function compareRows(own, program, columns) {
     });
 }
 
+// Distance of a point from a line through points `x, y, x, y, ...`.
+function distanceTo([px, py], line) {
+    const parts = line.slice(2).flatMap((_, i) => (i % 2 ? [] : [line.slice(i, i + 4)]));
+    return Math.min(...parts.map(([x0, y0, x1, y1]) => {
+        const [dx, dy] = [x1 - x0, y1 - y0];
+        const along = Math.min(Math.max(((px - x0) * dx + (py - y0) * dy) / (dx * dx + dy * dy), 0), 1);
+        return Math.hypot(px - x0 - along * dx, py - y0 - along * dy);
+    }));
+}
+
 export const rows = {
     async 'branches are those of whiskmap branch'(page) {
         const { cf, cb } = await respond(page, { branches: { distance_mm: DISTANCE, count: 60 } });
@@ -50,6 +60,12 @@ export const rows = {
         const [x, y] = own.numbers.slice(2 * own.points * (contact + 1) - 2);
         near(x, Number(tip.x_mm), 'tip', 1e-7);
         near(y, Number(tip.y_mm), 'tip', 1e-7);
+        // On both sides, the whisker lies on the pole, up to the height of an arc over its chord: 0.0008 mm measured.
+        own.samples.forEach((sample, i) => {
+            const apart = distanceTo(own.pole_mm, own.numbers.slice(2 * own.points * i, 2 * own.points * (i + 1)));
+            const gap = apart - own.pole_radius_mm;
+            if (sample.regime === 'contact') assert(Math.abs(gap) < 0.01, `${gap} mm from the pole in sample ${i} on ${sample.side}`);
+        });
     },
 
     async 'the course plays, pauses and scrubs'(page) {

@@ -57,14 +57,17 @@ impl WhiskTask {
             let state = branch.state(push_deg.to_radians(), true).ok()?;
             let points = WhiskerShape::new(branch, &state, POINTS).points;
             // The contact lies between the evenly spaced points, or on one of them.
-            let is_extra = |own: &ShapePoint| points.len() > POINTS && own.part == WhiskerPart::Contact;
+            let is_extra =
+                |own: &ShapePoint| points.len() > POINTS && own.part == WhiskerPart::Contact;
             let even = points.iter().filter(|own| !is_extra(own));
             let even: Vec<[f64; 2]> = even.map(|own| [own.x_mm, own.y_mm]).collect();
             Some(turned(&even, turn_deg))
         };
         let shapes = found.samples.iter().flat_map(|sample| {
             let known = sample.reason.is_none().then(|| shape(sample));
-            known.flatten().unwrap_or_else(|| vec![[f64::NAN; 2]; POINTS])
+            known
+                .flatten()
+                .unwrap_or_else(|| vec![[f64::NAN; 2]; POINTS])
         });
         let (sin, cos) = libm::sincos(row.touch);
         let pole_mm = [cos, sin].map(|own| own * row.pole_distance * whisker.length_mm);
