@@ -68,54 +68,76 @@ class Pole(ea.NoForces):
 
 
 class Rod:
-    """One side of a scene against a pole that touches the resting whisker at `distance` mm."""
+    """One side of a scene against a pole that touches the resting whisker at `distance` mm.
+
+    Nodes and elements are counted from one step before the base: node 1 is at the base, and element 0 turns with it.
+    """
 
     def __init__(self, scene, side, distance, elements):
         self.whisker = whisker = Whisker(scene, side)
-        self.length = length = whisker.length_mm
-        self.step = h = length / elements
-        slopes = [bisect(lambda t, s=s: whisker.at(t)[3] - s, whisker.base_slope, whisker.tip_slope() + 1e-9)
-                  for s in np.arange(1, elements + 1) / elements]
-        nodes = length * np.array([(-1 / elements, 0), (0, 0), *(whisker.at(t)[:2] for t in slopes)])
-        position = np.vstack([nodes.T, np.zeros(elements + 2)])
-        touch = whisker.slope_at_distance(distance / length)
         self.side = side
-        self.at_touch = length * np.array(whisker.pole_at(touch))
-        self.pole_radius = length * abs(whisker.pole)
-        own = scene["whisker"]
-        base = own["base_radius_um"] * 1e-3
-        # Radius by place in steps from the first node, which lies one step before the base.
-        self.radius = lambda place: base * (1 - whisker.taper * np.clip((place - 1) / elements, 0, 1))
-        modulus = own["youngs_modulus_gpa"] * 1e9
-        unit = modulus * pi / 4 * base**4 / length**2
-        self.rod = rod = ea.CosseratRod.straight_rod(
-            elements + 1, position[:, 0], np.array([1.0, 0, 0]), np.array([0.0, 0, 1.0]), length, base, DENSITY,
-            youngs_modulus=modulus, shear_modulus=modulus / 3, position=position)
+        self.elements = elements
+        self.step = whisker.length_mm / elements
+        self.base = scene["whisker"]["base_radius_um"] * 1e-3
+        self.modulus = scene["whisker"]["youngs_modulus_gpa"] * 1e9
+        touch = whisker.slope_at_distance(distance / whisker.length_mm)
+        self.at_touch = whisker.length_mm * np.array(whisker.pole_at(touch))
+        self.pole_radius = whisker.length_mm * abs(whisker.pole)
+        # Stiffness of the contact at each node.
         places = np.arange(elements + 2)
-        area = pi * self.radius(places) ** 2
-        mass = DENSITY * h * area
-        mass[[1, -1]] /= 2
-        rod.mass[:] = mass
+        unit = whisker.force_un / whisker.length_mm
+        self.stiffness = PENALTY * unit * (self.radius(places) / self.base) ** 2
+        self.rod = self.resting()
+        self.set_material(self.rod)
+        self.time_step = STEP * 2 / self.fastest()
+
+    def radius(self, place):
+        """Radius in mm at a place in steps from node 0."""
+        return self.base * (1 - self.whisker.taper * np.clip((place - 1) / self.elements, 0, 1))
+
+    def resting(self):
+        """Creates a rod with its nodes on the resting whisker, of uniform material."""
+        whisker, count = self.whisker, self.elements
+        at = [
+            bisect(lambda t, s=s: whisker.at(t)[3] - s, whisker.base_slope, whisker.tip_slope() + 1e-9)
+            for s in np.arange(1, count + 1) / count
+        ]
+        nodes = whisker.length_mm * np.array([(-1 / count, 0), (0, 0), *(whisker.at(t)[:2] for t in at)])
+        position = np.vstack([nodes.T, np.zeros(count + 2)])
+        along, normal = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+        return ea.CosseratRod.straight_rod(
+            count + 1, position[:, 0], along, normal, whisker.length_mm, self.base, DENSITY,
+            youngs_modulus=self.modulus, shear_modulus=self.modulus / 3, position=position,
+        )
+
+    def set_material(self, rod):
+        """Sets masses and stiffnesses of the tapered whisker, and its curvature at rest."""
+        h, identity = self.step, np.eye(3)[:, :, None]
+        places = np.arange(self.elements + 2)
+        rod.mass[:] = DENSITY * h * pi * self.radius(places) ** 2
+        rod.mass[[1, -1]] /= 2
         middle = self.radius(places[:-1] + 0.5)
         inertia = DENSITY * pi * middle**2 * h**3 / 4
-        rod.mass_second_moment_of_inertia[:] = np.eye(3)[:, :, None] * inertia
-        rod.inv_mass_second_moment_of_inertia[:] = np.eye(3)[:, :, None] / inertia
-        rod.shear_matrix[:] = np.eye(3)[:, :, None] * (STRETCH * unit * (middle / base) ** 2)
+        rod.mass_second_moment_of_inertia[:] = identity * inertia
+        rod.inv_mass_second_moment_of_inertia[:] = identity / inertia
+        rod.shear_matrix[:] = identity * (STRETCH * self.whisker.force_un * (middle / self.base) ** 2)
         # Mean flexibility between the middles of neighbouring elements; the half step before the base does not bend.
         one, two = middle[:-1].copy(), middle[1:]
-        one[0] = base
+        one[0] = self.base
         flexibility = (one**2 + one * two + two**2) / (3 * one**3 * two**3)
         flexibility[0] /= 2
-        stiffness = modulus * pi / 4 / flexibility
-        rod.bend_matrix[:] = np.eye(3)[:, :, None] * stiffness
+        rod.bend_matrix[:] = identity * (self.modulus * pi / 4 / flexibility)
         rod.compute_internal_forces_and_torques(0.0)
         rod.rest_kappa[:] = rod.kappa
         rod.rest_sigma[:] = rod.sigma
-        self.stiffness = PENALTY * unit / length * (self.radius(places) / base) ** 2
-        waves = np.sqrt(STRETCH * unit / (DENSITY * pi * base**2)) / h
-        bending = 4 * np.sqrt(modulus / DENSITY) * base / 2 / h**2
-        contact = np.sqrt(PENALTY * unit / length / (DENSITY * pi * base**2 * h))
-        self.time_step = STEP * 2 / max(2 * waves, bending, contact)
+
+    def fastest(self):
+        """Largest angular frequency of the discrete rod, in 1/s, of stretch, bending and contact."""
+        h, area = self.step, DENSITY * pi * self.base**2
+        stretch = 2 * np.sqrt(STRETCH * self.whisker.force_un / area) / h
+        bending = 2 * np.sqrt(self.modulus / DENSITY) * self.base / h**2
+        contact = np.sqrt(PENALTY * self.whisker.force_un / self.whisker.length_mm / (area * h))
+        return max(stretch, bending, contact)
 
     def start(self, course, damping):
         """Begins a run in which the base has turned by `course(t)` radians of push, damped by `damping` per second."""

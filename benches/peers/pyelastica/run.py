@@ -23,7 +23,7 @@ MARGIN = 0.25
 # Degrees of push before first touch at which a fast push begins; its speed is reached after half of them.
 BEFORE = 4.0
 # Rows of a run in forces.csv.
-ROWS = 150
+ROWS = 50
 
 
 def smooth(x):
