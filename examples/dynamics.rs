@@ -23,11 +23,12 @@ const RATES: [f64; 4] = [60.0, 250.0, 500.0, 1000.0];
 /// Peak speeds of the base in degrees per second, for a sine of 8 to 20 Hz with an amplitude of 20 degrees.
 const WHISKING: [f64; 2] = [1005.0, 2513.0];
 
-/// A whisker, its touch on CB in mm, and its name in titles.
+/// A whisker, its touch on CB in mm, its name in titles, and its unit of force, by uN.
 struct Case {
     stem: &'static str,
     distance_mm: f64,
     title: &'static str,
+    unit: (&'static str, f64),
 }
 
 const CASES: [Case; 2] = [
@@ -35,11 +36,13 @@ const CASES: [Case; 2] = [
         stem: "cone",
         distance_mm: 15.6604597633658,
         title: "mouse, 20 mm",
+        unit: ("µN", 1.0),
     },
     Case {
         stem: "robot",
         distance_mm: 80.0,
         title: "robot, 100 mm",
+        unit: ("mN", 1e-3),
     },
 ];
 
@@ -59,10 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     for path in ["outputs/dynamics.svg", "outputs/dynamics.png"] {
         let format = PictureFormat::of(Path::new(path)).ok_or("no format of pictures")?;
-        fs::write(
-            path,
-            chart.picture(PictureSize::Natural)?.encode(format)?,
-        )?;
+        fs::write(path, chart.picture(PictureSize::Natural)?.encode(format)?)?;
     }
     Ok(())
 }
@@ -72,7 +72,10 @@ fn rows(table: &str, case: &Case, columns: &[&str]) -> Result<Vec<Vec<f64>>, Box
     let table = CsvTable::read(Path::new(FOLDER).join(table))?;
     let words = |name| table.values(name, "a word", |cell| Some(cell.to_owned()));
     let (scenes, sides) = (words("scene")?, words("side")?);
-    let own = scenes.into_iter().flatten().zip(sides.into_iter().flatten());
+    let own = scenes
+        .into_iter()
+        .flatten()
+        .zip(sides.into_iter().flatten());
     let own: Vec<bool> = own
         .map(|(scene, side)| scene == case.stem && side == "cb")
         .collect();
@@ -122,9 +125,14 @@ fn lags(case: &Case) -> Result<Plot, Box<dyn Error>> {
         });
     }
     // The law of a delayed saddle-node, through the middle of the slow pushes.
-    let slow = dots.iter().filter(|dot| dot.at[0] <= 8.0 && dot.at[1] > 0.0);
+    let slow = dots
+        .iter()
+        .filter(|dot| dot.at[0] <= 8.0 && dot.at[1] > 0.0);
     let (logs, count) = slow.fold((0.0, 0.0), |(sum, count), dot| {
-        (sum + (dot.at[1] / dot.at[0].powf(2.0 / 3.0)).ln(), count + 1.0)
+        (
+            sum + (dot.at[1] / dot.at[0].powf(2.0 / 3.0)).ln(),
+            count + 1.0,
+        )
     });
     let factor = f64::exp(logs / f64::max(count, 1.0));
     let law = [0.4, 3000.0].map(|rate: f64| [rate, factor * rate.powf(2.0 / 3.0)]);
@@ -148,7 +156,10 @@ fn lags(case: &Case) -> Result<Plot, Box<dyn Error>> {
 /// Force by the push angle, at rest and at several rates, beside the quasi-static one.
 fn forces(case: &Case) -> Result<Plot, Box<dyn Error>> {
     let points = branch(case)?;
-    let own = points.iter().map(|own| [own.push_angle_deg, own.force_un]);
+    let (unit, factor) = case.unit;
+    let own = points
+        .iter()
+        .map(|own| [own.push_angle_deg, factor * own.force_un]);
     let mut lines = vec![Line::new(own.collect(), Ink::Black, Stroke::Solid).named("quasi-static")];
     let columns = [
         "damping_per_s",
@@ -161,14 +172,13 @@ fn forces(case: &Case) -> Result<Plot, Box<dyn Error>> {
         let pushes = all
             .iter()
             .filter(|row| row[0] == DAMPINGS[0] && row[1] == rate);
-        let points: Vec<_> = pushes.map(|row| [row[2], row[3]]).collect();
-        lines.push(
-            Line::new(points, Ink::Series(index), Stroke::Solid).named(format!("{rate}°/s")),
-        );
+        let points: Vec<_> = pushes.map(|row| [row[2], factor * row[3]]).collect();
+        lines
+            .push(Line::new(points, Ink::Series(index), Stroke::Solid).named(format!("{rate}°/s")));
     }
     let held = rows("held.csv", case, &["push_angle_deg", "force_un"])?;
     let dots = held.into_iter().map(|row| Dot {
-        at: [row[0], row[1]],
+        at: [row[0], factor * row[1]],
         open: true,
         name: Some("held".to_owned()),
         ..Dot::default()
@@ -176,7 +186,7 @@ fn forces(case: &Case) -> Result<Plot, Box<dyn Error>> {
     Ok(Plot {
         title: format!("{}, damping {} per s", case.title, DAMPINGS[0]),
         x_label: "push angle (°)".to_owned(),
-        y_label: "contact force (µN)".to_owned(),
+        y_label: format!("contact force ({unit})"),
         lines,
         dots: dots.collect(),
         ..Plot::default()

@@ -4,7 +4,7 @@
            [--elements N ...] [--damping PER_S ...] [-o FOLDER]
 
 `--detach` is the quasi-static push angle at detachment, of `whiskmap curve`: slow pushes hurry to a place shortly before it. Results are
-added to detachments.csv, forces.csv and held.csv in FOLDER.
+added to detachments.csv, forces.csv (fast pushes, means over steps) and held.csv in FOLDER.
 """
 
 import argparse
@@ -139,8 +139,10 @@ def main():
                 begun = time.time()
                 rod = make()
                 end, rows = detachment(rod, rate, options.detach, damping, 3 * options.detach + 60)
-                add(options.folder / "forces.csv", (*names, "rate_deg_per_s", "push_angle_deg", "force_un"),
-                    [(*case, rate, f"{angle:.6g}", f"{force:.6g}") for angle, force in rows])
+                if rate >= FAST:
+                    columns = (*names, "rate_deg_per_s", "push_angle_deg", "force_un")
+                    add(options.folder / "forces.csv", columns,
+                        [(*case, rate, f"{angle:.5g}", f"{force:.5g}") for angle, force in rows])
                 seconds = time.time() - begun
                 add(options.folder / "detachments.csv", (*names, "rate_deg_per_s", "push_angle_deg", "steps", "seconds"),
                     [(*case, rate, end, round(rod.time / rod.time_step), f"{seconds:.0f}")])
