@@ -1,4 +1,4 @@
-//! Draws the pushes of `benches/peers/pyelastica` beside the quasi-static model, as `outputs/dynamics.svg` and `.png`.
+//! Draws the pushes of `benches/peers/pyelastica` beside the quasi-static model, as `outputs/dynamics.svg`.
 //!
 //! `cargo run --release --example dynamics`
 
@@ -60,10 +60,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         columns: 2,
         ..Chart::default()
     };
-    for path in ["outputs/dynamics.svg", "outputs/dynamics.png"] {
-        let format = PictureFormat::of(Path::new(path)).ok_or("no format of pictures")?;
-        fs::write(path, chart.picture(PictureSize::Natural)?.encode(format)?)?;
-    }
+    let picture = chart.picture(PictureSize::Natural)?;
+    fs::write("outputs/dynamics.svg", picture.encode(PictureFormat::Svg)?)?;
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 #
 #     benches/peers/pyelastica/run.sh [short]
 #
-# It writes detachments.csv, forces.csv and held.csv beside itself, and draws outputs/dynamics.png and .svg from them. All pushes take less
+# It writes detachments.csv, forces.csv and held.csv beside itself, and draws outputs/dynamics.svg from them. All pushes take less
 # than an hour on one idle core; `short` leaves out the slow ones, and takes minutes. Needs Python 3.11 with venv.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
