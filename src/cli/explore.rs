@@ -69,7 +69,7 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
     });
     let output = match &args.output {
         Some(output) => output.clone(),
-        None => Path::new("outputs").join(format!("{}.html", scene.name)),
+        None => default_output(&scene.name)?,
     };
     let file = files.output("--output", &output)?;
     let Some(path) = file.write(page(&start.to_string()).as_bytes())? else {
@@ -80,6 +80,16 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
         open(&path);
     }
     Ok(())
+}
+
+/// Path of the page of a scene without `--output`. Of a scene with the name of this project's page, that page would be lost.
+fn default_output(name: &str) -> Result<PathBuf, Failure> {
+    let output = Path::new("outputs").join(format!("{name}.html"));
+    if output == Path::new("outputs/explore.html") {
+        let why = "--output: must be given for a scene named `explore`, because outputs/explore.html is a page of this project";
+        return Err(Failure::Input(why.to_owned()));
+    }
+    Ok(output)
 }
 
 /// Measured points as CSV, in the format of `--data`.

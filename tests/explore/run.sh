@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Opens the page of `whiskmap explore` in Chromium, uses it, and compares its numbers with those of the program:
+# Opens the page of `whiskmap explore` in Chromium and, if it is installed, in Firefox, uses it, and compares its numbers with those of the program:
 #
-#     tests/explore/run.sh [WHISKMAP]
+#     tests/explore/run.sh [WHISKMAP [PART]]
 #
-# Needs Chromium and Node.js; on Debian and Ubuntu it installs them if they are missing. Screenshots stay in target/explore.
+# With PART, only tests whose names contain it run; `times` prints how long the page takes. Needs Chromium and Node.js; on Debian and
+# Ubuntu it installs them if they are missing. Screenshots stay in target/explore.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -14,14 +15,23 @@ mkdir -p "$folder"
 
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
 chromium="$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)"
-if [ -z "$chromium" ] || ! command -v npm >/dev/null; then
+missing=()
+if [ -z "$chromium" ]; then missing+=(chromium fonts-dejavu-core); fi
+if ! command -v npm >/dev/null; then missing+=(nodejs npm); fi
+if [ ${#missing[@]} != 0 ]; then
     as_root apt-get update -q
-    as_root apt-get install -y -q --no-install-recommends chromium nodejs npm fonts-dejavu-core
-    chromium="$(command -v chromium)"
+    as_root apt-get install -y -q --no-install-recommends "${missing[@]}"
 fi
+chromium="${chromium:-$(command -v chromium)}"
 if [ ! -d "$folder/node_modules/playwright-core" ]; then
     npm install --silent --no-audit --no-fund --prefix "$folder" playwright-core@1.56
 fi
 cp tests/explore/*.mjs "$folder"
 rm -f "$folder"/*.png
-node "$folder/test.mjs" "$whiskmap" "$chromium" "$folder" "$PWD"
+node "$folder/test.mjs" "$whiskmap" "$chromium" "$folder" "$PWD" "${2:-}"
+firefox="$(command -v firefox || command -v firefox-esr || true)"
+if [ -n "$firefox" ]; then
+    node "$folder/firefox.mjs" "$whiskmap" "$firefox" "$folder" "$PWD"
+else
+    echo "ignored: the page in Firefox, because firefox is not installed"
+fi

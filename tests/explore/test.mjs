@@ -1,58 +1,10 @@
 // Tests of the page of `whiskmap explore`; see run.sh.
 
 import { readFileSync, writeFileSync } from 'node:fs';
-import { assert, close, faults, finished, folder, near, open, root, run, table, until } from './page.mjs';
-
-const built = `file://${root}/outputs/explore.html`;
-const cone = `${root}/scenes/cone.toml`;
-
-const channel = (page, name) => page.$eval(`[data-channel="${name}"] td`, (cell) => Number(cell.dataset.value));
-
-// The push angle and the distance of the state that is shown, from the command on the page, once it is that of the pointer.
-async function shownAt(page) {
-    const place = () => page.evaluate(() => {
-        const command = document.getElementById('command').textContent.match(/--distance (\S+) --push-angle (\S+)$/);
-        const pointer = JSON.parse(document.getElementById('plane').dataset.pointer);
-        return { distance: command?.[1], push: command?.[2], pointer };
-    });
-    return until('the pointer', place, ({ distance, push, pointer }) => Number(distance) === pointer.distance && Number(push) === pointer.push);
-}
-
-// Compares the state on the page with `whiskmap shape`.
-async function compareState(page, scene) {
-    const { distance, push } = await shownAt(page);
-    const files = ['--state', 'state.csv', '--csv', 'shape.csv'];
-    run('shape', scene, `--distance=${distance}`, `--push-angle=${push}`, ...files);
-    const [state] = table(readFileSync(`${folder}/state.csv`, 'utf8'));
-    for (const name of ['force_un', 'base_moment_nnm', 'arc_length_mm', 'contact_angle_deg', 'energy_nj', 'peak_strain']) {
-        await until(name, () => channel(page, name), (value) => Math.abs(value - state[name]) <= 1e-9 * Math.max(1, Math.abs(state[name])));
-    }
-}
-
-// Drops a file on the page.
-const drop = (page, name, text) => page.evaluate(([name, text]) => {
-    const dataTransfer = new DataTransfer();
-    dataTransfer.items.add(new File([text], name));
-    dispatchEvent(new DragEvent('drop', { dataTransfer, cancelable: true }));
-}, [name, text]);
-
-// Moves the pointer to a part of the map, from the left and from the top.
-async function move(page, x, y) {
-    const box = await page.locator('#plane > svg').boundingBox();
-    await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
-}
-
-// Runs in the page: the numbers of the page's own solver for a request.
-async function answerOf(request) {
-    const packed = Uint8Array.from(atob(document.getElementById('wasm').textContent), (own) => own.charCodeAt(0));
-    const bytes = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
-    const { exports: solver } = (await WebAssembly.instantiate(bytes, {})).instance;
-    const text = new TextEncoder().encode(JSON.stringify(request));
-    const place = solver.input(text.length);
-    new Uint8Array(solver.memory.buffer, place, text.length).set(text);
-    solver.answer();
-    return [...new Float32Array(solver.memory.buffer, solver.numbers(), solver.numbers_length())].map((own) => (Number.isNaN(own) ? null : own));
-}
+import { gestures } from './gestures.mjs';
+import { assert, built, close, compareState, cone, drop, faults, finished, folder, move, near, open, only, respond, root, run, shownAt, table, until } from './page.mjs';
+import { rows } from './rows.mjs';
+import { times } from './times.mjs';
 
 const tests = {
     async 'the page shows the map, and states as whiskmap shape'(page) {
@@ -87,7 +39,7 @@ const tests = {
         run('extract', 'cone.exr', '--channel', 'regime', '--channel', 'force_un', '-o', 'cells.csv');
         const rows = table(readFileSync(`${folder}/cells.csv`, 'utf8'));
         const task = { map: { push_angle_deg: [-70, 70], distance_mm: [2, 20], size, channel: 'force_un', tolerance_deg: null } };
-        const numbers = await page.evaluate(answerOf, { text: readFileSync(cone, 'utf8'), origin: 'cone.toml', values: [], task });
+        const { numbers } = await respond(page, task);
         const count = size[0] * size[1];
         assert(rows.length === count && numbers.length === 3 * count, `${rows.length} rows, ${numbers.length} numbers`);
         rows.forEach((row, i) => {
@@ -203,11 +155,17 @@ const tests = {
         await other.context().close();
     },
 
+    ...rows,
+    ...gestures,
+    ...times,
+
     async 'screenshots'() {
         for (const colorScheme of ['light', 'dark']) {
             for (const size of [[400, 860], [1280, 900], [2560, 1440]]) {
                 const page = await open(built, { size, colorScheme });
                 await until('branches', () => page.locator('#force path').count(), (count) => count > 2);
+                await until('the course', () => page.locator('#whisk-force path').count(), (count) => count > 0);
+                await page.$eval('#whisk-time', (own) => ((own.value = 30), own.dispatchEvent(new Event('input'))));
                 const wide = await page.evaluate(() => document.documentElement.scrollWidth);
                 assert(wide <= size[0], `${wide} pixels on ${size[0]}`);
                 await page.screenshot({ path: `${folder}/${colorScheme}-${size[0]}.png`, fullPage: true });
@@ -218,7 +176,7 @@ const tests = {
 };
 
 const page = await open(built);
-for (const [name, test] of Object.entries(tests)) {
+for (const [name, test] of Object.entries(tests).filter(([name]) => name.includes(only))) {
     const begun = Date.now();
     await test(page);
     assert(faults.length === 0, `${name}: ${faults.join('\n')}`);

@@ -1,8 +1,8 @@
-// Charts: the branches at the row of the pointer, the detachment curve, and residuals of measured points.
+// Charts: the branches and sensitivities at the row of the pointer, the detachment curve, and residuals of measured points.
 
 import { find } from './dom.js';
-import { draw, ends } from './plot.js';
-import { known, state } from './state.js';
+import { draw, ends, rem } from './plot.js';
+import { known, state, title } from './state.js';
 import { shown, titled } from './text.js';
 
 const PUSH = 'Push angle (\u00b0)';
@@ -39,6 +39,39 @@ export function drawBranches() {
         });
         find(`${id}-note`).textContent = `at ${shown(distance)} mm; stable solid, unstable dashed`;
     }
+}
+
+// Variables with the largest effects that are shown, and half the height of a bar.
+const [MOST, HALF] = [12, 0.2];
+
+const variable = (name) => (name === 'distance_mm' ? 'distance' : title(name).replace(/ \(.*\)/, ''));
+
+// Draws what a change of 1 % of each number does to the detachments, with one bar for each side; the largest is at the top.
+export function drawSensitivities() {
+    if (!known.sensitivities) return;
+    const { rows, distance_mm } = known.sensitivities;
+    const size = (name) => Math.max(...rows.filter((row) => row.variable === name).map((row) => Math.abs(row.push_of_1_percent_deg ?? 0)));
+    const names = [...new Set(rows.map((row) => row.variable))].filter((name) => size(name) > 0);
+    const largest = names.sort((a, b) => size(b) - size(a)).slice(0, MOST).reverse();
+    const shownRows = rows.filter((row) => largest.includes(row.variable) && row.push_of_1_percent_deg != null);
+    const bars = shownRows.map(({ side, variable: name, push_of_1_percent_deg: change }) => {
+        const y = largest.indexOf(name) + (side === 'cb' ? HALF : -HALF);
+        return { from: [0, y - HALF], to: [change, y + HALF], class: side, title: `${variable(name)}, ${side.toUpperCase()}: ${shown(change)}\u00b0` };
+    });
+    draw(find('sensitivities'), {
+        x: ends(shownRows.map((row) => row.push_of_1_percent_deg), [0]),
+        y: [-0.7, Math.max(largest.length, 1) - 0.3],
+        xTitle: 'Change of push angle (\u00b0)',
+        yNames: largest.map(variable),
+        margin: { left: 9.5 * rem() },
+        bars,
+        vertical: 0,
+    });
+    const end = (side) => {
+        const { kind, push_angle_deg: push, reason } = rows.find((row) => row.side === side);
+        return `${side.toUpperCase()}: ${push == null ? (reason ?? kind) : `${kind} at ${shown(push, 4)}\u00b0`}`;
+    };
+    find('sensitivities-note').textContent = rows.length ? `+1 % of each number at ${shown(distance_mm)} mm; ${end('cb')}; ${end('cf')}` : '';
 }
 
 const curveLine = (curve, side, name) =>

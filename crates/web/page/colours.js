@@ -32,14 +32,24 @@ export const blank = () => (isDark() ? [0x2a, 0x30, 0x36] : [0xe9, 0xea, 0xeb]);
 // A colour as a pixel of an image.
 const pixel = ([red, green, blue]) => ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
 
+// True where a stripe runs through a cell: stripes run from the lower left to the upper right.
+const isStripe = (x, y) => (x - y + 4096) % 8 < 3;
+
+// The pixel of a marked cell of a colour: black or white stripes, whichever contrast more (luma by ITU-R BT.601).
+export function hatched(own, x, y) {
+    if (!isStripe(x, y)) return own;
+    const luma = 0.299 * (own & 255) + 0.587 * ((own >> 8) & 255) + 0.114 * ((own >> 16) & 255);
+    return luma > 127.5 ? 0xff000000 : 0xffffffff;
+}
+
 // The pixels of cells without a value.
 export const blankPixel = () => pixel(blank());
 
-// A function that returns the pixel of a regime: stripes run from the lower left to the upper right.
+// A function that returns the pixel of a regime, with its stripes.
 export function regimePixels() {
     const pixels = Object.fromEntries(Object.keys(REGIMES).map((code) => [code, pixel(regimeColour(code))]));
     const stripes = Object.fromEntries(Object.entries(REGIMES).map(([code, own]) => [code, own.stripes ? pixel(own.stripes) : pixels[code]]));
-    return (code, x, y) => ((x - y + 4096) % 8 < 3 ? stripes : pixels)[code] ?? pixels[255];
+    return (code, x, y) => (isStripe(x, y) ? stripes : pixels)[code] ?? pixels[255];
 }
 
 export const css = ([red, green, blue]) => `rgb(${red} ${green} ${blue})`;

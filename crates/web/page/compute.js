@@ -1,6 +1,6 @@
 // Computation of what is shown: drafts of maps while something moves, then the exact map, curves and states.
 
-import { find } from './dom.js';
+import { debounced, find } from './dom.js';
 import { Solver, Superseded, compiled } from './solver.js';
 import { known, on, request, state } from './state.js';
 
@@ -16,10 +16,13 @@ const DRAFT_DEG = 0.01;
 const CURVE = 160;
 const BRANCH = 60;
 
+// A row's sensitivities and course are computed when the pointer has rested for this long, in ms.
+const REST = 150;
+
 // A map is finished when nothing has moved for this long, in ms.
 const QUIET = 80;
 
-let maps, traces, shown;
+let maps, traces, courses, shown;
 let draft = 2;
 
 // Starts the solvers. `show` has a function for each result, and for errors.
@@ -33,25 +36,29 @@ export async function start(show) {
     };
     maps = new Solver(module, onBusy('maps'));
     traces = new Solver(module, onBusy('traces'));
+    courses = new Solver(module, onBusy('courses'));
     find('stop').addEventListener('click', stop);
-    on(['whisker'], describe);
+    on(['whisker'], () => fill(traces, 'scene', request('scene')));
     on(['whisker', 'view', 'channel'], computeMap);
     on(['whisker', 'view'], computeCurve);
     on(['whisker', 'pointer', 'pinned'], computeState);
     on(['pinned', 'view'], computePinned);
     on(['whisker', 'points'], comparePoints);
+    on(['whisker', 'pointer'], debounced(REST, computeRow));
+    on(['whisk'], computeWhisk);
 }
 
 function stop() {
     maps.stop();
     traces.stop();
+    courses.stop();
     shown.stopped();
 }
 
-// Answers a request with `f` unless a newer one replaces it; `fail` gets the message of an error.
-async function answered(solver, kind, own, f, fail = shown.error) {
+// Calls `f` with the response to a request unless a newer one replaces it; `fail` gets the message of an error.
+async function responded(solver, kind, own, f, fail = shown.error) {
     try {
-        f(await solver.ask(kind, own));
+        f(await solver.compute(kind, own));
         return true;
     } catch (error) {
         if (!(error instanceof Superseded)) fail(error.message);
@@ -59,13 +66,13 @@ async function answered(solver, kind, own, f, fail = shown.error) {
     }
 }
 
-function describe() {
-    answered(traces, 'scene', request('scene'), (scene) => {
-        known.scene = scene;
-        shown.scene();
-    });
-}
+// Computes a part of what is known, and shows it.
+const fill = (solver, part, own, fail) => responded(solver, part, own, (response) => {
+    known[part] = response;
+    shown[part]();
+}, fail);
 
+const quiet = () => {};
 async function computeMap() {
     const { view, channel, whisker } = state;
     if (!view) return;
@@ -77,78 +84,60 @@ async function computeMap() {
         if (isDraft && map.ms > DRAFT_MS) draft = Math.min(draft + 1, DRAFTS.length - 1);
         if (isDraft && map.ms < DRAFT_MS / 2.5) draft = Math.max(draft - 1, 0);
     };
-    const isDrawn = await answered(maps, 'map', task(DRAFTS[draft], DRAFT_DEG), take(true));
+    const isDrawn = await responded(maps, 'map', task(DRAFTS[draft], DRAFT_DEG), take(true));
     await new Promise((resolve) => setTimeout(resolve, QUIET));
     if (isDrawn && whisker === state.whisker && view === state.view && channel === state.channel) {
-        await answered(maps, 'map', task(CELLS, null), take(false));
+        await responded(maps, 'map', task(CELLS, null), take(false));
     }
 }
 
 const curve = (whisker) => request({ curve: { distance_mm: state.view.distance, count: CURVE } }, whisker);
 
-function computeCurve() {
-    if (!state.view) return;
-    answered(traces, 'curve', curve(), (found) => {
-        known.curve = found;
-        shown.curve();
-    }, () => {});
-}
+const computeCurve = () => state.view && fill(courses, 'curve', curve(), quiet);
 
 function computePinned() {
     known.pinnedCurve = null;
-    if (!state.pinned || !state.view) return shown.curve();
-    answered(traces, 'pinned', curve(state.pinned), (found) => {
-        known.pinnedCurve = found;
-        shown.curve();
-    });
+    if (state.pinned && state.view) fill(courses, 'pinnedCurve', curve(state.pinned));
+    else shown.curve();
 }
 
 function computeState() {
     const { pointer, pinned } = state;
     if (!pointer) return;
     const task = { state: { push_angle_deg: pointer.push, distance_mm: pointer.distance } };
-    answered(traces, 'state', request(task), (own) => {
-        known.state = own;
-        shown.state();
-    }, shown.noState);
-    if (pinned) {
-        answered(traces, 'pinned state', request(task, pinned), (own) => {
-            known.pinnedState = own;
-            shown.state();
-        }, () => {});
-    } else {
-        known.pinnedState = null;
-    }
-    answered(traces, 'branches', request({ branches: { distance_mm: pointer.distance, count: BRANCH } }), (own) => {
-        known.branches = own;
-        shown.branches();
-    }, () => {});
+    fill(traces, 'state', request(task), shown.noState);
+    if (pinned) fill(traces, 'pinnedState', request(task, pinned), quiet);
+    else known.pinnedState = null;
+    fill(traces, 'branches', request({ branches: { distance_mm: pointer.distance, count: BRANCH } }), quiet);
+}
+
+function computeRow() {
+    if (!state.pointer) return;
+    fill(courses, 'sensitivities', request({ sensitivities: { distance_mm: state.pointer.distance } }), quiet);
+    computeWhisk();
+}
+
+function computeWhisk() {
+    if (state.pointer) fill(courses, 'whisk', request({ whisk: { distance_mm: state.pointer.distance, ...state.whisk } }), shown.noWhisk);
 }
 
 function comparePoints() {
     known.points = null;
-    if (!state.points) return shown.points();
-    const task = { points: { ...state.points, free: [] } };
-    answered(traces, 'points', request(task), (own) => {
-        known.points = own;
-        shown.points();
-    }, shown.pointsError);
+    if (state.points) fill(traces, 'points', request({ points: { ...state.points, free: [] } }), shown.pointsError);
+    else shown.points();
 }
 
 // Fits parameters to the points; resolves to the estimates, or to nothing.
 export async function fit(free) {
     let found;
     const task = { points: { ...state.points, free } };
-    await answered(traces, 'fit', request(task), (own) => (found = own), shown.pointsError);
+    await responded(traces, 'fit', request(task), (own) => (found = own), shown.pointsError);
     return found;
 }
 
 // The scene with the page's values, as TOML.
 export async function toml() {
     let text;
-    await answered(traces, 'toml', request('toml'), (own) => (text = own.toml));
+    await responded(traces, 'toml', request('toml'), (own) => (text = own.toml));
     return text;
 }
-
-// The detachment curve as its columns and rows.
-export const curveRows = () => known.curve?.rows ?? [];

@@ -35,9 +35,9 @@ function set(name, value) {
 // Makes the controls of a scene that has just been opened.
 export function makeControls() {
     const { parameters } = known.scene;
-    const of = Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
+    const of = { length_mm: known.scene.length_mm, ...Object.fromEntries(parameters.map(({ name, value }) => [name, value])) };
     rows.clear();
-    const names = Object.keys(PARAMETERS).filter((name) => name in of);
+    const names = Object.keys(PARAMETERS).filter((name) => parameters.some((own) => own.name === name));
     find('numbers').replaceChildren(...names.map((name) => {
         const own = parameters.find((parameter) => parameter.name === name);
         const [from, to] = PARAMETERS[name](of);

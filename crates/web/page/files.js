@@ -1,6 +1,6 @@
 // Files that the reader saves: the scene, the detachment curve, and pictures of the map.
 
-import { curveRows, toml } from './compute.js';
+import { toml } from './compute.js';
 import { find, save, svg } from './dom.js';
 import { known, link } from './state.js';
 import { exact } from './text.js';
@@ -40,7 +40,7 @@ async function savePng() {
 
 // The detachment curve with the columns of `whiskmap curve`.
 function csv() {
-    const rows = curveRows();
+    const rows = known.curve?.rows ?? [];
     const columns = Object.keys(rows[0] ?? {});
     return [columns, ...rows.map((row) => columns.map((column) => exact(row[column])))].map((cells) => `${cells.join(',')}\n`).join('');
 }

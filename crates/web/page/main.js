@@ -1,6 +1,6 @@
 // The page: its parts, and what each does when a result arrives.
 
-import { drawBranches, drawDetachment } from './charts.js';
+import { drawBranches, drawDetachment, drawSensitivities } from './charts.js';
 import { start } from './compute.js';
 import { makeControls, showError, showPinned, showValues, startControls } from './controls.js';
 import { debounced, el, find } from './dom.js';
@@ -10,6 +10,7 @@ import { showPoints, showPointsError, startPoints } from './points.js';
 import { showNoState, showState } from './readout.js';
 import { change, fromLink, known, link, on, state } from './state.js';
 import { CHANNELS, shown, titled } from './text.js';
+import { drawCourse, showCourse, startWhisk } from './whisk.js';
 import { drawWhisker } from './whisker.js';
 
 // The scene whose controls are on the page.
@@ -38,17 +39,22 @@ const show = {
         drawPlane();
         drawDetachment();
     },
+    pinnedCurve: () => show.curve(),
     state() {
         showState();
         drawWhisker();
     },
+    pinnedState: () => show.state(),
     branches: drawBranches,
+    sensitivities: drawSensitivities,
+    whisk: () => showCourse(''),
     points() {
         showPoints();
         show.curve();
     },
     error: showError,
     noState: showNoState,
+    noWhisk: showCourse,
     pointsError: showPointsError,
     stopped: () => showError('stopped; change a number to compute again'),
 };
@@ -64,7 +70,7 @@ function startTools() {
     on(['channel', 'scale', 'range'], showTools);
     on(['pinned'], showPinned);
     const remember = debounced(400, async () => history.replaceState(null, '', `#${await link()}`));
-    on(['whisker', 'pinned', 'view', 'channel', 'scale', 'range', 'pointer', 'points'], remember);
+    on(['whisker', 'pinned', 'view', 'channel', 'scale', 'range', 'pointer', 'points', 'whisk'], remember);
     for (const id of ['bifurcation', 'whisker']) new ResizeObserver(() => redraw()).observe(find(id));
 }
 
@@ -78,6 +84,8 @@ function showTools() {
 function redraw() {
     drawBranches();
     drawWhisker();
+    drawSensitivities();
+    drawCourse();
     if (state.view) drawDetachment();
 }
 
@@ -94,6 +102,7 @@ startControls();
 startPoints();
 startFiles();
 startTools();
+startWhisk();
 await start(show);
 change({ ...state, ...(await first()) });
 addEventListener('hashchange', async () => {

@@ -1,6 +1,6 @@
 // The map: its cells on a canvas, axes, boundary and points above them, zoom, and the place of the pointer.
 
-import { blank, blankPixel, css, regimeColour, regimePixels, scaleOf, stripesOf } from './colours.js';
+import { blank, blankPixel, css, hatched, isDark, regimeColour, regimePixels, scaleOf, stripesOf } from './colours.js';
 import { el, find, svg } from './dom.js';
 import { draw, logTicks, ticks } from './plot.js';
 import { change, known, on, state } from './state.js';
@@ -9,7 +9,7 @@ import { isLoad, shown, titled } from './text.js';
 const plane = find('plane');
 const [canvas, overlay] = plane.children;
 const cells = document.createElement('canvas');
-let place, image, scale, drag;
+let place, image, scale, drag, hasMarks;
 const touches = new Map();
 
 // Draws a new map.
@@ -28,7 +28,15 @@ function paint() {
     const picture = new ImageData(width, height);
     const pixels = new Uint32Array(picture.data.buffer);
     const [none, ofRegime] = [blankPixel(), regimePixels()];
-    const colour = values ? (cell) => (scale ? scale.pixel(values[cell]) : none) : (cell, x, y) => ofRegime(numbers[cell], x, y);
+    const marked = known.scene?.state_channels.includes(channel) ? known.scene.marks : [];
+    const isMarked = (cell) => marked.includes(numbers[count + cell]);
+    const ofValue = (cell, x, y) => {
+        if (!scale) return none;
+        const own = scale.pixel(values[cell]);
+        return isMarked(cell) ? hatched(own, x, y) : own;
+    };
+    hasMarks = marked.length > 0 && numbers.subarray(count, 2 * count).some((code) => marked.includes(code));
+    const colour = values ? ofValue : (cell, x, y) => ofRegime(numbers[cell], x, y);
     for (let row = 0; row < height; row++) {
         const from = (height - 1 - row) * width;
         for (let column = 0; column < width; column++) pixels[from + column] = colour(row * width + column, column, row);
@@ -118,7 +126,7 @@ function drawLegend() {
         const x = 10 + 300 * scale.part(value);
         bar.append(svg('line', { x1: x, x2: x, y1: 14, y2: 18 }), svg('text', { x, y: 30, 'text-anchor': 'middle' }, shown(value)));
     }
-    find('legend').replaceChildren(el('li', {}, titled(channel)), el('li', {}, bar), entry(css(blank()), 'no contact'));
+    find('legend').replaceChildren(el('li', {}, titled(channel)), el('li', {}, bar), entry(css(blank()), 'no contact'), ...(hasMarks ? [entry(css(blank()), 'off: friction is not as assumed', isDark() ? '#fff' : '#000')] : []));
 }
 
 // Zoom by a factor around a place; the view stays within what the solver allows.

@@ -34,15 +34,20 @@ export function ends(values, also = []) {
     return [also.includes(least) ? least : least - margin, most + margin];
 }
 
+// Size of text, in pixels.
+export const rem = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
+
 const path = (points, place) =>
     points.map(([x, y], i) => `${i ? 'L' : 'M'}${place.x(x).toFixed(2)} ${place.y(y).toFixed(2)}`).join('');
 
 // Draws a plot into an SVG element, which is empty afterwards but for the plot:
-// `{ x, y, xTitle, yTitle, lines: [{ points, class }], dots: [{ at, class, error, title }], vertical, horizontal, margin }`.
+// `{ x, y, xTitle, yTitle, yNames, lines: [{ points, class }], bars: [{ from, to, class, title }], dots: [{ at, class, error, title }],
+// vertical, horizontal, margin }`. With `yNames`, the places 0, 1, ... of the vertical axis have names.
 // Returns the places of values in the element, and back.
 export function draw(node, spec) {
     const { width, height } = node.getBoundingClientRect();
-    const { left, right, top, bottom } = { left: 52, right: 12, top: 10, bottom: 40, ...spec.margin };
+    const em = rem();
+    const { left, right, top, bottom } = { left: 3.7 * em, right: 12, top: 10, bottom: 2.9 * em, ...spec.margin };
     const [w, h] = [Math.max(width - left - right, 10), Math.max(height - top - bottom, 10)];
     const [[x0, x1], [y0, y1]] = [spec.x, spec.y];
     const place = {
@@ -52,21 +57,26 @@ export function draw(node, spec) {
         value: (px, py) => [x0 + ((px - left) / w) * (x1 - x0), y1 - ((py - top) / h) * (y1 - y0)],
     };
     const axes = svg('g', { class: 'axes', transform: `translate(${left} ${top})` });
-    for (const value of ticks(spec.x, w / 70)) {
+    for (const value of ticks(spec.x, Math.max(w / 70, 3))) {
         const x = place.x(value);
-        axes.append(svg('line', { class: 'grid', x1: x, x2: x, y1: 0, y2: h }), svg('text', { x, y: h + 16, 'text-anchor': 'middle' }, shown(value)));
+        axes.append(svg('line', { class: 'grid', x1: x, x2: x, y1: 0, y2: h }), svg('text', { x, y: h + 1.15 * em, 'text-anchor': 'middle' }, shown(value)));
     }
-    for (const value of ticks(spec.y, h / 45)) {
+    for (const value of spec.yNames?.keys() ?? ticks(spec.y, h / 45)) {
         const y = place.y(value);
-        axes.append(svg('line', { class: 'grid', x1: 0, x2: w, y1: y, y2: y }), svg('text', { x: -7, y: y + 4, 'text-anchor': 'end' }, shown(value)));
+        const label = spec.yNames?.[value] ?? shown(value);
+        axes.append(svg('line', { class: 'grid', x1: 0, x2: w, y1: y, y2: y }), svg('text', { x: -7, y: y + 4, 'text-anchor': 'end' }, label));
     }
     axes.append(
-        svg('text', { class: 'title', x: w / 2, y: h + 34, 'text-anchor': 'middle' }, spec.xTitle),
-        svg('text', { class: 'title', transform: `translate(${-left + 13} ${h / 2}) rotate(-90)`, 'text-anchor': 'middle' }, spec.yTitle),
+        svg('text', { class: 'title', x: w / 2, y: h + 2.45 * em, 'text-anchor': 'middle' }, spec.xTitle),
+        svg('text', { class: 'title', transform: `translate(${0.95 * em - left} ${h / 2}) rotate(-90)`, 'text-anchor': 'middle' }, spec.yTitle ?? ''),
     );
     // A nested element cuts off what lies beyond the axes.
     const inside = svg('svg', { x: left, y: top, width: w, height: h, overflow: 'hidden' });
     for (const line of spec.lines ?? []) inside.append(svg('path', { class: `line ${line.class}`, d: path(line.points, place) }));
+    for (const { from, to, class: name, title } of spec.bars ?? []) {
+        const [xs, ys] = [[from[0], to[0]].map(place.x), [from[1], to[1]].map(place.y)];
+        inside.append(svg('rect', { class: `effect ${name}`, x: Math.min(...xs), width: Math.abs(xs[1] - xs[0]), y: Math.min(...ys), height: Math.abs(ys[1] - ys[0]) }, svg('title', {}, title)));
+    }
     for (const { at: [x, y], class: name, error, title } of spec.dots ?? []) {
         const [cx, cy] = [place.x(x), place.y(y)];
         if (error) inside.append(svg('path', { class: `line ${name}`, d: path(error, place) }));

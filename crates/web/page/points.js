@@ -2,7 +2,7 @@
 
 import { el, find } from './dom.js';
 import { fit } from './compute.js';
-import { change, changeValues, known, state } from './state.js';
+import { change, changeValues, known, state, title } from './state.js';
 import { shown, unit } from './text.js';
 
 // Largest size of a file, in bytes: the limit of the program.
@@ -36,11 +36,7 @@ export function showPoints() {
     find('free').replaceChildren(...names.map((name, i) => el('label', {}, el('input', { type: 'checkbox', value: name, checked: i === 0 }), ` ${title(name)}`)));
 }
 
-const title = (name) => known.scene.parameters.find((own) => own.name === name)?.title ?? name;
-
-export function showPointsError(message) {
-    find('points-error').textContent = message;
-}
+export const showPointsError = (message) => (find('points-error').textContent = message);
 
 async function fitted() {
     const free = [...find('free').querySelectorAll('input:checked')].map((box) => box.value);

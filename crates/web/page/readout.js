@@ -11,9 +11,7 @@ function values(own) {
     return { ...own.verdict.values, ...own.stable.state };
 }
 
-function reason(own) {
-    return own.stable.points ? null : own.stable.none;
-}
+const reason = (own) => (own.stable.points ? null : own.stable.none);
 
 // Shows the state at the pointer.
 export function showState() {
@@ -53,6 +51,4 @@ const speak = debounced(500, () => {
 });
 
 // Says that there is no state, with the reason.
-export function showNoState(message) {
-    find('why').textContent = message;
-}
+export const showNoState = (message) => (find('why').textContent = message);

@@ -1,4 +1,4 @@
-// Solvers: workers that answer requests. Of each kind of request only the newest counts.
+// Solvers: workers that respond to requests. Of each kind of request only the newest counts.
 
 import { find } from './dom.js';
 
@@ -36,7 +36,7 @@ export class Solver {
     }
 
     // Computes the task of a request. The promise rejects with the message of the solver, or with `Superseded`.
-    ask(kind, request) {
+    compute(kind, request) {
         return new Promise((resolve, reject) => {
             this.waiting.get(kind)?.reject(new Superseded());
             this.waiting.set(kind, { kind, request, resolve, reject, id: ++this.count });
@@ -57,14 +57,14 @@ export class Solver {
         this.worker.postMessage({ id: first.id, request: first.request });
     }
 
-    receive({ ready, id, answer, numbers, ms }) {
+    receive({ ready, id, response, numbers, ms }) {
         if (ready) {
             this.isReady = true;
         } else if (id === this.running?.id) {
             const { resolve, reject } = this.running;
             this.running = null;
-            if (answer.error) reject(new Error(answer.error));
-            else resolve({ ...answer, numbers, ms, id });
+            if (response.error) reject(new Error(response.error));
+            else resolve({ ...response, numbers, ms, id });
         }
         this.next();
     }

@@ -1,4 +1,4 @@
-// State of the page: the whisker, what is shown of it, and the place of the pointer. Listeners hear which part has changed.
+// State of the page: the whisker, what is shown of it, and the place of the pointer. Listeners are called when a part changes.
 
 // `whisker` is `{ text, origin, values }`: the scene, and the values that replace those in it.
 export const state = {
@@ -10,10 +10,14 @@ export const state = {
     range: [null, null],
     pointer: null,
     points: null,
+    whisk: { amplitude_deg: 25, frequency_hz: 10 },
 };
 
-// What the solver says of the scene; see `description` in the solver.
+// Responses of the solver; `scene` is `description` in the solver.
 export const known = { scene: null, whole: null, map: null, curve: null, pinnedCurve: null, state: null };
+
+// The title of a parameter.
+export const title = (name) => known.scene.parameters.find((own) => own.name === name)?.title ?? name;
 
 const listeners = [];
 
@@ -45,7 +49,7 @@ export function changeValues(values) {
 // A request to the solver for a whisker.
 export const request = (task, { text, origin, values } = state.whisker) => ({ text, origin, values: Object.entries(values), task });
 
-const STORED = ['whisker', 'pinned', 'view', 'channel', 'scale', 'range', 'pointer', 'points'];
+const STORED = ['whisker', 'pinned', 'view', 'channel', 'scale', 'range', 'pointer', 'points', 'whisk'];
 
 // Most bytes of the state in a link. A short link can unpack to a thousand times its length.
 const MOST_BYTES = 4 << 20;
@@ -77,6 +81,10 @@ const isRange = (ends) => Array.isArray(ends) && ends.length === 2 && ends.every
 const isWhisker = (own) =>
     typeof own?.text === 'string' && typeof own.origin === 'string' && own.values && Object.values(own.values).every(Number.isFinite);
 
+// A course of whisking that the solver accepts.
+export const isCourse = (own) =>
+    own?.amplitude_deg > 0 && own.amplitude_deg <= 180 && own.frequency_hz > 0 && own.frequency_hz <= 1000;
+
 // The state in a link; what is no valid part of it is left out.
 export async function fromLink(hash) {
     const packed = Uint8Array.from(atob(hash.replace(/-/g, '+').replace(/_/g, '/')), (character) => character.charCodeAt(0));
@@ -89,6 +97,7 @@ export async function fromLink(hash) {
         scale: (own) => ['auto', 'linear', 'log'].includes(own),
         range: (own) => Array.isArray(own) && own.length === 2 && own.every((end) => end === null || Number.isFinite(end)),
         pointer: (own) => Number.isFinite(own?.push) && Number.isFinite(own?.distance),
+        whisk: isCourse,
         points: (own) => typeof own?.name === 'string' && typeof own.csv === 'string',
     };
     return Object.fromEntries(STORED.filter((part) => isValid[part](stored[part])).map((part) => [part, stored[part]]));

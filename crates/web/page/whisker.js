@@ -7,20 +7,12 @@ import { ticks } from './plot.js';
 
 const picture = find('whisker');
 
-const number = (name) => known.scene.parameters.find((own) => own.name === name)?.value;
-
-// The force E I / L^2 of the whisker, in uN: the size of forces that bend it visibly.
-function unitForce() {
-    const [modulus, radius, length] = ['youngs_modulus_gpa', 'base_radius_um', 'length_mm'].map(number);
-    return (1e9 * modulus * (Math.PI / 4) * (radius * 1e-6) ** 4 * 1e6) / (length * 1e-3) ** 2;
-}
-
 // Draws the state at the pointer. The picture has the same extent for all states of a whisker, in whisker lengths.
 export function drawWhisker() {
     const { width, height } = picture.getBoundingClientRect();
     const own = known.state;
     if (!own || !width) return;
-    const length = number('length_mm');
+    const { length_mm: length } = known.scene;
     const [x0, x1, middle] = [-0.16 * length, 1.06 * length, 0];
     const scale = Math.min(width / (x1 - x0), height / (1.25 * length));
     const place = ([x, y]) => [(x - x0) * scale + (width - (x1 - x0) * scale) / 2, height / 2 - (y - middle) * scale];
@@ -50,7 +42,7 @@ function force({ points, contact, state: found }, place, length) {
     if (!(force_un > 0)) return [];
     const turn = (-push_angle_deg * Math.PI) / 180;
     const [x, y] = [along * Math.cos(turn) - across * Math.sin(turn), along * Math.sin(turn) + across * Math.cos(turn)];
-    const size = (0.25 * length * force_un) / (force_un + unitForce()) / Math.hypot(x, y);
+    const size = (0.25 * length * force_un) / (force_un + known.scene.unit_force_un) / Math.hypot(x, y);
     const [from, to] = [points[contact], points[contact].map((value, i) => value + size * [x, y][i])].map(place);
     const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     const span = Math.hypot(dx, dy) || 1;

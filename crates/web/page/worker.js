@@ -1,4 +1,4 @@
-// Worker: answers one request at a time with the solver.
+// Worker: computes the response to one request at a time with the solver.
 
 let solver;
 
@@ -13,10 +13,10 @@ addEventListener('message', async ({ data }) => {
     // The memory may move when it grows.
     const place = solver.input(request.length);
     new Uint8Array(solver.memory.buffer, place, request.length).set(request);
-    solver.answer();
+    solver.respond();
     const { buffer } = solver.memory;
     const text = new TextDecoder().decode(new Uint8Array(buffer, solver.text(), solver.text_length()));
     const numbers = new Float32Array(buffer, solver.numbers(), solver.numbers_length()).slice();
     const ms = performance.now() - begun;
-    postMessage({ id: data.id, answer: JSON.parse(text), numbers, ms }, [numbers.buffer]);
+    postMessage({ id: data.id, response: JSON.parse(text), numbers, ms }, [numbers.buffer]);
 });

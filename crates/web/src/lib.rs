@@ -1,17 +1,18 @@
 //! The solver of the page that `whiskmap explore` writes, as a WebAssembly module without imports.
 //!
-//! A caller writes a [`Request`](request::Request) as JSON where [`input`] points, calls [`answer`], and reads the answer: a JSON text
-//! where [`text`] points, and numbers where [`numbers`] points. An answer without a result is `{"error": message}`, with the message of
+//! A caller writes a [`Request`](request::Request) as JSON where [`input`] points, calls [`respond`], and reads the response: a JSON
+//! text where [`text`] points, and numbers where [`numbers`] points. A response without a result is `{"error": message}`, with the message of
 //! the command line. Positions are valid until the next call.
 #![allow(
     unsafe_code,
     reason = "exported functions need names; no function here reads or writes through a pointer"
 )]
 
-mod answer;
+mod course;
 mod map;
 mod points;
 mod request;
+mod response;
 mod scene;
 mod traces;
 
@@ -39,34 +40,34 @@ pub extern "C" fn input(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request that was written.
+/// Computes the response to the request that was written.
 #[unsafe(no_mangle)]
-pub extern "C" fn answer() {
+pub extern "C" fn respond() {
     EXCHANGE.with_borrow_mut(|exchange| {
-        let answer = request::answer(&exchange.input);
-        (exchange.text, exchange.numbers) = (answer.text.to_string(), answer.numbers);
+        let response = request::respond(&exchange.input);
+        (exchange.text, exchange.numbers) = (response.text.to_string(), response.numbers);
     });
 }
 
-/// Returns where the text of the last answer begins, in UTF-8.
+/// Returns where the text of the last response begins, in UTF-8.
 #[unsafe(no_mangle)]
 pub extern "C" fn text() -> *const u8 {
     EXCHANGE.with_borrow(|exchange| exchange.text.as_ptr())
 }
 
-/// Returns the length of the text of the last answer, in bytes.
+/// Returns the length of the text of the last response, in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn text_length() -> usize {
     EXCHANGE.with_borrow(|exchange| exchange.text.len())
 }
 
-/// Returns where the numbers of the last answer begin, of type `f32`.
+/// Returns where the numbers of the last response begin, of type `f32`.
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers() -> *const f32 {
     EXCHANGE.with_borrow(|exchange| exchange.numbers.as_ptr())
 }
 
-/// Returns how many numbers the last answer has.
+/// Returns how many numbers the last response has.
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers_length() -> usize {
     EXCHANGE.with_borrow(|exchange| exchange.numbers.len())

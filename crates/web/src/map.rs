@@ -1,6 +1,6 @@
 //! Maps of one whisker.
 
-use crate::answer::{Answer, MOST};
+use crate::response::{MOST, Response};
 use serde::Deserialize;
 use serde_json::json;
 use whiskmap::engine::{Engine, EngineDescription, Spectral};
@@ -26,7 +26,7 @@ pub struct MapTask {
 impl MapTask {
     /// Returns the map of the first whisker of `scene`: codes of regimes, codes of statuses, and the values of the channel if one is
     /// wanted, `[array][distance][push_angle]`.
-    pub fn answer(&self, scene: &Scene) -> Result<Answer, String> {
+    pub fn respond(&self, scene: &Scene) -> Result<Response, String> {
         let size = self.size.map(|count| count.clamp(1, MOST));
         let axis = |[from, to]: [f64; 2], count| AxisValues::linear(from, to, count);
         let scene = scene.to_builder();
@@ -50,7 +50,7 @@ impl MapTask {
         let is_spectral = map.summary.engine_cells.solved > 0;
         let engine = is_spectral.then_some(&spectral as &dyn Engine);
         let engine = EngineDescription::of(engine);
-        Ok(Answer {
+        Ok(Response {
             text: json!({
                 "size": size,
                 "push_angle_deg": self.push_angle_deg,

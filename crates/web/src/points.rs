@@ -19,7 +19,7 @@ pub struct PointsTask {
 
 impl PointsTask {
     /// Returns the points with the predictions of `scene`, or of its best fit.
-    pub fn answer(&self, scene: &Scene) -> Result<Value, String> {
+    pub fn respond(&self, scene: &Scene) -> Result<Value, String> {
         let points = MeasuredPoints::parse(&self.csv, &self.name);
         let points = points.map_err(|why| why.to_string())?;
         let free = self.free.iter().filter_map(|name| Parameter::named(name));

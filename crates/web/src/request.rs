@@ -1,10 +1,11 @@
-//! Requests of the page, and their answers.
+//! Requests of the page, and the responses to them.
 
-use crate::answer::{Answer, MOST};
-use crate::{map, points, scene, traces};
+use crate::response::{MOST, Response};
+use crate::{course, map, points, scene, traces};
 use serde::Deserialize;
 use serde_json::json;
 use whiskmap::scene::{Parameter, Scene};
+use whiskmap::sensitivity::effects;
 
 /// Request: a scene, values that replace those in it, and a task.
 #[derive(Deserialize)]
@@ -51,26 +52,33 @@ pub enum Task {
         /// Number of distances.
         count: usize,
     },
+    /// Effects of all numbers of the scene on the detachments of both sides at one distance.
+    Sensitivities {
+        /// Distance of first touch from the base, in mm.
+        distance_mm: f64,
+    },
+    /// The course of a sine of the base's angle in front of one pole.
+    Whisk(course::WhiskTask),
     /// Measured detachments beside those of the scene, after a fit of the free parameters if there are any.
     Points(points::PointsTask),
 }
 
-/// Answers a request in JSON.
-pub fn answer(request: &[u8]) -> Answer {
+/// Returns the response to a request in JSON.
+pub fn respond(request: &[u8]) -> Response {
     let request = serde_json::from_slice(request).map_err(|why| why.to_string());
-    let answer = request.and_then(|request: Request| request.answer());
-    answer.unwrap_or_else(|why| json!({ "error": why }).into())
+    let response = request.and_then(|request: Request| request.respond());
+    response.unwrap_or_else(|why| json!({ "error": why }).into())
 }
 
 impl Request {
-    fn answer(&self) -> Result<Answer, String> {
+    fn respond(&self) -> Result<Response, String> {
         let scene = self.scene()?;
         Ok(match &self.task {
             Task::Scene => scene::description(&scene)?.into(),
             Task::Toml => {
                 json!({ "toml": scene::toml(&self.one(Vec::new())?, &self.changes()?)? }).into()
             }
-            Task::Map(task) => task.answer(&scene)?,
+            Task::Map(task) => task.respond(&scene)?,
             Task::State {
                 push_angle_deg,
                 distance_mm,
@@ -81,7 +89,11 @@ impl Request {
             Task::Curve { distance_mm, count } => {
                 traces::curve(&scene, *distance_mm, (*count).clamp(2, MOST))?.into()
             }
-            Task::Points(task) => task.answer(&scene)?.into(),
+            Task::Sensitivities { distance_mm } => {
+                json!({ "distance_mm": distance_mm, "rows": effects(&scene, *distance_mm) }).into()
+            }
+            Task::Whisk(task) => task.respond(&scene)?,
+            Task::Points(task) => task.respond(&scene)?.into(),
         })
     }
 

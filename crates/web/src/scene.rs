@@ -1,12 +1,11 @@
 //! Descriptions of scenes: numbers, effects, and axes.
 
 use serde_json::{Value, json};
-use whiskmap::Channel;
 use whiskmap::classify::{Regime, Status};
-use whiskmap::plan::{Plan, effects};
+use whiskmap::plan::{Plan, STATE_CHANNELS, effects};
 use whiskmap::scene::{Parameter, Scene};
 
-/// Returns title, numbers, effects and axes of a scene, and the names of codes and channels.
+/// Returns title, units, numbers, effects and axes of a scene, and the names of codes and channels.
 pub fn description(scene: &Scene) -> Result<Value, String> {
     let parameters = Parameter::ALL.into_iter();
     let parameters = parameters.filter_map(|parameter| {
@@ -24,9 +23,12 @@ pub fn description(scene: &Scene) -> Result<Value, String> {
         effects.map(|effect| json!({ "name": effect.name, "on": effect.on, "why": effect.why }));
     let ends = |values: &[f64]| [values[0], values[values.len() - 1]];
     let (nearest, farthest) = scene.distances_mm();
+    let units = scene.whisker.units();
     Ok(json!({
         "title": scene.title,
         "name": scene.name,
+        "length_mm": units.length_mm,
+        "unit_force_un": units.force_un,
         "parameters": parameters.collect::<Vec<_>>(),
         "effects": effects.collect::<Vec<_>>(),
         "warnings": scene.warnings(),
@@ -35,7 +37,8 @@ pub fn description(scene: &Scene) -> Result<Value, String> {
         "distances_mm": [nearest.max(scene.pole.radius_mm), farthest],
         "regimes": Regime::ALL.map(|regime| json!({ "code": regime.code(), "name": regime.name() })),
         "statuses": Status::ALL.map(|status| json!({ "code": status.code(), "name": status.name() })),
-        "channels": Channel::ALL.map(Channel::name),
+        "marks": Status::MARKS.map(Status::code),
+        "state_channels": STATE_CHANNELS,
     }))
 }
 

@@ -1,0 +1,101 @@
+// Tests of the charts at the pointer's distance, whose numbers the program gives too: branches, sensitivities, whisking.
+
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { assert, cone, finished, folder, near, respond, run, shownAt, table, until, whiskmap } from './page.mjs';
+
+const DISTANCE = 15.66;
+
+const read = (name) => table(readFileSync(`${folder}/${name}`, 'utf8'));
+
+// Compares columns of a response's rows with those of the program.
+function compareRows(own, program, columns) {
+    assert(own.length === program.length, `${own.length} rows, ${program.length} by the program`);
+    own.forEach((row, i) => {
+        for (const column of columns) {
+            const [mine, its] = [row[column] ?? '', program[i][column]];
+            if (typeof mine === 'number') near(mine, Number(its), `${column} in row ${i}`);
+            else assert(String(mine) === its, `${column} in row ${i}: ${mine} on the page, ${its} by the program`);
+        }
+    });
+}
+
+// Distance of a point from a line through points `x, y, x, y, ...`.
+function distanceTo([px, py], line) {
+    const parts = line.slice(2).flatMap((_, i) => (i % 2 ? [] : [line.slice(i, i + 4)]));
+    return Math.min(...parts.map(([x0, y0, x1, y1]) => {
+        const [dx, dy] = [x1 - x0, y1 - y0];
+        const along = Math.min(Math.max(((px - x0) * dx + (py - y0) * dy) / (dx * dx + dy * dy), 0), 1);
+        return Math.hypot(px - x0 - along * dx, py - y0 - along * dy);
+    }));
+}
+
+export const rows = {
+    async 'branches are those of whiskmap branch'(page) {
+        const { cf, cb } = await respond(page, { branches: { distance_mm: DISTANCE, count: 60 } });
+        const columns = ['stable', 'push_angle_deg', 'arc_length_mm', 'contact_angle_deg', 'force_un', 'base_moment_nnm', 'energy_nj', 'mark'];
+        for (const [side, own] of Object.entries({ cf, cb })) {
+            compareRows(own.points, table(run('branch', cone, `--distance=${DISTANCE}`, '--side', side, '--points=60')), columns);
+        }
+    },
+
+    async 'sensitivities are those of whiskmap sensitivity'(page) {
+        const { rows: own } = await respond(page, { sensitivities: { distance_mm: DISTANCE } });
+        const columns = ['side', 'kind', 'push_angle_deg', 'variable', 'value', 'd_push_deg', 'push_of_1_percent_deg', 'reason'];
+        compareRows(own, table(run('sensitivity', cone, `--distance=${DISTANCE}`)), columns);
+        const { distance } = await shownAt(page);
+        const some = table(run('sensitivity', cone, `--distance=${distance}`)).filter((row) => Number(row.push_of_1_percent_deg) !== 0);
+        await until('bars', () => page.locator('#sensitivities .effect').count(), (count) => count === some.length);
+    },
+
+    async 'whisking is that of whiskmap whisk'(page) {
+        const own = await respond(page, { whisk: { distance_mm: DISTANCE, amplitude_deg: 25, frequency_hz: 10 } });
+        const course = ['whisk', cone, `--distance=${DISTANCE}`, '--sine=25,10,0.2', '--rate=1200'];
+        run(...course, '--events', 'events.csv', '--csv', 'samples.csv');
+        compareRows(own.samples, read('samples.csv'), ['time_s', 'angle_deg', 'regime', 'side', 'push_angle_deg', 'force_un', 'base_moment_nnm', 'energy_nj']);
+        compareRows(own.events, read('events.csv'), ['time_s', 'event', 'side', 'angle_deg', 'force_un']);
+        const contact = own.samples.findIndex((sample) => sample.side === 'cb');
+        run('shape', cone, `--distance=${DISTANCE}`, `--push-angle=${own.samples[contact].push_angle_deg}`, '--csv', 'whisker.csv');
+        const tip = read('whisker.csv').at(-1);
+        const [x, y] = own.numbers.slice(2 * own.points * (contact + 1) - 2);
+        near(x, Number(tip.x_mm), 'tip', 1e-7);
+        near(y, Number(tip.y_mm), 'tip', 1e-7);
+        // On both sides, the whisker lies on the pole, up to the height of an arc over its chord: 0.0008 mm measured.
+        own.samples.forEach((sample, i) => {
+            const apart = distanceTo(own.pole_mm, own.numbers.slice(2 * own.points * i, 2 * own.points * (i + 1)));
+            const gap = apart - own.pole_radius_mm;
+            if (sample.regime === 'contact') assert(Math.abs(gap) < 0.01, `${gap} mm from the pole in sample ${i} on ${sample.side}`);
+        });
+    },
+
+    async 'the course plays, pauses and scrubs'(page) {
+        const time = () => page.$eval('#whisk-time', (own) => Number(own.value));
+        await until('events', () => page.locator('#whisk-force .dot').count(), (count) => count > 3);
+        await page.click('#whisk-play');
+        await until('the animation', time, (value) => value > 5);
+        await page.click('#whisk-play');
+        const paused = await time();
+        assert((await page.textContent('#whisk-play')) === 'Play', 'the button of a paused course');
+        await page.focus('#whisk-time');
+        await page.keyboard.press('ArrowRight');
+        assert((await time()) === paused + 1, `${await time()} after ${paused}`);
+        await page.fill('#whisk-frequency', '20');
+        await page.press('#whisk-frequency', 'Enter');
+        await until('the last time', () => page.$eval('#whisk-now', (own) => own.textContent), (text) => text !== '');
+        await page.fill('#whisk-amplitude', '-5');
+        await page.press('#whisk-amplitude', 'Enter');
+        await until('a message', () => page.textContent('#whisk-error'), (text) => text.includes('must be above 0'));
+    },
+
+    async 'a course that the program refuses shows its message'(page) {
+        await page.fill('#field-friction', '0.2');
+        await page.press('#field-friction', 'Enter');
+        await finished(page, (values) => values.friction === 0.2);
+        const { distance } = await shownAt(page);
+        const program = spawnSync(whiskmap, ['whisk', '-', `--distance=${distance}`, '--sine=25,10,0.2'], { encoding: 'utf8', input: `${readFileSync(cone, 'utf8')}\n[contact]\nfriction = 0.2\n` });
+        const refused = program.status !== 0;
+        await until('a message', () => page.textContent('#whisk-error'), (text) => (refused ? text !== '' && program.stderr.includes(text) : text === ''));
+        await page.click('#reset');
+        await finished(page, (values) => Object.keys(values).length === 0);
+    },
+};
