@@ -126,7 +126,7 @@ function drawLegend() {
         const x = 10 + 300 * scale.part(value);
         bar.append(svg('line', { x1: x, x2: x, y1: 14, y2: 18 }), svg('text', { x, y: 30, 'text-anchor': 'middle' }, shown(value)));
     }
-    find('legend').replaceChildren(el('li', {}, titled(channel)), el('li', {}, bar), entry(css(blank()), 'no contact'), ...(hasMarks ? [entry(css(blank()), 'off: friction is not as assumed', isDark() ? '#fff' : '#000')] : []));
+    find('legend').replaceChildren(el('li', {}, titled(channel)), el('li', {}, bar), entry(css(blank()), 'no contact'), ...(hasMarks ? [entry(css(blank()), 'slides to base, or sticks', isDark() ? '#fff' : '#000')] : []));
 }
 
 // Zoom by a factor around a place; the view stays within what the solver allows.

@@ -37,7 +37,7 @@ pub fn description(scene: &Scene) -> Result<Value, String> {
         "distances_mm": [nearest.max(scene.pole.radius_mm), farthest],
         "regimes": Regime::ALL.map(|regime| json!({ "code": regime.code(), "name": regime.name() })),
         "statuses": Status::ALL.map(|status| json!({ "code": status.code(), "name": status.name() })),
-        "marks": Status::MARKS.map(Status::code),
+        "marks": Status::NOT_TOWARD_TIP.map(Status::code),
         "state_channels": STATE_CHANNELS,
     }))
 }
