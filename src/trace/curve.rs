@@ -222,7 +222,7 @@ pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>>
 }
 
 /// Returns true for each row whose push from first touch ends where the stable states end, `[row]`. With friction, the contact may stick
-/// there.
+/// there. Where the continuation of the history fails, as next to a corner, the stable states of the sheet decide.
 fn detach(sheet: &Sheet) -> Vec<bool> {
     let mut detaches = vec![true; sheet.rows.len()];
     if sheet.rod.friction == 0.0 {
@@ -236,7 +236,7 @@ fn detach(sheet: &Sheet) -> Vec<bool> {
     let levels: Vec<LevelCurve> = rows.iter().map(|row| sheet.level(*row)).collect();
     for (row, history) in rows.into_iter().zip(ContactHistory::of(&levels)) {
         let end = sheet.crossings[row][0].push;
-        detaches[row] = history.is_some_and(|history| history.detaches_at(end));
+        detaches[row] = history.is_none_or(|history| history.detaches_at(end));
     }
     detaches
 }
