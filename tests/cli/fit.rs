@@ -43,6 +43,7 @@ fn table_scene_and_document_agree() {
         "points",
         "rms_deg",
         "standard_errors",
+        "traced",
         "values",
     ];
     assert_eq!(keys, wanted);
