@@ -70,14 +70,16 @@ named! {
         TowardBase = 4, "state found, it slides toward the base";
         /// A state of the cell was found, and its contact sticks where its last sliding ended.
         Sticking = 5, "state found, it sticks";
+        /// The whisker is in contact, but with friction the state depends on a course of the contact that was not found.
+        NoState = 6, "in contact, its state with friction not found";
+        /// The push ends where a contact that slides toward the tip detaches, but with friction the contact does not slide there.
+        AssumedEnd = 7, "beyond an end to which the contact does not slide";
         /// Newton's method failed for the cell, and the fold did not decide.
         NotConverged = 101, "unresolved: Newton's method did not converge";
         /// The cell and the boundary of its row contradict each other.
         Disagreement = 102, "unresolved: cell and boundary disagree";
         /// The boundary of the cell's row was not found, or only in part.
         NoBoundary = 103, "unresolved: boundary not found";
-        /// With friction, the course of the contact up to the cell was not found, or it does not lead to the row's detachment.
-        NoCourse = 104, "unresolved: course of the contact not found";
     }
 }
 

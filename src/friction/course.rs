@@ -45,7 +45,7 @@ impl CourseLimits {
     /// Returns true if a first push detaches at `push`, a magnitude in radians.
     #[must_use]
     pub fn detaches_at(&self, push: f64) -> bool {
-        self.history.detaches_at(push)
+        self.history.sliding_at_end(push) == Some(Sliding::Tip)
     }
 
     /// Returns the query of the state in `phase` at `push`, a magnitude in radians.

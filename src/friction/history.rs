@@ -213,13 +213,13 @@ impl ContactHistory {
         }
     }
 
-    /// Returns true if a push detaches at `push`, a magnitude in radians, where the stable states of the tip limit end. It does not if
-    /// the contact sticks or slides toward the base there.
+    /// Returns the sliding direction at the detachment `push`, a magnitude in radians, where the stable states of the tip limit end. A push
+    /// detaches there if the contact slides toward the tip. `None` if the limit ends elsewhere, so that the history is not that of this end.
     #[must_use]
-    pub fn detaches_at(&self, push: f64) -> bool {
+    pub fn sliding_at_end(&self, push: f64) -> Option<Sliding> {
         let end = self.tip.end();
         let is_end = (push - end).abs() <= SAME_END * (1.0 + end);
-        is_end && self.phase(end) == ContactPhase::Slides(Sliding::Tip)
+        is_end.then(|| self.phase(end).sliding())
     }
 }
 

@@ -30,7 +30,8 @@ struct FrictionCell {
 }
 
 /// Replaces the states of `rows` of `side` that do not slide toward the tip, in a `panel` that is `width` cells wide and begins with the
-/// row `first_row`. Cells beyond a detachment that the contact does not reach become unresolved.
+/// row `first_row`. Without a known history a cell keeps its regime, which follows from the contact that slides toward the tip, but has no
+/// state. Cells beyond a detachment to which the contact does not slide are marked.
 pub fn replace(
     side: &WhiskerSide,
     rows: &[FrictionRow],
@@ -42,8 +43,8 @@ pub fn replace(
         let histories = ContactHistory::of(&levels);
         let cells = cells(side, rows, &histories, [width, first_row]);
         let ends = rows.iter().zip(histories).filter(|(row, history)| {
-            let detaches = history.as_ref().map(|own| own.detaches_at(row.end));
-            detaches != Some(true)
+            let sliding = history.as_ref().and_then(|own| own.sliding_at_end(row.end));
+            sliding.is_some_and(|sliding| sliding != Sliding::Tip)
         });
         let ends: Vec<usize> = ends.map(|(row, _)| row.row - first_row).collect();
         (cells, ends)
@@ -55,7 +56,7 @@ pub fn replace(
         for row in endless {
             let columns = side.columns.columns.iter();
             for cell in columns.map(|column| row * width + column.index) {
-                leave_end_open(cell, panel);
+                mark_end(cell, panel);
             }
         }
     }
@@ -117,14 +118,13 @@ fn write(found: &FrictionCell, panel: &mut Panel) {
         Some(Sliding::Tip) => Status::Solved,
         Some(Sliding::Base) => Status::TowardBase,
         Some(Sliding::Sticks) => Status::Sticking,
-        None => Status::NoCourse,
+        None => Status::NoState,
     };
     panel.status[cell] = status.code();
-    if status == Status::NoCourse {
-        unresolve(cell, panel);
-        return;
-    }
     let Some((state, values)) = &found.state else {
+        if status == Status::NoState {
+            clear(cell, panel);
+        }
         return;
     };
     panel.newton_steps[cell] += state.steps;
@@ -136,11 +136,9 @@ fn write(found: &FrictionCell, panel: &mut Panel) {
     }
 }
 
-/// Makes a cell of the `panel` unresolved.
-fn unresolve(cell: usize, panel: &mut Panel) {
-    panel.regime[cell] = Regime::Unresolved.code();
-    panel.status[cell] = Status::NoCourse.code();
-    panel.margin_deg[cell] = f32::NAN;
+/// Removes the state of a cell from the `panel`.
+fn clear(cell: usize, panel: &mut Panel) {
+    panel.residual[cell] = f32::NAN;
     for channel in &mut panel.state {
         if let Some(own) = channel.get_mut(cell) {
             *own = f32::NAN;
@@ -148,16 +146,10 @@ fn unresolve(cell: usize, panel: &mut Panel) {
     }
 }
 
-/// Removes the margin of a cell in contact from the `panel`, and makes a cell without contact unresolved: the push does not end where the
-/// boundary of the row is.
-fn leave_end_open(cell: usize, panel: &mut Panel) {
-    let regime = panel.regime[cell];
-    if regime == Regime::Contact.code() {
-        panel.margin_deg[cell] = f32::NAN;
-    } else if [Regime::SlipOff, Regime::PullOff]
-        .map(Regime::code)
-        .contains(&regime)
-    {
-        unresolve(cell, panel);
+/// Marks a cell of the `panel` beyond the end of the push: the contact does not slide toward the tip there, as the end assumes.
+fn mark_end(cell: usize, panel: &mut Panel) {
+    let ended = [Regime::SlipOff, Regime::PullOff].map(Regime::code);
+    if ended.contains(&panel.regime[cell]) {
+        panel.status[cell] = Status::AssumedEnd.code();
     }
 }

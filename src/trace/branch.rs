@@ -183,7 +183,9 @@ impl Branch {
     fn detaches(&self) -> bool {
         let end = self.stable_end_deg().to_radians().abs();
         let history = self.history.as_ref();
-        self.level.rod.friction == 0.0 || history.is_some_and(|own| own.detaches_at(end))
+        history
+            .and_then(|own| own.sliding_at_end(end))
+            .is_none_or(|sliding| sliding == Sliding::Tip)
     }
 
     /// Returns the `state` of the branch in mm, deg, uN and nN m.

@@ -63,7 +63,7 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Remaining error of the detachment, relative to the distance of the pole.
         pub residual: Option<f64>,
-        /// Sliding direction at the detachment, with friction: tip.
+        /// Sliding direction at the detachment, with friction: tip; otherwise the detachment is assumed.
         pub sliding: Option<Sliding>,
     }
 }
@@ -141,7 +141,8 @@ pub(crate) struct DetachmentEnd {
     pub crossing: Option<Crossing>,
 }
 
-/// Computes detachments with their crossings, `[distance]`, and the largest strain of each if `has_strain` is true.
+/// Computes detachments with their crossings, `[distance]`, and the largest strain of each if `has_strain` is true. Then the sliding
+/// direction is that of the contact's history, too.
 pub(crate) fn detachments(
     resolution: Resolution,
     (whisker, pole, side): (&Whisker, &Pole, Side),
@@ -158,87 +159,90 @@ pub(crate) fn detachments(
     let points = ends.iter().flatten().map(|end| (end.tau, end.load));
     let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points);
     let mut states = states.into_iter();
+    let slidings = match has_strain {
+        true => slidings(&sheet),
+        false => vec![None; distances.len()],
+    };
     let rows = distances_mm.iter().zip(&sheet.rows).zip(&ends);
-    rows.map(|((distance_mm, row), crossing)| {
-        let reached = crossing.ok().and_then(|end| Some((end, states.next()?)));
-        let sliding = reached
-            .as_ref()
-            .and_then(|(end, variation)| Sliding::of(variation, rod, end.tau));
-        let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
-            let push = side.sign() * end.push;
-            // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
-            let off = libm::log(row.pole_distance / full.map.pole.length()).abs();
-            let reading = reader.read(end.tau, full, row.touch, push);
-            (push.to_degrees(), end.residual + off, reading)
-        });
-        let peak = reached
-            .as_ref()
-            .filter(|_| has_strain)
-            .map(|(end, _)| PeakStrain::new(rod, end.tau, end.load, resolution.doubled()));
-        let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
-        let end = Detachment {
-            side,
-            distance_mm: *distance_mm,
-            pole_distance_mm: row.pole_distance * whisker.length_mm,
-            kind: match crossing.map(|end| end.edge) {
-                Ok(Edge::Fold) => DetachmentKind::SlipOff,
-                Ok(Edge::Tip) => DetachmentKind::PullOff,
-                Err(kind) => kind,
-            },
-            push_angle_deg: reading.as_ref().map(|(push_deg, ..)| *push_deg),
-            push_chord_deg: value(|reading| reading.push_chord_deg),
-            contact_distance_mm: value(|reading| reading.contact_distance_mm),
-            arc_length_mm: value(|reading| reading.arc_length_mm),
-            force_un: value(|reading| reading.force_un),
-            base_force_x_un: value(|reading| reading.base_force_un.x),
-            base_force_y_un: value(|reading| reading.base_force_un.y),
-            base_moment_nnm: value(|reading| reading.base_moment_nnm),
-            energy_nj: value(|reading| reading.energy_nj),
-            peak_strain: peak.map(|peak| peak.strain * units.strain),
-            peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
-            contact_angle_deg: value(|reading| reading.contact_angle_deg),
-            residual: reading.as_ref().map(|(_, residual, _)| *residual),
-            sliding,
-        };
-        let crossing = crossing.ok().copied();
-        DetachmentEnd { end, crossing }
-    })
-    .collect()
+    rows.zip(slidings)
+        .map(|(((distance_mm, row), crossing), sliding)| {
+            let reached = crossing.ok().and_then(|end| Some((end, states.next()?)));
+            let sliding = reached
+                .as_ref()
+                .and_then(|(end, variation)| sliding.or(Sliding::of(variation, rod, end.tau)));
+            let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
+                let push = side.sign() * end.push;
+                // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
+                let off = libm::log(row.pole_distance / full.map.pole.length()).abs();
+                let reading = reader.read(end.tau, full, row.touch, push);
+                (push.to_degrees(), end.residual + off, reading)
+            });
+            let peak = reached
+                .as_ref()
+                .filter(|_| has_strain)
+                .map(|(end, _)| PeakStrain::new(rod, end.tau, end.load, resolution.doubled()));
+            let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
+            let end = Detachment {
+                side,
+                distance_mm: *distance_mm,
+                pole_distance_mm: row.pole_distance * whisker.length_mm,
+                kind: match crossing.map(|end| end.edge) {
+                    Ok(Edge::Fold) => DetachmentKind::SlipOff,
+                    Ok(Edge::Tip) => DetachmentKind::PullOff,
+                    Err(kind) => kind,
+                },
+                push_angle_deg: reading.as_ref().map(|(push_deg, ..)| *push_deg),
+                push_chord_deg: value(|reading| reading.push_chord_deg),
+                contact_distance_mm: value(|reading| reading.contact_distance_mm),
+                arc_length_mm: value(|reading| reading.arc_length_mm),
+                force_un: value(|reading| reading.force_un),
+                base_force_x_un: value(|reading| reading.base_force_un.x),
+                base_force_y_un: value(|reading| reading.base_force_un.y),
+                base_moment_nnm: value(|reading| reading.base_moment_nnm),
+                energy_nj: value(|reading| reading.energy_nj),
+                peak_strain: peak.map(|peak| peak.strain * units.strain),
+                peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
+                contact_angle_deg: value(|reading| reading.contact_angle_deg),
+                residual: reading.as_ref().map(|(_, residual, _)| *residual),
+                sliding,
+            };
+            let crossing = crossing.ok().copied();
+            DetachmentEnd { end, crossing }
+        })
+        .collect()
 }
 
 /// Returns the crossing of each row of `sheet` at which a push from first touch ends, `[row]`, or the reason why there is none.
 pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>> {
-    let detaches = detach(sheet);
     let of_row = |row: usize| {
         if !sheet.touches(row) {
             return Err(DetachmentKind::OutOfReach);
         }
         let boundary = RowBoundary::new(true, &sheet.crossings[row]);
         let end = boundary.detachment().and(sheet.crossings[row].first());
-        end.filter(|_| detaches[row])
-            .ok_or(DetachmentKind::Unresolved)
+        end.ok_or(DetachmentKind::Unresolved)
     };
     (0..sheet.rows.len()).map(of_row).collect()
 }
 
-/// Returns true for each row whose push from first touch ends where the stable states end, `[row]`. With friction, the contact may stick
-/// there. Where the continuation of the history fails, as next to a corner, the stable states of the sheet decide.
-fn detach(sheet: &Sheet) -> Vec<bool> {
-    let mut detaches = vec![true; sheet.rows.len()];
+/// Returns the sliding direction of the contact at the detachment of each row of `sheet` by its history, `[row]`; `None` without friction,
+/// and where the history is not found.
+fn slidings(sheet: &Sheet) -> Vec<Option<Sliding>> {
+    let mut slidings = vec![None; sheet.rows.len()];
     if sheet.rod.friction == 0.0 {
-        return detaches;
+        return slidings;
     }
     let is_pushed = |row: &usize| {
         let end = sheet.crossings[*row].first();
         sheet.touches(*row) && end.is_some_and(|end| end.push > TIE)
     };
-    let rows: Vec<usize> = (0..detaches.len()).filter(is_pushed).collect();
+    let rows: Vec<usize> = (0..slidings.len()).filter(is_pushed).collect();
     let levels: Vec<LevelCurve> = rows.iter().map(|row| sheet.level(*row)).collect();
     for (row, history) in rows.into_iter().zip(ContactHistory::of(&levels)) {
         let end = sheet.crossings[row][0].push;
-        detaches[row] = history.is_none_or(|history| history.detaches_at(end));
+        slidings[row] = history.and_then(|history| history.sliding_at_end(end));
     }
-    detaches
+    slidings
 }
 
 /// Computes the corner of the detachment curve of `whisker` on one `side`. Without a corner, distance and push angle are `None`, and
