@@ -61,7 +61,7 @@ fn maps_of_a_class_have_equal_bits() {
 }
 
 /// Hashes with fused arithmetic.
-const FMA: [(&str, u64); 13] = [
+const FMA: [(&str, u64); 15] = [
     ("cone", 0x75d0_c0e3_acc3_81de),
     ("cylinder", 0xe973_6cb5_3e32_1a5d),
     ("euler_spiral", 0xc749_89f9_7f11_f2ac),
@@ -69,16 +69,18 @@ const FMA: [(&str, u64); 13] = [
     ("fig4_whisker", 0xb2bb_cf42_a38b_608f),
     ("fig5_left", 0x377b_b58e_d053_80ff),
     ("fig5_right", 0x3215_a4db_9202_734b),
+    ("friction", 0x972d_726a_d8d3_695b),
     ("measured", 0xca9b_f324_eb36_5b7a),
     ("morphology", 0x3011_ce30_50d4_6f72),
     ("robot", 0x3202_710d_7ca5_e150),
     ("texture_cone", 0x91d1_57ce_2b2b_348e),
     ("texture_hair", 0x4f8a_9598_3fc1_c025),
+    ("traced", 0x8781_1b9b_0c13_cf20),
     ("uncertain", 0x60b8_1e36_8cbb_8646),
 ];
 
 /// Hashes without fused arithmetic.
-const NO_FMA: [(&str, u64); 13] = [
+const NO_FMA: [(&str, u64); 15] = [
     ("cone", 0x2c1e_0474_562a_dd66),
     ("cylinder", 0xdaca_3456_3cdd_e335),
     ("euler_spiral", 0xfcc8_bb35_b063_ea47),
@@ -86,10 +88,12 @@ const NO_FMA: [(&str, u64); 13] = [
     ("fig4_whisker", 0xf5d3_8f45_63de_2096),
     ("fig5_left", 0x5d7f_7a7e_79e8_9665),
     ("fig5_right", 0x0244_1912_be0a_cdd2),
+    ("friction", 0xcc33_356b_0eb8_93c7),
     ("measured", 0xa361_3e0d_dcc7_a66f),
     ("morphology", 0xb557_743e_9986_dbc5),
     ("robot", 0x502d_a2b3_8a44_e515),
     ("texture_cone", 0x3ee4_68df_2c67_9963),
     ("texture_hair", 0x0274_6520_07cb_3837),
+    ("traced", 0x826c_2c3f_a122_5190),
     ("uncertain", 0x6f1a_7d23_d635_ef4e),
 ];

@@ -63,7 +63,7 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Remaining error of the detachment, relative to the distance of the pole.
         pub residual: Option<f64>,
-        /// Sliding direction at the detachment, with friction: tip; otherwise the detachment is assumed.
+        /// Sliding direction, with friction; the end assumes tip.
         pub sliding: Option<Sliding>,
     }
 }

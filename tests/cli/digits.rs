@@ -145,7 +145,7 @@ fn impossible_digits_are_refused() {
         .concat(),
     );
     run.assert_refused(&[
-        "--digits energy_nj=4: energy_nj is not stored, only regime, status, force_un; add it",
+        "--digits energy_nj=4: energy_nj is not stored, only regime, force_un; add it",
     ]);
 }
 

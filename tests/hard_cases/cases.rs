@@ -2,19 +2,21 @@
 
 use super::case::{Case, compute};
 use super::named::named;
-use whiskmap::classify::Regime;
+use whiskmap::classify::{Regime, Status};
 use whiskmap::map::Panel;
 use whiskmap::refine::TOLERANCE;
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::{DetachmentKind, corner, curve};
 
-/// Returns true if every cell has either all its values or none.
+/// Returns true if every cell has either all its values or none. Where the course of a contact with friction is not found, cells in contact
+/// have none.
 pub fn is_complete(panel: &Panel) -> bool {
     panel.regime.iter().enumerate().all(|(cell, regime)| {
         let finite = panel.state.iter().all(|channel| channel[cell].is_finite());
         let sound = f64::from(panel.residual[cell]) <= TOLERANCE && panel.margin_deg[cell] >= 0.0;
-        matches!(regime, 1 | 4) == (finite && sound)
+        let has_state = panel.status[cell] != Status::NoState.code();
+        (matches!(regime, 1 | 4) && has_state) == (finite && sound)
     })
 }
 
