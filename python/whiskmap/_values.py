@@ -37,7 +37,7 @@ def real_array(name: str, values: ArrayLike) -> NDArray[Any]:
     import numpy as np
 
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
-        raise ValueError(f"{name}: has {np.ma.count_masked(values)} masked values; leave them out")
+        raise ValueError(f"{name}: has masked values; leave them out")
     try:
         array = np.asarray(values)
     except ValueError as why:
