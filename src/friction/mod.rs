@@ -3,7 +3,7 @@
 //! The force ratio is the tangential over the normal force at the contact, with the sign of the side. A contact that slides toward the tip
 //! has the force ratio `mu`, one that slides toward the base `-mu` (Coulomb). A contact that sticks has a force ratio between them, which
 //! follows from its slid distance. [`ContactHistory`] says which of the three holds at a push angle, [`ContactCourse`] along
-//! pushes that go to and fro. [`states`] solves for the states.
+//! pushes that go to and fro. [`states()`] solves for the states.
 
 mod course;
 mod dissipation;
