@@ -42,8 +42,8 @@ impl Precision {
     /// Returns the limits of the shaders' certificate as pairs of the name in WGSL and the value.
     ///
     /// `LEFT_BY_STEP` and `LARGEST_Q` have the values of the refinement in `f64`. `JACOBIAN_ERROR` bounds the relative error of the
-    /// Jacobian, a polynomial through 16 states of the row. Its value is the least of three tried for which no random cell in `f64` missed
-    /// the pole by more than its bound (`tests/machine/bound.rs`).
+    /// Jacobian, a polynomial through 16 states of the row. With 6e-6, a cell in `f64` of one random whisker
+    /// with friction 1 missed the pole by 1.23 times its bound, and no other one did (`tests/machine/bound.rs`).
     /// `ROUNDING_OF_MOTION` bounds the residual over the motion of base and pole from the base point to the cell: on random whiskers at
     /// most 5.8e-7 in `f32`, in the median 5e-8. `FARTHEST_REST` keeps the remainder of the resting parabola's series, some 100 times
     /// its 9th power, below rounding.
@@ -57,7 +57,7 @@ impl Precision {
             ("GOAL", self.goal()),
             ("LEFT_BY_STEP", LEFT_BY_STEP),
             ("LARGEST_Q", LARGEST_Q),
-            ("JACOBIAN_ERROR", 6e-6),
+            ("JACOBIAN_ERROR", 8e-6),
             ("ROUNDING_OF_MOTION", of_motion),
             ("ROUNDING", ROUNDING),
             ("LONGEST_STEP", longest),
