@@ -79,9 +79,14 @@ fn every_shipped_scene_is_accepted() {
         if scene.csv_files().is_empty() {
             assert_eq!(scene.to_toml(), fs::read_to_string(&path).unwrap());
         }
-        let side = if scene.name == "morphology" { 96 } else { 512 };
-        assert_eq!(scene.grid.push_angle_deg.len(), side, "{}", scene.name);
-        assert_eq!(scene.grid.distance_mm.len(), side, "{}", scene.name);
+        let sides = match &*scene.name {
+            "friction" => [1061, 1],
+            "morphology" => [96, 96],
+            _ => [512, 512],
+        };
+        let grid = &scene.grid;
+        let found = [grid.push_angle_deg.len(), grid.distance_mm.len()];
+        assert_eq!(found, sides, "{}", scene.name);
         names.push(scene.name.clone());
     }
     let expected = [
@@ -92,6 +97,7 @@ fn every_shipped_scene_is_accepted() {
         "fig4_whisker",
         "fig5_left",
         "fig5_right",
+        "friction",
         "measured",
         "morphology",
         "robot",
