@@ -4,10 +4,11 @@
 //! than any on the stable states of that limit, it meets the unstable ones, and snaps to the stable state at the same push.
 
 use super::dissipation::Dissipation;
+use super::history::ContactQuery;
 use super::history::{ContactHistory, ContactPhase, HistoryKnot, SlidingEnd};
 use super::limit::SlidingLimit;
 use super::sliding::Sliding;
-use super::states::{ContactQuery, held};
+use super::states::held;
 use crate::numerics::Bracket;
 use crate::sheet::LevelCurve;
 

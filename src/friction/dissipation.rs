@@ -2,7 +2,8 @@
 
 use super::limit::SlidingLimit;
 use super::sliding::rate;
-use super::states::{FrictionPoint, at_limits};
+use super::state::FrictionPoint;
+use super::states::at_limits;
 use crate::numerics::gauss::QUADRATURE;
 use crate::numerics::newton_form::{Polynomial, through_nodes};
 use crate::shooting::FirstVariation;

@@ -2,7 +2,8 @@
 
 use super::limit::{LimitPart, SlidingLimit, through};
 use super::segment::{LimitSegment, SlidingKnot};
-use super::states::{FrictionState, at_limits};
+use super::state::FrictionState;
+use super::states::at_limits;
 use crate::sheet::CurveNode;
 
 impl SlidingLimit {

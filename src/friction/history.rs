@@ -231,6 +231,17 @@ pub(super) const CLEAR_OF_CONTACT: f64 = 1e-8;
 /// computed apart, and may take different numbers of steps.
 const SAME_END: f64 = 1e-5;
 
+/// Push angle in the history of a contact at which the state is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactQuery<'a> {
+    /// History of the contact.
+    pub history: &'a ContactHistory,
+    /// Push angle, a magnitude, in radians.
+    pub push: f64,
+    /// Phase of the contact at the push angle.
+    pub phase: ContactPhase,
+}
+
 /// Level curve of the row of `level` with the opposite sign of friction.
 fn opposed(level: &LevelCurve) -> LevelCurve {
     let rod = Rod {

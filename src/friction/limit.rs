@@ -5,7 +5,7 @@
 
 use super::segment::{LimitPlace, LimitSegment, SlidingKnot};
 use super::sliding::{rate, slid};
-use super::states::FrictionPoint;
+use super::state::FrictionPoint;
 use crate::sheet::{Continuation, CurveNode, LevelCurve, NODE_MISS, continuations};
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition};

@@ -13,10 +13,12 @@ mod limit;
 mod newton;
 mod segment;
 mod sliding;
+mod state;
 mod states;
 mod stuck;
 
 pub use course::{ContactCourse, CourseLimits, Snap};
-pub use history::{ContactHistory, ContactPhase, SlidingEnd};
+pub use history::{ContactHistory, ContactPhase, ContactQuery, SlidingEnd};
 pub use sliding::Sliding;
-pub use states::{ContactQuery, FrictionPoint, FrictionState, held, states};
+pub use state::{FrictionPoint, FrictionState};
+pub use states::{held, states};

@@ -6,7 +6,7 @@
 
 use super::limit::SlidingLimit;
 use super::sliding::{Sliding, slid};
-use super::states::{FrictionPoint, FrictionState};
+use super::state::{FrictionPoint, FrictionState};
 use crate::refine::TOLERANCE;
 use crate::rod::{Rod, arclength};
 use crate::sheet::LevelCurve;

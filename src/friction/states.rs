@@ -1,86 +1,11 @@
 //! States of a contact with friction: sliding with the limiting force ratio, or sticking at a slid distance.
 
-use super::history::{CLEAR_OF_CONTACT, ContactHistory, ContactPhase, SlidingEnd};
+use super::history::{CLEAR_OF_CONTACT, ContactHistory, ContactPhase, ContactQuery, SlidingEnd};
 use super::limit::SlidingLimit;
 use super::newton::{FrictionTarget, solve};
 use super::sliding::Sliding;
+use super::state::FrictionState;
 use super::stuck::{StuckPath, StuckRun};
-use crate::rod::Rod;
-use crate::sheet::{CurveNode, LevelCurve};
-use crate::shooting::FullState;
-use glam::DVec2;
-
-/// Contact, load and force ratio of a state with friction.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FrictionPoint {
-    /// Contact coordinate and signed load of the state, `(tau, load)`, dimensionless.
-    pub point: DVec2,
-    /// Force ratio of the state: tangential over normal force, with the sign of the side; positive on CB if it pulls the whisker toward
-    /// its tip.
-    pub ratio: f64,
-    /// Tangent angle at the contact, in radians from the base's tangent, continuous along the push.
-    pub angle: f64,
-}
-
-impl FrictionPoint {
-    /// Returns the point of a node of `level`, which has the force ratio of its rod.
-    pub(super) fn of(level: &LevelCurve, node: &CurveNode) -> Self {
-        Self {
-            point: node.point,
-            ratio: level.rod.friction,
-            angle: node.angle,
-        }
-    }
-
-    /// Returns the point between `self` (`part` 0) and `to` (`part` 1).
-    pub(super) fn lerp(&self, to: &Self, part: f64) -> Self {
-        let between = |from: f64, to: f64| (to - from).mul_add(part, from);
-        Self {
-            point: self.point.lerp(to.point, part),
-            ratio: between(self.ratio, to.ratio),
-            angle: between(self.angle, to.angle),
-        }
-    }
-}
-
-/// State of the whisker at a contact with friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrictionState {
-    /// Contact, load and force ratio of the state.
-    pub at: FrictionPoint,
-    /// Sliding direction of the contact.
-    pub sliding: Sliding,
-    /// Pole of the state with first derivatives, pose of the base, force and energy, in axes of the state's own force ratio.
-    pub full: FullState,
-    /// Slid distance of the contact, in whisker lengths.
-    pub slid: f64,
-    /// Distance of the pole from its target, in whisker lengths.
-    pub residual: f64,
-    /// Number of Newton steps that led to the state.
-    pub steps: u32,
-}
-
-impl FrictionState {
-    /// Returns `rod` with the force ratio of this state as its friction.
-    #[must_use]
-    pub fn rod(&self, rod: &Rod) -> Rod {
-        Rod {
-            friction: self.at.ratio,
-            ..rod.clone()
-        }
-    }
-}
-
-/// Push angle in the history of a contact at which the state is wanted.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactQuery<'a> {
-    /// History of the contact.
-    pub history: &'a ContactHistory,
-    /// Push angle, a magnitude, in radians.
-    pub push: f64,
-    /// Phase of the contact at the push angle.
-    pub phase: ContactPhase,
-}
 
 /// Rounding error of slid distances, in whisker lengths.
 const SLID_ROUNDING: f64 = 1e-14;

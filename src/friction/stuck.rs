@@ -1,9 +1,10 @@
 //! Paths of sticking contacts: states from the end of sliding to the farthest push at which the contact still sticks. They are the starts
 //! of Newton's method, and keep it on the states that a push reaches.
 
+use super::history::ContactQuery;
 use super::history::{ContactHistory, ContactPhase, SlidingEnd};
 use super::newton::{FrictionTarget, solve};
-use super::states::{ContactQuery, FrictionPoint, FrictionState};
+use super::state::{FrictionPoint, FrictionState};
 use std::ops::Range;
 
 /// Number of steps of a path to each side of the push at which sliding ended.

@@ -1,19 +1,9 @@
 //! Contacts with friction along a course: one contact after the other, each from its touch to its release or detachment.
 
+use super::contact::CourseContact;
 use super::states::SideStates;
 use crate::friction::{ContactCourse, ContactPhase, CourseLimits, Sliding, Snap};
 use crate::rod::Side;
-
-/// Contact of the whisker at one time: side, push and, with friction, the phase of the contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CourseContact {
-    /// Side of the whisker that the pole is on.
-    pub side: Side,
-    /// Push since the touch, in radians, as a magnitude.
-    pub push: f64,
-    /// Phase of the contact; `None` without friction.
-    pub phase: Option<ContactPhase>,
-}
 
 /// Contacts of a course with friction.
 pub struct FrictionCourse<'a> {

@@ -1,6 +1,7 @@
 //! Legs of a course: straight lines of the base's angle from sample to sample, with the events on them.
 
-use super::friction::{CourseContact, FrictionCourse};
+use super::contact::CourseContact;
+use super::friction::FrictionCourse;
 use super::phase::{Obstacles, Passage, Phase};
 use super::states::SideStates;
 use super::turns::Turns;

@@ -5,6 +5,7 @@
 //! back it touches the pole there, on CF. Without friction the state between detachments depends on the angle alone, so that only the side
 //! is history. With friction the contact slides or sticks, and its place is history, too. Inertia is left out.
 
+mod contact;
 mod course;
 mod friction;
 mod legs;

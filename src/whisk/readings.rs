@@ -1,6 +1,6 @@
 //! Samples and events of a course with their states.
 
-use super::friction::CourseContact;
+use super::contact::CourseContact;
 use super::legs::{LegEvent, LegSample};
 use super::phase::Phase;
 use super::rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};

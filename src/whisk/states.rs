@@ -1,6 +1,6 @@
 //! States of a course on one side of its obstacles, in batches.
 
-use super::friction::CourseContact;
+use super::contact::CourseContact;
 use crate::classify::RowBoundary;
 use crate::friction::{ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, RefineOutcome, refine};
