@@ -1,7 +1,6 @@
 // Tests of two fingers, of the stop button, and of workers that are replaced while they compute.
 
-import { readFileSync } from 'node:fs';
-import { assert, built, compareState, drop, finished, folder, open, root, run, until } from './page.mjs';
+import { assert, built, compareState, drop, finished, open, root, sceneText, until } from './page.mjs';
 
 const measured = `${root}/scenes/measured.toml`;
 
@@ -15,10 +14,8 @@ async function fingers(page, session, type, apart) {
 
 // Opens the built page, and drops the scene with measured radii on it.
 async function openMeasured() {
-    run('explore', measured, '-o', 'measured.html', '--no-open');
-    const [, start] = readFileSync(`${folder}/measured.html`, 'utf8').match(/ id="start">(.*?)<\/script>/);
     const page = await open(built);
-    await drop(page, 'measured.toml', JSON.parse(start).scene.text);
+    await drop(page, 'measured.toml', sceneText(measured));
     await until('the title', () => page.title(), (title) => title.startsWith('A whisker with measured radii'));
     return page;
 }

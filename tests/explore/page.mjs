@@ -123,5 +123,12 @@ async function responseOf(request) {
     return { ...JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, solver.text(), solver.text_length()))), numbers };
 }
 
-// Response of the page's own solver to a task for the scene of the page.
-export const respond = (page, task) => page.evaluate(responseOf, { text: readFileSync(cone, 'utf8'), origin: 'cone.toml', values: [], task });
+// Response of the page's own solver to a task for a scene, by default that of the page.
+export const respond = (page, task, text = readFileSync(cone, 'utf8')) => page.evaluate(responseOf, { text, origin: 'cone.toml', values: [], task });
+
+// The text of a scene as the page of the program holds it, with the numbers of the files that the scene names.
+export function sceneText(scene) {
+    run('explore', scene, '-o', 'scene.html', '--no-open');
+    const [, start] = readFileSync(`${folder}/scene.html`, 'utf8').match(/ id="start">(.*?)<\/script>/);
+    return JSON.parse(start).scene.text;
+}

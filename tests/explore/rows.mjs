@@ -2,7 +2,7 @@
 
 import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { assert, cone, finished, folder, near, respond, run, shownAt, table, until, whiskmap } from './page.mjs';
+import { assert, cone, finished, folder, near, respond, root, run, sceneText, shownAt, table, until, whiskmap } from './page.mjs';
 
 const DISTANCE = 15.66;
 
@@ -30,19 +30,39 @@ function distanceTo([px, py], line) {
     }));
 }
 
+const BRANCH = ['stable', 'push_angle_deg', 'arc_length_mm', 'contact_angle_deg', 'force_un', 'base_moment_nnm', 'energy_nj', 'mark'];
+
+// Compares the branches of both sides of a scene with `whiskmap branch`.
+async function compareBranches(page, scene, distance = DISTANCE) {
+    const { cf, cb } = await respond(page, { branches: { distance_mm: distance, count: 60 } }, sceneText(scene));
+    for (const [side, own] of Object.entries({ cf, cb })) {
+        compareRows(own.points, table(run('branch', scene, `--distance=${distance}`, '--side', side, '--points=60')), BRANCH);
+    }
+}
+
+const SENSITIVITY = ['side', 'kind', 'push_angle_deg', 'variable', 'value', 'd_push_deg', 'push_of_1_percent_deg', 'reason'];
+
+// Compares the sensitivities of a scene with `whiskmap sensitivity`.
+async function compareSensitivities(page, scene, distance = DISTANCE) {
+    const { rows: own } = await respond(page, { sensitivities: { distance_mm: distance } }, sceneText(scene));
+    compareRows(own, table(run('sensitivity', scene, `--distance=${distance}`)), SENSITIVITY);
+}
+
 export const rows = {
     async 'branches are those of whiskmap branch'(page) {
-        const { cf, cb } = await respond(page, { branches: { distance_mm: DISTANCE, count: 60 } });
-        const columns = ['stable', 'push_angle_deg', 'arc_length_mm', 'contact_angle_deg', 'force_un', 'base_moment_nnm', 'energy_nj', 'mark'];
-        for (const [side, own] of Object.entries({ cf, cb })) {
-            compareRows(own.points, table(run('branch', cone, `--distance=${DISTANCE}`, '--side', side, '--points=60')), columns);
+        await compareBranches(page, cone);
+    },
+
+    async 'rest shapes and profiles that share kernels have the rows of the program'(page) {
+        for (const name of ['cylinder', 'euler_spiral', 'traced', 'measured', 'fig4_hair']) {
+            const scene = `${root}/scenes/${name}.toml`;
+            await compareBranches(page, scene, 9);
+            await compareSensitivities(page, scene, 9);
         }
     },
 
     async 'sensitivities are those of whiskmap sensitivity'(page) {
-        const { rows: own } = await respond(page, { sensitivities: { distance_mm: DISTANCE } });
-        const columns = ['side', 'kind', 'push_angle_deg', 'variable', 'value', 'd_push_deg', 'push_of_1_percent_deg', 'reason'];
-        compareRows(own, table(run('sensitivity', cone, `--distance=${DISTANCE}`)), columns);
+        await compareSensitivities(page, cone);
         const { distance } = await shownAt(page);
         const some = table(run('sensitivity', cone, `--distance=${distance}`)).filter((row) => Number(row.push_of_1_percent_deg) !== 0);
         await until('bars', () => page.locator('#sensitivities .effect').count(), (count) => count === some.length);
