@@ -76,6 +76,17 @@ impl Branch {
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
+        Self::followed(whisker, pole, side, distance_mm, true)
+    }
+
+    /// The branch up to its first fold, or past it.
+    pub(super) fn followed(
+        whisker: &Whisker,
+        pole: &Pole,
+        side: Side,
+        distance_mm: f64,
+        past_fold: bool,
+    ) -> Result<Self, NoState> {
         let rod = whisker.rod(pole, side);
         let rest = Rest::new(&rod);
         let row = Row::new(&rest, distance_mm / whisker.length_mm);
@@ -87,7 +98,7 @@ impl Branch {
         }
         let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
         let touch = level.touch();
-        let followed = touch.and_then(|touch| level.continuation(touch, true));
+        let followed = touch.and_then(|touch| level.continuation(touch, past_fold));
         // From first touch at the tip there may be no state to continue to.
         let none = match row.is_at_reach() {
             true => NoState::PulledOff { at_deg: 0.0 },

@@ -10,6 +10,7 @@ mod curve;
 mod peak;
 mod resample;
 mod shape;
+mod stable;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
@@ -19,6 +20,7 @@ pub use curve::{
 };
 pub(crate) use curve::{DetachmentEnd, crossings, detachments};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
+pub use stable::StableBranch;
 pub use state::StateAtPush;
 
 pub(crate) use columns::row;

@@ -2,7 +2,7 @@
 
 import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { assert, cone, finished, folder, near, respond, root, run, sceneText, shownAt, table, until, whiskmap } from './page.mjs';
+import { assert, cone, finished, folder, move, near, respond, root, run, sceneText, shownAt, table, until, whiskmap } from './page.mjs';
 
 const DISTANCE = 15.66;
 
@@ -51,6 +51,19 @@ async function compareSensitivities(page, scene, distance = DISTANCE) {
 export const rows = {
     async 'branches are those of whiskmap branch'(page) {
         await compareBranches(page, cone);
+    },
+
+    async 'the unstable state is that of whiskmap shape, and is drawn'(page) {
+        const push = 10;
+        const { unstable } = await respond(page, { branches: { distance_mm: DISTANCE, push_angle_deg: push, count: 60 } });
+        run('shape', cone, `--distance=${DISTANCE}`, `--push-angle=${push}`, '--branch', 'unstable', '--csv', 'whisker.csv', '--state', 'state.csv');
+        const [state] = read('state.csv');
+        for (const name of ['force_un', 'base_moment_nnm', 'energy_nj']) near(unstable.state[name], Number(state[name]), name);
+        const tip = read('whisker.csv').at(-1);
+        unstable.points.at(-1).forEach((value, i) => near(value, Number([tip.x_mm, tip.y_mm][i]), 'tip'));
+        await move(page, 0.55, 0.6);
+        await shownAt(page);
+        await until('the unstable state', () => page.locator('#whisker .unstable').count(), (count) => count === 1);
     },
 
     async 'rest shapes and profiles that share kernels have the rows of the program'(page) {

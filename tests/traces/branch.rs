@@ -3,7 +3,9 @@
 use super::{POLE, everything, whisker};
 use whiskmap::rod::Side;
 use whiskmap::scene::Pole;
-use whiskmap::trace::{Branch, BranchMark, BranchPoint, DetachmentKind, NoState, curve};
+use whiskmap::trace::{
+    Branch, BranchMark, BranchPoint, DetachmentKind, NoState, StableBranch, curve,
+};
 
 const DISTANCES: [f64; 4] = [0.5, 9.0, 17.5, 19.0];
 
@@ -44,6 +46,27 @@ fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)
         }
     }
     assert!(followed > 450, "{followed}");
+}
+
+/// States of the stable part alone, and the reasons why there are none before first touch and after the end.
+#[test]
+fn the_stable_part_has_the_states_of_the_branch() {
+    let mut compared = 0;
+    for (whisker, pole) in everything() {
+        for side in Side::BOTH {
+            let case = format!("{whisker:?} {pole:?} {side:?}");
+            let branch = Branch::new(&whisker, &pole, side, 9.0).unwrap();
+            let part = StableBranch::new(&whisker, &pole, side, 9.0).unwrap();
+            let end = branch.stable_end_deg();
+            assert_eq!(part.end_deg(), end, "{case}");
+            for share in [-0.1, 0.01, 0.3, 0.7, 0.99, 1.1] {
+                let push = (share * end).to_radians();
+                assert_eq!(part.state(push), branch.state(push, true), "{case}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 600, "{compared}");
 }
 
 #[test]

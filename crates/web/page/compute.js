@@ -22,7 +22,7 @@ const REST = 150;
 // A map is finished when nothing has moved for this long, in ms.
 const QUIET = 80;
 
-let maps, traces, courses, shown;
+let maps, traces, rows, courses, shown;
 let draft = 2;
 
 // Starts the solvers. `show` has a function for each result, and for errors.
@@ -36,6 +36,7 @@ export async function start(show) {
     };
     maps = new Solver(module, onBusy('maps'));
     traces = new Solver(module, onBusy('traces'));
+    rows = new Solver(module, onBusy('rows'));
     courses = new Solver(module, onBusy('courses'));
     find('stop').addEventListener('click', stop);
     on(['whisker'], () => fill(traces, 'scene', request('scene')));
@@ -49,9 +50,7 @@ export async function start(show) {
 }
 
 function stop() {
-    maps.stop();
-    traces.stop();
-    courses.stop();
+    for (const solver of [maps, traces, rows, courses]) solver.stop();
     shown.stopped();
 }
 
@@ -66,9 +65,9 @@ async function responded(solver, kind, own, f, fail = shown.error) {
     }
 }
 
-// Computes a part of what is known, and shows it.
-const fill = (solver, part, own, fail) => responded(solver, part, own, (response) => {
-    known[part] = response;
+// Computes a part of what is known, for the whisker of the page, and shows it.
+const fill = (solver, part, own, fail, { whisker } = state) => responded(solver, part, own, (response) => {
+    known[part] = { ...response, whisker };
     shown[part]();
 }, fail);
 
@@ -108,7 +107,8 @@ function computeState() {
     fill(traces, 'state', request(task), shown.noState);
     if (pinned) fill(traces, 'pinnedState', request(task, pinned), quiet);
     else known.pinnedState = null;
-    fill(traces, 'branches', request({ branches: { distance_mm: pointer.distance, count: BRANCH } }), quiet);
+    const row = { distance_mm: pointer.distance, push_angle_deg: pointer.push, count: BRANCH };
+    fill(rows, 'branches', request({ branches: row }), quiet);
 }
 
 function computeRow() {

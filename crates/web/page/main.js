@@ -45,7 +45,7 @@ const show = {
         drawWhisker();
     },
     pinnedState: () => show.state(),
-    branches: drawBranches,
+    branches: () => (drawBranches(), drawWhisker()),
     sensitivities: drawSensitivities,
     whisk: () => showCourse(''),
     points() {

@@ -18,7 +18,10 @@ export function drawWhisker() {
     const place = ([x, y]) => [(x - x0) * scale + (width - (x1 - x0) * scale) / 2, height / 2 - (y - middle) * scale];
     const line = (points, name) => svg('path', { class: `line ${name}`, d: points.map((point, i) => `${i ? 'L' : 'M'}${place(point).map((value) => value.toFixed(2)).join(' ')}`).join('') });
     const parts = [scaleBar(length, scale, height)];
-    const { stable, unstable } = own;
+    const { stable } = own;
+    // The unstable state comes with the branches, after the stable state.
+    const isSame = ['whisker', 'distance_mm', 'push_angle_deg'].every((name) => known.branches?.[name] === own[name]);
+    const unstable = isSame ? known.branches.unstable : {};
     const { pole_mm, pole_radius_mm } = stable.points ? stable : unstable;
     if (pole_mm) {
         const [cx, cy] = place(pole_mm);

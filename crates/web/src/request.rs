@@ -31,17 +31,19 @@ pub enum Task {
     Toml,
     /// A map of one whisker.
     Map(map::MapTask),
-    /// The state at one push angle and distance.
+    /// The stable state at one push angle and distance.
     State {
         /// Push angle since first touch, in degrees.
         push_angle_deg: f64,
         /// Distance of first touch from the base, in mm.
         distance_mm: f64,
     },
-    /// The branches of both sides at one distance.
+    /// The branches of both sides at one distance, and the unstable state at a push angle.
     Branches {
         /// Distance of first touch from the base, in mm.
         distance_mm: f64,
+        /// Push angle since first touch of the unstable state, in degrees; `None` for the branches alone.
+        push_angle_deg: Option<f64>,
         /// Number of points of each branch.
         count: usize,
     },
@@ -83,8 +85,13 @@ impl Request {
                 push_angle_deg,
                 distance_mm,
             } => traces::state(&scene, *push_angle_deg, *distance_mm)?.into(),
-            Task::Branches { distance_mm, count } => {
-                traces::branches(&scene, *distance_mm, (*count).clamp(3, MOST)).into()
+            Task::Branches {
+                distance_mm,
+                push_angle_deg,
+                count,
+            } => {
+                let count = (*count).clamp(3, MOST);
+                traces::branches(&scene, *distance_mm, *push_angle_deg, count).into()
             }
             Task::Curve { distance_mm, count } => {
                 traces::curve(&scene, *distance_mm, (*count).clamp(2, MOST))?.into()

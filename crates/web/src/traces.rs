@@ -5,33 +5,32 @@ use std::collections::BTreeMap;
 use whiskmap::friction::Sliding;
 use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{AxisValues, Scene};
-use whiskmap::trace::{NoState, StateAtPush, WhiskerPart, WhiskerShape};
+use whiskmap::trace::{NoState, StableBranch, WhiskerPart, WhiskerShape};
 use whiskmap::{Channel, Options, Regime, Status};
 
 /// Number of points of a whisker's shape.
 const POINTS: usize = 120;
 
-/// Returns the state of the whisker at one push angle and distance: regime, status and margin, and the shapes of the resting whisker and of
-/// the stable and the unstable state, or the reasons why there are none. Shapes are `[point][x, y]` in mm, as from `whiskmap shape`.
+/// Returns the stable state of the whisker at one push angle and distance: regime, status and margin, and the shapes of the resting whisker
+/// and of the state, or the reason why there is none. Shapes are `[point][x, y]` in mm, as from `whiskmap shape`.
 pub fn state(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, String> {
     let side = Side::of_push(push_deg);
-    let branch = whiskmap::branch(scene, distance_mm, side);
-    let part = |stable| {
-        let branch = branch.as_ref().map_err(|why| *why)?;
-        let state = branch.state(push_deg.to_radians(), stable)?;
-        Ok((state, WhiskerShape::new(branch, &state, POINTS)))
-    };
-    let stable = part(true);
-    let verdict = match (&branch, &stable) {
-        (Ok(branch), Ok((found, shape))) => json!({
+    let (whisker, pole) = (&scene.whisker, &scene.pole);
+    let branch = StableBranch::new(whisker, pole, side, distance_mm);
+    let stable = branch.and_then(|branch| {
+        let state = branch.state(push_deg.to_radians())?;
+        let shape = branch.shape(&state, POINTS);
+        Ok((branch, state, shape))
+    });
+    let verdict = match &stable {
+        Ok((branch, found, shape)) => json!({
             "regime": Regime::Contact.name(),
             "status": status(shape.state.sliding).name(),
-            "values": { "margin_deg": (branch.stable_end_deg() - push_deg).abs(), "residual": shape.residual, "contact_distance_mm": branch.read(found).contact_distance_mm },
+            "values": { "margin_deg": (branch.end_deg() - push_deg).abs(), "residual": shape.residual, "contact_distance_mm": branch.read(found).contact_distance_mm },
         }),
         _ => cell(scene, push_deg, distance_mm)?,
     };
-    let whisker = &scene.whisker;
-    let rest = Rest::new(&whisker.rod(&scene.pole, side));
+    let rest = Rest::new(&whisker.rod(pole, side));
     let at_rest = (0..=POINTS).map(|i| {
         let place = rest.at_arclength(i as f64 / POINTS as f64).0;
         (place * whisker.length_mm).to_array()
@@ -42,8 +41,7 @@ pub fn state(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, St
         "side": side,
         "verdict": verdict,
         "rest": at_rest.collect::<Vec<_>>(),
-        "stable": drawn(stable),
-        "unstable": drawn(part(false)),
+        "stable": drawn(stable.map(|(_, _, shape)| shape)),
     }))
 }
 
@@ -73,9 +71,9 @@ const fn status(sliding: Option<Sliding>) -> Status {
     }
 }
 
-fn drawn(found: Result<(StateAtPush, WhiskerShape), NoState>) -> Value {
+fn drawn(found: Result<WhiskerShape, NoState>) -> Value {
     let shape = match found {
-        Ok((_, shape)) => shape,
+        Ok(shape) => shape,
         Err(why) => return json!({ "none": why.to_string() }),
     };
     let mut parts = shape.points.iter().map(|point| point.part);
@@ -89,16 +87,28 @@ fn drawn(found: Result<(StateAtPush, WhiskerShape), NoState>) -> Value {
     })
 }
 
-/// Returns `count` points of the branch of each side at one distance, as from `whiskmap branch`, or the reason why there is none.
-pub fn branches(scene: &Scene, distance_mm: f64, count: usize) -> Value {
-    let [cf, cb] = Side::BOTH.map(|side| {
-        let branch = whiskmap::branch(scene, distance_mm, side);
-        match branch.and_then(|branch| branch.points(count)) {
+/// Returns `count` points of the branch of each side at one distance, as from `whiskmap branch`, and the shape in the unstable state at a
+/// push angle, or the reasons why there are none.
+pub fn branches(scene: &Scene, distance_mm: f64, push_deg: Option<f64>, count: usize) -> Value {
+    let branches = Side::BOTH.map(|side| whiskmap::branch(scene, distance_mm, side));
+    let [cf, cb] = branches.each_ref().map(|branch| {
+        let points = branch.as_ref().map_err(|why| *why);
+        match points.and_then(|branch| branch.points(count)) {
             Ok(points) => json!({ "points": points }),
             Err(why) => json!({ "none": why.to_string() }),
         }
     });
-    json!({ "distance_mm": distance_mm, "cf": cf, "cb": cb })
+    let unstable = push_deg.map(|push_deg| {
+        let mut own = Side::BOTH.iter().zip(&branches);
+        let own = own.find(|(side, _)| **side == Side::of_push(push_deg));
+        let shape = own.map(|(_, branch)| {
+            let branch = branch.as_ref().map_err(|why| *why)?;
+            let state = branch.state(push_deg.to_radians(), false)?;
+            Ok(WhiskerShape::new(branch, &state, POINTS))
+        });
+        shape.map(drawn)
+    });
+    json!({ "distance_mm": distance_mm, "push_angle_deg": push_deg, "cf": cf, "cb": cb, "unstable": unstable })
 }
 
 /// Returns the detachments at `count` distances, CF then CB, as from `whiskmap curve`.
