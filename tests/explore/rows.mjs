@@ -118,6 +118,15 @@ export const rows = {
         await page.fill('#whisk-amplitude', '-5');
         await page.press('#whisk-amplitude', 'Enter');
         await until('a message', () => page.textContent('#whisk-error'), (text) => text.includes('must be above 0'));
+        // A course of the last valid numbers leaves the message of the field.
+        const note = await page.textContent('#whisk-note');
+        await page.focus('#plane');
+        await page.keyboard.press('Shift+ArrowUp');
+        await until('a course elsewhere', () => page.textContent('#whisk-note'), (text) => text !== note);
+        assert((await page.textContent('#whisk-error')).includes('must be above 0'), 'the message has gone');
+        await page.fill('#whisk-amplitude', '25');
+        await page.press('#whisk-amplitude', 'Enter');
+        await until('no message', () => page.textContent('#whisk-error'), (text) => text === '');
     },
 
     async 'a course that the program refuses shows its message'(page) {

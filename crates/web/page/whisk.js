@@ -10,12 +10,12 @@ const PER_MS = 0.03;
 
 const LIMITS = 'must be above 0, and at most 180\u00b0 and 1000 Hz';
 const [picture, slider] = [find('whisk-shape'), find('whisk-time')];
-let [playing, box] = [null, null];
+let [playing, box, refused] = [null, null, ''];
 
 // Shows a new course, or the message why there is none.
 export function showCourse(message) {
     const course = (known.whisk = message ? null : known.whisk);
-    find('whisk-error').textContent = message;
+    find('whisk-error').textContent = message || refused;
     find('whisk-note').textContent = course ? `at ${shown(course.distance_mm)} mm, without inertia; detachments lose ${shown(course.lost_nj, 4)} nJ` : '';
     slider.disabled = find('whisk-play').disabled = !course;
     if (course) {
@@ -96,8 +96,9 @@ export function startWhisk() {
     for (const [name, field] of Object.entries(fields)) {
         field.addEventListener('change', () => {
             const whisk = { ...state.whisk, [name]: Number(field.value) };
-            if (isCourse(whisk)) change({ whisk });
-            else find('whisk-error').textContent = `${name} = ${field.value}: ${LIMITS}`;
+            refused = isCourse(whisk) ? '' : `${name} = ${field.value}: ${LIMITS}`;
+            if (refused) find('whisk-error').textContent = refused;
+            else change({ whisk });
         });
     }
     const show = () => Object.entries(fields).forEach(([name, field]) => (field.value = state.whisk[name]));
