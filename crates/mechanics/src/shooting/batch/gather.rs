@@ -1,7 +1,8 @@
 //! Rest shapes and materials of the rods of a block, gathered into lanes.
 
+use super::kernel::FEW_KERNELS;
 use crate::numerics::{Lanes, WIDTH};
-use crate::rod::CURVATURE_TERMS;
+use crate::rod::{CURVATURE_TERMS, Rod};
 use crate::shooting::batch::InitialCondition;
 use crate::shooting::contact::arc;
 use crate::shooting::{
@@ -186,14 +187,26 @@ impl<T: Lanes> Gather<T> for Spiral<T> {
     }
 }
 
+/// Coefficient of a power of `s - 1/2` in the curvature of a spiral; 0 without a spiral.
+#[inline(always)]
+fn spiral_power(rod: &Rod, power: usize) -> f64 {
+    let [at_base, slope] = rod.spiral.unwrap_or_default();
+    match power {
+        0 => at_base + 0.5 * slope,
+        1 => slope,
+        _ => 0.0,
+    }
+}
+
 impl<T: Lanes> Gather<T> for Polynomial<T> {
     #[inline(always)]
     fn gather(conditions: &Conditions, s: T) -> (Self, (), [T; 2]) {
         let mut centred = [T::of(0.0); CURVATURE_TERMS];
         for (power, own) in centred.iter_mut().enumerate() {
-            *own = lanes(conditions, |condition| {
-                let polynomial = condition.rod.polynomial.as_ref();
-                polynomial.map_or(0.0, |polynomial| polynomial.centred()[power])
+            *own = lanes(conditions, |condition| match &condition.rod.polynomial {
+                Some(polynomial) => polynomial.centred()[power],
+                None if FEW_KERNELS => spiral_power(condition.rod, power),
+                None => 0.0,
             });
         }
         let polynomial = Self { centred };

@@ -12,6 +12,10 @@ use crate::shooting::{
 };
 use std::marker::PhantomData;
 
+/// True where kernels are a part of a page, so that their size matters more than the speed of rare rods. There, a rod may get a kernel
+/// with more effects than its own, which its numbers turn off. A spiral is a polynomial of degree 1.
+pub const FEW_KERNELS: bool = cfg!(target_family = "wasm");
+
 /// Block of initial conditions of trajectories that are integrated together, at most as many as there are lanes.
 pub struct Block<'a> {
     method: Method,
@@ -169,15 +173,15 @@ fn by_effects<O: OutputSet, T: Lanes>(
         ..
     } = key.effects;
     // On one lane a cylinder is a cone of taper 0: the bits are equal, and fewer kernels are compiled.
-    if const { T::LANES > 1 } && !key.effects.advances() {
+    if const { T::LANES > 1 && !FEW_KERNELS } && !key.effects.advances() {
         return if curvature {
             kernel!(Bent<T>, Uniform, General, false)
         } else {
             kernel!(Straight, Uniform, Similar, false)
         };
     }
-    if polynomial {
-        return if gradient {
+    if polynomial || FEW_KERNELS && spiral {
+        return if gradient || FEW_KERNELS {
             kernel!(Polynomial<T>, Graded<T>, General, true)
         } else {
             kernel!(Polynomial<T>, Uniform, General, true)
@@ -212,10 +216,10 @@ fn along_profile<O: OutputSet, T: Lanes>(
             )
         };
     }
-    if key.effects.polynomial {
+    if key.effects.polynomial || FEW_KERNELS && key.effects.spiral {
         return kernel!(Polynomial<T>);
     }
-    match (key.effects.spiral, key.effects.curvature) {
+    match (key.effects.spiral, key.effects.curvature || FEW_KERNELS) {
         (true, _) => kernel!(Spiral<T>),
         (false, true) => kernel!(Bent<T>),
         (false, false) => kernel!(Straight),

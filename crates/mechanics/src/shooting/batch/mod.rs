@@ -15,6 +15,7 @@ mod steps;
 mod stream;
 
 pub use flops::flops_of_nystrom8;
+pub(super) use kernel::FEW_KERNELS;
 pub use output_set::OutputSet;
 pub(super) use pole::{Complex, PoleCentre};
 pub use steps::{StepStart, step_starts};

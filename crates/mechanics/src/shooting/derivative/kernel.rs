@@ -5,7 +5,7 @@ use super::{TrajectoryVariable, VariationDerivative};
 use crate::numerics::gauss::Integrals;
 use crate::numerics::{Dual, Lanes, LanesTask, Real, WIDTH};
 use crate::rod::{CURVATURE_TERMS, Piece, RadiusProfile, Rod, RodDerivative};
-use crate::shooting::batch::{Complex, InitialCondition, PoleCentre};
+use crate::shooting::batch::{Complex, FEW_KERNELS, InitialCondition, PoleCentre};
 use crate::shooting::contact::{Contact, arc, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, Energetic, GeneralFirst, SensitivitySet};
 use crate::shooting::{
@@ -39,7 +39,7 @@ pub fn compute<T: Lanes>(
             })
         };
     }
-    if condition.rod.polynomial.is_some() {
+    if condition.rod.polynomial.is_some() || FEW_KERNELS && condition.rod.spiral.is_some() {
         return kernel!(Polynomial<Dual<T>>);
     }
     match condition.rod.spiral {
@@ -89,6 +89,9 @@ impl<T: Lanes> DualRest<T> for Polynomial<Dual<T>> {
             for (own, value) in centred.iter_mut().zip(polynomial.centred()) {
                 *own = Dual::of(*value);
             }
+        } else if FEW_KERNELS {
+            let (Spiral { at_base, slope }, ..) = Spiral::start(kernel, s);
+            (centred[0], centred[1]) = (slope.mul_add(Dual::of(0.5), at_base), slope);
         }
         let polynomial = Self { centred };
         (polynomial, (), polynomial.at(s))
