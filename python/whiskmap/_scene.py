@@ -155,7 +155,11 @@ class Scene:
     def surface(self) -> Surface | None:
         """The rough surface, or None."""
         own = self._checked.description()[6]
-        return None if own is None else Surface(*own)
+        if own is None:
+            return None
+        *numbers, seed = own
+        names = (field.name for field in fields(Surface))
+        return Surface(**dict(zip(names, numbers)), seed=seed)
 
     @property
     def coords(self) -> dict[str, NDArray[np.float64]]:
