@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 /// Columns that have texts; an empty text stands for none.
-const TEXTS: [&str; 7] = [
+const TEXTS: [&str; 11] = [
     "side",
     "kind",
     "predicted_kind",
@@ -15,6 +15,10 @@ const TEXTS: [&str; 7] = [
     "mark",
     "part",
     "reason",
+    "regime",
+    "event",
+    "phase",
+    "end",
 ];
 
 /// Name, values, unit and meaning of a column.

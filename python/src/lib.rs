@@ -10,6 +10,7 @@ mod detachment;
 mod errors;
 mod fits;
 mod maps;
+mod motion;
 mod plan;
 mod scene;
 mod stored;
@@ -34,6 +35,8 @@ mod _whiskmap {
     use super::fits::{design, fit};
     #[pymodule_export]
     use super::maps::map;
+    #[pymodule_export]
+    use super::motion::{force, texture, whisk};
     #[pymodule_export]
     use super::plan::plan;
     #[pymodule_export]

@@ -5,7 +5,7 @@ use crate::errors::of_scene;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use whiskmap::scene::{AxisScale, AxisValues, Deviations, Parameter, Scene};
+use whiskmap::scene::{AxisScale, AxisValues, Deviations, Parameter, Scene, Surface};
 use whiskmap::traced::TracedShape;
 
 /// Name of the standard deviation of measured radii.
@@ -26,7 +26,11 @@ pub enum AxisTuple {
 /// Points of a traced shape, `[point][x, y]` in millimetres, and its degree; `None` if cross-validation chooses the degree.
 type Traced = (Vec<[f64; 2]>, Option<usize>);
 
-/// Description of a scene: title, numbers by name, measured rows, traced points, axes by name, standard deviations by name, and name.
+/// Surface: distance in mm, spacing and asperity radius in um, length in mm, jitter, and seed.
+type SurfaceTuple = (f64, f64, f64, f64, f64, u32);
+
+/// Description of a scene: title, numbers by name, measured rows, traced points, axes by name, standard deviations by name, surface, and
+/// name.
 type Description = (
     String,
     BTreeMap<String, f64>,
@@ -34,6 +38,7 @@ type Description = (
     Option<Traced>,
     Vec<(String, AxisTuple)>,
     Option<BTreeMap<String, f64>>,
+    Option<SurfaceTuple>,
     Option<String>,
 );
 
@@ -58,7 +63,7 @@ impl CheckedScene {
     /// Checks the description of a scene.
     #[staticmethod]
     fn build(py: Python<'_>, description: Description) -> PyResult<Self> {
-        let (title, numbers, rows, traced, axes, deviations, name) = description;
+        let (title, numbers, rows, traced, axes, deviations, surface, name) = description;
         let mut builder = Scene::builder(title);
         for (name, value) in numbers {
             builder = builder.set(parameter("whisker", &name)?, value);
@@ -80,6 +85,16 @@ impl CheckedScene {
         }
         if let Some(deviations) = deviations {
             builder = builder.uncertainty(uncertainty(&deviations)?);
+        }
+        if let Some(own) = surface {
+            builder = builder.surface(Surface {
+                distance_mm: own.0,
+                spacing_um: own.1,
+                asperity_radius_um: own.2,
+                length_mm: own.3,
+                jitter: own.4,
+                seed: own.5,
+            });
         }
         if let Some(name) = name {
             builder = builder.name(name);
@@ -106,6 +121,16 @@ impl CheckedScene {
             axes.map(|(name, values)| (name.to_owned(), axis_tuple(values)))
                 .collect(),
             self.0.uncertainty.as_ref().map(deviations_by_name),
+            self.0.surface.map(|own| {
+                (
+                    own.distance_mm,
+                    own.spacing_um,
+                    own.asperity_radius_um,
+                    own.length_mm,
+                    own.jitter,
+                    own.seed,
+                )
+            }),
             Some(self.0.name.clone()),
         )
     }
@@ -128,6 +153,7 @@ impl CheckedScene {
             && own.pole == other.pole
             && own.grid == other.grid
             && own.uncertainty == other.uncertainty
+            && own.surface == other.surface
             && own.name == other.name
     }
 }

@@ -95,7 +95,7 @@ fn check_points(points: usize) -> PyResult<()> {
 }
 
 /// Returns the scene with the pole of this distance alone, if it has one whisker.
-fn at_pole(py: Python<'_>, scene: &CheckedScene, distance_mm: f64) -> PyResult<Scene> {
+pub fn at_pole(py: Python<'_>, scene: &CheckedScene, distance_mm: f64) -> PyResult<Scene> {
     single(&scene.0)?;
     let scene = scene.0.to_builder().distance_mm([distance_mm]).build();
     scene.map_err(|why| of_scene(py, &why))

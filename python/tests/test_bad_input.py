@@ -85,7 +85,7 @@ def random_calls() -> None:
     ]  # fmt: skip
     names = [*"distance_mm side jac threads engine tolerance_deg channels progress points stable free title name profile".split()]
     names += ["push_angle_deg", "sweep", "whisker", "grid", "pole", "uncertainty", "slip_off_deg", "max_strain"]
-    names += list(wm._scene._PARAMETERS)
+    names += list(wm._description.PARAMETERS)
     functions = [wm.map, wm.curve, wm.branch, wm.shape, wm.fit, wm.design, wm.detachment, wm.sensitivity, wm.plan, wm.open]
     functions += [cone.replace, wm.Scene, wm.Whisker, wm.Pole, wm.Grid, wm.Scene.parse, wm.Scene.read]
     core = [getattr(wm._whiskmap, name) for name in dir(wm._whiskmap) if name not in ("run_command",) and not name.startswith("_")]

@@ -12,7 +12,7 @@ from conftest import ROOT
 
 import whiskmap as wm
 from whiskmap import _whiskmap
-from whiskmap._scene import _PARAMETERS
+from whiskmap._description import PARAMETERS
 
 SCENES = sorted((ROOT / "scenes").glob("*.toml"))
 
@@ -43,7 +43,7 @@ def test_every_parameter_of_rust_is_an_argument():
     own = {field.name for field in fields(wm.Whisker)} - {"profile", "rest_points", "rest_degree"}
     pole = {"pole_radius_mm", "friction"}
     assert own | pole == {name for name, *_ in _whiskmap.parameters()}
-    assert "curvature_per_mm" in _PARAMETERS
+    assert "curvature_per_mm" in PARAMETERS
 
 
 def test_replace_sets_sweeps_and_removes(cone):

@@ -24,7 +24,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from whiskmap._scene import Grid, Pole, Range, Scene, Whisker
+from whiskmap._parts import Grid, Pole, Range, Surface, Whisker
+from whiskmap._scene import Scene
 from whiskmap._whiskmap import SceneError, StateError, version
 
 if TYPE_CHECKING:
@@ -38,6 +39,11 @@ if TYPE_CHECKING:
     from whiskmap._maps import Plan as Plan
     from whiskmap._maps import map as map
     from whiskmap._maps import plan as plan
+    from whiskmap._motion import Texture as Texture
+    from whiskmap._motion import Whisk as Whisk
+    from whiskmap._motion import force as force
+    from whiskmap._motion import texture as texture
+    from whiskmap._motion import whisk as whisk
     from whiskmap._stored import open as open
     from whiskmap._traces import branch as branch
     from whiskmap._traces import curve as curve
@@ -47,7 +53,7 @@ if TYPE_CHECKING:
 __version__ = version()
 
 # `map` and `open` would hide those of Python.
-__all__ = ["Grid", "Pole", "Range", "Scene", "SceneError", "StateError", "Whisker"]
+__all__ = ["Grid", "Pole", "Range", "Scene", "SceneError", "StateError", "Surface", "Whisker"]
 
 # numpy and xarray are imported when a function is first used.
 _MODULES = {
@@ -55,17 +61,22 @@ _MODULES = {
     "Detachment": "_detachment",
     "Fit": "_fits",
     "Plan": "_maps",
+    "Texture": "_motion",
+    "Whisk": "_motion",
     "branch": "_traces",
     "curve": "_traces",
     "design": "_fits",
     "detachment": "_detachment",
     "fit": "_fits",
+    "force": "_motion",
     "map": "_maps",
     "open": "_stored",
     "plan": "_maps",
     "plot": "plot",
     "sensitivity": "_traces",
     "shape": "_traces",
+    "texture": "_motion",
+    "whisk": "_motion",
 }
 
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from whiskmap import _whiskmap
 from whiskmap._maps import _checked
-from whiskmap._scene import _PARAMETERS, Scene, _resembling
+from whiskmap._description import PARAMETERS, resembling
+from whiskmap._scene import Scene
 from whiskmap._values import real_array
 
 if TYPE_CHECKING:
@@ -135,8 +136,8 @@ def detachment(
     if {"taper", "tip_radius_um"} <= parameters.keys():
         raise TypeError("taper and tip_radius_um: give one of them, because taper is 1 - tip_radius_um / base_radius_um")
     for name, values in parameters.items():
-        if _PARAMETERS.get(name) != name:
-            raise TypeError(f"detachment() got an unexpected keyword argument {name!r}{_resembling(name)}")
+        if PARAMETERS.get(name) != name:
+            raise TypeError(f"detachment() got an unexpected keyword argument {name!r}{resembling(name)}")
         arrays[name] = real_array(name, values)
     for name, array in arrays.items():
         if not np.isfinite(array).all():

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -15,7 +14,7 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import number
+from whiskmap._values import csv_text, number
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -76,7 +75,7 @@ def fit(scene: Scene, points: str | os.PathLike[str] | Mapping[str, Any], free: 
     """
     if isinstance(free, str):
         raise TypeError(f"free = {free!r}: must be a list of names")
-    found = _whiskmap.fit(_checked(scene), _table(points), list(free))
+    found = _whiskmap.fit(_checked(scene), csv_text("points", points), list(free))
     names, units, values, errors, at_limit = zip(*found["estimates"])
     correlation = np.array(found["correlation"], dtype=np.float64)
     estimates = xr.Dataset(
@@ -167,24 +166,3 @@ def design(
     values, ends, at, kinds, reached = _whiskmap.design(_checked(scene), parameter, goal, value, distance, side)
     of_ends = {"kind": ("value", kinds), "reached": ("value", np.array(reached, dtype=np.float64))}
     return Design(np.array(values), (ends[0], ends[1]), xr.Dataset(of_ends, {"value": np.array(at)}))
-
-
-def _table(points: str | os.PathLike[str] | Mapping[str, Any]) -> str:
-    """The points as the text of a CSV file."""
-    if isinstance(points, (str, os.PathLike)):
-        return Path(points).read_text(encoding="utf-8-sig")
-    if not hasattr(points, "keys"):
-        raise TypeError(f"points = {points!r}: must be the path of a CSV file, or columns by name")
-    columns = {str(name): list(np.atleast_1d(np.asarray(points[name]))) for name in points.keys()}
-    lengths = {name: len(values) for name, values in columns.items()}
-    if len(set(lengths.values())) > 1:
-        raise ValueError(f"points: columns must be equally long, have {lengths}")
-    cells = zip(*([_cell(value) for value in values] for values in columns.values()))
-    return "\n".join(",".join(row) for row in [tuple(columns), *cells]) + "\n"
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    text = value if isinstance(value, str) else repr(float(value))
-    return '"' + text.replace('"', '""') + '"'

@@ -1,8 +1,10 @@
-"""Plain values of arguments: numbers, lists of numbers, and their refusal by name."""
+"""Plain values of arguments: numbers, lists of numbers, columns, and their refusal by name."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -45,3 +47,26 @@ def real_array(name: str, values: ArrayLike) -> NDArray[Any]:
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name}: must be real numbers without a unit, has the type {array.dtype}")
     return array.astype(np.float64, copy=False)
+
+
+def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> str:
+    """Return the text of a CSV file, or columns by name as such a text; None is an empty cell."""
+    import numpy as np
+
+    if isinstance(columns, (str, os.PathLike)):
+        return Path(columns).read_text(encoding="utf-8-sig")
+    if not hasattr(columns, "keys"):
+        raise TypeError(f"{name} = {columns!r}: must be the path of a CSV file, or columns by name")
+    listed = {str(own): list(np.atleast_1d(np.asarray(columns[own]))) for own in columns.keys()}
+    lengths = {own: len(values) for own, values in listed.items()}
+    if len(set(lengths.values())) > 1:
+        raise ValueError(f"{name}: columns must be equally long, have {lengths}")
+    cells = zip(*([_cell(value) for value in values] for values in listed.values()))
+    return "\n".join(",".join(row) for row in [tuple(listed), *cells]) + "\n"
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    text = value if isinstance(value, str) else repr(float(value))
+    return '"' + text.replace('"', '""') + '"'

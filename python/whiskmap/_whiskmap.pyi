@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 __all__ = [
     "CheckedScene", "SceneError", "StateError", "StoredMap", "arithmetic", "branch", "channel_attributes", "channels", "coordinates",
-    "curve", "design", "detachment", "fit", "inks", "map", "parameters", "plan", "regimes", "run_command", "shape", "variables",
-    "version",
+    "curve", "design", "detachment", "fit", "force", "inks", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "variables",
+    "version", "whisk",
 ]
 
 _Coordinate = tuple[str, str, NDArray[float64]]
@@ -21,6 +21,7 @@ _Description = tuple[
     tuple[list[list[float]], int | None] | None,
     list[tuple[str, Any]],
     dict[str, float] | None,
+    tuple[float, float, float, float, float, int] | None,
     str | None,
 ]
 
@@ -90,6 +91,13 @@ def branch(scene: CheckedScene, distance_mm: float, side: str, points: int) -> l
 def shape(
     scene: CheckedScene, distance_mm: float, push_angle_deg: float, stable: bool, points: int
 ) -> tuple[list[_Column], list[float], float, float, list[_Column]]: ...
+def whisk(
+    scene: CheckedScene, distance_mm: float, time_s: NDArray[float64], angle_deg: NDArray[float64]
+) -> tuple[list[_Column], list[_Column], float, float, float]: ...
+def texture(
+    scene: CheckedScene, time_s: NDArray[float64], angle_deg: NDArray[float64]
+) -> tuple[list[_Column], list[_Column], list[_Column], list[_Column], float, int]: ...
+def force(scene: CheckedScene, frames: str, model: bool) -> list[_Column]: ...
 def fit(scene: CheckedScene, points: str, free: Sequence[str]) -> _FitResult: ...
 def design(
     scene: CheckedScene, parameter: str, goal: str, value: float, distance_mm: float, side: str | None

@@ -233,6 +233,7 @@ pub fn run(
     report.detachments = detachment::measure(&scene, effort.runs);
     mark_pareto(&mut report.rows);
     whole::measure(&of_maps, effort.runs, &mut report, on_step)?;
+    report.verdicts = Verdict::all(&report.maps);
     let cells =
         scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len() * scene.whisker_count();
     let states = task.targets.len() as f64 / cells as f64;

@@ -3,7 +3,6 @@
 use super::gpu::{Candidate, candidates};
 use super::spectral::SPECTRAL;
 use super::timing::{Timing, median};
-use super::verdict::Verdict;
 use super::{Report, StageTimes, medians, named, pool};
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Spectral, on_gpu};
@@ -124,7 +123,6 @@ pub fn measure(
             map.host_share = if cpu > 0.0 { map.host_share / cpu } else { 0.0 };
         }
     }
-    report.verdicts = Verdict::all(&report.maps);
     Ok(())
 }
 

@@ -254,6 +254,11 @@ impl OutputTable {
         write(&mut self.table).map_err(unwritten(&self.path))
     }
 
+    /// Returns true for a table on standard output.
+    pub fn is_stdout(&self) -> bool {
+        self.path == Path::new(STDOUT)
+    }
+
     /// Finishes the CSV table. Returns the path of a regular file.
     pub fn finish(self) -> Result<Option<PathBuf>, Failure> {
         self.table.finish().map_err(unwritten(&self.path))?;

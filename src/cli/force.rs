@@ -76,5 +76,5 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         ));
     }
     outputs.rows(&found)?;
-    outputs.finish_chart(|| chart(&scene.title, &found))
+    outputs.finish_chart(|| chart(&scene.title, &found), [])
 }

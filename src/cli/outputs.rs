@@ -72,15 +72,25 @@ impl OpenOutputs {
 
     /// Finishes the CSV table, draws the plot below its title, and prints the names of regular files.
     pub fn finish(self, title: String, plot: impl FnOnce() -> Plot) -> Result<(), Failure> {
-        self.finish_chart(|| Chart::single(title, plot()))
+        self.finish_chart(|| Chart::single(title, plot()), [])
     }
 
-    /// Finishes the CSV table, draws the chart, and prints the names of regular files.
-    pub fn finish_chart(self, chart: impl FnOnce() -> Chart) -> Result<(), Failure> {
+    /// Finishes the CSV table, draws the chart, and prints the names of regular files, those of `tables` too. A table on standard output
+    /// stays alone there.
+    pub fn finish_chart(
+        self,
+        chart: impl FnOnce() -> Chart,
+        tables: impl IntoIterator<Item = PathBuf>,
+    ) -> Result<(), Failure> {
+        let is_alone = self.table.as_ref().is_some_and(OutputTable::is_stdout);
         let table = self.table.map(OutputTable::finish).transpose()?;
         let plot = self.plot.map(|file| file.chart(&chart())).transpose()?;
+        if is_alone {
+            return Ok(());
+        }
         let mut out = io::stdout().lock();
-        for path in [table, plot].into_iter().flatten().flatten() {
+        let own = [table, plot].into_iter().flatten().flatten();
+        for path in own.chain(tables) {
             writeln!(out, "{}", path.display())?;
         }
         Ok(())

@@ -7,7 +7,6 @@ use super::files::{Files, OutputTable};
 use super::outputs::OutputArgs;
 use super::pole::check_single;
 use clap::Args;
-use std::io::{self, Write};
 use std::path::PathBuf;
 use whiskmap::render::textures;
 use whiskmap::scene::{digits, rounded};
@@ -95,11 +94,10 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
         written(histogram, &found.tip_histogram())?,
     ];
     summarise(&found);
-    outputs.finish_chart(|| textures(&scene.title, &found))?;
-    for path in paths.into_iter().flatten() {
-        writeln!(io::stdout(), "{}", path.display())?;
-    }
-    Ok(())
+    outputs.finish_chart(
+        || textures(&scene.title, &found),
+        paths.into_iter().flatten(),
+    )
 }
 
 /// Writes the rows of a table, if there is one. Returns the path of a regular file.

@@ -7,7 +7,6 @@ use super::files::Files;
 use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{ArgGroup, Args};
-use std::io::{self, Write};
 use std::path::PathBuf;
 use whiskmap::render::courses;
 use whiskmap::scene::{digits, rounded};
@@ -64,11 +63,7 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     });
     let events = events.transpose()?.flatten();
     summarise(&found);
-    outputs.finish_chart(|| courses(&title(&scene, &[distance]), &found))?;
-    if let Some(path) = events {
-        writeln!(io::stdout(), "{}", path.display())?;
-    }
-    Ok(())
+    outputs.finish_chart(|| courses(&title(&scene, &[distance]), &found), events)
 }
 
 /// Prints the number of events of each kind, and the energies that detachments lose and that friction dissipates, and warns of samples

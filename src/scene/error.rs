@@ -5,9 +5,7 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use thiserror::Error;
 
-use super::shape::POINTS_KEY;
 use crate::input::{did_you_mean, shortened};
-use crate::traced::TracedError;
 
 /// Error of a scene that cannot be read or is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -204,12 +202,6 @@ pub(super) struct SceneFault {
     pub must: String,
 }
 
-impl From<TracedError> for SceneError {
-    fn from(why: TracedError) -> Self {
-        Self::of_fault("", "", SceneFault::of_traced(why))
-    }
-}
-
 impl SceneFault {
     /// Creates a fault of a key whose value is missing, or too long for a sentence.
     pub fn new(key: impl Into<String>, must: impl Into<String>) -> Self {
@@ -218,15 +210,6 @@ impl SceneFault {
             value: None,
             must: must.into(),
         }
-    }
-
-    /// Creates a fault of traced points.
-    pub fn of_traced(why: TracedError) -> Self {
-        let key = match why.point {
-            Some(point) => format!("{POINTS_KEY}[{point}]"),
-            None => POINTS_KEY.to_owned(),
-        };
-        Self::new(key, why.must)
     }
 
     /// Creates a fault of a value that is not allowed.

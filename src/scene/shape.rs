@@ -5,11 +5,12 @@ use std::f64::consts::SQRT_2;
 use glam::DVec2;
 
 use super::builder::Numbers;
-use super::error::SceneFault;
+use super::error::{SceneError, SceneFault};
 use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
 use super::whisker::{Curvature, EulerSpiral};
 use crate::rod::CurvaturePolynomial;
+use crate::traced::TracedError;
 
 /// Key of the points of a traced shape in a scene file.
 pub(super) const POINTS_KEY: &str = "whisker.rest.points";
@@ -176,4 +177,21 @@ fn chord_grows(angle: impl Fn(f64) -> f64) -> bool {
         point += step * tangent;
         point.dot(tangent) > LEAST_COS * point.length()
     })
+}
+
+impl From<TracedError> for SceneError {
+    fn from(why: TracedError) -> Self {
+        Self::of_fault("", "", SceneFault::of_traced(why))
+    }
+}
+
+impl SceneFault {
+    /// Creates a fault of traced points.
+    pub fn of_traced(why: TracedError) -> Self {
+        let key = match why.point {
+            Some(point) => format!("{POINTS_KEY}[{point}]"),
+            None => POINTS_KEY.to_owned(),
+        };
+        Self::new(key, why.must)
+    }
 }

@@ -50,6 +50,9 @@ fn a_sine_and_its_angles_give_one_course() {
     let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
     let [own, wanted]: [f64; 2] = [events[1][3], end[4]].map(|cell| cell.parse().unwrap());
     assert!((own - wanted).abs() < 1e-9, "{own} {wanted}");
+    // A table on standard output stays alone there.
+    let piped = whisk(&place, &[&sine[..], &["--events", "e.csv"]].concat());
+    assert_eq!(piped.out, text("s.csv"), "{piped:?}");
     let svg = text("w.svg");
     for label in [
         "angle of the base (deg)",

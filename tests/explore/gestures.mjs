@@ -1,4 +1,4 @@
-// Tests of two fingers, of the stop button, and of workers that are replaced while they compute.
+// Tests of two fingers, of the stop button, and of workers that are replaced while they compute or after they fail.
 
 import { assert, built, compareState, drop, finished, open, root, sceneText, until } from './page.mjs';
 
@@ -56,6 +56,24 @@ export const gestures = {
         assert(isDraft || values.friction !== 0.9, 'the work went on to its end');
         await setField(page, 'friction', 0.8);
         await finished(page, (own) => own.friction === 0.8);
+        await page.context().close();
+    },
+
+    async 'a failed worker is replaced'() {
+        const page = await open(built, { onStart: () => {
+            const { postMessage } = Worker.prototype;
+            // No JSON has such a number.
+            Worker.prototype.postMessage = function (data) {
+                const fails = data.request && window.failures > 0 && window.failures--;
+                postMessage.call(this, fails ? { ...data, request: 1n } : data);
+            };
+        } });
+        await page.evaluate(() => (window.failures = 1));
+        await setField(page, 'friction', 0.2);
+        await until('the message', () => page.textContent('#error-friction'), (text) => text.startsWith('the solver has failed'));
+        await setField(page, 'friction', 0.3);
+        await finished(page, (values) => values.friction === 0.3);
+        assert(await page.textContent('#error-friction') === '', 'the message stays');
         await page.context().close();
     },
 };

@@ -2,8 +2,9 @@
 
 import { built, open } from './page.mjs';
 
-// Runs in the page: times from `events` to the next frame after a change of an element, one after the other.
-async function timesOf({ target, kind, count }) {
+// Runs in the page: times from `events` to the next frame after a change of an element, one after the other. With `isFinal`, to
+// the finished map.
+async function timesOf({ target, kind, count, isFinal = false }) {
     const find = (id) => document.getElementById(id);
     const slider = document.querySelector('.control:has(#field-length_mm) input[type=range]');
     const plane = find('plane');
@@ -19,7 +20,10 @@ async function timesOf({ target, kind, count }) {
     for (let i = 0; i < count; i++) {
         const begun = performance.now();
         times.push(await new Promise((resolve) => {
+            const before = find('engine').dataset.drawn;
             const observer = new MutationObserver(() => {
+                const { drawn } = find('engine').dataset;
+                if (isFinal && (drawn === before || JSON.parse(drawn)[0])) return;
                 observer.disconnect();
                 requestAnimationFrame(() => resolve(performance.now() - begun));
             });
@@ -45,8 +49,9 @@ export const times = {
             first.push(await page.evaluate(() => window.firstMap));
             if (i === 4) {
                 const slider = await page.evaluate(timesOf, { target: 'engine', kind: 'slider', count: 15 });
+                const final = await page.evaluate(timesOf, { target: 'engine', kind: 'slider', count: 15, isFinal: true });
                 const pointer = await page.evaluate(timesOf, { target: 'whisker', kind: 'pointer', count: 15 });
-                console.log(`start to first map ${median(first)}, slider to map ${median(slider)}, pointer to shape ${median(pointer)}`);
+                console.log(`start to first map ${median(first)}, slider to draft ${median(slider)}, to finished map ${median(final)}, pointer to shape ${median(pointer)}`);
             }
             await page.context().close();
         }

@@ -140,7 +140,7 @@ impl SteppedWhisker {
 
     /// Moves the pole to the direction of each push of `pushes` after first touch of the resting whisker at `tau`, in small steps. Pushes
     /// are magnitudes in radians. The contact sticks if the friction that this takes is in the cone of friction, and else slides. Where
-    /// sliding ends between two steps, the slid distance is the extremum of the parabola through the last steps.
+    /// sliding ends between two steps, it sticks at the extremum of the slid distance of contacts that slide.
     pub fn course(&self, tau: f64, pushes: &[f64]) -> Vec<SteppedState> {
         let touch = self.state([tau, 0.0, 0.0]);
         let mut before = touch;
@@ -169,8 +169,10 @@ impl SteppedWhisker {
                 slides.push([*push, held]);
             } else if let [.., a, b] = slides[..] {
                 start[2] = before.loaded[2];
-                let c = [*push, self.solve(start, wanted, None).slid];
-                held = extremum([a, b, c]);
+                let sliding = |push: f64| [push, self.solve(start, at(push), None).slid];
+                // The value at an extremum is exact to the square of the error of its place.
+                let place = extremum([a, b, sliding(*push)]);
+                held = sliding(place)[1];
                 state = self.solve(state.loaded, wanted, Some(held));
                 slides.clear();
             }
@@ -181,11 +183,10 @@ impl SteppedWhisker {
     }
 }
 
-/// Extremum of the parabola through three points `[x, y]`.
+/// Place of the extremum of the parabola through three points `[x, y]`.
 fn extremum([a, b, c]: [[f64; 2]; 3]) -> f64 {
     let first = (b[1] - a[1]) / (b[0] - a[0]);
     let second = ((c[1] - b[1]) / (c[0] - b[0]) - first) / (c[0] - a[0]);
     // y = a + first (x - a) + second (x - a) (x - b).
-    let x = 0.5 * (a[0] + b[0] - first / second);
-    a[1] + (x - a[0]) * (first + second * (x - b[0]))
+    0.5 * (a[0] + b[0] - first / second)
 }

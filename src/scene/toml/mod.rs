@@ -1,5 +1,6 @@
 //! TOML files of scenes: reading, writing and editing of the text.
 
+mod place;
 mod read;
 mod rows;
 mod tables;

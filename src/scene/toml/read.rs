@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
 use serde::Deserialize;
+use toml_edit::Document;
 use toml_edit::de::Deserializer;
-use toml_edit::{Document, Item};
 
 use crate::input::{bounded, did_you_mean, shortened};
 use crate::scene::axis::NOT_GROWING;
@@ -22,6 +21,7 @@ use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY};
 use crate::scene::{Scene, SceneBuilder};
 use crate::traced::{MOST_DEGREE, TracedShape};
 
+use super::place::place_in;
 use super::rows::{GivenPairs, PairKind, PairList, PairsCsv};
 use super::tables::SceneTable;
 use super::write::SceneText;
@@ -218,25 +218,4 @@ fn located(mut fault: SceneFault, files: &[PairsCsv], origin: &str, text: &str) 
 /// Returns true for a value that fits into a sentence. A list, a table or a long text is shown by the marked line alone.
 fn is_short(value: &str) -> bool {
     value.len() <= 40 && !value.contains('\n') && !value.starts_with(['[', '{'])
-}
-
-/// The place of the value of `key` in the text of a scene, such as `grid.distance_mm[1]` or `grid.friction.from`.
-pub(super) fn place_in(text: &str, key: &str) -> Option<Range<usize>> {
-    place(Document::parse(text).ok()?.as_item(), key)
-}
-
-fn place(item: &Item, key: &str) -> Option<Range<usize>> {
-    if key.is_empty() {
-        return item.span();
-    }
-    if let Some((index, rest)) = key.strip_prefix('[').and_then(|key| key.split_once(']')) {
-        let value = item.as_array()?.get(index.parse().ok()?)?;
-        return value.span().filter(|_| rest.is_empty());
-    }
-    let key = key.strip_prefix('.').unwrap_or(key);
-    item.as_table_like()?.iter().find_map(|(name, inner)| {
-        let rest = key.strip_prefix(&*shortened(name))?;
-        let is_whole = rest.is_empty() || rest.starts_with(['.', '[']);
-        is_whole.then(|| place(inner, rest))?
-    })
 }

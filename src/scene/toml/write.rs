@@ -14,7 +14,7 @@ use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY, POINTS_KEY};
 use crate::scene::{Scene, SceneBuilder};
 use crate::traced::TracedShape;
 
-use super::read::place_in;
+use super::place::place_in;
 use super::rows::PairsCsv;
 
 /// TOML text of a scene: the source text of a scene that was read; otherwise it is written from the numbers when it is displayed.

@@ -57,6 +57,17 @@ impl CurvaturePolynomial {
         terms.fold(0.0, |sum, term| sum.mul_add(x, *term))
     }
 
+    /// Taylor terms `[power]` of the curvature around arclength `s` (whisker lengths), by repeated synthetic division.
+    pub(super) fn around(&self, s: f64) -> [f64; CURVATURE_TERMS] {
+        let (x, mut terms) = (s - 0.5, self.centred);
+        for least in 0..CURVATURE_TERMS - 1 {
+            for power in (least..CURVATURE_TERMS - 1).rev() {
+                terms[power] += x * terms[power + 1];
+            }
+        }
+        terms
+    }
+
     /// Returns the angle of the tangent at arclength `s` (whisker lengths) from the base's tangent, in radians.
     #[must_use]
     pub fn angle(&self, s: f64) -> f64 {

@@ -29,7 +29,7 @@ pub struct Reading {
 }
 
 /// Converter of the states of one rod to physical units.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Reader {
     units: Units,
     taper: f64,
@@ -64,6 +64,7 @@ impl Reader {
             to_pole: rod.to_pole(),
             tilt: tangent.to_angle(),
             normal: tangent.x,
+            rest: self.rest.clone(),
             ..*self
         }
     }

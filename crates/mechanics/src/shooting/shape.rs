@@ -36,6 +36,7 @@ pub fn profile(
     let (radius, contact) = (rod.radius(tau), arclength(rod, tau));
     let trajectory = ShapeTrajectory {
         rod,
+        rest: Rest::new(rod),
         tau,
         contact,
         force: load * radius * radius,
@@ -66,6 +67,7 @@ fn share(steps: u32, whole: f64, part: f64) -> (u32, f64) {
 /// A trajectory from a contact to the base, to be evaluated at points between.
 struct ShapeTrajectory<'a> {
     rod: &'a Rod,
+    rest: Rest,
     /// `tau` of the contact.
     tau: f64,
     /// Arclength of the contact.
@@ -182,13 +184,13 @@ impl ShapeTrajectory<'_> {
             arclength: s,
             position: DVec2::new(x, y),
             tangent: DVec2::new(c, sin),
-            curvature: Rest::new(self.rod).curvature(s) + moment / self.rod.stiffness(s),
+            curvature: self.rest.curvature(s) + moment / self.rod.stiffness(s),
             moment,
         }
     }
 
     fn free(&self, s: f64) -> RodPoint {
-        let rest = Rest::new(self.rod);
+        let rest = &self.rest;
         let (from, axis) = rest.at_arclength(self.contact);
         let (to, tangent) = rest.at_arclength(s);
         let turn = self.tangent.rotate(DVec2::new(axis.x, -axis.y));

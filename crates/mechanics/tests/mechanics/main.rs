@@ -13,4 +13,5 @@ mod resolution;
 mod rest;
 mod roots;
 mod rough;
+mod sensitivities;
 mod strain;

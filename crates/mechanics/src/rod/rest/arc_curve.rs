@@ -1,8 +1,9 @@
 //! Curves at rest whose curvature is known by arclength, an Euler spiral or a polynomial. They are straight beyond the tip.
 
+use super::arc_series::ArcSeries;
 use super::derivative::CurveDerivative;
 use crate::numerics::Bracket;
-use crate::rod::{CurvaturePolynomial, RodDerivative};
+use crate::rod::{CURVATURE_TERMS, CurvaturePolynomial, RodDerivative};
 use glam::DVec2;
 
 /// Positive nodes and their weights of the Gauss-Legendre rule with 16 nodes on `[-1, 1]`.
@@ -28,19 +29,75 @@ enum ArcCurvature {
     Polynomial(CurvaturePolynomial),
 }
 
+impl ArcCurvature {
+    /// Curvature at arclength `s` on the curve.
+    fn at(&self, s: f64) -> f64 {
+        match self {
+            Self::Spiral([k0, k1]) => k1.mul_add(s, *k0),
+            Self::Polynomial(curvature) => curvature.at(s),
+        }
+    }
+
+    /// Taylor terms `[power]` of the curvature around the arclength `s`.
+    fn around(&self, s: f64) -> [f64; CURVATURE_TERMS] {
+        match self {
+            Self::Spiral([_, k1]) => {
+                let mut terms = [0.0; CURVATURE_TERMS];
+                terms[..2].copy_from_slice(&[self.at(s), *k1]);
+                terms
+            }
+            Self::Polynomial(curvature) => curvature.around(s),
+        }
+    }
+
+    /// Angle of the tangent at arclength `s` from the base's tangent, in radians.
+    fn angle(&self, s: f64) -> f64 {
+        match self {
+            Self::Spiral([k0, k1]) => s * (0.5 * k1).mul_add(s, *k0),
+            Self::Polynomial(curvature) => curvature.angle(s),
+        }
+    }
+
+    /// Largest curvature between base and tip.
+    fn sharpest(&self) -> f64 {
+        match self {
+            Self::Spiral([k0, k1]) => k0.abs().max((k0 + k1).abs()),
+            Self::Polynomial(curvature) => curvature.sharpest(),
+        }
+    }
+}
+
 /// Curve at rest in the frame of the base, from its curvature by arclength.
-#[derive(Clone, Copy, Debug)]
-pub struct ArcCurve(ArcCurvature);
+#[derive(Clone, Debug)]
+pub struct ArcCurve {
+    curvature: ArcCurvature,
+    series: ArcSeries,
+    /// Point and unit tangent at the tip.
+    tip: (DVec2, DVec2),
+}
 
 impl ArcCurve {
     /// Creates the spiral whose curvature is `k0 + k1 s` at arclength `s` (whisker lengths), in radians per whisker length.
     pub fn spiral(coefficients: [f64; 2]) -> Self {
-        Self(ArcCurvature::Spiral(coefficients))
+        Self::new(ArcCurvature::Spiral(coefficients))
     }
 
     /// Creates the curve with this curvature.
     pub fn polynomial(curvature: CurvaturePolynomial) -> Self {
-        Self(ArcCurvature::Polynomial(curvature))
+        Self::new(ArcCurvature::Polynomial(curvature))
+    }
+
+    fn new(curvature: ArcCurvature) -> Self {
+        let series = ArcSeries::new(
+            curvature.sharpest(),
+            |s| curvature.around(s),
+            |s| curvature.angle(s),
+        );
+        Self {
+            curvature,
+            tip: series.at(1.0),
+            series,
+        }
     }
 
     /// Returns the curvature of the curve at arclength `s` (whisker lengths), in radians per whisker length; 0 beyond the tip.
@@ -48,32 +105,13 @@ impl ArcCurve {
         if s > 1.0 {
             return 0.0;
         }
-        match &self.0 {
-            ArcCurvature::Spiral([k0, k1]) => k1.mul_add(s, *k0),
-            ArcCurvature::Polynomial(curvature) => curvature.at(s),
-        }
-    }
-
-    /// Angle of the tangent at arclength `s` from the base's tangent, in radians.
-    fn angle(&self, s: f64) -> f64 {
-        match &self.0 {
-            ArcCurvature::Spiral([k0, k1]) => s * (0.5 * k1).mul_add(s, *k0),
-            ArcCurvature::Polynomial(curvature) => curvature.angle(s),
-        }
-    }
-
-    /// Number of panels of the rule between the base and the arclength `to`.
-    fn panels(&self, to: f64) -> u32 {
-        let most = match &self.0 {
-            ArcCurvature::Spiral([k0, k1]) => k0.abs().max((k0 + k1).abs()),
-            ArcCurvature::Polynomial(curvature) => curvature.sharpest(),
-        };
-        (most * to / TURN_PER_PANEL).ceil().max(1.0) as u32
+        self.curvature.at(s)
     }
 
     /// Integral of `integrand` from the base to the arclength `to` on the curve.
     fn integral(&self, to: f64, integrand: impl Fn(f64) -> DVec2) -> DVec2 {
-        let panels = self.panels(to);
+        let most = self.curvature.sharpest() * to;
+        let panels = (most / TURN_PER_PANEL).ceil().max(1.0) as u32;
         let half = 0.5 * to / f64::from(panels);
         (0..panels)
             .map(|panel| {
@@ -90,16 +128,17 @@ impl ArcCurve {
 
     /// Returns point and unit tangent of the curve at arclength `s`, in whisker lengths, in the frame of the base.
     pub fn at_arclength(&self, s: f64) -> (DVec2, DVec2) {
-        let bent = s.min(1.0);
-        let point = self.integral(bent, |s| DVec2::from_angle(self.angle(s)));
-        let tangent = DVec2::from_angle(self.angle(bent));
-        (point + (s - bent) * tangent, tangent)
+        if s <= 1.0 {
+            return self.series.at(s);
+        }
+        let (point, tangent) = self.tip;
+        (point + (s - 1.0) * tangent, tangent)
     }
 
     /// Returns the derivative of the curve at the arclength `s` (whisker lengths) by a variable, in the frame of the base. No variable
     /// changes a polynomial.
     pub fn derivative(&self, s: f64, by: &RodDerivative) -> CurveDerivative {
-        let [k0, k1] = match &self.0 {
+        let [k0, k1] = match &self.curvature {
             ArcCurvature::Spiral(_) => by.spiral,
             ArcCurvature::Polynomial(_) => {
                 return CurveDerivative {
@@ -109,7 +148,7 @@ impl ArcCurve {
             }
         };
         let angle = |s: f64| s * (0.5 * k1).mul_add(s, k0);
-        let turned = |s: f64| angle(s) * DVec2::from_angle(self.angle(s)).perp();
+        let turned = |s: f64| angle(s) * DVec2::from_angle(self.curvature.angle(s)).perp();
         let bent = s.min(1.0);
         CurveDerivative {
             point: self.integral(bent, turned) + (s - bent) * turned(bent),
@@ -120,7 +159,7 @@ impl ArcCurve {
     /// Returns the arclength at which the curve's chord from the base is `chord`, both in whisker lengths. The chord grows along the
     /// curve in every valid scene.
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
-        let reach = self.at_arclength(1.0).0.length();
+        let reach = self.tip.0.length();
         // The function is the chord less the length, which falls.
         let bracket = Bracket {
             below: if chord < reach { 1.0 } else { chord + 1.0 },

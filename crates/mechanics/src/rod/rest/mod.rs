@@ -2,6 +2,7 @@
 //! continues beyond the tip for distances that need it.
 
 mod arc_curve;
+mod arc_series;
 mod derivative;
 mod parabola;
 
@@ -13,14 +14,14 @@ use glam::DVec2;
 use parabola::Parabola;
 
 /// The undeflected shape of a [`Rod`] in the frame of the base: the origin is the base, the first axis its tangent.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Rest {
     form: Form,
     pole: f64,
     end: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Form {
     Parabola(Parabola),
     Arc(ArcCurve),

@@ -1,0 +1,81 @@
+"""Descriptions of scenes: plain values, from which the extension builds checked scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import astuple
+from typing import Any
+
+from whiskmap._parts import Range, Surface, axis_of
+from whiskmap._values import number
+from whiskmap._whiskmap import CheckedScene, parameters
+
+_AXES = {name: axis for name, _, axis, _ in parameters() if axis is not None}
+_TIPS = ("taper", "tip_radius_um")
+PARAMETERS = {axis: name for name, axis in _AXES.items()} | {name: name for name, *_ in parameters()}
+
+
+def range_of(values: Any) -> Range | list[float]:
+    """An axis of a description."""
+    if isinstance(values, tuple):
+        first, last, count, scale = values
+        return [first] if last is None else Range(first, last, count, scale)
+    return list(values)
+
+
+def build(
+    title: str,
+    given: Mapping[str, float | None],
+    rows: Any,
+    rest: tuple[Any, int | None],
+    axes: Mapping[str, Any],
+    uncertainty: Mapping[str, float] | None,
+    surface: Surface | None,
+    name: str | None,
+) -> CheckedScene:
+    """Check the plain values of a scene. `rest` is the traced points with their degree."""
+    for argument, text in (("title", title), ("name", name)):
+        if not isinstance(text, str):
+            raise TypeError(f"{argument} = {text!r}: must be a text")
+    if surface is not None and not isinstance(surface, Surface):
+        raise TypeError(f"surface = {surface!r}: must be a Surface")
+    deviations = None
+    if uncertainty is not None:
+        if not isinstance(uncertainty, Mapping):
+            raise TypeError(f"uncertainty = {uncertainty!r}: must be a mapping of names to standard deviations")
+        deviations = {own: number(f"uncertainty[{own!r}]", value) for own, value in uncertainty.items()}
+    listed = [
+        (own, (values.first, values.last, values.count, values.scale) if isinstance(values, Range) else values)
+        for own, values in axes.items()
+    ]
+    present = {own: value for own, value in given.items() if value is not None}
+    profile = None if rows is None else [list(row) for row in rows]
+    points, degree = rest
+    if points is None and degree is not None:
+        raise ValueError(f"rest_degree = {degree}: must be left out without rest_points")
+    traced = None if points is None else ([list(point) for point in points], degree)
+    rough = None if surface is None else astuple(surface)
+    return CheckedScene.build((title, present, profile, traced, listed, deviations, rough, name))
+
+
+def set_parameter(parameter: str, value: Any, given: dict[str, Any], axes: dict[str, Any]) -> None:
+    """Set or sweep a parameter. A taper replaces the radius at the tip, and the reverse."""
+    for own in _TIPS if parameter in _TIPS else (parameter,):
+        axes.pop(_AXES.get(own, own), None)
+        if own in _TIPS or value is None:
+            given.pop(own, None)
+    is_list = hasattr(value, "__len__") and getattr(value, "ndim", 1) > 0 and not isinstance(value, (str, bytes))
+    if is_list or isinstance(value, Range):
+        if parameter not in _AXES:
+            raise TypeError(f"{parameter}: must be a number, as no axis varies it")
+        axes[_AXES[parameter]] = axis_of(parameter, value)
+    elif value is not None:
+        given[parameter] = number(parameter, value)
+
+
+def resembling(name: str) -> str:
+    """Return a hint at the parameter whose name resembles this one, or an empty text."""
+    from difflib import get_close_matches
+
+    known = get_close_matches(name, PARAMETERS, n=1)
+    return f"; did you mean {known[0]!r}?" if known else ""

@@ -1,0 +1,193 @@
+"""Courses of whiskers in time: whisking against a pole, and sweeps over a rough surface; forces from the change of curvature."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+from whiskmap import _whiskmap
+from whiskmap._datasets import attributes, variables
+from whiskmap._maps import _checked
+from whiskmap._scene import Scene
+from whiskmap._values import csv_text, number, real_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from whiskmap._whiskmap import _Column
+
+_CONTACT = ("contact_x_mm", "contact_y_mm", "contact_angle_deg")
+
+
+@dataclass(frozen=True)
+class Whisk:
+    """Course of a whisker in front of one pole.
+
+    Attributes
+    ----------
+    samples : xarray.Dataset
+        State at each of the times, by `time_s`: `angle_deg`, `regime` ("free", "contact", "undecided"), `side`, loads and energy. Loads
+        of a free whisker are 0. NaN where there is no contact, or where a sample is undecided for the `reason`.
+    events : xarray.Dataset
+        Touches, releases, slip-offs, pull-offs and snaps between samples, by `number`: `time_s`, `event`, `angle_deg` and the state.
+    lost_nj : float
+        Energy that the detachments lose, in nJ; NaN if one is not known.
+    dissipated_nj : float
+        Energy that friction dissipates, in nJ; NaN if a part of the course is undecided.
+    cf_touch_deg : float
+        Angle of the base at first touch on CF, in degrees.
+    """
+
+    samples: xr.Dataset
+    events: xr.Dataset
+    lost_nj: float
+    dissipated_nj: float
+    cf_touch_deg: float
+
+
+@dataclass(frozen=True)
+class Texture:
+    """Course of a whisker behind a rough surface.
+
+    Attributes
+    ----------
+    samples : xarray.Dataset
+        State at each of the times, by `time_s`: `phase` ("stuck", "slipping", "free", "undecided"), `asperity`, position of the tip,
+        loads and energy. NaN without an asperity, or where a sample is undecided for the `reason`.
+    events : xarray.Dataset
+        Touches, releases, slip-offs and pull-offs between samples, by `number`.
+    stays : xarray.Dataset
+        Stays on asperities with their dwell times, by `number`; the end is NaN if a stay lasts to the end of the course.
+    histogram : xarray.Dataset
+        Time that the tip spends in bins along the surface, by `bin`.
+    lost_nj : float
+        Energy that the detachments lose, in nJ; NaN if one is not known.
+    reached : int
+        Number of asperities within reach of the resting whisker.
+    """
+
+    samples: xr.Dataset
+    events: xr.Dataset
+    stays: xr.Dataset
+    histogram: xr.Dataset
+    lost_nj: float
+    reached: int
+
+
+def whisk(scene: Scene, distance_mm: float, time_s: ArrayLike, angle_deg: ArrayLike) -> Whisk:
+    """Compute the quasi-static course of a whisker whose base rotates in front of one pole.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene of one whisker. Its grid is not used.
+    distance_mm : float
+        Distance from the base to the contact at first touch on CB.
+    time_s : array_like
+        Times of the samples in s, which grow; at least two.
+    angle_deg : array_like
+        Angle of the base at each of the times: 0 at first touch on CB, growing with the push there. It changes along straight lines
+        between samples. The course begins without contact.
+
+    Raises
+    ------
+    ValueError
+        If the times do not grow, an angle is beyond a turn, or the course begins in contact.
+    StateError
+        If the resting whisker does not reach the pole.
+    SceneError
+        If the scene allows no pole at this distance.
+    RuntimeError
+        If a detachment is not found.
+    """
+    checked, distance = _checked(scene), number("distance_mm", distance_mm)
+    course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
+    samples, events, lost, dissipated, cf_touch = _whiskmap.whisk(checked, distance, *_one_dimensional(*course))
+    about = attributes(scene) | {"distance_mm": distance}
+    return Whisk(_over_time(samples, about), _numbered(events, about), lost, dissipated, cf_touch)
+
+
+def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
+    """Compute the quasi-static course of a whisker whose base sweeps behind the scene's rough surface.
+
+    The paper has no model for this. Inertia and friction are left out, and one asperity at a time bends the whisker.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene of one whisker with a `surface`, without friction. Its pole and its grid are not used.
+    time_s : array_like
+        Times of the samples in s, which grow; at least two.
+    angle_deg : array_like
+        Angle of the base at each of the times, -90 to 90: 0 where the chord of the resting whisker is normal to the surface.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no surface or has friction, the whisker does not fit between asperities, or the course is refused.
+    RuntimeError
+        If a detachment is not found.
+    """
+    course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
+    samples, events, stays, histogram, lost, reached = _whiskmap.texture(_checked(scene), *_one_dimensional(*course))
+    about = attributes(scene)
+    bins = xr.Dataset(variables(histogram, ("bin",), (-1,)), attrs=about)
+    return Texture(_over_time(samples, about), _numbered(events, about), _numbered(stays, about), bins, lost, reached)
+
+
+def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, model: bool = False) -> xr.Dataset:
+    """Compute the contact force in frames of a film from the change of curvature at one point of the whisker.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene of one whisker without friction. Its grid is not used.
+    frames : path, mapping or pandas.DataFrame
+        A CSV file, or columns of equal length: `time_s`, `curvature_per_mm`, `at_arc_length_mm`, `contact_x_mm`, `contact_y_mm` in the
+        frame of the base, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. Numbers of the contact are
+        NaN or None in frames without contact.
+    model : bool
+        True computes the stable state of the full model that has this curvature, instead of the moment over the lever.
+
+    Returns
+    -------
+    xarray.Dataset
+        Force, and force and moment at the base, by `time_s`. NaN with a `reason` ("no-lever", "out-of-reach", "no-state") where a frame
+        has no force.
+
+    Raises
+    ------
+    ValueError
+        If a column is missing, a value is out of its range, times do not grow, or the scene has friction.
+    OSError
+        If the file cannot be read.
+    """
+    checked = _checked(scene)
+    if not isinstance(frames, (str, os.PathLike)) and hasattr(frames, "keys"):
+        frames = {str(name): _or_empty(str(name), frames[name]) for name in frames.keys()}
+    return _over_time(_whiskmap.force(checked, csv_text("frames", frames), bool(model)), attributes(scene))
+
+
+def _or_empty(name: str, values: Iterable[Any]) -> Iterable[Any]:
+    """A column, with None for the numbers of a contact that are NaN."""
+    return [None if value != value else value for value in values] if name in _CONTACT else values
+
+
+def _one_dimensional(*arrays: Any) -> tuple[Any, ...]:
+    for name, array in zip(("time_s", "angle_deg"), arrays):
+        if array.ndim != 1:
+            raise ValueError(f"{name}: must have one dimension, has {array.ndim}")
+    return arrays
+
+
+def _over_time(columns: Iterable[_Column], about: Mapping[str, Any]) -> xr.Dataset:
+    own = variables(columns, ("time_s",), (-1,))
+    return xr.Dataset(own, attrs=about).set_coords("time_s")
+
+
+def _numbered(columns: Iterable[_Column], about: Mapping[str, Any]) -> xr.Dataset:
+    return xr.Dataset(variables(columns, ("number",), (-1,)), attrs=about)
