@@ -12,6 +12,8 @@ pub struct TipFrame {
     length_mm: f64,
     distance_mm: f64,
     radius_mm: f64,
+    /// Largest curvature of the whisker at rest, in radians per mm.
+    sharpest_per_mm: f64,
     /// Direction of the base's tangent at the angle 0 of the base, in radians from the line of the surface.
     pub tangent: f64,
 }
@@ -27,7 +29,17 @@ pub struct TipPlace {
     pub crosses: bool,
 }
 
-/// Height, in mm, by which the tip may lie below its contact: rounding, many times over.
+/// Point of the whisker beyond the contact.
+struct FreePoint {
+    /// Arclength, in mm.
+    s_mm: f64,
+    /// Position from the contact: along the surface, and toward it, in mm.
+    from_contact: DVec2,
+    /// Second coordinate of the unit tangent.
+    slope: f64,
+}
+
+/// Height, in mm, by which a point beyond the contact may lie below it: rounding, many times over.
 const ROUNDING_MM: f64 = 1e-9;
 
 impl TipFrame {
@@ -40,6 +52,7 @@ impl TipFrame {
             length_mm: whisker.length_mm,
             distance_mm: surface.distance_mm,
             radius_mm: 1e-3 * surface.asperity_radius_um,
+            sharpest_per_mm: whisker.sharpest_bend_per_mm(),
         }
     }
 
@@ -62,11 +75,46 @@ impl TipFrame {
         let contact = centre + side.sign() * self.radius_mm * tangent.perp();
         let end = self.rest.end();
         let s = (reading.arc_length_mm / self.length_mm).min(end);
-        let ((at, at_rest), (tip, _)) = (self.rest.at_arclength(s), self.rest.at_arclength(end));
+        let (at, at_rest) = self.rest.at_arclength(s);
         let turn = tangent.rotate(DVec2::new(at_rest.x, -at_rest.y));
-        let tip = contact + turn.rotate(tip - at) * self.length_mm;
-        let crosses = tangent.y <= 0.0 || tip.y < contact.y - ROUNDING_MM;
-        self.place(tip, crosses)
+        let free = |s: f64| {
+            let (point, tangent) = self.rest.at_arclength(s);
+            let from_contact = turn.rotate(point - at) * self.length_mm;
+            FreePoint {
+                s_mm: s * self.length_mm,
+                from_contact,
+                slope: turn.rotate(tangent).y,
+            }
+        };
+        let (begin, tip) = (free(s), free(end));
+        let at_mm = |s_mm: f64| free(s_mm / self.length_mm);
+        let crosses = tangent.y <= 0.0 || self.descends(&begin, &tip, &at_mm);
+        self.place(contact + tip.from_contact, crosses)
+    }
+
+    /// Returns true if a point between two points of the free part lies below the contact. The second derivative of the height by the
+    /// arclength is at most the largest curvature: parts whose lowest possible height is that of the contact need no further points.
+    fn descends(
+        &self,
+        from: &FreePoint,
+        to: &FreePoint,
+        between: &impl Fn(f64) -> FreePoint,
+    ) -> bool {
+        let heights = [from, to].map(|own| own.from_contact.y);
+        let lowest = heights[0].min(heights[1]);
+        if lowest < -ROUNDING_MM {
+            return true;
+        }
+        let length = to.s_mm - from.s_mm;
+        let bend = self.sharpest_per_mm * length;
+        // Above the chord less the largest sag, or above the parabola that the first point begins.
+        let above_chord = lowest - 0.125 * bend * length;
+        let above_parabola = heights[0].min(heights[0] + length * (from.slope - 0.5 * bend));
+        if above_chord.max(above_parabola) >= -2.0 * ROUNDING_MM {
+            return false;
+        }
+        let middle = between(from.s_mm + 0.5 * length);
+        self.descends(from, &middle, between) || self.descends(&middle, to, between)
     }
 
     fn place(&self, tip: DVec2, crosses: bool) -> TipPlace {

@@ -84,7 +84,8 @@ fn a_detached_whisker_lies_on_the_first_asperity_that_holds_it() {
                 let holds = push.abs() < end.push_angle_deg.unwrap().abs();
                 assert_eq!(holds, asperity == to, "{name} {from} {asperity} {to}");
                 if holds {
-                    assert!((pair[1].push_angle_deg.unwrap() - push).abs() < 1e-9);
+                    // Measured: 2e-14 degrees.
+                    assert!((pair[1].push_angle_deg.unwrap() - push).abs() < 1e-12);
                 }
             }
         }

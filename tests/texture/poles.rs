@@ -33,8 +33,8 @@ fn one_asperity_is_one_pole() {
     );
     assert!(kinds(&found).contains(&(WhiskEventKind::SlipOff, Side::Cf)));
     for (own, other) in found.events.iter().zip(&wanted.events) {
-        // The zero of the angle is the event's own angle: both are rounded to 1e-14 degrees.
-        assert!((own.angle_deg - touch - other.angle_deg).abs() < 1e-10);
+        // The zero of the angle is the event's own angle. Measured: 6e-15 degrees.
+        assert!((own.angle_deg - touch - other.angle_deg).abs() < 1e-13);
     }
     for (own, other) in found.samples.iter().zip(&wanted.samples) {
         let is_free = other.regime == WhiskRegime::Free;
@@ -45,11 +45,12 @@ fn one_asperity_is_one_pole() {
             (own.energy_nj, other.energy_nj),
         ] {
             let (own, other) = (own.unwrap(), other.unwrap());
-            // A push that differs by 1e-14 degrees next to the fold changes a force by 1e-8 of it.
-            assert!((own - other).abs() <= 1e-7 * other.abs(), "{own} {other}");
+            // Measured: 6e-14. Next to the fold a push that differs by 1e-14 degrees would change a force by 1e-8; no sample is there.
+            assert!((own - other).abs() <= 1e-11 * other.abs(), "{own} {other}");
         }
     }
-    assert!((found.lost_nj() / wanted.lost_nj() - 1.0).abs() < 1e-9);
+    // Measured: no difference.
+    assert!((found.lost_nj() / wanted.lost_nj() - 1.0).abs() < 1e-12);
 }
 
 /// Geometry of the angle: a straight whisker touches a point at `x` where its direction is that of the point.

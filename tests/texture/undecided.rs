@@ -1,8 +1,11 @@
 //! Courses that the model does not determine, or refuses.
 
 use super::{SINGLE, course, scene};
-use whiskmap::scene::Surface;
-use whiskmap::texture::{NoTextureState, TextureError, TexturePhase, shape, texture};
+use whiskmap::scene::{Parameter, Scene, Surface};
+use whiskmap::texture::{
+    NoTextureState, TextureError, TexturePhase, TextureSample, shape, texture,
+};
+use whiskmap::traced::TracedShape;
 use whiskmap::whisk::WhiskEventKind;
 
 /// Courses that the model does not determine end there, with the reason.
@@ -59,6 +62,71 @@ fn what_the_model_does_not_determine_has_a_reason() {
     assert_eq!(reasons, [None, Some(NoTextureState::OnAnAsperity), None]);
     // The energy of the undecided state is not known, and neither is that which the detachment loses.
     assert!(found.lost_nj().is_nan());
+}
+
+/// Points of a whisker that rises, runs beside the surface and rises again: `[point][x, y]` in mm.
+fn stepped_points() -> Vec<[f64; 2]> {
+    let ramp = |from: f64, to: f64, s: f64| {
+        let x = ((s - from) / (to - from)).clamp(0.0, 1.0);
+        x * x * (3.0 - 2.0 * x)
+    };
+    let angle =
+        |s: f64| (85.0 - 103.0 * ramp(3.0, 10.0, s) + 88.0 * ramp(12.0, 18.0, s)).to_radians();
+    let mut at = [0.0; 2];
+    let steps = (0..200).map(|i| {
+        let (sin, cos) = angle(0.1 * (f64::from(i) + 0.5)).sin_cos();
+        at = [at[0] + 0.1 * cos, at[1] + 0.1 * sin];
+        at
+    });
+    std::iter::once([0.0; 2]).chain(steps).collect()
+}
+
+/// A part between contact and tip comes down onto the surface, although the tip is above it.
+#[test]
+fn the_whole_free_part_stays_above_the_contact() {
+    let scene = Scene::builder("A whisker with a step")
+        .set(Parameter::BaseRadiusUm, 30.0)
+        .set(Parameter::TipRadiusUm, 3.0)
+        .set(Parameter::YoungsModulusGpa, 3.0)
+        .traced(TracedShape::fit(stepped_points(), Some(6)).unwrap())
+        .push_angle_deg([1.0])
+        .distance_mm([5.0])
+        .build()
+        .unwrap();
+    let whisker = &scene.whisker;
+    let surface = Surface {
+        distance_mm: 6.3,
+        ..SINGLE
+    };
+    let angles: Vec<f64> = (0..=350).map(|i| 50.0 - 0.2 * f64::from(i)).collect();
+    let found = texture(whisker, &surface, &course(&angles)).unwrap();
+    // Height of the lowest point from 3 mm beyond the contact on, above the contact.
+    let margin = |sample: &TextureSample| {
+        let points = shape(whisker, &surface, sample, 2001).unwrap();
+        let part = |s_mm: f64| (s_mm / whisker.length_mm * 2000.0) as usize;
+        let contact_mm = sample.arc_length_mm.unwrap();
+        // The contact is one more point.
+        let [_, contact] = points[part(contact_mm) + 1];
+        let free = points[part(contact_mm + 3.0)..].iter().map(|[_, y]| *y);
+        free.fold(f64::INFINITY, f64::min) - contact
+    };
+    let crossed = found.samples.iter().position(|own| own.reason.is_some());
+    let (held, undecided) = found.samples.split_at(crossed.unwrap());
+    for sample in undecided {
+        assert_eq!(sample.reason, Some(NoTextureState::CrossesSurface));
+    }
+    let held: Vec<_> = held.iter().filter(|own| own.asperity.is_some()).collect();
+    let margins: Vec<f64> = held.iter().map(|own| margin(own)).collect();
+    assert!(margins.is_sorted_by(|one, next| one > next) && margins.len() > 10);
+    let [.., before, last] = margins[..] else {
+        panic!("{margins:?}")
+    };
+    // The course ends between the last sample above the line and the next one, with the tip far above it.
+    assert!(
+        last > 0.0 && last + (last - before) < 0.0,
+        "{before} {last}"
+    );
+    assert!(held.last().unwrap().tip_height_mm > Some(4.0));
 }
 
 #[test]

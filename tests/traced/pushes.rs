@@ -44,7 +44,7 @@ fn traced(whisker: &Whisker, degree: usize) -> Whisker {
     }
 }
 
-/// A spiral has a curvature of degree 1: its traced shape detaches at the same angles. Measured: 2e-9 degrees.
+/// A spiral has a curvature of degree 1: its traced shape detaches at the same angles. Measured: 1.4e-12 degrees.
 #[test]
 fn a_traced_spiral_detaches_as_the_spiral() {
     let scene = cone();
@@ -58,11 +58,12 @@ fn a_traced_spiral_detaches_as_the_spiral() {
     };
     for degree in [1, 4] {
         let apart = apart(&scene, &whisker, &traced(&whisker, degree));
-        assert!(apart < 1e-8, "{degree}: {apart:e}");
+        assert!(apart < 2e-11, "{degree}: {apart:e}");
     }
 }
 
-/// The curvature of a parabola is no polynomial: with the degrees 2, 4 and 6, detachment angles are off by what is measured here.
+/// The curvature of a parabola is no polynomial: with the degrees 2, 4 and 6, detachment angles are off
+/// by 0.034, 6.5e-4 and 1.3e-5 degrees, measured.
 #[test]
 fn a_traced_parabola_detaches_as_the_parabola() {
     let scene = cone();
@@ -75,12 +76,13 @@ fn a_traced_parabola_detaches_as_the_parabola() {
     };
     let errors = [2, 4, 6].map(|degree| apart(&scene, &whisker, &traced(&whisker, degree)));
     assert!(
-        errors[0] < 0.05 && errors[1] < 1e-3 && errors[2] < 2e-5,
+        errors[0] < 0.04 && errors[1] < 8e-4 && errors[2] < 1.6e-5,
         "{errors:?}"
     );
 }
 
 /// A whisker twice as long, at a pole twice as thick and twice as far away, has the same angles: the shape is scaled with the length.
+/// Measured: no difference.
 #[test]
 fn a_longer_whisker_has_the_same_shape() {
     let scene = Scene::read("scenes/traced.toml").unwrap();
@@ -98,7 +100,7 @@ fn a_longer_whisker_has_the_same_shape() {
         let other = curve(&longer.whisker, &longer.pole, side, &twice);
         for (own, other) in own.iter().zip(other) {
             let [a, b] = [own.push_angle_deg, other.push_angle_deg].map(Option::unwrap);
-            assert!((a - b).abs() < 1e-10, "{a} {b}");
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
         }
     }
 }
