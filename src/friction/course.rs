@@ -119,6 +119,7 @@ pub struct ContactCourse<'a> {
 impl ContactCourse<'_> {
     /// Moves the push to `push`, a magnitude in radians.
     pub fn to(&mut self, push: f64) {
+        let push = self.limits.history.up_to_end(push);
         let from = self.knot.push;
         let [low, high] = [from.min(push), from.max(push)];
         let stops = &self.limits.stops;

@@ -170,6 +170,17 @@ impl ContactHistory {
         (HistoryKnot { push, slid, end }, limit)
     }
 
+    /// Returns the end of the tip limit for a `push` that lies a rounding beyond it, as the end of a row's boundary may; other pushes as
+    /// they are. All are magnitudes in radians.
+    pub(super) fn up_to_end(&self, push: f64) -> f64 {
+        let end = self.tip.end();
+        if push > end && push - end <= SAME_END * (1.0 + end) {
+            end
+        } else {
+            push
+        }
+    }
+
     /// Returns the phase of the contact at `push`, a magnitude in radians.
     #[must_use]
     pub fn phase(&self, push: f64) -> ContactPhase {

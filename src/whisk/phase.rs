@@ -103,18 +103,24 @@ pub trait Obstacles {
                 obstacle,
                 push: f64::NAN,
             }),
-            Phase::Contact { side, obstacle } => Some(Passage {
-                time_s,
-                angle,
-                event: match (begins, side == ahead(grows)) {
+            Phase::Contact { side, obstacle } => {
+                let event = match (begins, side == ahead(grows)) {
                     (true, _) => Some(WhiskEventKind::Touch),
                     (false, false) => Some(WhiskEventKind::Release),
                     (false, true) => None,
-                },
-                side,
-                obstacle,
-                push: self.push(side, obstacle, angle).max(0.0),
-            }),
+                };
+                let push = self.push(side, obstacle, angle).max(0.0);
+                // The end itself, without the rounding of angles: just before it, the state is nearly singular.
+                let end = self.end(side, obstacle).filter(|_| event.is_none());
+                Some(Passage {
+                    time_s,
+                    angle,
+                    event,
+                    side,
+                    obstacle,
+                    push: end.unwrap_or(push),
+                })
+            }
             _ => None,
         }
     }

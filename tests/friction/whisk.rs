@@ -12,9 +12,14 @@ const DISTANCE: f64 = 15.66;
 
 /// The course of the scene's whisker through these angles in degrees, one a second.
 fn through(scene: &Scene, angles: &[f64]) -> Whisk {
+    through_at(scene, DISTANCE, angles)
+}
+
+/// The course as [`through`], at another distance in mm.
+fn through_at(scene: &Scene, distance: f64, angles: &[f64]) -> Whisk {
     let times = (0..angles.len()).map(|i| i as f64).collect();
     let course = AngleCourse::new(times, angles.to_vec()).unwrap();
-    whisk(&scene.whisker, &scene.pole, DISTANCE, &course).unwrap()
+    whisk(&scene.whisker, &scene.pole, distance, &course).unwrap()
 }
 
 /// Angles from turning point to turning point, with `count` samples on each way; the first point is one of them.
@@ -104,6 +109,22 @@ fn a_cycle_is_closed() {
         (taken[0] / taken[1] - 1.0).abs() < 1e-9 && taken[0] > 0.0,
         "{taken:?}"
     );
+}
+
+/// The end of a row's boundary and that of a limit differ by a rounding. Contacts slide to the slip-off there, whatever the friction.
+#[test]
+fn slip_offs_have_states() {
+    let angles = to_and_fro(&[-0.5, 40.0, -60.0, -0.5], 50);
+    for friction in [0.003, 0.01, 0.03, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5] {
+        for distance in [12.0, 13.0, 14.5, 15.66, 17.0] {
+            let found = through_at(&cone(0.02, 0.25, friction), distance, &angles);
+            let ends = found.events.iter();
+            let ends = ends.filter(|event| event.event == WhiskEventKind::SlipOff);
+            let known = ends.filter(|event| event.energy_nj.is_some()).count();
+            assert_eq!(known, 2, "{friction} {distance}: {:?}", found.events);
+            assert!(found.samples.iter().all(|sample| sample.reason.is_none()));
+        }
+    }
 }
 
 /// A first push has the states of the branch, on both sides.
