@@ -26,6 +26,7 @@ CASES = {
     "range of an element": (wm.SceneError, r"element 2: taper = 1.5: must be between 0 and 1", lambda s: wm.detachment(s, taper=[0, 1, 1.5], distance_mm=9, side="cb")),
     "distance": (wm.SceneError, r"element 1: grid.distance_mm\[1\] = 300", lambda s: wm.detachment(s, distance_mm=[15, 300.0], side="cb")),
     "unknown parameter": (TypeError, "'lenght_mm'; did you mean 'length_mm'", lambda s: wm.detachment(s, lenght_mm=1, distance_mm=1)),
+    "name of an axis": (TypeError, "did you mean 'parabola_per_mm'", lambda s: wm.detachment(s, curvature_per_mm=1, distance_mm=1)),
     "unknown change": (TypeError, "'lenght_mm'; did you mean 'length_mm'", lambda s: s.replace(lenght_mm=1)),
     "unknown variable": (ValueError, "jac = 'tapr'.*did you mean `taper`", lambda s: wm.detachment(s, distance_mm=1, jac=["tapr"])),
     "side": (ValueError, "side = 'left'", lambda s: wm.detachment(s, distance_mm=1, side="left")),

@@ -78,4 +78,4 @@ def resembling(name: str) -> str:
     from difflib import get_close_matches
 
     known = get_close_matches(name, PARAMETERS, n=1)
-    return f"; did you mean {known[0]!r}?" if known else ""
+    return f"; did you mean {PARAMETERS[known[0]]!r}?" if known else ""
