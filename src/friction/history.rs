@@ -170,8 +170,8 @@ impl ContactHistory {
         (HistoryKnot { push, slid, end }, limit)
     }
 
-    /// Returns the end of the tip limit for a `push` that lies a rounding beyond it, as the end of a row's boundary may; other pushes as
-    /// they are. All are magnitudes in radians.
+    /// Returns the end of the tip limit for a `push` beyond it by at most the difference of the same end of the row's boundary; other
+    /// pushes as they are. All are magnitudes in radians.
     pub(super) fn up_to_end(&self, push: f64) -> f64 {
         let end = self.tip.end();
         if push > end && push - end <= SAME_END * (1.0 + end) {

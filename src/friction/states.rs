@@ -92,7 +92,7 @@ pub(super) fn at_limits(pairs: &[(&SlidingLimit, f64)]) -> Vec<Option<FrictionSt
 impl ContactHistory {
     /// Target of a contact that slides in a `direction` at `push`, a magnitude in radians; `None` beyond the end of its limit.
     fn target(&self, direction: Sliding, push: f64) -> Option<FrictionTarget<'_>> {
-        FrictionTarget::sliding(self.limit(direction)?, self.up_to_end(push))
+        FrictionTarget::sliding(self.limit(direction)?, push)
     }
 }
 

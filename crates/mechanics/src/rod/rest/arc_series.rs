@@ -14,8 +14,9 @@ const TERMS: usize = 18;
 /// Largest size of each of the last two terms: half the rounding of a unit vector.
 const LAST_TERMS: f64 = 0.25 * f64::EPSILON;
 
-/// Maximum number of panels. Valid scenes need at most 64.
-const MOST_PANELS: usize = 1024;
+/// Maximum number of panels. A curvature of degree 6 that reaches 20 radians per whisker length needs 80. By Markov's inequality a
+/// curve whose tangent stays within a radian or two of its chord reaches some 300 at most, which needs 15 times as many.
+const MOST_PANELS: usize = 4096;
 
 /// Series of a curve from its base to its tip.
 #[derive(Clone, Debug)]
@@ -40,7 +41,7 @@ impl ArcSeries {
         curvature: impl Fn(f64) -> [f64; CURVATURE_TERMS],
         angle: impl Fn(f64) -> f64,
     ) -> Self {
-        let mut count = turn.clamp(1.0, MOST_PANELS as f64).ceil() as usize;
+        let mut count = (turn.max(1.0).ceil() as usize).min(MOST_PANELS);
         loop {
             let half = 0.5 / count as f64;
             let mut from = DVec2::ZERO;

@@ -1,9 +1,8 @@
 //! Rest shapes and materials of the rods of a block, gathered into lanes.
 
-use super::kernel::FEW_KERNELS;
 use crate::numerics::{Lanes, WIDTH};
 use crate::rod::{CURVATURE_TERMS, Rod};
-use crate::shooting::batch::InitialCondition;
+use crate::shooting::batch::{FEW_KERNELS, InitialCondition};
 use crate::shooting::contact::arc;
 use crate::shooting::{
     Bent, Graded, Integrator, Intrinsic, Material, Polynomial, Resolution, RodSystem, Scales,

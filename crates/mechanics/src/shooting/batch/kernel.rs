@@ -2,7 +2,7 @@
 
 use super::block_key::BlockKey;
 use super::gather::{Conditions, Contacts, Gather, GatherMaterial, lanes, numbers};
-use super::{InitialCondition, Method, OutputSet};
+use super::{FEW_KERNELS, InitialCondition, Method, OutputSet};
 use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
 use crate::shooting::contact::{Contact, radius_and_arclength};
@@ -11,10 +11,6 @@ use crate::shooting::{
     Bent, Graded, Integrator, Measured, Nystrom8, Polynomial, Spiral, Straight, Uniform,
 };
 use std::marker::PhantomData;
-
-/// True where kernels are a part of a page, so that their size matters more than the speed of rare rods. There, a rod may get a kernel
-/// with more effects than its own, which its numbers turn off. A spiral is a polynomial of degree 1.
-pub const FEW_KERNELS: bool = cfg!(target_family = "wasm");
 
 /// Block of initial conditions of trajectories that are integrated together, at most as many as there are lanes.
 pub struct Block<'a> {

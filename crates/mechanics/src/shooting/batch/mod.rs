@@ -15,7 +15,6 @@ mod steps;
 mod stream;
 
 pub use flops::flops_of_nystrom8;
-pub(super) use kernel::FEW_KERNELS;
 pub use output_set::OutputSet;
 pub(super) use pole::{Complex, PoleCentre};
 pub use steps::{StepStart, step_starts};
@@ -24,6 +23,10 @@ use super::Resolution;
 use crate::numerics::Unit;
 use crate::rod::{Effects, Rod};
 use rayon::prelude::*;
+
+/// True where kernels are a part of a page, so that their size matters more than the speed of rare rods. There, a rod may get a kernel
+/// with more effects than its own, which its numbers turn off. A spiral is a polynomial of degree 1.
+pub(super) const FEW_KERNELS: bool = cfg!(target_family = "wasm");
 
 /// Initial condition of a trajectory: a rod, its contact at `tau`, and the `load = f/radius^2` there.
 #[derive(Clone, Copy, Debug)]
