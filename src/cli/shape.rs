@@ -6,9 +6,8 @@ use super::files::Files;
 use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{Args, ValueEnum};
-use std::io::{self, Write};
 use std::path::PathBuf;
-use whiskmap::render::{Dot, DrawnShape, Ink, Line, Stroke, shapes};
+use whiskmap::render::{Chart, Dot, DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::rod::Side;
 use whiskmap::scene::digits;
 use whiskmap::trace::{Branch, NoState, ShapePoint, WhiskerShape};
@@ -106,7 +105,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         stroke,
         name: format!("{name}, {push_deg} deg"),
     };
-    outputs.finish(title(&scene, &[distance]), || {
+    let plot = || {
         let mut plot = shapes("", &[drawn]);
         let at_rest = WhiskerShape::at_rest(&branch, count);
         let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid).named("first touch");
@@ -119,10 +118,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
             open: true,
             name: Some("traced points".to_owned()),
         }));
-        plot
-    })?;
-    if let Some(path) = state_file {
-        writeln!(io::stdout(), "{}", path.display())?;
-    }
-    Ok(())
+        Chart::single(title(&scene, &[distance]), plot)
+    };
+    outputs.finish_chart(plot, state_file)
 }
