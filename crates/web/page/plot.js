@@ -47,7 +47,7 @@ const path = (points, place) =>
 export function draw(node, spec) {
     const { width, height } = node.getBoundingClientRect();
     const em = rem();
-    const { left, right, top, bottom } = { left: 3.7 * em, right: 12, top: 10, bottom: 2.9 * em, ...spec.margin };
+    const { left, right, top, bottom } = { left: 3.7 * em, right: em, top: 10, bottom: 2.9 * em, ...spec.margin };
     const [w, h] = [Math.max(width - left - right, 10), Math.max(height - top - bottom, 10)];
     const [[x0, x1], [y0, y1]] = [spec.x, spec.y];
     const place = {
