@@ -1,7 +1,7 @@
 //! Energy that friction dissipates along a limit of sliding: the integral of the friction over the slid distance.
 
 use super::limit::SlidingLimit;
-use super::sliding::rate;
+use super::sliding::ContactRate;
 use super::state::FrictionPoint;
 use super::states::at_limits;
 use crate::numerics::gauss::QUADRATURE;
@@ -49,7 +49,8 @@ impl Dissipation {
         let friction = level.rod.friction.abs() * level.rod.contact_tangent().x;
         let powers = shot.iter().zip(&points).zip(&nodes);
         let powers = powers.map(|((variation, at), node)| {
-            let by_phi = rate(variation, &level.rod, at.point.x) / variation.full.map.det();
+            let rate = ContactRate::new(variation, &level.rod, at.point.x);
+            let by_phi = rate.slid / variation.full.map.det();
             let slides = level.side.sign() * by_phi * node.push_by_x;
             friction * variation.full.force.abs() * slides
         });

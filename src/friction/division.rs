@@ -80,9 +80,9 @@ impl SlidingLimit {
         let exact = limits.iter().zip(&reversals).map(|(limit, own)| {
             let exact = own.iter().map(|(index, push)| {
                 let LimitSegment { from, to, .. } = &limit.segments[*index];
-                let bend = (to.by_push - from.by_push) / (to.push - from.push);
+                let bend = (to.slope() - from.slope()) / (to.push - from.push);
                 let found = near.next().flatten();
-                let step = found.map_or(0.0, |knot: SlidingKnot| knot.by_push / bend);
+                let step = found.map_or(0.0, |knot: SlidingKnot| knot.slope() / bend);
                 let exact = push - step;
                 let is_inside = from.push < exact && exact < to.push;
                 (*index, if is_inside { exact } else { *push })
@@ -98,10 +98,7 @@ impl SlidingLimit {
             for (index, segment) in limit.segments.iter().enumerate() {
                 match turns.next_if(|((at, _), _)| *at == index) {
                     Some((_, Some(knot))) => {
-                        let knot = SlidingKnot {
-                            by_push: 0.0,
-                            ..knot
-                        };
+                        let knot = knot.at_reversal();
                         segments.push(LimitSegment::new(segment.from, knot));
                         segments.push(LimitSegment::new(knot, segment.to));
                     }
@@ -139,7 +136,7 @@ impl SlidingLimit {
         Some(LimitPart {
             level: &self.level,
             nodes: nodes.collect::<Option<_>>()?,
-            has_fold: to.by_push.is_infinite(),
+            has_fold: to.by_push.is_none(),
             is_stable: self.is_stable,
         })
     }

@@ -4,11 +4,12 @@
 //! every stable row.
 
 use super::segment::{LimitPlace, LimitSegment, SlidingKnot};
-use super::sliding::{rate, slid};
+use super::sliding::{ContactRate, slid};
 use super::state::FrictionPoint;
 use crate::sheet::{Continuation, CurveNode, LevelCurve, NODE_MISS, continuations};
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition};
+use glam::DVec2;
 
 /// Slid distance of one row's contact by push angle, from first touch to the end of its stable states. It is the arclength of the contact
 /// minus the distance rolled around the pole, in whisker lengths.
@@ -89,15 +90,18 @@ impl SlidingLimit {
     /// Returns the slid distance at the push angle `push` (radians), in whisker lengths; `None` beyond the ends.
     pub fn slid(&self, push: f64) -> Option<f64> {
         let (segment, x) = self.place(push)?;
-        Some(self.segments[segment].cubic.at(x).0)
+        Some(self.segments[segment].slid.at(x).0)
     }
 
     /// Returns a state near that of the limit at the push angle `push` (radians); `None` beyond the ends.
     pub fn near(&self, push: f64) -> Option<FrictionPoint> {
         let (segment, x) = self.place(push)?;
-        let LimitSegment { from, to, .. } = &self.segments[segment];
-        let [from, to] = [from, to].map(|knot| FrictionPoint::of(&self.level, &knot.node));
-        Some(from.lerp(&to, x))
+        let [tau, load, angle] = self.segments[segment].contact.map(|of| of.at(x).0);
+        Some(FrictionPoint {
+            point: DVec2::new(tau, load),
+            ratio: self.level.rod.friction,
+            angle,
+        })
     }
 
     /// Returns the index of the segment at the push angle `push` (radians), and its variable there; `None` beyond the ends.
@@ -151,13 +155,10 @@ pub fn through(parts: &[Option<LimitPart>]) -> Vec<Option<SlidingLimit>> {
             push: sign * node.push,
             slid: slid(&level.rod, node),
             node: *node,
-            by_push: match Some(i) == fold {
-                true => f64::INFINITY,
-                false => {
-                    let det = variation.full.map.det();
-                    sign * rate(&variation, &level.rod, node.point.x) / det
-                }
-            },
+            by_push: (Some(i) != fold).then(|| {
+                let rate = ContactRate::new(&variation, &level.rod, node.point.x);
+                rate.times(sign / variation.full.map.det())
+            }),
         });
         let knots: Vec<SlidingKnot> = knots.collect();
         let segments = knots.windows(2);

@@ -1,5 +1,6 @@
 //! Segment of a limit: the slid distance between two states as a polynomial.
 
+use super::sliding::ContactRate;
 use crate::numerics::newton_form::{Polynomial, through_runs};
 use crate::sheet::CurveNode;
 
@@ -12,8 +13,37 @@ pub struct SlidingKnot {
     pub slid: f64,
     /// State of the knot, with the friction of the limit.
     pub node: CurveNode,
-    /// Derivative of the slid distance by the push; infinite at the fold.
-    pub by_push: f64,
+    /// Derivatives of the contact by the push; `None` at the fold, where they are infinite.
+    pub by_push: Option<ContactRate>,
+}
+
+impl SlidingKnot {
+    /// Returns the derivative of the slid distance by the push; infinite at the fold.
+    pub fn slope(&self) -> f64 {
+        self.by_push.map_or(f64::INFINITY, |rate| rate.slid)
+    }
+
+    /// Returns this knot as one at which the slid distance reverses.
+    pub fn at_reversal(self) -> Self {
+        let by_push = self.by_push.map(|rate| ContactRate { slid: 0.0, ..rate });
+        Self { by_push, ..self }
+    }
+
+    /// Returns slid distance, contact coordinate, load and tangent angle.
+    fn values(&self) -> [f64; 4] {
+        [
+            self.slid,
+            self.node.point.x,
+            self.node.point.y,
+            self.node.angle,
+        ]
+    }
+
+    /// Returns the derivatives of the values by the push; `None` at the fold.
+    fn slopes(&self) -> Option<[f64; 4]> {
+        let ContactRate { point, angle, slid } = self.by_push?;
+        Some([slid, point.x, point.y, angle])
+    }
 }
 
 /// Place on a limit.
@@ -25,7 +55,7 @@ pub struct LimitPlace {
     pub push_by_x: f64,
 }
 
-/// Polynomial of the slid distance between two knots. Its variable `x` grows from 0 to 1. It is the fraction of the interval. If the
+/// Polynomials of the contact between two knots. Their variable `x` grows from 0 to 1. It is the fraction of the interval. If the
 /// second knot is a fold, it is 1 minus the square root of the fraction that is left.
 #[derive(Clone, Debug)]
 pub struct LimitSegment {
@@ -34,26 +64,36 @@ pub struct LimitSegment {
     /// True if the second knot is a fold.
     is_to_fold: bool,
     /// Slid distance, with a value and a slope at each knot.
-    pub cubic: Polynomial<4>,
+    pub slid: Polynomial<4>,
+    /// Contact coordinate, load and tangent angle, which start Newton's method.
+    pub contact: [Polynomial<4>; 3],
 }
 
 impl LimitSegment {
-    /// Cubic Hermite polynomial or, next to a fold, the parabola that has the slope of the first knot.
+    /// Cubic Hermite polynomials or, next to a fold, the parabolas that have the slopes of the first knot.
     pub fn new(from: SlidingKnot, to: SlidingKnot) -> Self {
-        let is_to_fold = to.by_push.is_infinite();
-        let [begin, end] = [from, to].map(|knot| knot.by_push * (to.push - from.push));
-        let slopes = if is_to_fold {
+        let values = [from, to].map(|knot| knot.values());
+        let length = to.push - from.push;
+        let slopes =
+            [from, to].map(|knot| knot.slopes().map(|slopes| slopes.map(|by| by * length)));
+        let is_to_fold = slopes[1].is_none();
+        let begin = slopes[0].unwrap_or_default();
+        let slopes = match slopes[1] {
+            Some(end) => [begin, end],
             // At the first knot, the fraction changes twice as fast as `x`. The slopes of a parabola have the secant as their mean.
-            [2.0 * begin, 2.0 * (to.slid - from.slid - begin)]
-        } else {
-            [begin, end]
+            None => [
+                begin.map(|begin| 2.0 * begin),
+                std::array::from_fn(|i| 2.0 * (values[1][i] - values[0][i] - begin[i])),
+            ],
         };
-        let differences = through_runs(&[[from.slid], [to.slid]], &slopes.map(|slope| [slope]))[0];
+        let differences = through_runs(&values, &slopes)[0];
+        let polynomial = |i: usize| Polynomial::on_even_nodes(2, differences.map(|term| term[i]));
         Self {
             from,
             to,
             is_to_fold,
-            cubic: Polynomial::on_even_nodes(2, differences.map(|[difference]| difference)),
+            slid: polynomial(0),
+            contact: [1, 2, 3].map(polynomial),
         }
     }
 
@@ -83,14 +123,14 @@ impl LimitSegment {
 
     /// Returns true if the slid distance falls anywhere.
     pub fn falls(&self) -> bool {
-        let slopes = [0.0, 1.0].map(|x| self.cubic.at(x).1);
+        let slopes = [0.0, 1.0].map(|x| self.slid.at(x).1);
         slopes.iter().any(|slope| *slope < 0.0) || self.reversals().iter().any(Option::is_some)
     }
 
     /// Push angles at which the slid distance reverses, in radians.
     pub fn reversals(&self) -> [Option<f64>; 2] {
         // The slope is `c1 + 2 c2 x + 3 c3 x^2`.
-        let [_, c1, second, c3] = self.cubic.differences;
+        let [_, c1, second, c3] = self.slid.differences;
         let c2 = second - c3;
         let root = c2.mul_add(c2, -3.0 * c1 * c3).sqrt();
         // The second root follows by division, so that neither root cancels.
@@ -118,12 +158,16 @@ mod tests {
                 push,
                 angle: 0.0,
             },
-            by_push,
+            by_push: by_push.is_finite().then_some(ContactRate {
+                point: DVec2::ZERO,
+                angle: 0.0,
+                slid: by_push,
+            }),
         }
     }
 
     fn at(segment: &LimitSegment, push: f64) -> f64 {
-        segment.cubic.at(segment.part(push)).0
+        segment.slid.at(segment.part(push)).0
     }
 
     fn sorted_reversals(segment: &LimitSegment) -> Vec<f64> {

@@ -24,7 +24,7 @@ impl Sliding {
     #[must_use]
     pub fn of(variation: &FirstVariation, rod: &Rod, tau: f64) -> Option<Self> {
         // The sign of the side is that of the friction coefficient and of the change of the pole's direction.
-        let rate = rate(variation, rod, tau) * rod.friction;
+        let rate = ContactRate::new(variation, rod, tau).slid * rod.friction;
         (rod.friction != 0.0).then_some(if rate < 0.0 { Self::Base } else { Self::Tip })
     }
 
@@ -39,19 +39,42 @@ impl Sliding {
     }
 }
 
-/// Returns the sliding rate of the contact: derivative of the slid distance, in whisker lengths, by the direction `phi` of the pole,
-/// times `det J`. The rate is finite at the fold.
-///
-/// The contact moves along the whisker by `ds` and along the pole's rim by `-pole dpsi`. Here, `psi` is the angle of the whisker's
-/// tangent at the contact in the frame of the pole. The difference is sliding; the rest is rolling. Along `D = const`, with `J` the
-/// Jacobian of `(ln D, phi)`, `det J d(tau, load)/dphi = (-dlnD/dload, dlnD/dtau)`.
-pub(super) fn rate(variation: &FirstVariation, rod: &Rod, tau: f64) -> f64 {
-    let map = &variation.full.map;
-    let along = DVec2::new(-map.by_load.x, map.by_tau.x);
-    // The base rotates by -dphi in the frame of the pole. From the base, the tangent at the contact rotates by minus the base angle.
-    let base_angle = DVec2::new(variation.by_tau.angle, variation.by_load.angle);
-    let turned = -map.det() - base_angle.dot(along);
-    rod.radius(tau) * along.x + rod.pole * turned
+/// Derivatives of a contact along `D = const`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ContactRate {
+    /// Derivative of contact coordinate and load, `(tau, load)`.
+    pub point: DVec2,
+    /// Derivative of the tangent angle at the contact, from the base's tangent.
+    pub angle: f64,
+    /// Derivative of the slid distance, in whisker lengths.
+    pub slid: f64,
+}
+
+impl ContactRate {
+    /// Returns the derivatives of the contact at `tau` in the state of `rod`, by the direction `phi` of the pole, times `det J`. They are
+    /// finite at the fold.
+    ///
+    /// The contact moves along the whisker by `ds` and along the pole's rim by `-pole dpsi`. Here, `psi` is the angle of the whisker's
+    /// tangent at the contact in the frame of the pole. The difference is sliding; the rest is rolling. With `J` the Jacobian of
+    /// `(ln D, phi)`, `det J d(tau, load)/dphi = (-dlnD/dload, dlnD/dtau)`.
+    pub fn new(variation: &FirstVariation, rod: &Rod, tau: f64) -> Self {
+        let map = &variation.full.map;
+        let point = DVec2::new(-map.by_load.x, map.by_tau.x);
+        // The base rotates by -dphi in the frame of the pole. From the base, the tangent at the contact rotates by minus the base angle.
+        let base_angle = DVec2::new(variation.by_tau.angle, variation.by_load.angle);
+        let angle = -base_angle.dot(point);
+        let slid = rod.radius(tau) * point.x + rod.pole * (angle - map.det());
+        Self { point, angle, slid }
+    }
+
+    /// Returns the derivatives times `factor`.
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            point: self.point * factor,
+            angle: self.angle * factor,
+            slid: self.slid * factor,
+        }
+    }
 }
 
 /// Returns the slid distance of the contact at `node`: its arclength minus the distance rolled around the pole, in whisker lengths.

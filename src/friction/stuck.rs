@@ -10,6 +10,9 @@ use std::ops::Range;
 /// Number of steps of a path to each side of the push at which sliding ended.
 const PATH_STEPS: u32 = 8;
 
+/// Number of nodes of a path through which a start is interpolated.
+const AROUND: usize = 4;
+
 /// Queries, one after the other, of a contact that sticks at one place.
 pub struct StuckRun<'a> {
     /// History of the contact.
@@ -136,16 +139,26 @@ impl<'a> StuckPath<'a> {
         paths
     }
 
-    /// Returns the target at `push`, a magnitude in radians, with a start between the nodes around it; `None` beyond the ends of the path.
+    /// Returns the target at `push`, a magnitude in radians, with a start on the polynomial through the nodes around it; `None` beyond the
+    /// ends of the path.
     pub fn target(&self, push: f64) -> Option<FrictionTarget<'a>> {
+        let [first, last] = [self.nodes.first()?.0, self.nodes.last()?.0];
+        if push < first || push > last {
+            return None;
+        }
         let after = self.nodes.partition_point(|(at, _)| *at < push);
-        let (to_push, to) = self.nodes.get(after)?;
-        let start = match after.checked_sub(1).map(|before| &self.nodes[before]) {
-            Some((from_push, from)) => from.lerp(to, (push - from_push) / (to_push - from_push)),
-            None if push == *to_push => *to,
-            None => return None,
-        };
-        Some(self.end.at(push, start))
+        let fewer = self.nodes.len().saturating_sub(AROUND);
+        let near = &self.nodes[after.saturating_sub(AROUND / 2).min(fewer)..];
+        let near = &near[..near.len().min(AROUND)];
+        // Neville's algorithm.
+        let mut points: Vec<FrictionPoint> = near.iter().map(|(_, point)| *point).collect();
+        for apart in 1..near.len() {
+            for (i, ends) in near.windows(apart + 1).enumerate() {
+                let part = (push - ends[0].0) / (ends[apart].0 - ends[0].0);
+                points[i] = points[i].lerp(&points[i + 1], part);
+            }
+        }
+        Some(self.end.at(push, points[0]))
     }
 }
 
