@@ -172,6 +172,45 @@ fn a_piece_between_samples_of_the_fold_is_not_missed() {
     assert_eq!(panel.regime, [Regime::Unreachable.code(); 3]);
 }
 
+/// Slightly tapered whiskers, with and without friction, whose row crosses the fold three times between two samples of the fold edge, or
+/// twice where both samples are nearer. The push ends at the first crossing. Samples alone put it up to 0.1 degrees off.
+#[test]
+fn folds_that_meet_between_samples_are_not_missed() {
+    // Taper, `A*`, slope at the base, pole radius, friction, and distances.
+    let whiskers = [
+        (
+            0.15584595680236815,
+            0.7655836105346681,
+            -0.4527052946111325,
+            0.014768532514572143,
+            0.4825040340423584,
+            [0.27775, 0.27793, 0.2782, 0.2785],
+        ),
+        (
+            0.060352342128753664,
+            1.4475895464420319,
+            -0.6127812271547874,
+            0.022718337178230286,
+            0.0,
+            [0.25218, 0.25236, 0.25254, 0.2526],
+        ),
+    ];
+    for (taper, bend, slope, pole, friction, distances) in whiskers {
+        for distance in distances {
+            let case = Case {
+                taper,
+                pole,
+                ..cylinder(bend, friction, 1.0, distance)
+            };
+            let vertex_mm = -slope / (2.0 * bend) * case.length_mm;
+            let scene = case.scene().with(Parameter::VertexMm, vertex_mm).unwrap();
+            for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
+                agree(&scene, &end).unwrap();
+            }
+        }
+    }
+}
+
 /// A cylinder that is pushed by a whole turn: with nodes that are on the curve only to 1e-8, the continuation fails.
 #[test]
 fn failed_continuations_are_repeated_with_exact_nodes() {

@@ -22,8 +22,8 @@ pub struct Edges {
     /// Samples of the fold edge, from the base to the corner, `[sample]`.
     pub fold: Vec<EdgeSample>,
     fold_edge: FoldEdge,
-    /// True if the distance grows along the fold from the base to the tip, so that no row crosses it twice. Where the first fold jumps
-    /// from contact to contact, the samples do not show all of the fold.
+    /// True if the distance grows along the fold from the base to the tip, also between the samples, so that no row crosses it twice. Where
+    /// the first fold jumps from contact to contact, the samples do not show all of the fold.
     pub fold_grows: bool,
     /// Samples of the tip edge, from first touch to the corner, `[sample]`.
     pub tip: Vec<EdgeSample>,
@@ -74,11 +74,13 @@ impl Edges {
             is_as_steep_as(to.ln_distance - from.ln_distance, slopes.map(|by| by.x))
                 && is_as_steep_as(to.phi - from.phi, slopes.map(|by| by.y))
         };
+        let fold_edge = FoldEdge::new(contacts, lattice.phi_at_fold());
+        let grows = |i| contacts.grow_after(i) && fold_edge.grows_after(i);
         Self {
             fold_is_certified: fold.windows(2).enumerate().all(is_certified),
+            fold_grows: (0..contacts.tip).all(grows),
             fold,
-            fold_edge: FoldEdge::new(contacts, lattice.phi_at_fold()),
-            fold_grows: (0..contacts.tip).all(|i| contacts.grow_after(i)),
+            fold_edge,
             tip,
             tip_edge,
             tip_error: (libm::log(at_touch.pole.length() / pole) / at_touch.by_tau.x).abs(),

@@ -86,6 +86,13 @@ struct FoldPiece {
     second: [Polynomial<STENCIL>; 6],
 }
 
+/// Number of parts of the interval between two samples at whose ends the slope of `ln D` is checked.
+const SLOPES: u32 = 8;
+
+/// Smallest slope of `ln D` between two samples, in parts of its mean there, of a fold edge that certainly grows. The distance turned back
+/// in 52 of 850,000 intervals of 116,000 random whiskers. The smallest slope of their polynomials was at most 0.09.
+const LEAST_SLOPE: f64 = 0.25;
+
 /// Fold edge between its samples, as polynomials.
 #[derive(Clone, Debug)]
 pub struct FoldEdge {
@@ -139,6 +146,17 @@ impl FoldEdge {
             sign: folds[0].load.signum(),
             pieces,
         }
+    }
+
+    /// Returns true if the distance grows steadily from the sample `after` to the next one. At a cusp, where two folds meet, it turns back.
+    /// A row then crosses the edge three times between the samples, or twice although both samples are nearer.
+    pub fn grows_after(&self, after: usize) -> bool {
+        let start = stencil(after, STENCIL, self.count);
+        let ln_distance = &self.pieces[start].ln_distance;
+        let from = (after - start) as f64;
+        let change = ln_distance.at(from + 1.0).0 - ln_distance.at(from).0;
+        let mut parts = (1..SLOPES).map(|i| f64::from(i) / f64::from(SLOPES));
+        parts.all(|part| ln_distance.at(from + part).1 > LEAST_SLOPE * change)
     }
 
     /// Returns the predicted point of the fold edge between the samples of two neighbouring contact nodes at which `ln D` is `target`.
