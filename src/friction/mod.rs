@@ -5,6 +5,7 @@
 //! follows from its slid distance. [`ContactHistory`] says which of the three holds at a push angle, [`ContactCourse`] along
 //! pushes that go to and fro. [`states()`] solves for the states.
 
+mod at_end;
 mod course;
 mod dissipation;
 mod division;
@@ -17,6 +18,7 @@ mod state;
 mod states;
 mod stuck;
 
+pub use at_end::surely_slides_to_end;
 pub use course::{ContactCourse, CourseLimits, Snap};
 pub use history::{ContactHistory, ContactPhase, ContactQuery, SlidingEnd};
 pub use sliding::Sliding;

@@ -2,11 +2,11 @@
 
 use super::columns::row;
 use crate::classify::{RowBoundary, TIE};
-use crate::friction::{ContactHistory, Sliding};
+use crate::friction::{ContactHistory, Sliding, surely_slides_to_end};
 use crate::numerics::Bracket;
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Crossing, Edge, LevelCurve, Sheet};
+use crate::sheet::{Crossing, Edge, Sheet};
 use crate::shooting::batch::{Batch, Method};
 use crate::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 use serde::{Deserialize, Serialize};
@@ -232,15 +232,21 @@ fn slidings(sheet: &Sheet) -> Vec<Option<Sliding>> {
     if sheet.rod.friction == 0.0 {
         return slidings;
     }
-    let is_pushed = |row: &usize| {
-        let end = sheet.crossings[*row].first();
-        sheet.touches(*row) && end.is_some_and(|end| end.push > TIE)
-    };
-    let rows: Vec<usize> = (0..slidings.len()).filter(is_pushed).collect();
-    let levels: Vec<LevelCurve> = rows.iter().map(|row| sheet.level(*row)).collect();
-    for (row, history) in rows.into_iter().zip(ContactHistory::of(&levels)) {
-        let end = sheet.crossings[row][0].push;
-        slidings[row] = history.and_then(|history| history.sliding_at_end(end));
+    let is_pushed = |end: &&Crossing| end.push > TIE;
+    let rows = (0..slidings.len()).filter(|row| sheet.touches(*row));
+    let rows = rows.filter_map(|row| Some((row, *sheet.crossings[row].first().filter(is_pushed)?)));
+    let rows: Vec<(usize, Crossing)> = rows.collect();
+    let mut doubtful = Vec::new();
+    for (own, is_sure) in rows.iter().zip(surely_slides_to_end(sheet, &rows)) {
+        match is_sure {
+            true => slidings[own.0] = Some(Sliding::Tip),
+            false => doubtful.push(own),
+        }
+    }
+    let levels = doubtful.iter().map(|(row, _)| sheet.level(*row));
+    let histories = ContactHistory::of(&levels.collect::<Vec<_>>());
+    for ((row, end), history) in doubtful.into_iter().zip(histories) {
+        slidings[*row] = history.and_then(|history| history.sliding_at_end(end.push));
     }
     slidings
 }

@@ -3,6 +3,7 @@
 use crate::random_rods::{Random, USUAL, rod};
 use whiskmap::friction::{
     ContactHistory, ContactPhase, ContactQuery, FrictionState, Sliding, states,
+    surely_slides_to_end,
 };
 use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::sheet::{LevelCurve, Sheet};
@@ -14,23 +15,29 @@ struct RandomRow {
     end: f64,
 }
 
+/// Random whisker with friction up to 1, on a random side.
+fn rough(random: &mut Random) -> (Rod, Side) {
+    let effects = Effects {
+        gradient: random.unit() < 0.3,
+        spiral: random.unit() < 0.2,
+        ..USUAL
+    };
+    let rod = rod(effects, random);
+    let side = if rod.pole >= 0.0 { Side::Cb } else { Side::Cf };
+    let rod = Rod {
+        friction: side.sign() * random.between(0.01, 1.0),
+        pole: if random.unit() < 0.2 { 0.0 } else { rod.pole },
+        ..rod
+    };
+    (rod, side)
+}
+
 /// Rows of random whiskers on both sides, with pushes below half a turn.
 fn rows(count: usize, seed: u64) -> Vec<RandomRow> {
     let mut random = Random(seed);
     let mut rows = Vec::new();
     while rows.len() < count {
-        let effects = Effects {
-            gradient: random.unit() < 0.3,
-            spiral: random.unit() < 0.2,
-            ..USUAL
-        };
-        let rod = rod(effects, &mut random);
-        let side = if rod.pole >= 0.0 { Side::Cb } else { Side::Cf };
-        let rod = Rod {
-            friction: side.sign() * random.between(0.01, 1.0),
-            pole: if random.unit() < 0.2 { 0.0 } else { rod.pole },
-            ..rod
-        };
+        let (rod, side) = rough(&mut random);
         let sheet = Sheet::new(Method::fine(), &rod, side, &[random.between(0.15, 0.95)]);
         let Some(end) = sheet.crossings[0].first() else {
             continue;
@@ -115,4 +122,53 @@ fn every_state_of_a_random_push_is_found() {
     // Measured: 3.2e-6, of 600 whiskers. A rounding of the slid distance changes the force ratio of some sticking contacts by as much.
     assert!(worst < 1e-5, "{worst:e}");
     assert_eq!(endless, 0);
+}
+
+/// Sliding directions at the ends of pushes by the history of the contact, and whether a few states of the row show it to slide toward the
+/// tip, `[row]`.
+fn at_ends(rod: &Rod, side: Side, distances: &[f64]) -> Vec<(Option<Sliding>, bool)> {
+    let sheet = Sheet::new(Method::fine(), rod, side, distances);
+    let rows = (0..distances.len()).filter(|row| sheet.touches(*row));
+    let rows = rows.filter_map(|row| Some((row, *sheet.crossings[row].first()?)));
+    let rows: Vec<_> = rows.filter(|(_, end)| end.push > 1e-3).collect();
+    let levels: Vec<LevelCurve> = rows.iter().map(|(row, _)| sheet.level(*row)).collect();
+    let histories = ContactHistory::of(&levels);
+    let ends = rows.iter().zip(&histories);
+    let by_history = ends.map(|((_, end), own)| own.as_ref()?.sliding_at_end(end.push));
+    by_history
+        .zip(surely_slides_to_end(&sheet, &rows))
+        .collect()
+}
+
+/// A few states of a row show that most contacts slide toward the tip at the end of the push. They never show it of one that does not. In a
+/// search over 550,000 random rows they showed it of 99.4 %, and of none of the 105 that do not.
+#[test]
+fn contacts_that_surely_slide_to_the_end_do() {
+    let mut random = Random(5);
+    let (mut ends, mut sure) = (0, 0);
+    for _ in 0..40 {
+        let (rod, side) = rough(&mut random);
+        let distances: Vec<f64> = (1..10).map(|i| 0.1 * f64::from(i)).collect();
+        for (by_history, is_sure) in at_ends(&rod, side, &distances) {
+            assert!(!is_sure || by_history == Some(Sliding::Tip), "{rod:?}");
+            ends += 1;
+            sure += usize::from(is_sure);
+        }
+    }
+    assert!(ends > 250 && 20 * sure > 19 * ends, "{sure} of {ends}");
+    // A nearly perfect cone, first touched near its tip, whose contact sticks at the fold.
+    let cone = Rod {
+        taper: 0.9787911939620971,
+        bend: 0.7534539699554443,
+        slope: -0.2978797180567483,
+        friction: -0.9278615593910218,
+        ..Rod::default()
+    };
+    let distances: Vec<f64> = (880..995).map(|i| 1e-3 * f64::from(i)).collect();
+    let found = at_ends(&cone, Side::Cf, &distances);
+    let sticking = found
+        .iter()
+        .filter(|(way, _)| *way == Some(Sliding::Sticks));
+    assert!(sticking.clone().count() > 2, "{found:?}");
+    assert!(sticking.clone().all(|(_, is_sure)| !is_sure));
 }
