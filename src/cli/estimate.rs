@@ -48,9 +48,9 @@ impl MapFormat {
 
     /// Returns the plan of a map of `scene` in this format.
     pub fn plan(self, scene: &Scene) -> Result<Plan, PlanError> {
-        match self {
-            Self::Exr => Plan::in_bands(scene),
-            Self::Zarr => {
+        match (self, scene.whisker_count()) {
+            (Self::Exr, _) | (_, 1) => Plan::in_bands(scene),
+            (Self::Zarr, _) => {
                 let whiskers = ZarrStore::blocks(&scene.grid).map(|block| block.len());
                 Plan::in_blocks(scene, whiskers.max().unwrap_or(1))
             }

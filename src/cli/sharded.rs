@@ -147,10 +147,16 @@ pub fn fill(
     let mut next = due.next();
     let mut packed: Vec<PackedPanel> = Vec::new();
     let keep = |panels: &mut Vec<Panel>| {
-        let panels = panels.par_iter();
-        let panels = panels.map(|panel| store.pack(panel));
-        packed.par_extend(panels);
+        let bands = panels.par_iter().map(|panel| store.pack(panel));
+        for band in bands.collect::<Vec<_>>() {
+            match packed.last_mut().filter(|last| last.cells() < panel) {
+                Some(begun) => begun.append(band),
+                None => packed.push(band),
+            }
+        }
+        let is_whole = packed.last().is_some_and(|last| last.cells() == panel);
         if let Some((block, whiskers)) = next
+            && is_whole
             && packed.len() == whiskers
         {
             store.write(block, &packed, temporary)?;

@@ -53,6 +53,14 @@ const CELLS_OF_PANELS: usize = 1 << 18;
 /// Rows of a block of an EXR file of one panel.
 pub const BLOCK_ROWS: usize = 16;
 
+/// Returns the number of rows of a band of a panel with these numbers of rows and push angles, and of a chunk of its store: whole blocks
+/// of an EXR file.
+#[must_use]
+pub fn rows_of_band([rows, push_angles]: [usize; 2]) -> usize {
+    let band = (CELLS_OF_PANELS / push_angles).max(1);
+    band.next_multiple_of(BLOCK_ROWS).min(rows)
+}
+
 /// Maximum number of panels computed together: each has two sheets of about 100 KiB.
 const MOST_PANELS: usize = 64;
 
@@ -189,13 +197,9 @@ impl Plan {
     /// # Errors
     /// When one panel takes more than [`MEMORY_LIMIT`].
     pub fn in_bands(scene: &Scene) -> Result<Self, PlanError> {
-        let [rows, push_angles] =
-            [&scene.grid.distance_mm, &scene.grid.push_angle_deg].map(Vec::len);
+        let panel = [&scene.grid.distance_mm, &scene.grid.push_angle_deg].map(Vec::len);
         match scene.whisker_count() {
-            1 => {
-                let band = (CELLS_OF_PANELS / push_angles).max(1);
-                Self::with_band(scene, band.next_multiple_of(BLOCK_ROWS).min(rows), 1)
-            }
+            1 => Self::with_band(scene, rows_of_band(panel), 1),
             _ => Self::new(scene),
         }
     }

@@ -1,5 +1,6 @@
 //! Blocks of a sweep: whiskers that share a file of each Zarr array, and that a run finishes together.
 
+use crate::plan::rows_of_band;
 use crate::scene::Grid;
 use std::ops::Range;
 
@@ -8,9 +9,6 @@ const CELLS: [usize; 2] = [1 << 14, 1 << 21];
 
 /// Blocks of a sweep whose size lies between these limits; there is a file for each of them and each array.
 const WANTED: usize = 128;
-
-/// Most cells of a chunk, which is packed and read as a whole: 4 MB of a quantity.
-const CELLS_OF_A_CHUNK: usize = 1 << 20;
 
 /// Blocks of a sweep. They depend on its grid alone, so that any number of processes agree on them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -108,11 +106,11 @@ impl Blocks {
         self.shape.iter().product()
     }
 
-    /// Returns the number of distances of a chunk, and of a panel filled up to whole chunks.
+    /// Returns the number of distances of a chunk, and of a panel filled up to whole chunks. A chunk, which is packed and read as a whole,
+    /// is a band of the panel: 1 MB of a quantity.
     pub(super) fn distances(&self) -> [usize; 2] {
-        let [distances, push_angles] = self.panel;
-        let chunk = (CELLS_OF_A_CHUNK / push_angles).clamp(1, distances);
-        [chunk, distances.div_ceil(chunk) * chunk]
+        let chunk = rows_of_band(self.panel);
+        [chunk, self.panel[0].next_multiple_of(chunk)]
     }
 }
 
@@ -178,7 +176,7 @@ mod tests {
     #[test]
     fn large_panels_are_cut_into_chunks() {
         let blocks = Blocks::of(&grid(&[2], [3000, 2000]));
-        assert_eq!(blocks.distances(), [524, 3144]);
+        assert_eq!(blocks.distances(), [144, 3024]);
         assert_eq!(Blocks::of(&grid(&[2], [300, 200])).distances(), [300, 300]);
     }
 }

@@ -13,17 +13,51 @@ use serde_json::Map;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Values of one panel, packed: `[array][chunk][byte]`, in the order of the store's arrays.
+/// Values of one panel, or of its first bands, packed.
 #[derive(Debug)]
-pub struct PackedPanel(Vec<Vec<Vec<u8>>>);
+pub struct PackedPanel {
+    /// Chunks of each array of the store, in their order: `[array][chunk][byte]`. The array of the `counts` has none yet.
+    chunks: Vec<Vec<Vec<u8>>>,
+    /// Number of cells of each regime, `[regime]`.
+    counts: [u32; Regime::ALL.len()],
+}
+
+impl PackedPanel {
+    /// Returns the number of cells that are packed.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.counts.iter().map(|count| *count as usize).sum()
+    }
+
+    /// Appends the next band of the panel.
+    pub fn append(&mut self, band: Self) {
+        for (own, chunks) in self.chunks.iter_mut().zip(band.chunks) {
+            own.extend(chunks);
+        }
+        for (own, count) in self.counts.iter_mut().zip(band.counts) {
+            *own += count;
+        }
+    }
+}
 
 impl ZarrStore {
-    /// Compresses the values of one panel into the chunks of each array.
+    /// Compresses the values of one panel into the chunks of each array. A panel may come in bands of whole chunks
+    /// ([`rows_of_band`](crate::plan::rows_of_band)), which are packed one by one and appended.
     #[must_use]
     pub fn pack(&self, panel: &Panel) -> PackedPanel {
+        let counts = Regime::ALL.map(|regime| {
+            let codes = panel.regime.iter();
+            codes.filter(|code| **code == regime.code()).count() as u32
+        });
         let arrays = self.arrays.par_iter();
-        let packed = arrays.map(|array| array.pack(&values(&array.name, panel)));
-        PackedPanel(packed.collect())
+        let packed = arrays.map(|array| match array.name.as_str() {
+            CELLS => Vec::new(),
+            name => array.pack(&values(name, panel)),
+        });
+        PackedPanel {
+            chunks: packed.collect(),
+            counts,
+        }
     }
 
     /// Packs `panels` of a run of `plan`, and returns how many bytes they take without headers.
@@ -32,7 +66,7 @@ impl ZarrStore {
         let stored = (plan.channels.with("regime"), plan.digits);
         let store = Self::new(Path::new(""), Map::new(), scene.clone(), stored);
         let packed = panels.iter().map(|panel| store.pack(panel));
-        let chunks = packed.flat_map(|panel| panel.0.into_iter().flatten());
+        let chunks = packed.flat_map(|panel| panel.chunks.into_iter().flatten());
         chunks.map(|chunk| chunk.len() as u64).sum()
     }
 
@@ -52,9 +86,13 @@ impl ZarrStore {
             let room = self.blocks.slots();
             let missing = (panels.len() < room).then(|| array.pack_fill(room));
             let missing = missing.unwrap_or_default();
+            let counts = panels.iter().filter(|_| array.name == CELLS);
+            let counts = counts.map(|panel| array.pack(bytemuck::cast_slice(&panel.counts)));
+            let counts: Vec<Vec<Vec<u8>>> = counts.collect();
             let mut slots = vec![&missing; room];
             for (place, panel) in panels.iter().enumerate() {
-                slots[self.blocks.slot(block, place)] = &panel.0[index];
+                let packed = counts.get(place).unwrap_or(&panel.chunks[index]);
+                slots[self.blocks.slot(block, place)] = packed;
             }
             let chunks = slots.into_iter().flatten().map(Vec::as_slice);
             let identity = self.expected(array, &file).identity;
@@ -73,13 +111,6 @@ fn values<'a>(name: &str, panel: &'a Panel) -> Cow<'a, [u8]> {
         "regime" | "status" => {
             let codes: &[u32] = bytemuck::cast_slice(panel.bytes(name));
             codes.iter().map(|code| *code as u8).collect()
-        }
-        CELLS => {
-            let count = |regime: Regime| {
-                let codes = panel.regime.iter();
-                codes.filter(|code| **code == regime.code()).count() as u32
-            };
-            bytemuck::pod_collect_to_vec(&Regime::ALL.map(count)).into()
         }
         _ => panel.bytes(name).into(),
     }
