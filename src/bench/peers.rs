@@ -22,8 +22,8 @@ pub struct Peers {
 pub struct Peer {
     /// Name of the program.
     pub name: &'static str,
-    /// Microseconds, and the largest error in degrees, from the fastest setting on. An error of heyoka and `solve_bvp` is relative to its
-    /// number, as an angle is to a radian.
+    /// Settings of the program, `[setting][microseconds, largest error in degrees]`, from the fastest one on. An error of heyoka and `solve_bvp` is
+    /// relative to its number, as an angle is to a radian.
     pub points: Vec<[f64; 2]>,
 }
 

@@ -38,7 +38,7 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// Solves `targets`, each on one of `rods`; returns the states in the same order.
+    /// Solves `targets`, each on one of `rods`. Returns the last states in the same order, `[target]`.
     #[must_use]
     pub fn solve(self, effects: Effects, rods: &[Rod], targets: &[CellTarget]) -> Vec<Hit> {
         targets

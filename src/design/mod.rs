@@ -63,7 +63,7 @@ pub enum DesignError {
     Fixed {
         /// Parameter of the design that has only one accepted value.
         parameter: Parameter,
-        /// The only value of the parameter that the scene accepts.
+        /// The only value of the parameter that the scene accepts, in its unit.
         value: f64,
     },
     /// The scene accepts no pole at the distance of the design.

@@ -50,7 +50,7 @@ impl WhiskerSide {
         }
     }
 
-    /// This side with a spectral sheet by `method`, whose states have a residual of at most `most` whisker lengths.
+    /// Returns this whisker side with a spectral sheet by `method`, whose states have a residual of at most `most` whisker lengths.
     #[must_use]
     pub fn with_spectral_sheet(self, method: Method, most: f64) -> Self {
         let spectral = SpectralSheet::new(method, &self, most);

@@ -168,7 +168,7 @@ impl Sheet {
         self.rows[row].is_reached()
     }
 
-    /// Distance from the tip, in `tau`, within which the integration cannot distinguish a contact from one at the tip.
+    /// Returns the distance from the tip, in `tau`, within which the integration cannot distinguish a contact from one at the tip.
     #[must_use]
     pub fn tip_blur(&self) -> f64 {
         let samples = self.samples.as_ref();

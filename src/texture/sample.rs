@@ -13,9 +13,9 @@ pub struct Held {
     /// Number of the asperity on its surface.
     pub asperity: usize,
     pub side: Side,
-    /// Push in radians, as a magnitude.
+    /// Push against the asperity since the touch, as a magnitude in radians.
     pub push: f64,
-    /// Loads, and place of the tip; `None` where no state was found.
+    /// Loads of the held whisker, and position of its tip; `None` where no state was found.
     pub state: Option<(Reading, TipPlace)>,
 }
 
@@ -29,7 +29,7 @@ impl Held {
 #[derive(Clone, Copy)]
 pub struct Crossing {
     pub time_s: f64,
-    /// Angle of the base, in radians.
+    /// Angle of the base at the crossing, in radians.
     pub angle: f64,
     pub held: Held,
 }

@@ -103,7 +103,7 @@ impl<const D: usize> Chebyshev<D> {
         self.values(0, x)
     }
 
-    /// Derivative of one function at `x`.
+    /// Returns the derivative of one `function` of the expansion by `x`, at `x` in `[0, 1]`.
     #[must_use]
     pub fn slope(&self, function: usize, x: f64) -> f64 {
         let [_, slope] = self.series(function, x);

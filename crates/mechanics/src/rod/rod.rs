@@ -182,7 +182,7 @@ impl Rod {
         self.tau(pointed(self.taper))
     }
 
-    /// Returns the derivative of [`Rod::tau_tip`] by a variable that changes the taper by `by_taper`.
+    /// Returns the derivative of [`Rod::tau_tip`] by a variable that changes the taper by `by_taper`, dimensionless per unit of the variable.
     #[must_use]
     pub fn tau_tip_derivative(&self, by_taper: f64) -> f64 {
         let s = pointed(self.taper);
@@ -196,7 +196,8 @@ impl Rod {
         tau_derivative(dual(self.taper, by_taper), dual(s, by_s))
     }
 
-    /// Returns the derivative of [`arclength`] by a variable that changes `tau` by `by_tau` and the taper by `by_taper`.
+    /// Returns the derivative of [`arclength`] by a variable that changes `tau` by `by_tau` and the taper by `by_taper`, in whisker lengths per unit
+    /// of the variable.
     #[must_use]
     pub fn arclength_derivative(&self, tau: f64, by_tau: f64, by_taper: f64) -> f64 {
         let dual = |value, derivative| Dual { value, derivative };

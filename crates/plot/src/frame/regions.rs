@@ -49,13 +49,13 @@ impl RegionNames {
         }))
     }
 
-    /// Returns the height of the names above the frame, in units.
+    /// Returns the height of the regions' names above the frame, in units of the picture.
     pub fn height(&self) -> f64 {
         let heights = self.0.iter().map(|(block, _)| HEIGHT + block.below_first());
         heights.fold(0.0, f64::max)
     }
 
-    /// Draws the names above the frame of `body`, their last lines beside each other.
+    /// Draws the regions' names above the frame of `body`, their last lines beside each other.
     pub fn draw(&self, picture: &mut Picture, body: Area) {
         for (block, at) in &self.0 {
             let [x, y] = body.point(*at, 1.0);

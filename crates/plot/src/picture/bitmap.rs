@@ -22,7 +22,7 @@ fn draw(picture: &Picture) -> Vec<Rgb> {
     bitmap.pixels
 }
 
-/// Encodes a picture as PNG. Lines on white need no strong compression; cells of a heat map do.
+/// Encodes a picture as the bytes of a PNG file. Lines on white need no strong compression; cells of a heat map do.
 pub fn file(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     let has_cells = |primitive: &Primitive| matches!(primitive, Primitive::Raster(..));
     let compression = match picture.primitives.iter().any(has_cells) {

@@ -9,7 +9,7 @@ use crate::shooting::{
     Section, Sensitivity, Spiral, Straight, TrajectoryState, Uniform, integrate,
 };
 
-/// One initial condition for each lane.
+/// Initial conditions of the trajectories of a block, one for each lane: `[lane]`.
 pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
 /// Returns one number of each initial condition: `[lane]`. (`map` of an array is not inlined into functions for a SIMD unit.)
@@ -22,7 +22,7 @@ pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f6
     numbers
 }
 
-/// Returns one number of each initial condition, in lanes.
+/// Returns one number of each initial condition, packed into the lanes of `T`.
 #[inline(always)]
 pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> T {
     T::pack(numbers(conditions, number))
