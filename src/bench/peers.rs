@@ -13,7 +13,7 @@ const LAST_DIGIT: f64 = 1e-11;
 pub struct Peers {
     /// Model name of the machine's processor.
     pub machine: String,
-    /// The programs that were measured.
+    /// Other programs that were measured: `[program]`.
     pub programs: Vec<Peer>,
 }
 

@@ -128,7 +128,7 @@ impl PictureFile {
     }
 }
 
-/// Opens the file of `option` and the one of `--plot`, whose ending selects its format.
+/// Opens the CSV table of `option`, and the picture of `--plot`, whose ending selects its format; `None` without one.
 pub fn open(
     files: &mut Files,
     option: &str,

@@ -12,9 +12,9 @@ pub struct QuantityComparison {
     pub channel: &'static str,
     /// Number of cells with a value in both maps.
     pub cells: u64,
-    /// Number of these cells whose values are not equal.
+    /// Number of cells with a value in both maps whose two values are not equal.
     pub differing: u64,
-    /// Number of cells with a value in only the first map, and in only the second one.
+    /// Number of cells with a value in only one of the maps: `[first, second]`.
     pub only_in: [u64; 2],
     /// Largest magnitude of a value of a compared cell, in either map, in the channel's unit.
     pub largest_value: f64,

@@ -61,7 +61,7 @@ impl Digits {
         (bits < MANTISSA_BITS).then_some(bits)
     }
 
-    /// Returns the first channel that has digits of its own, but is not one of `channels`.
+    /// Returns the first channel that has digits of its own, but is not one of `channels`; `None` without one.
     #[must_use]
     pub fn not_in(&self, channels: Channels) -> Option<&'static str> {
         let mut named = self.named();

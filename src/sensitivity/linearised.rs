@@ -179,8 +179,8 @@ impl<'a> Linearised<'a> {
         }
     }
 
-    /// Returns the derivative of the state by the variable with this index, which changes the whisker by `by`, and the derivative of `(ln D, phi)` at
-    /// first touch. `distance` and `by_distance` are the distance of first touch and its derivative, in whisker lengths.
+    /// Returns the derivative of the state by the variable with this index, and the derivative of `(ln D, phi)` at first touch. The variable changes
+    /// the whisker by `by`. `distance` and `by_distance` are the distance of first touch and its derivative, in whisker lengths.
     pub fn moved(
         &self,
         equations: Equations,

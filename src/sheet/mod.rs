@@ -212,8 +212,8 @@ impl Sheet {
         }
     }
 
-    /// Returns a Newton start for each cell of `row`, one for each of the growing `pushes` (magnitudes, in radians). An entry is `None`
-    /// outside the sheet.
+    /// Returns a Newton start for each cell of `row`, `[push_angle]`, one for each of the growing `pushes` (magnitudes, in radians). An entry is
+    /// `None` outside the sheet.
     pub fn guesses(
         &self,
         row: usize,

@@ -35,7 +35,7 @@ pub struct Crossing {
 }
 
 impl Crossing {
-    /// Returns the first crossing among states, each at its `[time in s, angle in radians]`.
+    /// Returns the first crossing among states, each at its `[time in s, angle in radians]`; `None` without one.
     pub fn first<'a>(
         states: impl Iterator<Item = (&'a Option<Held>, &'a [f64; 2])>,
     ) -> Option<Self> {
@@ -52,7 +52,7 @@ impl Crossing {
     }
 }
 
-/// Returns the samples of a course; all from the first crossing on are undecided.
+/// Returns the samples of a course, `[sample]`; all from the first crossing on are undecided.
 pub fn samples(
     course: &AngleCourse,
     phases: &[Phase],

@@ -11,7 +11,7 @@ pub struct AngleCourse {
     pub(super) times_s: Vec<f64>,
     /// Angles of the base in degrees, `[time]`: 0 at first touch on CB.
     pub(super) angles_deg: Vec<f64>,
-    /// Note about columns of a file that are not used.
+    /// Note about columns of a file that are not used; `None` without such columns.
     pub note: Option<String>,
 }
 

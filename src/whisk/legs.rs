@@ -63,7 +63,7 @@ impl Leg {
 }
 
 impl<'a> Legs<'a> {
-    /// Begins a course in `phase`, without contact. `sides` are the states on CB and on CF.
+    /// Creates the course in progress that begins in `phase`, without contact. `sides` are the states on `[CB, CF]`.
     pub fn new(turns: &'a Turns, phase: Phase, sides: [Option<&'a SideStates>; 2]) -> Self {
         Self {
             turns,

@@ -23,7 +23,8 @@ pub struct SideStates {
     limits: Vec<CourseLimits>,
 }
 
-/// Solver for states with friction: [`states`](crate::friction::states) or [`held`](crate::friction::held).
+/// Solver for states with friction, one for each query: [`states`](crate::friction::states) or [`held`](crate::friction::held). `None` where no state
+/// is found.
 pub type SolveContacts = fn(&[ContactQuery]) -> Vec<Option<FrictionState>>;
 
 /// End of the pushes of one row.

@@ -48,12 +48,12 @@ pub fn simple_end(sheet: &Sheet, row: usize) -> Option<&Crossing> {
     (is_simple && !sheet.is_continued()).then_some(end)
 }
 
-/// Newton starts of the states of rows.
+/// Newton starts of the exact states of rows.
 #[derive(Clone, Copy)]
 pub enum StateStarts<'a> {
-    /// The spans of the rows.
+    /// Starts from the row spans of the rows.
     Spans,
-    /// Expansions of each row, and their largest error in whisker lengths.
+    /// Starts from expansions of each row, `[row]`, with their largest error in whisker lengths.
     Expansions(&'a [Chebyshev<FUNCTIONS>], f64),
 }
 

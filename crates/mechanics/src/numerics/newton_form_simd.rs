@@ -148,7 +148,7 @@ impl<const N: usize, const M: usize> SimdTask for Newton<'_, N, M> {
     }
 }
 
-/// Loads lanes from an array of numbers, from index `from` on.
+/// Returns lanes with the numbers of an array from the index `from` on.
 #[inline(always)]
 pub fn pack<T: Lanes>(numbers: &LaneNumbers, from: usize) -> T {
     let mut lanes = [0.0; WIDTH];

@@ -23,7 +23,7 @@ pub trait Intrinsic<T: Real>: Copy {
     /// the radius at the start. `None` if the rod is straight.
     fn turn(course: &Self::Course, along: T) -> Option<T>;
 
-    /// Returns the state of the rest shape at `along`: the arclength from the start of the step toward the base, over the radius at the start.
+    /// Returns the state of the rest shape at `along`: the arclength from the step's start toward the base, over the radius at the start.
     fn after(course: &Self::Course, along: T) -> Self::State;
 }
 
@@ -60,9 +60,9 @@ pub struct Bent<T> {
 }
 
 impl<T: Real> Bent<T> {
-    /// Returns the rest shape of the parabola `y = bend x^2 + slope x`, and at the arclength `s` its state, its curvature and the derivative of the
-    /// curvature by the arclength. Lengths are in whisker lengths, angles in radians. `at_base` is the [`arc`](crate::shooting::contact::arc) of
-    /// `slope`.
+    /// Returns the rest shape of the parabola `y = bend x^2 + slope x`, its state at the arclength `s`, and `[curvature, slope]` there. The slope of
+    /// the curvature is by the arclength. Lengths are in whisker lengths, angles in radians. `at_base` is the [`arc`](crate::shooting::contact::arc)
+    /// of `slope`.
     #[inline(always)]
     pub fn at(bend: T, at_base: T, s: T) -> (Self, [T; 2], [T; 2]) {
         let twice_bend = bend + bend;

@@ -20,7 +20,7 @@ pub struct Region {
     pub short: String,
 }
 
-/// The names of the regions in lines, each with its middle as a fraction of the axis; none without room.
+/// Names of the regions left and right of 0, each in lines with its middle as a fraction of the axis; empty without room.
 pub struct RegionNames(Vec<(TextBlock, f64)>);
 
 impl RegionNames {

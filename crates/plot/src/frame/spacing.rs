@@ -30,7 +30,7 @@ pub struct Spacing {
     pub x_label: f64,
     /// Distance of the middle of the vertical axis' label from the left end of the space beside the body, in units of the picture.
     pub y_label: f64,
-    /// Distance of title and legend from the left and the right edge of the picture, in its units; `None` if they are as wide as the body.
+    /// Distance of title and legend from the picture's left and right edge, in its units; `None` if they are as wide as the body.
     pub edge: Option<f64>,
 }
 

@@ -89,7 +89,7 @@ pub fn upwards(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     }
 }
 
-/// Creates the ticks of the numbers 0, 1, 2, ... in a range, with `names` as their labels.
+/// Creates ticks at the numbers 0, 1, 2, ... in the range `[low, high]`, with `names` as their labels: `[number]`.
 pub fn named(names: &[String], range: [f64; 2]) -> Vec<Tick> {
     let ticks = names.iter().enumerate();
     ticks

@@ -34,7 +34,7 @@ pub fn file(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     encode(picture.pixels(), &draw(picture), compression, density)
 }
 
-/// Encodes the pixels of an image, row by row, as PNG, with the number of pixels per metre if it is known.
+/// Encodes the pixels of an image, row by row, as the bytes of a PNG file. The file has the number of pixels per metre if it is known.
 pub fn encode(
     [width, height]: [usize; 2],
     pixels: &[Rgb],

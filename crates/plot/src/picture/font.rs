@@ -86,7 +86,7 @@ fn each_glyph(
     }
 }
 
-/// Returns the outlines of a text in pixels, `[glyph]`. It begins at the origin, with y downwards from its baseline.
+/// Returns the outlines of a text of font size `size`, in pixels: `[glyph]`. The text begins at the origin, with y downwards from its baseline.
 pub fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
     let mut outlines = Vec::new();
     each_glyph(text, size, |font, c, [x, y]| {
@@ -105,7 +105,8 @@ pub struct GlyphCurves {
     pub at: [f64; 2],
 }
 
-/// Returns the curves of a text, `[glyph]`. It begins at the origin, with y downwards from its baseline.
+/// Returns the curves of a text of font size `size`, `[glyph]`. The text begins at the origin, with y downwards from its baseline, in the unit of
+/// `size`.
 pub fn curves(text: &str, size: f64) -> Vec<GlyphCurves> {
     let mut curves = Vec::new();
     each_glyph(text, size, |font, c, at| {

@@ -133,7 +133,8 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
 
 /// A rest shape that can be gathered from the rods of a block.
 pub trait Gather<T: Lanes>: Intrinsic<T> {
-    /// Gathers the rest shape of the rods and, at the arclengths `s`: its state, and its curvature with the derivative by the arclength.
+    /// Gathers the rest shape of the rods. Returns the shape, its state at the arclengths `s` (whisker lengths), and `[curvature, slope]` there: the
+    /// slope is by the arclength.
     fn gather(conditions: &Conditions, s: T) -> (Self, Self::State, [T; 2]);
 
     /// Returns the unit tangent at rest in the frame of a parabola; the first axis for other rest shapes.
