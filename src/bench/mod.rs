@@ -159,19 +159,19 @@ pub struct Report {
     pub engines: Vec<BenchEngine>,
     /// Measurements of the report, engine by engine, `[measurement]`.
     pub rows: Vec<Measurement>,
-    /// Expansions of the spectral engine, from coarse to fine bounds.
+    /// Expansions of the spectral engine, from coarse to fine bounds: `[bound]`.
     pub expansions: Vec<Expansions>,
-    /// Detachment curves, from coarse to fine steps.
+    /// Measurements of detachment curves, from coarse to fine steps: `[rung]`.
     pub detachments: Vec<Detachments>,
     /// Number of cells of each whole map.
     pub map_cells: usize,
-    /// Whole maps on all threads: of the CPU engine, of the spectral engine, then of each GPU engine.
+    /// Whole maps on all threads, `[engine]`: of the CPU engine, of the spectral engine, then of each GPU engine.
     pub maps: Vec<WholeMap>,
-    /// Comparison of the fastest two engines on the CPU, then of each GPU engine with the fastest engine on the CPU.
+    /// Comparisons of engines, `[pair]`: the fastest two on the CPU, then each GPU engine with the fastest engine on the CPU.
     pub verdicts: Vec<Verdict>,
-    /// Large maps on other machines: computed, not measured.
+    /// Large maps on other machines, computed and not measured: `[map]`.
     pub computed: Vec<ComputedMap>,
-    /// Engines that could not be measured, and why.
+    /// Names of engines that could not be measured, each with the reason: `[engine]`.
     pub failures: Vec<String>,
 }
 
@@ -241,7 +241,7 @@ pub fn run(
     Ok(Some(report))
 }
 
-/// Returns the name of an engine with its number of threads.
+/// Returns the name of an engine in tables, with its number of threads if it has one.
 #[must_use]
 pub fn named(engine: &str, threads: Option<usize>) -> String {
     match threads {

@@ -9,7 +9,7 @@ use crate::plan::{STATE_CHANNELS, USUAL_PATCH};
 use crate::shooting::batch::Method;
 use serde::Serialize;
 
-/// Cells of the maps in the model.
+/// Number of cells of each map in the model.
 pub const CELLS: f64 = 1e9;
 
 /// Bytes of a cell in the shaders' output: 9 channel values, residual, outcome and padding.
@@ -34,7 +34,7 @@ const SPECTRAL_OPERATIONS: f64 = 2.0 * 13.0 + 3.0 * (3 + STATE_CHANNELS.len()) a
 pub struct Machine {
     /// The GPU and the host.
     pub name: &'static str,
-    /// Cores of the host, each as fast as one thread of the machine that measures.
+    /// Number of cores of the host, each as fast as one thread of the machine that measures.
     pub cores: f64,
     /// Billions of `f64` operations per second of one core.
     pub core_gflops: f64,
@@ -111,17 +111,17 @@ pub enum SolvedOn {
 pub struct CellWork {
     /// Processor that solves the cells.
     pub solved_on: SolvedOn,
-    /// Floating-point operations that solve the cell.
+    /// Number of floating-point operations per cell that solve it.
     pub operations: f64,
-    /// Bytes read and written in the memory of the device that solves.
+    /// Bytes per cell read and written in the memory of the device that solves.
     pub memory_bytes: f64,
     /// Bytes per cell between host and device, both directions together; 0 on the host.
     pub bus_bytes: f64,
-    /// Microseconds of one core for all other stages but packing.
+    /// Microseconds of one core per cell for all other stages but packing.
     pub host_us: f64,
-    /// Microseconds of one core for packing.
+    /// Microseconds of one core per cell for packing.
     pub packing_us: f64,
-    /// Bytes of the packed cell.
+    /// Bytes per cell of the packed map.
     pub packed_bytes: f64,
 }
 
@@ -180,25 +180,25 @@ impl CellWork {
     }
 }
 
-/// Seconds of the parts of a map.
+/// Times of the parts of a map, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MapParts {
-    /// Operations of the cells, at the peak rate.
+    /// Seconds of the operations on all cells, at the peak rate.
     pub compute: f64,
-    /// Memory of the device that solves, at its peak rate.
+    /// Seconds of the traffic to the memory of the device that solves, at its peak rate.
     pub memory: f64,
-    /// Bus between host and GPU.
+    /// Seconds of the transfer over the bus between host and GPU.
     pub bus: f64,
-    /// Sheets, base points, fallback and classification on all cores.
+    /// Seconds of sheets, base points, fallback and classification on all cores.
     pub host: f64,
-    /// Packing on all cores.
+    /// Seconds of packing on all cores.
     pub packing: f64,
-    /// Writing to the disk.
+    /// Seconds of writing to the disk.
     pub disk: f64,
 }
 
 impl MapParts {
-    /// Computes the parts of a map of `cells` cells.
+    /// Computes the times of the parts of a map of `cells` cells.
     #[must_use]
     pub fn new(work: &CellWork, machine: &Machine, cells: f64) -> Self {
         let (gflops, gb_s) = match work.solved_on {
@@ -218,7 +218,7 @@ impl MapParts {
         }
     }
 
-    /// Seconds of the map with the name of its longest part: parts on the same cores add up, all others overlap.
+    /// Returns the seconds of the map with the name of its longest part: parts on the same cores add up, all others overlap.
     #[must_use]
     pub fn total(&self, solved_on: SolvedOn) -> (f64, &'static str) {
         let compute = ("compute", self.compute);
@@ -244,17 +244,17 @@ impl MapParts {
 /// A map of [`CELLS`] cells by an engine on a machine: computed, not measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct ComputedMap {
-    /// Name of the machine.
+    /// Name of the machine for which the map is computed.
     pub machine: &'static str,
-    /// Name of the engine.
+    /// Name of the engine that solves the computed map.
     pub engine: &'static str,
-    /// Work of a cell.
+    /// Work of the engine per cell of the computed map.
     pub work: CellWork,
-    /// Seconds of the parts.
+    /// Times of the parts of the computed map, in seconds.
     pub parts: MapParts,
-    /// Seconds of the map.
+    /// Time of the whole computed map, in seconds.
     pub seconds: f64,
-    /// Name of the part that bounds the time.
+    /// Name of the part that takes the longest time of the computed map.
     pub bound_by: &'static str,
 }
 

@@ -13,7 +13,7 @@ const LAST_DIGIT: f64 = 1e-11;
 pub struct Peers {
     /// Model name of the machine's processor.
     pub machine: String,
-    /// The programs that were measured.
+    /// Other programs that were measured: `[program]`.
     pub programs: Vec<Peer>,
 }
 
@@ -22,8 +22,8 @@ pub struct Peers {
 pub struct Peer {
     /// Name of the program.
     pub name: &'static str,
-    /// Microseconds, and the largest error in degrees, from the fastest setting on. An error of heyoka and `solve_bvp` is relative to its
-    /// number, as an angle is to a radian.
+    /// Settings of the program, `[setting][microseconds, largest error in degrees]`, from the fastest one on. An error of heyoka and `solve_bvp` is
+    /// relative to its number, as an angle is to a radian.
     pub points: Vec<[f64; 2]>,
 }
 

@@ -7,18 +7,18 @@ use crate::sheet::Sheet;
 use crate::shooting::batch::Method;
 use std::sync::Arc;
 
-/// The cells of a whisker side.
+/// Request to an engine for all cells of one whisker side.
 pub struct Request {
     pub batch: RowBatch,
     /// Index of the target of each cell, if it has one.
     targets: Vec<Option<usize>>,
 }
 
-/// Index of a target, and `(tau, load)` of its state.
+/// Solved targets, `[target]`: the index of each, and `(tau, load)` of its state, dimensionless.
 pub type Points = Vec<(usize, (f64, f64))>;
 
 impl Request {
-    /// The cells of all whisker sides of `scene`, each with the expansions that `expand` adds to it.
+    /// Returns a request for each whisker side of `scene`, `[side]`, with the expansions that `expand` adds to it.
     pub fn all(
         scene: &Scene,
         task: &Task,
@@ -45,7 +45,7 @@ impl Request {
         requests.collect()
     }
 
-    /// The targets that `cells` of the request solve.
+    /// Returns the targets of the request that `cells` solve, `[target]`.
     pub fn solved(&self, cells: &Cells) -> Points {
         let found = cells.outcome.iter().zip(&cells.points).zip(&self.targets);
         let points = found.filter_map(|((outcome, point), target)| {

@@ -13,7 +13,7 @@ const BATCH: usize = 1024;
 /// Maximum number of Newton steps of a target.
 const MOST_STEPS: u32 = 4;
 
-/// Last state that the solver computed for a target.
+/// Last state that the solver computed for a target, converged or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Contact coordinate `tau` of the state, dimensionless.
@@ -38,7 +38,7 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// Solves `targets`, each on one of `rods`; returns the states in the same order.
+    /// Solves `targets`, each on one of `rods`. Returns the last states in the same order, `[target]`.
     #[must_use]
     pub fn solve(self, effects: Effects, rods: &[Rod], targets: &[CellTarget]) -> Vec<Hit> {
         targets

@@ -13,7 +13,7 @@ use std::convert::Infallible;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Name of the engine in rows and maps.
+/// Name of the spectral engine in measurements and maps.
 pub const SPECTRAL: &str = "spectral";
 
 /// Maximum bounds on the residual in whisker lengths, from coarse to the smallest that refined states allow.
@@ -24,17 +24,17 @@ const BOUNDS: [f64; 5] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
 pub struct Expansions {
     /// Maximum bound on the residual of a state, in whisker lengths.
     pub bound: f64,
-    /// States along each row of a patch.
+    /// Number of states along each row of a patch.
     pub states: usize,
     /// Part of the sample's states that are certified, from 0 to 1.
     pub certified: f64,
-    /// Seconds for the expansions of all whisker sides.
+    /// Times to expand all whisker sides, in seconds.
     pub seconds: Timing,
-    /// One-time milliseconds per whisker side.
+    /// Time to expand one whisker side, in milliseconds, spent once for all its states.
     pub ms_per_side: f64,
-    /// Microseconds per state, with the work of its row.
+    /// Time for one state with the work of its row, in microseconds.
     pub us_per_state: f64,
-    /// Microseconds per state of the cheapest trajectories that are as accurate, or of the most accurate ones.
+    /// Time for one state by trajectories, in microseconds: the cheapest that are as accurate, or the most accurate ones.
     pub us_by_trajectories: f64,
     /// Number of states of a whisker side from which on expansions are cheaper than trajectories; `None` if they never are.
     pub pays_from: Option<f64>,

@@ -31,7 +31,7 @@ fn key(rod: u32, pole: DVec2) -> (u32, [u64; 2]) {
     (rod, pole.to_array().map(f64::to_bits))
 }
 
-/// Work of an engine in one measurement.
+/// Work of an engine in one measurement: numbers of trajectories and of floating-point operations.
 pub struct Work {
     /// Number of trajectories that the engine integrated.
     pub trajectories: f64,
@@ -39,12 +39,12 @@ pub struct Work {
     pub operations: f64,
 }
 
-/// Returns `(tau, load)` of every hit: `[hit]`.
+/// Returns `(tau, load)` of every hit, dimensionless: `[hit]`.
 pub fn places(hits: &[Hit]) -> Vec<(f64, f64)> {
     hits.iter().map(|hit| (hit.tau, hit.load)).collect()
 }
 
-/// Returns the whiskers of a scene, each on the sides of its push angles.
+/// Returns the whiskers of a scene, each on every side that the push angles need: `[side]`.
 pub fn whisker_sides(scene: &Scene) -> Vec<(SweptWhisker, Side)> {
     let sides = Plan::sides(scene);
     let both = |own: SweptWhisker| sides.iter().map(move |side| (own.clone(), *side));
@@ -80,7 +80,7 @@ impl Spread {
     }
 }
 
-/// Errors of the states that an engine found.
+/// Errors of the states that an engine found: of pole, arclength and force.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Errors {
     /// Number of states with errors.
@@ -158,7 +158,7 @@ impl Task {
         }
     }
 
-    /// Returns the `points`, `(tau, load)` of every target, as initial conditions: `[target]`.
+    /// Returns the initial conditions at `points`, the `(tau, load)` of every target: `[target]`.
     pub fn conditions(&self, points: &[(f64, f64)]) -> Vec<InitialCondition<'_>> {
         let pairs = self.targets.iter().zip(points);
         pairs
@@ -189,14 +189,14 @@ impl Task {
         }
     }
 
-    /// Mean number of steps of the states' trajectories.
+    /// Returns the mean number of steps of the trajectories of all states at this resolution.
     pub fn mean_steps(&self, resolution: Resolution) -> f64 {
         let steps = self.conditions(&self.exact).into_iter();
         let steps = steps.map(|own| f64::from(resolution.steps(own.rod, own.tau, own.load)));
         steps.sum::<f64>() / self.targets.len() as f64
     }
 
-    /// Returns the errors of the `points`, `(tau, load)` of every target.
+    /// Returns the errors of the states at `points`, the `(tau, load)` of every target.
     pub fn errors(&self, points: &[(f64, f64)]) -> Errors {
         let [found, exact] = [points, &self.exact].map(|points| self.conditions(points));
         let method = Method::new(EXACT).with_effects(self.effects);

@@ -58,7 +58,7 @@ impl CourseArgs {
         Ok(())
     }
 
-    /// Reads or creates the course.
+    /// Returns the course of the base's angle: a sine, or the samples of the CSV file that the options name.
     pub fn course(&self, files: &mut Files) -> Result<AngleCourse, Failure> {
         if let (None, Some([amplitude, frequency, seconds])) = (&self.angles, self.sine) {
             let sine = AngleCourse::sine(amplitude, frequency, seconds, self.rate);

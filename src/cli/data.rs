@@ -48,10 +48,10 @@ pub fn name_left_out(points: &MeasuredPoints, comparison: &Comparison) {
     }
 }
 
-/// Significant digits of statistics in text. JSON has all.
+/// Number of significant digits of statistics in text. JSON has all digits.
 pub const STATISTIC_DIGITS: usize = 4;
 
-/// Returns name and value of each figure of a comparison: number of points, RMS, bias.
+/// Returns name and value of each figure of a comparison as text, `[figure]`: number of points, RMS and bias in degrees.
 pub fn summary(comparison: &Comparison) -> Vec<(&'static str, String)> {
     let count = format!(
         "{}, {} left out, {} of another kind than predicted",

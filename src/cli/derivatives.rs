@@ -22,17 +22,17 @@ pub struct DerivativeArgs {
     derivatives: Option<Vec<Variable>>,
 }
 
-/// Derivatives of a table row, with columns for each variable.
+/// Derivatives in the columns of one table row, a group of columns for each variable.
 pub struct DerivativeColumns<'a> {
     pub variables: &'a [Variable],
-    /// Derivatives by each variable; a column is empty without a derivative.
+    /// Derivatives by each variable, `[variable]`; a column is empty without a derivative.
     pub by: Vec<Result<Derivatives, NoDerivative>>,
     /// Index of the first quantity: 1 leaves out the push angle, which states have in common.
     pub first: usize,
 }
 
 impl DerivativeArgs {
-    /// Returns the variables of the columns, those of detachments and `more` by default; none without the option.
+    /// Returns the variables of the columns, by default those of detachments and `more`: `[variable]`, empty without the option.
     pub fn variables(&self, scene: &Scene, more: &[Variable]) -> Result<Vec<Variable>, Failure> {
         let Some(named) = &self.derivatives else {
             return Ok(Vec::new());

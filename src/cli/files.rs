@@ -196,7 +196,7 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    /// Writes `bytes` as the whole output file. Returns the path of a regular file.
+    /// Writes `bytes` as the whole output file. Returns the path of a regular file, `None` for another output.
     pub fn write(mut self, bytes: &[u8]) -> Result<Option<PathBuf>, Failure> {
         let is_regular = self.output.is_regular();
         let written = self.output.write_all(bytes);
@@ -259,7 +259,7 @@ impl OutputTable {
         self.path == Path::new(STDOUT)
     }
 
-    /// Finishes the CSV table. Returns the path of a regular file.
+    /// Finishes the CSV table. Returns the path of a regular file, `None` for another output.
     pub fn finish(self) -> Result<Option<PathBuf>, Failure> {
         self.table.finish().map_err(unwritten(&self.path))?;
         Ok(Some(self.path).filter(|_| self.is_regular))

@@ -73,7 +73,7 @@ pub struct PlannedMap {
     pub plan: Plan,
     /// Accuracy of the steps that --tolerance selects.
     accuracy: Option<Accuracy>,
-    /// Part of the tolerance that the steps leave to the engine, in degrees.
+    /// Part of the tolerance that the steps leave to the engine, in degrees; `None` without a tolerance.
     pub left_deg: Option<f64>,
 }
 

@@ -105,18 +105,18 @@ pub struct PictureFile {
 }
 
 impl PictureFile {
-    /// Draws one plot below its title into the file. Returns the path of a regular file.
+    /// Draws one plot below its title into the file. Returns the path of a regular file, `None` for another output.
     pub fn plot(self, title: String, plot: Plot) -> Result<Option<PathBuf>, Failure> {
         self.chart(&Chart::single(title, plot))
     }
 
-    /// Draws a chart into the file. Returns the path of a regular file.
+    /// Draws a chart into the file. Returns the path of a regular file, `None` for another output.
     pub fn chart(self, chart: &Chart) -> Result<Option<PathBuf>, Failure> {
         let picture = chart.picture(self.size);
         self.write(&picture.map_err(|why| Failure::Input(format!("--size: {why}")))?)
     }
 
-    /// Writes the picture into the file; warns if a PNG or PDF lacks characters. Returns the path of a regular file.
+    /// Writes the picture into the file; warns if a PNG or PDF lacks characters. Returns the path of a regular file, `None` for another output.
     pub fn write(self, picture: &Picture) -> Result<Option<PathBuf>, Failure> {
         let missing: String = picture.missing_glyphs().into_iter().collect();
         if self.format != PictureFormat::Svg && !missing.is_empty() {
@@ -128,7 +128,7 @@ impl PictureFile {
     }
 }
 
-/// Opens the file of `option` and the one of `--plot`, whose ending selects its format.
+/// Opens the CSV table of `option`, and the picture of `--plot`, whose ending selects its format; `None` without one.
 pub fn open(
     files: &mut Files,
     option: &str,

@@ -78,7 +78,7 @@ impl PlanEstimate {
         })
     }
 
-    /// Returns the CPU seconds and the bytes of some of the map's whiskers, packed in the first format.
+    /// Returns `[CPU seconds, bytes]` of some of the map's whiskers, packed in the first format.
     pub fn share(&self, whiskers: usize) -> [f64; 2] {
         let share = whiskers as f64 / self.plan.whiskers as f64;
         let file = self.files.first();

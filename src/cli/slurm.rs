@@ -4,7 +4,7 @@
 const TIMES: &str = "must be minutes, minutes:seconds, hours:minutes:seconds, days-hours, days-hours:minutes or \
                      days-hours:minutes:seconds, such as 30, 1:00:00 or 1-12";
 
-/// Parses a time in one of the formats that `sbatch --time` accepts.
+/// Returns `text` if it is a time that `sbatch --time` accepts, otherwise what is allowed.
 pub fn time(text: &str) -> Result<String, String> {
     let (days, rest) = match text.split_once('-') {
         Some((days, rest)) => (Some(days), rest),
@@ -19,7 +19,7 @@ pub fn time(text: &str) -> Result<String, String> {
         .ok_or_else(|| TIMES.to_owned())
 }
 
-/// Parses a size of memory that `sbatch --mem` accepts.
+/// Returns `text` if it is a size of memory that `sbatch --mem` accepts, otherwise what is allowed.
 pub fn memory(text: &str) -> Result<String, String> {
     let number = text.strip_suffix(|c: char| "KMGTkmgt".contains(c));
     let is_size = is_digits(number.unwrap_or(text));
@@ -33,7 +33,7 @@ fn is_digits(text: &str) -> bool {
     !text.is_empty() && text.chars().all(|c| c.is_ascii_digit())
 }
 
-/// Formats a time limit of at least `seconds` in whole minutes.
+/// Formats a time of at least `seconds` for `sbatch --time`, in whole minutes.
 pub fn time_of(seconds: f64) -> String {
     let minutes = (seconds / 60.0).ceil() as u64;
     let (days, hours, minutes) = (minutes / 1440, minutes / 60 % 24, minutes % 60);
@@ -43,7 +43,7 @@ pub fn time_of(seconds: f64) -> String {
     }
 }
 
-/// Formats a size of memory of at least `bytes` in hundreds of mebibytes.
+/// Formats a size of at least `bytes` for `sbatch --mem`, in hundreds of mebibytes.
 pub fn memory_of(bytes: u64) -> String {
     format!("{}M", bytes.div_ceil(100 << 20) * 100)
 }

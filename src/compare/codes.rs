@@ -15,9 +15,9 @@ pub struct CodeComparison {
     pub channel: &'static str,
     /// Number of cells whose codes differ.
     pub differing: u64,
-    /// Number of differing cells for each pair of codes, most cells first.
+    /// Numbers of differing cells for each pair of codes, most cells first: `[pair]`.
     pub pairs: Vec<CodePair>,
-    /// The first differing cells, at most five.
+    /// First differing cells in the order of the maps, at most five: `[cell]`.
     pub first: Vec<DifferentCodes>,
     #[serde(skip)]
     names: BTreeMap<u32, String>,
@@ -30,7 +30,7 @@ pub struct CodeComparison {
 pub struct CodePair {
     /// Name of the code in each map: `[first, second]`.
     pub names: [String; 2],
-    /// Number of cells with these codes.
+    /// Number of cells with this pair of codes.
     pub cells: u64,
 }
 

@@ -23,11 +23,11 @@ use std::fmt;
 pub struct MapComparison {
     /// Number of cells of each map.
     pub cells: u64,
-    /// Comparisons of `regime` and `status`, if both maps have them.
+    /// Comparisons of `regime` and `status`, `[channel]`, if both maps have them.
     pub codes: Vec<CodeComparison>,
-    /// Comparisons of all other channels that both maps have.
+    /// Comparisons of all other channels that both maps have: `[channel]`.
     pub quantities: Vec<QuantityComparison>,
-    /// Names of the channels that only the first map has, and that only the second one has.
+    /// Names of the channels that only one map has: `[map][channel]`, the first map first.
     pub only_in: [Vec<&'static str>; 2],
 }
 

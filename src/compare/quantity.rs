@@ -12,20 +12,20 @@ pub struct QuantityComparison {
     pub channel: &'static str,
     /// Number of cells with a value in both maps.
     pub cells: u64,
-    /// Number of these cells whose values are not equal.
+    /// Number of cells with a value in both maps whose two values are not equal.
     pub differing: u64,
-    /// Number of cells with a value in only the first map, and in only the second one.
+    /// Number of cells with a value in only one of the maps: `[first, second]`.
     pub only_in: [u64; 2],
-    /// Largest size of a value of a compared cell, in either map.
+    /// Largest magnitude of a value of a compared cell, in either map, in the channel's unit.
     pub largest_value: f64,
-    /// Median of the differences of all compared cells, to 0.2 % of itself; smaller ones than 1e-38 count as 0.
+    /// Median of the differences of all compared cells, in the channel's unit, to 0.2 % of itself; differences below 1e-38 count as 0.
     pub median: f64,
     /// Largest difference between the two maps, in the channel's unit, without rounding.
     pub largest: f64,
-    /// Place of the largest difference, the first of equal ones; `None` if all values are equal.
+    /// Place of the cell with the largest difference, the first of equal ones; `None` if all values are equal.
     pub place: Option<CellPlace>,
-    /// Largest part of a difference that the digits of the files do not explain. A value rounded to `n` bits of mantissa may differ by
-    /// `2^-(n + 1)` of itself; with all bits, it is exact.
+    /// Largest part of a difference that the digits of the files do not explain, in the channel's unit. A value rounded to `n` bits of mantissa may
+    /// differ by `2^-(n + 1)` of itself; with all bits, it is exact.
     pub beyond_rounding: f64,
     #[serde(skip)]
     rounding: [f64; 2],

@@ -63,7 +63,7 @@ pub enum DesignError {
     Fixed {
         /// Parameter of the design that has only one accepted value.
         parameter: Parameter,
-        /// The only value of the parameter that the scene accepts.
+        /// The only value of the parameter that the scene accepts, in its unit.
         value: f64,
     },
     /// The scene accepts no pole at the distance of the design.
@@ -85,7 +85,7 @@ impl Design {
         }
     }
 
-    /// Returns the least and the greatest value of the goal's quantity over ends of a kind, in its unit; `None` without such an end.
+    /// Returns the range `[least, greatest]` of the goal's quantity over ends of a kind, in its unit; `None` without such an end.
     #[must_use]
     pub fn reached(&self, kind: DetachmentKind) -> Option<[f64; 2]> {
         let ends = self.ends.iter().filter(|end| end.kind == kind);

@@ -54,7 +54,7 @@ impl DesignSearch<'_> {
         (miss, slope.map_or(f64::NAN, |slope| value - miss / slope))
     }
 
-    /// Returns ends of pushes at values over the `range` of the parameter, in its unit, and on both sides of each change of kind.
+    /// Returns ends of pushes at values over the `range` of the parameter, in its unit, and on both sides of each change of kind: `[value]`.
     pub fn scan(&self, range: [f64; 2]) -> Vec<DesignEnd> {
         let scanned: Vec<DesignEnd> = samples(range)
             .into_par_iter()

@@ -3,8 +3,8 @@
 
 use crate::numerics::least_between;
 
-/// Returns argument and value of an extremum toward zero between three neighbouring arguments with their values, or the first argument
-/// found beyond zero. `None` without such an extremum, or if it is too far from zero for a smooth function.
+/// Returns `[argument, value]` of an extremum toward zero between three neighbouring `[argument, value]`, or of the first argument found beyond zero.
+/// `None` without such an extremum, or if it is too far from zero for a smooth function.
 pub fn toward_zero(
     [before, here, after]: [[f64; 2]; 3],
     mut value: impl FnMut(f64) -> f64,

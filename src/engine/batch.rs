@@ -44,11 +44,11 @@ pub struct BasePoint {
     pub row: [RowTerms; POWERS],
     /// Cells of the base point: range of indices among the columns of all sides.
     pub cells: Range<u32>,
-    /// Trajectory of the base point, and its place in the batch.
+    /// Trajectory of the base point, and the index of its first cell.
     pub trajectory: BaseTrajectory,
 }
 
-/// Trajectory of a base point, and its place in a batch.
+/// Trajectory of a base point, with the index of its first cell in the batch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BaseTrajectory {
     /// Number of steps of the base point's trajectory.

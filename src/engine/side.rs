@@ -27,7 +27,7 @@ pub struct WhiskerSide {
     pub sheet: Sheet,
     /// Channel values `[channel]` of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
     pub unit_values: Values,
-    /// Expansions of the rows, if an engine needs them and rows have any.
+    /// Expansions of the rows of the whisker side; `None` if no engine needs them, or no row has any.
     pub spectral: Option<SpectralSheet>,
     /// Derivatives of the push angle at the detachment of each row, in degrees per unit of the parameter: `[row][parameter]`. Empty
     /// without such channels.
@@ -50,7 +50,7 @@ impl WhiskerSide {
         }
     }
 
-    /// This side with a spectral sheet by `method`, whose states have a residual of at most `most` whisker lengths.
+    /// Returns this whisker side with a spectral sheet by `method`, whose states have a residual of at most `most` whisker lengths.
     #[must_use]
     pub fn with_spectral_sheet(self, method: Method, most: f64) -> Self {
         let spectral = SpectralSheet::new(method, &self, most);

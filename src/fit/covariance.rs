@@ -61,7 +61,7 @@ impl Covariance {
         }
     }
 
-    /// Returns the square root of the variance of parameter `i`; `None` if it is not determined.
+    /// Returns the standard deviation of parameter `i` for residuals of variance 1, in the parameter's unit; `None` if it is not determined.
     pub fn deviation(&self, i: usize) -> Option<f64> {
         self.is_determined[i].then(|| self.matrix[i][i].sqrt())
     }

@@ -33,7 +33,7 @@ impl<'a> Misfit<'a> {
         }
     }
 
-    /// Returns the scene's values of the free parameters, each over its unit: `[parameter]`. The scene must give them all.
+    /// Returns the scene's values of the free parameters, each divided by its unit in [`Misfit::units`]: `[parameter]`. The scene must give them all.
     pub fn start(&self) -> Vec<f64> {
         let values = self.free.iter().zip(&self.units);
         values
@@ -41,15 +41,15 @@ impl<'a> Misfit<'a> {
             .collect()
     }
 
-    /// Returns the least and the greatest value of each parameter that `scene` accepts, over its unit, with the other parameters fixed:
-    /// `[parameter][end]`.
+    /// Returns the range that `scene` accepts for each free parameter with all others fixed, divided by its unit in [`Misfit::units`]:
+    /// `[parameter][least, greatest]`.
     pub fn ranges(&self, scene: &Scene) -> Vec<[f64; 2]> {
         let free = self.free.par_iter().zip(&self.units);
         free.map(|(own, unit)| own.range(scene).map(|end| end / unit))
             .collect()
     }
 
-    /// Returns the scene with these values of the free parameters, each over its unit.
+    /// Returns the scene with these values of the free parameters, `[parameter]`, each divided by its unit in [`Misfit::units`].
     pub fn scene(&self, parameters: &[f64]) -> Result<Scene, SceneError> {
         let values = self.free.iter().zip(&self.units).zip(parameters);
         let values: Vec<_> = values.map(|((own, unit), x)| (*own, unit * x)).collect();
@@ -70,7 +70,7 @@ impl<'a> Misfit<'a> {
         Some(residuals)
     }
 
-    /// Returns true if a point detaches in another way than was measured.
+    /// Returns true if a point detaches in another way with these `parameters` than was measured.
     pub fn has_other_kinds(&self, parameters: &[f64]) -> bool {
         self.scene(parameters).is_ok_and(|scene| {
             let SweptWhisker { whisker, pole, .. } = scene.first_whisker();

@@ -7,9 +7,9 @@ use std::path::Path;
 /// Frames of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvatureFrames {
-    /// Frames in the order of time.
+    /// Frames in the order of time, `[frame]`.
     pub frames: Vec<CurvatureFrame>,
-    /// Note about columns of the file that are not used.
+    /// Note about columns of the file that are not used; `None` without such columns.
     pub note: Option<String>,
 }
 

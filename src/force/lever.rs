@@ -5,7 +5,7 @@ use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use glam::DVec2;
 
-/// Bending of the whisker at the measured point of a frame.
+/// Bending of the whisker at the measured point of a film's frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Bending {
     /// Position of the measured point in the frame of the base, in mm.
@@ -32,7 +32,7 @@ impl Bending {
         }
     }
 
-    /// Returns the frame at `time_s` without contact.
+    /// Returns the row of a frame without contact at `time_s`, in s: all loads are 0.
     pub fn free(&self, time_s: f64) -> FrameForce {
         FrameForce {
             force_un: Some(0.0),
@@ -44,7 +44,7 @@ impl Bending {
         }
     }
 
-    /// Returns the frame at `time_s` without a force, for this reason.
+    /// Returns the row of a frame at `time_s`, in s, without a force for this reason.
     pub fn none(&self, time_s: f64, reason: NoForce) -> FrameForce {
         FrameForce {
             time_s,

@@ -36,10 +36,10 @@ pub struct Options {
     pub engine: MapEngine,
     /// Channels of maps to compute; `None` for all.
     pub channels: Option<Channels>,
-    /// Function that is called with the number of finished cells and of all cells of a map, on the thread that computes it.
+    /// Function that is called with the numbers of finished and of all cells of a map, on the thread that computes it. `None` for no calls.
     pub on_progress: Option<Arc<dyn Fn(usize, usize) + Send + Sync>>,
-    /// Flag that cancels: if true, a map ends with [`Error::Cancelled`] after the current row batch, and curves after the current
-    /// whiskers.
+    /// Flag that cancels: if true, a map ends with [`Error::Cancelled`] after the current row batch, and curves after the current whiskers. `None` if
+    /// nothing cancels.
     pub cancel: Option<Arc<AtomicBool>>,
 }
 

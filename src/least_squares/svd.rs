@@ -48,7 +48,7 @@ impl Svd {
         Self { directions, images }
     }
 
-    /// Returns each singular value with its direction and image.
+    /// Yields each singular value with its direction `[column]` and image `[row]`.
     pub fn values(&self) -> impl Iterator<Item = (f64, &[f64], &[f64])> {
         let pairs = self.directions.iter().zip(&self.images);
         pairs.map(|(direction, image)| (norm(image), direction.as_slice(), image.as_slice()))

@@ -14,14 +14,14 @@ const AT_LEAST: u64 = 64;
 /// Maximum difference of a value, as a part of the largest along the row or of a radian.
 const TOLERANCE: f64 = 3e-6;
 
-/// The audited cells of a row: the same in every run, one of each `one_in`.
+/// Audited cells of a row: the same in every run, one of each `one_in`.
 pub struct AuditSample {
     seed: u64,
     one_in: u64,
 }
 
 impl AuditSample {
-    /// Returns the audit sample of `row` of `sheet` with `columns` columns.
+    /// Chooses the audited cells of `row` of `sheet`, which has `columns` columns.
     pub fn new(sheet: &Sheet, row: usize, columns: usize) -> Self {
         let cells = (sheet.rows.len() * columns) as u64;
         let distance = sheet.rows[row].pole_distance;
@@ -41,7 +41,7 @@ impl AuditSample {
         }
     }
 
-    /// Returns the audited cells among `cells`.
+    /// Returns the columns of the audited cells among `cells`.
     pub fn of(&self, cells: Range<usize>) -> impl Iterator<Item = usize> + use<> {
         let Self { seed, one_in } = *self;
         let all = cells.start as u64..cells.end as u64;
@@ -75,7 +75,7 @@ const ROW_PARAMETER: f64 = 4.0;
 /// Relative error of a residual that is rounded to `f32`.
 const ROUNDED: f64 = f32::EPSILON as f64;
 
-/// Compares the solved `cells` of an engine with those of the `rest` that the CPU `found`.
+/// Compares the solved `cells` of an engine with those of the `rest` that the CPU `found`. Returns the numbers of compared and of differing cells.
 pub fn compare(
     batch: &RowBatch,
     cells: &Cells,

@@ -13,7 +13,8 @@ use crate::sheet::{CurveNode, Edge, LevelCurve, ON_CURVE};
 /// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
 const SAME_END: f64 = 1e-5;
 
-/// Solves `cells` of `row` once more by continuation. Cells that no continuation reaches stay as they are.
+/// Solves `cells` of `row`, pairs of index and cell, once more by continuation, and returns them. Cells that no continuation reaches stay as they
+/// are.
 pub fn solve(
     side: &WhiskerSide,
     row: usize,

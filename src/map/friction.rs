@@ -8,13 +8,13 @@ use crate::friction::{ContactHistory, ContactPhase, ContactQuery, FrictionState,
 use crate::sheet::{LevelCurve, rows_per_batch};
 use rayon::prelude::*;
 
-/// Row of a side with friction.
+/// Row of a whisker side with friction, and its cells in contact.
 pub struct FrictionRow {
     /// Index of the row in the sheet.
     pub row: usize,
     /// Push angle at which a push from first touch detaches, a magnitude in radians.
     pub end: f64,
-    /// Cells in contact that a push from first touch reaches: index of the column on the side, and magnitude of the push in radians.
+    /// Cells in contact that a push from first touch reaches, `[cell]`: index of the column on the side, and magnitude of the push in radians.
     pub contacts: Vec<(usize, f64)>,
 }
 

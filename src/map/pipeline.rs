@@ -37,7 +37,7 @@ pub struct Pipeline<'a, 'e> {
     /// Effects of the plan and steps of trajectories.
     method: Method,
     rows_at_once: usize,
-    /// Panels to be written again.
+    /// Panels whose memory is used again for the next panels: `[panel]`.
     pub spare: Vec<Panel>,
     columns: Vec<Arc<SideColumns>>,
     /// Signed push angles of the columns of all sides, in radians.

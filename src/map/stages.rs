@@ -58,7 +58,7 @@ pub(super) fn process_seconds() -> Option<f64> {
     None
 }
 
-/// CPU seconds of this thread since it started; `None` where the system has no such clock.
+/// Returns the CPU seconds of this thread since it started; `None` where the system has no such clock.
 #[must_use]
 pub fn thread_seconds() -> Option<f64> {
     #[cfg(unix)]

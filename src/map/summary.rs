@@ -88,7 +88,7 @@ pub struct Summary {
     pub refined: u64,
     /// Number of Newton steps, summed over all cells.
     pub steps: u64,
-    /// Largest residual of a cell with a state, in whisker lengths.
+    /// Largest residual of a cell with a state, in whisker lengths; 0 if no cell has one.
     pub worst_residual: f64,
     /// Number of cells whose own verdict contradicts the boundary of their row.
     pub disagreements: u64,

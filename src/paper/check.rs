@@ -52,7 +52,7 @@ impl Check {
         }
     }
 
-    /// Compares the number with its source; NaN never passes.
+    /// Returns the verdict on the checked number, compared with its source; NaN never passes.
     #[must_use]
     pub fn verdict(&self) -> CheckVerdict {
         let passes = match self.expected {

@@ -55,7 +55,7 @@ impl ReferencePoint {
     }
 }
 
-/// Returns checks against AUTO-07p: the largest differences over all points with modelled effects, and the number of points.
+/// Returns checks against AUTO-07p, `[check]`: the largest differences over all points with modelled effects, and the number of points.
 pub fn checks() -> Vec<Check> {
     let points: Vec<ReferencePoint> = csv::Reader::from_reader(POINTS.as_bytes())
         .deserialize()

@@ -49,7 +49,7 @@ impl Digits {
         Self { named, ..Self::ALL }
     }
 
-    /// Number of mantissa bits to which the channel `name` is rounded; `None` if it is stored with all bits.
+    /// Returns the number of mantissa bits to which the channel `name` is rounded; `None` if it is stored with all bits.
     ///
     /// `n` bits have a relative error of at most `2^-(n + 1)`. Half a unit of digit `N` is at least `10^-N / 2` of the value, so
     /// `n` is `N log2(10)`, rounded up.
@@ -61,7 +61,7 @@ impl Digits {
         (bits < MANTISSA_BITS).then_some(bits)
     }
 
-    /// Returns the first channel that has digits of its own, but is not one of `channels`.
+    /// Returns the first channel that has digits of its own, but is not one of `channels`; `None` without one.
     #[must_use]
     pub fn not_in(&self, channels: Channels) -> Option<&'static str> {
         let mut named = self.named();

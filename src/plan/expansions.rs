@@ -10,7 +10,7 @@ const CELLS_PER_ROW: usize = 8;
 /// Number of states of a row that is expanded alone, with those that check it.
 pub const STATES_OF_ROW: usize = 34;
 
-/// Numbers of rows and of states along each of most patches.
+/// Numbers of rows, and of states along each row, of most patches: `[rows, states]`.
 pub const USUAL_PATCH: [usize; 2] = [24, 28];
 
 /// Returns the number of cells whose refinement takes as long as some `states` and the expansions of `rows`.

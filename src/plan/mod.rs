@@ -50,7 +50,7 @@ const ROWS_IN_FLIGHT: usize = 1 << 10;
 /// Cells of the panels computed and packed together: enough for several threads, in little memory.
 const CELLS_OF_PANELS: usize = 1 << 18;
 
-/// Rows of a block of an EXR file of one panel.
+/// Number of rows of a block of an EXR file of one panel.
 pub const BLOCK_ROWS: usize = 16;
 
 /// Returns the number of rows of a band of a panel with these numbers of rows and push angles, and of a chunk of its store: whole blocks
@@ -104,7 +104,7 @@ pub struct Plan {
     pub digits: Digits,
     /// Number of panels computed together, so that small panels fill an engine.
     pub panels_at_once: usize,
-    /// Rows of a panel that are finished together, a band; all of them unless there is one panel, in bands.
+    /// Number of rows of a panel that are finished together, a band: all rows, unless a single panel is computed in bands.
     pub band_rows: usize,
     /// Maximum number of rows of a batch for an engine.
     pub rows_at_once: usize,

@@ -186,7 +186,7 @@ pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarg
     targets
 }
 
-/// Returns the stable states of `sheet` with their targets, for those of the signed push angles, in degrees, that are on its side.
+/// Returns the stable states of `sheet` with their targets, `[state]`, for those of the signed push angles, in degrees, that are on its side.
 #[must_use]
 pub fn states(
     method: Method,

@@ -94,7 +94,7 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
     }
 }
 
-/// Finds the `states`, one result for each. A result is `None` where Newton's method fails, or leads off the stable sheet.
+/// Finds the `states`, one result for each: `[state]`. A result is `None` where Newton's method fails, or leads off the stable sheet.
 pub fn row_states(
     method: Method,
     states: &[RowState],

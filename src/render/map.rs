@@ -106,8 +106,8 @@ fn has_boundary(map: &MapSlice) -> Result<bool, RenderError> {
     Ok(false)
 }
 
-/// The fill of a regime's code; an unknown code looks unresolved. Regimes that occur side by side differ by 20 in lightness
-/// (CIE L*): 96, 74, 53 and 31. They and unresolved stay apart for people who lack one of the three cones.
+/// Returns the fill of a regime's code; an unknown code looks unresolved. Regimes that occur side by side differ by 20 in lightness (CIE L*): 96, 74,
+/// 53 and 31. They and unresolved stay apart for people who lack one of the three cones.
 pub fn regime_fill(code: u32) -> Fill {
     const CONTACT: Rgb = [0x83, 0xc4, 0xa4];
     let known = Regime::ALL.into_iter().find(|known| known.code() == code);

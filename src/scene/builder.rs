@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Standard deviations of the numbers of a scene. The numbers vary independently of each other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Deviations {
-    /// Parameters that the scene gives, each with its standard deviation in the parameter's unit.
+    /// Parameters that the scene gives, `[parameter]`, each with its standard deviation in the parameter's unit.
     pub parameters: Vec<(Parameter, f64)>,
     /// Standard deviation of the radius of every row of `whisker.profile`, in micrometres; `None` without a profile.
     pub profile_radius_um: Option<f64>,

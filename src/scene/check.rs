@@ -21,7 +21,7 @@ use crate::traced::TracedShape;
 /// Most cells of a scene: more than any disk holds, as a stored cell takes about 20 bytes.
 const MOST_CELLS: u128 = 1 << 44;
 
-/// Longest title in characters: many times what fits on a picture.
+/// Largest number of characters of a title: many times what fits on a picture.
 pub const LONGEST_TITLE: usize = 1000;
 
 /// Longest name of outputs in bytes: file systems allow 255, and outputs add endings.

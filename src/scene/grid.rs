@@ -47,7 +47,8 @@ impl Grid {
         names.collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the sweep axes along x and y of an atlas of at most two axes: `[x, y]`. A single axis of curvatures lies along y.
+    /// Returns the sweep axes along x and y of an atlas of at most two axes: `[x, y]`; `None` without an axis. A single axis of curvatures lies along
+    /// y.
     #[must_use]
     pub fn atlas(&self) -> [Option<&SweepAxis>; 2] {
         match &*self.sweep {

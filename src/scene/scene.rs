@@ -99,7 +99,7 @@ impl Scene {
         self.builder.traced.as_deref()
     }
 
-    /// Returns the paths of the CSV files that the scene names: of radii and of traced points.
+    /// Returns the paths of the CSV files that the scene names, of radii and of traced points: `[file]`.
     #[must_use]
     pub fn csv_files(&self) -> &[PathBuf] {
         &self.csv_files
@@ -211,7 +211,7 @@ impl Parameter {
         given.map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the least and the greatest value of the parameter that the scene accepts, in its unit, with all other numbers fixed.
+    /// Returns the range `[least, greatest]` of the parameter that the scene accepts, in its unit, with all other numbers fixed.
     ///
     /// Both are NaN if the scene does not give the parameter.
     #[must_use]

@@ -99,14 +99,14 @@ pub struct Linearised<'a> {
     by: Vec<VariationDerivative>,
 }
 
-/// Derivative of a state by a variable, as the equations move it.
+/// Derivative of a state by a variable, with the state kept on its equations.
 #[derive(Clone, Copy, Debug)]
 pub struct Moved {
-    /// Derivative of `tau` of the contact.
+    /// Derivative of the contact's coordinate `tau`, dimensionless per unit of the variable.
     pub tau: f64,
-    /// Derivative of the state.
+    /// Derivative of pose, force and energy of the state by the variable.
     pub state: StateDerivative,
-    /// Derivative of the pole's direction, in radians from the base's tangent.
+    /// Derivative of the pole's direction from the base's tangent, in radians per unit of the variable.
     pub phi: f64,
 }
 
@@ -179,8 +179,8 @@ impl<'a> Linearised<'a> {
         }
     }
 
-    /// Returns the derivative of the state by the variable with this index, which changes the whisker by `by`. `distance` and
-    /// `by_distance` are the distance of first touch and its derivative, in whisker lengths.
+    /// Returns the derivative of the state by the variable with this index, and the derivative of `(ln D, phi)` at first touch. The variable changes
+    /// the whisker by `by`. `distance` and `by_distance` are the distance of first touch and its derivative, in whisker lengths.
     pub fn moved(
         &self,
         equations: Equations,

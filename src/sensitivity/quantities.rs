@@ -9,25 +9,25 @@ use serde::Serialize;
 /// Derivatives of the quantities of a detachment or a state by one variable: each in the unit of its name, per unit of the variable.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Derivatives {
-    /// Derivative of the push angle, in degrees. At a state it is 1 by the push angle and 0 by any other variable.
+    /// Derivative of the push angle, in degrees per unit of the variable. At a state it is 1 by the push angle and 0 by any other variable.
     pub push_angle_deg: f64,
-    /// Derivative of the chord angle, in degrees.
+    /// Derivative of the chord angle, in degrees per unit of the variable.
     pub push_chord_deg: f64,
-    /// Derivative of the straight distance from the base to the contact, in mm.
+    /// Derivative of the straight distance from the base to the contact, in mm per unit of the variable.
     pub contact_distance_mm: f64,
-    /// Derivative of the arclength from the base to the contact, in mm.
+    /// Derivative of the arclength from the base to the contact, in mm per unit of the variable.
     pub arc_length_mm: f64,
-    /// Derivative of the size of the normal force, in uN.
+    /// Derivative of the magnitude of the normal force, in uN per unit of the variable.
     pub force_un: f64,
-    /// Derivative of the force on the base along its tangent, in uN.
+    /// Derivative of the force on the base along its tangent, in uN per unit of the variable.
     pub base_force_x_un: f64,
-    /// Derivative of the force on the base to the left of its tangent, in uN.
+    /// Derivative of the force on the base to the left of its tangent, in uN per unit of the variable.
     pub base_force_y_un: f64,
-    /// Derivative of the moment on the base, in nN m.
+    /// Derivative of the moment on the base, in nN m per unit of the variable.
     pub base_moment_nnm: f64,
-    /// Derivative of the bending energy, in nJ.
+    /// Derivative of the bending energy, in nJ per unit of the variable.
     pub energy_nj: f64,
-    /// Derivative of the contact angle, in degrees.
+    /// Derivative of the contact angle, in degrees per unit of the variable.
     pub contact_angle_deg: f64,
 }
 

@@ -71,8 +71,8 @@ impl Variable {
         }
     }
 
-    /// Returns the variables of detachments of `scene`: the parameters that it gives, but for the length of a measured profile, then the
-    /// distance.
+    /// Returns the variables of detachments of `scene`, `[variable]`: the parameters that it gives, but for the length of a measured profile, then
+    /// the distance.
     #[must_use]
     pub fn of_detachments(scene: &Scene) -> Vec<Self> {
         let given = Parameter::ALL.into_iter();

@@ -8,17 +8,18 @@ use crate::scene::{Parameter, Pole, Whisker};
 /// Change of a whisker in front of its pole per unit of a variable.
 #[derive(Clone, Debug, Default)]
 pub struct WhiskerDerivative {
-    /// Derivatives of the numbers of the rod. Those of the taper and the profile are in `profile` if the profile changes.
+    /// Derivatives of the dimensionless numbers of the rod by the variable. Those of the taper and the profile are in `profile` if the profile
+    /// changes.
     pub rod: RodDerivative,
-    /// Derivative of the distance at first touch, in mm.
+    /// Derivative of the distance at first touch, in mm per unit of the variable.
     pub distance_mm: f64,
-    /// Derivative of the push angle, in radians.
+    /// Derivative of the push angle, in radians per unit of the variable.
     pub push: f64,
-    /// Derivative of the whisker's length, in mm.
+    /// Derivative of the whisker's length, in mm per unit of the variable.
     pub length_mm: f64,
-    /// Derivative of the logarithm of the unit of force.
+    /// Derivative of the natural logarithm of the unit of force, per unit of the variable.
     pub ln_force: f64,
-    /// Derivative of the logarithm of the unit of moment and energy.
+    /// Derivative of the natural logarithm of the unit of moment and energy, per unit of the variable.
     pub ln_moment: f64,
 }
 

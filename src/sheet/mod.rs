@@ -168,7 +168,7 @@ impl Sheet {
         self.rows[row].is_reached()
     }
 
-    /// Distance from the tip, in `tau`, within which the integration cannot distinguish a contact from one at the tip.
+    /// Returns the distance from the tip, in `tau`, within which the integration cannot distinguish a contact from one at the tip.
     #[must_use]
     pub fn tip_blur(&self) -> f64 {
         let samples = self.samples.as_ref();
@@ -212,8 +212,8 @@ impl Sheet {
         }
     }
 
-    /// Returns a Newton start for each cell of `row`, one for each of the growing `pushes` (magnitudes, in radians). An entry is `None`
-    /// outside the sheet.
+    /// Returns a Newton start for each cell of `row`, `[push_angle]`, one for each of the growing `pushes` (magnitudes, in radians). An entry is
+    /// `None` outside the sheet.
     pub fn guesses(
         &self,
         row: usize,

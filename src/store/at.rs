@@ -87,7 +87,7 @@ pub fn scene_at(
     Ok((scene.clone(), chosen))
 }
 
-/// Names and values of selected axes, each in the unit of its axis.
+/// Names and values of selected axes, each in the unit of its axis: `[axis]`.
 pub type ChosenValues = Vec<(&'static str, f64)>;
 
 /// Returns names of selected axes, and their values as text to four digits.

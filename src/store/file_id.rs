@@ -55,7 +55,7 @@ impl FileId {
         stdin.exists().then(|| Self::of(stdin)).flatten()
     }
 
-    /// Returns the identities of the folders that hold `path`, from the innermost one on.
+    /// Returns the identities of the folders that hold `path`, from the innermost one on: `[folder]`.
     #[must_use]
     pub fn of_folders(path: &Path) -> Vec<Self> {
         let path = resolved(path).unwrap_or_default();

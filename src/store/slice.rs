@@ -144,7 +144,7 @@ impl MapSlice {
         AtlasLayout::of(&self.grid)
     }
 
-    /// Returns names and values of the fixed axes of the slice, each in the unit of its axis.
+    /// Returns names and values of the fixed axes of the slice, `[axis]`, each in the unit of its axis.
     #[must_use]
     pub fn chosen(&self) -> &[(&'static str, f64)] {
         &self.chosen

@@ -128,7 +128,7 @@ impl MapSource {
         }
     }
 
-    /// Returns the indices of the whiskers that are not computed yet, as ranges in order: those of unfinished blocks of a store.
+    /// Returns the indices of the whiskers that are not computed yet, as ranges in order, `[range]`: those of unfinished blocks of a store.
     ///
     /// # Errors
     /// The file system refuses to look for a file.

@@ -206,7 +206,7 @@ impl TemporaryFolder {
         self.folder.path()
     }
 
-    /// Gives the temporary folder its name.
+    /// Gives the temporary folder the name `target`.
     ///
     /// # Errors
     /// A file, or a folder that is not empty, has the name.

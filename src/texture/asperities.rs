@@ -150,7 +150,7 @@ impl Asperities {
         (asperity.number, asperity.x_mm)
     }
 
-    /// Returns the row of the states against an obstacle on `side`.
+    /// Returns the index of the row with the states against an obstacle on `side`.
     pub fn row(&self, side: Side, obstacle: i32) -> usize {
         self.of(side, obstacle).map_or(0, |touch| touch.row)
     }

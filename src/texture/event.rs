@@ -7,7 +7,7 @@ use crate::shooting::Reading;
 use crate::whisk::phase::Passage;
 use crate::whisk::{WhiskEventKind, signed_deg};
 
-/// Returns the events of a course, up to the first crossing.
+/// Returns the events of a course up to the first crossing, `[event]`.
 pub fn events(
     passages: &[Passage],
     kinds: &[WhiskEventKind],

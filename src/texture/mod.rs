@@ -32,9 +32,9 @@ use tip::TipFrame;
 /// Course of a whisker behind a rough surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Samples of the course, one for each of its times.
+    /// Samples of the course, one for each of its times: `[sample]`.
     pub samples: Vec<TextureSample>,
-    /// Events of the course in the order of time.
+    /// Events of the course in the order of time: `[event]`.
     pub events: Vec<TextureEvent>,
     /// Number of asperities within reach of the resting whisker.
     pub reached: usize,
@@ -44,7 +44,7 @@ pub struct Texture {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TextureError {
-    /// A number of the surface is out of its range.
+    /// A number of the rough surface is out of its range.
     #[error(transparent)]
     Surface(#[from] SceneError),
     /// The base turns away from the surface.
@@ -56,9 +56,9 @@ pub enum TextureError {
          surface.asperity_radius_um or surface.jitter smaller", .asperities[0], .asperities[1], .x_mm[0], .x_mm[1]
     )]
     Blocked {
-        /// Numbers of the two asperities on the surface.
+        /// Numbers of the two asperities on the surface, from its lower end: `[lower, upper]`.
         asperities: [usize; 2],
-        /// Positions of the two asperities along the surface, in mm.
+        /// Positions of the two asperities along the surface, in mm: `[lower, upper]`.
         x_mm: [f64; 2],
     },
     /// The resting whisker would cross an asperity at the first angle.
@@ -71,7 +71,7 @@ pub enum TextureError {
         angle_deg: f64,
         /// Number of the asperity on its surface.
         asperity: usize,
-        /// Angles of the base at the touches of the asperity on CB and CF, in degrees.
+        /// Angles of the base at which the resting whisker touches the asperity, in degrees: `[CB, CF]`.
         touches_deg: [f64; 2],
     },
     /// The end of the push against an asperity was not found on this side.

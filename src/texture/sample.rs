@@ -13,9 +13,9 @@ pub struct Held {
     /// Number of the asperity on its surface.
     pub asperity: usize,
     pub side: Side,
-    /// Push in radians, as a magnitude.
+    /// Push against the asperity since the touch, as a magnitude in radians.
     pub push: f64,
-    /// Loads, and place of the tip; `None` where no state was found.
+    /// Loads of the held whisker, and position of its tip; `None` where no state was found.
     pub state: Option<(Reading, TipPlace)>,
 }
 
@@ -29,13 +29,13 @@ impl Held {
 #[derive(Clone, Copy)]
 pub struct Crossing {
     pub time_s: f64,
-    /// Angle of the base, in radians.
+    /// Angle of the base at the crossing, in radians.
     pub angle: f64,
     pub held: Held,
 }
 
 impl Crossing {
-    /// Returns the first crossing among states, each at its `[time in s, angle in radians]`.
+    /// Returns the first crossing among states, each at its `[time in s, angle in radians]`; `None` without one.
     pub fn first<'a>(
         states: impl Iterator<Item = (&'a Option<Held>, &'a [f64; 2])>,
     ) -> Option<Self> {
@@ -52,7 +52,7 @@ impl Crossing {
     }
 }
 
-/// Returns the samples of a course; all from the first crossing on are undecided.
+/// Returns the samples of a course, `[sample]`; all from the first crossing on are undecided.
 pub fn samples(
     course: &AngleCourse,
     phases: &[Phase],

@@ -42,7 +42,7 @@ row! {
 const TIP_BINS: usize = 80;
 
 impl Texture {
-    /// Returns the stays of the course on its asperities, in the order of time.
+    /// Returns the stays of the course on its asperities, in the order of time: `[stay]`.
     #[must_use]
     pub fn stays(&self) -> Vec<AsperityStay> {
         let mut stays: Vec<AsperityStay> = Vec::new();

@@ -21,9 +21,9 @@ pub struct TipFrame {
 /// Position of the tip of a whisker over a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipPlace {
-    /// Position along the surface, in mm.
+    /// Position of the tip along the surface, in mm from the point nearest to the base.
     pub x_mm: f64,
-    /// Height beyond the line of the asperities, in mm.
+    /// Height of the tip beyond the line of the asperities, in mm.
     pub height_mm: f64,
     /// True if another part of the whisker than that next to the contact meets the line of the asperities.
     pub crosses: bool,
@@ -56,18 +56,19 @@ impl TipFrame {
         }
     }
 
-    /// Returns the tip of the free whisker with the base at `angle`, in radians.
+    /// Returns the position of the tip of the free whisker with the base at `angle`, in radians.
     pub fn free(&self, angle: f64) -> TipPlace {
         self.place(self.resting(self.rest.end(), angle), false)
     }
 
-    /// Returns the point at arclength `s`, in whisker lengths, of the free whisker with the base at `angle`, in radians.
+    /// Returns the point at arclength `s`, in whisker lengths, of the free whisker with the base at `angle`, in radians. The point is in mm: along
+    /// the surface, and toward it.
     pub fn resting(&self, s: f64, angle: f64) -> DVec2 {
         let (at, _) = self.rest.at_arclength(s);
         DVec2::from_angle(self.tangent - angle).rotate(at) * self.length_mm
     }
 
-    /// Returns the tip of the whisker in the state `reading` against an asperity at `x_mm`, with the base at `angle`, in radians.
+    /// Returns the position of the tip of the whisker in the state `reading` against an asperity at `x_mm`, with the base at `angle`, in radians.
     pub fn held(&self, x_mm: f64, side: Side, angle: f64, reading: &Reading) -> TipPlace {
         let direction = self.tangent - angle + reading.contact_angle_deg.to_radians();
         let tangent = DVec2::from_angle(direction);

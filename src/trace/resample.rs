@@ -4,9 +4,9 @@ use crate::numerics::newton_form::{Polynomial, stencil, through_nodes};
 use crate::sheet::CurveNode;
 use glam::DVec2;
 
-/// Returns positions of `count` points along a curve, and the index of the fold among them. `lengths` and the positions are lengths along
-/// the curve, as in [`LevelCurve::length`](crate::sheet::LevelCurve::length). The parts before and after the fold each get intervals in
-/// proportion to their length.
+/// Returns positions of `count` points along a curve, `[point]`, and the index of the fold among them, `None` without one. `lengths` and the
+/// positions are lengths along the curve, as in [`LevelCurve::length`](crate::sheet::LevelCurve::length). The parts before and after the fold each
+/// get intervals in proportion to their length.
 pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>, Option<usize>) {
     let intervals = count - 1;
     let total = lengths[lengths.len() - 1];

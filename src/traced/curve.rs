@@ -23,7 +23,7 @@ struct PlaceTerms {
     bends: [f64; CURVATURE_TERMS],
 }
 
-/// Terms of the curvature at all places of the table. They are the same for all curves.
+/// Rotation and curvature of each Legendre term at all places of the table. They are the same for all curves.
 pub struct CurveTerms {
     knots: Vec<PlaceTerms>,
     /// Terms at the quadrature nodes of each panel, `[panel][node]`.
@@ -32,7 +32,7 @@ pub struct CurveTerms {
 }
 
 impl CurveTerms {
-    /// Computes the Legendre polynomials, and their integrals, at all places.
+    /// Computes the rotation and the curvature of each Legendre term at all places of the table.
     pub fn new() -> Self {
         let terms = std::array::from_fn(|term| {
             let mut one = [0.0; CURVATURE_TERMS];
@@ -58,11 +58,11 @@ impl CurveTerms {
 /// Curve in units of its length, with its base and the angle of its tangent there.
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePose {
-    /// Point of the base.
+    /// Position of the curve's base, in units of the curve's length.
     pub base: DVec2,
     /// Angle of the tangent at the base, in radians.
     pub angle: f64,
-    /// Coefficients of the curvature, see [`CurvaturePolynomial`].
+    /// Coefficients of the Legendre polynomials of the curvature, `[degree]`, in radians, see [`CurvaturePolynomial`].
     pub legendre: [f64; CURVATURE_TERMS],
 }
 
@@ -78,17 +78,17 @@ struct Knot {
 /// Foot of a point: the place on the curve that is nearest to it.
 #[derive(Clone, Copy, Debug)]
 pub struct Foot {
-    /// Place along the curve, in its lengths.
+    /// Place of the foot along the curve, in units of the curve's length from the base.
     pub place: f64,
-    /// Signed distance of the point from the curve, positive on the left.
+    /// Signed distance of the point from the curve, in units of the curve's length, positive on the left.
     pub distance: f64,
-    /// Unit normal of the curve, to the left.
+    /// Unit normal of the curve at the foot, to the left.
     pub normal: DVec2,
-    /// Point of the curve.
+    /// Position of the foot, in units of the curve's length.
     pub point: DVec2,
 }
 
-/// Table of a curve.
+/// Table of a curve: points, tangents and curvatures at its knots, with derivatives by the coefficients.
 pub struct CurveTable<'a> {
     terms: &'a CurveTerms,
     pose: CurvePose,
@@ -170,7 +170,7 @@ impl<'a> CurveTable<'a> {
         from.point + x * (first + x * (bend + x * (a + x * (b + x * c))))
     }
 
-    /// Derivative of the foot's signed distance by each coefficient, at a fixed point.
+    /// Returns the derivative of the foot's signed distance by each coefficient at a fixed point, `[degree]`, in units of the curve's length.
     pub fn distance_by(&self, foot: &Foot) -> [f64; CURVATURE_TERMS] {
         let (panel, x) = self.panel(foot.place);
         let step = 1.0 / f64::from(KNOTS_PER_LENGTH);
@@ -188,7 +188,7 @@ impl<'a> CurveTable<'a> {
         })
     }
 
-    /// Returns the foot of `point`, searched from the `near` place on.
+    /// Returns the foot of `point`, searched from the place `near` on. All are in units of the curve's length.
     pub fn foot(&self, point: DVec2, near: f64) -> Foot {
         let far = |k: usize| self.knots[k].point.distance_squared(point);
         let mut nearest = self.panel(near).0;
@@ -232,7 +232,7 @@ impl<'a> CurveTable<'a> {
         }
     }
 
-    /// Returns the coefficients of the part of the curve from its base to `end`, in units of the part's length.
+    /// Returns the coefficients `[degree]` of the part of the curve from its base to the place `end`, in radians, in units of the part's length.
     pub fn part(&self, end: f64) -> [f64; CURVATURE_TERMS] {
         let step = 1.0 / f64::from(KNOTS_PER_LENGTH);
         let mut legendre = [0.0; CURVATURE_TERMS];

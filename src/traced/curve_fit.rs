@@ -9,7 +9,7 @@ use crate::least_squares::minimise;
 use crate::rod::CURVATURE_TERMS;
 use glam::DVec2;
 
-/// Largest degree of the curvature.
+/// Largest degree of the curvature of a fitted curve, as a polynomial of the arclength.
 pub const MOST_DEGREE: usize = CURVATURE_TERMS - 1;
 
 /// Folds of the cross-validation: the share of the points that each fit leaves out, a common choice.
@@ -24,14 +24,14 @@ const EXACT: f64 = 1e-24;
 /// Number of points along which the length is estimated before the first fit: noise hardly lengthens so coarse a line.
 const COARSE: usize = 16;
 
-/// Curve through points, in their unit, with the distances of the points.
+/// Curve fitted through points, in the unit of the points, with the distances of the points.
 #[derive(Clone)]
 pub struct CurveFit {
-    /// Length from base to tip, in the unit of the points.
+    /// Length of the fitted curve from base to tip, in the unit of the points.
     pub length: f64,
-    /// Base, angle and coefficients. The base is in the unit of the points.
+    /// Base (in the unit of the points), angle at the base and curvature of the fitted curve.
     pub pose: CurvePose,
-    /// Signed distances of the points, `[point]`, in the unit of the points.
+    /// Signed distances of the points from the fitted curve, `[point]`, in the unit of the points.
     pub distances: Vec<f64>,
     /// Unknowns of the curve, in units of `length`.
     unknowns: Vec<f64>,

@@ -94,7 +94,7 @@ row! {
 }
 
 impl EndSpread {
-    /// Returns the percentiles of the push angles.
+    /// Returns the percentiles of the push angles at detachment, in degrees.
     #[must_use]
     pub fn of_push_angles(&self) -> PointSpread {
         PointSpread {

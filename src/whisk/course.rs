@@ -11,7 +11,7 @@ pub struct AngleCourse {
     pub(super) times_s: Vec<f64>,
     /// Angles of the base in degrees, `[time]`: 0 at first touch on CB.
     pub(super) angles_deg: Vec<f64>,
-    /// Note about columns of a file that are not used.
+    /// Note about columns of a file that are not used; `None` without such columns.
     pub note: Option<String>,
 }
 
@@ -22,17 +22,17 @@ pub enum CourseError {
     /// A course needs as many angles as times, at least two.
     #[error("{times} times and {angles} angles: must be at least 2 of each, and equally many")]
     Count {
-        /// Number of times.
+        /// Number of times of the course.
         times: usize,
-        /// Number of angles.
+        /// Number of angles of the course.
         angles: usize,
     },
     /// A time does not grow.
     #[error("time {time_s} s after {before_s} s: times must grow")]
     Time {
-        /// Time of the sample, in s.
+        /// Time of the sample that does not grow, in s.
         time_s: f64,
-        /// Time of the sample before it, in s.
+        /// Time of the sample before the one that does not grow, in s.
         before_s: f64,
     },
     /// A number is not finite or an angle is beyond a turn.
@@ -45,7 +45,7 @@ pub enum CourseError {
     Frequency {
         /// Frequency of the sine, in Hz.
         frequency_hz: f64,
-        /// Number of samples per second.
+        /// Sampling rate of the course, in samples per second.
         rate_hz: f64,
     },
     /// A sine would have too many samples.
@@ -152,13 +152,13 @@ impl AngleCourse {
         Ok(Self { note, ..course })
     }
 
-    /// Returns the times of the samples in s.
+    /// Returns the times of the course's samples, in s: `[sample]`.
     #[must_use]
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    /// Returns the angles of the base in degrees, `[time]`.
+    /// Returns the angles of the base at the course's samples, in degrees: `[sample]`.
     #[must_use]
     pub fn angles_deg(&self) -> &[f64] {
         &self.angles_deg

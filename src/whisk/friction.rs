@@ -5,7 +5,7 @@ use super::states::SideStates;
 use crate::friction::{ContactCourse, ContactPhase, CourseLimits, Sliding, Snap};
 use crate::rod::Side;
 
-/// Contacts of a course with friction.
+/// Contacts of a course with friction, followed in the order of time.
 pub struct FrictionCourse<'a> {
     limits: [Option<&'a CourseLimits>; 2],
     /// Contact that has begun and not ended, with its side.
@@ -17,7 +17,7 @@ pub struct FrictionCourse<'a> {
 }
 
 impl<'a> FrictionCourse<'a> {
-    /// Begins without contact. `sides` are the states on CB and on CF.
+    /// Creates the contacts of a course that begins without contact. `sides` are the states on `[CB, CF]`.
     pub fn new(sides: [Option<&'a SideStates>; 2]) -> Self {
         Self {
             limits: sides.map(|states| states?.limits(0)),
@@ -27,14 +27,14 @@ impl<'a> FrictionCourse<'a> {
         }
     }
 
-    /// Begins a contact on `side`, and moves it from first touch to `push`, a magnitude in radians.
+    /// Begins a contact on `side`, moves it from first touch to `push`, a magnitude in radians, and returns it.
     pub fn touch(&mut self, side: Side, push: f64) -> CourseContact {
         let limits = self.limits[usize::from(side == Side::Cf)];
         self.open = limits.map(|limits| (side, limits.begin()));
         self.to(side, push).0
     }
 
-    /// Moves the contact on `side` to `push`, a magnitude in radians. Returns the contact there, and the snaps on the way.
+    /// Moves the contact on `side` to `push`, a magnitude in radians. Returns the contact there, and the snaps on the way, `[snap]`.
     pub fn to(&mut self, side: Side, push: f64) -> (CourseContact, Vec<Snap>) {
         let mut contact = CourseContact {
             side,

@@ -11,11 +11,11 @@ use crate::friction::Snap;
 /// Sample of a course, before its state is computed.
 #[derive(Clone, Copy, Debug)]
 pub struct LegSample {
-    /// Phase of the course.
+    /// Phase of the course at the sample: free, in contact or undecided.
     pub phase: Phase,
-    /// Contact of the whisker; `None` without one.
+    /// Contact of the whisker at the sample; `None` without one.
     pub contact: Option<CourseContact>,
-    /// Energy that friction has dissipated since the start, in `E I_base/L_w`.
+    /// Energy that friction has dissipated since the start of the course, in `E I_base/L_w`.
     pub dissipated: f64,
 }
 
@@ -24,7 +24,7 @@ pub struct LegSample {
 pub struct LegEvent {
     /// Time of the event, in s.
     pub time_s: f64,
-    /// Angle of the base, in radians.
+    /// Angle of the base at the event, in radians.
     pub angle: f64,
     /// Kind of the event; `None` where a detachment's kind is that of the end of the push.
     pub kind: Option<WhiskEventKind>,
@@ -32,14 +32,14 @@ pub struct LegEvent {
     pub contact: CourseContact,
 }
 
-/// Course through its legs, with the samples and events so far.
+/// Course in progress: legs between samples, with the samples and events so far.
 pub struct Legs<'a> {
     turns: &'a Turns,
     phase: Phase,
     friction: FrictionCourse<'a>,
-    /// Samples so far, `[sample]`.
+    /// Samples of the course so far, `[sample]`.
     pub samples: Vec<LegSample>,
-    /// Events so far, in the order of time.
+    /// Events of the course so far, in the order of time, `[event]`.
     pub events: Vec<LegEvent>,
 }
 
@@ -63,7 +63,7 @@ impl Leg {
 }
 
 impl<'a> Legs<'a> {
-    /// Begins a course in `phase`, without contact. `sides` are the states on CB and on CF.
+    /// Creates the course in progress that begins in `phase`, without contact. `sides` are the states on `[CB, CF]`.
     pub fn new(turns: &'a Turns, phase: Phase, sides: [Option<&'a SideStates>; 2]) -> Self {
         Self {
             turns,

@@ -31,9 +31,9 @@ use turns::Turns;
 /// Course of a whisker in front of one pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Whisk {
-    /// Samples of the course, one for each of its times.
+    /// Samples of the course, one for each of its times: `[sample]`.
     pub samples: Vec<WhiskSample>,
-    /// Events of the course in the order of time.
+    /// Events of the course in the order of time: `[event]`.
     pub events: Vec<WhiskEvent>,
     /// Angle of the base at first touch on CF, in degrees. It differs from 0 with the radius of the pole.
     pub cf_touch_deg: f64,

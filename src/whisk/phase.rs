@@ -11,7 +11,7 @@ pub enum Phase {
     Free { after: i32 },
     /// An obstacle bends the whisker on this side.
     Contact { side: Side, obstacle: i32 },
-    /// The whisker is somewhere between its two touches of this obstacle.
+    /// The whisker is somewhere between its CB touch and its CF touch of this obstacle, for this reason.
     Undecided { obstacle: i32, reason: Undecided },
 }
 
@@ -29,7 +29,7 @@ pub struct Passage {
     pub event: Option<WhiskEventKind>,
     /// Side of the contact that begins or ends.
     pub side: Side,
-    /// Obstacle of the contact that begins or ends.
+    /// Number of the obstacle whose contact begins or ends.
     pub obstacle: i32,
     /// Push since the touch of this contact, in radians, as a magnitude; NaN where the phase is undecided.
     pub push: f64,
@@ -51,7 +51,7 @@ pub trait Obstacles {
         side.sign() * (angle - self.touch(side, obstacle))
     }
 
-    /// Returns the phase at each sample of `course`, which begins in the phase `first`, and the changes between samples.
+    /// Returns the phase at each sample of `course`, `[sample]`, which begins in the phase `first`, and the changes between samples, `[change]`.
     fn follow(&self, first: Phase, course: &AngleCourse) -> (Vec<Phase>, Vec<Passage>) {
         let mut phase = first;
         let mut phases = vec![first];
@@ -88,7 +88,7 @@ pub trait Obstacles {
         }
     }
 
-    /// Returns the event at which the phase `state` begins or ends; `None` for a free whisker.
+    /// Returns the event at which the phase `state` begins or ends at `angle`, in radians; `None` for a free whisker.
     fn passage(&self, state: Phase, angle: f64, grows: bool, begins: bool) -> Option<Passage> {
         let time_s = f64::NAN;
         match state {
@@ -125,7 +125,7 @@ pub trait Obstacles {
         }
     }
 
-    /// Returns the angle at which `phase` ends if the base turns on in one direction, and the next phase.
+    /// Returns the angle, in radians, at which `phase` ends if the base turns on in one direction, and the next phase.
     fn change(&self, phase: Phase, grows: bool) -> (f64, Phase) {
         let side = ahead(grows);
         match phase {

@@ -10,18 +10,18 @@ use crate::rod::Side;
 use crate::shooting::Reading;
 use crate::trace::DetachmentKind;
 
-/// States of both sides.
+/// Stable states of the whisker on both sides, CB and CF.
 pub struct Found<'a> {
-    /// States on CB.
+    /// Stable states of the whisker on CB.
     pub cb: &'a SideStates,
-    /// States on CF; `None` if the resting whisker does not reach the pole there.
+    /// Stable states of the whisker on CF; `None` if the resting whisker does not reach the pole there.
     pub cf: Option<&'a SideStates>,
 }
 
 /// State of a contact in physical units, with its sliding direction if there is friction.
 type ContactReading = Option<(Reading, Option<Sliding>)>;
 
-/// Returns a push in degrees with the sign of its side; 0 without one.
+/// Returns a `push`, a magnitude in radians, in degrees with the sign of its side.
 pub fn signed_deg(side: Side, push: f64) -> f64 {
     side.sign() * push.to_degrees() + 0.0
 }
@@ -54,7 +54,7 @@ impl Found<'_> {
         readings
     }
 
-    /// Returns the samples with their states, without times and angles.
+    /// Returns the samples of a course with their states, without times and angles: `[sample]`.
     pub fn samples(&self, samples: &[LegSample]) -> Vec<WhiskSample> {
         let contacts: Vec<Option<CourseContact>> =
             samples.iter().map(|sample| sample.contact).collect();
@@ -66,7 +66,7 @@ impl Found<'_> {
             .collect()
     }
 
-    /// Returns the events with their states.
+    /// Returns the events of a course with their states: `[event]`.
     pub fn events(&self, events: &[LegEvent]) -> Vec<WhiskEvent> {
         let contacts = events.iter();
         let contacts = contacts.map(|event| Some(event.contact).filter(|own| !own.push.is_nan()));

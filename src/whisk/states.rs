@@ -23,7 +23,8 @@ pub struct SideStates {
     limits: Vec<CourseLimits>,
 }
 
-/// Solver for states with friction: [`states`](crate::friction::states) or [`held`](crate::friction::held).
+/// Solver for states with friction, one for each query: [`states`](crate::friction::states) or [`held`](crate::friction::held). `None` where no state
+/// is found.
 pub type SolveContacts = fn(&[ContactQuery]) -> Vec<Option<FrictionState>>;
 
 /// End of the pushes of one row.
@@ -33,7 +34,7 @@ struct RowEnd {
     state: Reading,
 }
 
-/// Contact with a pole: its row, and the push in radians, as a magnitude.
+/// Contact with a pole: index of the pole's row, and the push in radians, as a magnitude.
 pub type RowPush = (usize, f64);
 
 impl SideStates {
@@ -110,7 +111,7 @@ impl SideStates {
         self.limits.get(row)
     }
 
-    /// Returns the energy of a dimensionless energy of 1, in nJ.
+    /// Returns the unit of energy of the whisker, in nJ: that of a dimensionless energy of 1.
     pub fn energy_nj(&self) -> f64 {
         self.whisker.units().moment_nnm
     }
@@ -215,7 +216,7 @@ impl SideStates {
     }
 }
 
-/// States of both sides; `None` for a side that the resting whisker does not reach.
+/// States of both whisker sides; `None` for a side that the resting whisker does not reach.
 pub struct BothSides {
     pub cb: Option<SideStates>,
     pub cf: Option<SideStates>,
@@ -229,7 +230,7 @@ impl BothSides {
         }
     }
 
-    /// Returns the state of each of the `contacts`; `None` where there is none.
+    /// Returns the state of each of the `contacts` in physical units, `[contact]`; `None` where there is none.
     pub fn readings(&self, contacts: &[Option<(Side, RowPush)>]) -> Vec<Option<Reading>> {
         let mut readings = vec![None; contacts.len()];
         for side in Side::BOTH {

@@ -4,14 +4,14 @@ use super::phase::{Obstacles, Phase, ROUNDING};
 use crate::rod::Side;
 use std::f64::consts::TAU;
 
-/// Angles of one turn at which phases change, in radians. The number of an obstacle counts whole turns of the base.
+/// Angles of one turn at which the phase of a course changes, in radians. The number of an obstacle counts whole turns of the base.
 #[derive(Clone, Copy, Debug)]
 pub struct Turns {
-    /// Angle of the base at first touch on CF. On CB it is 0.
+    /// Angle of the base at first touch on CF, in radians. On CB it is 0.
     pub cf_touch: f64,
-    /// Largest push on CB.
+    /// Push on CB at which the whisker detaches, in radians.
     pub cb_end: f64,
-    /// Largest push on CF, as a magnitude; `None` if the resting whisker does not reach the pole on CF.
+    /// Push on CF at which the whisker detaches, as a magnitude in radians; `None` if the resting whisker does not reach the pole on CF.
     pub cf_end: Option<f64>,
 }
 

@@ -16,7 +16,7 @@ const POINTS: usize = 48;
 const PERIODS: f64 = 2.0;
 const SAMPLES: f64 = 120.0;
 
-/// A sine of the base's angle in front of one pole.
+/// Task: compute a course in front of one pole, in which the base's angle is a sine of time.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WhiskTask {

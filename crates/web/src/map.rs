@@ -7,7 +7,7 @@ use whiskmap::engine::{Engine, EngineDescription, Spectral};
 use whiskmap::scene::{AxisValues, Scene};
 use whiskmap::{Channel, MapEngine, Options};
 
-/// A map to compute.
+/// Task: compute the map of one whisker.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MapTask {

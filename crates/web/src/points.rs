@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use whiskmap::measured::{Comparison, MeasuredPoints};
 use whiskmap::scene::{Parameter, Scene};
 
-/// Measured detachments beside those of a scene.
+/// Task: compare measured detachments with a scene, or fit the scene to them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointsTask {

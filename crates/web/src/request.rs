@@ -21,24 +21,24 @@ pub struct Request {
     task: Task,
 }
 
-/// What is to be computed for a scene.
+/// Task of a request: what is to be computed for a scene.
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Task {
-    /// The numbers and effects of the scene.
+    /// Task: return the numbers and effects of the scene.
     Scene,
-    /// The scene as TOML with the values of the request.
+    /// Task: return the scene as TOML with the values of the request.
     Toml,
-    /// A map of one whisker.
+    /// Task: compute a map of one whisker.
     Map(map::MapTask),
-    /// The stable state at one push angle and distance.
+    /// Task: compute the stable state at one push angle and distance.
     State {
         /// Push angle since first touch, in degrees.
         push_angle_deg: f64,
         /// Distance of first touch from the base, in mm.
         distance_mm: f64,
     },
-    /// The branches of both sides at one distance, and the unstable state at a push angle.
+    /// Task: compute the branches of both sides at one distance, and the unstable state at a push angle.
     Branches {
         /// Distance of first touch from the base, in mm.
         distance_mm: f64,
@@ -47,21 +47,21 @@ pub enum Task {
         /// Number of points of each branch.
         count: usize,
     },
-    /// The detachment curve of both sides.
+    /// Task: compute the detachment curve of both sides.
     Curve {
-        /// Least and greatest distance, in mm.
+        /// Range `[least, greatest]` of distances of first touch from the base, in mm.
         distance_mm: [f64; 2],
-        /// Number of distances.
+        /// Number of distances of the detachment curve.
         count: usize,
     },
-    /// Effects of all numbers of the scene on the detachments of both sides at one distance.
+    /// Task: compute the effects of all numbers of the scene on the detachments of both sides at one distance.
     Sensitivities {
         /// Distance of first touch from the base, in mm.
         distance_mm: f64,
     },
-    /// The course of a sine of the base's angle in front of one pole.
+    /// Task: compute the course in front of one pole while the base's angle is a sine of time.
     Whisk(course::WhiskTask),
-    /// Measured detachments beside those of the scene, after a fit of the free parameters if there are any.
+    /// Task: compare measured detachments with those of the scene, after a fit of the free parameters if there are any.
     Points(points::PointsTask),
 }
 

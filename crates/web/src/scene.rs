@@ -56,7 +56,7 @@ fn number(scene: &Scene, parameter: Parameter) -> Option<f64> {
     parameter.value(scene).or_else(added)
 }
 
-/// Returns the text of `scene` with other `values`; its comments stay.
+/// Returns the TOML text of `scene` with other `values` of parameters, in their units; its comments stay.
 pub fn toml(scene: &Scene, values: &[(Parameter, f64)]) -> Result<String, String> {
     scene.to_toml_with(values).map_err(|why| why.to_string())
 }

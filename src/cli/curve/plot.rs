@@ -73,7 +73,7 @@ pub enum CurveColumn {
 }
 
 impl CurveColumn {
-    /// The horizontal axis of the column.
+    /// Returns the horizontal axis of the column in plots, in the column's unit.
     pub const fn axis(self) -> CurveAxis {
         match self {
             Self::PushAngleDeg => CurveAxis {
@@ -92,7 +92,7 @@ impl CurveColumn {
         }
     }
 
-    /// The percentiles 5, 25, 75 and 95 of samples.
+    /// Returns a function that reads the percentiles `[5, 25, 75, 95]` of the column from samples, in its unit; `None` without detachments.
     pub const fn percentiles(self) -> fn(&EndSpread) -> [Option<f64>; 4] {
         match self {
             Self::PushAngleDeg => |row| [row.p5_deg, row.p25_deg, row.p75_deg, row.p95_deg],
@@ -123,7 +123,7 @@ const UPWARD: CurveAxis = CurveAxis {
     value: |end| Some(end.distance_mm),
 };
 
-/// Horizontal axis for measured chord angles.
+/// Horizontal axis of plots of measured chord angles, in degrees.
 pub const CHORD: CurveAxis = CurveAxis {
     label: "chord angle at detachment (deg)",
     value: |end| end.push_chord_deg,

@@ -55,7 +55,7 @@ pub(super) fn enumerate() -> Vec<wgpu::Adapter> {
     pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
 }
 
-/// Returns a description of every adapter of every interface.
+/// Returns a description of every adapter of every interface, `[adapter]`.
 #[must_use]
 pub fn adapters() -> Vec<AdapterReport> {
     enumerate().iter().map(AdapterReport::new).collect()

@@ -35,7 +35,7 @@ pub trait Scalar: Real + Pod + Into<f64> {}
 
 impl<T: Real + Pod + Into<f64>> Scalar for T {}
 
-/// Returns `number` as `[high, low]`: rounded to the shaders' scalar, and the rounded remainder.
+/// Returns `number` as the sum of two numbers `[high, low]`: rounded to the shaders' scalar, and the rounded remainder.
 pub fn halves<T: Scalar>(number: f64) -> [T; 2] {
     let high = T::of(number);
     [high, T::of(number - high.into())]

@@ -64,7 +64,7 @@ fn binding(
 }
 
 impl Flight {
-    /// Submits packed cells in the `buffers` of a finished flight; `is_timed` by the device's clock.
+    /// Submits packed cells in the `buffers` of a finished flight, and returns the flight. If `is_timed`, the device's clock times it.
     pub fn submit(
         device: &Device,
         pipeline: &wgpu::ComputePipeline,

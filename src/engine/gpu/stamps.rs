@@ -8,7 +8,7 @@ use wgpu::BufferUsages as Usage;
 /// Bytes of two time stamps.
 const BYTES: u64 = 16;
 
-/// Time stamps of one submission, by the device's clock.
+/// Time stamps at the begin and the end of one submission's compute pass, by the device's clock.
 #[derive(Debug)]
 pub struct Stamps {
     set: wgpu::QuerySet,
@@ -36,7 +36,7 @@ impl Stamps {
         }))
     }
 
-    /// Returns the time stamps to write before and after a pass.
+    /// Returns the time stamps to write before and after the compute pass.
     pub fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.set,
@@ -45,13 +45,13 @@ impl Stamps {
         }
     }
 
-    /// Copies the time stamps back after the pass.
+    /// Copies the time stamps to a buffer for the CPU after the compute pass.
     pub fn resolve(&self, commands: &mut wgpu::CommandEncoder) {
         commands.resolve_query_set(&self.set, 0..2, &self.resolved, 0);
         copy_back(commands, &self.resolved, &self.readback, BYTES);
     }
 
-    /// Returns the duration of the pass, which is done.
+    /// Returns the duration of the compute pass, which the device has finished.
     pub fn read(&self, device: &Device) -> Result<Duration, EngineError> {
         let [start, end]: [u64; 2] =
             Device::read(&self.readback, BYTES, bytemuck::pod_read_unaligned)?;

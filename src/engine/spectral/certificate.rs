@@ -11,9 +11,9 @@ use crate::shooting::batch::{Batch, InitialCondition, Method};
 /// Factor by which a bound exceeds the largest error seen: the error between a few places may be larger than there.
 pub const MARGIN: f64 = 4.0;
 
-/// Check of the expansions of a row at places between its points.
+/// Check of the expansions of one row at places between its points.
 pub struct Check<'a> {
-    /// Row that is checked.
+    /// Row whose expansions are checked.
     pub row: Row,
     /// Expansions of the row that are checked.
     pub functions: &'a Chebyshev<FUNCTIONS>,

@@ -45,7 +45,7 @@ impl Default for Spectral {
 }
 
 impl Spectral {
-    /// An engine with a residual of at most `most` whisker lengths.
+    /// Creates a spectral engine with a residual of at most `most` whisker lengths.
     #[must_use]
     pub fn new(most: f64) -> Self {
         Self {

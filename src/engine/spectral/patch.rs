@@ -45,7 +45,7 @@ impl PatchSize {
         states: USUAL_PATCH[1],
     };
 
-    /// Number of states.
+    /// Returns the number of exact states of a patch of this size: rows times states along each.
     pub const fn count(self) -> usize {
         self.rows * self.states
     }

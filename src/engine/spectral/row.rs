@@ -48,12 +48,12 @@ pub fn simple_end(sheet: &Sheet, row: usize) -> Option<&Crossing> {
     (is_simple && !sheet.is_continued()).then_some(end)
 }
 
-/// Newton starts of the states of rows.
+/// Newton starts of the exact states of rows.
 #[derive(Clone, Copy)]
 pub enum StateStarts<'a> {
-    /// The spans of the rows.
+    /// Starts from the row spans of the rows.
     Spans,
-    /// Expansions of each row, and their largest error in whisker lengths.
+    /// Starts from expansions of each row, `[row]`, with their largest error in whisker lengths.
     Expansions(&'a [Chebyshev<FUNCTIONS>], f64),
 }
 
@@ -171,7 +171,7 @@ fn numbers(push: f64, tau: f64, load: f64, values: &Values) -> Numbers {
     numbers
 }
 
-/// Returns the larger of two errors; NaN if either is.
+/// Returns the larger of two errors in one unit; NaN if either is.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
 }
@@ -189,20 +189,20 @@ const SAFETY: f64 = 1.1;
 /// Weighted sizes of the last coefficients of expansions, in whisker lengths.
 #[derive(Clone, Copy, Debug)]
 pub struct ExpansionTail {
-    /// Largest of the last coefficients: the expected error.
+    /// Largest of the last coefficients, in whisker lengths: the expected error of the expansions.
     pub last: f64,
     /// Largest of as many coefficients before.
     before: f64,
 }
 
 impl ExpansionTail {
-    /// The weighted [`tails`](Chebyshev::tails) of expansions.
+    /// Creates the tail of expansions from their [`tails`](Chebyshev::tails) and the `weights` to whisker lengths.
     pub fn new(tails: &[Numbers; 2], weights: &Weights) -> Self {
         let [last, before] = tails.each_ref().map(|tail| largest(tail, weights));
         Self { last, before }
     }
 
-    /// The larger tail of two expansions.
+    /// Returns the larger of the tails of two expansions.
     pub fn larger(self, other: Self) -> Self {
         Self {
             last: larger(self.last, other.last),
@@ -210,8 +210,8 @@ impl ExpansionTail {
         }
     }
 
-    /// Number of points whose last coefficients are expected to be `goal`, where those of `count` points are this tail, if they go on to
-    /// fall at the same rate; `None` above [`MOST_POINTS`].
+    /// Returns the number of points whose last coefficients are expected to be `goal`, if coefficients go on to fall at the same rate. This tail is
+    /// that of `count` points. `None` above [`MOST_POINTS`].
     pub fn points(self, count: usize, goal: f64) -> Option<usize> {
         if self.last <= goal {
             return Some(count);

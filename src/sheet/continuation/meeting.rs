@@ -103,7 +103,7 @@ impl Chord<'_> {
     }
 }
 
-/// Returns the first edge that each of the `chords` meets.
+/// Returns the first edge that each of the `chords` meets: `[chord]`.
 pub fn meet(chords: &[Chord]) -> Vec<Meeting> {
     let crossed: Vec<_> = chords.iter().map(Chord::crossed).collect();
     let looked_for: Vec<(&Chord, Edge)> = crossed.iter().flatten().flatten().copied().collect();

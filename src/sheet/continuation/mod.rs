@@ -52,7 +52,8 @@ impl LevelCurve {
 /// Level curve and the node from which it is followed. The whole is `None` for a curve that is left out.
 pub type CurveStart<'a> = Option<(&'a LevelCurve, CurveNode)>;
 
-/// Follows several level curves at once, each as [`LevelCurve::continuation`] does; their trajectories share batches.
+/// Follows several level curves at once, each as [`LevelCurve::continuation`] does; their trajectories share batches. Returns `[curve]`, `None` where
+/// the continuation fails or the start is `None`.
 ///
 /// Nodes between the ends may miss their curve by `miss` in `ln D`. Results do not depend on the other curves. Where an end is steep, the
 /// curve is followed again with twice the steps.

@@ -14,7 +14,7 @@ use glam::DVec2;
 const ROUGHENING: f64 = 0.1;
 
 impl LevelCurve {
-    /// Returns the level curve's state at first touch, from which push angles are counted.
+    /// Returns the level curve's state at first touch, from which push angles are counted; never `None`.
     #[must_use]
     pub fn touch(&self) -> Option<CurveNode> {
         let at_touch = self.row.first_touch(&self.rod);

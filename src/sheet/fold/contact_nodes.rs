@@ -13,10 +13,10 @@ use crate::sheet::row::Row;
 use crate::shooting::ShootingMap;
 use glam::DVec2;
 
-/// Spacing of the contact nodes in `u`.
+/// Spacing of the contact nodes in the contact coordinate `u`, dimensionless.
 pub const SPACING: f64 = 0.68;
 
-/// Spacing of the contact nodes in `u` where samples at [`SPACING`] are not certified.
+/// Spacing of the contact nodes in the contact coordinate `u`, dimensionless, where samples at [`SPACING`] are not certified.
 pub const NARROW_SPACING: f64 = SPACING / 4.0;
 
 /// Number of contact nodes beyond the tip.
@@ -148,7 +148,7 @@ impl ContactNodes {
         })
     }
 
-    /// Returns true if the load is certainly less than the fold load of the contact at `tau`.
+    /// Returns true if the load `f/rho^2` is certainly less than the fold load of the contact at `tau`.
     #[must_use]
     pub fn is_below_folds(&self, tau: f64, load: f64) -> bool {
         load.abs() * tau * tau < SURELY_BELOW * self.least_q
@@ -175,7 +175,7 @@ impl ContactNodes {
         here < next && grows(0) && grows(1) && !jumps(to - from, slopes)
     }
 
-    /// Returns `|load|` at the fold of the contact at `tau`, by interpolation.
+    /// Returns the magnitude `|f/rho^2|` of the load at the fold of the contact at `tau`, dimensionless, by interpolation.
     #[must_use]
     pub fn fold_load(&self, tau: f64) -> f64 {
         let place = (u_of(&self.rod, tau) - self.first_u) / self.spacing;

@@ -16,7 +16,7 @@ pub fn u_of(rod: &Rod, tau: f64) -> f64 {
     libm::log(tau) + tau - softening
 }
 
-/// Returns the derivative `du/dln tau` of the contact coordinate `u`.
+/// Returns the derivative `du/dln tau` of the contact coordinate `u` at `tau`, dimensionless.
 pub fn slope_of_u(rod: &Rod, tau: f64) -> f64 {
     let mut slope = 1.0 + tau;
     if rod.gradient < 0.0 {

@@ -31,7 +31,7 @@ pub enum CheckDepth {
 pub enum BlockState {
     /// A file of the block is missing: the block is not finished.
     Missing,
-    /// All files of the block exist, and these are damaged.
+    /// All files of the block exist, and those with these errors are damaged.
     Damaged(Vec<StoreError>),
     /// The file system refused to read these files of the block: they may be undamaged.
     Unreadable(Vec<StoreError>),

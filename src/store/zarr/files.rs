@@ -48,7 +48,7 @@ impl ZarrStore {
         Ok(restored)
     }
 
-    /// Writes missing and damaged metadata and coordinates of the store again. Returns the paths of the damaged files.
+    /// Writes missing and damaged metadata and coordinates of the store again. Returns the paths of the files that were damaged, `[file]`.
     ///
     /// # Errors
     /// A file cannot be read or written.

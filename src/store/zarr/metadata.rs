@@ -146,7 +146,7 @@ pub struct AxisCoordinate<'a> {
     pub values: &'a [f64],
 }
 
-/// Returns the coordinates of a grid in the order of the dimensions of channels: sweep axes, distances and push angles.
+/// Returns the coordinates of a grid in the order of the dimensions of channels, `[axis]`: sweep axes, distances and push angles.
 #[must_use]
 pub fn coordinates(grid: &Grid) -> Vec<AxisCoordinate<'_>> {
     let inside: [(_, _, _, &[f64]); 2] = [

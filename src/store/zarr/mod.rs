@@ -43,7 +43,7 @@ pub struct ZarrStore {
     pub scene: Scene,
     /// Channels of the map that are stored.
     pub channels: Channels,
-    /// The digits to which they are rounded.
+    /// Digits to which the channels of the store are rounded.
     pub digits: Digits,
     path: PathBuf,
     attributes: Map<String, Value>,

@@ -40,7 +40,7 @@ impl Bracket {
         Self { below, above }
     }
 
-    /// Returns the point half way between the ends of the bracket.
+    /// Returns the argument half way between the ends of the bracket, in the unit of the search.
     #[must_use]
     pub fn middle(&self) -> f64 {
         0.5 * (self.below + self.above)
@@ -78,7 +78,7 @@ impl Bracket {
         }
     }
 
-    /// Returns the root of a function by bisection, to the last digit.
+    /// Returns the root of the function `value` in the bracket by bisection, to the last digit, in the unit of the search.
     pub fn bisect(self, mut value: impl FnMut(f64) -> f64) -> f64 {
         let iterate = |x| (value(x), f64::NAN);
         self.newton(self.middle(), |_| 0.0, iterate).x

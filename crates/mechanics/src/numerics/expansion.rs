@@ -79,9 +79,9 @@ impl<const D: usize> Chebyshev<D> {
         Self { coefficients }
     }
 
-    /// Sizes of the last coefficients of each function, the largest of the last [`TAIL`] and of as many before: `[group][function]`. The
-    /// last ones estimate the expansion's error where coefficients still fall; the ratio of both is the rate at which they fall. A single
-    /// point gives 0. NaN for a function with a coefficient that is.
+    /// Returns the sizes of the last coefficients of each function, the largest of the last [`TAIL`] and of as many before: `[group][function]`. The
+    /// last ones estimate the expansion's error where coefficients still fall; the ratio of both is the rate at which they fall. A single point gives
+    /// 0. NaN for a function with a coefficient that is.
     #[must_use]
     pub fn tails(&self) -> [[f64; D]; 2] {
         let mut tails = [[0.0_f64; D]; 2];
@@ -103,7 +103,7 @@ impl<const D: usize> Chebyshev<D> {
         self.values(0, x)
     }
 
-    /// Derivative of one function at `x`.
+    /// Returns the derivative of one `function` of the expansion by `x`, at `x` in `[0, 1]`.
     #[must_use]
     pub fn slope(&self, function: usize, x: f64) -> f64 {
         let [_, slope] = self.series(function, x);

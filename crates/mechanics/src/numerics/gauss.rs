@@ -5,7 +5,7 @@ use crate::numerics::Real;
 /// Number of collocation nodes in a step.
 pub const NODES: usize = 5;
 
-/// Collocation nodes of a step: the Gauss-Legendre nodes on `[0, 1]`.
+/// Collocation nodes of a step, `[node]`: the Gauss-Legendre nodes on `[0, 1]`.
 pub const AT: [f64; NODES] = [
     0.046_910_077_030_668,
     0.230_765_344_947_158_45,
@@ -18,13 +18,13 @@ pub const AT: [f64; NODES] = [
 /// node and, last, to the end of the step.
 pub type Integrals<T> = [[T; NODES]; NODES + 1];
 
-/// A weight function on `[0, 1]` for integrals.
+/// A weight function on `[0, 1]`, with which collocation integrals are taken.
 pub trait Weight<T> {
     /// Returns the value of the weight function at `x` in `[0, 1]`.
     fn at(&self, x: f64) -> T;
 }
 
-/// Nodes and weights of the Gauss-Legendre quadrature with four nodes on `[0, 1]`, exact up to degree 7.
+/// Nodes and weights of the Gauss-Legendre quadrature with four nodes on `[0, 1]`, exact up to degree 7: `[point][node, weight]`.
 pub const QUADRATURE: [[f64; 2]; 4] = [
     [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
     [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
@@ -74,7 +74,7 @@ const QUADRATURE_NODES: [[QuadratureNode; QUADRATURE.len()]; NODES + 1] = {
     nodes
 };
 
-/// Collocation integrals with the weight 1.
+/// Collocation integrals over a step of length 1 with the weight 1: `[to][polynomial]`.
 pub const FLAT: Integrals<f64> = {
     let mut flat = [[0.0; NODES]; NODES + 1];
     let mut sum = [0.0; NODES];
@@ -95,7 +95,7 @@ pub const FLAT: Integrals<f64> = {
     flat
 };
 
-/// Returns the collocation integrals with a weight function.
+/// Returns the collocation integrals over a step of length 1 with this `weight` function: `[to][polynomial]`.
 #[inline(always)]
 pub fn integrals<T: Real>(weight: &impl Weight<T>) -> Integrals<T> {
     let mut integrals = [[T::of(0.0); NODES]; NODES + 1];

@@ -6,8 +6,8 @@ const STEPS: u32 = 40;
 /// Part of an interval that a step of the golden section keeps.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// Returns argument and value of the least value found between the two `ends`. A value below `enough` ends the search. The search avoids
-/// NaN; it returns NaN only if every value is.
+/// Returns `[argument, value]` of the least value found between the two `ends`. A value below `enough` ends the search. The search avoids NaN; it
+/// returns NaN only if every value is.
 pub fn least_between(
     mut ends: [f64; 2],
     enough: f64,

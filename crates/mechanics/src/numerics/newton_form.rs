@@ -25,7 +25,7 @@ impl<const N: usize> Polynomial<N> {
         Self { nodes, differences }
     }
 
-    /// Returns the value and the slope of the polynomial at `t`.
+    /// Returns the value and the slope of the polynomial at the argument `t`: `(value, slope)`.
     #[must_use]
     #[inline]
     pub fn at(&self, t: f64) -> (f64, f64) {
@@ -38,8 +38,8 @@ impl<const N: usize> Polynomial<N> {
         (value, slope)
     }
 
-    /// Returns the argument at which the polynomial has the target value, by Newton's method. The last step is at most `last_step`; the
-    /// error is about its square.
+    /// Returns the argument at which the polynomial has the target value, by Newton's method, in the unit of the nodes. The last step is at most
+    /// `last_step`; the error is about its square.
     #[must_use]
     pub fn solve(&self, problem: &RootProblem, last_step: f64) -> f64 {
         let RootProblem {

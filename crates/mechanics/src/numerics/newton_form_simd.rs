@@ -3,7 +3,7 @@
 use crate::numerics::newton_form::{Polynomial, RootProblem};
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 
-/// Numbers of all lanes: `[lane]`.
+/// Numbers of all SIMD lanes: `[lane]`.
 pub type LaneNumbers = [f64; WIDTH];
 
 /// Iterations of Newton's method. The last step of each lane shows if they suffice.
@@ -46,9 +46,9 @@ impl<const N: usize> Terms<'_, N> {
 pub struct SimdRoots<'a, const N: usize, const M: usize> {
     /// Interpolation nodes of all polynomials: `[term]`.
     pub nodes: &'a [f64; N],
-    /// Divided differences of the polynomial to solve.
+    /// Divided differences of the polynomial to solve, in all lanes.
     pub terms: Terms<'a, N>,
-    /// Divided differences of the polynomials to evaluate at the root: `[other]`.
+    /// Divided differences of the polynomials to evaluate at the root, in all lanes: `[other]`.
     pub others: [Terms<'a, N>; M],
 }
 
@@ -148,7 +148,7 @@ impl<const N: usize, const M: usize> SimdTask for Newton<'_, N, M> {
     }
 }
 
-/// Loads lanes from an array of numbers, from index `from` on.
+/// Returns lanes with the numbers of an array from the index `from` on.
 #[inline(always)]
 pub fn pack<T: Lanes>(numbers: &LaneNumbers, from: usize) -> T {
     let mut lanes = [0.0; WIDTH];

@@ -10,7 +10,7 @@ use crate::numerics::{Lanes, SimdTask, Unit};
 /// Expansion of `D` functions of `(x, y)` on `[0, 1]^2`.
 #[derive(Clone, Debug)]
 pub struct ChebyshevTensor<const D: usize> {
-    /// Coefficients of the expansion in `x` and `y`: an expansion in `x` for each Chebyshev polynomial of `y`.
+    /// Coefficients of the expansion in `x` and `y`, `[polynomial of y]`: each is an expansion in `x`.
     pub in_y: Vec<Chebyshev<D>>,
 }
 
@@ -48,7 +48,8 @@ impl<const D: usize> ChebyshevTensor<D> {
         Chebyshev { coefficients }
     }
 
-    /// Sums over the powers of `y` of the last coefficients in `x` ([`Chebyshev::tails`]), `[group][function]`: they estimate the error in `x`.
+    /// Returns the sums over the powers of `y` of the last coefficients in `x` ([`Chebyshev::tails`]), `[group][function]`: they estimate the error
+    /// in `x`.
     #[must_use]
     pub fn tails_in_x(&self) -> [[f64; D]; 2] {
         let tails = self.in_y.iter().map(Chebyshev::tails);

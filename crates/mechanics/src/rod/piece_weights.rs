@@ -53,8 +53,8 @@ impl RadiusProfile {
         Some([next.tau, next.from])
     }
 
-    /// Returns the collocation integrals over the arclength for each of `steps` steps along the whole piece `k`, from its end on. `None`
-    /// if they are not tabulated.
+    /// Returns the collocation integrals over the arclength for each of `steps` steps along the whole piece `k`, from its end on: `[step]`. `None` if
+    /// they are not tabulated.
     #[must_use]
     #[inline]
     pub fn weights(&self, k: usize, steps: u32) -> Option<&[Integrals<f64>]> {

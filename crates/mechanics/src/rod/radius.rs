@@ -137,8 +137,8 @@ impl RadiusProfile {
         (taper.derivative, pieces)
     }
 
-    /// Returns the compliance at arclength `s`: the rotation there by a small unit load. It is the integral of `(s - x) radius(x)^-4`
-    /// from the base to `s`, within a few percent.
+    /// Returns the dimensionless compliance at arclength `s`, in whisker lengths: the rotation there by a small unit load. It is the integral of
+    /// `(s-x) radius(x)^-4` from the base to `s`, within a few percent.
     #[must_use]
     pub fn compliance(&self, s: f64) -> f64 {
         let k = self.piece(s);

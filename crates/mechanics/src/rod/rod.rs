@@ -62,8 +62,8 @@ pub struct Rod {
     pub gradient: f64,
     /// Coulomb's friction coefficient of the contact, friction over normal force, with the sign of the side.
     pub friction: f64,
-    /// Coefficients `[k0, k1]` of an Euler spiral with curvature `k0 + k1 s` at rest, in radians per whisker length, instead of the
-    /// parabola; `s` is in whisker lengths.
+    /// Coefficients `[k0, k1]` of an Euler spiral at rest with curvature `k0 + k1 s`, in radians per whisker length. The spiral replaces the
+    /// parabola; `s` is in whisker lengths. `None` without a spiral.
     pub spiral: Option<[f64; 2]>,
     /// Curvature at rest as a polynomial of the arclength, instead of parabola and spiral; `None` without one.
     pub polynomial: Option<Arc<CurvaturePolynomial>>,
@@ -182,7 +182,7 @@ impl Rod {
         self.tau(pointed(self.taper))
     }
 
-    /// Returns the derivative of [`Rod::tau_tip`] by a variable that changes the taper by `by_taper`.
+    /// Returns the derivative of [`Rod::tau_tip`] by a variable that changes the taper by `by_taper`, dimensionless per unit of the variable.
     #[must_use]
     pub fn tau_tip_derivative(&self, by_taper: f64) -> f64 {
         let s = pointed(self.taper);
@@ -196,7 +196,8 @@ impl Rod {
         tau_derivative(dual(self.taper, by_taper), dual(s, by_s))
     }
 
-    /// Returns the derivative of [`arclength`] by a variable that changes `tau` by `by_tau` and the taper by `by_taper`.
+    /// Returns the derivative of [`arclength`] by a variable, in whisker lengths per unit of it. The variable changes `tau` by `by_tau` and the taper
+    /// by `by_taper`.
     #[must_use]
     pub fn arclength_derivative(&self, tau: f64, by_tau: f64, by_taper: f64) -> f64 {
         let dual = |value, derivative| Dual { value, derivative };

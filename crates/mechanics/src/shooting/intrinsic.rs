@@ -23,7 +23,7 @@ pub trait Intrinsic<T: Real>: Copy {
     /// the radius at the start. `None` if the rod is straight.
     fn turn(course: &Self::Course, along: T) -> Option<T>;
 
-    /// Returns the state of the rest shape at `along`, see [`Intrinsic::turn`].
+    /// Returns the state of the rest shape at `along`: the arclength from the step's start toward the base, over the radius at the start.
     fn after(course: &Self::Course, along: T) -> Self::State;
 }
 
@@ -60,8 +60,9 @@ pub struct Bent<T> {
 }
 
 impl<T: Real> Bent<T> {
-    /// Returns the rest shape of the parabola `y = bend x^2 + slope x`, and at the arclength `s` its state, its curvature and the
-    /// derivative of the curvature by the arclength. `at_base` is the [`arc`](crate::shooting::contact::arc) of `slope`.
+    /// Returns the rest shape of the parabola `y = bend x^2 + slope x`, its state at the arclength `s`, and `[curvature, slope]` there. The slope of
+    /// the curvature is by the arclength. Lengths are in whisker lengths, angles in radians. `at_base` is the [`arc`](crate::shooting::contact::arc)
+    /// of `slope`.
     #[inline(always)]
     pub fn at(bend: T, at_base: T, s: T) -> (Self, [T; 2], [T; 2]) {
         let twice_bend = bend + bend;
@@ -172,7 +173,8 @@ pub struct Spiral<T> {
 }
 
 impl<T: Real> Spiral<T> {
-    /// Returns the curvature of the spiral at the arclength `s`, and its derivative by the arclength.
+    /// Returns the curvature of the spiral at the arclength `s`, and its derivative by `s`: `[curvature, derivative]`, in radians and whisker
+    /// lengths.
     #[inline(always)]
     pub fn at(self, s: T) -> [T; 2] {
         [self.slope.mul_add(s, self.at_base), self.slope]
@@ -209,12 +211,13 @@ impl<T: Real> Intrinsic<T> for Spiral<T> {
 /// A rod whose curvature at rest is a polynomial of the arclength. A traced shape has such a curvature.
 #[derive(Clone, Copy, Debug)]
 pub struct Polynomial<T> {
-    /// Coefficients `[power]` of the powers of `s - 1/2`, see [`CurvaturePolynomial`](crate::rod::CurvaturePolynomial).
+    /// Coefficients `[power]` of the curvature in powers of `s - 1/2`, in radians per whisker length to the power plus one.
     pub centred: [T; CURVATURE_TERMS],
 }
 
 impl<T: Real> Polynomial<T> {
-    /// Returns the curvature at the arclength `s`, and its derivative by the arclength.
+    /// Returns the curvature of the polynomial at the arclength `s`, and its derivative by `s`: `[curvature, derivative]`, in radians and whisker
+    /// lengths.
     #[inline(always)]
     pub fn at(self, s: T) -> [T; 2] {
         let [curvature, slope, ..] = self.around(s);
@@ -243,7 +246,7 @@ impl<T: Real> Polynomial<T> {
     }
 }
 
-/// Rotation along a step of a rod with a polynomial curvature.
+/// Taylor series of the rotation of the tangent along one step, for a rod with a polynomial curvature.
 pub struct PolynomialSeries<T> {
     /// Arclength per `along`, see [`Intrinsic::turn`].
     per_along: T,

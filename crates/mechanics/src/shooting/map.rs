@@ -82,18 +82,18 @@ pub struct FullState {
 /// `tau`. Each field has the unit of the state's value per unit of the variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateDerivative {
-    /// Derivative of the angle of the base's tangent, in radians.
+    /// Derivative of the angle of the base's tangent, in radians per unit of the variable.
     pub angle: f64,
-    /// Derivative of the position of the base, in whisker lengths.
+    /// Derivative of the position of the base in the frame of the contact, in whisker lengths per unit of the variable.
     pub position: DVec2,
-    /// Derivative of the force at the contact, in `E I_base/L_w^2`.
+    /// Derivative of the signed force at the contact, in `E I_base/L_w^2` per unit of the variable.
     pub force: f64,
-    /// Derivative of the bending energy, in `E I_base/L_w`.
+    /// Derivative of the bending energy of the state, in `E I_base/L_w` per unit of the variable.
     pub energy: f64,
 }
 
 impl StateDerivative {
-    /// Returns `self + h other`: the derivative along a sum of variables.
+    /// Returns `self + h other`: the derivative along a sum of two variables.
     #[must_use]
     pub fn plus(&self, h: f64, other: &Self) -> Self {
         Self {
@@ -117,7 +117,7 @@ pub struct FirstVariation {
 }
 
 impl FirstVariation {
-    /// Returns the state at a distance `step` in `(tau, load)`, to first order.
+    /// Returns the state after a `step` in `(tau, load)`, extrapolated to first order.
     #[must_use]
     pub fn extrapolated(&self, step: DVec2) -> FullState {
         let (full, tau, load) = (self.full, self.by_tau, self.by_load);
@@ -140,7 +140,7 @@ impl FirstVariation {
 /// A shooting map with the second derivatives of `(ln D, phi)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SecondVariation {
-    /// Pole, and its first derivatives by contact and load.
+    /// Pole of the state, and the first derivatives of `(ln D, phi)` by contact and load.
     pub map: ShootingMap,
     /// Second derivative of `(ln D, phi)` by `tau`; `phi` in radians.
     pub by_tau_tau: DVec2,
@@ -151,8 +151,8 @@ pub struct SecondVariation {
 }
 
 impl SecondVariation {
-    /// Returns the variation at a distance `step` in `(tau, load)`: the pole to second order, its first derivatives to first order, the
-    /// second derivatives unchanged.
+    /// Returns the variation after a `step` in `(tau, load)`: the pole to second order, its first derivatives to first order, the second derivatives
+    /// unchanged.
     #[must_use]
     pub fn extrapolated(&self, step: DVec2) -> Self {
         let ShootingMap {
@@ -174,7 +174,7 @@ impl SecondVariation {
         }
     }
 
-    /// Returns the gradient of [`ShootingMap::det`] in `(tau, load)`.
+    /// Returns the gradient of the Jacobian determinant [`ShootingMap::det`] by `(tau, load)`.
     #[must_use]
     pub fn det_gradient(&self) -> DVec2 {
         let ShootingMap {

@@ -23,7 +23,7 @@ pub type Planar<T> = [T; 5];
 
 /// Derivatives that a trajectory carries beside the rod: of angles, of the levers that turn them, and of integrals.
 pub trait Sensitivity<T: Real>: 'static {
-    /// Derivatives of angles that a trajectory carries; it carries as many derivatives of levers.
+    /// Derivatives of angles that a trajectory carries, in radians; it carries as many derivatives of levers.
     type Pairs: Vector<T>;
 
     /// Integrals that a trajectory carries, on which no other equation depends.

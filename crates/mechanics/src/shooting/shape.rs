@@ -23,8 +23,8 @@ pub struct RodPoint {
     pub moment: f64,
 }
 
-/// Returns the points at the growing arclengths `at` (whisker lengths) of the whisker with the contact at `tau` under `load`. Beyond the
-/// contact the whisker keeps its rest shape.
+/// Returns points of the whisker with the contact at `tau` under the signed `load`, `[point]`, one at each of the growing arclengths `at` (whisker
+/// lengths). Beyond the contact the whisker keeps its rest shape.
 #[must_use]
 pub fn profile(
     rod: &Rod,

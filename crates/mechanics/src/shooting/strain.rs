@@ -8,12 +8,12 @@ use super::shape::{RodPoint, profile};
 use crate::numerics::Bracket;
 use crate::rod::{Rod, arclength};
 
-/// Largest bending strain of a state, and its place along the whisker.
+/// Largest bending strain of a state, and the arclength at which it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakStrain {
-    /// Arclength of the place from the base, in whisker lengths. Without a load it is the limit for small loads.
+    /// Arclength from the base to the largest bending strain, in whisker lengths. Without a load it is the limit for small loads.
     pub arclength: f64,
-    /// Bending strain at the surface, in base radii over whisker lengths.
+    /// Largest bending strain at the whisker's surface, in base radii over whisker lengths.
     pub strain: f64,
 }
 

@@ -93,7 +93,7 @@ pub struct Dot {
     pub ink: Ink,
     /// True if the dot is an empty ring, false if it is filled.
     pub open: bool,
-    /// Name of the dot in the legend, as in [`Line::name`].
+    /// Name of the dot in the legend, which shows equal names once. `None` keeps the dot out of the legend.
     pub name: Option<String>,
 }
 
@@ -176,7 +176,7 @@ pub struct Band {
     pub points: Vec<[[f64; 2]; 2]>,
     /// Grey of the band: light or dark.
     pub shade: Shade,
-    /// Name of the band in the legend, as in [`Line::name`].
+    /// Name of the band in the legend, which shows equal names once. `None` keeps the band out of the legend.
     pub name: Option<String>,
 }
 

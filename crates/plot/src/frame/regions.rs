@@ -20,7 +20,7 @@ pub struct Region {
     pub short: String,
 }
 
-/// The names of the regions in lines, each with its middle as a fraction of the axis; none without room.
+/// Names of the regions left and right of 0, each in lines with its middle as a fraction of the axis; empty without room.
 pub struct RegionNames(Vec<(TextBlock, f64)>);
 
 impl RegionNames {
@@ -49,13 +49,13 @@ impl RegionNames {
         }))
     }
 
-    /// Returns the height of the names above the frame, in units.
+    /// Returns the height of the regions' names above the frame, in units of the picture.
     pub fn height(&self) -> f64 {
         let heights = self.0.iter().map(|(block, _)| HEIGHT + block.below_first());
         heights.fold(0.0, f64::max)
     }
 
-    /// Draws the names above the frame of `body`, their last lines beside each other.
+    /// Draws the regions' names above the frame of `body`, their last lines beside each other.
     pub fn draw(&self, picture: &mut Picture, body: Area) {
         for (block, at) in &self.0 {
             let [x, y] = body.point(*at, 1.0);

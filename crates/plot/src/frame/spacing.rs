@@ -6,36 +6,36 @@ use crate::picture::size::PictureSize;
 /// Distances around a plot or a heat map, in units of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spacing {
-    /// Height of the space for a picture's title of one line.
+    /// Height of the space for a picture's title of one line, in units of the picture.
     pub head_room: f64,
-    /// Distance of the title's middle from the top of a picture.
+    /// Distance of the title's middle from the top of a picture, in the picture's units.
     pub title_line: f64,
-    /// Height of letter and title of a plot, of one line.
+    /// Height of letter and title of a plot, of one line, in units of the picture.
     pub head: f64,
-    /// Distance between lines of the legend.
+    /// Distance between neighbouring lines of the legend, in units of the picture.
     pub legend_line: f64,
-    /// Space below the legend.
+    /// Height of the space below the legend, in units of the picture.
     pub below_legend: f64,
-    /// Length of the line that is the symbol of lines in a legend.
+    /// Length of the line that is the symbol of lines in a legend, in units of the picture.
     pub symbol: f64,
-    /// Width of the swatch that is the symbol of areas in a legend.
+    /// Width of the swatch that is the symbol of areas in a legend, in units of the picture.
     pub swatch: f64,
-    /// Space between a symbol and its name.
+    /// Space between a symbol of the legend and its name, in units of the picture.
     pub gap: f64,
-    /// Space between a name and the next symbol.
+    /// Space between a name in the legend and the next symbol, in units of the picture.
     pub next: f64,
-    /// Height of the space below a body for ticks and an axis label of one line.
+    /// Height of the space below a body for ticks and an axis label of one line, in units of the picture.
     pub below: f64,
-    /// Distance of the middle of the horizontal axis' label from the frame.
+    /// Distance of the middle of the horizontal axis' label from the frame, in units of the picture.
     pub x_label: f64,
-    /// Distance of the middle of the vertical axis' label from the left end of the space.
+    /// Distance of the middle of the vertical axis' label from the left end of the space beside the body, in units of the picture.
     pub y_label: f64,
-    /// Distance of title and legend from the left and the right edge of the picture; `None` if they are as wide as the body.
+    /// Distance of title and legend from the picture's left and right edge, in its units; `None` if they are as wide as the body.
     pub edge: Option<f64>,
 }
 
 impl Spacing {
-    /// Distances on a screen.
+    /// Distances around a plot or a heat map on a screen.
     pub const SCREEN: Self = Self {
         head_room: 74.0,
         title_line: 46.0,
@@ -69,7 +69,7 @@ impl Spacing {
         edge: Some(8.0),
     };
 
-    /// Returns the distances in a picture of this size.
+    /// Returns the distances around a plot or a heat map in a picture of this size.
     pub fn of(size: PictureSize) -> Self {
         match size {
             PictureSize::Print(_) => Self::PAPER,
@@ -77,8 +77,8 @@ impl Spacing {
         }
     }
 
-    /// Returns the beginning of title and legend to the left of a body, and their width. The body has this width, with `left` and `right`
-    /// units of space beside it.
+    /// Returns `[indent, width]` of title and legend: how far they begin to the left of a body, and their width. The body has this width, with `left`
+    /// and `right` units of space beside it.
     pub fn head_span(&self, [left, width, right]: [f64; 3]) -> [f64; 2] {
         match self.edge {
             None => [0.0, width],

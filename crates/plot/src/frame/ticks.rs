@@ -33,7 +33,7 @@ pub fn fraction([low, high]: [f64; 2], value: f64) -> f64 {
     (value - low) / (high - low)
 }
 
-/// Creates ticks at `values` of a range, with equally precise labels.
+/// Creates ticks at `values` of the range `[low, high]`, with equally precise labels: `[value]`.
 pub fn at(values: &[f64], range: [f64; 2]) -> Vec<Tick> {
     let ticks = values.iter().zip(labels(values));
     ticks
@@ -44,12 +44,12 @@ pub fn at(values: &[f64], range: [f64; 2]) -> Vec<Tick> {
 /// A function that chooses the ticks of a range `[low, high]`, given about how many are wanted.
 pub type TickChooser = fn([f64; 2], f64) -> Vec<Tick>;
 
-/// Chooses about `wanted` ticks of a linear range.
+/// Chooses about `wanted` ticks of a linear range `[low, high]`: `[tick]`.
 pub fn of_numbers(range: [f64; 2], wanted: f64) -> Vec<Tick> {
     at(&round(range, wanted), range)
 }
 
-/// Chooses about `wanted` ticks of a range of decimal logarithms. Labels show the numbers themselves.
+/// Chooses about `wanted` ticks of a range `[low, high]` of decimal logarithms. Labels show the numbers themselves.
 pub fn of_logarithms(range: [f64; 2], wanted: f64) -> Vec<Tick> {
     // The ends of an axis may be powers that no number reaches.
     let ends = range.map(|end| 10_f64.powf(end.clamp(-300.0, 300.0)));
@@ -58,7 +58,7 @@ pub fn of_logarithms(range: [f64; 2], wanted: f64) -> Vec<Tick> {
     values.iter().map(tick).collect()
 }
 
-/// Chooses as many ticks as fit on a horizontal axis of this length in pixels.
+/// Chooses as many ticks of the range `[low, high]` as fit on a horizontal axis of this length in pixels.
 pub fn across(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     let mut wanted = (length / 90.0).clamp(1.0, 10.0);
     loop {
@@ -77,7 +77,7 @@ pub fn across(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
 /// Fewest ticks of a vertical axis with room for more.
 const FEWEST: usize = 3;
 
-/// Chooses the ticks of a vertical axis of this length in pixels.
+/// Chooses the ticks of the range `[low, high]` on a vertical axis of this length in pixels.
 pub fn upwards(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     let mut wanted = (length / 80.0).clamp(1.0, 10.0);
     loop {
@@ -89,7 +89,7 @@ pub fn upwards(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
     }
 }
 
-/// Creates the ticks of the numbers 0, 1, 2, ... in a range, with `names` as their labels.
+/// Creates ticks at the numbers 0, 1, 2, ... in the range `[low, high]`, with `names` as their labels: `[number]`.
 pub fn named(names: &[String], range: [f64; 2]) -> Vec<Tick> {
     let ticks = names.iter().enumerate();
     ticks
@@ -134,7 +134,7 @@ pub fn logarithmic([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     round([low, high], wanted)
 }
 
-/// Writes values with equally many decimals, as few as make all of them different.
+/// Writes values as texts with equally many decimals, as few as make all of them different: `[value]`.
 pub fn labels(values: &[f64]) -> Vec<String> {
     let largest = values
         .iter()

@@ -32,7 +32,7 @@ impl CellAxis {
         }
     }
 
-    /// Returns the lower end of the axis' first cell and the upper end of its last cell, in the unit of the values.
+    /// Returns the lower end of the axis' first cell and the upper end of its last cell, in the unit of the values: `[low, high]`.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
         [self.edges[0], self.edges[self.edges.len() - 1]]

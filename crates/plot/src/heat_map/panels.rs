@@ -17,16 +17,16 @@ const LABEL: f64 = 1.5 * NAME;
 /// Most panels along one axis that stand in one row.
 const IN_ONE_ROW: usize = 3;
 
-/// Columns and rows of panels, and their sizes in units.
+/// Grid of the panels of a heat map: columns, rows, and the sizes of panels in units of the picture.
 #[derive(Clone, Debug)]
 pub struct PanelGrid {
-    /// Number of panels.
+    /// Number of panels of the heat map.
     pub count: usize,
     /// Columns and rows of panels.
     counts: [usize; 2],
     /// Labels above the panels, `[panel]`; empty for panels along two axes.
     pub labels: Vec<String>,
-    /// Distance from one panel to the next along x and y.
+    /// Distance from one panel to the next along each axis, `[x, y]`, in units of the picture.
     pub pitch: [f64; 2],
     /// Gap between panels.
     gap: f64,
@@ -60,7 +60,7 @@ impl PanelGrid {
         }
     }
 
-    /// Returns true for a contact sheet of several panels.
+    /// Returns true if the heat map is a contact sheet of several panels.
     pub fn is_sheet(&self) -> bool {
         self.counts != [1, 1]
     }
@@ -70,7 +70,8 @@ impl PanelGrid {
         if self.labels.is_empty() { 0.0 } else { LABEL }
     }
 
-    /// Returns the size of all square panels together, each with at most the side `panel`, and all at most with the size `sheet`.
+    /// Returns the size `[width, height]` of all square panels together: at most `sheet`, with panels of at most the side `panel`. All are in units
+    /// of the picture.
     pub fn natural(&self, sheet: [f64; 2], panel: f64) -> [f64; 2] {
         let counts = self.counts.map(|count| count as f64);
         let pitch = panel.min(sheet[0] / counts[0]).min(sheet[1] / counts[1]);
@@ -78,7 +79,7 @@ impl PanelGrid {
         [width, self.height(width)]
     }
 
-    /// Returns the height of all square panels that have this width together.
+    /// Returns the height of all square panels together if their width together is `width`, both in units of the picture.
     pub fn height(&self, width: f64) -> f64 {
         let [columns, rows] = self.counts.map(|count| count as f64);
         let gap = gap(width / (columns - GAP));
@@ -86,7 +87,7 @@ impl PanelGrid {
         rows * (side + gap + self.label()) - gap
     }
 
-    /// Returns the grid with the sizes of its panels in an area of this size.
+    /// Returns the grid with panels sized for an area `[width, height]`, in units of the picture.
     pub fn in_area(self, area: [f64; 2]) -> Self {
         let counts = self.counts.map(|count| count as f64);
         let labels = [0.0, counts[1] * self.label()];
@@ -105,13 +106,13 @@ impl PanelGrid {
         }
     }
 
-    /// Returns the middle of the panels at a place of an axis, as a fraction of the area.
+    /// Returns the middle of the panels at an index `place` along an `axis`, as a fraction of the area `[width, height]`.
     pub fn middle(&self, axis: usize, place: usize, area: [f64; 2]) -> f64 {
         let panel = self.pitch[axis] - self.gap;
         (self.pitch[axis] * place as f64 + 0.5 * panel) / area[axis]
     }
 
-    /// Returns the area of a panel in the area `body` of all.
+    /// Returns the area of the panel with this `index`, where `body` is the area of all panels.
     pub fn area(&self, body: Area, index: usize) -> Area {
         let [columns, rows] = self.counts;
         let [column, row] = [index % columns, index / columns];
@@ -127,7 +128,7 @@ impl PanelGrid {
         Area::new([left, top], [width, height - self.label()])
     }
 
-    /// Draws the label above a panel with this `area`, if it has one.
+    /// Draws the label of the panel with this `index` above the panel's `area`; nothing without a label.
     pub fn draw_label(&self, picture: &mut Picture, area: Area, index: usize) {
         if let Some(label) = self.labels.get(index) {
             let [x, y] = area.point(0.5, 1.0);

@@ -22,7 +22,7 @@ fn draw(picture: &Picture) -> Vec<Rgb> {
     bitmap.pixels
 }
 
-/// Encodes a picture as PNG. Lines on white need no strong compression; cells of a heat map do.
+/// Encodes a picture as the bytes of a PNG file. Lines on white need no strong compression; cells of a heat map do.
 pub fn file(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     let has_cells = |primitive: &Primitive| matches!(primitive, Primitive::Raster(..));
     let compression = match picture.primitives.iter().any(has_cells) {
@@ -34,7 +34,7 @@ pub fn file(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     encode(picture.pixels(), &draw(picture), compression, density)
 }
 
-/// Encodes the pixels of an image, row by row, as PNG, with the number of pixels per metre if it is known.
+/// Encodes the pixels of an image, row by row, as the bytes of a PNG file. The file has the number of pixels per metre if it is known.
 pub fn encode(
     [width, height]: [usize; 2],
     pixels: &[Rgb],

@@ -26,13 +26,13 @@ fn sized(size: f64) -> PxScaleFont<&'static FontRef<'static>> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<'a> {
     pub text: &'a str,
-    /// Font size of the run.
+    /// Font size of the run, in the picture's units.
     pub size: f64,
-    /// Drop of the run's baseline below that of the text.
+    /// Drop of the run's baseline below the text's baseline, in the picture's units.
     pub drop: f64,
 }
 
-/// Returns the runs of a text of font size `size`: between and inside its subscripts. A subscript without an end is plain text.
+/// Returns the runs of a text of font size `size`, `[run]`: between and inside its subscripts. A subscript without an end is plain text.
 pub fn runs(text: &str, size: f64) -> Vec<Run<'_>> {
     let plain = |text| Run {
         text,
@@ -60,7 +60,7 @@ pub fn runs(text: &str, size: f64) -> Vec<Run<'_>> {
     runs
 }
 
-/// Returns the width of a text of font size `size`.
+/// Returns the width of a text of font size `size`, both in the picture's units.
 pub fn width(text: &str, size: f64) -> f64 {
     let of_run = |run: Run<'_>| {
         let font = sized(run.size);
@@ -86,7 +86,7 @@ fn each_glyph(
     }
 }
 
-/// Returns the outlines of a text in pixels, `[glyph]`. It begins at the origin, with y downwards from its baseline.
+/// Returns the outlines of a text of font size `size`, in pixels: `[glyph]`. The text begins at the origin, with y downwards from its baseline.
 pub fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
     let mut outlines = Vec::new();
     each_glyph(text, size, |font, c, [x, y]| {
@@ -105,7 +105,8 @@ pub struct GlyphCurves {
     pub at: [f64; 2],
 }
 
-/// Returns the curves of a text, `[glyph]`. It begins at the origin, with y downwards from its baseline.
+/// Returns the curves of a text of font size `size`, `[glyph]`. The text begins at the origin, with y downwards from its baseline, in the unit of
+/// `size`.
 pub fn curves(text: &str, size: f64) -> Vec<GlyphCurves> {
     let mut curves = Vec::new();
     each_glyph(text, size, |font, c, at| {

@@ -14,8 +14,7 @@ use size::PictureSize;
 use std::path::Path;
 use text::{FittedText, TextBlock};
 
-/// Lengths of a dash and of a gap of dashed lines, in pixels along the middle of the line. The round ends of a dash cover one line width
-/// of each gap.
+/// Lengths `[dash, gap]` of dashed lines, in pixels along the middle of the line. The round ends of a dash cover one line width of each gap.
 pub const DASHES: [f64; 2] = [14.0, 10.0];
 
 /// A rectangle of the picture, in the picture's units.
@@ -108,7 +107,7 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// Returns the format for the extension `png`, `svg` or `pdf` of a path, in upper or lower case.
+    /// Returns the format for the extension `png`, `svg` or `pdf` of a path, in upper or lower case; `None` for another extension.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         match &*path.extension()?.to_str()?.to_ascii_lowercase() {

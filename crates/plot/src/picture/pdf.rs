@@ -15,7 +15,7 @@ const LEVEL: u8 = 6;
 /// Distance of the handles of a quarter of a circle from its ends, in radii.
 const QUARTER: f64 = 0.552_284_75;
 
-/// Returns the bytes of a document; equal pictures give equal bytes.
+/// Returns the bytes of a PDF document that shows the picture; equal pictures give equal bytes.
 pub fn document(picture: &Picture) -> Vec<u8> {
     let [catalog, pages, page, contents] = [1, 2, 3, 4].map(Ref::new);
     let [width, height] = picture.size.map(|length| (length * POINTS) as f32);

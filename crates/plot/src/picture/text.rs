@@ -9,11 +9,11 @@ const LEADING: f64 = 1.25;
 /// The end of a text that is cut.
 const ELLIPSIS: &str = "\u{2026}";
 
-/// A text cut to its space, and its font size.
+/// A text cut to its space, and its font size in units of the picture.
 pub type FittedText = (String, f64);
 
-/// Fits a text into one line of length `room`: shrinks the font from `largest` to no less than [`SMALLEST`], and cuts the text if that
-/// does not suffice.
+/// Fits a text into one line of length `room`, in units of the picture. It shrinks the font from `largest` to no less than [`SMALLEST`], and cuts the
+/// text if that does not suffice.
 pub fn fitted(text: &str, largest: f64, room: f64) -> FittedText {
     let size = shrunk(text, largest, room);
     if fits(text, size, room) {
@@ -40,11 +40,11 @@ fn fits(text: &str, size: f64, room: f64) -> bool {
     width(text, size) <= room + 1.0
 }
 
-/// A text in lines.
+/// A text set into lines of one font size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextBlock {
     pub lines: Vec<String>,
-    /// Font size of all lines.
+    /// Font size of all lines of a text, in units of the picture.
     pub size: f64,
 }
 
@@ -78,12 +78,12 @@ impl TextBlock {
         Self { lines, size }
     }
 
-    /// Returns the distance from the first to the last line.
+    /// Returns the distance from the first to the last line of the text, in units of the picture.
     pub fn below_first(&self) -> f64 {
         self.leading() * self.lines.len().saturating_sub(1) as f64
     }
 
-    /// Returns the distance from one line to the next.
+    /// Returns the distance from one line of the text to the next, in units of the picture.
     pub fn leading(&self) -> f64 {
         LEADING * self.size
     }

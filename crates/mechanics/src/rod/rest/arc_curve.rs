@@ -82,7 +82,7 @@ impl ArcCurve {
         Self::new(ArcCurvature::Spiral(coefficients))
     }
 
-    /// Creates the curve with this curvature.
+    /// Creates the curve at rest whose curvature is this polynomial of the arclength.
     pub fn polynomial(curvature: CurvaturePolynomial) -> Self {
         Self::new(ArcCurvature::Polynomial(curvature))
     }

@@ -18,7 +18,7 @@ const LAST_TERMS: f64 = 0.25 * f64::EPSILON;
 /// curve whose tangent stays within a radian or two of its chord reaches some 300 at most, which needs 15 times as many.
 const MOST_PANELS: usize = 4096;
 
-/// Series of a curve from its base to its tip.
+/// Taylor series of a resting curve from its base to its tip.
 #[derive(Clone, Debug)]
 pub struct ArcSeries(Arc<[ArcPanel]>);
 

@@ -7,12 +7,12 @@ use super::{Form, Rest};
 use crate::rod::RodDerivative;
 use glam::DVec2;
 
-/// Derivative of the resting curve at a fixed place along it.
+/// Derivative of the resting curve by a variable, at a fixed place along the curve.
 #[derive(Clone, Copy, Debug)]
 pub struct CurveDerivative {
-    /// Derivative of the point, in whisker lengths, in the frame of the base.
+    /// Derivative of a point of the resting curve, in whisker lengths per unit of the variable, in the frame of the base.
     pub point: DVec2,
-    /// Derivative of the angle of the tangent from the base's tangent, in radians.
+    /// Derivative of the angle between the resting curve's tangent and the base's tangent, in radians per unit of the variable.
     pub angle: f64,
 }
 
@@ -45,7 +45,8 @@ impl Rest {
         (point, tangent, total)
     }
 
-    /// Returns the derivative of [`Rest::point_at_distance`] by a variable that changes the rod by `by` and the distance by `by_distance`.
+    /// Returns the derivative of [`Rest::point_at_distance`] by a variable that changes the rod by `by` and the distance by `by_distance`. Distance
+    /// and point are in whisker lengths.
     #[must_use]
     pub fn point_derivative(&self, distance: f64, by_distance: f64, by: &RodDerivative) -> DVec2 {
         self.derivative_at(distance, by_distance, by).2.point

@@ -45,7 +45,7 @@ impl BlockKey {
 
 /// List of the different block keys of a batch.
 pub struct BlockKeys {
-    /// Block keys of the batch, each once, in the order of appearance.
+    /// Block keys of the batch, each once, in the order of appearance: `[key]`.
     pub all: Vec<BlockKey>,
     /// `[steps modulo 64]`: the index of the last key with such a number of steps.
     likely: [usize; 64],

@@ -9,7 +9,7 @@ use crate::shooting::{
     Section, Sensitivity, Spiral, Straight, TrajectoryState, Uniform, integrate,
 };
 
-/// One initial condition for each lane.
+/// Initial conditions of the trajectories of a block, one for each lane: `[lane]`.
 pub type Conditions<'a> = [&'a InitialCondition<'a>; WIDTH];
 
 /// Returns one number of each initial condition: `[lane]`. (`map` of an array is not inlined into functions for a SIMD unit.)
@@ -22,7 +22,7 @@ pub fn numbers(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f6
     numbers
 }
 
-/// Returns one number of each initial condition, in lanes.
+/// Returns one number of each initial condition, packed into the lanes of `T`.
 #[inline(always)]
 pub fn lanes<T: Lanes>(conditions: &Conditions, number: impl Fn(&InitialCondition) -> f64) -> T {
     T::pack(numbers(conditions, number))
@@ -133,7 +133,8 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
 
 /// A rest shape that can be gathered from the rods of a block.
 pub trait Gather<T: Lanes>: Intrinsic<T> {
-    /// Gathers the rest shape of the rods and, at the arclengths `s`: its state, and its curvature with the derivative by the arclength.
+    /// Gathers the rest shape of the rods. Returns the shape, its state at the arclengths `s` (whisker lengths), and `[curvature, slope]` there: the
+    /// slope is by the arclength.
     fn gather(conditions: &Conditions, s: T) -> (Self, Self::State, [T; 2]);
 
     /// Returns the unit tangent at rest in the frame of a parabola; the first axis for other rest shapes.

@@ -30,8 +30,8 @@ pub trait OutputSet: Copy + Default + Send + 'static {
         at_base: <Self::General<T> as SensitivitySet<T>>::AtBase,
     ) -> [Self; WIDTH];
 
-    /// Runs `Trajectories::new(key, block)` on a SIMD `unit`. Each output set implements it, so that its kernels are compiled in this
-    /// crate and not wherever a batch is integrated.
+    /// Runs `Trajectories::new(key, block)` on a SIMD `unit` and returns the outputs, `[lane]`. Each output set implements it, so that its kernels
+    /// are compiled in this crate and not wherever a batch is integrated.
     #[doc(hidden)]
     fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH];
 }

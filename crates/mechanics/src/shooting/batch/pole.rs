@@ -9,7 +9,7 @@ use crate::shooting::ShootingMap;
 use crate::shooting::sensitivity::{Arrival, BaseDerivatives, Triple};
 use glam::DVec2;
 
-/// A complex number `re + i im`.
+/// A complex number `re + i im`, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Complex<T> {
     pub re: T,
@@ -42,9 +42,9 @@ impl<T: Real> Complex<T> {
     }
 }
 
-/// Centre of the pole relative to the base, in lanes.
+/// Position of the pole's centre relative to the base, in lanes.
 pub struct PoleCentre<T> {
-    /// In the frame of the base.
+    /// Vector from the base to the pole's centre in the frame of the base, in whisker lengths.
     pub pole: Complex<T>,
     inverse: Complex<T>,
 }
@@ -60,20 +60,22 @@ impl<T: Real> PoleCentre<T> {
         }
     }
 
-    /// Returns `w_i/w` for the derivatives `[theta_i, x_i, y_i]` of the base.
+    /// Returns `w_i/w` for the derivatives `[theta_i, x_i, y_i]` of the base by a variable `i`. Here, `w` is the vector from the base to the pole's
+    /// centre as a complex number.
     #[inline(always)]
     pub fn moved(&self, [_, x, y]: Triple<T>) -> Complex<T> {
         Complex::new(-x, -y).times(self.inverse)
     }
 
-    /// Returns `G_i` for the derivatives `[theta_i, x_i, y_i]` of the base.
+    /// Returns the derivative of `ln D + i phi` (`phi` in radians) by a variable `i`, from the derivatives `[theta_i, x_i, y_i]` of the base.
     #[inline(always)]
     pub fn ln_pole_by(&self, of: Triple<T>) -> Complex<T> {
         let moved = self.moved(of);
         Complex::new(moved.re, moved.im - of[0])
     }
 
-    /// Returns `G_ij` for the second derivatives `of` the base; `by` and `and` are `w_i/w` and `w_j/w`.
+    /// Returns the derivative of `ln D + i phi` (`phi` in radians) by two variables, from the second derivatives `of` the base. `by` and `and` are
+    /// the results of [`PoleCentre::moved`] for each variable.
     #[inline(always)]
     pub fn ln_pole_by_twice(&self, of: Triple<T>, by: Complex<T>, and: Complex<T>) -> Complex<T> {
         self.ln_pole_by(of).minus(by.times(and))
@@ -112,7 +114,7 @@ fn transposed<A: Copy + Default, const N: usize>(
     answers
 }
 
-/// Returns the results of `answer` for the index and the numbers of each lane, `[lane]`.
+/// Returns the results of `answer` for the index and the `numbers` of each lane, `[lane]`.
 #[inline(always)]
 pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
     numbers: [T; N],

@@ -22,7 +22,8 @@ type Carried = Energetic<GeneralFirst>;
 /// State of the trajectory, and its derivatives, `[lane]`.
 type Differentiated = (FullState, [VariationDerivative; WIDTH]);
 
-/// Differentiates the trajectory from `condition` by `variables`, at most as many as there are lanes.
+/// Differentiates the trajectory from `condition` by `variables`, at most as many as there are lanes. Returns its state, and the derivatives of the
+/// state, `[variable]`.
 #[inline(always)]
 pub fn compute<T: Lanes>(
     resolution: Resolution,

@@ -13,12 +13,12 @@ use crate::shooting::{FullState, Resolution, StateDerivative};
 use glam::DVec2;
 use kernel::compute;
 
-/// Variable by which a trajectory is differentiated.
+/// Variable by which a trajectory is differentiated: contact, load, or numbers of the rod.
 #[derive(Clone, Copy, Debug)]
 pub enum TrajectoryVariable<'a> {
-    /// Contact coordinate `tau`, at fixed load and rod.
+    /// Contact coordinate `tau` as the variable, at fixed load and rod.
     Tau,
-    /// Load `f/rho^2`, at fixed contact and rod.
+    /// Load `f/rho^2` as the variable, at fixed contact and rod.
     Load,
     /// Variable that changes the numbers of the rod, at fixed `tau` and load.
     Rod(&'a RodDerivative),
@@ -27,18 +27,18 @@ pub enum TrajectoryVariable<'a> {
 /// Derivative of a state and of its shooting map by one variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VariationDerivative {
-    /// Derivative of pose, force and energy.
+    /// Derivative of the state by the variable: pose of the base, force and energy.
     pub state: StateDerivative,
-    /// Derivative of `(ln D, phi)`; `phi` in radians.
+    /// Derivative of `(ln D, phi)` of the pole's centre, with `phi` in radians, per unit of the variable.
     pub ln_pole: DVec2,
-    /// Derivative of [`ShootingMap::by_tau`](crate::shooting::ShootingMap::by_tau).
+    /// Derivative of `d(ln D, phi)/dtau` by the variable, with `phi` in radians: of [`ShootingMap::by_tau`](crate::shooting::ShootingMap::by_tau).
     pub by_tau: DVec2,
-    /// Derivative of [`ShootingMap::by_load`](crate::shooting::ShootingMap::by_load).
+    /// Derivative of `d(ln D, phi)/dload` by the variable, with `phi` in radians: of [`ShootingMap::by_load`](crate::shooting::ShootingMap::by_load).
     pub by_load: DVec2,
 }
 
 impl VariationDerivative {
-    /// Returns `self + h other`: the derivative along a sum of variables.
+    /// Returns `self + h other`: the derivative along a sum of two variables.
     #[must_use]
     pub fn plus(&self, h: f64, other: &Self) -> Self {
         Self {

@@ -11,11 +11,12 @@ use crate::shooting::sensitivity::{
 };
 use crate::shooting::{Carried, Sensitivity};
 
-/// First derivatives on any rod. A trajectory carries those of `theta, X` by force and arclength, and `Y_f`.
+/// Set of the first derivatives on any rod. A trajectory carries the derivatives of `theta` and `X` by force and arclength, and of `Y` by force.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralFirst;
 
-/// First and second derivatives on any rod. A trajectory also carries `ff`, `fs` and `ss` of `theta, X` and `ff` of `Y`.
+/// Set of the first and second derivatives on any rod. Beside those of [`GeneralFirst`], a trajectory carries the second derivatives of `theta` and
+/// `X` by force and arclength, and of `Y` by force.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralSecond;
 

@@ -20,13 +20,13 @@ pub type Triple<T> = [T; 3];
 
 /// A set of carried derivatives: its start values at the contact, and its results at the base.
 pub trait SensitivitySet<T: Real>: Sensitivity<T> + Sized {
-    /// Derivatives of the base by the coordinates of the sheet.
+    /// Derivatives of the base's angle and position by the sheet's coordinates, `tau` and load.
     type AtBase;
 
     /// Returns the start values of the carried derivatives at the contact.
     fn start(contact: &Contact<T>) -> Carried<T, Self>;
 
-    /// Returns the derivatives of the base from the values that a trajectory carries there.
+    /// Returns the derivatives of the base's angle and position from the values that a trajectory carries there.
     fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> Self::AtBase;
 }
 
@@ -41,25 +41,25 @@ pub struct Arrival<T> {
     pub rod: Planar<T>,
 }
 
-/// First derivatives of the base by the coordinates of the sheet.
+/// First derivatives of the base's angle and position by `tau` and load, in the frame of the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct BaseDerivatives<T> {
-    /// Derivatives of the base by `tau` of the contact at fixed load.
+    /// Derivatives of the base's `[theta, X, Y]` by `tau` of the contact at fixed load: radians and whisker lengths.
     pub by_tau: Triple<T>,
-    /// Derivatives of the base by the load at fixed `tau`.
+    /// Derivatives of the base's `[theta, X, Y]` by the load `f/rho^2` at fixed `tau`: radians and whisker lengths.
     pub by_load: Triple<T>,
 }
 
-/// First and second derivatives of the base by the coordinates of the sheet.
+/// First and second derivatives of the base's angle and position by `tau` and load, in the frame of the contact.
 #[derive(Clone, Copy, Debug)]
 pub struct SecondBaseDerivatives<T> {
-    /// First derivatives of the base by `tau` and load.
+    /// First derivatives of the base's angle and position by `tau` and load.
     pub first: BaseDerivatives<T>,
-    /// Second derivatives of the base by `tau`.
+    /// Second derivatives of the base's `[theta, X, Y]` by `tau`: radians and whisker lengths.
     pub by_tau_tau: Triple<T>,
-    /// Mixed derivatives of the base by `tau` and load.
+    /// Mixed second derivatives of the base's `[theta, X, Y]` by `tau` and load: radians and whisker lengths.
     pub by_tau_load: Triple<T>,
-    /// Second derivatives of the base by the load.
+    /// Second derivatives of the base's `[theta, X, Y]` by the load: radians and whisker lengths.
     pub by_load_load: Triple<T>,
 }
 

@@ -12,11 +12,11 @@ use crate::shooting::sensitivity::{
 };
 use crate::shooting::{Carried, Sensitivity};
 
-/// First derivatives on straight cones and cylinders. A trajectory carries those by the force.
+/// Set of the first derivatives on straight cones and cylinders. A trajectory carries only derivatives by the force.
 #[derive(Clone, Copy, Debug)]
 pub struct SimilarFirst;
 
-/// First and second derivatives on straight cones and cylinders. A trajectory carries those by the force.
+/// Set of the first and second derivatives on straight cones and cylinders. A trajectory carries only derivatives by the force.
 #[derive(Clone, Copy, Debug)]
 pub struct SimilarSecond;
 
