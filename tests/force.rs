@@ -66,19 +66,22 @@ fn force(scene: &Scene, frame: &CurvatureFrame, method: ForceMethod) -> FrameFor
 #[test]
 fn forces_of_states_come_back() {
     let ends = [
-        ("cone", 15.66, [-24.9, -12.0, -1.0, 1.0, 8.0, 15.6]),
+        ("cone", 15.66, &[-24.9, -12.0, -1.0, 1.0, 8.0, 15.6][..]),
+        // The curvature turns back at 16.39 and 28.38 degrees, and another state has it, too.
+        ("cone", 14.0, &[16.0647]),
+        ("cone", 10.0, &[27.8137]),
         (
             "cylinder",
             15.66,
-            [-100.56, -100.27, -30.0, -1.0, 1.0, 62.0],
+            &[-100.56, -100.27, -30.0, -1.0, 1.0, 62.0],
         ),
-        ("robot", 60.0, [-49.9, -20.0, -1.0, 1.0, 20.0, 36.0]),
-        ("measured", 12.0, [-45.0, -10.0, -1.0, 1.0, 10.0, 32.8]),
-        ("traced", 12.0, [-39.9, -10.0, -1.0, 1.0, 10.0, 28.9]),
+        ("robot", 60.0, &[-49.9, -20.0, -1.0, 1.0, 20.0, 36.0]),
+        ("measured", 12.0, &[-45.0, -10.0, -1.0, 1.0, 10.0, 32.8]),
+        ("traced", 12.0, &[-39.9, -10.0, -1.0, 1.0, 10.0, 28.9]),
     ];
     for (name, distance, pushes) in ends {
         let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();
-        for push in pushes {
+        for &push in pushes {
             for part in [0.0, 0.05, 0.3] {
                 let (frame, state) = frame(&scene, distance, push, part);
                 let wanted = state.side.sign() * state.force_un;
