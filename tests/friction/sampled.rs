@@ -143,6 +143,7 @@ fn a_first_push_has_the_states_of_the_course() {
             };
             let found = states(&[own, limits.query(course.phase, push)]);
             let [own, other] = [0, 1].map(|i| found[i].map(|state| state.full.force));
+            // Of 120 pairs of states, Newton's method finds neither state of one pair.
             assert_eq!(own.is_some(), other.is_some(), "{seed} {push}");
             if let Some((own, other)) = own.zip(other) {
                 worst = worst.max((own / other - 1.0).abs());
@@ -150,6 +151,6 @@ fn a_first_push_has_the_states_of_the_course() {
             }
         }
     }
-    // Measured: no difference.
+    // Measured: below 1e-10.
     assert!(worst < 1e-10 && count > 100, "{worst:e} {count}");
 }

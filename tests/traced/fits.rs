@@ -155,7 +155,7 @@ fn reflected_and_longer_shapes_have_the_same_distances() {
     let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random(3));
     let reflected = points.iter().map(|[x, y]| [*x, -y]).collect();
     let [own, other] = [points, reflected].map(|all| TracedShape::fit(all, Some(3)).unwrap());
-    // Measured: no difference.
+    // Measured: below 1e-13.
     assert!((own.farthest_mm / other.farthest_mm - 1.0).abs() < 1e-13);
     let length = own.length_mm;
     let [same, twice] = [length, 2.0 * length].map(|length| own.points_at_rest_mm(length));
