@@ -1,17 +1,20 @@
 //! Forces from curvature against the states that have it.
 
 use whiskmap::force::{CurvatureFrame, ForceMethod, FrameContact, FrameForce, NoForce, forces};
-use whiskmap::rod::Side;
+use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::Scene;
-use whiskmap::trace::{Branch, WhiskerPart, WhiskerShape};
+use whiskmap::trace::{Branch, BranchPoint, NoState, WhiskerPart, WhiskerShape};
 
-/// The frame of a state: its curvature at the point next to `part` of the length, and its contact. With the frame, the state's force and
-/// moment at the base.
-fn frame(scene: &Scene, distance_mm: f64, push_deg: f64, part: f64) -> (CurvatureFrame, [f64; 2]) {
-    let side = Side::of_push(push_deg);
-    let branch = Branch::new(&scene.whisker, &scene.pole, side, distance_mm).unwrap();
-    let state = branch.state(push_deg.to_radians(), true).unwrap();
-    let shape = WhiskerShape::new(&branch, &state, 101);
+/// The frame of a stable or unstable state: its curvature at the point next to `part` of the length, and its contact. With the frame, the
+/// state.
+fn frame_of(
+    branch: &Branch,
+    push_deg: f64,
+    is_stable: bool,
+    part: f64,
+) -> Result<(CurvatureFrame, BranchPoint), NoState> {
+    let state = branch.state(push_deg.to_radians(), is_stable)?;
+    let shape = WhiskerShape::new(branch, &state, 101);
     // From the frame of the pole to that of the base, which is turned by -push.
     let (sin, cos) = push_deg.to_radians().sin_cos();
     let in_base = |x: f64, y: f64| [cos * x - sin * y, sin * x + cos * y];
@@ -32,11 +35,22 @@ fn frame(scene: &Scene, distance_mm: f64, push_deg: f64, part: f64) -> (Curvatur
             contact_angle_deg: Some(contact.angle_deg + push_deg),
         }),
     };
-    let loads = [
-        side.sign() * shape.state.force_un,
-        shape.state.base_moment_nnm,
-    ];
-    (frame, loads)
+    Ok((frame, shape.state))
+}
+
+fn branch(scene: &Scene, distance_mm: f64, side: Side) -> Branch {
+    Branch::new(&scene.whisker, &scene.pole, side, distance_mm).unwrap()
+}
+
+/// The frame of the stable state at a push.
+fn frame(
+    scene: &Scene,
+    distance_mm: f64,
+    push_deg: f64,
+    part: f64,
+) -> (CurvatureFrame, BranchPoint) {
+    let branch = branch(scene, distance_mm, Side::of_push(push_deg));
+    frame_of(&branch, push_deg, true, part).unwrap()
 }
 
 fn force(scene: &Scene, frame: &CurvatureFrame, method: ForceMethod) -> FrameForce {
@@ -52,30 +66,45 @@ fn force(scene: &Scene, frame: &CurvatureFrame, method: ForceMethod) -> FrameFor
 #[test]
 fn forces_of_states_come_back() {
     let ends = [
-        ("cone", 15.66, [-24.9, -12.0, -1.0, 1.0, 8.0, 15.6]),
+        ("cone", 15.66, &[-24.9, -12.0, -1.0, 1.0, 8.0, 15.6][..]),
+        // The curvature turns back at 16.39 and 28.38 degrees, and another state has it, too.
+        ("cone", 14.0, &[16.0647]),
+        ("cone", 10.0, &[27.8137]),
         (
             "cylinder",
             15.66,
-            [-100.56, -100.27, -30.0, -1.0, 1.0, 62.0],
+            &[-100.56, -100.27, -30.0, -1.0, 1.0, 62.0],
         ),
-        ("robot", 60.0, [-49.9, -20.0, -1.0, 1.0, 20.0, 36.0]),
-        ("measured", 12.0, [-45.0, -10.0, -1.0, 1.0, 10.0, 32.8]),
-        ("traced", 12.0, [-39.9, -10.0, -1.0, 1.0, 10.0, 28.9]),
+        ("robot", 60.0, &[-49.9, -20.0, -1.0, 1.0, 20.0, 36.0]),
+        ("measured", 12.0, &[-45.0, -10.0, -1.0, 1.0, 10.0, 32.8]),
+        ("traced", 12.0, &[-39.9, -10.0, -1.0, 1.0, 10.0, 28.9]),
     ];
     for (name, distance, pushes) in ends {
         let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();
-        for push in pushes {
+        for &push in pushes {
             for part in [0.0, 0.05, 0.3] {
-                let (frame, [wanted, moment]) = frame(&scene, distance, push, part);
+                let (frame, state) = frame(&scene, distance, push, part);
+                let wanted = state.side.sign() * state.force_un;
                 for method in [ForceMethod::Lever, ForceMethod::Model] {
                     let found = force(&scene, &frame, method);
                     let context = format!("{name} {push} {part} {method:?} {found:?} {wanted}");
                     let own = found.force_un.unwrap_or_else(|| panic!("{context}"));
                     assert!((own / wanted - 1.0).abs() < 1e-9, "{context}");
-                    let own = found.base_moment_nnm.unwrap();
-                    // The moment at the base changes its sign along some pushes.
-                    let size = wanted.abs() * scene.whisker.length_mm;
-                    assert!((own - moment).abs() < 1e-9 * size, "{context} {moment}");
+                    // The moment and the force at the base change their signs along some pushes.
+                    let force = wanted.abs();
+                    for (own, wanted, size) in [
+                        (
+                            found.base_moment_nnm,
+                            state.base_moment_nnm,
+                            force * scene.whisker.length_mm,
+                        ),
+                        (found.base_force_x_un, state.base_force_x_un, force),
+                        (found.base_force_y_un, state.base_force_y_un, force),
+                        (found.contact_angle_deg, state.contact_angle_deg, 1.0),
+                    ] {
+                        let off = own.unwrap() - wanted;
+                        assert!(off.abs() < 1e-9 * size, "{context} {wanted} {off:e}");
+                    }
                     if method == ForceMethod::Model {
                         assert!(found.contact_off_mm.unwrap() < 1e-8, "{context}");
                     }
@@ -111,6 +140,15 @@ fn frames_without_a_force_have_a_reason() {
             Some(NoForce::NoLever)
         );
     }
+    // With the contact at the measured point the lever is 0.
+    let at_point = CurvatureFrame {
+        at_mm: Some(contact.contact_mm),
+        ..good
+    };
+    assert_eq!(
+        force(&scene, &at_point, ForceMethod::Lever).reason,
+        Some(NoForce::NoLever)
+    );
     // No stable state has ten times the curvature of one near the slip-off.
     let sharp = CurvatureFrame {
         curvature_per_mm: 10.0 * good.curvature_per_mm,
@@ -127,5 +165,36 @@ fn frames_without_a_force_have_a_reason() {
     for method in [ForceMethod::Lever, ForceMethod::Model] {
         let found = force(&scene, &free, method);
         assert_eq!((found.force_un, found.reason), (Some(0.0), None));
+    }
+}
+
+/// Without its position the measured point is that of the resting whisker.
+#[test]
+fn a_point_without_a_position_is_at_rest() {
+    let scene = Scene::read("scenes/cone.toml").unwrap();
+    let (given, _) = frame(&scene, 15.66, 10.0, 0.3);
+    let rest = Rest::new(&scene.whisker.rod(&scene.pole, Side::Cb));
+    let length = scene.whisker.length_mm;
+    let (at, _) = rest.at_arclength(given.at_arc_length_mm / length);
+    let [own, other] = [None, Some((at * length).to_array())].map(|at_mm| {
+        let frame = CurvatureFrame { at_mm, ..given };
+        force(&scene, &frame, ForceMethod::Lever)
+    });
+    assert_eq!(own, other);
+}
+
+/// The model returns no unstable state, although it has the measured curvature and distance.
+#[test]
+fn unstable_states_are_not_returned() {
+    let scene = Scene::read("scenes/cone.toml").unwrap();
+    let branch = branch(&scene, 6.0, Side::Cf);
+    for part in [0.9975, 0.99, 0.975] {
+        let push = part * branch.stable_end_deg();
+        let (frame, _) = frame_of(&branch, push, false, 0.0).unwrap();
+        let found = force(&scene, &frame, ForceMethod::Model);
+        assert!(
+            found.contact_off_mm.is_none_or(|off| off > 1e-3),
+            "{found:?}"
+        );
     }
 }

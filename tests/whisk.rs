@@ -4,7 +4,8 @@ use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Branch, DetachmentKind, curve};
 use whiskmap::whisk::{
-    AngleCourse, Undecided, Whisk, WhiskError, WhiskEvent, WhiskEventKind, WhiskRegime, whisk,
+    AngleCourse, CourseError, Undecided, Whisk, WhiskError, WhiskEvent, WhiskEventKind,
+    WhiskRegime, whisk,
 };
 
 const DISTANCE: f64 = 15.66;
@@ -216,4 +217,20 @@ fn undecided_samples_have_a_reason() {
         regimes[1..3].contains(&(WhiskRegime::Undecided, Some(Undecided::OnThePole))),
         "{regimes:?}"
     );
+}
+
+/// The largest number of samples, and the frequency with two samples in a period, are accepted.
+#[test]
+fn the_ends_of_the_ranges_of_a_sine_are_accepted() {
+    let sine = |frequency, seconds| AngleCourse::sine(10.0, frequency, seconds, 1.0);
+    let most = sine(0.5, 999_999.0).unwrap();
+    assert_eq!(most.times_s().len(), 1_000_000);
+    assert_eq!(
+        sine(0.5, 1_000_000.0),
+        Err(CourseError::Samples(1_000_001.0))
+    );
+    assert!(matches!(
+        sine(0.51, 10.0),
+        Err(CourseError::Frequency { .. })
+    ));
 }

@@ -3,6 +3,7 @@
 
 mod course;
 mod random;
+mod sampled;
 mod stepped;
 mod whisk;
 

@@ -2,6 +2,8 @@
 
 use super::{bent, points};
 use crate::random_rods::Random;
+use glam::DVec2;
+use whiskmap::rod::{Rest, Rod};
 use whiskmap::traced::TracedShape;
 
 const SHAPES: [[f64; 7]; 5] = [
@@ -105,4 +107,101 @@ fn more_terms_leave_smaller_distances() {
         assert!(fit.farthest_mm >= fit.rms_mm);
         before = fit.rms_mm;
     }
+}
+
+/// The distances of the points from the curve that the shape describes are those of the fit. The curve is drawn as 4000 lines from the
+/// fitted base.
+#[test]
+fn distances_are_those_from_the_curve() {
+    let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random(3));
+    let shape = TracedShape::fit(points, Some(3)).unwrap();
+    let rod = Rod {
+        polynomial: Some(shape.curvature.into()),
+        ..Rod::default()
+    };
+    let rest = Rest::new(&rod);
+    // Points beyond an end have their feet on the curve's continuation.
+    let knots = (-40..=4040).map(|i| f64::from(i) / 4000.0);
+    let knots: Vec<DVec2> = knots
+        .map(|s| {
+            let (at, tangent) = rest.at_arclength(s.clamp(0.0, 1.0));
+            shape.length_mm * (at + (s - s.clamp(0.0, 1.0)) * tangent)
+        })
+        .collect();
+    let distance = |point: DVec2| {
+        let lines = knots.windows(2).map(|pair| {
+            let along = pair[1] - pair[0];
+            let part = (point - pair[0]).dot(along) / along.length_squared();
+            point.distance(pair[0] + part.clamp(0.0, 1.0) * along)
+        });
+        lines.fold(f64::INFINITY, f64::min)
+    };
+    let at_rest = shape.points_at_rest_mm(shape.length_mm);
+    let distances = at_rest.iter().map(|point| distance((*point).into()));
+    let distances: Vec<f64> = distances.collect();
+    let squares = distances.iter().map(|own| own * own).sum::<f64>();
+    let rms = (squares / distances.len() as f64).sqrt();
+    let farthest = distances.iter().fold(0.0_f64, |most, own| own.max(most));
+    assert!((rms / shape.rms_mm - 1.0).abs() < 1e-5, "{rms} {shape:?}");
+    assert!(
+        (farthest / shape.farthest_mm - 1.0).abs() < 1e-4,
+        "{farthest}"
+    );
+}
+
+/// A reflection of the points reflects the curve. The frame of a longer whisker scales the points.
+#[test]
+fn reflected_and_longer_shapes_have_the_same_distances() {
+    let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random(3));
+    let reflected = points.iter().map(|[x, y]| [*x, -y]).collect();
+    let [own, other] = [points, reflected].map(|all| TracedShape::fit(all, Some(3)).unwrap());
+    // Measured: below 1e-13.
+    assert!((own.farthest_mm / other.farthest_mm - 1.0).abs() < 1e-13);
+    let length = own.length_mm;
+    let [same, twice] = [length, 2.0 * length].map(|length| own.points_at_rest_mm(length));
+    for (own, other) in same.iter().flatten().zip(twice.iter().flatten()) {
+        assert!((2.0 * own - other).abs() < 1e-12, "{own} {other}");
+    }
+}
+
+/// Coefficients of another machine may differ by 1e-6 radians, and have the same number.
+#[test]
+fn coefficients_of_an_equal_fit_are_accepted() {
+    let points = points(&bent(SHAPES[1]), 20.0, 12, 0.0, &mut Random(1));
+    let shape = TracedShape::fit(points, Some(0)).unwrap();
+    let [own] = shape.coefficients()[..] else {
+        panic!("{shape:?}");
+    };
+    let is_accepted = |coefficients: &[f64]| shape.clone().with_coefficients(coefficients).is_ok();
+    assert!(is_accepted(&[own]) && is_accepted(&[own + 0.9e-6]));
+    assert!(!is_accepted(&[own + 1.1e-6]) && !is_accepted(&[own, 0.0]) && !is_accepted(&[]));
+}
+
+/// Distances from the first point that fall by at most 2% of the largest are noise, however many points they take.
+#[test]
+fn a_small_fall_is_noise() {
+    let line = |falls: &[f64]| {
+        let points = (0..=20).map(|i| [f64::from(i), 0.0]);
+        let falling = falls.iter().map(|fall| [20.0 - fall, 1e-3]);
+        TracedShape::fit(points.chain(falling).collect(), Some(0))
+    };
+    assert!(line(&[0.39]).is_ok());
+    for falls in [&[0.41][..], &[0.3, 0.5]] {
+        let why = line(falls).unwrap_err();
+        assert_eq!(why.point, Some(20 + falls.len()), "{why}");
+    }
+}
+
+/// The least numbers of points, and the largest coordinate, are accepted.
+#[test]
+fn the_ends_of_ranges_are_accepted() {
+    let straight = |count: u32, step: f64| {
+        let points = (0..count).map(|i| [step * f64::from(i), 0.0]);
+        points.collect::<Vec<[f64; 2]>>()
+    };
+    assert!(TracedShape::fit(straight(8, 1.0), None).is_ok());
+    assert!(TracedShape::fit(straight(7, 1.0), Some(3)).is_ok());
+    assert!(TracedShape::fit(straight(11, 1e5), Some(0)).is_ok());
+    let why = TracedShape::fit(straight(12, 1e5), Some(0)).unwrap_err();
+    assert_eq!(why.point, Some(11), "{why}");
 }
