@@ -6,6 +6,7 @@
 mod frames;
 mod lever;
 mod model;
+mod state_curve;
 
 pub use frames::CurvatureFrames;
 

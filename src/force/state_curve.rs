@@ -1,0 +1,210 @@
+//! Stable states of the model at one distance of the contact from the base, and those of them that have a measured curvature.
+//!
+//! Along these states the row parameter `w = |load| tau^2` grows from first touch on. The curvature first grows, too, and may then fall again,
+//! so that several states can have it. They are bracketed between samples of `w`, and on both sides of an extremum.
+
+use crate::numerics::illinois;
+use crate::rod::{Rod, arclength};
+use crate::sheet::Sheet;
+use crate::shooting::batch::{Batch, Method};
+use crate::shooting::shape::{RodPoint, profile};
+use crate::shooting::{FirstVariation, Resolution};
+use glam::DVec2;
+
+/// Resolution of the states.
+const FINE: Resolution = Resolution::FINE;
+
+/// First step of `w` between samples, over the softness. Folds lie above 6.5.
+const SAMPLE_STEP: f64 = 0.25;
+
+/// Value of `w` at which the step has doubled, over the softness. Toward the tip of a cone folds lie at large values.
+const DOUBLED_AT: f64 = 8.0;
+
+/// Step at which the end of the states counts as reached, in parts of a whole one.
+const LAST_PART: f64 = 1e-9;
+
+/// Maximum number of samples, up to `w` of 1000.
+const SAMPLES: usize = 160;
+
+/// Maximum number of Newton steps to a state.
+const STEPS: u32 = 20;
+
+/// Newton step, relative to the contact, after which a state counts as found. The next one is at most 1e-6 of it: that is the error of the
+/// difference.
+const LAST_STEP: f64 = 1e-9;
+
+/// Relative change of the contact from which the derivative of Newton's method follows.
+const DIFFERENCE: f64 = 1e-7;
+
+/// Miss of the curvature, in parts of its change, at which a state has it.
+const SAME_CURVATURE: f64 = 1e-15;
+
+/// Width in `w` to which an extremum of the curvature is narrowed. The curvature changes there by the square.
+const EXTREMUM_WIDTH: f64 = 1e-6;
+
+/// Miss of an extremum of the curvature, in parts of its change, at which rounding decides whether the extremum or two states have it.
+const AT_EXTREMUM: f64 = 1e-11;
+
+/// Contact and curvature of a frame, in whisker lengths.
+#[derive(Clone, Copy)]
+pub struct Measured {
+    /// Position of the contact in the frame of the base.
+    pub contact: DVec2,
+    /// Arclength of the point where the curvature is measured.
+    pub at: f64,
+    /// Change of the curvature there, in radians per whisker length.
+    pub change: f64,
+}
+
+/// State of the model.
+#[derive(Clone, Copy)]
+pub struct ModelState {
+    /// Contact and load, `(tau, load)`.
+    pub point: DVec2,
+    /// Base in the frame of the contact.
+    pub base: RodPoint,
+    /// Position of the contact in the frame of the base, in whisker lengths.
+    pub contact: DVec2,
+    /// Change of the curvature at the measured point, in radians per whisker length.
+    change: f64,
+}
+
+/// State at a value of `w`, with its change of curvature less the measured one.
+#[derive(Clone, Copy)]
+struct CurveSample {
+    w: f64,
+    state: ModelState,
+    miss: f64,
+}
+
+/// Stable states of one side at the measured distance of the contact.
+pub struct StateCurve<'a> {
+    pub rod: &'a Rod,
+    pub sheet: &'a Sheet,
+    pub measured: Measured,
+}
+
+impl StateCurve<'_> {
+    /// Returns the states on the whisker that have the measured curvature, `[state]`. The resting whisker has the contact `touch`.
+    pub fn states(&self, touch: f64) -> Vec<ModelState> {
+        let samples = self.samples(touch);
+        let pairs = samples.windows(2);
+        let crossings = pairs.filter_map(|pair| self.between([pair[0], pair[1]]));
+        let triples = samples.windows(3);
+        let turns = triples.flat_map(|own| self.at_extremum([own[0], own[1], own[2]]));
+        let tip = self.rod.tau_tip();
+        let is_on_whisker = |state: &ModelState| {
+            let tau = state.point.x;
+            tau <= tip || self.sheet.is_at_tip(tau, 1e-12)
+        };
+        crossings.chain(turns).filter(is_on_whisker).collect()
+    }
+
+    /// Returns samples from `touch` to the last stable state, `[sample]`. A contact beyond the tip may come back: where the whisker ends does
+    /// not matter to a state.
+    fn samples(&self, touch: f64) -> Vec<CurveSample> {
+        let softness = self.rod.softness(touch).max(1.0);
+        let step = |w: f64| SAMPLE_STEP * (1.0 / softness + w / DOUBLED_AT);
+        let mut part = 1.0;
+        let mut samples: Vec<CurveSample> = Vec::new();
+        while samples.len() < SAMPLES && part > LAST_PART {
+            let last = samples.last().map(|last| (last.w, last.state.point.x));
+            let (w, from) = last.map_or((0.0, touch), |(w, from)| (w + part * step(w), from));
+            match self.at(w, from).filter(|next| self.is_stable(next)) {
+                Some(next) => samples.push(next),
+                None if samples.is_empty() => break,
+                None => part *= 0.5,
+            }
+        }
+        samples
+    }
+
+    fn is_stable(&self, sample: &CurveSample) -> bool {
+        let (tau, load) = sample.state.point.into();
+        let shot: Vec<FirstVariation> =
+            Batch::new(Method::new(FINE)).shoot_at(self.rod, [(tau, load)]);
+        self.sheet.is_stable(tau, load, &shot[0].full.map)
+    }
+
+    /// Returns the state with the measured curvature between two samples, if one of them has less and the other more.
+    fn between(&self, [one, other]: [CurveSample; 2]) -> Option<ModelState> {
+        if one.miss * other.miss > 0.0 {
+            return None;
+        }
+        let tolerance = SAME_CURVATURE * self.measured.change.abs();
+        let from = one.state.point.x;
+        let ends = [one, other].map(|end| [end.w, end.miss]);
+        let root = illinois(ends, tolerance, |w| Some(self.at(w, from)?.miss))?;
+        Some(self.at(root.x, from)?.state)
+    }
+
+    /// Returns the states with the measured curvature around an extremum of the curvature, where the middle one of three samples misses it
+    /// least, and all of them on one side.
+    fn at_extremum(&self, mut around: [CurveSample; 3]) -> Vec<ModelState> {
+        let is_below = around.map(|sample| sample.miss < 0.0);
+        let [from, middle, to] = around.map(|sample| sample.miss.abs());
+        if is_below != [is_below[1]; 3] || middle > from.min(to) {
+            return Vec::new();
+        }
+        while around[2].w - around[0].w > EXTREMUM_WIDTH {
+            let [from, middle, to] = around;
+            // Halves of the longer part narrow the interval; its middle is the least sample.
+            let is_longer_after = to.w - middle.w > middle.w - from.w;
+            let beyond = if is_longer_after { to } else { from };
+            let Some(next) = self.at(middle.w.midpoint(beyond.w), middle.state.point.x) else {
+                return Vec::new();
+            };
+            if (next.miss < 0.0) != is_below[1] {
+                let inner = self.between([middle, next]);
+                return inner
+                    .into_iter()
+                    .chain(self.between([next, beyond]))
+                    .collect();
+            }
+            around = match (next.miss.abs() < middle.miss.abs(), is_longer_after) {
+                (true, true) => [middle, next, to],
+                (true, false) => [from, next, middle],
+                (false, true) => [from, middle, next],
+                (false, false) => [next, middle, to],
+            };
+        }
+        let [_, least, _] = around;
+        let is_there = least.miss.abs() <= AT_EXTREMUM * self.measured.change.abs();
+        is_there.then_some(least.state).into_iter().collect()
+    }
+
+    /// Returns the state at `w` with the measured distance of the contact, by Newton's method from the contact `tau`.
+    fn at(&self, w: f64, mut tau: f64) -> Option<CurveSample> {
+        let load = |tau: f64| self.sheet.side.sign() * w / (tau * tau);
+        let distance = self.measured.contact.length();
+        for _ in 0..STEPS {
+            let state = |tau: f64| self.state(DVec2::new(tau, load(tau)));
+            let [here, beside] = [tau, tau * (1.0 - DIFFERENCE)].map(state);
+            let [here, beside] = [here?, beside?].map(|state| state.contact.length());
+            let slope = (here - beside) / (tau * DIFFERENCE);
+            let step = (distance - here) / slope;
+            tau += step.clamp(-0.5 * tau, 0.5 * tau);
+            if step.abs() < LAST_STEP * tau {
+                let state = state(tau)?;
+                let miss = state.change - self.measured.change;
+                return Some(CurveSample { w, state, miss });
+            }
+        }
+        None
+    }
+
+    /// Returns the state of a contact at `point`, `(tau, load)`; `None` if the measured point is not before the contact.
+    fn state(&self, point: DVec2) -> Option<ModelState> {
+        let (rod, at) = (self.rod, self.measured.at);
+        let is_before = point.is_finite() && point.x > 0.0 && at < arclength(rod, point.x);
+        let at = is_before.then_some([0.0, at])?;
+        let [base, measured] = profile(rod, point.x, point.y, FINE, &at).try_into().ok()?;
+        let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
+        Some(ModelState {
+            point,
+            contact: to_base.rotate(-base.position),
+            base,
+            change: measured.moment / rod.stiffness(self.measured.at),
+        })
+    }
+}
