@@ -179,7 +179,7 @@ impl MapSlice {
         Ok(self.stored.scene()?.ok())
     }
 
-    /// Returns the indices of the slice's whiskers in the whole sweep, with the last axis varying fastest.
+    /// Returns the indices of the slice's whiskers in the slice, in the order in which its last axis varies fastest.
     pub fn whiskers(&self) -> impl Iterator<Item = usize> + '_ {
         let sizes = self.grid.sweep.iter().map(|axis| axis.values.len());
         let sizes: Vec<usize> = sizes.collect();
