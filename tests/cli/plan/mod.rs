@@ -1,6 +1,7 @@
 //! `whiskmap plan`.
 
 mod effects;
+#[cfg(unix)]
 mod shards;
 mod size;
 
