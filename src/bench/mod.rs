@@ -4,9 +4,11 @@
 //! The CPU solves targets from the guesses of the lattice. A GPU solves those of the same cells whose rows have base points, and the spectral
 //! engine those whose rows have expansions, both of which are found beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
 
+mod cell_work;
 mod cpu;
 mod detachment;
 mod gpu;
+mod machine;
 mod model;
 mod peak;
 mod peers;
@@ -18,8 +20,10 @@ mod timing;
 mod verdict;
 mod whole;
 
+pub use cell_work::{CellWork, SolvedOn};
 pub use detachment::Detachments;
-pub use model::{CELLS, CellWork, ComputedMap, MACHINES, Machine, MapParts, SolvedOn};
+pub use machine::{MACHINES, Machine};
+pub use model::{CELLS, ComputedMap, MapParts};
 pub use peers::{Peer, Peers, PeersError};
 pub use solver::Solver;
 pub use spectral::Expansions;

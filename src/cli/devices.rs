@@ -1,6 +1,6 @@
 //! Command `whiskmap devices`.
 
-use super::engine::chosen;
+use super::adapter::chosen;
 use super::failure::Failure;
 use std::io::Write;
 use whiskmap::engine::EngineDescription;

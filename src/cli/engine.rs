@@ -1,11 +1,12 @@
 //! Selection of the engine of a map by options.
 
+use super::adapter::{ADAPTER_VARIABLE, chosen};
 use super::estimate::{compare, estimate};
 use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
 use std::env;
 use whiskmap::accuracy::{cheaper, excess_deg, spectral};
-use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters, named, preferred};
+use whiskmap::engine::gpu::{Gpu, Precision, adapters};
 use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
 use whiskmap::plan::{ExpansionCount, Plan};
 use whiskmap::scene::Scene;
@@ -56,21 +57,15 @@ impl EngineArgs {
         tolerance_deg: Option<f64>,
     ) -> Result<OpenEngine, Failure> {
         self.check()?;
-        match self.choice() {
-            EngineChoice::Cpu => Ok((None, "selected by --engine".to_owned())),
-            EngineChoice::Spectral => {
-                if plan.method.effects.profile {
-                    message(
-                        "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell",
-                    );
-                }
-                let spectral = spectral(scene, tolerance_deg);
-                Ok((Some(Box::new(spectral)), "selected by --engine".to_owned()))
-            }
-            EngineChoice::Gpu | EngineChoice::Auto => {
-                self.open_gpu_or_auto(scene, plan, tolerance_deg)
-            }
+        if self.may_use_gpu() {
+            return self.open_gpu_or_auto(scene, plan, tolerance_deg);
         }
+        if self.choice() == EngineChoice::Spectral && plan.method.effects.profile {
+            message(
+                "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell",
+            );
+        }
+        self.without_gpu(scene, plan, tolerance_deg)
     }
 
     /// Returns the engine whose cost an estimate measures, and why: the one that [`Self::open`] selects if there is no GPU.
@@ -154,7 +149,7 @@ impl EngineArgs {
         tolerance_deg: Option<f64>,
     ) -> Result<OpenEngine, Failure> {
         // A named adapter that does not exist is an error, even if it would not be used.
-        if self.adapter.is_some() || env::var_os(NAME).is_some() {
+        if self.adapter.is_some() || env::var_os(ADAPTER_VARIABLE).is_some() {
             self.adapter()?;
         }
         match (self.choice(), self.refusal(scene, plan, tolerance_deg)) {
@@ -250,46 +245,4 @@ fn expansions(scene: &Scene, plan: &Plan) -> String {
     };
     let ExpansionCount { cells, cost } = count;
     format!("at most {cells} cells a side, expansions cost {cost}")
-}
-
-/// Environment variable that also other programs with wgpu use to select an adapter.
-const NAME: &str = "WGPU_ADAPTER_NAME";
-
-/// Returns the index of the `wanted` adapter, else of the one named by `WGPU_ADAPTER_NAME`, else of the preferred one; `None`
-/// without an adapter.
-///
-/// # Errors
-/// If the wanted or named adapter is not among the `reports`.
-pub fn chosen(
-    reports: &[AdapterReport],
-    wanted: Option<&str>,
-    precision: Precision,
-) -> Result<Option<usize>, Failure> {
-    let (what, found) = match (wanted, env::var(NAME)) {
-        (Some(wanted), _) => {
-            let found = match wanted.parse::<usize>() {
-                Ok(number) => (number < reports.len()).then_some(number),
-                Err(_) => named(reports, wanted, precision),
-            };
-            (format!("--adapter {wanted}"), found)
-        }
-        (None, Ok(name)) => (format!("{NAME}={name}"), named(reports, &name, precision)),
-        (None, Err(_)) => {
-            let preferred = |precision| preferred(reports, precision);
-            return Ok(preferred(precision).or_else(|| preferred(Precision::F32)));
-        }
-    };
-    if found.is_some() {
-        return Ok(found);
-    }
-    let list = reports.iter().enumerate();
-    let list: Vec<String> = list
-        .map(|(i, report)| format!("{i} ({})", report.info.name))
-        .collect();
-    let allowed = match &list[..] {
-        [] => "there is none".to_owned(),
-        list => format!("must be one of {}", list.join(", ")),
-    };
-    let why = format!("{what}: no such GPU adapter; {allowed}");
-    Err(Failure::Input(why))
 }

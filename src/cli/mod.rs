@@ -3,6 +3,7 @@
 //! Results go to standard output, messages to standard error. Exit code 2 is for invalid input, 1 for failures while running,
 //! 128 + the signal's number for interrupts.
 
+mod adapter;
 mod arguments;
 mod bench;
 mod branch;

@@ -3,43 +3,24 @@
 mod channels;
 mod digits;
 mod effects;
+mod error;
 mod expansions;
+mod memory;
 mod selection;
 
 pub(crate) use channels::names as channel_names;
 pub use channels::{Channel, Channels, STATE_CHANNELS};
 pub use digits::{Digits, rounded};
 pub use effects::{Cost, Effect, effects};
+pub use error::PlanError;
 pub use expansions::{ExpansionCount, STATES_OF_ROW, USUAL_PATCH, expansion_cost};
+pub use memory::{BYTES_PER_THREAD, MEMORY_LIMIT};
 
 use crate::rod::{Effects, Rod, Side};
 use crate::scene::Scene;
 use crate::shooting::batch::Method;
+use memory::{BYTES_ON_GPU, BYTES_PER_CELL, PACKED_BYTES_PER_CELL, bytes_of_sheets, fits};
 use std::ops::Range;
-
-/// Limit on the memory of a run, in bytes; a plan that takes more is refused.
-pub const MEMORY_LIMIT: u64 = 4 << 30;
-
-/// Bytes of a channel per cell of a panel.
-const BYTES_PER_VALUE: u64 = 4;
-
-/// Bytes per cell of a panel without derivatives: 14 channels.
-const BYTES_PER_CELL: u64 = 14 * BYTES_PER_VALUE;
-
-/// Bytes per cell of a packed panel. The shipped scenes take 21 to 32.
-const PACKED_BYTES_PER_CELL: u64 = 32;
-
-/// Bytes of a whisker side: its sheet, and the expansions of a spectral engine.
-const SIDE_BYTES: u64 = 256 << 10;
-
-/// Bytes of the cells in flight on a thread: targets, states and results.
-pub const BYTES_PER_THREAD: u64 = 4 << 20;
-
-/// Threads beyond which cells in flight take no more memory: [`CELLS_IN_FLIGHT`] are shared by all.
-const THREADS_IN_FLIGHT: u64 = 16;
-
-/// Bytes per cell in flight with a GPU: the base points of three row batches.
-const BYTES_ON_GPU: u64 = 1536;
 
 /// Maximum number of cells of a row batch: enough for every lane of a GPU, in little memory.
 pub const CELLS_IN_FLIGHT: usize = 1 << 17;
@@ -75,16 +56,6 @@ pub const SAMPLE_VALUES: usize = 2;
 /// Number of states that a trajectory carries for the rod: cos and sin of its tilt, and two coordinates.
 pub const ROD_STATES: usize = 4;
 
-/// Returns true if a run with `bytes` for panels and `gpu_bytes` for a GPU takes at most [`MEMORY_LIMIT`], on any number of threads.
-const fn fits(bytes: u64, gpu_bytes: u64) -> bool {
-    bytes + THREADS_IN_FLIGHT * BYTES_PER_THREAD + gpu_bytes <= MEMORY_LIMIT
-}
-
-/// Returns the memory of the sheets of so many whiskers, in bytes.
-fn bytes_of_sheets(scene: &Scene, whiskers: usize) -> u64 {
-    (whiskers * Plan::sides(scene).len()) as u64 * SIDE_BYTES
-}
-
 /// The sizes and effects of a run.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -116,63 +87,6 @@ pub struct Plan {
     pub bytes: u64,
     /// Memory of a GPU's base points, in bytes.
     pub gpu_bytes: u64,
-}
-
-/// Error of a run that takes more than [`MEMORY_LIMIT`], or that has no such channels.
-#[derive(Debug, thiserror::Error, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum PlanError {
-    /// One panel takes more memory than is allowed.
-    #[error(
-        "grid: {push_angles} push angles x {distances} distances make a panel of {cells} cells that takes \
-         {needed} MiB: must be at most {limit} MiB; lower grid.push_angle_deg.count or grid.distance_mm.count",
-        cells = push_angles * distances,
-        limit = MEMORY_LIMIT >> 20
-    )]
-    Panel {
-        /// Number of push angles of the grid.
-        push_angles: usize,
-        /// Number of distances of the grid.
-        distances: usize,
-        /// Memory of the run, in MiB.
-        needed: u64,
-    },
-    /// The panels of all whiskers together take more memory than is allowed.
-    #[error(
-        "grid: {whiskers} panels of {cells} cells take {needed} MiB in memory: must be at most {limit} MiB; \
-         take one panel at a time with `for_each_panel`, or lower the counts of the axes",
-        limit = MEMORY_LIMIT >> 20
-    )]
-    AllPanels {
-        /// Number of whiskers of the sweep.
-        whiskers: usize,
-        /// Number of cells of one panel.
-        cells: usize,
-        /// Memory of the run, in MiB.
-        needed: u64,
-    },
-    /// The derivatives of the panels take more memory than is allowed.
-    #[error(
-        "channels: with {derivatives} derivatives, {cells} cells in memory take {needed} MiB: must be at most {limit} MiB; \
-         select fewer derivatives",
-        limit = MEMORY_LIMIT >> 20
-    )]
-    Derivatives {
-        /// Number of parameters by which there are derivatives.
-        derivatives: usize,
-        /// Number of cells in memory together.
-        cells: usize,
-        /// Memory of the run, in MiB.
-        needed: u64,
-    },
-    /// A derivative is by a number that the scene does not give.
-    #[error("channels: {name} has no values: the scene has derivatives by {given}")]
-    NotGiven {
-        /// Name of the channel.
-        name: &'static str,
-        /// Names of the parameters by which there are derivatives.
-        given: String,
-    },
 }
 
 impl Plan {

@@ -1,6 +1,7 @@
 //! Selection of the channels of a planned run.
 
-use super::{BYTES_PER_VALUE, Channels, Plan, PlanError, fits};
+use super::memory::{BYTES_PER_VALUE, fits};
+use super::{Channels, Plan, PlanError};
 use crate::scene::{Parameter, Scene};
 
 impl Plan {

@@ -12,6 +12,7 @@
 
 mod at;
 mod attributes;
+mod chunk;
 mod error;
 mod file_id;
 mod header;

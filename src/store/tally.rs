@@ -1,7 +1,8 @@
 //! Numbers of cells of each regime and status.
 
+use super::StoreError;
 use crate::classify::{Regime, Status};
-use crate::map::{Audit, EngineCells};
+use crate::map::{Audit, EngineCells, Panel};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -23,6 +24,30 @@ pub struct CellCounts {
     pub audit: Audit,
 }
 
+impl CellCounts {
+    /// Adds the cells of `panel`, which has this index in the sweep. A code without a name is an error.
+    pub(super) fn add(&mut self, index: usize, panel: &Panel) -> Result<(), StoreError> {
+        let unknown = |channel| {
+            move |code| StoreError::UnknownCode {
+                index,
+                channel,
+                code,
+            }
+        };
+        add(&mut self.regimes, regimes(), &panel.regime).map_err(unknown("regime"))?;
+        add(&mut self.statuses, statuses(), &panel.status).map_err(unknown("status"))?;
+        let cells = panel.residual.iter().zip(&panel.regime);
+        let solved = cells.filter(|(residual, regime)| {
+            !residual.is_nan() && **regime != Regime::Unresolved.code()
+        });
+        self.worst_residual = solved
+            .map(|(residual, _)| f64::from(*residual))
+            .chain(self.worst_residual)
+            .reduce(f64::max);
+        Ok(())
+    }
+}
+
 /// Returns the names of the regimes by code.
 pub(super) fn regimes() -> BTreeMap<u32, &'static str> {
     Regime::ALL.map(|own| (own.code(), own.name())).into()
@@ -34,7 +59,7 @@ pub(super) fn statuses() -> BTreeMap<u32, &'static str> {
 }
 
 /// Adds to `cells`, by name, the number of cells with each of the `codes`. A code without a name is an error.
-pub(super) fn add(
+fn add(
     cells: &mut BTreeMap<String, u64>,
     names: BTreeMap<u32, &'static str>,
     codes: &[u32],

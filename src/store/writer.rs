@@ -1,18 +1,12 @@
 //! Writer of EXR maps, which writes some panels at a time.
 
 use super::attributes::{self, MapDescription, attribute};
+use super::chunk::{chunk, samples};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
-use super::tally::{self, CellCounts};
-use super::zip::SampleLine;
-use super::{Channels, Output, Panel, StoreError, TemporaryFiles, header, zip};
-use crate::classify::Regime;
+use super::{CellCounts, Channels, Output, Panel, StoreError, TemporaryFiles, header, zip};
 use crate::map::{Audit, EngineCells};
 use crate::plan::{Digits, Plan};
 use crate::scene::Grid;
-use exr::block::chunk::{
-    Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates,
-};
-use exr::math::Vec2;
 use exr::meta::Headers;
 use exr::meta::header::Header;
 use rayon::prelude::*;
@@ -115,7 +109,11 @@ impl MapWriter {
         for (index, panel) in (first..).zip(panels) {
             self.check_sizes(index, panel)?;
         }
-        self.count(first, panels)?;
+        let mut counts = self.counts.clone();
+        for (index, panel) in (first..).zip(panels) {
+            counts.add(index, panel)?;
+        }
+        self.counts = counts;
 
         let parts = layout::parts(self.channels);
         let begun = self.packed[0].len();
@@ -131,7 +129,8 @@ impl MapWriter {
             .map(|&[panel, part, block]| {
                 let samples = samples(&panels[panel], &parts[part].1, self.digits);
                 let lines = self.layout.lines(block, &samples);
-                self.chunk(first + panel, part, begun + block, zip::pack(lines))
+                let place = [first + panel, part, begun + block];
+                chunk(&self.layout, parts.len(), place, zip::pack(lines))
             })
             .collect::<exr::error::Result<_>>()
             .map_err(StoreError::at(&self.path, StoreError::Encode))?;
@@ -242,74 +241,4 @@ impl MapWriter {
         }
         Ok(())
     }
-
-    /// Adds the cells of panels to the counts, unless a code has no name.
-    fn count(&mut self, first: usize, panels: &[Panel]) -> Result<(), StoreError> {
-        let mut counts = self.counts.clone();
-        for (index, panel) in (first..).zip(panels) {
-            let unknown = |channel| {
-                move |code| StoreError::UnknownCode {
-                    index,
-                    channel,
-                    code,
-                }
-            };
-            tally::add(&mut counts.regimes, tally::regimes(), &panel.regime)
-                .map_err(unknown("regime"))?;
-            tally::add(&mut counts.statuses, tally::statuses(), &panel.status)
-                .map_err(unknown("status"))?;
-        }
-        let cells = panels
-            .iter()
-            .flat_map(|panel| panel.residual.iter().zip(&panel.regime));
-        let solved = cells.filter(|(residual, regime)| {
-            !residual.is_nan() && **regime != Regime::Unresolved.code()
-        });
-        counts.worst_residual = solved
-            .map(|(residual, _)| f64::from(*residual))
-            .chain(counts.worst_residual)
-            .reduce(f64::max);
-        self.counts = counts;
-        Ok(())
-    }
-
-    /// The bytes of a block of one part of a panel, from its compressed samples.
-    fn chunk(
-        &self,
-        panel: usize,
-        part: usize,
-        block: usize,
-        compressed_pixels_le: Vec<u8>,
-    ) -> exr::error::Result<Vec<u8>> {
-        let layout = &self.layout;
-        let compressed_block = match layout.tile(panel) {
-            Some(tile) => CompressedBlock::Tile(CompressedTileBlock {
-                coordinates: TileCoordinates {
-                    tile_index: tile,
-                    level_index: Vec2(0, 0),
-                },
-                compressed_pixels_le,
-            }),
-            None => CompressedBlock::ScanLine(CompressedScanLineBlock {
-                // At most 2^30, which the header has been checked for.
-                y_coordinate: layout.first_row(block) as i32,
-                compressed_pixels_le,
-            }),
-        };
-        let chunk = Chunk {
-            layer_index: part,
-            compressed_block,
-        };
-        let mut bytes = Vec::new();
-        chunk.write(&mut bytes, self.headers.len())?;
-        Ok(bytes)
-    }
-}
-
-/// The samples of some channels of a panel, as bytes, with their rounding.
-fn samples<'a>(panel: &'a Panel, channels: &[&str], digits: Digits) -> Vec<SampleLine<'a>> {
-    let channels = channels.iter();
-    channels
-        .map(|name| (panel.bytes(name), digits.mantissa_bits(name)))
-        .collect()
 }

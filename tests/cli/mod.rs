@@ -23,6 +23,8 @@ mod fit;
 mod force;
 #[cfg(unix)]
 mod integrity;
+#[cfg(unix)]
+mod leftovers;
 mod manual;
 mod map;
 mod marks;
@@ -40,6 +42,8 @@ mod sensitivity;
 mod shape;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod stdout;
 #[cfg(unix)]
 mod store;
 #[cfg(unix)]

@@ -75,6 +75,14 @@ fn a_store_has_the_values_of_the_map() {
     has_the_values_of_the_map(&two.replace("count = 64", "count = 20"));
 }
 
+/// A single panel of more than 2^18 cells, which is packed in two bands of rows.
+#[test]
+fn a_store_of_one_panel_in_bands_has_the_values_of_the_map() {
+    let axes = SWEEP.find("taper").unwrap();
+    let one = SWEEP[..axes].replace("base_radius_um", "tip_radius_um = 1.5\nbase_radius_um");
+    has_the_values_of_the_map(&one.replace("count = 64", "count = 520"));
+}
+
 fn has_the_values_of_the_map(scene: &str) {
     let place = Place::with(scene);
     place.map(&["scene.toml", "-o", "exr", "--no-png"]);
@@ -83,7 +91,7 @@ fn has_the_values_of_the_map(scene: &str) {
     let zarr = ZarrStore::open(&place.path("zarr/scene.zarr")).unwrap();
     assert_eq!(zarr.scene.grid, exr.grid);
     for channel in exr.channels() {
-        for whisker in 0..6 {
+        for whisker in 0..zarr.scene.whisker_count() {
             let [a, b] = [
                 exr.read_panel(channel, whisker).unwrap(),
                 zarr.read_panel(channel, whisker).unwrap(),
@@ -94,6 +102,8 @@ fn has_the_values_of_the_map(scene: &str) {
         }
     }
     assert!(zarr.read_panel("force", 0).is_err());
+    let run = place.run(&["status", "zarr/scene.zarr", "--verify"]);
+    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
 }
 
 #[test]

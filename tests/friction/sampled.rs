@@ -1,6 +1,7 @@
 //! Courses with friction do not depend on how they are sampled, and begin as first pushes.
 
-use super::{Frictions, cone};
+use super::cone;
+use super::sliding::Frictions;
 use crate::random_rods::Random;
 use whiskmap::friction::{
     ContactHistory, ContactPhase, ContactQuery, CourseLimits, Sliding, states,

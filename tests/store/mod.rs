@@ -7,8 +7,12 @@
 
 mod comes_back;
 mod damage;
-use crate::map;
+mod flipped_bits;
+mod identity;
+mod made_up;
 mod refused;
+
+use crate::map;
 use crate::sealed;
 
 type Swept = Option<Vec<f64>>;

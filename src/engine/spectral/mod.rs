@@ -1,8 +1,12 @@
 //! The spectral engine: cells from certified Chebyshev expansions of their rows, without trajectories of their own.
 
 mod certificate;
+mod exact_row;
+mod expansion_tail;
 mod patch;
+mod patch_size;
 mod row;
+mod row_interval;
 mod sheet;
 
 pub use sheet::SpectralSheet;

@@ -1,122 +1,15 @@
 //! Patches: the expansions of many rows of one whisker side as a tensor.
-//!
-//! For rows that end at the fold, the coordinate of a patch is the logarithm of `tau` at first touch. For rows that end at the tip, it is
-//! the load there. In these coordinates every number is analytic, the fold and the turning point of the distance along the tip included.
 
 use super::certificate::{Check, MARGIN, bounds};
-use super::row::{
-    ExactRow, ExpansionTail, FUNCTIONS, RowExpansion, StateStarts, Weights, larger, simple_end,
-    value_weights,
-};
+use super::exact_row::{ExactRow, StateStarts};
+use super::expansion_tail::ExpansionTail;
+use super::patch_size::PatchSize;
+use super::row::{FUNCTIONS, RowExpansion, Weights, larger, value_weights};
+use super::row_interval::RowInterval;
 use crate::engine::WhiskerSide;
-use crate::numerics::expansion::{Chebyshev, MOST_POINTS, TAIL, chebyshev_points};
+use crate::numerics::expansion::{Chebyshev, chebyshev_points};
 use crate::numerics::tensor::ChebyshevTensor;
-use crate::plan::USUAL_PATCH;
-use crate::rod::{Rest, arclength};
-use crate::sheet::{Edge, Row, Sheet};
-use crate::shooting::ShootingMap;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-
-/// Size of a patch: its number of rows, and of states along each.
-#[derive(Clone, Copy, Debug)]
-pub struct PatchSize {
-    /// Number of rows of the patch with exact states.
-    pub rows: usize,
-    /// Number of exact states along each row of the patch.
-    pub states: usize,
-}
-
-/// Part of the bound that the coefficients left out are expected to take. At most `1 / MARGIN` is allowed.
-const LEFT_OUT: f64 = 0.1;
-
-/// Expected error, in whisker lengths, above which coefficients do not yet fall at their final rate.
-const HOPELESS: f64 = 1.0;
-
-impl PatchSize {
-    /// Size of the first patch over an interval: the decay of its coefficients shows how many more are needed.
-    pub const FIRST: Self = Self {
-        rows: 12,
-        states: 16,
-    };
-
-    /// Size of most certified patches.
-    pub const USUAL: Self = Self {
-        rows: USUAL_PATCH[0],
-        states: USUAL_PATCH[1],
-    };
-
-    /// Returns the number of exact states of a patch of this size: rows times states along each.
-    pub const fn count(self) -> usize {
-        self.rows * self.states
-    }
-
-    /// Next size with more rows and more states along each; `None` if there is none.
-    fn larger(self) -> Option<Self> {
-        let [rows, states] = [self.rows, self.states].map(|count| count + TAIL);
-        (rows.max(states) <= MOST_POINTS).then_some(Self { rows, states })
-    }
-
-    /// Size whose expansions are expected to keep the bound `most`, where those of this size have these `tails` from row to row and along
-    /// rows; `None` if there is none.
-    fn enough(self, tails: [ExpansionTail; 2], most: f64) -> Option<Self> {
-        if larger(tails[0].last, tails[1].last) > HOPELESS {
-            return None;
-        }
-        Some(Self {
-            rows: tails[0].points(self.rows, LEFT_OUT * most)?,
-            states: tails[1].points(self.states, LEFT_OUT * most)?,
-        })
-    }
-}
-
-/// Interval of rows that end at one edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RowInterval {
-    /// Edge of the sheet at which the rows of the interval end.
-    pub edge: Edge,
-    /// Coordinates of the first and of the last row of the interval: `[first, last]`.
-    pub ends: [f64; 2],
-}
-
-impl RowInterval {
-    /// Returns the coordinate of a row of `sheet` in a patch, with the edge where it ends; `None` if it has no simple span from first
-    /// touch.
-    pub fn coordinate(sheet: &Sheet, row: usize) -> Option<(Edge, f64)> {
-        let end = simple_end(sheet, row)?;
-        let coordinate = match end.edge {
-            Edge::Fold => libm::log(sheet.rod.tau(sheet.rows[row].contact)),
-            Edge::Tip => end.load,
-        };
-        Some((end.edge, coordinate))
-    }
-
-    /// Rows at parts of the interval.
-    fn rows(&self, method: Method, sheet: &Sheet, parts: &[f64]) -> Vec<Row> {
-        let (rod, rest) = (&sheet.rod, Rest::new(&sheet.rod));
-        let [from, to] = self.ends;
-        let coordinates = parts.iter().map(|part| from + part * (to - from));
-        match self.edge {
-            Edge::Fold => {
-                let contacts = coordinates.map(|ln_tau| arclength(rod, libm::exp(ln_tau)));
-                let distances = contacts.map(|contact| rest.at_arclength(contact).0.length());
-                distances
-                    .map(|distance| Row::new(&rest, distance))
-                    .collect()
-            }
-            Edge::Tip => {
-                let tau = rod.tau_tip();
-                let at_tip = coordinates.map(|load| InitialCondition { rod, tau, load });
-                let maps: Vec<ShootingMap> = Batch::new(method).shoot(&at_tip.collect::<Vec<_>>());
-                let distances = maps
-                    .iter()
-                    .map(|map| rest.distance_of_pole(map.pole.length()));
-                distances
-                    .map(|distance| Row::new(&rest, distance))
-                    .collect()
-            }
-        }
-    }
-}
+use crate::shooting::batch::Method;
 
 /// Patch: certified expansions of all rows of an interval.
 #[derive(Clone, Debug)]
@@ -262,6 +155,7 @@ mod tests {
     use crate::engine::SideColumns;
     use crate::rod::Side;
     use crate::scene::Scene;
+    use crate::sheet::{Edge, Sheet};
     use std::sync::Arc;
 
     /// Error of a coefficient, as a part of the largest coefficient of its function.

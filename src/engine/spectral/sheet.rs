@@ -1,8 +1,12 @@
 //! Spectral sheet of a whisker side: which row is expanded through its own states, and which belongs to a patch.
 
 use super::certificate::{Check, bounds};
-use super::patch::{Patch, PatchSize, RowInterval};
-use super::row::{ExactRow, ExpansionTail, FUNCTIONS, RowExpansion, StateStarts, Weights};
+use super::exact_row::{ExactRow, StateStarts};
+use super::expansion_tail::ExpansionTail;
+use super::patch::Patch;
+use super::patch_size::PatchSize;
+use super::row::{FUNCTIONS, RowExpansion, Weights};
+use super::row_interval::RowInterval;
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::Chebyshev;
 use crate::plan::{STATES_OF_ROW, expansion_cost};

@@ -1,26 +1,23 @@
 //! Kernels of trajectories in dual numbers. They have all effects of their rest shape and material, as a variable may bring in an effect
 //! that the rod itself lacks.
 
-use super::{TrajectoryVariable, VariationDerivative};
+use super::TrajectoryVariable;
+use super::differentiated::{Differentiated, spread};
+use super::dual_rest::DualRest;
 use crate::numerics::gauss::Integrals;
 use crate::numerics::{Dual, Lanes, LanesTask, Real, WIDTH};
-use crate::rod::{CURVATURE_TERMS, Piece, RadiusProfile, Rod, RodDerivative};
-use crate::shooting::batch::{Complex, FEW_KERNELS, InitialCondition, PoleCentre};
-use crate::shooting::contact::{Contact, arc, radius_and_arclength};
+use crate::rod::{Piece, RadiusProfile, Rod, RodDerivative};
+use crate::shooting::batch::{FEW_KERNELS, InitialCondition, PoleCentre};
+use crate::shooting::contact::{Contact, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, Energetic, GeneralFirst, SensitivitySet};
 use crate::shooting::{
-    BackwardCompliance, Bent, FullState, Graded, Intrinsic, Measured, Nystrom8, Polynomial,
-    Resolution, RodSystem, Scales, Section, ShootingMap, Spiral, StateDerivative, TrajectoryState,
-    collocate, integrate,
+    BackwardCompliance, Bent, Graded, Intrinsic, Measured, Nystrom8, Polynomial, Resolution,
+    RodSystem, Scales, Section, Spiral, TrajectoryState, collocate, integrate,
 };
-use glam::DVec2;
 use std::marker::PhantomData;
 
 /// Derivatives that a trajectory carries, each of them a dual number.
 type Carried = Energetic<GeneralFirst>;
-
-/// State of the trajectory, and its derivatives, `[lane]`.
-type Differentiated = (FullState, [VariationDerivative; WIDTH]);
 
 /// Differentiates the trajectory from `condition` by `variables`, at most as many as there are lanes. Returns its state, and the derivatives of the
 /// state, `[variable]`.
@@ -49,60 +46,10 @@ pub fn compute<T: Lanes>(
     }
 }
 
-/// A rest shape whose numbers are dual.
-trait DualRest<T: Lanes>: Intrinsic<Dual<T>> {
-    /// Returns the rest shape of a trajectory and, at the arclength `s`: its state, and its curvature with the derivative by `s`.
-    fn start<I>(kernel: &Kernel<I>, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]);
-}
-
-impl<T: Lanes> DualRest<T> for Bent<Dual<T>> {
-    #[inline(always)]
-    fn start<I>(kernel: &Kernel<I>, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]) {
-        let bend = kernel.number(|rod| rod.bend, |by| by.bend);
-        let slope = kernel.number(|rod| rod.slope, |by| by.slope);
-        Self::at(bend, arc(slope), s)
-    }
-}
-
-impl<T: Lanes> DualRest<T> for Spiral<Dual<T>> {
-    #[inline(always)]
-    fn start<I>(kernel: &Kernel<I>, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]) {
-        let coefficient = |i: usize| {
-            kernel.number(
-                move |rod| rod.spiral.unwrap_or_default()[i],
-                move |by| by.spiral[i],
-            )
-        };
-        let spiral = Self {
-            at_base: coefficient(0),
-            slope: coefficient(1),
-        };
-        (spiral, (), spiral.at(s))
-    }
-}
-
-/// No variable changes the coefficients: they are numbers without a unit, which a whisker of another length keeps.
-impl<T: Lanes> DualRest<T> for Polynomial<Dual<T>> {
-    #[inline(always)]
-    fn start<I>(kernel: &Kernel<I>, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]) {
-        let mut centred = [Dual::of(0.0); CURVATURE_TERMS];
-        if let Some(polynomial) = &kernel.condition.rod.polynomial {
-            for (own, value) in centred.iter_mut().zip(polynomial.centred()) {
-                *own = Dual::of(*value);
-            }
-        } else if FEW_KERNELS {
-            let (Spiral { at_base, slope }, ..) = Spiral::start(kernel, s);
-            (centred[0], centred[1]) = (slope.mul_add(Dual::of(0.5), at_base), slope);
-        }
-        let polynomial = Self { centred };
-        (polynomial, (), polynomial.at(s))
-    }
-}
-
 /// Task that integrates one trajectory in dual numbers.
-struct Kernel<'a, I> {
+pub struct Kernel<'a, I> {
     resolution: Resolution,
-    condition: &'a InitialCondition<'a>,
+    pub condition: &'a InitialCondition<'a>,
     variables: &'a [TrajectoryVariable<'a>],
     of: PhantomData<I>,
 }
@@ -127,7 +74,7 @@ impl<I> Kernel<'_, I> {
 
     /// A number of the rod.
     #[inline(always)]
-    fn number<T: Lanes>(
+    pub fn number<T: Lanes>(
         &self,
         value: impl Fn(&Rod) -> f64,
         derivative: impl Fn(&RodDerivative) -> f64,
@@ -279,66 +226,4 @@ impl<T: Lanes, R: DualRest<T>> LanesTask<T> for Kernel<'_, R> {
         let maps = [first.by_tau, first.by_load].map(|of| centre.ln_pole_by(of));
         spread(&arrival, [centre.pole, maps[0], maps[1]], energy)
     }
-}
-
-/// State and derivatives of each lane from a trajectory that has arrived at the base. `poles` are the pole's centre, and the derivatives
-/// of `ln D + i phi` by contact and load.
-#[inline(always)]
-fn spread<T: Lanes>(
-    arrival: &Arrival<Dual<T>>,
-    [pole, by_tau, by_load]: [Complex<Dual<T>>; 3],
-    energy: Dual<T>,
-) -> Differentiated {
-    let [c, s, x, y, _] = arrival.rod;
-    let force = arrival.contact.force;
-    let columns = [
-        c, s, x, y, force, energy, pole.re, pole.im, by_tau.re, by_tau.im, by_load.re, by_load.im,
-    ];
-    let mut values = [0.0; 12];
-    let mut lanes = [[0.0; WIDTH]; 12];
-    for (i, column) in columns.iter().enumerate() {
-        values[i] = column.value.unpack()[0];
-        lanes[i] = column.derivative.unpack();
-    }
-    transposed(&values, &lanes)
-}
-
-/// State and derivatives of each lane from the numbers of [`spread`], `[column]` and `[column][lane]`. It is outside the kernels, because
-/// it computes little.
-#[inline(never)]
-fn transposed(values: &[f64; 12], columns: &[[f64; WIDTH]; 12]) -> Differentiated {
-    let pairs = |values: &[f64; 12]| {
-        let pair = |i: usize| DVec2::new(values[i], values[i + 1]);
-        [0, 2, 6, 8, 10].map(pair)
-    };
-    let [tangent, position, pole, by_tau, by_load] = pairs(values);
-    let full = FullState {
-        map: ShootingMap {
-            pole,
-            by_tau,
-            by_load,
-        },
-        tangent,
-        position,
-        force: values[4],
-        energy: values[5],
-    };
-    let mut derivatives = [VariationDerivative::default(); WIDTH];
-    for (lane, derivative) in derivatives.iter_mut().enumerate() {
-        let own = columns.map(|column| column[lane]);
-        let [turned, moved, pole, by_tau, by_load] = pairs(&own);
-        let centre = full.map.pole;
-        *derivative = VariationDerivative {
-            state: StateDerivative {
-                angle: tangent.perp_dot(turned),
-                position: moved,
-                force: own[4],
-                energy: own[5],
-            },
-            ln_pole: DVec2::new(centre.dot(pole), centre.perp_dot(pole)) / centre.length_squared(),
-            by_tau,
-            by_load,
-        };
-    }
-    (full, derivatives)
 }

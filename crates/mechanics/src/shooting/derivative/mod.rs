@@ -4,6 +4,8 @@
 //! discrete map exactly. The derivatives that it carries by contact and load are differentiated as well, so that second derivatives of
 //! the shooting map follow.
 
+mod differentiated;
+mod dual_rest;
 mod kernel;
 
 use crate::numerics::{Lanes, SimdTask, Unit};

@@ -1,33 +1,13 @@
-//! Euler spirals and measured radii against plain equations, differences, and the shapes that they contain.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+//! Poles and derivatives of every set of effects, against plain equations, central differences and an integral.
 
+use super::{conditions, with};
+use crate::effect_sets;
+use crate::random_rods::ROWS;
 use glam::DVec2;
-use std::sync::Arc;
-use whiskmap::rod::{Effects, RadiusProfile, Rod, Side, arclength};
+use whiskmap::rod::{Side, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
-
-use crate::effect_sets;
-use crate::random_rods;
-
-use random_rods::{ROWS, Random, condition, rod};
-
-fn with(effects: Effects, resolution: Resolution) -> Method {
-    Method::new(resolution).with_effects(effects)
-}
-
-/// A test ends soon: its rods may stay until then.
-fn kept(rod: Rod) -> &'static Rod {
-    Box::leak(Box::new(rod))
-}
-
-fn conditions(effects: Effects, count: usize) -> Vec<InitialCondition<'static>> {
-    let mut random = Random(21);
-    (0..count)
-        .map(|_| condition(kept(rod(effects, &mut random)), 6.5, &mut random))
-        .collect()
-}
 
 /// The pole as the base sees it, by the classical Runge-Kutta method on the equations as they are usually written: by
 /// arclength, from the contact to the base, with angles. Steps end at the rows of the profile.
@@ -133,164 +113,6 @@ fn derivatives_agree_with_differences_in_every_set() {
                     );
                 }
             }
-        }
-    }
-}
-
-/// A state on two rods.
-type Pair = (InitialCondition<'static>, InitialCondition<'static>);
-
-fn farthest(one: Effects, other: Effects, pairs: &[Pair]) -> f64 {
-    let ends = |effects: Effects, conditions: Vec<InitialCondition>| {
-        Batch::new(with(effects, Resolution::FINE)).shoot::<FirstVariation>(&conditions)
-    };
-    let ones = ends(one, pairs.iter().map(|pair| pair.0).collect());
-    let others = ends(other, pairs.iter().map(|pair| pair.1).collect());
-    let apart = ones.iter().zip(&others).map(|(one, other)| {
-        let (one, other) = (one.full, other.full);
-        let energy = (one.energy - other.energy).abs() / (1.0 + one.energy);
-        one.map.pole.distance(other.map.pole) + energy
-    });
-    apart.fold(0.0, f64::max)
-}
-
-/// What a spiral without curvature, a parabola without curvature and a table of a cone are; to rounding, and
-/// to 6e-12 (measured) the truncation of a cone of taper 0.99.
-#[test]
-fn neutral_values_are_absence() {
-    let tapered = Effects {
-        taper: true,
-        ..Effects::default()
-    };
-    let usual = conditions(tapered, 200);
-    let spiral = Effects {
-        spiral: true,
-        ..tapered
-    };
-    let unbent: Vec<Pair> = usual
-        .iter()
-        .map(|condition| {
-            let rod = kept(Rod {
-                spiral: Some([0.0, 0.0]),
-                ..condition.rod.clone()
-            });
-            (*condition, InitialCondition { rod, ..*condition })
-        })
-        .collect();
-    assert!(farthest(tapered, spiral, &unbent) < 1e-14);
-
-    let profile = Effects {
-        profile: true,
-        ..tapered
-    };
-    let measured: Vec<Pair> = usual
-        .iter()
-        .map(|condition| {
-            let cone = condition.rod;
-            let rows = [0.0, 0.1, 0.4, 0.75, 1.0].map(|s| [s, 1.0 - cone.taper * s]);
-            let rod = kept(Rod {
-                profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))),
-                ..cone.clone()
-            });
-            (*condition, InitialCondition { rod, ..*condition })
-        })
-        .collect();
-    let apart = farthest(tapered, profile, &measured);
-    assert!(apart < 5e-11, "{apart:e}");
-}
-
-/// The curvature of the parabola is `2 A (1 - 6 A^2 s^2 + ...)`: a circular arc differs in the third order.
-#[test]
-fn a_faint_parabola_is_a_circular_arc_to_third_order() {
-    let bent = Effects {
-        taper: true,
-        curvature: true,
-        ..Effects::default()
-    };
-    let arc = Effects {
-        spiral: true,
-        curvature: false,
-        ..bent
-    };
-    let apart = |bend: f64| {
-        let pairs: Vec<Pair> = conditions(bent, 100)
-            .iter()
-            .map(|condition| {
-                let shaped = |bend, spiral| InitialCondition {
-                    rod: kept(Rod {
-                        bend,
-                        slope: 0.0,
-                        spiral,
-                        ..condition.rod.clone()
-                    }),
-                    ..*condition
-                };
-                (shaped(bend, None), shaped(0.0, Some([2.0 * bend, 0.0])))
-            })
-            .collect();
-        farthest(bent, arc, &pairs)
-    };
-    let order = (apart(0.02) / apart(0.01)).log2();
-    assert!((2.8..3.2).contains(&order), "{order}");
-}
-
-/// Errors fall with the steps to the 7th power, as those of two iterations from levers off by the third, though the profile has jumps
-/// in its second derivative. Measured 6.50 to 6.79: what is left after 12 is 1e-14 to 3e-14, hardly more than rounding.
-#[test]
-fn rows_do_not_cost_the_order() {
-    for effects in effect_sets::all().filter(|effects| effects.profile) {
-        let mut conditions = conditions(effects, 400);
-        // On the last piece, with all rows behind.
-        conditions
-            .retain(|condition| arclength(condition.rod, condition.tau) > ROWS[ROWS.len() - 2][0]);
-        let poles = |least| {
-            let method = with(effects, Resolution::of(least));
-            Batch::new(method).shoot::<ShootingMap>(&conditions)
-        };
-        // With fewer, pieces take a step of their own, and cannot take half of one.
-        let [rough, half, exact] = [6, 12, 60].map(poles);
-        let worst = |found: &[ShootingMap]| {
-            let errors = found.iter().zip(&exact);
-            errors.fold(0.0, |worst: f64, (a, b)| worst.max(a.pole.distance(b.pole)))
-        };
-        let order = (worst(&rough) / worst(&half)).log2();
-        assert!(
-            (6.3..7.5).contains(&order),
-            "{effects:?}: {order}, {:e}",
-            worst(&half)
-        );
-    }
-}
-
-/// A cone in 200 rows is the cone, also where a contact near the base leaves it a piece or two to bend. Measured: 6e-14.
-#[test]
-fn many_rows_are_fine_at_every_contact() {
-    let rows: Vec<[f64; 2]> = (0..=200)
-        .map(|i| f64::from(i) / 200.0)
-        .map(|s| [s, 1.0 - 0.95 * s])
-        .collect();
-    let cone = Rod {
-        taper: 0.95,
-        pole: 0.003,
-        ..Rod::default()
-    };
-    let measured = Rod {
-        profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))),
-        ..cone.clone()
-    };
-    for s in [0.002, 0.004, 0.0075, 0.03, 0.3, 0.9, 0.999] {
-        for q in [1.0, 6.0, 12.0] {
-            let pole = |rod: &Rod, resolution: Resolution| {
-                let condition = InitialCondition {
-                    rod,
-                    tau: cone.tau(s),
-                    load: q / (s * s),
-                };
-                Batch::new(Method::new(resolution)).shoot::<ShootingMap>(&[condition])[0].pole
-            };
-            let apart =
-                pole(&cone, Resolution::FINE.doubled()).distance(pole(&measured, Resolution::FINE));
-            assert!(apart < 1e-12 * s, "{apart:e} at {s}, q {q}");
         }
     }
 }

@@ -1,0 +1,145 @@
+//! Temporary files: locked while their process runs, and removed as leftovers after it was interrupted.
+
+use super::name::{RANDOM, host, host_of, prefix};
+use super::{ListedPath, TemporaryFiles};
+use crate::store::target::inherit;
+use std::fs::{self, DirEntry, File, Metadata, OpenOptions};
+use std::io;
+use std::path::Path;
+use std::time::Duration;
+use tempfile::NamedTempFile;
+
+/// A file of another host counts as a leftover if nothing was written to it for so long.
+const ABANDONED: Duration = Duration::from_secs(24 * 3600);
+
+/// Temporary file that gets its name when it is complete.
+#[derive(Debug)]
+pub struct TemporaryFile {
+    file: NamedTempFile,
+    _listed: ListedPath,
+}
+
+impl TemporaryFile {
+    /// Creates a temporary file in `folder`, with owner and permissions of the file that it replaces.
+    pub fn create(
+        folder: &Path,
+        replaced: Option<&Metadata>,
+        files: &TemporaryFiles,
+    ) -> io::Result<Self> {
+        let prefix = prefix();
+        let mut options = File::options();
+        options.read(true).write(true).create_new(true);
+        loop {
+            // `tempfile` itself makes private files, and its errors name them.
+            let mut builder = tempfile::Builder::new();
+            builder.prefix(&prefix).rand_bytes(RANDOM);
+            let make = || builder.make_in(folder, |path| options.open(path));
+            let (file, listed) = files.make(make, NamedTempFile::path)?;
+            // Without locks, the file of an interrupted process stays.
+            let _ = file.as_file().lock();
+            // Before it was locked, another process may have removed it as a leftover.
+            if matches!(file.path().try_exists(), Ok(false)) {
+                continue;
+            }
+            if let Some(replaced) = replaced {
+                inherit(file.as_file(), replaced)?;
+            }
+            return Ok(Self {
+                file,
+                _listed: listed,
+            });
+        }
+    }
+
+    pub fn file(&mut self) -> &mut File {
+        self.file.as_file_mut()
+    }
+
+    /// Gives the temporary file its name, and replaces the file that has it.
+    pub fn persist(self, name: &Path) -> io::Result<()> {
+        self.file.persist(name)?;
+        Ok(())
+    }
+
+    /// Gives the temporary file its name, unless a file has it: by a rename that replaces nothing or, on file systems without, such as
+    /// NFS, by a hard link.
+    #[cfg(feature = "zarr")]
+    pub fn persist_new(self, name: &Path) -> io::Result<()> {
+        self.file.persist_noclobber(name)?;
+        Ok(())
+    }
+
+    /// Removes the temporary files beside this one whose processes have ended. Files of other users stay.
+    ///
+    /// A process that has ended has lost its lock. Locks of other hosts may not be visible here, so their files must also
+    /// be [`ABANDONED`] by the clock that dates them and this file.
+    pub fn remove_leftovers(&self) {
+        let (Some(folder), Ok(own)) = (self.file.path().parent(), self.file.as_file().metadata())
+        else {
+            return;
+        };
+        let host_here = host();
+        let is_abandoned = |about: &Metadata| {
+            let age = own.modified().ok().zip(about.modified().ok());
+            let age = age.and_then(|(now, then)| now.duration_since(then).ok());
+            age.is_some_and(|age| age > ABANDONED)
+        };
+        let is_gone = |entry: &DirEntry| {
+            let name = entry.file_name();
+            let host = name.to_str().and_then(host_of);
+            let about = host.zip(entry.metadata().ok());
+            about.is_some_and(|(host, about)| {
+                let is_ours = about.is_file() && is_of_one_user(&about, &own);
+                is_ours && (host == host_here || is_abandoned(&about))
+            })
+        };
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            if !is_gone(&entry) {
+                continue;
+            }
+            // Kept open, and so locked, until it is removed.
+            let file = not_following().open(entry.path());
+            if file.as_ref().is_ok_and(|file| file.try_lock().is_ok()) {
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
+}
+
+/// Options to open a leftover: whatever has taken its name since, no link is followed and no pipe waited for.
+fn not_following() -> OpenOptions {
+    let mut options = File::options();
+    options.write(true);
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed());
+    }
+    options
+}
+
+#[cfg(unix)]
+fn is_of_one_user(one: &Metadata, other: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    one.uid() == other.uid()
+}
+
+#[cfg(not(unix))]
+fn is_of_one_user(_: &Metadata, _: &Metadata) -> bool {
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_file_has_an_exact_name() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let file = TemporaryFile::create(folder.path(), None, &TemporaryFiles::default())?;
+        let name = file.file.path().file_name().and_then(|name| name.to_str());
+        assert_eq!(name.and_then(host_of), Some(&*host()));
+        Ok(())
+    }
+}

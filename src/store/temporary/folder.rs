@@ -1,0 +1,56 @@
+//! Temporary folders, which get their names when they are complete.
+
+use super::name::{RANDOM, prefix};
+use super::{ListedPath, TemporaryFiles};
+use crate::store::file_id::folder_of;
+use crate::store::target::check_links;
+use std::fs;
+use std::io;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// Temporary folder that gets its name when it is complete. It is removed when it is dropped and when the process is interrupted. A
+/// process that ends without unwinding leaves it.
+#[derive(Debug)]
+pub struct TemporaryFolder {
+    folder: TempDir,
+    _listed: ListedPath,
+}
+
+impl TemporaryFolder {
+    /// Creates an empty temporary folder beside `target`.
+    ///
+    /// # Errors
+    /// The folder of `target` does not exist, is not writable, or lies behind a link that must not be followed.
+    pub fn create(target: &Path, files: &TemporaryFiles) -> io::Result<Self> {
+        check_links(folder_of(target))?;
+        let prefix = prefix();
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix).rand_bytes(RANDOM);
+        // `tempfile` itself makes private folders.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+        let make = || builder.tempdir_in(folder_of(target));
+        let (folder, listed) = files.make(make, TempDir::path)?;
+        Ok(Self {
+            folder,
+            _listed: listed,
+        })
+    }
+
+    /// Returns the path of the temporary folder until it is finished.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Gives the temporary folder the name `target`.
+    ///
+    /// # Errors
+    /// A file, or a folder that is not empty, has the name.
+    pub fn finish(self, target: &Path) -> io::Result<()> {
+        fs::rename(self.folder.path(), target)?;
+        let _ = self.folder.keep();
+        Ok(())
+    }
+}

@@ -1,0 +1,151 @@
+//! States and statuses of the cells of maps with friction.
+
+use super::cone;
+use crate::compute::compute;
+use whiskmap::Channel;
+use whiskmap::classify::{Regime, Status};
+use whiskmap::engine::Spectral;
+use whiskmap::friction::Sliding;
+use whiskmap::map::{Panel, Summary};
+use whiskmap::rod::Side;
+use whiskmap::trace::{Branch, WhiskerShape};
+
+fn map(friction: f64) -> (Summary, Panel) {
+    let (summary, mut panels) = compute(&cone(0.02, 0.25, friction), None);
+    (summary, panels.remove(0))
+}
+
+/// Cells of maps have the states of the branch in all channels, by every engine on the CPU.
+#[test]
+fn cells_have_the_states_of_their_phase() {
+    let scene = cone(0.02, 0.25, 0.3);
+    let mut spectral = Spectral::default();
+    let by_cpu = compute(&scene, None).1.remove(0);
+    let by_spectral = compute(&scene, Some(&mut spectral)).1.remove(0);
+    let pushes = &scene.grid.push_angle_deg;
+    let mut counts = [0; 3];
+    for (row, distance) in scene.grid.distance_mm.iter().enumerate().step_by(3) {
+        for side in Side::BOTH {
+            let Ok(branch) = Branch::new(&scene.whisker, &scene.pole, side, *distance) else {
+                continue;
+            };
+            for (column, push) in pushes.iter().enumerate() {
+                let at = row * pushes.len() + column;
+                let is_contact = by_cpu.regime[at] == Regime::Contact.code();
+                if !is_contact || Side::of_push(*push) != side {
+                    continue;
+                }
+                let state = branch.state(push.to_radians(), true).unwrap();
+                let wanted = branch.read(&state);
+                for panel in [&by_cpu, &by_spectral] {
+                    for (channel, wanted) in [
+                        (Channel::ArcLength, wanted.arc_length_mm),
+                        (Channel::ContactAngle, wanted.contact_angle_deg),
+                        (Channel::Force, wanted.force_un),
+                        (Channel::BaseForceX, wanted.base_force_un.x),
+                        (Channel::BaseForceY, wanted.base_force_un.y),
+                        (Channel::BaseMoment, wanted.base_moment_nnm),
+                        (Channel::Energy, wanted.energy_nj),
+                    ] {
+                        let found = f64::from(panel.channel(channel)[at]);
+                        let case = format!("{distance} {push} {:?} {channel:?}", state.sliding);
+                        // Channels have single precision.
+                        assert!(
+                            (found - wanted).abs() <= 1e-6 * wanted.abs().max(1e-3),
+                            "{case}: {found} {wanted}"
+                        );
+                    }
+                }
+                counts[state.sliding.unwrap() as usize] += 1;
+            }
+        }
+    }
+    assert!(counts.iter().all(|count| *count > 1), "{counts:?}");
+}
+
+/// On CF the contact first slides toward the base, then sticks. On CB it does neither.
+#[test]
+fn cells_that_slide_toward_the_base_are_marked() {
+    let scene = cone(0.02, 0.25, 0.3);
+    let (summary, panel) = map(0.3);
+    let pushes = &scene.grid.push_angle_deg;
+    let mut contacts = [0, 0];
+    let mut toward_base = [0, 0];
+    let mut sticking = [0, 0];
+    for (row, distance) in scene.grid.distance_mm.iter().enumerate() {
+        for (column, push) in pushes.iter().enumerate() {
+            let at = row * pushes.len() + column;
+            let status = panel.status[at];
+            let is_contact = panel.regime[at] == Regime::Contact.code();
+            let slides = status == Status::TowardBase.code();
+            let sticks = status == Status::Sticking.code();
+            if !is_contact {
+                assert!(!slides || panel.regime[at] == Regime::Unreachable.code());
+                assert!(!sticks);
+                continue;
+            }
+            let side = Side::of_push(*push);
+            let branch = Branch::new(&scene.whisker, &scene.pole, side, *distance).unwrap();
+            let state = branch.state(push.to_radians(), true).unwrap();
+            let sliding = WhiskerShape::new(&branch, &state, 2).state.sliding;
+            assert_eq!(sliding == Some(Sliding::Base), slides, "{distance} {push}");
+            assert_eq!(
+                sliding == Some(Sliding::Sticks),
+                sticks,
+                "{distance} {push}"
+            );
+            contacts[side as usize] += 1;
+            toward_base[side as usize] += usize::from(slides);
+            sticking[side as usize] += usize::from(sticks);
+        }
+    }
+    let [cb, cf] = [Side::Cb, Side::Cf].map(|side| side as usize);
+    let share = toward_base[cf] as f64 / contacts[cf] as f64;
+    assert!((0.1..0.3).contains(&share), "{toward_base:?} {contacts:?}");
+    assert_eq!([toward_base[cb], sticking[cb]], [0, 0], "{contacts:?}");
+    assert!(sticking[cf] > 0, "{contacts:?}");
+    assert_eq!(summary.unresolved(), 0);
+    let code = Status::TowardBase.code();
+    let all = panel.status.iter().filter(|status| **status == code);
+    assert_eq!(summary.toward_base, all.count() as u64);
+    assert_eq!(summary.sticking, sticking[cf] as u64);
+}
+
+/// The status of a cell does not depend on the other push angles of the grid.
+#[test]
+fn a_status_does_not_depend_on_other_push_angles() {
+    let dense = cone(0.02, 0.25, 0.3);
+    let few: Vec<f64> = dense
+        .grid
+        .push_angle_deg
+        .iter()
+        .copied()
+        .step_by(7)
+        .collect();
+    let sparse = dense.to_builder().push_angle_deg(few).build().unwrap();
+    let [dense, sparse] = [&dense, &sparse].map(|scene| {
+        let (_, panels) = compute(scene, None);
+        (scene.grid.push_angle_deg.len(), panels[0].status.clone())
+    });
+    let of_dense = dense
+        .1
+        .chunks(dense.0)
+        .flat_map(|row| row.iter().step_by(7));
+    let of_dense: Vec<u32> = of_dense.copied().collect();
+    let sticking = of_dense
+        .iter()
+        .filter(|code| **code == Status::Sticking.code());
+    assert!(sticking.count() > 2);
+    assert_eq!(of_dense, sparse.1);
+}
+
+#[test]
+fn without_friction_no_cell_has_a_direction() {
+    let (summary, panel) = map(0.0);
+    assert_eq!(summary.toward_base, 0);
+    assert!(!panel.status.contains(&Status::TowardBase.code()));
+    let scene = cone(0.02, 0.25, 0.0);
+    let branch = Branch::new(&scene.whisker, &scene.pole, Side::Cf, 9.0).unwrap();
+    let points = branch.points(20).unwrap();
+    assert!(points.iter().all(|point| point.sliding.is_none()));
+}
