@@ -116,7 +116,7 @@ pub fn fill(
         blocks = unfinished(&store, blocks)?;
     }
     plan.parts = blocks.iter().map(|block| store.whiskers(*block)).collect();
-    let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
+    let cells_of_panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
     let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
     if !args.force {
         disk::check(
@@ -124,7 +124,7 @@ pub fn fill(
             MapFormat::Zarr,
             scene,
             &plan,
-            panel * whiskers,
+            cells_of_panel * whiskers,
         )?;
     }
     for file in store.begin(temporary)? {
@@ -149,12 +149,17 @@ pub fn fill(
     let keep = |panels: &mut Vec<Panel>| {
         let bands = panels.par_iter().map(|panel| store.pack(panel));
         for band in bands.collect::<Vec<_>>() {
-            match packed.last_mut().filter(|last| last.cells() < panel) {
+            match packed
+                .last_mut()
+                .filter(|last| last.cells() < cells_of_panel)
+            {
                 Some(begun) => begun.append(band),
                 None => packed.push(band),
             }
         }
-        let is_whole = packed.last().is_some_and(|last| last.cells() == panel);
+        let is_whole = packed
+            .last()
+            .is_some_and(|last| last.cells() == cells_of_panel);
         if let Some((block, whiskers)) = next
             && is_whole
             && packed.len() == whiskers
@@ -169,7 +174,7 @@ pub fn fill(
         scene,
         &plan,
         engine.as_mut().map(|engine| &mut **engine as _),
-        panel * whiskers,
+        cells_of_panel * whiskers,
         keep,
     )?;
     report(scene, &summary, start, &[path.to_owned()])

@@ -91,8 +91,8 @@ pub enum ForceMethod {
     Model,
 }
 
-/// Computes the force in each of the `frames` of `whisker` at `pole`, whose friction is left out, `[frame]`. With [`ForceMethod::Lever`], a frame in contact without the angle of
-/// the contact has the reason [`NoForce::NoLever`].
+/// Computes the force in each of the `frames` of `whisker` at `pole`, whose friction is left out, `[frame]`. With [`ForceMethod::Lever`], a
+/// frame in contact without the angle of the contact has the reason [`NoForce::NoLever`].
 #[must_use]
 pub fn forces(
     whisker: &Whisker,

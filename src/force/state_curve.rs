@@ -23,7 +23,7 @@ const DOUBLED_AT: f64 = 8.0;
 /// Step at which the end of the states counts as reached, in parts of a whole one.
 const LAST_PART: f64 = 1e-9;
 
-/// Maximum number of samples, up to `w` of 1000.
+/// Maximum number of samples, those after a halved step included.
 const SAMPLES: usize = 160;
 
 /// Maximum number of Newton steps to a state.
@@ -36,8 +36,11 @@ const LAST_STEP: f64 = 1e-9;
 /// Relative change of the contact from which the derivative of Newton's method follows.
 const DIFFERENCE: f64 = 1e-7;
 
-/// Miss of the curvature, in parts of its change, at which a state has it.
+/// Miss of the curvature, in parts of its change, at which the search for a state ends.
 const SAME_CURVATURE: f64 = 1e-15;
+
+/// Largest miss of the curvature, in parts of its change, of a state that has it: rounding may end the search before.
+const MOST_MISS: f64 = 1e-10;
 
 /// Width in `w` to which an extremum of the curvature is narrowed. The curvature changes there by the square.
 const EXTREMUM_WIDTH: f64 = 1e-6;
@@ -135,7 +138,9 @@ impl StateCurve<'_> {
         let from = one.state.point.x;
         let ends = [one, other].map(|end| [end.w, end.miss]);
         let root = illinois(ends, tolerance, |w| Some(self.at(w, from)?.miss))?;
-        Some(self.at(root.x, from)?.state)
+        let found = self.at(root.x, from)?;
+        let has_curvature = found.miss.abs() <= MOST_MISS * self.measured.change.abs();
+        (has_curvature && self.is_stable(&found)).then_some(found.state)
     }
 
     /// Returns the states with the measured curvature around an extremum of the curvature, where the middle one of three samples misses it

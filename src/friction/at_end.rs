@@ -64,12 +64,14 @@ fn points(sheet: &Sheet, row: usize, end: &Crossing) -> Option<Vec<DVec2>> {
 
 /// Returns true if the slid distance at the end of `limit` is larger than everywhere before.
 fn is_farthest_at_end(limit: &SlidingLimit) -> bool {
+    let grows = limit.segments.iter().all(|own| own.to.push > own.from.push);
     let end = limit.end();
     let before = limit.pushes().filter(|push| *push < end);
-    let before: Vec<f64> = before.filter_map(|push| limit.slid(push)).collect();
-    let most = before.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let before: Option<Vec<f64>> = before.map(|push| limit.slid(push)).collect();
+    let Some((before, at_end)) = before.zip(limit.slid(end)) else {
+        return false;
+    };
     let least = before.iter().copied().fold(f64::INFINITY, f64::min);
-    limit
-        .slid(end)
-        .is_some_and(|at_end| at_end - most > AHEAD * (at_end - least))
+    let is_ahead = |slid: &f64| at_end - slid > AHEAD * (at_end - least);
+    grows && before.iter().all(is_ahead)
 }

@@ -96,7 +96,7 @@ impl SlidingLimit {
     /// Returns a state near that of the limit at the push angle `push` (radians); `None` beyond the ends.
     pub fn near(&self, push: f64) -> Option<FrictionPoint> {
         let (segment, x) = self.place(push)?;
-        let [tau, load, angle] = self.segments[segment].contact.map(|of| of.at(x).0);
+        let [tau, load, angle] = self.segments[segment].contact(x);
         Some(FrictionPoint {
             point: DVec2::new(tau, load),
             ratio: self.level.rod.friction,

@@ -65,12 +65,12 @@ pub struct LimitSegment {
     is_to_fold: bool,
     /// Slid distance, with a value and a slope at each knot.
     pub slid: Polynomial<4>,
-    /// Contact coordinate, load and tangent angle, which start Newton's method.
-    pub contact: [Polynomial<4>; 3],
+    /// Contact coordinate, load and tangent angle.
+    near: [Polynomial<4>; 3],
 }
 
 impl LimitSegment {
-    /// Cubic Hermite polynomials or, next to a fold, the parabolas that have the slopes of the first knot.
+    /// Cubic Hermite polynomials or, next to a fold, the parabolas that have the slopes of the first knot. The first knot is no fold.
     pub fn new(from: SlidingKnot, to: SlidingKnot) -> Self {
         let values = [from, to].map(|knot| knot.values());
         let length = to.push - from.push;
@@ -93,7 +93,20 @@ impl LimitSegment {
             to,
             is_to_fold,
             slid: polynomial(0),
-            contact: [1, 2, 3].map(polynomial),
+            near: [1, 2, 3].map(polynomial),
+        }
+    }
+
+    /// Returns contact coordinate, load and tangent angle near those at the variable `x`: on the polynomials or, where a corner of fold and
+    /// tip throws one of them far off, on lines.
+    pub fn contact(&self, x: f64) -> [f64; 3] {
+        let [from, to] = [0.0, 1.0].map(|end| self.near.map(|own| own.at(end).0));
+        let cubic = self.near.map(|own| own.at(x).0);
+        let line = |i: usize| (to[i] - from[i]).mul_add(x, from[i]);
+        let is_near = |i: &usize| (cubic[*i] - line(*i)).abs() <= (to[*i] - from[*i]).abs();
+        match [0, 1].iter().all(is_near) {
+            true => cubic,
+            false => [0, 1, 2].map(line),
         }
     }
 

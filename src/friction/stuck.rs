@@ -135,6 +135,7 @@ impl<'a> StuckPath<'a> {
         }
         for path in paths.iter_mut().flatten() {
             path.nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
+            path.nodes.dedup_by_key(|(push, _)| *push);
         }
         paths
     }
@@ -146,9 +147,17 @@ impl<'a> StuckPath<'a> {
         if push < first || push > last {
             return None;
         }
-        let after = self.nodes.partition_point(|(at, _)| *at < push);
-        let fewer = self.nodes.len().saturating_sub(AROUND);
-        let near = &self.nodes[after.saturating_sub(AROUND / 2).min(fewer)..];
+        // On each side of the end of sliding the nodes are evenly spaced.
+        let end = self
+            .nodes
+            .partition_point(|(at, _)| *at < self.end.push.abs());
+        let side = match push < self.end.push.abs() {
+            true => &self.nodes[..=end],
+            false => &self.nodes[end..],
+        };
+        let after = side.partition_point(|(at, _)| *at < push);
+        let fewer = side.len().saturating_sub(AROUND);
+        let near = &side[after.saturating_sub(AROUND / 2).min(fewer)..];
         let near = &near[..near.len().min(AROUND)];
         // Neville's algorithm.
         let mut points: Vec<FrictionPoint> = near.iter().map(|(_, point)| *point).collect();

@@ -107,7 +107,7 @@ impl Blocks {
     }
 
     /// Returns the number of distances of a chunk, and of a panel filled up to whole chunks. A chunk, which is packed and read as a whole,
-    /// is a band of the panel: 1 MB of a quantity.
+    /// is a band of the panel: 1 MB of a quantity, or 16 lines of a wide panel.
     pub(super) fn distances(&self) -> [usize; 2] {
         let chunk = rows_of_band(self.panel);
         [chunk, self.panel[0].next_multiple_of(chunk)]
