@@ -4,9 +4,10 @@
 use super::TrajectoryVariable;
 use super::differentiated::{Differentiated, spread};
 use super::dual_rest::DualRest;
+use super::varied_condition::VariedCondition;
 use crate::numerics::gauss::Integrals;
-use crate::numerics::{Dual, Lanes, LanesTask, Real, WIDTH};
-use crate::rod::{Piece, RadiusProfile, Rod, RodDerivative};
+use crate::numerics::{Dual, Lanes, LanesTask, Real};
+use crate::rod::{Piece, RadiusProfile};
 use crate::shooting::batch::{FEW_KERNELS, InitialCondition, PoleCentre};
 use crate::shooting::contact::{Contact, radius_and_arclength};
 use crate::shooting::sensitivity::{Arrival, Energetic, GeneralFirst, SensitivitySet};
@@ -31,8 +32,10 @@ pub fn compute<T: Lanes>(
         ($rest:ty) => {
             T::outlined(Kernel::<$rest> {
                 resolution,
-                condition,
-                variables,
+                varied: VariedCondition {
+                    condition,
+                    variables,
+                },
                 of: PhantomData,
             })
         };
@@ -47,44 +50,13 @@ pub fn compute<T: Lanes>(
 }
 
 /// Task that integrates one trajectory in dual numbers.
-pub struct Kernel<'a, I> {
+struct Kernel<'a, I> {
     resolution: Resolution,
-    pub condition: &'a InitialCondition<'a>,
-    variables: &'a [TrajectoryVariable<'a>],
+    varied: VariedCondition<'a>,
     of: PhantomData<I>,
 }
 
 impl<I> Kernel<'_, I> {
-    /// A value with its derivative by the variable of each lane.
-    #[inline(always)]
-    fn dual<T: Lanes>(
-        &self,
-        value: f64,
-        derivative: impl Fn(TrajectoryVariable) -> f64,
-    ) -> Dual<T> {
-        let mut lanes = [0.0; WIDTH];
-        for (lane, variable) in lanes.iter_mut().zip(self.variables) {
-            *lane = derivative(*variable);
-        }
-        Dual {
-            value: T::of(value),
-            derivative: T::pack(lanes),
-        }
-    }
-
-    /// A number of the rod.
-    #[inline(always)]
-    pub fn number<T: Lanes>(
-        &self,
-        value: impl Fn(&Rod) -> f64,
-        derivative: impl Fn(&RodDerivative) -> f64,
-    ) -> Dual<T> {
-        self.dual(value(self.condition.rod), |variable| match variable {
-            TrajectoryVariable::Rod(by) => derivative(by),
-            TrajectoryVariable::Tau | TrajectoryVariable::Load => 0.0,
-        })
-    }
-
     /// A number of the piece `k` of the measured profile.
     #[inline(always)]
     fn of_piece<T: Lanes>(
@@ -93,7 +65,8 @@ impl<I> Kernel<'_, I> {
         k: usize,
         number: impl Fn(&Piece) -> f64,
     ) -> Dual<T> {
-        self.number(|_| number(&profile.pieces[k]), |by| number(&by.piece(k)))
+        self.varied
+            .number(|_| number(&profile.pieces[k]), |by| number(&by.piece(k)))
     }
 
     /// The state at the base after `state` at the `contact`, in steps of equal length.
@@ -105,7 +78,7 @@ impl<I> Kernel<'_, I> {
         [taper, tau]: [Dual<T>; 2],
         state: TrajectoryState<Dual<T>, R, Carried>,
     ) -> TrajectoryState<Dual<T>, R, Carried> {
-        let InitialCondition { rod, tau: at, load } = *self.condition;
+        let InitialCondition { rod, tau: at, load } = *self.varied.condition;
         let steps = self.resolution.steps(rod, at, load);
         let h = tau * Dual::of(1.0 / f64::from(steps));
         let scales = Scales::tapered::<Nystrom8>(taper, h);
@@ -122,7 +95,7 @@ impl<I> Kernel<'_, I> {
         [taper, tau]: [Dual<T>; 2],
         mut state: TrajectoryState<Dual<T>, R, Carried>,
     ) -> TrajectoryState<Dual<T>, R, Carried> {
-        let InitialCondition { rod, tau: at, load } = *self.condition;
+        let InitialCondition { rod, tau: at, load } = *self.varied.condition;
         let needs = self.resolution.of_pieces(rod, at, load);
         let [mut tau, mut from] = [tau, contact.arclength];
         for k in (0..=rod.piece(crate::rod::arclength(rod, at))).rev() {
@@ -174,17 +147,21 @@ impl<T: Lanes, R: DualRest<T>> LanesTask<T> for Kernel<'_, R> {
     #[inline(always)]
     fn run(self) -> Differentiated {
         let (zero, one) = (Dual::of(0.0), Dual::of(1.0));
-        let InitialCondition { rod, tau, load } = *self.condition;
+        let InitialCondition { rod, tau, load } = *self.varied.condition;
         let is = |wanted: bool| f64::from(u8::from(wanted));
-        let tau: Dual<T> = self.dual(tau, |by| is(matches!(by, TrajectoryVariable::Tau)));
-        let load: Dual<T> = self.dual(load, |by| is(matches!(by, TrajectoryVariable::Load)));
-        let taper = self.number(|rod| rod.taper, |by| by.taper);
+        let tau: Dual<T> = self
+            .varied
+            .dual(tau, |by| is(matches!(by, TrajectoryVariable::Tau)));
+        let load: Dual<T> = self
+            .varied
+            .dual(load, |by| is(matches!(by, TrajectoryVariable::Load)));
+        let taper = self.varied.number(|rod| rod.taper, |by| by.taper);
         let [radius, s] = radius_and_arclength(taper, tau);
-        let (intrinsic, at_rest, [curvature, curvature_slope]) = R::start(&self, s);
-        let friction: Dual<T> = self.number(|rod| rod.friction, |by| by.friction);
+        let (intrinsic, at_rest, [curvature, curvature_slope]) = R::start(&self.varied, s);
+        let friction: Dual<T> = self.varied.number(|rod| rod.friction, |by| by.friction);
         let cos = one / friction.mul_add(friction, one).sqrt();
         let material = Graded {
-            gradient: self.number(|rod| rod.gradient, |by| by.gradient),
+            gradient: self.varied.number(|rod| rod.gradient, |by| by.gradient),
         };
         let contact = Contact {
             radius,
@@ -219,7 +196,7 @@ impl<T: Lanes, R: DualRest<T>> LanesTask<T> for Kernel<'_, R> {
             taper,
             rod: at_base,
         };
-        let pole = self.number(|rod| rod.pole, |by| by.pole);
+        let pole = self.varied.number(|rod| rod.pole, |by| by.pole);
         let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
         let (first, energy) = Carried::at_base(&arrival, carried);
         let centre = PoleCentre::new(&arrival, to_pole);

@@ -7,6 +7,7 @@
 mod differentiated;
 mod dual_rest;
 mod kernel;
+mod varied_condition;
 
 use crate::numerics::{Lanes, SimdTask, Unit};
 use crate::rod::RodDerivative;
