@@ -18,7 +18,7 @@ use near_fold::FoldVerdict;
 use newton::newton;
 pub use newton::{LARGEST_Q, LEFT_BY_STEP, ROUNDING};
 use rayon::prelude::*;
-pub use row_states::{ExactState, RowState, RowStateGoal, row_states};
+pub use row_states::{ExactState, RowState, row_states};
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.
 pub const GOAL: f64 = 1e-12;

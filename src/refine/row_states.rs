@@ -37,23 +37,9 @@ pub struct ExactState {
     pub variation: FirstVariation,
 }
 
-/// Accuracy and starts of row states.
-#[derive(Clone, Copy, Debug)]
-pub struct RowStateGoal {
-    /// Longest Newton step whose end is extrapolated. It leaves an error of at most [`LEFT_BY_STEP`](super::LEFT_BY_STEP) times its square, in
-    /// units of the contact's arclength and the pole's distance together.
-    pub longest_step: f64,
-    /// True if the first trajectories are coarse: starts are farther from the states than `longest_step`.
-    pub is_coarse_first: bool,
-}
-
-impl RowStateGoal {
-    /// States that are exact to rounding, as base points are: all cells of a base point inherit its error.
-    pub const EXACT: Self = Self {
-        longest_step: 3e-8,
-        is_coarse_first: false,
-    };
-}
+/// Longest Newton step whose end is extrapolated where states are exact to rounding, as base points are: all cells of a base point inherit
+/// its error.
+pub const EXACT_STEP: f64 = 3e-8;
 
 /// Maximum number of trajectories for each state.
 const ROW_STATE_TRAJECTORIES: u32 = 8;
@@ -95,34 +81,34 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
 }
 
 /// Finds the `states`, one result for each: `[state]`. A result is `None` where Newton's method fails, or leads off the stable sheet.
+///
+/// Newton steps up to `longest_step` are extrapolated. They leave an error of at most [`LEFT_BY_STEP`](super::LEFT_BY_STEP) times the square
+/// of the step, in units of the contact's arclength and the pole's distance together.
 pub fn row_states(
     method: Method,
     states: &[RowState],
-    goal: RowStateGoal,
+    longest_step: f64,
 ) -> Vec<Option<ExactState>> {
     let chunks = states.par_chunks(chunk_size(states.len()));
     chunks
-        .flat_map_iter(|states| solve(method, states, goal))
+        .flat_map_iter(|states| solve(method, states, longest_step))
         .collect()
 }
 
 fn solve<'a>(
     method: Method,
     states: &[RowState<'a>],
-    goal: RowStateGoal,
+    longest_step: f64,
 ) -> Vec<Option<ExactState>> {
     let problem = |state: &RowState<'a>| RowProblem {
         ln_distance: libm::log(state.sheet.rows[state.row].pole_distance),
         state: *state,
-        longest_step: goal.longest_step,
+        longest_step,
         derivatives: FirstVariation::default(),
     };
     let mut problems: Vec<RowProblem> = states.iter().map(problem).collect();
     let start = |state: &RowState| DVec2::new(state.tau, state.w / (state.tau * state.tau));
-    let newton = BatchNewton {
-        coarse_rounds: u32::from(goal.is_coarse_first),
-        ..BatchNewton::new(method, ROW_STATE_TRAJECTORIES)
-    };
+    let newton = BatchNewton::new(method, ROW_STATE_TRAJECTORIES);
     let iterates = newton.solve(&mut problems, states.iter().map(start));
     let exact = problems.iter().zip(iterates).map(|(problem, iterate)| {
         let reached = ContactState {

@@ -4,7 +4,7 @@ use super::row::{FUNCTIONS, Weights, numbers, value_weights};
 use crate::engine::WhiskerSide;
 use crate::numerics::expansion::{Chebyshev, chebyshev_points};
 use crate::numerics::nearest_turn;
-use crate::refine::{ExactState, LEFT_BY_STEP, RowState, RowStateGoal, SpanFromTouch, row_states};
+use crate::refine::{ExactState, LEFT_BY_STEP, RowState, SpanFromTouch, row_states};
 use crate::sheet::{Crossing, Row, Sheet};
 use crate::shooting::ShootingMap;
 use crate::shooting::batch::Method;
@@ -30,57 +30,30 @@ pub fn simple_end(sheet: &Sheet, row: usize) -> Option<&Crossing> {
     (is_simple && !sheet.is_continued()).then_some(end)
 }
 
-/// Newton starts of the exact states of rows.
-#[derive(Clone, Copy)]
-pub enum StateStarts<'a> {
-    /// Starts from the row spans of the rows.
-    Spans,
-    /// Starts from expansions of each row, `[row]`, with their largest error in whisker lengths.
-    Expansions(&'a [Chebyshev<FUNCTIONS>], f64),
-}
-
 /// Part of the bound on the residual that the extrapolated Newton step of a state may take. The certificate finds larger errors.
-const STATE_ERROR: f64 = 0.1;
+const STATE_ERROR: f64 = 0.03;
 
 /// Largest sum of the contact's arclength and the pole's distance, in whisker lengths, in the bound on the error of a step.
 const LARGEST_LEVER: f64 = 2.0;
 
 impl ExactRow {
-    /// Computes `count` states of each row of `sheet` from `starts`, for expansions with a residual of at most `most` whisker lengths. An
-    /// entry is `None` for a row without a simple span from first touch, or if Newton's method fails for a state.
+    /// Computes `count` states of each row of `sheet` from its row span, for expansions with a residual of at most `most` whisker lengths.
+    /// An entry is `None` for a row without a simple span from first touch, or if Newton's method fails for a state.
     pub fn all(
         method: Method,
         sheet: &Sheet,
         rows: &[usize],
         count: usize,
         most: f64,
-        starts: StateStarts,
     ) -> Vec<Option<Self>> {
         let points = chebyshev_points(count);
-        let spans = rows.par_iter().enumerate().map(|(i, row)| match starts {
-            StateStarts::Spans => Some(SpanFromTouch::new(sheet, *row)?.states(points).collect()),
-            StateStarts::Expansions(rows, _) => {
-                let end = simple_end(sheet, *row)?;
-                let state = |place: &f64| RowState {
-                    sheet,
-                    row: *row,
-                    w: place * end.load * end.tau * end.tau,
-                    tau: rows[i].at(*place)[1],
-                };
-                Some(points.iter().map(state).collect())
-            }
-        });
+        let spans = rows
+            .par_iter()
+            .map(|row| Some(SpanFromTouch::new(sheet, *row)?.states(points).collect()));
         let spans: Vec<Option<Vec<RowState>>> = spans.collect();
         let longest_step = (STATE_ERROR * most / (LARGEST_LEVER * LEFT_BY_STEP)).sqrt();
-        let goal = RowStateGoal {
-            longest_step,
-            is_coarse_first: match starts {
-                StateStarts::Spans => true,
-                StateStarts::Expansions(_, error) => error > longest_step,
-            },
-        };
         let flat: Vec<RowState> = spans.iter().flatten().flatten().copied().collect();
-        let found = row_states(method, &flat, goal);
+        let found = row_states(method, &flat, longest_step);
         let mut found = found.chunks(count);
         let rows = rows.iter().zip(&spans).map(|(row, span)| {
             span.as_ref()?;

@@ -1,7 +1,7 @@
 //! Patches: the expansions of many rows of one whisker side as a tensor.
 
 use super::certificate::{Check, MARGIN, bounds};
-use super::exact_row::{ExactRow, StateStarts};
+use super::exact_row::ExactRow;
 use super::expansion_tail::ExpansionTail;
 use super::patch_size::PatchSize;
 use super::row::{FUNCTIONS, RowExpansion, Weights, larger, value_weights};
@@ -25,39 +25,24 @@ pub struct Patch {
 /// Places of the certificate in each direction: between the Chebyshev points of every size.
 const CHECKS: usize = 8;
 
-/// Expansions of a patch that are not accurate enough.
-pub struct RefusedPatch {
-    tensor: ChebyshevTensor<FUNCTIONS>,
-    /// Expected error, in whisker lengths.
-    error: f64,
-    /// Size of a patch that is expected to be accurate enough; `None` if there is none.
-    pub enough: Option<PatchSize>,
-}
-
 impl Patch {
-    /// Computes the states of `size` and certifies the expansions through them. The refused patch of a smaller size gives starts.
+    /// Computes the states of `size` and certifies the expansions through them.
     ///
     /// # Errors
-    /// If the bound exceeds `most`, in whisker lengths, the expansions; `None` if a state is not found.
+    /// If the bound exceeds `most`, in whisker lengths, the size that is expected to be accurate enough; `None` if there is none, or if a
+    /// state is not found.
     pub fn new(
         method: Method,
         side: &WhiskerSide,
         interval: RowInterval,
         size: PatchSize,
         most: f64,
-        smaller: Option<&RefusedPatch>,
-    ) -> Result<Self, Option<RefusedPatch>> {
+    ) -> Result<Self, Option<PatchSize>> {
         let parts = chebyshev_points(size.rows);
         let rows = interval.rows(method, &side.sheet, parts);
         let sheet = side.sheet.with_rows(rows).ok_or(None)?;
         let all: Vec<usize> = (0..size.rows).collect();
-        let expansions: Vec<Chebyshev<FUNCTIONS>> = smaller.map_or_else(Vec::new, |smaller| {
-            parts.iter().map(|part| smaller.tensor.at(*part)).collect()
-        });
-        let starts = smaller.map_or(StateStarts::Spans, |smaller| {
-            StateStarts::Expansions(&expansions, smaller.error)
-        });
-        let found = ExactRow::all(method, &sheet, &all, size.states, most, starts);
+        let found = ExactRow::all(method, &sheet, &all, size.states, most);
         let found: Option<Vec<ExactRow>> = found.into_iter().collect();
         let found = found.ok_or(None)?;
         let is_apart = |row: &ExactRow| row.end.edge != interval.edge;
@@ -93,11 +78,7 @@ impl Patch {
             // Between the states, the error is larger than the last coefficients.
             enough = size.larger();
         }
-        Err(Some(RefusedPatch {
-            tensor: patch.tensor,
-            error,
-            enough,
-        }))
+        Err(enough)
     }
 
     /// Bound on the residual from trajectories between the states.
@@ -195,7 +176,7 @@ mod tests {
                 rows: 24,
                 states: 32,
             };
-            let sound = Patch::new(method, &side, interval(&side, edge), size, MOST, None);
+            let sound = Patch::new(method, &side, interval(&side, edge), size, MOST);
             let sound = sound.unwrap_or_else(|_| panic!("{edge:?}: refused"));
             assert!(sound.certified(method, &side) <= 4.0 * sound.residual);
             let largest = sound.tensor.in_y.iter().flat_map(|own| &own.coefficients);

@@ -1,7 +1,7 @@
 //! Spectral sheet of a whisker side: which row is expanded through its own states, and which belongs to a patch.
 
 use super::certificate::{Check, bounds};
-use super::exact_row::{ExactRow, StateStarts};
+use super::exact_row::ExactRow;
 use super::expansion_tail::ExpansionTail;
 use super::patch::Patch;
 use super::patch_size::PatchSize;
@@ -161,15 +161,11 @@ fn smallest_patch(
     most: f64,
     pays: impl Fn(PatchSize) -> bool,
 ) -> Option<Patch> {
-    let (mut size, mut smaller) = (PatchSize::FIRST, None);
+    let mut size = PatchSize::FIRST;
     for _ in 0..TRIES {
-        match Patch::new(method, side, interval, size, most, smaller.as_ref()) {
+        match Patch::new(method, side, interval, size, most) {
             Ok(patch) => return Some(patch),
-            Err(refused) => {
-                let refused = refused?;
-                size = refused.enough.filter(|next| pays(*next))?;
-                smaller = Some(refused);
-            }
+            Err(enough) => size = enough.filter(|next| pays(*next))?,
         }
     }
     None
@@ -191,7 +187,7 @@ fn expand(
     states: usize,
     most: f64,
 ) -> Vec<Option<RowExpansion>> {
-    let exact = ExactRow::all(method, &side.sheet, rows, states, most, StateStarts::Spans);
+    let exact = ExactRow::all(method, &side.sheet, rows, states, most);
     let found: Vec<&ExactRow> = exact.iter().flatten().collect();
     let functions: Vec<Chebyshev<FUNCTIONS>> =
         found.iter().map(|row| row.expansion(side)).collect();
