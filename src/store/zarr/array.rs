@@ -1,7 +1,7 @@
 //! Arrays of a Zarr store: metadata, and conversion of chunks between values and bytes.
 
 use super::blocks::Blocks;
-use super::blosc;
+use super::blosc::{self, Codec};
 use super::planes::{planes, turned};
 use crate::store::NOT_COMPUTED;
 use serde_json::{Value, json};
@@ -49,6 +49,25 @@ impl ValueKind {
     }
 }
 
+/// Encoding of the chunks of an array.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ChunkEncoding {
+    /// Values of a line of a chunk, if its lines are stored as columns.
+    pub(super) width: Option<usize>,
+    /// Number of mantissa bits to which values are rounded, unless all are stored.
+    pub(super) kept_bits: Option<u32>,
+}
+
+impl ChunkEncoding {
+    /// Returns the compression codec of values of a `kind`. The last bits of quantities are noise, which no codec makes smaller.
+    const fn codec(self, kind: ValueKind) -> Codec {
+        match (kind, self.kept_bits) {
+            (ValueKind::Quantity, None) => Codec::Lz4,
+            _ => Codec::Zlib,
+        }
+    }
+}
+
 /// Array of a Zarr store. Each of its blocks is a file of equal chunks.
 #[derive(Debug)]
 pub(super) struct ZarrArray {
@@ -62,20 +81,17 @@ pub(super) struct ZarrArray {
     pub(super) values: usize,
     /// Values of a chunk.
     chunk_values: usize,
-    /// Values of a line of a chunk, if its lines are stored as columns.
-    width: Option<usize>,
-    /// Number of mantissa bits to which values are rounded, unless all are stored.
-    kept_bits: Option<u32>,
+    encoding: ChunkEncoding,
 }
 
 impl ZarrArray {
     /// Creates a Zarr array in blocks. Its first dimensions are the sweep axes. Its last dimensions have these `sizes`: in all, in a
-    /// block's file, and in a chunk, whose lines of `width` values are stored as columns.
+    /// block's file, and in a chunk.
     pub(super) fn in_blocks(
         name: &str,
         kind: ValueKind,
         blocks: &Blocks,
-        (sizes, width): (&[[usize; 3]], Option<usize>),
+        (sizes, encoding): (&[[usize; 3]], ChunkEncoding),
         dimensions: &[&str],
         about: Value,
     ) -> Self {
@@ -86,21 +102,16 @@ impl ZarrArray {
             [0, 1, 2].map(|which| -> Vec<usize> { sizes.iter().map(|size| size[which]).collect() });
         let codecs = json!([{ "name": "sharding_indexed", "configuration": {
             "chunk_shape": chunk,
-            "codecs": chunk_codecs(kind, &chunk, width.is_some()),
+            "codecs": chunk_codecs(kind, &chunk, encoding),
             "index_codecs": [little_endian(), { "name": "crc32c" }],
             "index_location": "end",
         } }]);
         let array = Self::new(name, kind, [&all, &file], dimensions, (about, codecs));
         Self {
             chunk_values: chunk.iter().product(),
-            width,
+            encoding,
             ..array
         }
-    }
-
-    /// The array, whose values are rounded to this number of mantissa bits.
-    pub(super) fn rounded_to(self, kept_bits: Option<u32>) -> Self {
-        Self { kept_bits, ..self }
     }
 
     /// The values along an axis, in one chunk that is not packed.
@@ -142,8 +153,7 @@ impl ZarrArray {
             dimensions: file.len(),
             values,
             chunk_values: values,
-            width: None,
-            kept_bits: None,
+            encoding: ChunkEncoding::default(),
         }
     }
 
@@ -188,10 +198,12 @@ impl ZarrArray {
     /// A frame of Blosc and its checksum.
     fn pack_chunk(&self, values: &[u8]) -> Vec<u8> {
         let size = self.kind.size();
+        let ChunkEncoding { width, kept_bits } = self.encoding;
+        let codec = self.encoding.codec(self.kind);
         let mut chunk = if size == 1 {
-            blosc::pack(values, size)
+            blosc::pack(codec, values, size)
         } else {
-            blosc::pack(&planes(values, self.width, self.kept_bits), size)
+            blosc::pack(codec, &planes(values, width, kept_bits), size)
         };
         chunk.extend(crc32c::crc32c(&chunk).to_le_bytes());
         chunk
@@ -209,7 +221,7 @@ impl ZarrArray {
         for frame in frames {
             let first = values.len();
             blosc::unpack(frame, [self.chunk_values, self.kind.size()], &mut values)?;
-            if let Some(width) = self.width {
+            if let Some(width) = self.encoding.width {
                 let lines = turned(&values[first..], self.chunk_values / width);
                 values[first..].copy_from_slice(&lines);
             }
@@ -222,18 +234,18 @@ fn little_endian() -> Value {
     json!({ "name": "bytes", "configuration": { "endian": "little" } })
 }
 
-/// The codecs of a chunk of this `shape`: lines to columns where they `are_turned`, one block of Blosc, a checksum.
-fn chunk_codecs(kind: ValueKind, shape: &[usize], are_turned: bool) -> Value {
+/// The codecs of a chunk of this `shape`: lines to columns where they are turned, one block of Blosc, a checksum.
+fn chunk_codecs(kind: ValueKind, shape: &[usize], encoding: ChunkEncoding) -> Value {
     let size = kind.size();
     let blosc = json!({ "name": "blosc", "configuration": {
-        "cname": blosc::CODEC,
+        "cname": encoding.codec(kind).name(),
         "clevel": blosc::LEVEL,
         "shuffle": if size > 1 { "shuffle" } else { "noshuffle" },
         "typesize": size,
         "blocksize": shape.iter().product::<usize>() * size,
     } });
     let codecs = [little_endian(), blosc, json!({ "name": "crc32c" })];
-    let transpose = are_turned.then(|| {
+    let transpose = encoding.width.is_some().then(|| {
         let mut order: Vec<usize> = (0..shape.len()).collect();
         order[shape.len() - 2..].reverse();
         json!({ "name": "transpose", "configuration": { "order": order } })
@@ -260,10 +272,12 @@ mod tests {
     fn lines_are_turned_and_the_last_chunk_is_filled_up() {
         let values: Vec<f32> = (0..51).map(|i| i as f32).collect();
         let axis = ZarrArray::of_axis("force_un", ValueKind::Quantity, 34, json!({}));
-        let array = ZarrArray {
-            width: Some(17),
-            ..axis
+        let width = Some(17);
+        let encoding = ChunkEncoding {
+            width,
+            ..ChunkEncoding::default()
         };
+        let array = ZarrArray { encoding, ..axis };
         let packed = array.pack(bytemuck::cast_slice(&values));
         let frames = || packed.iter().map(|chunk| &chunk[..chunk.len() - 4]);
         let numbers = |bytes: Result<Vec<u8>, String>| -> Vec<f32> {
@@ -273,7 +287,7 @@ mod tests {
         assert_eq!(found[..51], values);
         assert!(found.len() == 68 && found[51..].iter().all(|own| own.is_nan()));
         let columns = ZarrArray {
-            width: None,
+            encoding: ChunkEncoding::default(),
             ..array
         };
         let columns = numbers(columns.unpack(frames()));

@@ -1,7 +1,7 @@
 //! Arrays and attributes of a store.
 
 use super::array::ValueKind::{self, Code, Coordinate, Count, Quantity};
-use super::array::{ZarrArray, about};
+use super::array::{ChunkEncoding, ZarrArray, about};
 use super::blocks::Blocks;
 use super::identity::{AGREED, StoreIdentity};
 use crate::classify::{Regime, Status};
@@ -53,7 +53,7 @@ pub(super) fn arrays(
         CELLS,
         Count,
         blocks,
-        (&[[Regime::ALL.len(); 3]], None),
+        (&[[Regime::ALL.len(); 3]], ChunkEncoding::default()),
         &of_regimes,
         about(None, "cells of each regime"),
     )];
@@ -66,14 +66,19 @@ pub(super) fn arrays(
         };
         // Columns make quantities 8 % smaller, but a line of margins is the one before it, shifted, and derivatives are equal along a line.
         let is_turned = STATE_CHANNELS.contains(&name) || name == "residual";
-        let sizes = (&sizes[..], is_turned.then_some(push_angles));
         let kept_bits = digits.mantissa_bits(name);
+        let encoding = ChunkEncoding {
+            width: is_turned.then_some(push_angles),
+            kept_bits,
+        };
+        let sizes = (&sizes[..], encoding);
         if let Some(bits) = kept_bits {
             about["quantization"] = json!(QUANTIZATION);
             about["quantization_nsb"] = json!(bits);
         }
-        let array = ZarrArray::in_blocks(name, kind, blocks, sizes, &of_cells, about);
-        arrays.push(array.rounded_to(kept_bits));
+        arrays.push(ZarrArray::in_blocks(
+            name, kind, blocks, sizes, &of_cells, about,
+        ));
     }
     arrays
 }
