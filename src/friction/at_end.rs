@@ -30,7 +30,7 @@ pub fn surely_slides_to_end(sheet: &Sheet, rows: &[(usize, Crossing)]) -> Vec<bo
     let parts = rows.iter().zip(&levels).zip(&points);
     let parts = parts.map(|(((_, end), level), points)| {
         let points = points.as_ref()?;
-        let mut last = level.touch()?;
+        let mut last = level.touch();
         let mut nodes = vec![last];
         for (point, state) in points.iter().zip(states.by_ref()) {
             last = level.node(*point, &state.full, last.push, last.angle);

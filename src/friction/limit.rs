@@ -26,7 +26,7 @@ impl SlidingLimit {
     /// Computes the sliding limits of `levels`, `[level]`; `None` where the continuation fails. All levels have one method, and their
     /// trajectories share batches.
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
-        let starts = levels.iter().map(|level| Some((level, level.touch()?)));
+        let starts = levels.iter().map(|level| Some((level, level.touch())));
         let continued = continuations(&starts.collect::<Vec<_>>(), false, NODE_MISS);
         let parts = levels.iter().zip(continued).map(|(level, continued)| {
             let Continuation { nodes, fold, .. } = continued?;
@@ -43,7 +43,7 @@ impl SlidingLimit {
     /// Computes the sliding limit of `level`, and the limit of its unstable states up to the fold if there is one; `None` if the
     /// continuation fails.
     pub fn with_unstable(level: &LevelCurve) -> Option<(Self, Option<Self>)> {
-        let start = Some((level, level.touch()?));
+        let start = Some((level, level.touch()));
         let continued = continuations(&[start], true, NODE_MISS).pop()??;
         let Continuation { nodes, fold, .. } = continued;
         let has_fold = fold.is_some();

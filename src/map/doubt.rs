@@ -26,7 +26,7 @@ pub fn solve(
     let sign = sheet.side.sign();
     let pieces = boundary.spans().iter().enumerate().map(|(index, span)| {
         let start = if sheet.touches(row) && index == 0 {
-            level.touch()?
+            level.touch()
         } else {
             let entry = sheet.crossings[row].iter().find(|c| c.push == span.from)?;
             level.at_crossing(entry)?
@@ -79,7 +79,7 @@ pub fn solve(
 /// First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone. A Newton
 /// step from there mostly leaves a smaller one.
 fn first_touch(level: &LevelCurve, push: f64) -> Option<ContactState> {
-    let touch = level.touch()?;
+    let touch = level.touch();
     let map = &touch.full.map;
     let step = map.solve(map.residual(level.row.pole(push)));
     let stepped = level.correct(&[touch.point + step], ON_CURVE).pop()?;

@@ -82,7 +82,7 @@ row! {
         pub asperity: Option<usize>,
         /// Side of the whisker that the asperity is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Angle of the base, in degrees.
+        /// Angle of the base, in degrees: 0 with the resting chord normal to the surface, growing along it.
         pub angle_deg: f64,
         /// Rotation of the base since the whisker at rest would touch this asperity, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,

@@ -97,8 +97,7 @@ impl Branch {
             });
         }
         let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
-        let touch = level.touch();
-        let followed = touch.and_then(|touch| level.continuation(touch, past_fold));
+        let followed = level.continuation(level.touch(), past_fold);
         // From first touch at the tip there may be no state to continue to.
         let none = match row.is_at_reach() {
             true => NoState::PulledOff { at_deg: 0.0 },

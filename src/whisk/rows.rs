@@ -96,7 +96,7 @@ row! {
         pub event: WhiskEventKind,
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Angle of the base, in degrees.
+        /// Angle of the base, in degrees: 0 at first touch on CB, positive pushes CB.
         pub angle_deg: f64,
         /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,

@@ -128,7 +128,7 @@ impl Frictions {
             ..self.rod.clone()
         };
         let level = LevelCurve::new(Method::fine(), &rod, self.side, &self.row);
-        let continuation = level.continuation(level.touch().unwrap(), false).unwrap();
+        let continuation = level.continuation(level.touch(), false).unwrap();
         let state = |push: &f64| level.state_at_push(&continuation.nodes, self.side.sign() * push);
         let place = |push| Some(place(&rod, &state(push)?));
         pushes.iter().map(place).collect()

@@ -1,6 +1,6 @@
 //! The solver of the page that `whiskmap explore` writes, as a WebAssembly module without imports.
 //!
-//! A caller writes a [`Request`](request::Request) as JSON where [`input`] points, calls [`respond`], and reads the response: a JSON
+//! A caller writes a request (`src/request.rs`) as JSON where [`input`] points, calls [`respond`], and reads the response: a JSON
 //! text where [`text`] points, and numbers where [`numbers`] points. A response without a result is `{"error": message}`, with the message of
 //! the command line. Positions are valid until the next call.
 #![allow(

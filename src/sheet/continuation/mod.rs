@@ -167,7 +167,7 @@ mod tests {
             };
             let row = Row::new(&Rest::new(&rod), 0.75);
             let level = LevelCurve::new(Method::fine(), &rod, side, &row);
-            let branch = level.continuation(level.touch().unwrap(), true).unwrap();
+            let branch = level.continuation(level.touch(), true).unwrap();
             let fold = branch.fold.unwrap();
             for part in [&branch.nodes[..=fold], &branch.nodes[fold..]] {
                 let [from, to] = [part[0].push, part[part.len() - 1].push];

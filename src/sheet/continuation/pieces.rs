@@ -98,7 +98,7 @@ fn from_touch(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     let at_touch = |row: &ContinuedRow| row.crossings.iter().copied().find(Crossing::is_at_touch);
     let start = |row: &ContinuedRow| {
         let is_continued = row.touches && at_touch(row).is_none();
-        is_continued.then(|| row.level.touch())?
+        is_continued.then(|| row.level.touch())
     };
     let starts: Vec<Option<CurveNode>> = rows.iter().map(start).collect();
     let ends = ends_of_pieces(rows, &starts, false);

@@ -14,16 +14,16 @@ use glam::DVec2;
 const ROUGHENING: f64 = 0.1;
 
 impl LevelCurve {
-    /// Returns the level curve's state at first touch, from which push angles are counted; never `None`.
+    /// Returns the level curve's state at first touch, from which push angles are counted.
     #[must_use]
-    pub fn touch(&self) -> Option<CurveNode> {
+    pub fn touch(&self) -> CurveNode {
         let at_touch = self.row.first_touch(&self.rod);
-        let mut shot = Batch::new(self.method).shoot_at(&self.rod, [at_touch]);
-        let FirstVariation { full, .. } = shot.pop()?;
-        Some(CurveNode {
+        let FirstVariation { full, .. } =
+            Batch::new(self.method).shoot_at(&self.rod, [at_touch])[0];
+        CurveNode {
             push: 0.0,
             ..self.node(at_touch, &full, 0.0, 0.0)
-        })
+        }
     }
 
     /// Returns the level curve's state at a crossing, or `None` if the corrector fails.
