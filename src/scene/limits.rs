@@ -1,7 +1,6 @@
 //! Limits of the values of a scene, and their texts in messages.
 
 use std::fmt;
-use std::ops::{Bound, RangeBounds};
 
 use super::error::SceneFault;
 use super::parameter::Parameter;
@@ -33,44 +32,58 @@ pub(super) fn limits(parameter: Parameter) -> NumberLimits {
 
 /// Limits of a number: a range, in the number's unit. NaN is in none, and no range here reaches infinity.
 pub(super) struct NumberLimits {
-    range: (Bound<f64>, Bound<f64>),
-    must: String,
+    min: LimitEnd,
+    max: LimitEnd,
+    /// True if the upper end is not allowed.
+    is_open: bool,
+    /// End of the message about a number outside the limits.
+    remarks: String,
 }
 
 impl NumberLimits {
     /// Creates limits of which both ends are allowed.
     pub fn between(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
-        let (min, max) = (min.into(), max.into());
         Self {
-            range: (Bound::Included(min.value), Bound::Included(max.value)),
-            must: format!("must be between {min} and {max}"),
+            min: min.into(),
+            max: max.into(),
+            is_open: false,
+            remarks: String::new(),
         }
     }
 
     /// Creates limits of which the lower end is allowed, and the upper one is not.
     pub fn below(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
-        let (min, max) = (min.into(), max.into());
         Self {
-            range: (Bound::Included(min.value), Bound::Excluded(max.value)),
-            must: format!("must be at least {min} and less than {max}"),
+            is_open: true,
+            ..Self::between(min, max)
         }
     }
 
     /// Adds remarks to the end of the message about a number outside the limits.
     pub fn remarks(mut self, remarks: impl IntoIterator<Item = impl fmt::Display>) -> Self {
         for remark in remarks {
-            self.must = format!("{}; {remark}", self.must);
+            self.remarks += &format!("; {remark}");
         }
         self
     }
 
     /// Returns the `value` of `key` if it lies within the limits, otherwise a fault.
     pub fn check(&self, key: &str, value: f64) -> Result<f64, SceneFault> {
-        if self.range.contains(&value) {
-            Ok(value)
-        } else {
-            Err(SceneFault::of_value(key, digits(value), &*self.must))
+        let Self {
+            min, max, remarks, ..
+        } = self;
+        let is_below = match self.is_open {
+            false => value <= max.value,
+            true => value < max.value,
+        };
+        if value >= min.value && is_below {
+            return Ok(value);
         }
+        let must = match self.is_open {
+            false => format!("must be between {min} and {max}{remarks}"),
+            true => format!("must be at least {min} and less than {max}{remarks}"),
+        };
+        Err(SceneFault::of_value(key, digits(value), must))
     }
 }
 
