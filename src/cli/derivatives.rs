@@ -9,7 +9,7 @@ use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable};
 
 #[derive(Debug, Args)]
 pub struct DerivativeArgs {
-    /// Append columns with derivatives, such as d_push_d_taper, by the named variables, separated by commas; without names, by all
+    /// Append columns with derivatives, such as d_force_d_taper, by the named variables, separated by commas; without names, by all
     /// variables of the scene
     #[arg(
         long,
