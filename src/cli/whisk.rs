@@ -85,14 +85,15 @@ fn summarise(whisk: &Whisk) {
     ]
     .map(&count);
     let [lost, taken] = [whisk.lost_nj(), whisk.dissipated_nj()];
-    let [lost, dissipated] = [lost, taken].map(|energy| digits(rounded(energy, 6)));
+    let [lost, dissipated] = [lost, taken].map(|energy| match energy.is_nan() {
+        true => "an unknown energy".to_owned(),
+        false => format!("{} nJ", digits(rounded(energy, 6))),
+    });
     message(&format!(
-        "touches {touches}, releases {releases}, slip-offs {slips}, pull-offs {pulls}; detachments lose {lost} nJ"
+        "touches {touches}, releases {releases}, slip-offs {slips}, pull-offs {pulls}; detachments lose {lost}"
     ));
     if taken != 0.0 {
-        message(&format!(
-            "snaps {snaps}; friction dissipates {dissipated} nJ"
-        ));
+        message(&format!("snaps {snaps}; friction dissipates {dissipated}"));
     }
     let spans = count(WhiskEventKind::Undecided);
     let undecided = whisk

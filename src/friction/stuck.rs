@@ -66,7 +66,7 @@ pub struct StuckPath<'a> {
 /// Part of a path that is still followed, to one side of its start.
 struct OpenPath {
     run: usize,
-    /// Push of the start, and the difference of pushes from node to node, in radians.
+    /// Pushes of the first and the last node, in radians.
     pushes: [f64; 2],
     nodes: Vec<(f64, FrictionPoint)>,
 }
@@ -93,16 +93,16 @@ impl<'a> StuckPath<'a> {
                 let from = run.end.push;
                 open.push(OpenPath {
                     run: index,
-                    pushes: [from, (extreme - from) / f64::from(PATH_STEPS)],
+                    pushes: [from, extreme],
                     nodes: vec![(from, start.start)],
                 });
             }
         }
-        open.retain(|path| path.pushes[1] != 0.0);
+        open.retain(|path| path.pushes[0] != path.pushes[1]);
         let mut ended = Vec::new();
         for step in 1..=PATH_STEPS {
             let targets = open.iter().filter_map(|path| {
-                let push = path.pushes[1].mul_add(f64::from(step), path.pushes[0]);
+                let push = path.push(step);
                 let start = starts[path.run].as_ref()?;
                 Some(start.at(push, path.ahead()))
             });
@@ -110,8 +110,7 @@ impl<'a> StuckPath<'a> {
             for (mut path, state) in std::mem::take(&mut open).into_iter().zip(found) {
                 match state {
                     Some(state) => {
-                        let push = path.pushes[1].mul_add(f64::from(step), path.pushes[0]);
-                        path.nodes.push((push, state.at));
+                        path.nodes.push((path.push(step), state.at));
                         open.push(path);
                     }
                     None => ended.push(path),
@@ -172,6 +171,15 @@ impl<'a> StuckPath<'a> {
 }
 
 impl OpenPath {
+    /// Push of the node after `step` steps, in radians. The last one is exact: a query lies there.
+    fn push(&self, step: u32) -> f64 {
+        let [from, to] = self.pushes;
+        match step {
+            PATH_STEPS => to,
+            _ => ((to - from) / f64::from(PATH_STEPS)).mul_add(f64::from(step), from),
+        }
+    }
+
     /// Start of Newton's method for the next node: the last two nodes, extrapolated.
     fn ahead(&self) -> FrictionPoint {
         match self.nodes[..] {

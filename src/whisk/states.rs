@@ -2,7 +2,7 @@
 
 use super::contact::CourseContact;
 use crate::classify::RowBoundary;
-use crate::friction::{ContactQuery, CourseLimits, FrictionState, Sliding};
+use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
@@ -128,12 +128,16 @@ impl SideStates {
             let states = self.without_friction(&pushes).into_iter();
             return states.map(|state| Some((state?, None))).collect();
         };
-        let is_inside = |push: f64| push > 0.0 && push < self.end(0);
-        let inside = contacts.iter().filter(|own| is_inside(own.push));
+        // A contact that sticks when the push is back at 0 is not at first touch: the whisker is still bent.
+        let is_inside = |own: &CourseContact| {
+            let is_stuck = matches!(own.phase, Some(ContactPhase::Sticks(_)));
+            (own.push > 0.0 || is_stuck && own.push == 0.0) && own.push < self.end(0)
+        };
+        let inside = contacts.iter().filter(|own| is_inside(own));
         let queries = inside.filter_map(|own| Some(limits.query(own.phase?, own.push)));
         let mut solved = solve(&queries.collect::<Vec<_>>()).into_iter();
         let states = contacts.iter().map(|own| {
-            if is_inside(own.push) {
+            if is_inside(own) {
                 let state = own.phase.and_then(|_| solved.next()?)?;
                 let reader = self.reader.with_contact(&state.rod(&self.sheet.rod));
                 let (touch, push) = (self.sheet.rows[0].touch, self.sheet.side.sign() * own.push);

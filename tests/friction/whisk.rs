@@ -127,6 +127,25 @@ fn slip_offs_have_states() {
     }
 }
 
+/// A contact that sticks has a state at every turning point, and where the push is back at 0: the whisker is still bent there.
+#[test]
+fn turning_points_that_stick_have_states() {
+    let scene = cone(0.02, 0.25, 0.9);
+    for i in 0..120 {
+        let turn = 0.1 * f64::from(i);
+        let found = through_at(&scene, 5.0, &[-10.0, 60.0, turn, turn + 5.0]);
+        let reasons: Vec<_> = found.samples.iter().map(|sample| sample.reason).collect();
+        assert_eq!(reasons, [None; 4], "{turn}");
+        assert_eq!(found.samples[2].sliding, Some(Sliding::Sticks), "{turn}");
+    }
+    let found = through_at(&scene, 5.0, &[-10.0, 60.0, 1e-9, 0.0]);
+    let [before, at_zero] = [2, 3].map(|i| found.samples[i].force_un.unwrap());
+    assert!(
+        (at_zero / before - 1.0).abs() < 1e-9 && at_zero > 100.0,
+        "{before} {at_zero}"
+    );
+}
+
 /// A first push has the states of the branch, on both sides.
 #[test]
 fn a_first_push_has_the_states_of_the_branch() {
