@@ -31,7 +31,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 fn sine(text: &str) -> Result<Sine, String> {
-    let parts: Vec<&str> = text.split(',').collect();
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     let [amplitude, frequency, seconds] = parts[..] else {
         return Err("must be amplitude, frequency and duration, such as 25deg,10,0.2".to_owned());
     };

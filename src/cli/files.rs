@@ -175,6 +175,11 @@ const FOLDER_ADVICE: &str = "give a folder that can be written";
 
 /// Checks that the `path` of `option` is a folder or can become one.
 pub fn check_folder(option: &str, path: &Path) -> Result<(), Failure> {
+    if path == Path::new(STDOUT) {
+        let why =
+            format!("{option} -: must be a folder, but - is standard output; {FOLDER_ADVICE}");
+        return Err(Failure::Input(why));
+    }
     match path.ancestors().find(|own| own.exists()) {
         Some(file) if !file.is_dir() => Err(Failure::Input(format!(
             "{option} {}: must be a folder, but {} is not one; {FOLDER_ADVICE}",

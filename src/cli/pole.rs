@@ -57,6 +57,13 @@ pub fn read(
 ) -> Result<(Scene, Whisker), Failure> {
     let scene = files.scene(path)?;
     check_single(&scene, command)?;
+    check_distances(&scene, distances)?;
+    let whisker = scene.first_whisker().whisker;
+    Ok((scene, whisker))
+}
+
+/// Returns an error if a distance of `--distance`, in mm, is out of the range of the scene.
+pub fn check_distances(scene: &Scene, distances: &[f64]) -> Result<(), Failure> {
     let (nearest, farthest) = scene.distances_mm();
     let radius = scene.pole.radius_mm;
     for &distance in distances {
@@ -69,8 +76,7 @@ pub fn read(
             )));
         }
     }
-    let whisker = scene.first_whisker().whisker;
-    Ok((scene, whisker))
+    Ok(())
 }
 
 /// Returns the title of a chart of the scene, with poles at these distances.

@@ -16,11 +16,12 @@ impl ColumnUnits {
     /// If a name is not one of a unit, or two units are of one kind.
     pub fn new(names: &[String]) -> Result<Self, Failure> {
         let mut units: Vec<&'static str> = Vec::new();
-        for name in &each_once(names) {
+        let names: Vec<&str> = names.iter().map(|name| name.trim()).collect();
+        for name in each_once(&names) {
             let refused = |must: String| Failure::Input(format!("--units {name}: {must}"));
             let mut kinds = Quantity::KINDS.into_iter();
             let found = kinds.find_map(|kind| {
-                let unit = kind.units().find(|unit| unit == name && unit.is_ascii())?;
+                let unit = kind.units().find(|unit| *unit == name && unit.is_ascii())?;
                 Some((kind, unit))
             });
             let Some((kind, unit)) = found else {

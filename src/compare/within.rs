@@ -5,6 +5,9 @@ use crate::input::{Quantity, did_you_mean};
 use crate::plan::{Channels, STATE_CHANNELS, channel_names};
 use std::str::FromStr;
 
+/// Channels of codes: the number of cells that may differ is given.
+const CODES: [&str; 2] = ["regime", "status"];
+
 /// Largest allowed differences of two maps: relative for all states, absolute for named channels.
 ///
 /// ```
@@ -13,6 +16,7 @@ use std::str::FromStr;
 /// let within: Within = "1e-6,force_un=0.1,regime=3".parse()?;
 /// assert!("force=0.1".parse::<Within>().is_err());
 /// assert!("-1".parse::<Within>().is_err());
+/// assert!("regime=1.5".parse::<Within>().is_err());
 /// # Ok::<(), String>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -80,6 +84,9 @@ impl FromStr for Within {
             let number = Quantity::of(name).parse(number).map_err(refused)?;
             if number < 0.0 {
                 return Err(refused("must be at least 0".to_owned()));
+            }
+            if CODES.contains(&name.trim()) && number.fract() != 0.0 {
+                return Err(refused("must be a whole number of cells".to_owned()));
             }
             let is_new = if entry.contains('=') {
                 let found = channel_names().find(|own| *own == name.trim());

@@ -91,20 +91,19 @@ impl CurvatureFrames {
             .numbers("at_arc_length_mm", &must, is_on_whisker)?
             .unwrap_or_default();
         let at = finite(AT[0])?.zip(finite(AT[1])?);
-        let optional = |name: &str| {
-            let is_good = |number: &f64| number.is_finite();
-            table.values(
-                name,
-                "a finite number, or empty without contact",
-                |cell| match cell {
-                    "" => Some(None),
-                    cell => cell.parse().ok().filter(is_good).map(Some),
-                },
-            )
+        let optional = |name: &str, most: f64, must: &str| {
+            let is_good = |number: &f64| number.abs() <= most;
+            table.values(name, must, |cell| match cell {
+                "" => Some(None),
+                cell => cell.parse().ok().filter(is_good).map(Some),
+            })
         };
+        let finite = "a finite number, or empty without contact";
         let [xs, ys] =
-            [optional("contact_x_mm")?, optional("contact_y_mm")?].map(Option::unwrap_or_default);
-        let angles = optional(ANGLE)?;
+            ["contact_x_mm", "contact_y_mm"].map(|name| optional(name, f64::MAX, finite));
+        let (xs, ys) = (xs?.unwrap_or_default(), ys?.unwrap_or_default());
+        let angle = "a number between -360 and 360, or empty without contact";
+        let angles = optional(ANGLE, 360.0, angle)?;
         let mut frames = Vec::with_capacity(times.len());
         for (i, line) in table.lines().enumerate() {
             let contact_angle_deg = angles.as_ref().and_then(|angles| angles[i]);

@@ -2,21 +2,23 @@
 
 use std::io::{self, Read};
 
-/// Longest input in bytes: far longer than any scene or table.
-const MOST_BYTES: u64 = 1 << 20;
+/// Longest scene in MiB: far longer than any.
+pub(crate) const SCENE_MIB: u64 = 1;
 
-/// Reads all bytes of an input file or stream, at most 1 MiB.
+/// Longest table in MiB: a million samples of a course take 24.
+pub(super) const TABLE_MIB: u64 = 32;
+
+/// Reads all bytes of an input file or stream, at most `most_mib` MiB.
 ///
 /// # Errors
-/// If it cannot be read, or is longer than 1 MiB.
-pub(crate) fn bounded(source: impl Read) -> io::Result<Vec<u8>> {
+/// If it cannot be read, or is longer.
+pub(crate) fn bounded(source: impl Read, most_mib: u64) -> io::Result<Vec<u8>> {
+    let most = most_mib << 20;
     let mut bytes = Vec::new();
-    source.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(io::Error::new(
-            io::ErrorKind::FileTooLarge,
-            "longer than 1 MiB",
-        ));
+    source.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        let what = format!("longer than {most_mib} MiB");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, what));
     }
     Ok(bytes)
 }

@@ -2,7 +2,7 @@
 
 use super::lines::{CsvLine, lines, normalised, separator};
 use super::names::{did_you_mean, escaped, shortened};
-use super::source::{bounded, decoded};
+use super::source::{TABLE_MIB, bounded, decoded};
 use std::fs::File;
 use std::io;
 use std::path::Path;
@@ -58,10 +58,13 @@ impl CsvTable {
     /// Reads a CSV file in UTF-8, or in UTF-16 with a byte order mark.
     ///
     /// # Errors
-    /// If the file cannot be read, is longer than 1 MiB, is no such text, or for the reasons of [`CsvTable::parse`].
+    /// If the file cannot be read, is longer than 32 MiB, is no such text, or for the reasons of [`CsvTable::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
         let path = path.as_ref();
-        Self::decode(File::open(path).and_then(bounded), &path.to_string_lossy())
+        Self::decode(
+            File::open(path).and_then(|file| bounded(file, TABLE_MIB)),
+            &path.to_string_lossy(),
+        )
     }
 
     /// Reads a CSV file from standard input.
@@ -69,7 +72,7 @@ impl CsvTable {
     /// # Errors
     /// Fails as [`CsvTable::read`] does.
     pub fn read_stdin() -> Result<Self, CsvError> {
-        Self::decode(bounded(io::stdin().lock()), "<stdin>")
+        Self::decode(bounded(io::stdin().lock(), TABLE_MIB), "<stdin>")
     }
 
     fn decode(bytes: io::Result<Vec<u8>>, origin: &str) -> Result<Self, CsvError> {

@@ -25,7 +25,7 @@ impl MeasuredPoints {
     /// Reads the points of a CSV file; `-` is standard input.
     ///
     /// # Errors
-    /// If the file cannot be read, is longer than 1 MiB, or is neither UTF-8 nor UTF-16 with a byte order mark. Also for the reasons of
+    /// If the file cannot be read, is longer than 32 MiB, or is neither UTF-8 nor UTF-16 with a byte order mark. Also for the reasons of
     /// [`MeasuredPoints::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
         let path = path.as_ref();
@@ -137,6 +137,7 @@ impl MeasuredPoints {
         let rest = Rest::new(&whisker.rod(pole, Side::Cb));
         let is_allowed = |distance_mm: f64| {
             distance_mm >= whisker.length_mm / NEAREST
+                && distance_mm <= whisker.length_mm
                 && distance_mm > pole.radius_mm
                 && Row::new(&rest, distance_mm / whisker.length_mm).is_reached()
         };

@@ -21,9 +21,6 @@ enum FileKey {
 }
 
 impl FileId {
-    /// File identity of standard output.
-    pub(super) const STDOUT: Self = Self(FileKey::Stdout);
-
     /// Returns the identity of the file or folder at `path`, behind its symbolic links; `None` for a device or a pipe.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
@@ -37,9 +34,12 @@ impl FileId {
     }
 
     /// Returns false if two paths with equal identities lead to two files after all: while another process replaces files, the
-    /// inode of a removed file may be that of the next new one. Both files are held open to be compared.
+    /// inode of a removed file may be that of the next new one. Both files are held open to be compared. `-` is a standard stream.
     #[must_use]
     pub fn is_confirmed(one: &Path, other: &Path) -> bool {
+        if [one, other].contains(&Path::new("-")) {
+            return true;
+        }
         let open = |path| File::open(path).and_then(|file| Ok((file.metadata()?, file)));
         match (open(one), open(other)) {
             #[cfg(unix)]
@@ -53,6 +53,12 @@ impl FileId {
     pub fn of_stdin() -> Option<Self> {
         let stdin = Path::new("/dev/stdin");
         stdin.exists().then(|| Self::of(stdin)).flatten()
+    }
+
+    /// Returns the identity of standard output: of the file that it is redirected to, if there is one.
+    pub(super) fn of_stdout() -> Self {
+        let redirected = Self::of(Path::new("/dev/stdout"));
+        redirected.unwrap_or(Self(FileKey::Stdout))
     }
 
     /// Returns the identities of the folders that hold `path`, from the innermost one on: `[folder]`.

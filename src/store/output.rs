@@ -81,7 +81,7 @@ impl Output {
     #[must_use]
     pub fn id(&self) -> Option<FileId> {
         match &self.0 {
-            Destination::Stdout => Some(FileId::STDOUT),
+            Destination::Stdout => Some(FileId::of_stdout()),
             Destination::Regular { target, .. } => FileId::of(target),
             Destination::Stream { .. } => None,
         }

@@ -214,7 +214,7 @@ fn scenes_have_any_name() {
                 .out
                 .starts_with(CURVE)
         );
-        place.map(&[&format!("./{name}"), "-o", stem]);
+        place.map(&[&format!("./{name}"), "-o", &format!("./{stem}")]);
         let files = [format!("{stem}.exr"), format!("{stem}.png")];
         assert_eq!(names(&place.path(stem)), files);
     }
@@ -271,13 +271,12 @@ fn what_a_user_names_is_read_to_its_end_or_refused() {
     let run = Run::of(&child.unwrap().wait_with_output().unwrap());
     assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(run.out, good(&place, &["curve", "scene.toml"]).out);
-    for (path, why) in [
-        (".", "cannot be read: Is a directory"),
-        ("/dev/zero", "cannot be read: longer than 1 MiB"),
-    ] {
-        place.run(&["curve", path]).assert_refused(&[path, why]);
+    let is_folder = "cannot be read: Is a directory";
+    let [scene, table] = [1, 32].map(|most| format!("cannot be read: longer than {most} MiB"));
+    for (path, scene, table) in [(".", is_folder, is_folder), ("/dev/zero", &scene, &table)] {
+        place.run(&["curve", path]).assert_refused(&[path, scene]);
         place
             .run(&["curve", "scene.toml", "--data", path])
-            .assert_refused(&[path, why]);
+            .assert_refused(&[path, table]);
     }
 }

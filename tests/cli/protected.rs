@@ -94,11 +94,26 @@ fn no_output_is_a_file_of_the_scene() {
     let map = ["map", "map.svg", "--format=zarr", "-o."];
     place.keeps(&map, &["must be a folder"]);
 
-    let stdin = fs::File::open(place.path("map.svg")).unwrap();
-    let mut redirected = place.plain_command(&["curve", "-", "--csv=map.svg"]);
-    Run::of(&redirected.stdin(stdin).output().unwrap())
-        .assert_refused(&["--csv map.svg: is the input -"]);
-    assert_eq!(place.bytes("map.svg"), SCENE.as_bytes());
+    // A file that is named like a standard stream is another one.
+    for _ in 0..2 {
+        let stdin = fs::File::open(place.path("map.svg")).unwrap();
+        let mut redirected = place.plain_command(&["curve", "-", "--csv=map.svg"]);
+        Run::of(&redirected.stdin(stdin).output().unwrap())
+            .assert_refused(&["--csv map.svg: is the input -"]);
+        assert_eq!(place.bytes("map.svg"), SCENE.as_bytes());
+        place.write("-", "");
+    }
+}
+
+/// A table on standard output and a picture are not written to one file.
+#[test]
+fn redirected_standard_output_is_no_other_output() {
+    let place = Place::with(SCENE);
+    let stdout = fs::File::create(place.path("o.svg")).unwrap();
+    let mut both = place.plain_command(&["curve", "scene.toml", "--csv=-", "--plot=o.svg"]);
+    Run::of(&both.stdout(stdout).output().unwrap()).assert_refused(&["must be two files"]);
+    let parts = ["--output -: must be a folder, but - is standard output"];
+    place.keeps(&["map", "scene.toml", "-o-"], &parts);
 }
 
 #[test]

@@ -61,7 +61,7 @@ fn the_state_has_the_loads_of_the_shape() {
     let peak = number(row[12]);
     assert!((0.999..=1.0).contains(&(most / peak)), "{most} {peak}");
     // In other units; the names of columns end in them.
-    let words = [&at[..], &["--csv", "shape.csv", "--units", "mN,Nmm,cm"]].concat();
+    let words = [&at[..], &["--csv", "shape.csv", "--units", "mN, Nmm,cm"]].concat();
     assert_eq!(good(&place, &words).out, "shape.csv\nstate.csv\n");
     let other = String::from_utf8(place.bytes("state.csv")).unwrap();
     let header = BRANCH

@@ -66,7 +66,7 @@ fn a_curve_at_a_distance_has_the_loads_at_detachment() {
     }
     place
         .run(&["curve", "scene.toml", "--distance", "2000"])
-        .assert_refused(&["distance_mm"]);
+        .assert_refused(&["--distance 2000 mm: must be between 0.02 mm"]);
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn whisk(place: &Place, more: &[&str]) -> super::Run {
 #[test]
 fn a_sine_and_its_angles_give_one_course() {
     let place = Place::with(SCENE);
-    let sine = ["--sine", "40deg,10,0.1", "--rate", "500"];
+    let sine = ["--sine", "40deg, 10, 0.1", "--rate", "500"];
     let run = whisk(
         &place,
         &[

@@ -221,8 +221,8 @@ fn files_that_cannot_be_read() {
     assert!(said(&path).contains("p.csv: cannot be read: No such file"));
     std::fs::write(&path, b"side,distance_mm,push_angle_deg\ncb,1\xff,2\n").unwrap();
     assert!(said(&path).ends_with("p.csv:2: not UTF-8 text: byte 0xFF"));
-    std::fs::write(&path, vec![b'#'; (1 << 20) + 1]).unwrap();
-    assert!(said(&path).ends_with("p.csv: cannot be read: longer than 1 MiB"));
+    std::fs::write(&path, vec![b'#'; (32 << 20) + 1]).unwrap();
+    assert!(said(&path).ends_with("p.csv: cannot be read: longer than 32 MiB"));
     std::fs::write(&path, GOOD).unwrap();
     assert_eq!(MeasuredPoints::read(&path).unwrap().points.len(), 2);
 }
@@ -274,6 +274,7 @@ fn points_are_compared_one_by_one() {
         ("0.25", false),
         ("0.26", true),
         ("0.01", false),
+        ("1e160", false),
     ] {
         let points = MeasuredPoints::parse(&text.replace("19.5", distance), "p.csv").unwrap();
         let checked = points

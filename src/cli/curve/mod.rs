@@ -9,6 +9,7 @@ use super::derivatives::{DerivativeArgs, DerivativeColumns};
 use super::failure::{Failure, check_resolved};
 use super::files::Files;
 use super::outputs::{OpenOutputs, OutputArgs};
+use super::pole;
 use super::progress::Progress;
 use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
@@ -111,6 +112,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let mut scene = args.selection.of_scene(&files.scene(&args.scene)?)?;
     if !args.distance.is_empty() {
+        pole::check_distances(&scene, &args.distance)?;
         let mut distances = args.distance.clone();
         distances.sort_by(f64::total_cmp);
         distances.dedup();

@@ -41,7 +41,7 @@ pub struct ScaleOptions {
 #[non_exhaustive]
 pub enum ScaleError {
     /// The ends of the colour bar are not finite, or not in increasing order.
-    #[error("range {}: must be two finite numbers, the smaller one first", ends(.0))]
+    #[error("range {}: must be two finite numbers with a finite difference, the smaller one first", ends(.0))]
     Range([f64; 2]),
     /// The range of a logarithmic colour scale begins at or below 0.
     #[error("range {}: must begin above 0 on a logarithmic scale", ends(.0))]
