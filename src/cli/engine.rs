@@ -6,7 +6,7 @@ use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
 use std::env;
 use whiskmap::accuracy::{cheaper, excess_deg, spectral};
-use whiskmap::engine::gpu::{Gpu, Precision, adapters};
+use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters};
 use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
 use whiskmap::plan::{ExpansionCount, Plan};
 use whiskmap::scene::Scene;
@@ -149,7 +149,7 @@ impl EngineArgs {
         tolerance_deg: Option<f64>,
     ) -> Result<OpenEngine, Failure> {
         // A named adapter that does not exist is an error, even if it would not be used.
-        if self.adapter.is_some() || env::var_os(ADAPTER_VARIABLE).is_some() {
+        if self.names_adapter() {
             self.adapter()?;
         }
         match (self.choice(), self.refusal(scene, plan, tolerance_deg)) {
@@ -186,11 +186,16 @@ impl EngineArgs {
         self.precision.unwrap_or(Precision::F32)
     }
 
-    /// Returns index and name of the adapter of a GPU engine, if there is one.
-    fn adapter(&self) -> Result<Option<(usize, String)>, Failure> {
-        let reports = adapters();
+    /// Returns true if an option or the environment names an adapter.
+    fn names_adapter(&self) -> bool {
+        self.adapter.is_some() || env::var_os(ADAPTER_VARIABLE).is_some()
+    }
+
+    /// Returns index and description of the adapter of a GPU engine, if there is one.
+    fn adapter(&self) -> Result<Option<(usize, AdapterReport)>, Failure> {
+        let mut reports = adapters();
         let index = chosen(&reports, self.adapter.as_deref(), self.precision())?;
-        Ok(index.map(|index| (index, reports[index].info.name.clone())))
+        Ok(index.map(|index| (index, reports.swap_remove(index))))
     }
 
     fn gpu(&self, adapter: Option<usize>) -> Result<Box<dyn Engine>, EngineError> {
@@ -208,12 +213,17 @@ impl EngineArgs {
         if estimate(scene, plan, &mut None, FIRST_LOOK)?.seconds < OPENING {
             return Ok((host, format!("{why}; a GPU is not timed below {OPENING} s")));
         }
-        let (index, name) = self.adapter()?.unzip();
+        let (index, report) = self.adapter()?.unzip();
+        let name = report.as_ref().map(|report| report.info.name.clone());
+        let name = name.unwrap_or_default();
+        if report.is_some_and(|report| report.is_software()) && !self.names_adapter() {
+            return Ok((host, format!("{why}; {name} also computes on the CPU")));
+        }
         let gpu = match self.gpu(index) {
             Ok(gpu) => gpu,
             Err(error) => return Ok((host, format!("{why}; {error}"))),
         };
-        let gpu_name = format!("{} on {}", gpu.describe().engine, name.unwrap_or_default());
+        let gpu_name = format!("{} on {name}", gpu.describe().engine);
         let mut gpu = Some(gpu);
         match compare(scene, plan, [&mut host, &mut gpu], COMPARISON) {
             Ok([on_host, on_gpu]) if on_gpu < on_host => {

@@ -44,6 +44,12 @@ impl AdapterReport {
         self.ranked_kind().1
     }
 
+    /// Returns true if the adapter computes on the CPU.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == DeviceType::Cpu
+    }
+
     fn computes_in(&self, precision: Precision) -> bool {
         precision == Precision::F32 || self.shader_f64
     }
