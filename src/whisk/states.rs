@@ -190,12 +190,10 @@ impl SideStates {
             } else if push >= self.end(row) {
                 *state = Some(self.ends[row].state);
             } else if state.is_none() {
+                let distance = self.distances_mm[row];
                 let branch = match last.take() {
                     Some((own, branch)) if own == row => branch,
-                    _ => {
-                        let distance = self.distances_mm[row];
-                        Branch::new(&self.whisker, &self.pole, side, distance).ok()
-                    }
+                    _ => Branch::new(&self.whisker, &self.pole, side, distance).ok(),
                 };
                 *state = branch.as_ref().and_then(|branch| {
                     let state = branch.state(side.sign() * push, true).ok()?;
