@@ -1,5 +1,5 @@
-// Shape at rest and equation of motion at one stage of a step, for a base point and a cell side by side. The twin of `intrinsic.rs` and
-// `material.rs` in `crates/mechanics/src/shooting/`, where the equations are.
+// Shape at rest and equation of motion at one stage of a step, for a base point and a cell side by side. The twin of `intrinsic.rs`,
+// `parabola.rs` and `material.rs` in `crates/mechanics/src/shooting/`, where the equations are.
 
 // Coefficients of the rotation over the arclength from `s` on, along a polynomial curvature: repeated synthetic division, integrated.
 fn polynomial_terms(rod: Rod, s: real) -> array<real, REST_TERMS> {

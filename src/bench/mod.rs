@@ -9,6 +9,7 @@ mod cpu;
 mod detachment;
 mod gpu;
 mod machine;
+mod measurement;
 mod model;
 mod peak;
 mod peers;
@@ -23,6 +24,7 @@ mod whole;
 pub use cell_work::{CellWork, SolvedOn};
 pub use detachment::Detachments;
 pub use machine::{MACHINES, Machine};
+pub use measurement::{Measurement, Rung, StageTimes};
 pub use model::{CELLS, ComputedMap, MapParts};
 pub use peers::{Peer, Peers, PeersError};
 pub use solver::Solver;
@@ -36,104 +38,7 @@ use crate::engine::EngineError;
 use crate::plan::SAMPLE_VALUES;
 use crate::scene::Scene;
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::fmt;
-use task::{Task, Work};
-use timing::median;
-
-/// Wall times of stages, in milliseconds, by the name of the stage.
-pub type StageTimes = BTreeMap<String, f64>;
-
-/// Measurement of one engine at one accuracy.
-#[derive(Clone, Debug, Serialize)]
-pub struct Measurement {
-    /// Name of the measured engine.
-    pub engine: String,
-    /// Number of threads of the CPU engine; `None` for other engines.
-    pub threads: Option<usize>,
-    /// Integrator and number of steps of the measurement.
-    pub rung: Rung,
-    /// Times for all states, in seconds.
-    pub seconds: Timing,
-    /// Wall milliseconds of the engine's stages, medians of the runs; 0 where the engine has no such stage. `upload`: trajectories of
-    /// base points, packing and submitting; `dispatch`: solving, by the device's clock on a GPU that has one; `waiting`: for the device;
-    /// `readback`: unpacking.
-    pub stages_ms: StageTimes,
-    /// Time for one state, in microseconds.
-    pub us_per_state: f64,
-    /// Rate of the engine in states per second.
-    pub states_per_s: f64,
-    /// Rate of the engine in trajectories per second.
-    pub trajectories_per_s: f64,
-    /// Rate of the integration in billions of floating-point operations per second, counted on the CPU only; `None` for other engines.
-    pub gflops: Option<f64>,
-    /// Rate of floating-point operations over the engine's peak rate, dimensionless; `None` if it is not counted.
-    pub of_peak: Option<f64>,
-    /// Errors of the states that the engine found.
-    pub errors: Errors,
-    /// True if no other measurement is both faster and more accurate.
-    pub pareto: bool,
-}
-
-impl Measurement {
-    fn new(
-        engine: &BenchEngine,
-        rung: Rung,
-        seconds: Timing,
-        stages_ms: [f64; 4],
-        work: Option<Work>,
-        errors: Errors,
-    ) -> Self {
-        let states = errors.states as f64;
-        let trajectories = work.as_ref().map_or(states, |work| work.trajectories);
-        let gflops = work.map(|work| 1e-9 * work.operations / seconds.median);
-        Self {
-            engine: engine.name.clone(),
-            threads: engine.threads,
-            rung,
-            seconds,
-            stages_ms: STAGES
-                .map(str::to_owned)
-                .into_iter()
-                .zip(stages_ms)
-                .collect(),
-            us_per_state: 1e6 * seconds.median / states,
-            states_per_s: states / seconds.median,
-            trajectories_per_s: trajectories / seconds.median,
-            gflops,
-            of_peak: None,
-            errors,
-            pareto: false,
-        }
-    }
-}
-
-/// Stages of a row, in the order of the work.
-const STAGES: [&str; 4] = ["upload", "dispatch", "waiting", "readback"];
-
-/// Integrator of a measurement, and its number of steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Rung {
-    /// The integrator of the engine; `chebyshev` for expansions of rows.
-    pub integrator: &'static str,
-    /// Steps of a trajectory at the fold of a cylinder, fewer under less load; of expansions, states along a row.
-    pub steps: u32,
-}
-
-impl fmt::Display for Rung {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} x{}", self.integrator, self.steps)
-    }
-}
-
-/// Returns the median of each stage in several runs.
-fn medians(runs: &[StageTimes]) -> StageTimes {
-    let stages = runs.first().into_iter().flat_map(BTreeMap::keys);
-    let of_runs = |stage: &String| median(runs.iter().map(|run| run[stage]));
-    stages
-        .map(|stage| (stage.clone(), of_runs(stage)))
-        .collect()
-}
+use task::Task;
 
 /// Measured engine and its peak rate.
 #[derive(Clone, Debug, Serialize)]

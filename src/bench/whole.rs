@@ -1,9 +1,10 @@
 //! Measurements of whole maps by engine and stage.
 
 use super::gpu::{Candidate, candidates};
+use super::measurement::medians;
 use super::spectral::SPECTRAL;
 use super::timing::{Timing, median};
-use super::{Report, StageTimes, medians, named, pool};
+use super::{Report, StageTimes, named, pool};
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Spectral, on_gpu};
 use crate::map::{self, Panel, Stage};

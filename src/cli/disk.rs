@@ -1,7 +1,8 @@
 //! Check of free disk space before a map is written.
 
-use super::estimate::{MapFormat, files};
+use super::estimate::files;
 use super::failure::Failure;
+use super::map_format::MapFormat;
 use indicatif::DecimalBytes;
 use std::path::Path;
 use whiskmap::plan::Plan;

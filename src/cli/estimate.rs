@@ -1,15 +1,14 @@
 //! Estimated cost of a map, from samples that are computed and discarded.
 
 use super::failure::Failure;
-use clap::ValueEnum;
+use super::map_format::MapFormat;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::time::Instant;
 use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel, Stage, Summary};
-use whiskmap::plan::{Plan, PlanError, SAMPLE_LINES, SAMPLE_VALUES};
+use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
-use whiskmap::store::{MapWriter, ZarrStore};
 
 /// Estimated cost of a map without its files.
 pub struct MapCost {
@@ -28,42 +27,6 @@ pub struct FileCost {
     pub bytes: f64,
     /// Elapsed seconds to pack the files with all threads at work, scaled from samples.
     pub seconds: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum MapFormat {
-    /// One OpenEXR file, and a picture of it
-    Exr,
-    /// A Zarr store, for any number of axes, runs and machines
-    Zarr,
-}
-
-impl MapFormat {
-    /// Returns the formats that can hold a map of `scene`.
-    pub fn of(scene: &Scene) -> Vec<Self> {
-        let mut formats = vec![Self::Exr, Self::Zarr];
-        formats.retain(|format| *format == Self::Zarr || scene.grid.sweep.len() <= 2);
-        formats
-    }
-
-    /// Returns the plan of a map of `scene` in this format.
-    pub fn plan(self, scene: &Scene) -> Result<Plan, PlanError> {
-        match (self, scene.whisker_count()) {
-            (Self::Exr, _) | (_, 1) => Plan::in_bands(scene),
-            (Self::Zarr, _) => {
-                let whiskers = ZarrStore::blocks(&scene.grid).map(|block| block.len());
-                Plan::in_blocks(scene, whiskers.max().unwrap_or(1))
-            }
-        }
-    }
-
-    /// Packs some panels of `scene`, and returns the number of bytes.
-    fn pack(self, scene: &Scene, plan: &Plan, panels: &[Panel]) -> u64 {
-        match self {
-            Self::Exr => MapWriter::sample(&scene.grid, plan, panels),
-            Self::Zarr => ZarrStore::sample(scene, plan, panels),
-        }
-    }
 }
 
 /// Approximate number of cells of the packed sample. It has many lines, because denser cells pack better.

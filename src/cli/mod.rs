@@ -26,6 +26,8 @@ mod fit;
 mod force;
 mod manual;
 mod map;
+mod map_format;
+mod output_file;
 mod outputs;
 mod plan;
 mod pole;

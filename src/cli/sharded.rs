@@ -2,9 +2,9 @@
 
 use super::disk;
 use super::engine::OpenEngine;
-use super::estimate::MapFormat;
 use super::failure::{Failure, message};
 use super::files::Files;
+use super::map_format::MapFormat;
 use super::summary::{compute, report};
 use clap::Args;
 use rayon::prelude::*;

@@ -1,10 +1,10 @@
 //! Command `whiskmap submit`: job array for Slurm.
 
 use super::arguments::whole;
-use super::estimate::MapFormat;
 use super::failure::{Failure, message};
 use super::files::{check_folder, read_scene};
 use super::map::MapArgs;
+use super::map_format::MapFormat;
 use super::plan::{PlanEstimate, memory};
 use super::sharded::shares;
 use super::slurm;

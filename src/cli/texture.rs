@@ -3,7 +3,8 @@
 use super::arguments::column_help;
 use super::course::CourseArgs;
 use super::failure::{Failure, message};
-use super::files::{Files, OutputTable};
+use super::files::Files;
+use super::output_file::OutputTable;
 use super::outputs::OutputArgs;
 use super::pole::check_single;
 use clap::Args;

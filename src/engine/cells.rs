@@ -46,8 +46,7 @@ pub struct Cell {
     /// Channel values of the cell in map units, in the order of [`STATE_CHANNELS`], `[channel]`. They are unspecified without a solution,
     /// and NaN if the batch requests none.
     pub values: [f32; STATE_CHANNELS.len()],
-    /// Contact coordinate and signed load `f/rho^2` of the cell, `(tau, load)`, dimensionless. They are unspecified without a solution,
-    /// and NaN if the batch requests none.
+    /// Contact coordinate and signed load `f/rho^2`, `(tau, load)`, dimensionless; unspecified without a solution, NaN if not requested.
     pub point: DVec2,
 }
 
@@ -89,8 +88,7 @@ pub struct CellRun<'a> {
     /// Channel values of the run in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a
     /// solution, and empty if the batch requests none.
     pub values: [&'a [f32]; STATE_CHANNELS.len()],
-    /// Contacts and signed loads `(tau, load)` of the run: `[cell]`. They are unspecified without a solution, and empty if the batch
-    /// requests none.
+    /// Contacts and signed loads `(tau, load)` of the run: `[cell]`; unspecified without a solution, empty if the batch requests none.
     pub points: &'a [DVec2],
 }
 
@@ -98,13 +96,12 @@ impl CellRun<'_> {
     /// Returns the cell of the run at `index`.
     #[must_use]
     pub fn get(&self, index: usize) -> Cell {
+        let value = |column: &[f32]| column.get(index).copied().unwrap_or(f32::NAN);
         Cell {
             outcome: self.outcome,
             steps: self.steps[index],
             residual: self.residual[index],
-            values: self
-                .values
-                .map(|column| column.get(index).copied().unwrap_or(f32::NAN)),
+            values: self.values.map(value),
             point: self.points.get(index).copied().unwrap_or(DVec2::NAN),
         }
     }
@@ -134,9 +131,7 @@ impl CellsMut<'_> {
             *point = cell.point;
         }
     }
-}
 
-impl<'a> CellsMut<'a> {
     /// Removes the first `count` cells and returns them.
     fn split_off(&mut self, count: usize) -> Self {
         Self {
@@ -167,8 +162,7 @@ pub struct Cells {
     /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution; empty
     /// if the batch requests none.
     pub values: [Vec<f32>; STATE_CHANNELS.len()],
-    /// Contact and signed load `(tau, load)` of each cell: `[cell]`. They are unspecified without a solution, and empty if the batch
-    /// requests none.
+    /// Contact and signed load `(tau, load)` of each cell: `[cell]`; unspecified without a solution, empty if the batch requests none.
     pub points: Vec<DVec2>,
 }
 
@@ -233,14 +227,12 @@ impl Cells {
     /// Returns the cells with the indices `range` as one run. All of them must have the outcome of the first.
     #[must_use]
     pub fn run(&self, range: Range<usize>) -> CellRun<'_> {
+        let values = self.values.each_ref();
         CellRun {
             outcome: self.outcome[range.start],
             steps: &self.steps[range.clone()],
             residual: &self.residual[range.clone()],
-            values: self
-                .values
-                .each_ref()
-                .map(|own| own.get(range.clone()).unwrap_or_default()),
+            values: values.map(|own| own.get(range.clone()).unwrap_or_default()),
             points: self.points.get(range.clone()).unwrap_or_default(),
         }
     }

@@ -11,6 +11,7 @@ mod cpu;
 pub mod gpu;
 mod side;
 mod spectral;
+mod thread;
 mod worker;
 
 pub use batch::{

@@ -3,23 +3,14 @@
 //!
 //! After its first failure an engine gets no further batch.
 
+use super::thread::{Response, serve};
 use super::{Cells, Engine, EngineError, RowBatch};
 use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
-use std::time::{Duration, Instant};
-
-/// Batches that an engine has at once: it prepares one while it solves another.
-const AT_ONCE: usize = 2;
-
-/// Response to a batch.
-struct Response {
-    cells: Result<Cells, EngineError>,
-    /// Busy time since the previous response.
-    busy: Duration,
-}
+use std::time::Duration;
 
 /// Connection to an engine.
 enum Connection<'e> {
@@ -147,133 +138,5 @@ impl<'e> Worker<'e> {
         self.submitted.clear();
         self.failure = Some(failure);
         None
-    }
-}
-
-/// Solves the `requested` batches by `engine` until the requests end or responses are no longer received. Unless the engine fails, no batch
-/// stays submitted.
-fn serve(engine: &mut dyn Engine, requested: &Receiver<Arc<RowBatch>>, respond: &Sender<Response>) {
-    let (mut submitted, mut is_received) = (0, true);
-    let mut since = Instant::now();
-    loop {
-        let mut taken = Ok(());
-        while is_received && submitted < AT_ONCE && taken.is_ok() {
-            let batch = match submitted {
-                0 => requested.recv().ok(),
-                _ => requested.try_recv().ok(),
-            };
-            let Some(batch) = batch else { break };
-            if submitted == 0 {
-                since = Instant::now();
-            }
-            taken = engine.submit(batch);
-            submitted += 1;
-        }
-        if submitted == 0 {
-            return;
-        }
-        let cells = taken.and_then(|()| engine.collect());
-        submitted -= 1;
-        let has_failed = cells.is_err();
-        let now = Instant::now();
-        let busy = now - since;
-        is_received &= respond.send(Response { cells, busy }).is_ok();
-        since = now;
-        if has_failed {
-            return;
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::engine::EngineDescription;
-    use crate::shooting::batch::Method;
-
-    /// Fails, or panics, after `most` batches.
-    struct Counting {
-        submitted: usize,
-        collected: usize,
-        most: usize,
-        panics: bool,
-    }
-
-    impl Engine for Counting {
-        fn describe(&self) -> EngineDescription {
-            EngineDescription::of(None)
-        }
-
-        fn residual_bound(&self) -> f64 {
-            1.0
-        }
-
-        fn submit(&mut self, _: Arc<RowBatch>) -> Result<(), EngineError> {
-            self.submitted += 1;
-            Ok(())
-        }
-
-        fn collect(&mut self) -> Result<Cells, EngineError> {
-            if self.collected == self.most {
-                assert!(!self.panics, "a panic on purpose");
-                return Err(EngineError::Device("lost".to_owned()));
-            }
-            (self.submitted, self.collected) = (self.submitted - 1, self.collected + 1);
-            Ok(Cells::default())
-        }
-    }
-
-    fn counting(most: usize, panics: bool) -> Counting {
-        Counting {
-            submitted: 0,
-            collected: 0,
-            most,
-            panics,
-        }
-    }
-
-    fn nothing() -> Arc<RowBatch> {
-        Arc::new(RowBatch::new(Method::fine(), [].into(), [].into(), []))
-    }
-
-    /// Returns how many of `count` batches stay submitted, how many are collected, and the number of responses.
-    fn served(count: usize, most: usize, is_received: bool) -> (usize, usize, usize) {
-        let mut engine = counting(most, false);
-        let ((requests, requested), (respond, responses)) = (channel(), channel());
-        for _ in 0..count {
-            requests.send(nothing()).unwrap_or_default();
-        }
-        drop(requests);
-        let responses = is_received.then_some(responses);
-        serve(&mut engine, &requested, &respond);
-        let received = responses.map_or(0, |responses| responses.try_iter().count());
-        (engine.submitted, engine.collected, received)
-    }
-
-    #[test]
-    fn no_batch_stays_submitted() {
-        assert_eq!(served(0, 9, true), (0, 0, 0));
-        assert_eq!(served(5, 9, true), (0, 5, 5));
-        // Without a receiver, only what has been submitted is finished.
-        assert_eq!(served(5, 9, false), (0, AT_ONCE, 0));
-        // The failure is the last response.
-        assert_eq!(served(5, 3, true), (AT_ONCE, 3, 4));
-    }
-
-    #[test]
-    fn a_panic_of_an_engine_is_a_failure() {
-        let mut engine = counting(1, true);
-        let (collected, is_working, failure) =
-            Worker::with(Some(&mut engine), true, |mut worker| {
-                let collected = [(); 3].map(|()| {
-                    worker.submit(nothing());
-                    worker.collect().is_some()
-                });
-                (collected, worker.is_working(), worker.failure)
-            });
-        assert_eq!((collected, is_working), ([true, false, false], false));
-        let failure = failure.map(|failure| failure.to_string());
-        let wanted = "GPU: the engine's thread has panicked";
-        assert_eq!(failure.as_deref(), Some(wanted));
     }
 }

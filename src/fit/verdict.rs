@@ -1,7 +1,7 @@
 //! Verdict on a fit: refusal of best values with which no whisker of the scene's kind explains the points.
 
 use crate::measured::{Comparison, MeasuredPoints};
-use crate::scene::{Scene, SweptWhisker, digits};
+use crate::scene::{Scene, SweptWhisker, digits, rounded};
 use std::fmt;
 
 /// The largest root mean square of residuals, in degrees. Theory and real whiskers differ by a few degrees; the measured
@@ -131,13 +131,13 @@ impl LikelyCause {
 
 impl fmt::Display for NotAFit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [rms, largest] = [self.rms_deg, self.largest_rms_deg].map(rounded);
+        let [rms, largest] = [self.rms_deg, self.largest_rms_deg].map(three_digits);
         write!(f, "not a fit: RMS {rms} deg")?;
         if self.rms_deg > self.largest_rms_deg {
             write!(f, ", must be at most {largest} deg")?;
         }
         if let Some(reduced) = self.reduced_chi_square {
-            let reduced = rounded(reduced);
+            let reduced = three_digits(reduced);
             write!(f, "; reduced chi-square {reduced}, must be about 1")?;
         }
         match self.cause {
@@ -156,8 +156,8 @@ impl fmt::Display for NotAFit {
 }
 
 /// A number to three digits.
-fn rounded(number: f64) -> String {
-    digits(format!("{number:.2e}").parse().unwrap_or(number))
+fn three_digits(number: f64) -> String {
+    digits(rounded(number, 3))
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::Sliding;
 use super::limit::SlidingLimit;
 use crate::rod::Rod;
 use crate::sheet::LevelCurve;
+use std::collections::BTreeSet;
 
 /// Sliding history of the contact of one row, along a push from first touch.
 #[derive(Clone, Debug)]
@@ -70,10 +71,9 @@ impl ContactHistory {
         let opposed: Vec<LevelCurve> = falling.map(|(level, _)| opposed(level)).collect();
         let mut bases = SlidingLimit::of(&opposed).into_iter();
         let with_base = |tip: Option<SlidingLimit>| {
-            let base = if falls(&tip) {
-                Some(bases.next()??)
-            } else {
-                None
+            let base = match falls(&tip) {
+                true => Some(bases.next()??),
+                false => None,
             };
             Some(Self::new(tip?, base))
         };
@@ -111,10 +111,8 @@ impl ContactHistory {
             was_held && limit == direction && push == pair[1].push
         });
         let begins = begins.flat_map(|pair| limit.between(pair[0].push, pair[1].push));
-        let mut met: Vec<usize> = begins.chain(limit.around_reversals()).collect();
-        met.sort_unstable();
-        met.dedup();
-        met
+        let met: BTreeSet<usize> = begins.chain(limit.around_reversals()).collect();
+        met.into_iter().collect()
     }
 
     /// Computes the sliding history of the row of `level` with its base limit, and the unstable states of the base limit; `None` where the
@@ -174,11 +172,8 @@ impl ContactHistory {
     /// pushes as they are. All are magnitudes in radians.
     pub(super) fn up_to_end(&self, push: f64) -> f64 {
         let end = self.tip.end();
-        if push > end && push - end <= SAME_END * (1.0 + end) {
-            end
-        } else {
-            push
-        }
+        let is_at_end = push > end && push - end <= SAME_END * (1.0 + end);
+        if is_at_end { end } else { push }
     }
 
     /// Returns the phase of the contact at `push`, a magnitude in radians.
@@ -192,27 +187,19 @@ impl ContactHistory {
         let after = self.knots.partition_point(|knot| knot.push < push).max(1);
         let before = &self.knots[after - 1];
         // Where both limits coincide, as near first touch, rounding hides which one moves. The next push shows it.
-        let is_at = |limit: &SlidingLimit| {
-            limit
-                .slid(push)
-                .is_some_and(|at| (at - before.slid).abs() < f64::EPSILON)
-        };
+        let passed = |limit: &SlidingLimit| Some((limit.slid(push)? - before.slid).abs());
+        let is_at = |limit| passed(limit).is_some_and(|passed| passed < f64::EPSILON);
         let mut ahead = self.knots[after..].iter().filter(|knot| knot.push > push);
         let limit = match ahead.next() {
             Some(next) if is_at(&self.tip) && is_at(base) => self.advance(before, next.push).1,
             _ => self.advance(before, push).1,
         };
-        let is_clear = |limit: &SlidingLimit| {
-            let passed = limit.slid(push).map(|at| (at - before.slid).abs());
-            passed.is_some_and(|passed| passed > CLEAR_OF_CONTACT)
-        };
+        let is_clear = |limit| passed(limit).is_some_and(|passed| passed > CLEAR_OF_CONTACT);
         // The contact stops at an exact reversal, but begins to slide at an interpolated place.
         let is_begun = limit.and_then(|way| self.limit(way)).is_none_or(is_clear);
         let begins = limit.is_some_and(|way| before.end.limit != way && before.end.push > 0.0);
-        if begins && !is_begun {
-            return ContactPhase::Sticks(before.end);
-        }
-        limit.map_or(ContactPhase::Sticks(before.end), ContactPhase::Slides)
+        let slides = limit.filter(|_| !begins || is_begun);
+        slides.map_or(ContactPhase::Sticks(before.end), ContactPhase::Slides)
     }
 
     /// Returns the limit of a sliding `direction`; `None` for a contact that sticks, and for a base limit that never moves the contact.

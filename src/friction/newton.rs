@@ -4,64 +4,18 @@
 //! as a third unknown, and its slid distance as a third equation. Trajectories carry the derivatives by contact and load; the derivative
 //! by the force ratio is a difference quotient, which slows convergence, and leaves no error.
 
-use super::limit::SlidingLimit;
 use super::sliding::{Sliding, slid};
 use super::state::{FrictionPoint, FrictionState};
+use super::target::FrictionTarget;
 use crate::refine::TOLERANCE;
-use crate::rod::{Rod, arclength};
+use crate::rod::arclength;
 use crate::sheet::LevelCurve;
 use crate::shooting::batch::{Batch, InitialCondition};
 use crate::shooting::{FirstVariation, LONGEST_STEP, limited};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Target of Newton's method for one state.
-#[derive(Clone, Copy, Debug)]
-pub struct FrictionTarget<'a> {
-    /// Level curve of the state's row, at a limit of sliding.
-    pub level: &'a LevelCurve,
-    /// Signed push angle, in radians.
-    pub push: f64,
-    /// Slid distance of a contact that sticks, in whisker lengths; `None` if it slides.
-    pub slid: Option<f64>,
-    /// Start of Newton's method.
-    pub start: FrictionPoint,
-    /// True if a contact that slides is at a stable state.
-    pub is_stable: bool,
-}
-
 /// Relative difference of `tau` from the tip's within which a contact counts as on the whisker.
 const TIP_SLACK: f64 = 1e-9;
-
-impl<'a> FrictionTarget<'a> {
-    /// Target of a contact that slides at `limit`, at `push`, a magnitude in radians; `None` beyond the end of the limit.
-    pub fn sliding(limit: &'a SlidingLimit, push: f64) -> Option<Self> {
-        Some(Self {
-            level: &limit.level,
-            push: limit.level.side.sign() * push,
-            slid: None,
-            start: limit.near(push)?,
-            is_stable: limit.is_stable,
-        })
-    }
-
-    /// This target at another push, a magnitude in radians, with another start.
-    pub fn at(&self, push: f64, start: FrictionPoint) -> Self {
-        Self {
-            push: self.level.side.sign() * push,
-            start,
-            ..*self
-        }
-    }
-
-    /// Level curve of the target with the force ratio `ratio`.
-    fn level(&self, ratio: f64) -> LevelCurve {
-        let rod = Rod {
-            friction: ratio,
-            ..self.level.rod.clone()
-        };
-        LevelCurve::new(self.level.method, &rod, self.level.side, &self.level.row)
-    }
-}
 
 /// Difference of the force ratio in the difference quotients. Their error slows convergence to this factor a step. The slid distance can
 /// change by 1e-6 for a ratio of 1, so that a smaller difference would be lost in rounding.

@@ -1,9 +1,11 @@
 //! Functions of the library that compute in memory.
 
 mod map;
+mod regime_map;
 mod traces;
 
-pub use map::{Map, MapCell, for_each_panel, map};
+pub use map::{for_each_panel, map};
+pub use regime_map::{Map, MapCell};
 #[cfg(feature = "fit")]
 pub use traces::fit;
 pub use traces::{branch, curve, shape};

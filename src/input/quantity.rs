@@ -1,6 +1,7 @@
 //! Numbers with units, as options of the command line give them.
 
 use super::names::shortened;
+use std::f64::consts::PI;
 
 /// Quantity of a number in text, with the unit of a number without one.
 ///
@@ -36,11 +37,7 @@ pub enum Quantity {
 type Units = &'static [(&'static str, f64)];
 
 const LENGTHS: Units = &[("mm", 1e3), ("cm", 1e4), ("m", 1e6), ("um", 1.0)];
-const ANGLES: Units = &[
-    ("deg", 1.0),
-    ("\u{b0}", 1.0),
-    ("rad", 180.0 / std::f64::consts::PI),
-];
+const ANGLES: Units = &[("deg", 1.0), ("\u{b0}", 1.0), ("rad", 180.0 / PI)];
 const FORCES: Units = &[("uN", 1e3), ("nN", 1.0), ("mN", 1e6), ("N", 1e9)];
 const MOMENTS: Units = &[
     ("nNm", 1.0),
@@ -78,18 +75,24 @@ impl Quantity {
         }
     }
 
+    /// Unit of the quantity, its kind, and examples of numbers. The unit of a plain number is empty.
+    const fn about(self) -> [&'static str; 3] {
+        match self {
+            Self::LengthMm => ["mm", "a length", "15.66, 15.66mm or 1.5cm"],
+            Self::LengthUm => ["um", "a length", "1.5, 1.5um or 0.0015mm"],
+            Self::AngleDeg => ["deg", "an angle", "30, 30deg, 30\u{b0} or 0.5rad"],
+            Self::ForceUn => ["uN", "a force", "60, 60uN or 0.06mN"],
+            Self::MomentNnm => ["nNm", "a moment", "250, 250nNm or 0.25uNm"],
+            Self::EnergyNj => ["nJ", "an energy", "40, 40nJ or 0.04uJ"],
+            Self::Number => ["", "a number", "0.9"],
+        }
+    }
+
     /// Returns the unit of the quantity; `None` for a plain number.
     #[must_use]
     pub const fn unit(self) -> Option<&'static str> {
-        match self {
-            Self::LengthMm => Some("mm"),
-            Self::LengthUm => Some("um"),
-            Self::AngleDeg => Some("deg"),
-            Self::ForceUn => Some("uN"),
-            Self::MomentNnm => Some("nNm"),
-            Self::EnergyNj => Some("nJ"),
-            Self::Number => None,
-        }
+        let [unit, ..] = self.about();
+        if unit.is_empty() { None } else { Some(unit) }
     }
 
     const fn table(self) -> Units {
@@ -121,7 +124,8 @@ impl Quantity {
         let (number, unit) = text.split_at(end);
         let number: Option<f64> = number.trim_start().parse().ok();
         let number = number.filter(|number| number.is_finite());
-        let number = number.ok_or_else(|| self.example().to_owned())?;
+        let [_, kind, examples] = self.about();
+        let number = number.ok_or_else(|| format!("must be {kind}, such as {examples}"))?;
         let unit = unit.trim();
         if unit.is_empty() {
             return Ok(number);
@@ -142,24 +146,9 @@ impl Quantity {
     /// Sizes of the quantity's own unit and of another unit of it. The sign for micro is U+00B5 or U+03BC.
     fn sizes(self, unit: &str) -> Option<[f64; 2]> {
         let unit = unit.replace(['\u{b5}', '\u{3bc}'], "u");
-        let size = |name: &str| {
-            let found = self.table().iter().find(|(own, _)| *own == name);
-            found.map(|(_, size)| *size)
-        };
+        let units = self.table().iter();
+        let size = |name: &str| Some(units.clone().find(|(own, _)| *own == name)?.1);
         Some([size(self.unit()?)?, size(&unit)?])
-    }
-
-    /// Message about a text without a number.
-    const fn example(self) -> &'static str {
-        match self {
-            Self::LengthMm => "must be a length, such as 15.66, 15.66mm or 1.5cm",
-            Self::LengthUm => "must be a length, such as 1.5, 1.5um or 0.0015mm",
-            Self::AngleDeg => "must be an angle, such as 30, 30deg, 30\u{b0} or 0.5rad",
-            Self::ForceUn => "must be a force, such as 60, 60uN or 0.06mN",
-            Self::MomentNnm => "must be a moment, such as 250, 250nNm or 0.25uNm",
-            Self::EnergyNj => "must be an energy, such as 40, 40nJ or 0.04uJ",
-            Self::Number => "must be a number, such as 0.9",
-        }
     }
 
     /// Message that lists the allowed units.
@@ -220,33 +209,21 @@ mod tests {
 
     #[test]
     fn other_units_and_other_texts_are_refused() {
+        let lengths = "unit deg: must be mm (the default), cm, m or um";
+        let angles = "unit mm: must be deg (the default), \u{b0} or rad";
+        let [first, last] = [60, 20].map(|count| "x".repeat(count));
+        let shortened = format!("unit {first}...{last}: must be left out");
         for (quantity, text, must) in [
-            (
-                LengthMm,
-                "30deg",
-                "unit deg: must be mm (the default), cm, m or um",
-            ),
+            (LengthMm, "30deg", lengths),
             (LengthMm, "15km", "unit km: must be mm"),
-            (
-                AngleDeg,
-                "15mm",
-                "unit mm: must be deg (the default), \u{b0} or rad",
-            ),
+            (AngleDeg, "15mm", angles),
             (Number, "0.9mm", "unit mm: must be left out"),
             (LengthMm, "far", "must be a length"),
             (LengthMm, "1,5", "must be a length"),
             (AngleDeg, "nan", "must be an angle"),
             (AngleDeg, "1e999", "must be an angle"),
             (Number, "", "must be a number"),
-            (
-                Number,
-                &format!("1{}", "x".repeat(1000)),
-                &format!(
-                    "unit {}...{}: must be left out",
-                    "x".repeat(60),
-                    "x".repeat(20)
-                ),
-            ),
+            (Number, &format!("1{}", "x".repeat(1000)), &shortened),
         ] {
             let why = quantity.parse(text).err().unwrap_or_default();
             assert!(why.starts_with(must), "{text}: {why}");

@@ -7,6 +7,7 @@ mod friction;
 mod panel;
 mod pipeline;
 mod rows;
+mod sides;
 mod stages;
 mod summary;
 

@@ -7,16 +7,14 @@
 use super::fallback::complete;
 use super::panel::Panel;
 use super::rows;
+use super::sides::{side_columns, whisker_sides};
 use super::stages::Stage;
 use super::summary::{EngineCells, Summary};
 use crate::engine::{Cells, Cpu, EngineInput, RowBatch, SideColumns, WhiskerSide, Worker, on_gpu};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
-use crate::scene::{Parameter, Scene, SweptWhisker};
-use crate::sensitivity::of_rows;
-use crate::sheet::Sheet;
+use crate::scene::Scene;
 use crate::shooting::batch::Method;
 use crate::stopwatch::Stopwatch;
-use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -66,13 +64,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
         let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
-        let mut pushes: Vec<f64> = Vec::new();
-        let columns = plan.sides.iter().map(|side| {
-            // A row has fewer columns than `u32` can count.
-            let side = SideColumns::new(push_angle_deg, *side, pushes.len() as u32);
-            pushes.extend(side.columns.iter().map(|column| column.push));
-            Arc::new(side)
-        });
+        let (columns, pushes) = side_columns(push_angle_deg, &plan.sides);
         let mut method = plan.method;
         if let Some(EngineInput::SpectralSheets(_)) = input {
             // Coarser steps are so few that their number changes along a row: states would not be analytic.
@@ -89,8 +81,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 None => rows(cells),
             },
             spare: Vec::new(),
-            columns: columns.collect(),
-            pushes: pushes.into(),
+            columns,
+            pushes,
             groups: Box::new(plan.groups()),
             begun: None,
             queue: VecDeque::new(),
@@ -161,10 +153,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         }
         let (batch, is_last) = self.queue.pop_front()?;
         let begun = Stopwatch::start();
-        let cells = batch
-            .is_for_engine()
-            .then(|| self.worker.collect())
-            .flatten();
+        let is_submitted = batch.is_for_engine();
+        let cells = is_submitted.then(|| self.worker.collect()).flatten();
         if !self.engine_is_stage() {
             self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
         }
@@ -178,10 +168,10 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             Some(begun) => begun,
             None => {
                 let whiskers = self.groups.next()?;
-                let mut times = self.summary.stages;
-                let sides = times.time(Stage::Sheets, || self.sides(whiskers));
-                self.summary.stages = times;
-                (sides, 0)
+                let input = self.input.filter(|_| self.worker.is_working());
+                let of_plan = (self.plan, self.method, input);
+                let sides = || whisker_sides(self.scene, of_plan, &self.columns, whiskers);
+                (self.summary.stages.time(Stage::Sheets, sides), 0)
             }
         };
         let method = self.method;
@@ -213,35 +203,6 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let (height, rows) = (self.scene.grid.distance_mm.len(), self.plan.band_rows);
         let first = row / rows * rows;
         first..height.min(first + rows)
-    }
-
-    /// Every side of some of the whiskers, in order.
-    fn sides(&self, whiskers: Range<usize>) -> Arc<[WhiskerSide]> {
-        let whiskers: Vec<SweptWhisker> = whiskers.map(|index| self.scene.whisker(index)).collect();
-        let of_whisker = |swept| self.columns.iter().map(move |columns| (swept, columns));
-        let pairs: Vec<(&SweptWhisker, &Arc<SideColumns>)> =
-            whiskers.iter().flat_map(of_whisker).collect();
-        let (grid, method) = (&self.scene.grid, self.method);
-        let input = self.input.filter(|_| self.worker.is_working());
-        let derivatives: Vec<Parameter> = self.plan.channels.derivatives().collect();
-        let sides = pairs.into_par_iter().map(|(swept, columns)| {
-            let rod = swept.rod(columns.side);
-            let distances = grid.distance_mm.iter();
-            let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
-            let sheet = Sheet::new(method, &rod, columns.side, &distances);
-            let mut side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
-            if !derivatives.is_empty() {
-                let (resolution, sheet) = (method.resolution, &side.sheet);
-                let pushed = (&swept.whisker, &swept.pole);
-                side.push_derivatives =
-                    of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
-            }
-            match input {
-                Some(EngineInput::SpectralSheets(most)) => side.with_spectral_sheet(method, most),
-                _ => side,
-            }
-        });
-        sides.collect::<Vec<_>>().into()
     }
 
     /// Completes the `cells` of an engine and writes them into `panels`, which are taken from the spare ones or made if there are none.

@@ -9,6 +9,7 @@ mod labels;
 mod map;
 mod marks;
 mod options;
+mod overlays;
 mod plots;
 mod row;
 mod sensitivities;
@@ -18,9 +19,10 @@ pub use courses::{courses, forces};
 pub use labels::{DISTANCE, PUSH_ANGLE, regions};
 pub use map::{map, regime_fill};
 pub use options::MapOptions;
+pub use overlays::{bands, error_bars, measured};
 pub use plots::{
-    BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, bands, branches, curves,
-    designs, error_bars, measured, shapes,
+    BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, branches, curves,
+    designs, shapes,
 };
 pub use sensitivities::sensitivities;
 pub use textures::{STUCK, TIP, textures, tip_histogram, tip_lines};

@@ -1,7 +1,7 @@
 //! Values selected on the axes of a map or a store.
 
 use crate::input::{Quantity, did_you_mean};
-use crate::scene::{LONGEST_TITLE, Scene, digits};
+use crate::scene::{LONGEST_TITLE, Scene, digits, rounded};
 use std::str::FromStr;
 
 /// Selected value of an axis of a map or a store.
@@ -92,10 +92,8 @@ pub type ChosenValues = Vec<(&'static str, f64)>;
 
 /// Returns names of selected axes, and their values as text to four digits.
 pub(super) fn readable(chosen: &ChosenValues) -> impl Iterator<Item = (&'static str, String)> {
-    chosen.iter().map(|(name, value)| {
-        let rounded = format!("{value:.3e}").parse().unwrap_or(*value);
-        (*name, digits(rounded))
-    })
+    let text = |(name, value): &(_, f64)| (*name, digits(rounded(*value, 4)));
+    chosen.iter().map(text)
 }
 
 /// Returns a title with the selected values, but for those that it has already, as that of an extracted part.

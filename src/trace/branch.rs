@@ -76,14 +76,12 @@ impl Branch {
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
-        Self::followed(whisker, pole, side, distance_mm, true)
+        Self::followed((whisker, pole, side), distance_mm, true)
     }
 
     /// The branch up to its first fold, or past it.
     pub(super) fn followed(
-        whisker: &Whisker,
-        pole: &Pole,
-        side: Side,
+        (whisker, pole, side): (&Whisker, &Pole, Side),
         distance_mm: f64,
         past_fold: bool,
     ) -> Result<Self, NoState> {
@@ -142,11 +140,8 @@ impl Branch {
         let Continuation { nodes, fold, end } = &self.continuation;
         let lengths = self.lengths();
         let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
-        let guesses: Vec<(usize, DVec2)> = targets
-            .iter()
-            .map(|target| interpolate(nodes, &lengths, *target))
-            .collect();
-        let starts: Vec<DVec2> = guesses.iter().map(|(_, start)| *start).collect();
+        let guess = |target: &f64| interpolate(nodes, &lengths, *target);
+        let (near, starts): (Vec<usize>, Vec<DVec2>) = targets.iter().map(guess).unzip();
         let corrected = self.level.correct(&starts, ON_CURVE);
         let (last, last_node) = (targets.len() - 1, nodes.len() - 1);
         let end_mark = match (fold, end) {
@@ -155,7 +150,7 @@ impl Branch {
             (None, _) => BranchMark::PullOff,
         };
         let mut marked = Vec::with_capacity(targets.len());
-        for (i, ((near, _), corrected)) in guesses.iter().zip(corrected).enumerate() {
+        for (i, (near, corrected)) in near.iter().zip(corrected).enumerate() {
             // The ends and the fold are more accurate than corrected points.
             let exact = match i {
                 0 => Some((nodes[0], BranchMark::FirstTouch)),
@@ -193,27 +188,22 @@ impl Branch {
     fn detaches(&self) -> bool {
         let end = self.stable_end_deg().to_radians().abs();
         let history = self.history.as_ref();
-        history
-            .and_then(|own| own.sliding_at_end(end))
-            .is_none_or(|sliding| sliding == Sliding::Tip)
+        let sliding = history.and_then(|own| own.sliding_at_end(end));
+        sliding.is_none_or(|sliding| sliding == Sliding::Tip)
     }
 
     /// Returns the `state` of the branch in mm, deg, uN and nN m.
     pub(super) fn reading(&self, state: &BranchState) -> Reading {
-        let CurveNode {
-            point, full, push, ..
-        } = &state.node;
+        let (node, touch) = (&state.node, self.level.row.touch);
         let reader = Reader::new(self.units, &self.rod(state.ratio));
-        reader.read(point.x, full, self.level.row.touch, *push)
+        reader.read(node.point.x, &node.full, touch, node.push)
     }
 
     /// Returns the error of a failed continuation or corrector.
     pub(super) fn failed(&self) -> NoState {
-        NoState::Failed {
-            push_deg: self.continuation.nodes[self.continuation.nodes.len() - 1]
-                .push
-                .to_degrees(),
-        }
+        let nodes = &self.continuation.nodes;
+        let push_deg = nodes[nodes.len() - 1].push.to_degrees();
+        NoState::Failed { push_deg }
     }
 
     /// Length of the branch from first touch to each node, in the measure of [`LevelCurve::length`].

@@ -3,7 +3,6 @@
 use super::columns::row;
 use crate::classify::{RowBoundary, TIE};
 use crate::friction::{ContactHistory, Sliding, surely_slides_to_end};
-use crate::numerics::Bracket;
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
@@ -66,33 +65,6 @@ row! {
         /// Sliding direction, with friction; the end assumes tip.
         pub sliding: Option<Sliding>,
     }
-}
-
-row! {
-    /// Corner of a detachment curve: the end at which slip-off turns into pull-off, the fold with the contact at the tip.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct Corner {
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
-        pub side: Side,
-        /// Distance from the base to the contact at first touch, in mm.
-        pub distance_mm: Option<f64>,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
-        pub push_angle_deg: Option<f64>,
-        /// Reason why there is no corner: always-slips-off, always-pulls-off or not-found.
-        pub reason: Option<NoCorner>,
-    }
-}
-
-/// Reason why a detachment curve has no corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum NoCorner {
-    /// No corner exists: every push that begins ends at the fold, as with a perfect cone and with whiskers that bend away from the pole.
-    AlwaysSlipsOff,
-    /// No corner exists: every push that begins ends at the tip.
-    AlwaysPullsOff,
-    /// No corner was found: the fold with the contact at the tip, or an end next to it, is missing.
-    NotFound,
 }
 
 /// Returns the distance in mm at which the tip of the resting whisker touches the pole: the largest distance of a detachment curve.
@@ -249,77 +221,4 @@ fn slidings(sheet: &Sheet) -> Vec<Option<Sliding>> {
         slidings[*row] = history.and_then(|history| history.sliding_at_end(end.push));
     }
     slidings
-}
-
-/// Computes the corner of the detachment curve of `whisker` on one `side`. Without a corner, distance and push angle are `None`, and
-/// `reason` says why.
-#[must_use]
-pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
-    let end =
-        |distance: f64| curve_without_strain(Resolution::FINE, whisker, pole, side, &[distance])[0];
-    let found = corner_distance(whisker, pole, side, &end).and_then(|distance| {
-        let push = end(distance).push_angle_deg.ok_or(NoCorner::NotFound)?;
-        Ok((distance, push))
-    });
-    let (distance_mm, push_angle_deg) = found.ok().unzip();
-    Corner {
-        side,
-        distance_mm,
-        push_angle_deg,
-        reason: found.err(),
-    }
-}
-
-/// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by bisection.
-fn corner_distance(
-    whisker: &Whisker,
-    pole: &Pole,
-    side: Side,
-    end: &impl Fn(f64) -> Detachment,
-) -> Result<f64, NoCorner> {
-    let rod = whisker.rod(pole, side);
-    if rod.taper >= 1.0 {
-        return Err(NoCorner::AlwaysSlipsOff);
-    }
-    let length = whisker.length_mm;
-    let fold = Sheet::fold_at_tip(Method::fine(), &rod, side);
-    let pole = fold.ok_or(NoCorner::NotFound)?.variation.map.pole.length();
-    let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;
-    let kinds = [-1.0, 1.0].map(|sign| end(at_tip + sign * CORNER_TOLERANCE * length).kind);
-    if kinds == [DetachmentKind::SlipOff, DetachmentKind::PullOff] {
-        return Ok(at_tip);
-    }
-    switch(end, length, rod.pole.abs())
-}
-
-/// Half the width of the interval of distances in which slip-off must turn into pull-off, in whisker lengths.
-const CORNER_TOLERANCE: f64 = 1e-10;
-
-/// Number of distances at which ends are computed to bracket a corner that is not at the fold with the contact at the tip.
-const CORNER_SAMPLES: u32 = 128;
-
-/// Distance at which slip-off turns into pull-off, in the unit of `length`, by bisection. With friction two branches can exchange their
-/// ends there. The search begins at `nearest`, in whisker lengths.
-fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Result<f64, NoCorner> {
-    let samples: Vec<f64> = (1..=CORNER_SAMPLES)
-        .map(|i| nearest + (1.0 - nearest) * f64::from(i) / f64::from(CORNER_SAMPLES))
-        .map(|distance| distance * length)
-        .collect();
-    let pulled = samples
-        .iter()
-        .position(|d| end(*d).kind == DetachmentKind::PullOff);
-    let pulled = pulled.ok_or(NoCorner::AlwaysSlipsOff)?;
-    let before = pulled.checked_sub(1).ok_or(NoCorner::AlwaysPullsOff)?;
-    let mut bracket = Bracket {
-        below: samples[before],
-        above: samples[pulled],
-    };
-    bracket.halve(CORNER_TOLERANCE * length, |distance| {
-        match end(distance).kind {
-            DetachmentKind::SlipOff => Ok(true),
-            DetachmentKind::PullOff => Ok(false),
-            DetachmentKind::OutOfReach | DetachmentKind::Unresolved => Err(NoCorner::NotFound),
-        }
-    })?;
-    Ok(bracket.below)
 }

@@ -6,6 +6,7 @@
 mod branch;
 mod columns;
 mod contact;
+mod corner;
 mod curve;
 mod peak;
 mod resample;
@@ -14,10 +15,8 @@ mod stable;
 mod state;
 
 pub use branch::{Branch, BranchPoint};
-pub use curve::{
-    Corner, Detachment, DetachmentKind, NoCorner, corner, curve, curve_at, curve_without_strain,
-    reach_mm,
-};
+pub use corner::{Corner, NoCorner, corner};
+pub use curve::{Detachment, DetachmentKind, curve, curve_at, curve_without_strain, reach_mm};
 pub(crate) use curve::{DetachmentEnd, crossings, detachments};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;

@@ -21,7 +21,7 @@ impl StableBranch {
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
-        Branch::followed(whisker, pole, side, distance_mm, false).map(Self)
+        Branch::followed((whisker, pole, side), distance_mm, false).map(Self)
     }
 
     /// Returns the stable state at the signed `push`, in radians.

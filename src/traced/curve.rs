@@ -7,6 +7,9 @@ use glam::DVec2;
 /// Number of knots of the table per curve length. With the interpolation of order 6, errors are at the level of rounding.
 const KNOTS_PER_LENGTH: i32 = 200;
 
+/// Distance between neighbouring knots, in curve lengths.
+const STEP: f64 = 1.0 / KNOTS_PER_LENGTH as f64;
+
 /// Knots before the base, for points before it in a fold of the cross-validation.
 const KNOTS_BEFORE: i32 = 20;
 
@@ -43,12 +46,11 @@ impl CurveTerms {
             turns: terms.map(|term| term.angle(place)),
             bends: terms.map(|term| term.at(place)),
         };
-        let step = 1.0 / f64::from(KNOTS_PER_LENGTH);
-        let knot = |k: i32| f64::from(k) * step;
+        let knot = |k: i32| f64::from(k) * STEP;
         Self {
             knots: (-KNOTS_BEFORE..=KNOTS_AFTER).map(|k| at(knot(k))).collect(),
             nodes: (-KNOTS_BEFORE..KNOTS_AFTER)
-                .map(|k| QUADRATURE.map(|[node, _]| at(node.mul_add(step, knot(k)))))
+                .map(|k| QUADRATURE.map(|[node, _]| at(node.mul_add(STEP, knot(k)))))
                 .collect(),
             terms,
         }
@@ -109,7 +111,6 @@ fn unit(angle: f64) -> DVec2 {
 impl<'a> CurveTable<'a> {
     /// Integrates the curve of `pose` by Gauss's rule between neighbouring knots.
     pub fn new(terms: &'a CurveTerms, pose: CurvePose) -> Self {
-        let step = 1.0 / f64::from(KNOTS_PER_LENGTH);
         let mut point = DVec2::ZERO;
         let mut by = [DVec2::ZERO; CURVATURE_TERMS];
         let mut knots = Vec::with_capacity(terms.knots.len());
@@ -125,9 +126,9 @@ impl<'a> CurveTable<'a> {
             };
             for (node, [_, weight]) in nodes.iter().zip(QUADRATURE) {
                 let tangent = unit(pose.angle + sum(&pose.legendre, &node.turns));
-                point += weight * step * tangent;
+                point += weight * STEP * tangent;
                 for (by, turn) in by.iter_mut().zip(node.turns) {
-                    *by += weight * step * turn * tangent.perp();
+                    *by += weight * STEP * turn * tangent.perp();
                 }
             }
         }
@@ -156,13 +157,12 @@ impl<'a> CurveTable<'a> {
     /// Point of the curve at a `place`, by the polynomial of degree 5 with the point, tangent and curvature of both knots.
     fn point(&self, place: f64) -> DVec2 {
         let (panel, x) = self.panel(place);
-        let step = 1.0 / f64::from(KNOTS_PER_LENGTH);
         let [from, to] = [self.knots[panel], self.knots[panel + 1]];
-        let half = |knot: &Knot| 0.5 * step * step * knot.curvature * knot.tangent.perp();
-        let (first, bend) = (step * from.tangent, half(&from));
+        let half = |knot: &Knot| 0.5 * STEP * STEP * knot.curvature * knot.tangent.perp();
+        let (first, bend) = (STEP * from.tangent, half(&from));
         // What the Taylor polynomial of the first knot misses at the second: of the point, the slope and half the bend.
         let miss = to.point - from.point - first - bend;
-        let miss_slope = step * to.tangent - first - 2.0 * bend;
+        let miss_slope = STEP * to.tangent - first - 2.0 * bend;
         let miss_bend = half(&to) - bend;
         let a = 10.0 * miss - 4.0 * miss_slope + miss_bend;
         let b = -15.0 * miss + 7.0 * miss_slope - 2.0 * miss_bend;
@@ -173,12 +173,11 @@ impl<'a> CurveTable<'a> {
     /// Returns the derivative of the foot's signed distance by each coefficient at a fixed point, `[degree]`, in units of the curve's length.
     pub fn distance_by(&self, foot: &Foot) -> [f64; CURVATURE_TERMS] {
         let (panel, x) = self.panel(foot.place);
-        let step = 1.0 / f64::from(KNOTS_PER_LENGTH);
         let [from, to] = [panel, panel + 1].map(|k| (self.knots[k], self.terms.knots[k]));
         std::array::from_fn(|term| {
             // Cubic, with the slopes at both knots.
             let slope =
-                |(knot, terms): (Knot, PlaceTerms)| step * terms.turns[term] * knot.tangent.perp();
+                |(knot, terms): (Knot, PlaceTerms)| STEP * terms.turns[term] * knot.tangent.perp();
             let (first, last) = (slope(from), slope(to));
             let rise = to.0.by[term] - from.0.by[term];
             let square = 3.0 * rise - 2.0 * first - last;
@@ -200,10 +199,8 @@ impl<'a> CurveTable<'a> {
         }
         let place_of =
             |k: usize| (k as f64 - f64::from(KNOTS_BEFORE)) / f64::from(KNOTS_PER_LENGTH);
-        let ends = [
-            nearest.saturating_sub(1),
-            (nearest + 1).min(self.knots.len() - 1),
-        ];
+        let last = self.knots.len() - 1;
+        let ends = [nearest.saturating_sub(1), (nearest + 1).min(last)];
         let ends = ends.map(place_of);
         let mut place = place_of(nearest);
         let mut foot = self.foot_at(point, place);
@@ -234,15 +231,14 @@ impl<'a> CurveTable<'a> {
 
     /// Returns the coefficients `[degree]` of the part of the curve from its base to the place `end`, in radians, in units of the part's length.
     pub fn part(&self, end: f64) -> [f64; CURVATURE_TERMS] {
-        let step = 1.0 / f64::from(KNOTS_PER_LENGTH);
         let mut legendre = [0.0; CURVATURE_TERMS];
         for k in 0..KNOTS_PER_LENGTH {
             for [node, weight] in QUADRATURE {
-                let place = step * (f64::from(k) + node);
+                let place = STEP * (f64::from(k) + node);
                 let curvature = end * self.curvature.at(end * place);
                 for ((degree, own), term) in legendre.iter_mut().enumerate().zip(self.terms.terms) {
                     let norm = (2 * degree + 1) as f64;
-                    *own += norm * step * weight * curvature * term.at(place);
+                    *own += norm * STEP * weight * curvature * term.at(place);
                 }
             }
         }

@@ -209,12 +209,8 @@ mod tests {
         let parts = [0.05, 0.25, 0.5, 0.75, 0.95];
         let expected = [1.2, 2.0, 4.0, 8.0, 14.4].map(Some);
         for (part, expected) in parts.into_iter().zip(expected) {
-            let found = quantile(&values, part);
-            assert!(
-                found
-                    .zip(expected)
-                    .is_some_and(|(a, b)| (a - b).abs() < 1e-14)
-            );
+            let both = quantile(&values, part).zip(expected);
+            assert!(both.is_some_and(|(a, b)| (a - b).abs() < 1e-14));
         }
         assert_eq!(quantile(&[3.0], 0.95), Some(3.0));
         assert_eq!(quantile(&[], 0.5), None);
@@ -240,18 +236,12 @@ mod tests {
         ];
         assert_eq!(counts, [2, 1, 1, 1]);
         assert_eq!((spread.mean_deg, spread.sd_deg), (Some(3.0), Some(2.0)));
-        assert_eq!(
-            (spread.force_mean_un, spread.force_p50_un),
-            (Some(3.0), Some(2.0))
-        );
-        assert_eq!(
-            (spread.moment_mean_nnm, spread.moment_p50_nnm),
-            (Some(-3.0), Some(-2.0))
-        );
+        let forces = (spread.force_mean_un, spread.force_p50_un);
+        assert_eq!(forces, (Some(3.0), Some(2.0)));
+        let moments = (spread.moment_mean_nnm, spread.moment_p50_nnm);
+        assert_eq!(moments, (Some(-3.0), Some(-2.0)));
         let nothing = EndSpread::new(Side::Cb, 10.0, ends[1], std::iter::empty(), None);
-        assert_eq!(
-            (nothing.p50_deg, nothing.mean_deg, nothing.sd_deg),
-            (None, None, None)
-        );
+        let pushes = [nothing.p50_deg, nothing.mean_deg, nothing.sd_deg];
+        assert_eq!(pushes, [None; 3]);
     }
 }

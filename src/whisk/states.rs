@@ -1,7 +1,6 @@
 //! States of a course on one side of its obstacles, in batches.
 
 use super::contact::CourseContact;
-use crate::classify::RowBoundary;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::rod::Side;
@@ -9,7 +8,7 @@ use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
 use crate::shooting::batch::{Batch, Method};
 use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
-use crate::trace::{Branch, DetachmentKind};
+use crate::trace::{Branch, DetachmentKind, crossings};
 
 /// Stable states on one side of poles at several distances, from first touch to the end of the push.
 pub struct SideStates {
@@ -50,26 +49,18 @@ impl SideStates {
         let method = Method::new(Resolution::FINE);
         let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
         let sheet = Sheet::new(method, &rod, side, &distances);
-        let end = |(row, crossings): (usize, &Vec<Crossing>)| {
-            let boundary = RowBoundary::new(true, crossings);
-            let end = boundary.detachment().and(crossings.first());
-            end.copied().ok_or(row)
-        };
-        let ends = sheet.crossings.iter().enumerate().map(end);
+        let ends = crossings(&sheet).into_iter().enumerate();
+        let ends = ends.map(|(row, end)| end.copied().map_err(|_| row));
         let ends: Vec<Crossing> = ends.collect::<Result<_, _>>()?;
         let limits = |(row, end): (usize, &Crossing)| {
             let limits = CourseLimits::new(&sheet.level(row));
-            limits
-                .filter(|limits| limits.detaches_at(end.push))
-                .ok_or(row)
+            let limits = limits.filter(|limits| limits.detaches_at(end.push));
+            limits.ok_or(row)
         };
+        let limits = ends.iter().enumerate().map(limits);
         let limits: Vec<CourseLimits> = match rod.friction {
             0.0 => Vec::new(),
-            _ => ends
-                .iter()
-                .enumerate()
-                .map(limits)
-                .collect::<Result<_, _>>()?,
+            _ => limits.collect::<Result<_, _>>()?,
         };
         let reader = Reader::new(whisker.units(), &rod);
         let points = ends.iter().map(|end| (end.tau, end.load));
@@ -203,12 +194,10 @@ impl SideStates {
             } else if push >= self.end(row) {
                 *state = Some(self.ends[row].state);
             } else if state.is_none() {
+                let distance = self.distances_mm[row];
                 let branch = match last.take() {
                     Some((own, branch)) if own == row => branch,
-                    _ => {
-                        let distance = self.distances_mm[row];
-                        Branch::new(&self.whisker, &self.pole, side, distance).ok()
-                    }
+                    _ => Branch::new(&self.whisker, &self.pole, side, distance).ok(),
                 };
                 *state = branch.as_ref().and_then(|branch| {
                     let state = branch.state(side.sign() * push, true).ok()?;

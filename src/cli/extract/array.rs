@@ -1,7 +1,8 @@
 //! Output of one channel of a slice as a NumPy array.
 
 use super::super::failure::Failure;
-use super::super::files::{Files, unwritten};
+use super::super::files::Files;
+use super::super::output_file::unwritten;
 use super::refuse;
 use std::io::{BufWriter, IntoInnerError, Write};
 use std::path::Path;

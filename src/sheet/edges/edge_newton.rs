@@ -77,11 +77,8 @@ fn load_step(here: &SecondVariation, miss: f64) -> f64 {
 fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
     let by_distance = DVec2::new(here.map.by_tau.x, here.map.by_load.x);
     let by_det = here.det_gradient();
-    let det = here.map.det();
-    DVec2::new(
-        miss * by_det.y + det * by_distance.y,
-        -miss * by_det.x - det * by_distance.x,
-    ) / by_distance.perp_dot(by_det)
+    let sum = miss * by_det + here.map.det() * by_distance;
+    -sum.perp() / by_distance.perp_dot(by_det)
 }
 
 /// Number of rounds at the coarse resolution. From the guess of a cell next to the fold, they reach the error of that resolution.
@@ -157,9 +154,8 @@ pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -
     ended.collect()
 }
 
-/// Solves all `problems` of one rod from predictions, `[problem]`. With predicted second derivatives, most problems need a single
-/// trajectory with first derivatives. Toward the tip, second derivatives by the load are enough. This is one step of another kernel, not
-/// a loop.
+/// Solves all `problems` of one rod from predictions, `[problem]`. With predicted second derivatives, most problems need one trajectory
+/// with first derivatives. Toward the tip, second derivatives by the load are enough. This is one step of another kernel, not a loop.
 #[must_use]
 pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
     let Some(first) = problems.first() else {
@@ -216,7 +212,8 @@ mod tests {
         let method = Method::fine();
         let fold = DVec2::new(rod.tau(0.8), 12.0);
         let tip = DVec2::new(rod.tau_tip(), 3.0);
-        for (edge, start) in [(Edge::Fold, fold), (Edge::Tip, tip)] {
+        let is_found = |own: &EdgeIterate| own.has_converged && own.residual < 1e-12;
+        for (edge, start, along) in [(Edge::Fold, fold, DVec2::ONE), (Edge::Tip, tip, DVec2::Y)] {
             let mut problem = EdgeProblem {
                 rod: &rod,
                 edge,
@@ -229,12 +226,11 @@ mod tests {
                 problem.pole_distance = here[0].pole.length();
             }
             let known = edge_newton(method, EdgeStart::Shared, &[problem])[0];
-            assert!(known.has_converged && known.residual < 1e-12, "{edge:?}");
+            assert!(is_found(&known), "{edge:?}");
             let here = &known.here;
             let seconds = [here.by_tau_tau, here.by_tau_load, here.by_load_load];
             for off in [1e-8, 1e-5] {
-                let moved = DVec2::new(if edge == Edge::Fold { off } else { 0.0 }, off);
-                let start = known.point * (DVec2::ONE + moved);
+                let start = known.point * (DVec2::ONE + off * along);
                 for second in [Some(seconds), Some(seconds.map(|by| 1.1 * by)), None] {
                     let predicted = EdgeProblem {
                         start,
@@ -243,10 +239,7 @@ mod tests {
                     };
                     let found = edge_newton_predicted(method, &[predicted])[0];
                     let away = (found.point / known.point - DVec2::ONE).abs();
-                    assert!(
-                        found.has_converged && found.residual < 1e-12,
-                        "{edge:?} {off}"
-                    );
+                    assert!(is_found(&found), "{edge:?} {off}");
                     assert!(away.max_element() < 2e-9, "{edge:?} {off}: {away}");
                     let [a, b] = [&found, &known].map(|iterate| iterate.here.map.pole.to_angle());
                     assert!((a - b).abs() < 1e-12, "{edge:?} {off}: {a} {b}");

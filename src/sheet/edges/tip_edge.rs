@@ -45,29 +45,25 @@ pub struct SampledTipEdge {
 impl SampledTipEdge {
     /// Samples the tip edge up to the `corner`: at few loads, or at many if the few are not certified.
     pub fn new(case: SheetCase, corner: &FoldPoint) -> Self {
-        let sampled = TipLoads::new(case, corner, &*LOBATTO_NODES);
-        let edge = TipEdge::new(&sampled);
-        let at_touch = sampled.maps[0];
-        if edge.is_certified() {
-            return Self {
-                samples: sampled.samples(&edge.extrema()),
-                edge: Some(edge),
-                at_touch,
-            };
-        }
-        let part = |i| libm::sin(FRAC_PI_2 * i as f64 / MANY_TIP_INTERVALS as f64).powi(2);
-        let parts: Vec<f64> = (0..=MANY_TIP_INTERVALS).map(part).collect();
-        let sampled = TipLoads::new(case, corner, &parts);
+        let few = TipLoads::new(case, corner, &*LOBATTO_NODES);
+        let edge = Some(TipEdge::new(&few)).filter(TipEdge::is_certified);
+        let samples = if let Some(edge) = &edge {
+            few.samples(&edge.extrema())
+        } else {
+            let part = |i| libm::sin(FRAC_PI_2 * i as f64 / MANY_TIP_INTERVALS as f64).powi(2);
+            let parts: Vec<f64> = (0..=MANY_TIP_INTERVALS).map(part).collect();
+            let many = TipLoads::new(case, corner, &parts);
+            many.samples(&many.extrema())
+        };
         Self {
-            samples: sampled.samples(&sampled.extrema()),
-            edge: None,
-            at_touch,
+            samples,
+            edge,
+            at_touch: few.maps[0],
         }
     }
 }
 
-/// Newton step toward an extremum, relative to the width of its bracket, after which the iteration stops. The remaining error is its
-/// square.
+/// Last Newton step toward an extremum, relative to the width of its bracket. The remaining error is its square.
 const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
 
 /// Extremum of the distance along the tip edge, as its samples predict it.
@@ -84,9 +80,8 @@ pub(super) struct DistanceExtremum {
 }
 
 impl DistanceExtremum {
-    /// Returns the extremum between two loads in parts of `corner`, with the derivatives of `(ln D, phi)` by the load, as the secant
-    /// predicts it. Returns `None` if `dlnD/dload` does not change its sign. A slope of exactly 0, as of a straight whisker at first touch,
-    /// is at a sample already.
+    /// Returns the extremum between loads in parts of `corner`, with the derivatives of `(ln D, phi)` by the load, as the secant predicts
+    /// it; `None` if `dlnD/dload` keeps its sign. A slope of exactly 0, as of a straight whisker at first touch, is at a sample already.
     fn between(after: usize, corner: f64, ends: [(f64, DVec2); 2]) -> Option<Self> {
         let [(from, slope), (to, slope_there)] = ends;
         let by_part = (slope_there - slope) / (to - from);
@@ -101,28 +96,26 @@ impl DistanceExtremum {
     /// Returns the part of the extremum and the map there. The polynomials usually determine the second derivatives so well that one
     /// trajectory suffices; otherwise Newton's method computes its own.
     fn polished(&self, case: SheetCase, corner: &FoldPoint) -> (f64, ShootingMap) {
-        let (part, by_load_load) = (self.part, self.by_load_load);
-        let (batch, at) = (Batch::new(case.method), |part| {
-            [(corner.tau, part * corner.load)]
-        });
+        let batch = Batch::new(case.method);
+        let at = |part| [(corner.tau, part * corner.load)];
         let last_step = LAST_STEP_TO_EXTREMUM * (self.parts.above - self.parts.below).abs();
-        let map: ShootingMap = batch.shoot_at(case.rod, at(part))[0];
-        let step = -map.by_load.x / (by_load_load.x * corner.load);
+        let map: ShootingMap = batch.shoot_at(case.rod, at(self.part))[0];
+        let step = -map.by_load.x / (self.by_load_load.x * corner.load);
         if step.abs() <= last_step {
             let here = SecondVariation {
                 map,
-                by_load_load,
+                by_load_load: self.by_load_load,
                 ..SecondVariation::default()
             };
             let moved = DVec2::new(0.0, step * corner.load);
-            return (part + step, here.extrapolated(moved).map);
+            return (self.part + step, here.extrapolated(moved).map);
         }
         let newton = |part| {
             let here: SecondVariation = batch.shoot_at(case.rod, at(part))[0];
             let slope = here.map.by_load.x;
             (slope, part - slope / (here.by_load_load.x * corner.load))
         };
-        let part = self.parts.newton(part, |_| last_step, newton).x;
+        let part = self.parts.newton(self.part, |_| last_step, newton).x;
         (part, batch.shoot_at(case.rod, at(part))[0])
     }
 }
@@ -159,27 +152,25 @@ impl<'a> TipLoads<'a> {
     fn samples(&self, extrema: &[DistanceExtremum]) -> Vec<EdgeSample> {
         let mut samples: Vec<EdgeSample> = Vec::new();
         for (m, part) in self.parts[..self.parts.len() - 1].iter().enumerate() {
-            let sample = |place: f64, map: &ShootingMap| EdgeSample {
+            let sample = |(place, map): (f64, ShootingMap)| EdgeSample {
                 place,
                 tau: self.corner.tau,
                 load: place * self.corner.load,
                 ln_distance: libm::log(map.pole.length()),
                 phi: nearest_turn(map.pole.to_angle(), self.phis[m]),
             };
-            samples.push(sample(*part, &self.maps[m]));
-            for extremum in extrema.iter().filter(|extremum| extremum.after == m) {
-                let (part, map) = extremum.polished(self.case, self.corner);
-                samples.push(sample(part, &map));
-            }
+            let own = extrema.iter().filter(|extremum| extremum.after == m);
+            let own = own.map(|extremum| extremum.polished(self.case, self.corner));
+            let all = std::iter::once((*part, self.maps[m])).chain(own);
+            samples.extend(all.map(sample));
         }
         samples
     }
 
     /// Returns the extrema between the loads.
     fn extrema(&self) -> Vec<DistanceExtremum> {
-        let slope = |m: usize| (self.parts[m], self.maps[m].by_load);
-        let corner = self.corner.load;
-        let between = |m| DistanceExtremum::between(m, corner, [slope(m), slope(m + 1)]);
+        let ends = |m| [m, m + 1].map(|m: usize| (self.parts[m], self.maps[m].by_load));
+        let between = |m| DistanceExtremum::between(m, self.corner.load, ends(m));
         (0..self.parts.len() - 1).filter_map(between).collect()
     }
 }
@@ -189,10 +180,8 @@ impl TipEdge {
     fn is_certified(&self) -> bool {
         let known = |part: &f64| self.corner * self.by_load[0].at(*part).0;
         let largest = |of: &dyn Fn(&f64) -> f64| {
-            LOBATTO_NODES
-                .iter()
-                .map(of)
-                .fold(0.0, |a: f64, b| a.max(b.abs()))
+            let sizes = LOBATTO_NODES.iter().map(|part| of(part).abs());
+            sizes.fold(0.0, f64::max)
         };
         let off = largest(&|part| self.ln_distance.at(*part).1 - known(part));
         off <= SLOPE_OFF * largest(&known).max(1.0)
@@ -200,7 +189,6 @@ impl TipEdge {
 
     /// Interpolates the maps `sampled` at the Lobatto points.
     fn new(sampled: &TipLoads) -> Self {
-        let (tau, corner) = (sampled.corner.tau, sampled.corner.load);
         let maps = sampled.maps.iter().zip(&sampled.phis);
         let values = maps.map(|(map, phi)| {
             let ln_distance = libm::log(map.pole.length());
@@ -209,8 +197,8 @@ impl TipEdge {
         let nodes = sampled.parts.iter().copied();
         let [ln_distance, phi, by_load @ ..] = through_nodes(nodes.zip(values));
         Self {
-            tau,
-            corner,
+            tau: sampled.corner.tau,
+            corner: sampled.corner.load,
             ln_distance,
             phi,
             by_load,
@@ -239,19 +227,16 @@ impl TipEdge {
             for third in [1.0, 2.0, 3.0] {
                 let to = slope(pair[0] + third / 3.0 * (pair[1] - pair[0]));
                 let found = DistanceExtremum::between(after, self.corner, [from, to]);
-                extrema.extend(found.map(|extremum| {
+                if let Some(mut extremum) = found {
                     let problem = RootProblem {
                         target: 0.0,
                         near: extremum.part,
                         bracket: extremum.parts,
                     };
-                    let part = self.by_load[0].solve(&problem, LAST_STEP_ALONG_EDGE);
-                    DistanceExtremum {
-                        part,
-                        by_load_load: self.by_load_load(part),
-                        ..extremum
-                    }
-                }));
+                    extremum.part = self.by_load[0].solve(&problem, LAST_STEP_ALONG_EDGE);
+                    extremum.by_load_load = self.by_load_load(extremum.part);
+                    extrema.push(extremum);
+                }
                 from = to;
             }
         }

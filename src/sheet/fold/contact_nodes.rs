@@ -102,17 +102,14 @@ fn folds_down_to(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Vec<Fol
     let count = (range / spacing) as usize + BEYOND_TIP + BEYOND_NEAREST + 2;
     let taus = (0..count).scan(tau_tip, |tau, from_end| {
         let inward = from_end as f64 - BEYOND_TIP as f64;
-        *tau = if from_end == BEYOND_TIP {
-            tau_tip
-        } else {
-            tau_of(rod, u_tip - spacing * inward, *tau)
+        *tau = match from_end {
+            BEYOND_TIP => tau_tip,
+            _ => tau_of(rod, u_tip - spacing * inward, *tau),
         };
         Some(*tau)
     });
     let folds = first_folds(case, &taus.collect::<Vec<_>>());
-    let mut folds: Vec<FoldPoint> = folds.into_iter().collect::<Option<_>>()?;
-    folds.reverse();
-    Some(folds)
+    folds.into_iter().rev().collect()
 }
 
 impl ContactNodes {
@@ -121,14 +118,10 @@ impl ContactNodes {
     pub fn new(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Self> {
         let rod = case.rod;
         let folds = folds_down_to(case, nearest, spacing)?;
-        let values: Vec<[f64; 2]> = folds
-            .iter()
-            .map(|f| [libm::log(f.tau), libm::log(f.q())])
-            .collect();
-        let slopes: Vec<[f64; 2]> = folds
-            .iter()
-            .map(|fold| slopes_at(rod, fold, spacing))
-            .collect();
+        let values = folds.iter().map(|f| [f.tau, f.q()].map(libm::log));
+        let values: Vec<[f64; 2]> = values.collect();
+        let slopes = folds.iter().map(|fold| slopes_at(rod, fold, spacing));
+        let slopes: Vec<[f64; 2]> = slopes.collect();
         let both = through_runs(&values, &slopes);
         let polynomials = |which: usize| {
             let runs = both.iter();
@@ -179,23 +172,18 @@ impl ContactNodes {
     #[must_use]
     pub fn fold_load(&self, tau: f64) -> f64 {
         let place = (u_of(&self.rod, tau) - self.first_u) / self.spacing;
-        let last = self.folds.len() - 2;
-        let before = (place as usize).min(last);
+        let before = (place as usize).min(self.folds.len() - 2);
         let start = stencil(before, STENCIL, self.folds.len());
         libm::exp(self.ln_q[start].at(place - start as f64).0) / (tau * tau)
     }
 }
 
 #[cfg(test)]
-#[allow(
-    clippy::unwrap_used,
-    reason = "a sheet that is not there fails the test"
-)]
+#[allow(clippy::unwrap_used, reason = "a failure fails the test")]
 mod tests {
     use super::*;
     use crate::rod::{Rest, Side};
-    use crate::shooting::ShootingMap;
-    use crate::shooting::batch::{Batch, Method};
+    use crate::shooting::batch::Method;
 
     /// Right after a jump down, a fold that changes like a square root is as steep as the jump.
     #[test]
@@ -250,12 +238,9 @@ mod tests {
         assert!((differ(folds.map(|fold| fold.tau.ln())) - ln_tau).abs() < 1e-5);
         assert!((differ(folds.map(|fold| fold.q().ln())) - ln_q).abs() < 1e-5);
         for part in [0.0, 0.5, 1.0] {
-            let shot = |fold: &FoldPoint| {
-                Batch::new(case.method).shoot_at::<ShootingMap>(rod, [(fold.tau, part * fold.load)])
-                    [0]
-            };
-            let slope = nodes.slope(i, part, &shot(&nodes.folds[i]));
-            let maps = folds.map(|fold| shot(&fold));
+            let shot = |fold: FoldPoint| case.shoot([(fold.tau, part * fold.load)])[0];
+            let slope = nodes.slope(i, part, &shot(nodes.folds[i]));
+            let maps: [ShootingMap; 2] = folds.map(shot);
             let ln_distance = differ(maps.map(|map| map.pole.length().ln()));
             let phi = differ(maps.map(|map| map.pole.to_angle()));
             assert!((ln_distance - slope.x).abs() < 1e-5, "{i} {part}");

@@ -1,8 +1,9 @@
 //! Arrays and attributes of a store.
 
-use super::array::ValueKind::{self, Code, Coordinate, Count, Quantity};
-use super::array::{ChunkEncoding, ZarrArray, about};
+use super::array::{ZarrArray, about};
 use super::blocks::Blocks;
+use super::encoding::ChunkEncoding;
+use super::encoding::ValueKind::{self, Code, Coordinate, Count, Quantity};
 use super::identity::{AGREED, StoreIdentity};
 use crate::classify::{Regime, Status};
 use crate::plan::{Digits, STATE_CHANNELS};

@@ -7,10 +7,12 @@
 //!
 //! Invariant: a computed block is stored with its fill values, and its file of the regimes is written last.
 
+mod agreement;
 mod array;
 mod blocks;
 mod blosc;
 mod check;
+mod encoding;
 mod files;
 mod identity;
 mod metadata;

@@ -1,7 +1,8 @@
 //! Reading of the files of a block.
 
 use super::ZarrStore;
-use super::array::{ValueKind, ZarrArray};
+use super::array::ZarrArray;
+use super::encoding::ValueKind;
 use super::metadata::CELLS;
 use super::shard::ExpectedFile;
 use crate::classify::Regime;

@@ -14,6 +14,7 @@ mod integrator;
 mod intrinsic;
 mod map;
 mod material;
+mod parabola;
 mod reading;
 mod resolution;
 mod rhs;
@@ -25,13 +26,12 @@ pub use derivative::{TrajectoryVariable, VariationDerivative, differentiate};
 pub use integrator::{
     BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, StepStage, collocate, integrate,
 };
-pub use intrinsic::{
-    Bent, Intrinsic, Polynomial, Spiral, Straight, TANGENT as REST_TANGENT, TERMS as REST_TERMS,
-};
+pub use intrinsic::{Intrinsic, Polynomial, Spiral, Straight};
 pub use map::{
     FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative, limited,
 };
 pub use material::{Graded, Liouville, Material, Measured, Uniform};
+pub use parabola::{Bent, TANGENT as REST_TANGENT, TERMS as REST_TERMS};
 pub use reading::{Reader, Reading};
 pub use resolution::{PieceSteps, Resolution};
 pub use rhs::{Carried, NoSensitivity, Planar, RodSystem, Section, Sensitivity, TrajectoryState};

@@ -3,6 +3,7 @@
 //! The generic integrator is inlined into functions compiled for every [`Unit`]; the processor decides which of them run.
 //! Results do not depend on the number of threads: the conditions of a block do not depend on it.
 
+mod block;
 mod block_key;
 mod flops;
 mod gather;

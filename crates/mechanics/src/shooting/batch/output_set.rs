@@ -1,7 +1,8 @@
 //! Sets of outputs that a batch computes for each trajectory, in lanes.
 
+use super::block::Block;
 use super::block_key::BlockKey;
-use super::kernel::{Block, Trajectories};
+use super::kernel::Trajectories;
 use super::pole::{PoleCentre, spread};
 use crate::numerics::{Lanes, Unit, WIDTH};
 use crate::shooting::contact::Contact;

@@ -3,8 +3,8 @@
 //! All trajectories of a block take the steps of its most demanding one. Outputs depend on the whole batch, but not on the number
 //! of threads.
 
+use super::block::{Block, StepCounts};
 use super::block_key::BlockKey;
-use super::kernel::{Block, StepCounts};
 use super::{InitialCondition, Method, OutputSet, SMALLEST_CHUNK};
 use crate::numerics::{Unit, WIDTH};
 use rayon::prelude::*;

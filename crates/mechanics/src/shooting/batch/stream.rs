@@ -1,7 +1,7 @@
 //! Streams of initial conditions, sorted into blocks, each of which is computed as soon as it is full.
 
+use super::block::{Block, StepCounts};
 use super::block_key::{BlockKey, BlockKeys};
-use super::kernel::{Block, StepCounts};
 use super::{InitialCondition, Method, OutputSet};
 use crate::numerics::{Unit, WIDTH};
 

@@ -1,0 +1,57 @@
+//! Whisker sides of a map: columns, sheets, derivatives and expansions.
+
+use crate::engine::{EngineInput, SideColumns, WhiskerSide};
+use crate::plan::Plan;
+use crate::rod::Side;
+use crate::scene::{Parameter, Scene, SweptWhisker};
+use crate::sensitivity::of_rows;
+use crate::sheet::Sheet;
+use crate::shooting::batch::Method;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Returns the columns of each of `sides`, `[side]`, and the signed push angles of all of them, in radians.
+pub fn side_columns(push_angle_deg: &[f64], sides: &[Side]) -> (Vec<Arc<SideColumns>>, Arc<[f64]>) {
+    let mut pushes: Vec<f64> = Vec::new();
+    let columns = sides.iter().map(|side| {
+        // A row has fewer columns than `u32` can count.
+        let side = SideColumns::new(push_angle_deg, *side, pushes.len() as u32);
+        pushes.extend(side.columns.iter().map(|column| column.push));
+        Arc::new(side)
+    });
+    (columns.collect(), pushes.into())
+}
+
+/// Computes every side of some of the `whiskers` of `scene`, whisker by whisker, with the channels of the plan and the data that the
+/// engine needs.
+pub fn whisker_sides(
+    scene: &Scene,
+    (plan, method, input): (&Plan, Method, Option<EngineInput>),
+    columns: &[Arc<SideColumns>],
+    whiskers: Range<usize>,
+) -> Arc<[WhiskerSide]> {
+    let whiskers: Vec<SweptWhisker> = whiskers.map(|index| scene.whisker(index)).collect();
+    let of_whisker = |swept| columns.iter().map(move |columns| (swept, columns));
+    let pairs: Vec<_> = whiskers.iter().flat_map(of_whisker).collect();
+    let grid = &scene.grid;
+    let derivatives: Vec<Parameter> = plan.channels.derivatives().collect();
+    let sides = pairs.into_par_iter().map(|(swept, columns)| {
+        let rod = swept.rod(columns.side);
+        let distances = grid.distance_mm.iter();
+        let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
+        let sheet = Sheet::new(method, &rod, columns.side, &distances);
+        let mut side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
+        if !derivatives.is_empty() {
+            let (resolution, sheet) = (method.resolution, &side.sheet);
+            let pushed = (&swept.whisker, &swept.pole);
+            side.push_derivatives =
+                of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
+        }
+        match input {
+            Some(EngineInput::SpectralSheets(most)) => side.with_spectral_sheet(method, most),
+            _ => side,
+        }
+    });
+    sides.collect::<Vec<_>>().into()
+}
