@@ -2,43 +2,22 @@
 
 use super::array::{ZarrArray, about};
 use super::blocks::Blocks;
+use super::channels::{CHANNELS, channel, with_flags};
 use super::encoding::ChunkEncoding;
-use super::encoding::ValueKind::{self, Code, Coordinate, Count, Quantity};
+use super::encoding::ValueKind::{Code, Coordinate, Count};
 use super::identity::{AGREED, StoreIdentity};
-use crate::classify::{Regime, Status};
+use crate::classify::Regime;
 use crate::plan::{Digits, STATE_CHANNELS};
-use crate::scene::{Grid, Parameter, SceneData};
+use crate::scene::{Grid, SceneData};
 use crate::store::attributes::{DIGITS, digits};
-use crate::store::{Channels, MapDescription, NOT_COMPUTED};
+use crate::store::{Channels, MapDescription};
 use serde_json::{Map, Value, json};
-
-/// Name, kind, unit and meaning of a channel.
-type ChannelLine = (&'static str, ValueKind, Option<&'static str>, &'static str);
 
 /// Name of the array with the number of cells of each regime: `[sweep axes.., regime]`.
 pub(super) const CELLS: &str = "regime_cells";
 
 /// Coordinate with the codes of the regimes, the last axis of [`CELLS`].
 const CODES: &str = "regime_code";
-
-/// Name, kind, unit and meaning of every channel but the derivatives.
-#[rustfmt::skip]
-const CHANNELS: [ChannelLine; 14] = [
-    ("regime", Code, None, "what becomes of the whisker"),
-    ("status", Code, None, "how that was settled"),
-    ("arc_length_mm", Quantity, Some("mm"), "arclength from the base to the contact"),
-    ("contact_angle_deg", Quantity, Some("degree"), "angle of the whisker at the contact"),
-    ("force_un", Quantity, Some("uN"), "force between pole and whisker, normal to both"),
-    ("base_force_x_un", Quantity, Some("uN"), "force that the pole puts on the base, along its tangent"),
-    ("base_force_y_un", Quantity, Some("uN"), "force that the pole puts on the base, across its tangent"),
-    ("base_moment_nnm", Quantity, Some("nN m"), "moment that the pole puts on the base"),
-    ("push_chord_deg", Quantity, Some("degree"), "angle at the base between the contact and the resting whisker as far away"),
-    ("contact_distance_mm", Quantity, Some("mm"), "straight distance from the base to the contact"),
-    ("energy_nj", Quantity, Some("nJ"), "energy of bending"),
-    ("margin_deg", Quantity, Some("degree"), "push angle left until detachment"),
-    ("newton_steps", Count, None, "Newton steps"),
-    ("residual", Quantity, Some("1"), "distance from the wanted pole over the whisker's length"),
-];
 
 /// The arrays that are filled block by block. The regimes, which mark a block as finished, are the last.
 pub(super) fn arrays(
@@ -84,62 +63,8 @@ pub(super) fn arrays(
     arrays
 }
 
-/// The attributes of a channel; codes are flags of the CF conventions.
-fn with_flags(name: &str, mut about: Value) -> Value {
-    let mut flags = |codes: Vec<u32>, names: Vec<&str>| {
-        let names = names.iter().map(|name| word(name));
-        let names = names.chain(["not_computed".to_owned()]).collect::<Vec<_>>();
-        let codes = codes.into_iter().chain([u32::from(NOT_COMPUTED)]);
-        about["flag_values"] = json!(codes.collect::<Vec<_>>());
-        about["flag_meanings"] = json!(names.join(" "));
-    };
-    match name {
-        "regime" => flags(
-            Regime::ALL.map(Regime::code).to_vec(),
-            Regime::ALL.map(Regime::name).to_vec(),
-        ),
-        "status" => flags(
-            Status::ALL.map(Status::code).to_vec(),
-            Status::ALL.map(Status::name).to_vec(),
-        ),
-        _ => {}
-    }
-    about
-}
-
-/// A name as one word.
-fn word(name: &str) -> String {
-    let parts = name.split(|c: char| !c.is_ascii_alphanumeric());
-    let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
-    parts.join("_")
-}
-
 /// Array without axes whose attributes describe the rounding (CF conventions, 8.4).
 const QUANTIZATION: &str = "quantization";
-
-/// Returns the attributes of a channel of maps, by the CF conventions: unit, meaning, and flags of codes; `None` for another name.
-#[must_use]
-pub fn channel_attributes(name: &str) -> Option<Value> {
-    channel(name).map(|(_, about)| about)
-}
-
-/// Returns kind and attributes of a channel; `None` for another name.
-fn channel(name: &str) -> Option<(ValueKind, Value)> {
-    if let Some((_, kind, units, meaning)) = CHANNELS.iter().find(|(own, ..)| *own == name) {
-        return Some((*kind, with_flags(name, about(*units, meaning))));
-    }
-    let mut all = Parameter::ALL.into_iter();
-    let parameter = all.find(|own| own.push_derivative() == name)?;
-    let units = match parameter.unit() {
-        "1" => "degree".to_owned(),
-        unit => format!("degree/({unit})"),
-    };
-    let meaning = format!(
-        "derivative of the push angle at detachment by {}",
-        parameter.name()
-    );
-    Some((Quantity, about(Some(&units), &meaning)))
-}
 
 /// Coordinate of maps: values along one axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -256,18 +181,4 @@ pub(super) fn group<'a>(
             "metadata": arrays.collect::<Map<_, _>>(),
         },
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::channel_names;
-
-    /// A channel that is missing here would be missing in every store.
-    #[test]
-    fn every_channel_of_a_map_has_a_line() {
-        let names = CHANNELS.iter().map(|(name, ..)| *name);
-        assert!(names.eq(Channels::STANDARD.names()));
-        assert!(channel_names().all(|name| channel(name).is_some()));
-    }
 }

@@ -11,6 +11,7 @@ mod agreement;
 mod array;
 mod blocks;
 mod blosc;
+mod channels;
 mod check;
 mod encoding;
 mod files;
@@ -21,8 +22,9 @@ mod planes;
 mod read;
 mod shard;
 
+pub use self::channels::channel_attributes;
 pub use self::check::{BlockState, CheckDepth};
-pub use self::metadata::{AxisCoordinate, channel_attributes, coordinates};
+pub use self::metadata::{AxisCoordinate, coordinates};
 pub use self::pack::PackedPanel;
 
 use self::array::ZarrArray;
