@@ -227,6 +227,11 @@ pub(super) mod tests {
         assert!(by_push > near && by_push < 1.1 * far, "{by_push}");
         let by_force = spoiled(3 + FORCE) / (4.0 * SPOIL * sound.weights[3 + FORCE]);
         assert!((by_force - 1.0).abs() < 1e-3, "{by_force}");
+        // From row to row, the third polynomial is large at the middle places and small at the last one.
+        let mut patch = sound.clone();
+        patch.tensor.in_y[0].coefficients[3][3 + FORCE] += SPOIL;
+        let by_third = patch.certified(method, &side) / (4.0 * SPOIL * sound.weights[3 + FORCE]);
+        assert!((0.9..1.0).contains(&by_third), "{by_third}");
         let with = |residual: f64| {
             let patch = Patch {
                 residual,
