@@ -7,6 +7,7 @@ use compute::{compute, shipped};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use whiskmap::classify::Regime;
 use whiskmap::engine::Spectral;
 use whiskmap::map::{self, Channels, Panel, STATE_CHANNELS};
 use whiskmap::plan::Plan;
@@ -97,6 +98,28 @@ fn bands_are_the_rows_of_a_panel() {
         assert_eq!(bands, [10, 10, 10, 10, 10, 10, 4], "{name}");
         compute::assert_identical(&[whole.remove(0)], &[joined]);
     }
+}
+
+/// Along a row, push angle and margin add up to the push angle of detachment, up to the rounding of `f32` below 90 degrees.
+#[test]
+fn push_and_margin_add_up() {
+    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(64, 1);
+    let panel = compute(&scene, None).1.remove(0);
+    let pushes = &scene.grid.push_angle_deg;
+    let rows = panel.regime.chunks(pushes.len());
+    let mut compared = 0;
+    for (regimes, margins) in rows.zip(panel.margin_deg.chunks(pushes.len())) {
+        let cells = pushes.iter().zip(regimes).zip(margins);
+        let contacts = cells.filter(|((_, regime), _)| **regime == Regime::Contact.code());
+        let ends = contacts
+            .map(|((push, _), margin)| (push.is_sign_negative(), push.abs() + f64::from(*margin)));
+        let ends: Vec<(bool, f64)> = ends.collect();
+        for two in ends.windows(2).filter(|two| two[0].0 == two[1].0) {
+            assert!((two[0].1 - two[1].1).abs() < 1e-5, "{two:?}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 1000, "{compared}");
 }
 
 /// One row of `scene`.

@@ -182,3 +182,49 @@ impl RowWriter<'_> {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use crate::engine::Cpu;
+    use crate::plan::Channels;
+    use crate::rod::Side;
+    use crate::scene::Scene;
+    use crate::sheet::Sheet;
+    use crate::shooting::batch::Method;
+    use std::sync::Arc;
+
+    /// Cells with a state beyond the end of their row contradict it, although they follow cells in contact.
+    #[test]
+    fn a_state_beyond_the_end_is_no_contact() {
+        let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
+        let (method, swept) = (Method::fine(), scene.whisker(0));
+        let push_angle_deg: Vec<f64> = (1..60).map(f64::from).collect();
+        let columns = SideColumns::new(&push_angle_deg, Side::Cb, 0);
+        let pushes: Arc<[f64]> = columns.magnitudes.clone().into();
+        let sheet = Sheet::new(method, &swept.rod(Side::Cb), Side::Cb, &[0.7]);
+        let side = WhiskerSide::new(Arc::new(columns), swept.whisker.units(), sheet);
+        let batch = RowBatch::new(method, [side].into(), pushes, [(0, 0)]);
+        let regimes = |cells: &Cells| {
+            let mut panel = Panel::unwritten(cells.len(), Channels::STANDARD);
+            fill(
+                &batch,
+                cells,
+                1,
+                [cells.len(), 0],
+                std::slice::from_mut(&mut panel),
+            );
+            panel.regime
+        };
+        let mut cells = Cpu::default().solve(&batch);
+        let sound = regimes(&cells);
+        let [first, last] = [sound[0], sound[sound.len() - 1]];
+        assert_eq!(
+            [first, last],
+            [Regime::Contact, Regime::SlipOff].map(Regime::code)
+        );
+        cells.outcome.fill(Outcome::Solved);
+        assert_eq!(regimes(&cells), sound);
+    }
+}

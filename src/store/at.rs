@@ -177,7 +177,7 @@ fn nearest(values: &[f64], wanted: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::check_near;
+    use super::{check_near, nearest};
 
     #[test]
     fn values_beyond_an_axis_are_refused_with_its_unit() {
@@ -198,5 +198,19 @@ mod tests {
             assert_eq!(check_near(name, values, wanted), Err(why.to_owned()));
         }
         assert_eq!(check_near("taper", &[0.5, 0.9], 1.1), Ok(()));
+        // A single value is selected by what its four digits may stand for.
+        let is_near = |wanted| check_near("taper", &[0.1001], wanted).is_ok();
+        assert_eq!(
+            [0.10005, 0.10015, 0.1000, 0.1002].map(is_near),
+            [true, true, false, false]
+        );
+    }
+
+    #[test]
+    fn of_two_values_as_near_the_first_is_selected() {
+        assert_eq!(
+            [1.4, 1.5, 1.6].map(|wanted| nearest(&[1.0, 2.0], wanted)),
+            [0, 0, 1]
+        );
     }
 }

@@ -176,3 +176,19 @@ fn series(version: &str) -> Vec<&str> {
     let length = zeros.count() + 1;
     version.split('.').take(length).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::series;
+
+    #[test]
+    fn versions_are_compatible_up_to_the_first_number_that_is_not_0() {
+        for (version, shared) in [
+            ("0.4.1", &["0", "4"][..]),
+            ("1.2.3", &["1"]),
+            ("0.0.3", &["0", "0", "3"]),
+        ] {
+            assert_eq!(series(version), shared);
+        }
+    }
+}

@@ -24,7 +24,7 @@ impl OutputTarget {
     /// A link must not be followed, or `path` leads to a folder, or to a file without write permission.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         check_links(folder_of(path))?;
-        let mut path = path.to_owned();
+        let (given, mut path) = (path, path.to_owned());
         for _ in 0..MOST_LINKS {
             if is_descriptor(&path) {
                 return fs::metadata(&path).map(|_| Self::Stream(path));
@@ -34,6 +34,9 @@ impl OutputTarget {
             };
             check_link(&path)?;
             path = folder_of(&path).join(next);
+        }
+        if path.is_symlink() {
+            fs::metadata(given)?;
         }
         match fs::metadata(&path) {
             Ok(about) if about.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
@@ -121,4 +124,27 @@ pub(super) fn inherit(file: &File, replaced: &Metadata) -> io::Result<()> {
 #[cfg(not(unix))]
 pub(super) fn inherit(_: &File, _: &Metadata) -> io::Result<()> {
     Ok(())
+}
+
+#[cfg(all(test, unix))]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    /// A file never replaces the last link of a chain that is too long.
+    #[test]
+    fn as_many_links_are_followed_as_by_linux() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |links: usize| folder.path().join(links.to_string());
+        for links in 1..=41 {
+            symlink(path(links - 1), path(links)).unwrap();
+        }
+        let target = |links| match OutputTarget::of(&path(links)).unwrap() {
+            OutputTarget::Regular(target, _) => target,
+            OutputTarget::Stream(_) => PathBuf::new(),
+        };
+        assert_eq!([target(1), target(40)], [path(0), path(0)]);
+        assert!(OutputTarget::of(&path(41)).is_err());
+    }
 }

@@ -4,8 +4,11 @@ use super::map::{self, panel, scene, write};
 use super::sweeps;
 use serde_json::json;
 use std::fs;
-use whiskmap::classify::Status;
-use whiskmap::store::{AtlasLayout, ChannelValues, Panel, STATE_CHANNELS, StoredMap};
+use whiskmap::classify::{Regime, Status};
+use whiskmap::store::{
+    AtlasLayout, Audit, ChannelValues, EngineCells, MapWriter, Panel, STATE_CHANNELS, StoredMap,
+    TemporaryFiles,
+};
 
 fn bits(samples: &ChannelValues) -> Vec<u32> {
     match samples {
@@ -117,6 +120,26 @@ fn the_header_counts_the_cells() {
     let worst = worst.values().filter(|value| !value.is_nan());
     assert_eq!(counts.worst_residual, worst.reduce(f64::max));
     assert!(counts.worst_residual.is_some());
+}
+
+/// The residual of an unresolved cell is that of no state.
+#[test]
+fn unresolved_cells_do_not_count_for_the_worst_residual() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    let scene = scene(40, 30, None, None);
+    let tolerances = json!(null);
+    let about = map::describe(&scene, &tolerances);
+    let mut writer = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
+    let mut panel = panel(&scene, 0);
+    panel.regime[0] = Regime::Unresolved.code();
+    panel.residual[0] = 1.0;
+    writer.write_panels(&[panel]).unwrap();
+    let counts = writer
+        .finish(EngineCells::default(), Audit::default())
+        .unwrap();
+    // Residuals of made-up cells are at most 70e-9.
+    assert!(counts.worst_residual.unwrap() < 1e-6);
 }
 
 #[test]

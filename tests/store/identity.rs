@@ -3,6 +3,7 @@
 use super::made_up::{SCENE, about, store};
 use serde_json::json;
 use whiskmap::engine::EngineDescription;
+use whiskmap::map::Channels;
 use whiskmap::scene::Scene;
 use whiskmap::store::{MapDescription, TemporaryFiles, ZarrStore};
 
@@ -47,6 +48,16 @@ fn a_store_has_one_scene_version_engine_arithmetic_and_accuracy() {
     })
     .unwrap_err();
     assert!(why.contains("differs in `tolerances`"), "{why}");
+    let channels = Channels::STANDARD;
+    let why = join(&MapDescription { channels, ..fma }).unwrap_err();
+    assert!(why.contains("differs in `channels`"), "{why}");
+    let digits = "3".parse().unwrap();
+    let why = join(&MapDescription { digits, ..fma }).unwrap_err();
+    assert!(why.contains("differs in `digits`"), "{why}");
+    let other = Scene::parse(&SCENE.replace("0.25", "0.26"), "scene.toml").unwrap();
+    let joined = ZarrStore::join(&path, &other, &about(&other, "fma"), true);
+    let why = joined.map(drop).unwrap_err().to_string();
+    assert!(why.contains("differs in `scene`"), "{why}");
 }
 
 /// Two threads create a store at the same moment with two engines: one succeeds.

@@ -219,6 +219,61 @@ fn channels_that_do_not_fit_the_axes_are_refused() {
     assert!(matches!(error, StoreError::NotAMap { .. }), "{error}");
 }
 
+/// Headers with their checksum, whose axes do not increase or do not give the number of panels.
+#[test]
+fn axes_that_contradict_themselves_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    for (text, forged, why) in [
+        (
+            "[3.0,20.5]",
+            "[3e1,20.5]",
+            "the values of `distance_mm` do not increase",
+        ),
+        (
+            "[3.0,20.5]",
+            "[3.0,3.00]",
+            "the values of `distance_mm` do not increase",
+        ),
+        ("[2,1]", "[1,2]", "attributes `panels` and `axes` differ"),
+    ] {
+        write(&path, &scene(3, 2, Some(vec![0.5, 0.9]), None));
+        let mut bytes = fs::read(&path).unwrap();
+        let places: Vec<usize> = (0..bytes.len() - text.len())
+            .filter(|place| bytes[*place..].starts_with(text.as_bytes()))
+            .collect();
+        assert_eq!(places.len(), 3, "one for each part");
+        for place in places {
+            bytes[place..place + text.len()].copy_from_slice(forged.as_bytes());
+        }
+        super::sealed::seal(&mut bytes);
+        fs::write(&path, bytes).unwrap();
+        let error = StoredMap::open(&path).unwrap_err().to_string();
+        assert!(error.contains(why), "{error}");
+    }
+}
+
+/// The table of positions has no checksum.
+#[test]
+fn a_block_in_the_place_of_another_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.exr");
+    write(&path, &scene(23, 37, None, None));
+    let mut bytes = fs::read(&path).unwrap();
+    let mut header = std::io::Cursor::new(&bytes[..]);
+    exr::meta::MetaData::read_from_buffered(&mut header, true).unwrap();
+    let table = header.position() as usize;
+    let (one, other) = bytes[table..table + 16].split_at_mut(8);
+    one.swap_with_slice(other);
+    fs::write(&path, bytes).unwrap();
+    let error = StoredMap::open(&path)
+        .unwrap()
+        .read_channel("regime")
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("another block is in its place"), "{error}");
+}
+
 /// Opens a file and reads every block of it.
 fn read_all(path: &Path) -> Result<(), StoreError> {
     let map = StoredMap::open(path)?;

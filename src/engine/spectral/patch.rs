@@ -130,10 +130,11 @@ impl Patch {
     clippy::panic,
     reason = "a test fails by panicking"
 )]
-mod tests {
+pub(super) mod tests {
     use super::super::sheet::MOST;
     use super::*;
-    use crate::engine::SideColumns;
+    use crate::engine::{FORCE, SideColumns};
+    use crate::refine::GOAL;
     use crate::rod::Side;
     use crate::scene::Scene;
     use crate::sheet::{Edge, Sheet};
@@ -146,7 +147,7 @@ mod tests {
     const STRIDE: usize = 5;
 
     /// The cone of the paper with more rows at the tip than its map has.
-    fn cone() -> WhiskerSide {
+    pub fn cone() -> WhiskerSide {
         let scene = Scene::parse(include_str!("../../../scenes/cone.toml"), "cone.toml").unwrap();
         let swept = scene.whisker(0);
         let columns = Arc::new(SideColumns::new(&[1.0, 2.0], Side::Cb, 0));
@@ -198,5 +199,47 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// The bound is four times the largest error: of the pole's place, of a channel value, or of the last coefficients.
+    #[test]
+    fn a_bound_is_four_times_the_largest_error() {
+        let (method, side) = (Method::fine(), cone());
+        let at = |row: usize| RowInterval::coordinate(&side.sheet, row).unwrap().1;
+        let interval = RowInterval {
+            edge: Edge::Fold,
+            ends: [at(0), at(60)],
+        };
+        let size = PatchSize {
+            rows: 16,
+            states: 32,
+        };
+        let sound = Patch::new(method, &side, interval, size, MOST);
+        let sound = sound.unwrap_or_else(|_| panic!("refused"));
+        assert!(sound.row(&side, 60).is_some() && sound.row(&side, 61).is_none());
+        let spoiled = |function: usize| {
+            let mut patch = sound.clone();
+            patch.tensor.in_y[0].coefficients[0][function] += SPOIL;
+            patch.certified(method, &side)
+        };
+        let [near, far] = [0, 60].map(|row| side.sheet.rows[row].pole_distance);
+        let by_push = spoiled(0) / (MARGIN * SPOIL);
+        assert!(by_push > near && by_push < 1.1 * far, "{by_push}");
+        let by_force = spoiled(3 + FORCE) / (4.0 * SPOIL * sound.weights[3 + FORCE]);
+        assert!((by_force - 1.0).abs() < 1e-3, "{by_force}");
+        // From row to row, the third polynomial is large at the middle places and small at the last one.
+        let mut patch = sound.clone();
+        patch.tensor.in_y[0].coefficients[3][3 + FORCE] += SPOIL;
+        let by_third = patch.certified(method, &side) / (4.0 * SPOIL * sound.weights[3 + FORCE]);
+        assert!((0.9..1.0).contains(&by_third), "{by_third}");
+        let with = |residual: f64| {
+            let patch = Patch {
+                residual,
+                ..sound.clone()
+            };
+            patch.certified(method, &side)
+        };
+        assert_eq!(with(1e-6), 4e-6);
+        assert!((GOAL..1e-11).contains(&with(0.0)), "{}", with(0.0));
     }
 }

@@ -107,3 +107,77 @@ impl RowExpansion {
         (off <= residual && is_at_edge).then_some(Self { inverse, residual })
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::super::exact_row::ExactRow;
+    use super::super::patch::tests::cone;
+    use super::super::sheet::MOST;
+    use super::*;
+    use crate::numerics::expansion::chebyshev_points;
+    use crate::shooting::batch::Method;
+
+    #[test]
+    fn the_largest_error_has_no_sign_and_nan_stays() {
+        let (mut errors, weights) = ([0.0; FUNCTIONS], [2.0; FUNCTIONS]);
+        errors[1..3].copy_from_slice(&[-3.0, 1.0]);
+        assert_eq!(largest(&errors, &weights), 6.0);
+        assert_eq!([larger(1.0, 2.0), larger(2.0, 1.0)], [2.0, 2.0]);
+        assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan());
+    }
+
+    /// Expansions of one row at each edge are accepted; every change that contradicts the end is refused.
+    #[test]
+    fn expansions_that_contradict_the_end_are_refused() {
+        let side = cone();
+        let sheet = &side.sheet;
+        for edge in [Edge::Fold, Edge::Tip] {
+            let mut rows = 0..sheet.rows.len();
+            let row = rows
+                .find(|row| sheet.crossings[*row][0].edge == edge)
+                .unwrap();
+            let exact = ExactRow::all(Method::fine(), sheet, &[row], 32, MOST)
+                .remove(0)
+                .unwrap();
+            let (sound, weights) = (exact.expansion(&side), exact.weights(&side));
+            let accepted = |residual: f64, change: &dyn Fn(&mut Chebyshev<FUNCTIONS>)| {
+                let mut functions = sound.clone();
+                change(&mut functions);
+                RowExpansion::new(functions, &weights, residual, sheet, row)
+            };
+            let is_accepted = |residual, change: &dyn Fn(&mut Chebyshev<FUNCTIONS>)| {
+                accepted(residual, change).is_some()
+            };
+            assert!(is_accepted(MOST, &|_| ()));
+            let distance = sheet.rows[row].pole_distance;
+            for by in [-2.0, 2.0] {
+                let off = by * MOST / distance;
+                assert!(!is_accepted(MOST, &|own| own.coefficients[0][0] += off));
+            }
+            let is_fold = edge == Edge::Fold;
+            assert_eq!(
+                is_accepted(MOST, &|own| own.coefficients[0][1] += 1e-6),
+                is_fold
+            );
+            assert!(!is_accepted(MOST, &|own| own.coefficients[0][FUNCTIONS - 1] = f64::NAN));
+            // Coefficients end where rounding does.
+            let length = |size: f64| {
+                let last = weights.map(|weight| size / weight);
+                let longer = accepted(MOST, &|own| own.coefficients.push(last)).unwrap();
+                longer.inverse.functions.coefficients.len()
+            };
+            assert!(length(1e-16) <= 32);
+            assert_eq!(length(1e-14), 33);
+            // Expansions that end before the fold are not flat enough.
+            let shortened = |part: f64| {
+                let points = chebyshev_points(32).iter();
+                let values: Vec<Numbers> = points.map(|x| sound.at(part * x)).collect();
+                is_accepted(1e-4, &|own| *own = Chebyshev::through(&values))
+            };
+            if is_fold {
+                assert_eq!([1.0, 0.9998, 0.998].map(shortened), [true, true, false]);
+            }
+        }
+    }
+}

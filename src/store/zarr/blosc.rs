@@ -166,6 +166,20 @@ mod tests {
         (0..count).flat_map(value).collect()
     }
 
+    /// The bytes that c-blosc (`README_CHUNK_FORMAT.rst`) writes for 512 bytes of values in a frame of 300.
+    #[test]
+    fn headers_are_those_of_c_blosc() {
+        for (codec, size, is_copied, flags) in [
+            (Codec::Lz4, 4, false, 0x31),
+            (Codec::Lz4, 8, true, 0x33),
+            (Codec::Zlib, 1, false, 0x70),
+        ] {
+            let expected = [2, 1, flags, size, 0, 2, 0, 0, 0, 2, 0, 0, 44, 1, 0, 0];
+            let sizes = [512, usize::from(size), 300];
+            assert_eq!(header(codec, sizes, is_copied), expected);
+        }
+    }
+
     #[test]
     fn what_is_packed_comes_back_and_nothing_else_does() {
         let cases = [
