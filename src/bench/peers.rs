@@ -1,6 +1,6 @@
 //! Costs and errors of other programs, as `benches/peers/run.sh` writes them.
 
-use crate::input::{SCENE_MIB, bounded};
+use crate::input::{TEXT_MIB, bounded};
 use serde::Deserialize;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -68,7 +68,7 @@ impl Peers {
             path: path.to_owned(),
             what,
         };
-        let bytes = File::open(path).and_then(|file| bounded(file, SCENE_MIB));
+        let bytes = File::open(path).and_then(|file| bounded(file, TEXT_MIB));
         let bytes = bytes.map_err(|cause| error(format!("cannot read the file: {cause}")))?;
         Self::parse(&bytes).map_err(error)
     }

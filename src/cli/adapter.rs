@@ -5,7 +5,12 @@ use std::env;
 use whiskmap::engine::gpu::{AdapterReport, Precision, named, preferred};
 
 /// Environment variable that also other programs with wgpu use to select an adapter.
-pub const ADAPTER_VARIABLE: &str = "WGPU_ADAPTER_NAME";
+const ADAPTER_VARIABLE: &str = "WGPU_ADAPTER_NAME";
+
+/// Returns true if an option or the environment names an adapter.
+pub fn is_named(wanted: Option<&str>) -> bool {
+    wanted.is_some() || env::var_os(ADAPTER_VARIABLE).is_some()
+}
 
 /// Returns the index of the `wanted` adapter, else of the one named by `WGPU_ADAPTER_NAME`, else of the preferred one; `None`
 /// without an adapter.

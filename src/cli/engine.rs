@@ -1,10 +1,9 @@
 //! Selection of the engine of a map by options.
 
-use super::adapter::{ADAPTER_VARIABLE, chosen};
+use super::adapter::{chosen, is_named};
 use super::estimate::{compare, estimate};
 use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
-use std::env;
 use whiskmap::accuracy::{cheaper, excess_deg, spectral};
 use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters};
 use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
@@ -149,7 +148,7 @@ impl EngineArgs {
         tolerance_deg: Option<f64>,
     ) -> Result<OpenEngine, Failure> {
         // A named adapter that does not exist is an error, even if it would not be used.
-        if self.names_adapter() {
+        if is_named(self.adapter.as_deref()) {
             self.adapter()?;
         }
         match (self.choice(), self.refusal(scene, plan, tolerance_deg)) {
@@ -186,11 +185,6 @@ impl EngineArgs {
         self.precision.unwrap_or(Precision::F32)
     }
 
-    /// Returns true if an option or the environment names an adapter.
-    fn names_adapter(&self) -> bool {
-        self.adapter.is_some() || env::var_os(ADAPTER_VARIABLE).is_some()
-    }
-
     /// Returns index and description of the adapter of a GPU engine, if there is one.
     fn adapter(&self) -> Result<Option<(usize, AdapterReport)>, Failure> {
         let mut reports = adapters();
@@ -216,7 +210,7 @@ impl EngineArgs {
         let (index, report) = self.adapter()?.unzip();
         let name = report.as_ref().map(|report| report.info.name.clone());
         let name = name.unwrap_or_default();
-        if report.is_some_and(|report| report.is_software()) && !self.names_adapter() {
+        if report.is_some_and(|report| report.is_software()) && !is_named(self.adapter.as_deref()) {
             return Ok((host, format!("{why}; {name} also computes on the CPU")));
         }
         let gpu = match self.gpu(index) {

@@ -172,7 +172,7 @@ impl<'a> StuckPath<'a> {
 }
 
 impl OpenPath {
-    /// Push of the node after `step` steps, in radians. The last one is exact: a query lies there.
+    /// Returns the push of the node after `step` steps, in radians. The last one is exact, because a query lies there.
     fn push(&self, step: u32) -> f64 {
         let [from, to] = self.pushes;
         match step {

@@ -2,8 +2,8 @@
 
 use std::io::{self, Read};
 
-/// Longest scene in MiB: far longer than any.
-pub(crate) const SCENE_MIB: u64 = 1;
+/// Longest scene or measurement of a benchmark in MiB: far longer than any.
+pub(crate) const TEXT_MIB: u64 = 1;
 
 /// Longest table in MiB: a million samples of a course take 24.
 pub(super) const TABLE_MIB: u64 = 32;

@@ -142,7 +142,7 @@ impl CsvTable {
         let is_right = needed.iter().all(|group| count(group) == 1)
             && optional.iter().all(|name| count(&[name]) <= 1);
         let unused: Vec<&str> = found().filter(is_unknown).collect();
-        let mut hints = unused.iter().filter_map(|name| {
+        let mut hints = unused.iter().take(MOST_HINTS).filter_map(|name| {
             let hint = did_you_mean(name, known().filter(is_absent));
             (!hint.is_empty()).then(|| format!("; `{}` is not known{hint}", shortened(name)))
         });
@@ -231,6 +231,9 @@ impl CsvTable {
         self.values(column, &must, |cell| number(cell.to_owned()))
     }
 }
+
+/// Largest number of unknown names for which a known one is looked for.
+const MOST_HINTS: usize = 100;
 
 /// The end of a message about numbers with commas where commas separate columns.
 const DECIMAL_COMMAS: &str = "; where numbers have decimal commas, separate columns by `;`";

@@ -137,7 +137,7 @@ impl MeasuredPoints {
         let rest = Rest::new(&whisker.rod(pole, Side::Cb));
         let is_allowed = |distance_mm: f64| {
             distance_mm >= whisker.length_mm / NEAREST
-                && distance_mm <= whisker.length_mm
+                && distance_mm <= 2.0 * whisker.length_mm
                 && distance_mm > pole.radius_mm
                 && Row::new(&rest, distance_mm / whisker.length_mm).is_reached()
         };

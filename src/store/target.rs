@@ -24,19 +24,21 @@ impl OutputTarget {
     /// A link must not be followed, or `path` leads to a folder, or to a file without write permission.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         check_links(folder_of(path))?;
-        let (given, mut path) = (path, path.to_owned());
-        for _ in 0..MOST_LINKS {
+        let mut path = path.to_owned();
+        let mut links = 0;
+        while let Ok(next) = fs::read_link(&path) {
             if is_descriptor(&path) {
-                return fs::metadata(&path).map(|_| Self::Stream(path));
-            }
-            let Ok(next) = fs::read_link(&path) else {
                 break;
-            };
+            }
+            links += 1;
+            if links > MOST_LINKS {
+                return Err(refused("more than 40 symbolic links lead to it"));
+            }
             check_link(&path)?;
             path = folder_of(&path).join(next);
         }
-        if path.is_symlink() {
-            fs::metadata(given)?;
+        if is_descriptor(&path) {
+            return fs::metadata(&path).map(|_| Self::Stream(path));
         }
         match fs::metadata(&path) {
             Ok(about) if about.is_dir() => Err(io::ErrorKind::IsADirectory.into()),

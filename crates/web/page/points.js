@@ -5,7 +5,7 @@ import { fit } from './compute.js';
 import { change, changeValues, known, state, title } from './state.js';
 import { shown, unit } from './text.js';
 
-// Largest size of a file, in bytes: the limit of the program.
+// Largest size of a file, in bytes: the limit of scenes.
 const LARGEST = 1 << 20;
 
 // Parameters that a fit is likely to free, in this order.

@@ -31,6 +31,7 @@ pub fn simple_end(sheet: &Sheet, row: usize) -> Option<&Crossing> {
 }
 
 /// Part of the bound on the residual that the extrapolated Newton step of a state may take. The certificate finds larger errors.
+/// At 0.1, their noise in the last coefficients refuses patches.
 const STATE_ERROR: f64 = 0.03;
 
 /// Largest sum of the contact's arclength and the pole's distance, in whisker lengths, in the bound on the error of a step.

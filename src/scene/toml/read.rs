@@ -10,7 +10,7 @@ use serde::Deserialize;
 use toml_edit::Document;
 use toml_edit::de::Deserializer;
 
-use crate::input::{SCENE_MIB, bounded, did_you_mean, shortened};
+use crate::input::{TEXT_MIB, bounded, did_you_mean, shortened};
 use crate::scene::axis::NOT_GROWING;
 use crate::scene::builder::Deviations;
 use crate::scene::deviations;
@@ -55,7 +55,7 @@ impl Scene {
 }
 
 fn from_source(source: impl Read, origin: &str, path: &Path) -> Result<Scene, SceneError> {
-    let bytes = bounded(source, SCENE_MIB).map_err(|why| unreadable(origin, &why))?;
+    let bytes = bounded(source, TEXT_MIB).map_err(|why| unreadable(origin, &why))?;
     let text = String::from_utf8(bytes).map_err(|why| {
         let start = why.utf8_error().valid_up_to();
         let byte = why.as_bytes()[start];

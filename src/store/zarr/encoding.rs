@@ -90,3 +90,19 @@ pub(super) fn chunk_codecs(kind: ValueKind, shape: &[usize], encoding: ChunkEnco
     });
     transpose.into_iter().chain(codecs).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounded_quantities_and_codes_are_made_smaller() {
+        let codec = |kind, kept_bits| {
+            let width = None;
+            ChunkEncoding { width, kept_bits }.codec(kind)
+        };
+        assert_eq!(codec(ValueKind::Quantity, None), Codec::Lz4);
+        assert_eq!(codec(ValueKind::Quantity, Some(17)), Codec::Zlib);
+        assert_eq!(codec(ValueKind::Code, None), Codec::Zlib);
+    }
+}
