@@ -24,7 +24,7 @@ impl OutputTarget {
     /// A link must not be followed, or `path` leads to a folder, or to a file without write permission.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         check_links(folder_of(path))?;
-        let mut path = path.to_owned();
+        let (given, mut path) = (path, path.to_owned());
         let mut links = 0;
         while let Ok(next) = fs::read_link(&path) {
             if is_descriptor(&path) {
@@ -32,6 +32,8 @@ impl OutputTarget {
             }
             links += 1;
             if links > MOST_LINKS {
+                // Linux has a message of its own, and other systems may follow more links.
+                fs::metadata(given)?;
                 return Err(refused("more than 40 symbolic links lead to it"));
             }
             check_link(&path)?;
