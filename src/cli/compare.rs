@@ -1,7 +1,8 @@
 //! Command `whiskmap compare`.
 
 use super::failure::Failure;
-use super::files::{Files, STDOUT};
+use super::files::Files;
+use super::output_file::STDOUT;
 use clap::Args;
 use serde_json::{Value, json};
 use std::io::{self, Write};

@@ -2,7 +2,8 @@
 
 use super::arguments::angle;
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
+use super::output_file::STDOUT;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::digits;

@@ -2,7 +2,8 @@
 
 use super::arguments::{angle, parameter, side};
 use super::failure::Failure;
-use super::files::{Files, STDOUT};
+use super::files::Files;
+use super::output_file::STDOUT;
 use super::outputs::{PlotArgs, open};
 use super::pole::{self, PoleArgs, title};
 use clap::Args;

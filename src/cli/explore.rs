@@ -2,7 +2,8 @@
 
 use super::data;
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
+use super::output_file::STDOUT;
 use clap::Args;
 use serde_json::json;
 use std::io::{IsTerminal, Write};

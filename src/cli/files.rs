@@ -1,15 +1,12 @@
 //! Inputs and outputs of a command. All are declared here, so that no output destroys an input or another output.
 
 use super::failure::{Failure, message};
-use super::output_file::OutputFile;
+use super::output_file::{OutputFile, STDOUT};
 use std::io;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::{Scene, digits, rounded};
 use whiskmap::store::{FileId, Output, TemporaryFiles};
 use whiskmap::traced::TracedShape;
-
-/// Path that stands for standard input or output.
-pub const STDOUT: &str = "-";
 
 /// Inputs and outputs of one command. Inputs are declared before outputs are opened.
 #[derive(Debug)]

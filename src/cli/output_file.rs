@@ -1,13 +1,15 @@
 //! Open output file of a command, as a whole or as a CSV table.
 
 use super::failure::Failure;
-use super::files::STDOUT;
 use super::units::ColumnUnits;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::paper::TableRows;
 use whiskmap::store::{Output, TableFile};
+
+/// Path that stands for standard input or output.
+pub const STDOUT: &str = "-";
 
 /// Open output file of a command, and its path.
 pub struct OutputFile {

@@ -1,7 +1,8 @@
 //! Options `--csv` and `--plot`, and saving of pictures.
 
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
+use super::output_file::STDOUT;
 use super::output_file::{OutputFile, OutputTable};
 use super::size::SizeArgs;
 use super::units::ColumnUnits;

@@ -2,7 +2,8 @@
 
 use super::arguments::whole;
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
+use super::output_file::STDOUT;
 use super::outputs::PictureFile;
 use super::selection::{SelectionArgs, channels};
 use super::size::SizeArgs;

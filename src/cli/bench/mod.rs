@@ -4,7 +4,8 @@ mod plot;
 mod tables;
 
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
+use super::output_file::STDOUT;
 use super::outputs::{PlotArgs, open};
 use clap::Args;
 use plot::chart;
