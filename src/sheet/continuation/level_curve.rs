@@ -93,8 +93,13 @@ impl LevelCurve {
     pub(super) fn direction(&self, node: &CurveNode) -> DVec2 {
         let gradient = self.scale(node.point) * gradient(node);
         // Along the curve, the push angle changes by minus `det` times its direction (by_load, -by_tau).
-        let heading = if self.forward { 1.0 } else { -1.0 };
-        -heading * self.side.sign() * DVec2::new(gradient.y, -gradient.x).normalize()
+        -self.sense(true) * DVec2::new(gradient.y, -gradient.x).normalize()
+    }
+
+    /// Returns the sign of the change of the signed push angle along the level curve, on its stable or its unstable part.
+    pub(super) fn sense(&self, is_stable: bool) -> f64 {
+        let is_growing = self.forward == is_stable;
+        self.side.sign() * if is_growing { 1.0 } else { -1.0 }
     }
 
     /// Returns the change of `(tau, load)` at a node for each unit of scaled length along the level curve.

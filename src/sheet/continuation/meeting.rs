@@ -1,5 +1,6 @@
 //! Points at which level curves meet the edges of the sheet, between two of their nodes.
 
+use crate::rod::arclength;
 use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
@@ -14,6 +15,13 @@ const GRAZE_OFF: f64 = 0.5;
 
 /// Height above both nodes, in parts of the tip's `tau`, below which a maximum is attributed to rounding.
 const LOWEST_GRAZE: f64 = 1e-12;
+
+/// Error of the slope of the push angle along a chord, in parts of its bulge and of its change from node to node.
+const BULGE_OFF: f64 = 0.5;
+const CHANGE_OFF: f64 = 0.05;
+
+/// Length of a chord, as [`LevelCurve::length`] measures it, on which a pair of folds cannot be distinguished from rounding.
+const SHORTEST_TURN: f64 = 1e-6;
 
 /// Chord from one node of a level curve to the next.
 pub struct Chord<'a> {
@@ -40,8 +48,23 @@ impl Chord<'_> {
         self.crossed().iter().any(Option::is_some)
     }
 
+    /// Returns the length of the chord, as [`LevelCurve::length`] measures it.
+    pub fn length(&self) -> f64 {
+        self.level.length(&self.from, &self.to)
+    }
+
+    /// Returns true if the curve may meet an edge twice between the nodes: the tip from below, or the fold from one side.
+    pub fn hides_edges(&self) -> bool {
+        self.may_graze() || !self.turns_over() && self.may_turn()
+    }
+
+    /// Returns true if `det` has another sign at the last node than on this part of the curve.
+    fn turns_over(&self) -> bool {
+        (self.to.full.map.det() < 0.0) == self.is_stable
+    }
+
     /// Returns true if the cubic through both nodes may go beyond the tip and come back between them.
-    pub fn may_graze(&self) -> bool {
+    fn may_graze(&self) -> bool {
         let tip = self.level.rod.tau_tip();
         let [from, to] = [self.from.point.x, self.to.point.x];
         if from.max(to) >= tip {
@@ -61,13 +84,52 @@ impl Chord<'_> {
         height > LOWEST_GRAZE * tip && highest + GRAZE_OFF * height > tip
     }
 
+    /// Returns true if the push angle may turn back and forth between the nodes, over a pair of folds. Both nodes have the same sign of
+    /// `det`, or one of them is a fold.
+    ///
+    /// The slope of the push angle along the chord is `from (1 - t) + to t + bulge t (1 - t)`, if the push angle is a cubic; `t` runs from 0 to 1. The
+    /// slopes at the nodes and the change of the push angle determine it. The error of the slope is at most `off t (1 - t)`. A slope of this form is positive throughout
+    /// exactly if `off - bulge < (sqrt(from) + sqrt(to))^2`.
+    fn may_turn(&self) -> bool {
+        let [from, to] = [&self.from, &self.to].map(|node| self.push_slope(node));
+        let bulge = 6.0 * self.rise() - 3.0 * (from + to);
+        let change_off = if self.spans_kink() { 1.0 } else { CHANGE_OFF };
+        let off = BULGE_OFF * bulge.abs() + change_off * (to - from).abs();
+        let least = from.max(0.0).sqrt() + to.max(0.0).sqrt();
+        off - bulge >= least * least && self.length() > SHORTEST_TURN
+    }
+
+    /// Returns true if the contact moves past a measured radius, where the slope of the radius jumps: there `det` has a kink.
+    fn spans_kink(&self) -> bool {
+        let rod = &self.level.rod;
+        let [from, to] = [&self.from, &self.to].map(|node| rod.piece(arclength(rod, node.point.x)));
+        from != to
+    }
+
+    /// Returns the change of the push angle from node to node in radians, positive if it has the sign that `is_stable` demands.
+    fn rise(&self) -> f64 {
+        self.level.sense(self.is_stable) * (self.to.push - self.from.push)
+    }
+
+    /// Returns the slope of the push angle at a node of the chord, in radians for the length of the chord, positive if it has the sign that `is_stable` demands.
+    fn push_slope(&self, node: &CurveNode) -> f64 {
+        let Self {
+            level, from, to, ..
+        } = self;
+        let scale = level.scale(from.point);
+        let chord = (to.point - from.point) / scale;
+        let velocity = level.velocity(node);
+        let map = &node.full.map;
+        let turn = map.by_tau.y * velocity.x + map.by_load.y * velocity.y;
+        level.sense(self.is_stable) * turn * chord.length_squared() / (velocity / scale).dot(chord)
+    }
+
     /// Returns the tip and the fold, each if the chord has crossed it.
     fn crossed(&self) -> [Option<(&Self, Edge)>; 2] {
         let is_beyond = self.to.point.x > self.level.rod.tau_tip();
-        let turns_over = (self.to.full.map.det() < 0.0) == self.is_stable;
         [
             is_beyond.then_some((self, Edge::Tip)),
-            turns_over.then_some((self, Edge::Fold)),
+            self.turns_over().then_some((self, Edge::Fold)),
         ]
     }
 
@@ -95,11 +157,24 @@ impl Chord<'_> {
         }
     }
 
-    /// Returns true if `node` lies near the chord.
+    /// Returns the part of the chord up to `node`.
+    const fn up_to(&self, node: CurveNode) -> Self {
+        Self { to: node, ..*self }
+    }
+
+    /// Returns true if `node` lies near the chord, and the curve leads through it in the direction of the chord. Next to a saddle of `D`,
+    /// Newton's method can find a node of another level curve, which leads back.
     fn has_near(&self, node: &CurveNode) -> bool {
         let length = |from, to| self.level.length(from, to);
-        let reach = 2.0 * length(&self.from, &self.to) + f64::EPSILON;
+        let reach = 2.0 * self.length() + f64::EPSILON;
         length(&self.from, node).max(length(&self.to, node)) <= reach
+            && self.up_to(*node).leads_on()
+    }
+
+    /// Returns true if the directions of the curve at both nodes form an angle of at most 60 degrees.
+    pub fn leads_on(&self) -> bool {
+        let [from, to] = [&self.from, &self.to].map(|node| self.level.direction(node));
+        from.dot(to) > 0.5
     }
 }
 
@@ -114,11 +189,16 @@ pub fn meet(chords: &[Chord]) -> Vec<Meeting> {
             let [tip, fold] = edges.map(|edge| edge.and_then(|edge| Some((edge, found.next()?))));
             let tip = match tip {
                 Some((_, None)) => return Meeting::Unclear,
+                // The curve comes back from the tip there: it has crossed the tip before.
+                Some(((chord, _), Some(tip))) if chord.level.velocity(&tip).x < 0.0 => {
+                    return Meeting::Unclear;
+                }
                 Some((_, Some(tip))) => Meeting::Edge(Edge::Tip, tip),
                 None => Meeting::None,
             };
             match fold {
                 Some((_, None)) => Meeting::Unclear,
+                Some(((chord, _), Some(fold))) if chord.up_to(fold).may_turn() => Meeting::Unclear,
                 Some(((chord, _), Some(fold))) if fold.point.x <= chord.level.rod.tau_tip() => {
                     Meeting::Edge(Edge::Fold, fold)
                 }

@@ -3,7 +3,7 @@
 use crate::newton::{NewtonProblem, NewtonStep};
 use crate::rod::Rod;
 use crate::sheet::continuation::corrector::{CORRECTOR_TRAJECTORIES, Corrector};
-use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve};
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 use crate::sheet::continuation::meeting::Chord;
 use crate::sheet::row::Edge;
 use crate::shooting::{FirstVariation, FullState};
@@ -18,6 +18,9 @@ const SHARPEST_TURN: f64 = 0.1;
 
 /// Length below which chords may form any angle: after a longer chord, no step is short enough for a small angle.
 const SHORT_CHORD: f64 = 0.01 * NODE_DISTANCE;
+
+/// Length of a chord that may hide edges below which the errors of inaccurate nodes may decide.
+const RESTART_CHORD: f64 = 0.5 * NODE_DISTANCE;
 
 /// First step of the continuation, relative to contact and load.
 const FIRST_ARC_STEP: f64 = 0.05;
@@ -105,7 +108,7 @@ impl<'a> Stepper<'a> {
         let moved = (point - last.point) / level.scale(last.point);
         let is_ahead = moved.dot(self.along) > 0.5 * moved.length();
         let next = level.node(point, &full, last.push, last.angle);
-        (is_ahead && self.fits(&next)).then_some(next)
+        (is_ahead && self.fits(&next) && self.chord(next).leads_on()).then_some(next)
     }
 
     /// Predicts the next node by the polynomial through up to three nodes and their tangents.
@@ -203,13 +206,15 @@ impl<'a> NewtonProblem<'a> for Stepper<'a> {
         };
         let chord = next.map(|next| (next, self.chord(next)));
         let mut may_go_on = match chord {
-            Some((next, chord)) if !chord.may_graze() => {
+            Some((next, chord)) if !chord.hides_edges() => {
                 if chord.may_meet() {
                     self.candidate = Some(next);
                     return NewtonStep::Accept;
                 }
                 self.add(next)
             }
+            // The errors of the nodes would decide which edges are there. The continuation begins again with nodes on the curve.
+            Some((_, chord)) if self.miss > ON_CURVE && chord.length() < RESTART_CHORD => false,
             _ => self.shorten(),
         };
         while may_go_on && self.predicted.x <= 0.0 {

@@ -67,10 +67,11 @@ pub fn crossings(case: SheetCase, edges: &Edges, rows: &[Row]) -> Vec<Vec<Crossi
             let (a, b) = (pair[0], pair[1]);
             for (index, (row, target)) in rows.iter().zip(&targets).enumerate() {
                 let reached = [a, b].map(|sample| sample.ln_distance > *target);
-                // At first touch, the shape at rest decides. Where the integration puts the tip on the other side of the pole, the row
-                // crosses there to the accuracy of the integration.
+                // At first touch at the tip, the shape at rest decides. Where the integration puts the tip on the other side of the pole,
+                // the row crosses there to the accuracy of the integration. A whisker that is touched elsewhere can have its tip nearer.
                 let at_touch = edge == Edge::Tip
                     && after == 0
+                    && (row.contact - row.end).abs() <= REACH_SLACK + 2.0 * edges.tip_error
                     && (row.is_at_reach() || row.is_reached() != reached[0]);
                 if at_touch && row.is_reached() != reached[1] {
                     found[index].push(Crossing::at_touch(case.rod));
