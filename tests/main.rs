@@ -17,6 +17,7 @@ mod force;
 mod friction;
 mod hard_cases;
 mod hard_maps;
+mod jumps;
 mod map;
 mod maps;
 mod plan;

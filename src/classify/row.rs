@@ -106,6 +106,19 @@ impl RowBoundary {
         self.spans.as_ref().filter(|_| self.touches)?.first()
     }
 
+    /// Returns the other span that contains the end of a push from first touch, and ends beyond it: the whisker may snap to its states
+    /// instead of leaving the pole. `None` if the boundary is unknown.
+    #[must_use]
+    pub fn snap(&self) -> Option<&PushSpan> {
+        let [detachment, others @ ..] = self.spans() else {
+            return None;
+        };
+        let continues = |span: &&PushSpan| {
+            self.touches && span.contains(detachment.to) && span.to > detachment.to + TIE
+        };
+        others.iter().find(continues)
+    }
+
     /// Returns regime and final status of the cell at `push`, a magnitude in radians, that was solved with `status`. The final status is
     /// unresolved if cell and boundary contradict each other.
     #[must_use]

@@ -6,7 +6,7 @@
 use super::segment::{LimitPlace, LimitSegment, SlidingKnot};
 use super::sliding::{ContactRate, slid};
 use super::state::FrictionPoint;
-use crate::sheet::{Continuation, CurveNode, LevelCurve, NODE_MISS, continuations};
+use crate::sheet::{Continuation, CurveNode, LevelCurve, NODE_MISS, Stretch, continuations};
 use crate::shooting::FirstVariation;
 use crate::shooting::batch::{Batch, InitialCondition};
 use glam::DVec2;
@@ -27,7 +27,7 @@ impl SlidingLimit {
     /// trajectories share batches.
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
         let starts = levels.iter().map(|level| Some((level, level.touch())));
-        let continued = continuations(&starts.collect::<Vec<_>>(), false, NODE_MISS);
+        let continued = continuations(&starts.collect::<Vec<_>>(), Stretch::Stable, NODE_MISS);
         let parts = levels.iter().zip(continued).map(|(level, continued)| {
             let Continuation { nodes, fold, .. } = continued?;
             Some(LimitPart {
@@ -44,7 +44,7 @@ impl SlidingLimit {
     /// continuation fails.
     pub fn with_unstable(level: &LevelCurve) -> Option<(Self, Option<Self>)> {
         let start = Some((level, level.touch()));
-        let continued = continuations(&[start], true, NODE_MISS).pop()??;
+        let continued = continuations(&[start], Stretch::PastFold, NODE_MISS).pop()??;
         let Continuation { nodes, fold, .. } = continued;
         let has_fold = fold.is_some();
         let part = |nodes: &[CurveNode], is_stable| LimitPart {

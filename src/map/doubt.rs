@@ -7,7 +7,7 @@
 use crate::classify::{RowBoundary, TIE};
 use crate::engine::{Cell, Outcome, WhiskerSide};
 use crate::refine::{ContactState, TOLERANCE};
-use crate::sheet::{CurveNode, Edge, LevelCurve, ON_CURVE};
+use crate::sheet::{CurveNode, Edge, LevelCurve, ON_CURVE, Stretch};
 
 /// Maximum distance, relative to contact and load, between the ends of a continuation and of the boundary. The two are computed apart,
 /// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
@@ -31,7 +31,7 @@ pub fn solve(
             let entry = sheet.crossings[row].iter().find(|c| c.push == span.from)?;
             level.at_crossing(entry)?
         };
-        let piece = level.continuation(start, false)?;
+        let piece = level.continuation(start, Stretch::Stable)?;
         let end = piece.nodes.last()?.point;
         let exit = sheet.crossings[row].iter().find(|c| c.push == span.to)?;
         let apart = (end.x / exit.tau - 1.0).abs() + (end.y / exit.load - 1.0).abs();

@@ -19,7 +19,7 @@ mod row;
 mod samples;
 mod span;
 
-pub use continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
+pub use continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 pub use continuation::{Continuation, NODE_MISS, continuations};
 pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
 pub use fold::FoldPoint;

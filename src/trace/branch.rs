@@ -2,12 +2,13 @@
 
 use super::columns::row;
 use super::contact::BranchState;
+use super::curve::snaps_deg;
 use super::resample::{interpolate, targets};
 use super::{BranchMark, FINER, NoState};
 use crate::friction::{ContactHistory, Sliding};
 use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row};
+use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row, Sheet, Stretch};
 use crate::shooting::batch::Method;
 use crate::shooting::{PeakStrain, Reader, Reading};
 use glam::DVec2;
@@ -62,6 +63,8 @@ row! {
         pub mark: Option<BranchMark>,
         /// Sliding direction of the contact, with friction: tip, base or sticks.
         pub sliding: Option<Sliding>,
+        /// Push angle up to which other stable states exist at slip-off or pull-off, in degrees: the whisker may snap there.
+        pub snaps_deg: Option<f64>,
     }
 }
 
@@ -76,14 +79,14 @@ impl Branch {
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
-        Self::followed((whisker, pole, side), distance_mm, true)
+        Self::followed((whisker, pole, side), distance_mm, Stretch::PastFold)
     }
 
-    /// The branch up to its first fold, or past it.
+    /// The branch along a `stretch` of its level curve from first touch.
     pub(super) fn followed(
         (whisker, pole, side): (&Whisker, &Pole, Side),
         distance_mm: f64,
-        past_fold: bool,
+        stretch: Stretch,
     ) -> Result<Self, NoState> {
         let rod = whisker.rod(pole, side);
         let rest = Rest::new(&rod);
@@ -95,7 +98,7 @@ impl Branch {
             });
         }
         let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
-        let followed = level.continuation(level.touch(), past_fold);
+        let followed = level.continuation(level.touch(), stretch);
         // From first touch at the tip there may be no state to continue to.
         let none = match row.is_at_reach() {
             true => NoState::PulledOff { at_deg: 0.0 },
@@ -172,16 +175,27 @@ impl Branch {
         states.extend(self.beyond_fold(&nodes[stable..]));
         let is_detachment =
             |mark: &BranchMark| matches!(mark, BranchMark::SlipOff | BranchMark::PullOff);
+        let snaps_deg = self.snaps_deg();
         let points = marked.iter().zip(states).enumerate();
         let points = points.map(|(i, ((_, mark), state))| {
             let mark = mark.filter(|mark| self.detaches() || !is_detachment(mark));
             let point = BranchPoint {
                 mark,
+                snaps_deg: mark.filter(is_detachment).and(snaps_deg),
                 ..self.point(&state, i < stable)
             };
             (state.node.point, point)
         });
         Ok(points.collect())
+    }
+
+    /// Returns the push angle, in degrees, up to which the row has other stable states where those from first touch end.
+    fn snaps_deg(&self) -> Option<f64> {
+        let LevelCurve {
+            method, rod, side, ..
+        } = &self.level;
+        let distance = self.distance_mm / self.units.length_mm;
+        snaps_deg(&Sheet::new(*method, rod, *side, &[distance]), 0)
     }
 
     /// Returns true if a push detaches at the end of the stable states. With friction, it does not if the contact sticks there.
@@ -244,6 +258,7 @@ impl Branch {
                 / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
             mark: None,
             sliding: state.sliding,
+            snaps_deg: None,
         }
     }
 }

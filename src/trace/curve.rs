@@ -64,6 +64,8 @@ row! {
         pub residual: Option<f64>,
         /// Sliding direction, with friction; the end assumes tip.
         pub sliding: Option<Sliding>,
+        /// Push angle up to which other stable states exist at this end, in degrees: the whisker may snap there.
+        pub snaps_deg: Option<f64>,
     }
 }
 
@@ -137,7 +139,8 @@ pub(crate) fn detachments(
     };
     let rows = distances_mm.iter().zip(&sheet.rows).zip(&ends);
     rows.zip(slidings)
-        .map(|(((distance_mm, row), crossing), sliding)| {
+        .enumerate()
+        .map(|(index, (((distance_mm, row), crossing), sliding))| {
             let reached = crossing.ok().and_then(|end| Some((end, states.next()?)));
             let sliding = reached
                 .as_ref()
@@ -177,6 +180,7 @@ pub(crate) fn detachments(
                 contact_angle_deg: value(|reading| reading.contact_angle_deg),
                 residual: reading.as_ref().map(|(_, residual, _)| *residual),
                 sliding,
+                snaps_deg: crossing.ok().and_then(|_| snaps_deg(&sheet, index)),
             };
             let crossing = crossing.ok().copied();
             DetachmentEnd { end, crossing }
@@ -195,6 +199,14 @@ pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>>
         end.ok_or(DetachmentKind::Unresolved)
     };
     (0..sheet.rows.len()).map(of_row).collect()
+}
+
+/// Returns the signed push angle, in degrees, at which the stable states end that `row` of `sheet` has beside those from first touch, at the
+/// push at which these end ([`RowBoundary::snap`]).
+pub(crate) fn snaps_deg(sheet: &Sheet, row: usize) -> Option<f64> {
+    let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
+    let span = boundary.snap()?;
+    Some((sheet.side.sign() * span.to).to_degrees())
 }
 
 /// Returns the sliding direction of the contact at the detachment of each row of `sheet` by its history, `[row]`; `None` without friction,

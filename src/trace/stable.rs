@@ -3,6 +3,7 @@
 use super::{Branch, NoState, StateAtPush, WhiskerShape};
 use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
+use crate::sheet::Stretch;
 use crate::shooting::Reading;
 
 /// Stable part of a [`Branch`]: the states from first touch to the fold or the tip. The continuation ends there, which saves most of the
@@ -21,7 +22,7 @@ impl StableBranch {
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
-        Branch::followed((whisker, pole, side), distance_mm, false).map(Self)
+        Branch::followed((whisker, pole, side), distance_mm, Stretch::Stable).map(Self)
     }
 
     /// Returns the stable state at the signed `push`, in radians.

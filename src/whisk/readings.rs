@@ -89,6 +89,10 @@ impl Found<'_> {
                 force_un: reading.map(|state| state.force_un),
                 base_moment_nnm: reading.map(|state| state.base_moment_nnm),
                 energy_nj: reading.map(|state| state.energy_nj),
+                snaps_deg: match event.kind {
+                    None => self.of(side).and_then(SideStates::snaps_deg),
+                    Some(_) => None,
+                },
             }
         });
         events.collect()

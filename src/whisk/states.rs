@@ -8,7 +8,7 @@ use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
 use crate::shooting::batch::{Batch, Method};
 use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
-use crate::trace::{Branch, DetachmentKind, crossings};
+use crate::trace::{Branch, DetachmentKind, crossings, snaps_deg};
 
 /// Stable states on one side of poles at several distances, from first touch to the end of the push.
 pub struct SideStates {
@@ -95,6 +95,11 @@ impl SideStates {
             Edge::Fold => DetachmentKind::SlipOff,
             Edge::Tip => DetachmentKind::PullOff,
         }
+    }
+
+    /// Returns the push angle, in degrees, up to which the first row has other stable states at its detachment.
+    pub fn snaps_deg(&self) -> Option<f64> {
+        snaps_deg(&self.sheet, 0)
     }
 
     /// Returns the limits of sliding in `row`; `None` without friction.

@@ -4,7 +4,7 @@ use super::cone;
 use whiskmap::friction::Sliding;
 use whiskmap::rod::{Rest, Rod, Side, arclength};
 use whiskmap::scene::Scene;
-use whiskmap::sheet::{CurveNode, LevelCurve, Row};
+use whiskmap::sheet::{CurveNode, LevelCurve, Row, Stretch};
 use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, WhiskerShape};
 
@@ -128,7 +128,7 @@ impl Frictions {
             ..self.rod.clone()
         };
         let level = LevelCurve::new(Method::fine(), &rod, self.side, &self.row);
-        let continuation = level.continuation(level.touch(), false).unwrap();
+        let continuation = level.continuation(level.touch(), Stretch::Stable).unwrap();
         let state = |push: &f64| level.state_at_push(&continuation.nodes, self.side.sign() * push);
         let place = |push| Some(place(&rod, &state(push)?));
         pushes.iter().map(place).collect()

@@ -15,6 +15,17 @@ use glam::{DVec2, DVec3};
 /// Largest miss in `ln D` of a point on a level curve, due to rounding.
 pub const ON_CURVE: f64 = 1e-14;
 
+/// Stretch of a level curve that a continuation follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stretch {
+    /// From a stable state to the fold or the tip.
+    Stable,
+    /// From a stable state past the fold to the tip or the second fold.
+    PastFold,
+    /// From a fold along unstable states to the next fold or the tip.
+    Unstable,
+}
+
 /// Node of a level curve: a state, with its push angle and contact angle.
 #[derive(Clone, Copy, Debug)]
 pub struct CurveNode {

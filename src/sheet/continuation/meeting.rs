@@ -16,9 +16,11 @@ const GRAZE_OFF: f64 = 0.5;
 /// Height above both nodes, in parts of the tip's `tau`, below which a maximum is attributed to rounding.
 const LOWEST_GRAZE: f64 = 1e-12;
 
-/// Error of the slope of the push angle along a chord, in parts of its bulge and of its change from node to node.
+/// Error of the slope of a quantity along a chord, in parts of its bulge and of its change from node to node ([`Chord::may_fall`]). The
+/// change counts more on a chord that spans a kink.
 const BULGE_OFF: f64 = 0.5;
 const CHANGE_OFF: f64 = 0.05;
+const KINK_OFF: f64 = 1.0;
 
 /// Length of a chord, as [`LevelCurve::length`] measures it, on which a pair of folds cannot be distinguished from rounding.
 const SHORTEST_TURN: f64 = 1e-6;
@@ -55,7 +57,7 @@ impl Chord<'_> {
 
     /// Returns true if the curve may meet an edge twice between the nodes: the tip from below, or the fold from one side.
     pub fn hides_edges(&self) -> bool {
-        self.may_graze() || !self.turns_over() && self.may_turn()
+        self.may_graze() || !self.turns_over() && self.push_may_turn()
     }
 
     /// Returns true if `det` has another sign at the last node than on this part of the curve.
@@ -86,14 +88,40 @@ impl Chord<'_> {
 
     /// Returns true if the push angle may turn back and forth between the nodes, over a pair of folds. Both nodes have the same sign of
     /// `det`, or one of them is a fold.
+    fn push_may_turn(&self) -> bool {
+        let sense = self.level.sense(self.is_stable);
+        let by = |node: &CurveNode| {
+            let map = &node.full.map;
+            sense * DVec2::new(map.by_tau.y, map.by_load.y)
+        };
+        self.may_fall(sense * (self.to.push - self.from.push), by)
+    }
+
+    /// Returns true if the contact may move toward the base somewhere between the nodes.
+    fn contact_may_turn(&self) -> bool {
+        self.may_fall(self.to.point.x - self.from.point.x, |_| DVec2::X)
+    }
+
+    /// Returns true if a quantity that grows by `rise` from node to node may fall between them. `by` returns its derivatives by
+    /// `(tau, load)` at a node.
     ///
-    /// The slope of the push angle along the chord is `from (1 - t) + to t + bulge t (1 - t)`, if the push angle is a cubic; `t` runs from 0 to 1. The
-    /// slopes at the nodes and the change of the push angle determine it. The error of the slope is at most `off t (1 - t)`. A slope of this form is positive throughout
-    /// exactly if `off - bulge < (sqrt(from) + sqrt(to))^2`.
-    fn may_turn(&self) -> bool {
-        let [from, to] = [&self.from, &self.to].map(|node| self.push_slope(node));
-        let bulge = 6.0 * self.rise() - 3.0 * (from + to);
-        let change_off = if self.spans_kink() { 1.0 } else { CHANGE_OFF };
+    /// The slope of a cubic along the chord is `from (1 - t) + to t + bulge t (1 - t)`; `t` runs from 0 to 1. The slopes at the nodes and the
+    /// rise determine it. The slope of the quantity is lower by at most `off t (1 - t)`. So it is positive between the nodes if
+    /// `off - bulge < (sqrt(from) + sqrt(to))^2`.
+    fn may_fall(&self, rise: f64, by: impl Fn(&CurveNode) -> DVec2) -> bool {
+        let scale = self.level.scale(self.from.point);
+        let chord = (self.to.point - self.from.point) / scale;
+        let slope = |node: &CurveNode| {
+            let velocity = self.level.velocity(node);
+            by(node).dot(velocity) * chord.length_squared() / (velocity / scale).dot(chord)
+        };
+        let [from, to] = [slope(&self.from), slope(&self.to)];
+        let bulge = 6.0 * rise - 3.0 * (from + to);
+        let change_off = if self.spans_kink() {
+            KINK_OFF
+        } else {
+            CHANGE_OFF
+        };
         let off = BULGE_OFF * bulge.abs() + change_off * (to - from).abs();
         let least = from.max(0.0).sqrt() + to.max(0.0).sqrt();
         off - bulge >= least * least && self.length() > SHORTEST_TURN
@@ -104,24 +132,6 @@ impl Chord<'_> {
         let rod = &self.level.rod;
         let [from, to] = [&self.from, &self.to].map(|node| rod.piece(arclength(rod, node.point.x)));
         from != to
-    }
-
-    /// Returns the change of the push angle from node to node in radians, positive if it has the sign that `is_stable` demands.
-    fn rise(&self) -> f64 {
-        self.level.sense(self.is_stable) * (self.to.push - self.from.push)
-    }
-
-    /// Returns the slope of the push angle at a node of the chord, in radians for the length of the chord, positive if it has the sign that `is_stable` demands.
-    fn push_slope(&self, node: &CurveNode) -> f64 {
-        let Self {
-            level, from, to, ..
-        } = self;
-        let scale = level.scale(from.point);
-        let chord = (to.point - from.point) / scale;
-        let velocity = level.velocity(node);
-        let map = &node.full.map;
-        let turn = map.by_tau.y * velocity.x + map.by_load.y * velocity.y;
-        level.sense(self.is_stable) * turn * chord.length_squared() / (velocity / scale).dot(chord)
     }
 
     /// Returns the tip and the fold, each if the chord has crossed it.
@@ -189,8 +199,7 @@ pub fn meet(chords: &[Chord]) -> Vec<Meeting> {
             let [tip, fold] = edges.map(|edge| edge.and_then(|edge| Some((edge, found.next()?))));
             let tip = match tip {
                 Some((_, None)) => return Meeting::Unclear,
-                // The curve comes back from the tip there: it has crossed the tip before.
-                Some(((chord, _), Some(tip))) if chord.level.velocity(&tip).x < 0.0 => {
+                Some(((chord, _), Some(tip))) if chord.up_to(tip).contact_may_turn() => {
                     return Meeting::Unclear;
                 }
                 Some((_, Some(tip))) => Meeting::Edge(Edge::Tip, tip),
@@ -198,7 +207,9 @@ pub fn meet(chords: &[Chord]) -> Vec<Meeting> {
             };
             match fold {
                 Some((_, None)) => Meeting::Unclear,
-                Some(((chord, _), Some(fold))) if chord.up_to(fold).may_turn() => Meeting::Unclear,
+                Some(((chord, _), Some(fold))) if chord.up_to(fold).push_may_turn() => {
+                    Meeting::Unclear
+                }
                 Some(((chord, _), Some(fold))) if fold.point.x <= chord.level.rod.tau_tip() => {
                     Meeting::Edge(Edge::Fold, fold)
                 }

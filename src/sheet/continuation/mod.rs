@@ -8,7 +8,7 @@ mod states;
 mod stepper;
 
 use crate::newton::BatchNewton;
-use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 use crate::sheet::continuation::meeting::{Meeting, meet};
 use crate::sheet::continuation::stepper::Stepper;
 use crate::sheet::row::{Edge, STEEP};
@@ -41,11 +41,10 @@ impl Continuation {
 }
 
 impl LevelCurve {
-    /// Follows the level curve from `start` to the tip or the fold, or past the fold to the tip or the second fold. Returns `None` if the
-    /// continuation fails.
+    /// Follows a `stretch` of the level curve from `start`. Returns `None` if the continuation fails.
     #[must_use]
-    pub fn continuation(&self, start: CurveNode, past_fold: bool) -> Option<Continuation> {
-        continuations(&[Some((self, start))], past_fold, ON_CURVE).pop()?
+    pub fn continuation(&self, start: CurveNode, stretch: Stretch) -> Option<Continuation> {
+        continuations(&[Some((self, start))], stretch, ON_CURVE).pop()?
     }
 }
 
@@ -60,10 +59,10 @@ pub type CurveStart<'a> = Option<(&'a LevelCurve, CurveNode)>;
 #[must_use]
 pub fn continuations(
     starts: &[CurveStart],
-    past_fold: bool,
+    stretch: Stretch,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
-    let mut ended = follow_with_retry(starts, past_fold, miss);
+    let mut ended = follow_with_retry(starts, stretch, miss);
     let pairs = starts.iter().zip(&ended);
     let finer = pairs.map(|(start, found)| {
         let is_steep = found.as_ref()?.is_steep();
@@ -73,7 +72,7 @@ pub fn continuations(
     let again = finer.iter().zip(starts);
     let again = again.map(|(level, start)| Some((level.as_ref()?, (*start)?.1)));
     let again: Vec<CurveStart> = again.collect();
-    let again = follow_with_retry(&again, past_fold, miss);
+    let again = follow_with_retry(&again, stretch, miss);
     for (ended, again) in ended.iter_mut().zip(again) {
         *ended = again.or(ended.take());
     }
@@ -84,14 +83,14 @@ pub fn continuations(
 /// another curve.
 fn follow_with_retry(
     starts: &[CurveStart],
-    past_fold: bool,
+    stretch: Stretch,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
-    let mut ended = follow(starts, past_fold, miss);
+    let mut ended = follow(starts, stretch, miss);
     if miss > ON_CURVE {
         let failed = starts.iter().zip(&ended);
         let failed = failed.map(|(start, found)| start.filter(|_| found.is_none()));
-        let again = follow(&failed.collect::<Vec<_>>(), past_fold, ON_CURVE);
+        let again = follow(&failed.collect::<Vec<_>>(), stretch, ON_CURVE);
         for (ended, again) in ended.iter_mut().zip(again) {
             *ended = ended.take().or(again);
         }
@@ -99,7 +98,7 @@ fn follow_with_retry(
     ended
 }
 
-fn follow(starts: &[CurveStart], past_fold: bool, miss: f64) -> Vec<Option<Continuation>> {
+fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Continuation>> {
     let mut ended = vec![None; starts.len()];
     let Some((first, _)) = starts.iter().flatten().next() else {
         return ended;
@@ -107,7 +106,7 @@ fn follow(starts: &[CurveStart], past_fold: bool, miss: f64) -> Vec<Option<Conti
     let newton = BatchNewton::new(first.method, u32::MAX);
     let steppers = starts.iter().enumerate().filter_map(|(index, start)| {
         let (level, node) = (*start)?;
-        Some(Stepper::new(index, level, node, miss))
+        Some(Stepper::new(index, level, node, stretch, miss))
     });
     let mut open: Vec<Stepper> = steppers.collect();
     while !open.is_empty() {
@@ -124,7 +123,9 @@ fn follow(starts: &[CurveStart], past_fold: bool, miss: f64) -> Vec<Option<Conti
             let may_go_on = match meeting {
                 Meeting::None => stepper.add(next),
                 Meeting::Unclear => stepper.shorten(),
-                Meeting::Edge(edge, node) if stepper.end_at(edge, node) && past_fold => {
+                Meeting::Edge(edge, node)
+                    if stepper.end_at(edge, node) && stretch == Stretch::PastFold =>
+                {
                     stepper.advance()
                 }
                 Meeting::Edge(edge, _) => {
@@ -167,7 +168,9 @@ mod tests {
             };
             let row = Row::new(&Rest::new(&rod), 0.75);
             let level = LevelCurve::new(Method::fine(), &rod, side, &row);
-            let branch = level.continuation(level.touch(), true).unwrap();
+            let branch = level
+                .continuation(level.touch(), Stretch::PastFold)
+                .unwrap();
             let fold = branch.fold.unwrap();
             for part in [&branch.nodes[..=fold], &branch.nodes[fold..]] {
                 let [from, to] = [part[0].push, part[part.len() - 1].push];

@@ -2,10 +2,12 @@
 //! the sheet. Then the level curve of a row is in several pieces, whose push angles may overlap.
 
 use crate::rod::Side;
-use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve};
+use crate::sheet::case::SheetCase;
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, Stretch};
 use crate::sheet::continuation::stepper::MOST_PUSH;
 use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
-use crate::sheet::row::Crossing;
+use crate::sheet::fold::{FoldPoint, first_folds};
+use crate::sheet::row::{Crossing, Edge};
 use crate::sheet::span::{RowSpan, SpanNode};
 
 /// Largest relative difference in contact and load of two crossings that are the same.
@@ -88,6 +90,7 @@ pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
             .collect();
         through_crossings(rows, &crossings, &mut found);
     }
+    past_folds(rows, &mut found);
     found
 }
 
@@ -101,7 +104,7 @@ fn from_touch(rows: &[ContinuedRow]) -> Vec<StablePieces> {
         is_continued.then(|| row.level.touch())
     };
     let starts: Vec<Option<CurveNode>> = rows.iter().map(start).collect();
-    let ends = ends_of_pieces(rows, &starts, false);
+    let ends = ends_of_pieces(rows, &starts, Stretch::Stable, false);
     let pieces = rows.iter().zip(ends).map(|(row, end)| {
         let at_touch = at_touch(row).filter(|_| row.touches);
         let end = at_touch.map(|end| (end, Vec::new())).or(end);
@@ -128,7 +131,7 @@ fn through_crossings(
     let is_sound = |crossing: &Option<Crossing>| crossing.is_some_and(|c| c.is_sound());
     let unsound = |crossing: &Option<Crossing>| crossing.filter(|c| !c.is_sound());
     let near = at_crossings(rows, &crossings.iter().map(unsound).collect::<Vec<_>>());
-    let begins = ends_of_pieces(rows, &near, true);
+    let begins = ends_of_pieces(rows, &near, Stretch::Stable, true);
     let entries: Vec<Option<Crossing>> = crossings
         .iter()
         .zip(near.iter().zip(begins))
@@ -144,7 +147,7 @@ fn through_crossings(
         })
         .collect();
     let starts = at_crossings(rows, &entries);
-    let ahead = ends_of_pieces(rows, &starts, false);
+    let ahead = ends_of_pieces(rows, &starts, Stretch::Stable, false);
     // From the end of a piece, the continuation ahead returns to this end; the continuation back leads to the beginning.
     let leads = |entry: &Crossing, end: Option<PieceEnd>| end.filter(|(end, _)| !same(entry, end));
     let ahead: Vec<Option<PieceEnd>> = entries
@@ -157,7 +160,7 @@ fn through_crossings(
         .zip(&ahead)
         .map(|(start, ahead)| start.filter(|_| ahead.is_none()))
         .collect();
-    let behind = ends_of_pieces(rows, &back, true);
+    let behind = ends_of_pieces(rows, &back, Stretch::Stable, true);
     for (i, found) in found.iter_mut().enumerate() {
         let Some(entry) = entries[i] else { continue };
         let (begin, end, nodes) = match (&ahead[i], &behind[i]) {
@@ -178,6 +181,53 @@ fn through_crossings(
     }
 }
 
+/// Adds to `found` the stable pieces that follow the one from first touch along its level curve: past the fold at which it ends, unstable
+/// states can lead to another fold, where stable states begin again.
+fn past_folds(rows: &[ContinuedRow], found: &mut [StablePieces]) {
+    let from_touch = |found: &StablePieces| {
+        let piece = found.pieces.first().filter(|piece| piece.begin.is_none());
+        piece.map(|piece| piece.end)
+    };
+    let at_fold = |end: &Option<Crossing>| end.filter(|end| end.edge == Edge::Fold);
+    let mut ends: Vec<Option<Crossing>> = found.iter().map(from_touch).collect();
+    while ends.iter().any(|end| at_fold(end).is_some()) {
+        let folds = at_crossings(rows, &ends.iter().map(at_fold).collect::<Vec<_>>());
+        let unstable = ends_of_pieces(rows, &folds, Stretch::Unstable, false);
+        let begins = unstable.into_iter().zip(&*found).map(|(unstable, found)| {
+            let (begin, _) = unstable?;
+            at_fold(&Some(begin)).filter(|begin| !found.have_end(begin))
+        });
+        let begins: Vec<Option<Crossing>> = begins.collect();
+        let stable = ends_of_pieces(rows, &at_crossings(rows, &begins), Stretch::Stable, false);
+        let pieces = rows.iter().zip(begins.into_iter().zip(stable));
+        let pieces = pieces.map(|(row, (begin, stable))| {
+            let (end, nodes) = stable?;
+            is_on_sheet(row.level, &nodes).then_some(StablePiece { begin, end, nodes })
+        });
+        let pieces: Vec<Option<StablePiece>> = pieces.collect();
+        for ((end, piece), found) in ends.iter_mut().zip(pieces).zip(&mut *found) {
+            *end = piece.as_ref().map(|piece| piece.end);
+            found.pieces.extend(piece);
+        }
+    }
+}
+
+/// Returns true if one of the `nodes` of a piece with positive `det` is below the first fold of its contact. Then the whole piece is on the
+/// stable sheet.
+fn is_on_sheet(level: &LevelCurve, nodes: &[CurveNode]) -> bool {
+    let case = SheetCase {
+        method: level.method,
+        rod: &level.rod,
+        side: level.side,
+    };
+    let contacts: Vec<f64> = nodes.iter().map(|node| node.point.x).collect();
+    let is_below = |(node, fold): (&CurveNode, Option<FoldPoint>)| {
+        let is_stable = node.full.map.det() > 0.0;
+        is_stable && fold.is_some_and(|fold| node.point.y.abs() < fold.load.abs())
+    };
+    nodes.iter().zip(first_folds(case, &contacts)).any(is_below)
+}
+
 /// Returns the state at the crossing of each row, or `None` without a crossing, or where the corrector fails.
 fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Option<CurveNode>> {
     rows.iter()
@@ -186,11 +236,12 @@ fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Op
         .collect()
 }
 
-/// Returns the end of the piece that begins at each of the `starts`, or with `backward` the beginning of the piece that ends there. An
-/// entry is `None` without a start, or where the continuation fails.
+/// Returns the end of the `stretch` of the level curve that begins at each of the `starts`, or with `backward` of the one
+/// that ends there. An entry is `None` without a start, or where the continuation fails.
 fn ends_of_pieces(
     rows: &[ContinuedRow],
     starts: &[Option<CurveNode>],
+    stretch: Stretch,
     backward: bool,
 ) -> Vec<Option<PieceEnd>> {
     let level = |row: &ContinuedRow| match backward {
@@ -200,7 +251,7 @@ fn ends_of_pieces(
     let levels: Vec<LevelCurve> = rows.iter().map(level).collect();
     let starts = levels.iter().zip(starts);
     let starts = starts.map(|(level, start)| Some((level, (*start)?)));
-    let continued = continuations(&starts.collect::<Vec<_>>(), false, NODE_MISS);
+    let continued = continuations(&starts.collect::<Vec<_>>(), stretch, NODE_MISS);
     let ends = levels.iter().zip(continued);
     ends.map(|(level, piece)| end_of_piece(level, piece?))
         .collect()

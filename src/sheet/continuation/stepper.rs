@@ -3,7 +3,7 @@
 use crate::newton::{NewtonProblem, NewtonStep};
 use crate::rod::Rod;
 use crate::sheet::continuation::corrector::{CORRECTOR_TRAJECTORIES, Corrector};
-use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
+use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 use crate::sheet::continuation::meeting::Chord;
 use crate::sheet::row::Edge;
 use crate::shooting::{FirstVariation, FullState};
@@ -65,13 +65,20 @@ pub struct Stepper<'a> {
 }
 
 impl<'a> Stepper<'a> {
-    /// Creates the stepper of curve `index` of the batch, whose first node is `start`. Nodes may miss the curve by `miss` in `ln D`.
-    pub fn new(index: usize, level: &'a LevelCurve, start: CurveNode, miss: f64) -> Self {
+    /// Creates the stepper of a `stretch` of curve `index` of the batch, whose first node is `start`. Nodes may miss the curve by `miss` in
+    /// `ln D`.
+    pub fn new(
+        index: usize,
+        level: &'a LevelCurve,
+        start: CurveNode,
+        stretch: Stretch,
+        miss: f64,
+    ) -> Self {
         let mut stepper = Self {
             index,
             level,
             nodes: vec![start],
-            fold: None,
+            fold: (stretch == Stretch::Unstable).then_some(0),
             candidate: None,
             step: FIRST_ARC_STEP,
             steps: Vec::new(),
