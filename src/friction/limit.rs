@@ -171,3 +171,82 @@ pub fn through(parts: &[Option<LimitPart>]) -> Vec<Option<SlidingLimit>> {
     });
     limits.collect()
 }
+
+#[cfg(test)]
+mod measure {
+    use super::*;
+    use crate::rod::{CurvaturePolynomial, Rest, Rod, Side};
+    use crate::scene::{Parameter, Scene};
+    use crate::sheet::Row;
+    use crate::shooting::batch::Method;
+    use std::sync::Arc;
+
+    fn unit(state: &mut u64) -> f64 {
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = *state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 40) as f64 / 16_777_216.0
+    }
+
+    #[test]
+    #[ignore = "measurement"]
+    fn hidden() {
+        let count: u64 = std::env::var("COUNT").map_or(200, |own| own.parse().unwrap());
+        let (mut segments, mut low, mut hidden, mut limits) = (0, [0; 4], 0, 0);
+        let mut second_folds = 0;
+        let mut positive_begin = 0;
+        for seed in 0..count {
+            let random = &mut (seed * 7919);
+            let taper = match seed % 3 { 0 => 0.95, 1 => 0.05 * unit(random), _ => 0.3 + 0.67 * unit(random) };
+            let mut terms = [0.0; 7];
+            let mut size = 1.0;
+            for t in &mut terms { *t = size * (2.0 * unit(random) - 1.0); size *= 0.6; }
+            let side = if unit(random) < 0.5 { Side::Cb } else { Side::Cf };
+            let mu = unit(random);
+            let rod = Rod {
+                taper,
+                bend: if seed % 3 == 2 { 0.0 } else { 0.8 * unit(random) },
+                pole: side.sign() * 0.05 * unit(random) * unit(random),
+                friction: side.sign() * mu,
+                polynomial: (seed % 3 == 2).then(|| Arc::new(CurvaturePolynomial::new(terms))),
+                ..Rod::default()
+            };
+            let row = Row::new(&Rest::new(&rod), 0.1 + 0.85 * unit(random));
+            if !row.is_reached() { continue; }
+            for sign in [1.0, -1.0] {
+                let rod = Rod { friction: sign * rod.friction, ..rod.clone() };
+                let level = LevelCurve::new(Method::fine(), &rod, side, &row);
+                let Some((limit, retreat)) = SlidingLimit::with_unstable(&level) else { continue };
+                if let Some(retreat) = &retreat {
+                    let first = &retreat.segments[0];
+                    if first.from.node.full.map.det().abs() < 1e-6 * first.to.node.full.map.det().abs() { second_folds += 1; }
+                    if retreat.begin() > 0.0 && sign < 0.0 { positive_begin += 1; }
+                }
+                limits += 1;
+                let divided = SlidingLimit::divided(&[(&limit, limit.segments())]).remove(0);
+                for segment in &limit.segments {
+                    segments += 1;
+                    let mean = segment.to.slid - segment.from.slid;
+                    let slopes: Vec<f64> = (0..=64).map(|i| segment.slid.at(f64::from(i) / 64.0).1 * mean.signum()).collect();
+                    let least = slopes.iter().copied().fold(f64::INFINITY, f64::min) / mean.abs();
+                    for (k, bound) in [0.0, 0.1, 0.25, 0.5].into_iter().enumerate() { if least < bound { low[k] += 1; } }
+                    let own = divided.segments.iter().filter(|part| part.from.push >= segment.from.push && part.to.push <= segment.to.push);
+                    let mut falls = false;
+                    let mut place = 0.0;
+                    let mut n = 0;
+                    for part in own {
+                        n += 1;
+                        let s: Vec<f64> = (1..64).map(|i| part.slid.at(f64::from(i) / 64.0).1 * mean.signum()).collect();
+                        if s.iter().any(|s| *s < 0.0) { falls = true; place = part.from.push; }
+                    }
+                    if falls && least >= 0.0 {
+                        hidden += 1;
+                        println!("{seed} {side:?} mu {:.2} sign {sign}: least/mean {least:.3} mean {mean:.3e} at {place:.4} of {:.4}..{:.4} of {:.4} n {n} fold {}", mu, segment.from.push, segment.to.push, limit.end(), segment.to.by_push.is_none());
+                    }
+                }
+            }
+        }
+        println!("{segments} segments of {limits}; below 0, .1, .25, .5: {low:?}; hidden {hidden}; second folds {second_folds}, begin>0 {positive_begin}");
+    }
+}

@@ -1,5 +1,6 @@
 //! Samples of a course behind a surface, from the states in contact.
 
+use super::crossing::Crossing;
 use super::rows::{NoTextureState, TexturePhase, TextureSample};
 use super::tip::{TipFrame, TipPlace};
 use crate::rod::Side;
@@ -25,33 +26,6 @@ impl Held {
     }
 }
 
-/// First state in which the whisker meets the surface in two places. Other asperities would bend it there, too.
-#[derive(Clone, Copy)]
-pub struct Crossing {
-    pub time_s: f64,
-    /// Angle of the base at the crossing, in radians.
-    pub angle: f64,
-    pub held: Held,
-}
-
-impl Crossing {
-    /// Returns the first crossing among states, each at its `[time in s, angle in radians]`; `None` without one.
-    pub fn first<'a>(
-        states: impl Iterator<Item = (&'a Option<Held>, &'a [f64; 2])>,
-    ) -> Option<Self> {
-        let crossing = |(held, [time_s, angle]): (&Option<Held>, &[f64; 2])| {
-            let held = held.filter(|own| own.state.is_some_and(|(_, tip)| tip.crosses))?;
-            Some(Self {
-                time_s: *time_s,
-                angle: *angle,
-                held,
-            })
-        };
-        let crossings = states.filter_map(crossing);
-        crossings.min_by(|one, other| one.time_s.total_cmp(&other.time_s))
-    }
-}
-
 /// Returns the samples of a course, `[sample]`; all from the first crossing on are undecided.
 pub fn samples(
     course: &AngleCourse,
@@ -64,9 +38,9 @@ pub fn samples(
     let mut passages = passages.iter().peekable();
     let times = course.times_s().iter().zip(course.angles_deg());
     let states = times.zip(phases.iter().zip(held));
-    let samples = states.map(|((&time_s, &angle_deg), (phase, held))| {
+    let samples = states.enumerate().map(|(i, ((&time_s, &angle_deg), (phase, held)))| {
         let mut has_slipped = false;
-        while let Some(passage) = passages.next_if(|passage| passage.time_s <= time_s) {
+        while let Some(passage) = passages.next_if(|passage| passage.sample <= i) {
             has_slipped |= passage.event.is_none();
         }
         let crosses = crossed.is_some_and(|own| own.time_s <= time_s);
