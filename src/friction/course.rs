@@ -192,7 +192,7 @@ impl ContactCourse<'_> {
         let HistoryKnot { push, slid, .. } = self.knot;
         let retreat = self.limits.retreat.as_ref().filter(|_| self.is_beyond)?;
         let is_met = retreat.slid(stop).is_some_and(|at| at >= slid);
-        is_met.then(|| meeting(retreat, slid, [push.min(retreat.end()), stop]))
+        is_met.then(|| meeting(retreat, slid, [push, stop]))
     }
 
     /// Moves the push to `push`, before which there is no stop and no snap.
@@ -242,7 +242,10 @@ impl ContactCourse<'_> {
         self.is_beyond = false;
         self.knot = HistoryKnot {
             push,
-            slid: limits.base().and_then(|base| base.slid(push)).unwrap_or(f64::NAN),
+            slid: limits
+                .base()
+                .and_then(|base| base.slid(push))
+                .unwrap_or(f64::NAN),
             end: SlidingEnd {
                 limit: Sliding::Base,
                 push,

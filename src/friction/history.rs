@@ -197,7 +197,9 @@ impl ContactHistory {
         let is_at = |limit| passed(limit).is_some_and(|passed| passed < f64::EPSILON);
         let mut ahead = self.knots[after..].iter().filter(|knot| knot.push > push);
         let limit = match ahead.next() {
-            Some(next) if is_at(&self.tip) && is_at(base) => self.advance(before, next.push, Some(base)).1,
+            Some(next) if is_at(&self.tip) && is_at(base) => {
+                self.advance(before, next.push, Some(base)).1
+            }
             _ => self.advance(before, push, Some(base)).1,
         };
         let is_clear = |limit| passed(limit).is_some_and(|passed| passed > CLEAR_OF_CONTACT);

@@ -1,7 +1,7 @@
 //! First crossing of a course: from there on, the free part of the whisker meets the line of the asperities in a second place.
 //!
 //! The clearance of the free part is a function of the push against an asperity. It is followed at pushes that depend on neither the course
-//! nor its samples. A stretch of pushes is halved until a bound excludes a crossing inside, or the crossing is located.
+//! nor its samples. A stretch of pushes is divided until a bound excludes a crossing inside, or the crossing is located.
 
 use super::sample::Held;
 use super::tip::Clearance;
@@ -19,13 +19,13 @@ pub struct Crossing {
     pub held: Held,
 }
 
-/// Number of stretches of the pushes against one asperity before they are halved; a power of 2, so that halves are exact.
+/// Number of equal stretches into which the pushes against one asperity, and then open stretches, are divided.
 const STRETCHES: u32 = 16;
 
 /// Width at which a change of sign is located, in parts of the largest push.
-const LOCATED: f64 = 1e-14;
+const LOCATED: f64 = 1e-13;
 
-/// Width below which a stretch with clearance at both ends is not halved, in parts of the largest push. A crossing inside is as short.
+/// Width below which a stretch with clearance at both ends is not divided, in parts of the largest push. A crossing inside is as short.
 const GRAZED: f64 = 1e-6;
 
 /// Factor by which the clearance may change more along a stretch than from end to end, where direction and contact turn back.
@@ -41,8 +41,6 @@ struct ClearanceCurve {
 
 /// Stretch of the pushes against one asperity.
 struct Stretch {
-    /// Index of the curve.
-    curve: usize,
     /// Ends, in parts of the largest push.
     parts: [f64; 2],
     clearances: [Clearance; 2],
@@ -135,7 +133,7 @@ impl Placed<'_> {
         })
     }
 
-    /// Returns the clearances of all pushes in the contacts `met`, `[contact]`. A stretch next to a state that is not found is not halved.
+    /// Returns the clearances of all pushes in the contacts `met`, `[contact]`. A stretch next to a state that is not found is not divided.
     fn clearances(&self, states: &BothSides, met: &[(Side, i32)]) -> Vec<ClearanceCurve> {
         let curves = met.iter().map(|&(side, obstacle)| ClearanceCurve {
             side,
@@ -143,39 +141,29 @@ impl Placed<'_> {
             nodes: Vec::new(),
         });
         let mut curves: Vec<ClearanceCurve> = curves.collect();
-        let parts = (0..=STRETCHES).map(|i| f64::from(i) / f64::from(STRETCHES));
-        let places = (0..curves.len()).flat_map(|curve| parts.clone().map(move |part| (curve, part)));
-        let places: Vec<(usize, f64)> = places.collect();
-        let found = self.clearances_at(states, &mut curves, &places);
-        let ends = places.iter().zip(found).collect::<Vec<_>>();
-        let pairs = ends.windows(2).filter_map(|pair| {
-            let [(from, clear), (to, clear_to)] = [&pair[0], &pair[1]];
-            (from.0 == to.0).then_some(Stretch {
-                curve: from.0,
-                parts: [from.1, to.1],
-                clearances: [(*clear)?, (*clear_to)?],
-            })
-        });
-        let mut open: Vec<Stretch> = pairs.filter(Stretch::is_open).collect();
+        let whole = (0..curves.len()).map(|curve| (curve, [0.0, 1.0]));
+        let mut open: Vec<(usize, [f64; 2])> = whole.collect();
         while !open.is_empty() {
-            let middle = |own: &Stretch| (own.curve, 0.5 * (own.parts[0] + own.parts[1]));
-            let places: Vec<(usize, f64)> = open.iter().map(middle).collect();
-            let found = self.clearances_at(states, &mut curves, &places);
-            let halves = open.iter().zip(places).zip(found);
-            let halves = halves.filter_map(|((own, (curve, middle)), clearance)| {
-                let ([from, to], [clear, clear_to]) = (own.parts, own.clearances);
-                let clearance = clearance?;
-                let halves = [
-                    ([from, middle], [clear, clearance]),
-                    ([middle, to], [clearance, clear_to]),
-                ];
-                Some(halves.map(|(parts, clearances)| Stretch {
-                    curve,
-                    parts,
-                    clearances,
-                }))
+            let divided = open.iter().map(|(curve, [from, to])| {
+                let part =
+                    move |i: u32| (to - from).mul_add(f64::from(i) / f64::from(STRETCHES), *from);
+                (0..=STRETCHES).map(move |i| (*curve, part(i)))
             });
-            open = halves.flatten().filter(Stretch::is_open).collect();
+            let places: Vec<(usize, f64)> = divided.flatten().collect();
+            let found = self.clearances_at(states, &mut curves, &places);
+            let nodes: Vec<_> = places.into_iter().zip(found).collect();
+            let stretches = nodes.chunks_exact(STRETCHES as usize + 1);
+            let stretches = stretches
+                .flat_map(|nodes| nodes.windows(2))
+                .filter_map(|pair| {
+                    let [((curve, from), clear), ((_, to), clear_to)] = [pair[0], pair[1]];
+                    let own = Stretch {
+                        parts: [from, to],
+                        clearances: [clear?, clear_to?],
+                    };
+                    own.is_open().then_some((curve, own.parts))
+                });
+            open = stretches.collect();
         }
         for curve in &mut curves {
             curve.nodes.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -143,10 +143,13 @@ pub fn texture(
         .map(|own| place.contact(own.side, own.obstacle, own.push));
     let contacts_then: Vec<Contact> = contacts_then.collect();
     let held_then = place.held(&states, &contacts_then, &changes);
-    let kinds = passages.iter().zip(&contacts_then).map(|(passage, contact)| {
-        let end = contact.map(|own| states.detachment(own.side, own.row_push.0));
-        passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
-    });
+    let kinds = passages
+        .iter()
+        .zip(&contacts_then)
+        .map(|(passage, contact)| {
+            let end = contact.map(|own| states.detachment(own.side, own.row_push.0));
+            passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
+        });
     let kinds: Vec<WhiskEventKind> = kinds.collect();
 
     let mut then = passages.iter().zip(&contacts_then).peekable();

@@ -38,57 +38,59 @@ pub fn samples(
     let mut passages = passages.iter().peekable();
     let times = course.times_s().iter().zip(course.angles_deg());
     let states = times.zip(phases.iter().zip(held));
-    let samples = states.enumerate().map(|(i, ((&time_s, &angle_deg), (phase, held)))| {
-        let mut has_slipped = false;
-        while let Some(passage) = passages.next_if(|passage| passage.sample <= i) {
-            has_slipped |= passage.event.is_none();
-        }
-        let crosses = crossed.is_some_and(|own| own.time_s <= time_s);
-        let reason = match phase {
-            _ if crosses => Some(NoTextureState::CrossesSurface),
-            Phase::Undecided { reason, .. } => Some(match reason {
-                Undecided::OnThePole => NoTextureState::OnAnAsperity,
-                Undecided::TipEdge => NoTextureState::TipEdge,
-                // Only a contact with friction is stuck, and textures have none.
-                Undecided::NotFound | Undecided::Stuck => NoTextureState::NotFound,
-            }),
-            Phase::Contact { .. } if held.is_none_or(|own| own.state.is_none()) => {
-                Some(NoTextureState::NotFound)
+    let samples = states
+        .enumerate()
+        .map(|(i, ((&time_s, &angle_deg), (phase, held)))| {
+            let mut has_slipped = false;
+            while let Some(passage) = passages.next_if(|passage| passage.sample <= i) {
+                has_slipped |= passage.event.is_none();
             }
-            _ => None,
-        };
-        let held = held.filter(|_| !crosses);
-        let is_free = reason.is_none() && held.is_none();
-        let load = |of: fn(&Reading) -> f64| match is_free {
-            true => Some(0.0),
-            false => held.and_then(|own| own.value(of)),
-        };
-        let tip = match is_free {
-            true => Some(tips.free(angle_deg.to_radians())),
-            false => held.and_then(|own| own.state).map(|(_, tip)| tip),
-        };
-        TextureSample {
-            time_s,
-            angle_deg,
-            phase: match reason {
-                Some(_) => TexturePhase::Undecided,
-                None if has_slipped => TexturePhase::Slipping,
-                None if is_free => TexturePhase::Free,
-                None => TexturePhase::Stuck,
-            },
-            asperity: held.map(|own| own.asperity),
-            side: held.map(|own| own.side),
-            push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
-            arc_length_mm: held.and_then(|own| own.value(|state| state.arc_length_mm)),
-            tip_x_mm: tip.map(|tip| tip.x_mm),
-            tip_height_mm: tip.map(|tip| tip.height_mm),
-            force_un: load(|state| state.force_un),
-            base_force_x_un: load(|state| state.base_force_un.x),
-            base_force_y_un: load(|state| state.base_force_un.y),
-            base_moment_nnm: load(|state| state.base_moment_nnm),
-            energy_nj: load(|state| state.energy_nj),
-            reason,
-        }
-    });
+            let crosses = crossed.is_some_and(|own| own.time_s <= time_s);
+            let reason = match phase {
+                _ if crosses => Some(NoTextureState::CrossesSurface),
+                Phase::Undecided { reason, .. } => Some(match reason {
+                    Undecided::OnThePole => NoTextureState::OnAnAsperity,
+                    Undecided::TipEdge => NoTextureState::TipEdge,
+                    // Only a contact with friction is stuck, and textures have none.
+                    Undecided::NotFound | Undecided::Stuck => NoTextureState::NotFound,
+                }),
+                Phase::Contact { .. } if held.is_none_or(|own| own.state.is_none()) => {
+                    Some(NoTextureState::NotFound)
+                }
+                _ => None,
+            };
+            let held = held.filter(|_| !crosses);
+            let is_free = reason.is_none() && held.is_none();
+            let load = |of: fn(&Reading) -> f64| match is_free {
+                true => Some(0.0),
+                false => held.and_then(|own| own.value(of)),
+            };
+            let tip = match is_free {
+                true => Some(tips.free(angle_deg.to_radians())),
+                false => held.and_then(|own| own.state).map(|(_, tip)| tip),
+            };
+            TextureSample {
+                time_s,
+                angle_deg,
+                phase: match reason {
+                    Some(_) => TexturePhase::Undecided,
+                    None if has_slipped => TexturePhase::Slipping,
+                    None if is_free => TexturePhase::Free,
+                    None => TexturePhase::Stuck,
+                },
+                asperity: held.map(|own| own.asperity),
+                side: held.map(|own| own.side),
+                push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
+                arc_length_mm: held.and_then(|own| own.value(|state| state.arc_length_mm)),
+                tip_x_mm: tip.map(|tip| tip.x_mm),
+                tip_height_mm: tip.map(|tip| tip.height_mm),
+                force_un: load(|state| state.force_un),
+                base_force_x_un: load(|state| state.base_force_un.x),
+                base_force_y_un: load(|state| state.base_force_un.y),
+                base_moment_nnm: load(|state| state.base_moment_nnm),
+                energy_nj: load(|state| state.energy_nj),
+                reason,
+            }
+        });
     samples.collect()
 }

@@ -59,7 +59,11 @@ impl<'a> FrictionCourse<'a> {
         let reached = self.open.as_mut().map(|(_, course)| course.at(push));
         let phase = reached.as_ref().map(|course| course.phase);
         let dissipated = self.ended + reached.map_or(0.0, |course| course.dissipated);
-        (CourseContact { side, push, phase }, dissipated, self.changes())
+        (
+            CourseContact { side, push, phase },
+            dissipated,
+            self.changes(),
+        )
     }
 
     /// Returns the changes of the contact since the last call, `[change]`.
