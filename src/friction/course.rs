@@ -2,6 +2,10 @@
 //!
 //! The contact follows Prandtl's play on the two limits of sliding. On the way back it meets the base limit. If its slid distance is larger
 //! than any on the stable states of that limit, it meets the unstable ones, and snaps to the stable state at the same push.
+//!
+//! Between two stops every limit is monotone, so that it passes a slid distance at most once, and the contact follows from its state at
+//! the last stop. The course therefore keeps its state at stops, snaps and turning points alone. Any number of states may be read between
+//! them, and change nothing.
 
 use super::dissipation::Dissipation;
 use super::history::ContactQuery;
@@ -78,15 +82,26 @@ impl CourseLimits {
             phase: ContactPhase::Slides(Sliding::Tip),
             dissipated: 0.0,
             snaps: Vec::new(),
-            is_lost: false,
+            is_beyond: false,
+            lost_at: None,
         }
     }
 
-    /// Returns true if a contact with the slid distance `slid` is farther toward the tip at `push` than the unstable states of the base
-    /// limit, so that it sticks.
-    fn is_beyond(&self, push: f64, slid: f64) -> bool {
-        let unstable = self.retreat.as_ref().and_then(|retreat| retreat.slid(push));
-        unstable.is_some_and(|unstable| slid > unstable)
+    /// Returns the base limit.
+    fn base(&self) -> Option<&SlidingLimit> {
+        self.history.limit(Sliding::Base)
+    }
+
+    /// Returns the first stop after `push` in one direction, in radians; `None` beyond the last one.
+    fn stop(&self, push: f64, grows: bool) -> Option<f64> {
+        let index = match grows {
+            true => self.stops.partition_point(|stop| *stop <= push),
+            false => self
+                .stops
+                .partition_point(|stop| *stop < push)
+                .checked_sub(1)?,
+        };
+        self.stops.get(index).copied()
     }
 }
 
@@ -112,52 +127,83 @@ pub struct ContactCourse<'a> {
     pub dissipated: f64,
     /// Snaps since first touch, in order.
     pub snaps: Vec<Snap>,
-    /// True if the contact has left the limits that are known.
-    pub is_lost: bool,
+    /// True if the contact is farther toward the tip than the unstable states of the base limit. The stable ones do not hold it then.
+    pub is_beyond: bool,
+    /// Push angle at which the contact left the limits that are known, a magnitude, in radians; `None` if it did not.
+    pub lost_at: Option<f64>,
 }
 
 impl ContactCourse<'_> {
-    /// Moves the push to `push`, a magnitude in radians.
+    /// Moves the push to `push`, a magnitude in radians, at which it may turn back.
     pub fn to(&mut self, push: f64) {
         let push = self.limits.history.up_to_end(push);
-        let from = self.knot.push;
-        let [low, high] = [from.min(push), from.max(push)];
-        let stops = &self.limits.stops;
-        let first = stops.partition_point(|stop| *stop <= low);
-        let last = stops.partition_point(|stop| *stop < high).max(first);
-        let between = &stops[first..last];
-        if push > from {
-            between.iter().for_each(|stop| self.step(*stop));
-        } else {
-            between.iter().rev().for_each(|stop| self.step(*stop));
-        }
+        self.pass(push);
         self.step(push);
     }
 
-    /// Moves the push to `push`, before which no limit reverses or ends.
-    fn step(&mut self, push: f64) {
-        let (limits, slid) = (self.limits, self.knot.slid);
-        let base = limits.history.limit(Sliding::Base);
-        let meets_base = base
-            .and_then(|base| base.slid(push))
-            .is_some_and(|base| base < slid);
-        // Without unstable states the base limit ends at the tip, and nothing is known of contacts beyond.
-        let fold = base.map_or(push, SlidingLimit::end);
-        self.is_lost |= meets_base && limits.retreat.is_none() && self.knot.push > fold;
-        let is_unknown = |retreat: &SlidingLimit| push < retreat.begin();
-        self.is_lost |= meets_base && limits.retreat.as_ref().is_some_and(is_unknown);
-        let is_held = meets_base && limits.is_beyond(push, slid);
-        if meets_base && !is_held {
-            let from = self.knot.push.min(fold);
-            if limits.is_beyond(from, slid) {
-                self.snap([push, from]);
+    /// Returns the course up to `push`, a magnitude in radians, on the way to a push at least as far in this direction. This course only
+    /// moves to the last stop or snap before.
+    #[must_use]
+    pub fn at(&mut self, push: f64) -> Self {
+        let push = self.limits.history.up_to_end(push);
+        self.pass(push);
+        let mut reached = self.clone();
+        reached.step(push);
+        reached
+    }
+
+    /// Passes all stops and snaps before `push`.
+    fn pass(&mut self, push: f64) {
+        while push != self.knot.push && self.lost_at.is_none() {
+            let grows = push > self.knot.push;
+            let is_before = |at: f64| if grows { at < push } else { at > push };
+            self.head(grows);
+            let Some(stop) = self.limits.stop(self.knot.push, grows) else {
+                return;
+            };
+            match self.snap_before(stop) {
+                Some(snap) if is_before(snap) => self.snap(snap),
+                None if is_before(stop) => self.step(stop),
+                _ => return,
             }
         }
-        let from = self.knot;
-        let (knot, limit) = match is_held {
-            true => (HistoryKnot { push, ..from }, None),
-            false => limits.history.advance(&from, push),
+    }
+
+    /// Begins a way on which the push grows or falls. Below the end of the base limit, the contact lies on one side of its unstable states.
+    fn head(&mut self, grows: bool) {
+        let Some(base) = self.limits.base() else {
+            return;
         };
+        let HistoryKnot { push, slid, .. } = self.knot;
+        let end = base.end();
+        if push >= end {
+            self.is_beyond = !grows && base.slid(end).is_some_and(|base| slid > base);
+        }
+        // Without unstable states the base limit ends at the tip, and nothing is known of contacts beyond.
+        let known = self.limits.retreat.as_ref();
+        let known = known.map_or(end, SlidingLimit::begin);
+        if !grows && self.is_beyond && push <= known {
+            self.lost_at = Some(push);
+        }
+    }
+
+    /// Returns the push at which the contact snaps up to the next `stop`, in radians; `None` if it does not.
+    fn snap_before(&self, stop: f64) -> Option<f64> {
+        let HistoryKnot { push, slid, .. } = self.knot;
+        let retreat = self.limits.retreat.as_ref().filter(|_| self.is_beyond)?;
+        let is_met = retreat.slid(stop).is_some_and(|at| at >= slid);
+        is_met.then(|| meeting(retreat, slid, [push, stop]))
+    }
+
+    /// Moves the push to `push`, before which there is no stop and no snap.
+    fn step(&mut self, push: f64) {
+        if self.lost_at.is_some() {
+            return;
+        }
+        let (limits, from) = (self.limits, self.knot);
+        let base = limits.base();
+        let base = base.filter(|base| !self.is_beyond && from.push <= base.end());
+        let (knot, limit) = limits.history.advance(&from, push, base);
         if let Some(way) = limit {
             self.dissipated += self.taken(way, &from, &knot);
         }
@@ -172,26 +218,18 @@ impl ContactCourse<'_> {
         };
         let dissipated = &self.limits.dissipated[usize::from(way == Sliding::Base)];
         // The contact sticks until the limit reaches it.
-        let is_before = |push: f64| limit.slid(push).map(|at| at - from.slid);
-        let start = match is_before(from.push) {
-            Some(miss) if miss.abs() <= f64::EPSILON || (miss > 0.0) == (way == Sliding::Tip) => {
-                from.push
-            }
-            other => {
-                let edge = other.map_or(limit.end(), |_| from.push);
-                meeting(limit, from.slid, [edge, to.push])
-            }
+        let miss = limit.slid(from.push).map_or(f64::NAN, |at| at - from.slid);
+        let is_there = miss.abs() <= f64::EPSILON || (miss > 0.0) == (way == Sliding::Tip);
+        let start = match is_there {
+            true => from.push,
+            false => meeting(limit, from.slid, [from.push, to.push]),
         };
         (dissipated.at(limit, to.push) - dissipated.at(limit, start)).abs()
     }
 
-    /// Snaps to the stable state of the base limit where the unstable one reaches the contact, between two pushes.
-    fn snap(&mut self, between: [f64; 2]) {
+    /// Snaps to the stable state of the base limit at `push`, in radians, where the unstable one reaches the contact.
+    fn snap(&mut self, push: f64) {
         let limits = self.limits;
-        let Some(retreat) = &limits.retreat else {
-            return;
-        };
-        let push = meeting(retreat, self.knot.slid, between);
         let before = ContactPhase::Sticks(self.knot.end);
         let after = ContactPhase::Slides(Sliding::Base);
         let states = held(&[before, after].map(|phase| limits.query(phase, push)));
@@ -201,10 +239,13 @@ impl ContactCourse<'_> {
         };
         self.dissipated += lost;
         self.snaps.push(Snap { push, before, lost });
-        let base = limits.history.limit(Sliding::Base);
+        self.is_beyond = false;
         self.knot = HistoryKnot {
             push,
-            slid: base.and_then(|base| base.slid(push)).unwrap_or(f64::NAN),
+            slid: limits
+                .base()
+                .and_then(|base| base.slid(push))
+                .unwrap_or(f64::NAN),
             end: SlidingEnd {
                 limit: Sliding::Base,
                 push,

@@ -147,17 +147,23 @@ impl ContactHistory {
             base,
         };
         for push in pushes {
-            knot = history.advance(&knot, push).0;
+            knot = history.advance(&knot, push, history.base.as_ref()).0;
             history.knots.push(knot);
         }
         history
     }
 
-    /// Contact at `push`, and the limit at the contact, if any. No limit may reverse between the push of `from` and `push`.
-    pub(super) fn advance(&self, from: &HistoryKnot, push: f64) -> (HistoryKnot, Option<Sliding>) {
+    /// Contact at `push`, and the limit at the contact, if any. No limit may reverse between the push of `from` and `push`. `base` is the
+    /// base limit; `None` if it does not hold the contact.
+    pub(super) fn advance(
+        &self,
+        from: &HistoryKnot,
+        push: f64,
+        base: Option<&SlidingLimit>,
+    ) -> (HistoryKnot, Option<Sliding>) {
         let slid = from.slid;
         let tip = self.tip.slid(push).filter(|tip| *tip >= slid);
-        let base = self.base.as_ref().and_then(|base| base.slid(push));
+        let base = base.and_then(|base| base.slid(push));
         let (slid, limit) = match (tip, base.filter(|base| *base <= slid)) {
             (Some(tip), _) if tip > slid => (tip, Some(Sliding::Tip)),
             (_, Some(base)) if base < slid => (base, Some(Sliding::Base)),
@@ -191,8 +197,10 @@ impl ContactHistory {
         let is_at = |limit| passed(limit).is_some_and(|passed| passed < f64::EPSILON);
         let mut ahead = self.knots[after..].iter().filter(|knot| knot.push > push);
         let limit = match ahead.next() {
-            Some(next) if is_at(&self.tip) && is_at(base) => self.advance(before, next.push).1,
-            _ => self.advance(before, push).1,
+            Some(next) if is_at(&self.tip) && is_at(base) => {
+                self.advance(before, next.push, Some(base)).1
+            }
+            _ => self.advance(before, push, Some(base)).1,
         };
         let is_clear = |limit| passed(limit).is_some_and(|passed| passed > CLEAR_OF_CONTACT);
         // The contact stops at an exact reversal, but begins to slide at an interpolated place.

@@ -1,7 +1,8 @@
 //! Events of a course behind a surface.
 
+use super::crossing::Crossing;
 use super::rows::TextureEvent;
-use super::sample::{Crossing, Held};
+use super::sample::Held;
 use crate::rod::Side;
 use crate::shooting::Reading;
 use crate::whisk::phase::Passage;

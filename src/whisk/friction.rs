@@ -2,8 +2,17 @@
 
 use super::contact::CourseContact;
 use super::states::SideStates;
-use crate::friction::{ContactCourse, ContactPhase, CourseLimits, Sliding, Snap};
+use crate::friction::{ContactCourse, ContactPhase, CourseLimits, Sliding};
 use crate::rod::Side;
+
+/// Change of a contact between its touch and its end.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactChange {
+    /// Push of the change since the touch, in radians, as a magnitude.
+    pub push: f64,
+    /// Phase of the contact before a snap; `None` where the contact leaves the limits that are known.
+    pub before: Option<ContactPhase>,
+}
 
 /// Contacts of a course with friction, followed in the order of time.
 pub struct FrictionCourse<'a> {
@@ -34,33 +43,55 @@ impl<'a> FrictionCourse<'a> {
         self.to(side, push).0
     }
 
-    /// Moves the contact on `side` to `push`, a magnitude in radians. Returns the contact there, and the snaps on the way, `[snap]`.
-    pub fn to(&mut self, side: Side, push: f64) -> (CourseContact, Vec<Snap>) {
-        let mut contact = CourseContact {
-            side,
-            push,
-            phase: None,
-        };
-        let Some((_, course)) = &mut self.open else {
-            return (contact, Vec::new());
-        };
-        course.to(push);
-        self.is_lost |= course.is_lost;
-        contact.phase = Some(course.phase);
-        (contact, std::mem::take(&mut course.snaps))
+    /// Moves the contact on `side` to `push`, a magnitude in radians, at which it ends or turns back. Returns the contact there, and the
+    /// changes on the way, `[change]`.
+    pub fn to(&mut self, side: Side, push: f64) -> (CourseContact, Vec<ContactChange>) {
+        if let Some((_, course)) = &mut self.open {
+            course.to(push);
+        }
+        let phase = self.open.as_ref().map(|(_, course)| course.phase);
+        (CourseContact { side, push, phase }, self.changes())
     }
 
-    /// Ends the contact after its last move. At a release the contact must be at a limit, where no load is left; a detachment needs a
-    /// contact that slides toward the tip.
+    /// Returns the contact on `side` at `push`, a magnitude in radians, on its way, the energy dissipated so far, and the changes before it,
+    /// `[change]`.
+    pub fn at(&mut self, side: Side, push: f64) -> (CourseContact, f64, Vec<ContactChange>) {
+        let reached = self.open.as_mut().map(|(_, course)| course.at(push));
+        let phase = reached.as_ref().map(|course| course.phase);
+        let dissipated = self.ended + reached.map_or(0.0, |course| course.dissipated);
+        (
+            CourseContact { side, push, phase },
+            dissipated,
+            self.changes(),
+        )
+    }
+
+    /// Returns the changes of the contact since the last call, `[change]`.
+    fn changes(&mut self) -> Vec<ContactChange> {
+        let Some((_, course)) = &mut self.open else {
+            return Vec::new();
+        };
+        let snaps = std::mem::take(&mut course.snaps).into_iter();
+        let snaps = snaps.map(|snap| ContactChange {
+            push: snap.push,
+            before: Some(snap.before),
+        });
+        let lost = course.lost_at.filter(|_| !self.is_lost);
+        self.is_lost |= lost.is_some();
+        let lost = lost.map(|push| ContactChange { push, before: None });
+        snaps.chain(lost).collect()
+    }
+
+    /// Ends the contact after its last move. At a release no unstable states may be left ahead; a detachment needs a contact that slides
+    /// toward the tip.
     pub fn leave(&mut self, is_release: bool) {
         let Some((_, course)) = self.open.take() else {
             return;
         };
         self.ended += course.dissipated;
-        self.is_lost |= match course.phase {
-            ContactPhase::Slides(Sliding::Tip) => false,
-            ContactPhase::Slides(_) => !is_release,
-            ContactPhase::Sticks(_) => true,
+        self.is_lost |= match is_release {
+            true => course.is_beyond,
+            false => course.phase != ContactPhase::Slides(Sliding::Tip),
         };
     }
 

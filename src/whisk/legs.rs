@@ -1,12 +1,14 @@
 //! Legs of a course: straight lines of the base's angle from sample to sample, with the events on them.
+//!
+//! Events belong to the course, not to its samples: a contact is moved to events and turning points alone, and read at samples.
 
 use super::contact::CourseContact;
-use super::friction::FrictionCourse;
+use super::friction::{ContactChange, FrictionCourse};
 use super::phase::{Obstacles, Passage, Phase};
 use super::states::SideStates;
 use super::turns::Turns;
 use super::{Undecided, WhiskEventKind};
-use crate::friction::Snap;
+use crate::rod::Side;
 
 /// Sample of a course, before its state is computed.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +39,8 @@ pub struct Legs<'a> {
     turns: &'a Turns,
     phase: Phase,
     friction: FrictionCourse<'a>,
+    /// Change of the angle on the last leg on which the base moved, in radians; 0 before it.
+    heading: f64,
     /// Samples of the course so far, `[sample]`.
     pub samples: Vec<LegSample>,
     /// Events of the course so far, in the order of time, `[event]`.
@@ -69,6 +73,7 @@ impl<'a> Legs<'a> {
             turns,
             phase,
             friction: FrictionCourse::new(sides),
+            heading: 0.0,
             samples: Vec::new(),
             events: Vec::new(),
         }
@@ -85,16 +90,39 @@ impl<'a> Legs<'a> {
     /// Moves the base through `angles`, in radians, in the `times`, in s. Adds the events between, and the sample at the end.
     pub fn leg(&mut self, angles: [f64; 2], times: [f64; 2]) {
         let leg = Leg { angles, times };
-        let mut passages = Vec::new();
         let [from, to] = angles;
+        if to != from {
+            self.head(from, to - from);
+        }
+        let mut passages = Vec::new();
         self.turns
             .pass(&mut self.phase, from, to, |passage| passages.push(passage));
         for passage in passages {
-            if !self.friction.is_lost {
-                self.pass(&leg, passage);
-            }
+            self.pass(&leg, passage);
         }
         self.end(leg);
+    }
+
+    /// Begins a leg at an `angle` of the base, in radians. Where the base turns back, the contact does so, too.
+    fn head(&mut self, angle: f64, heading: f64) {
+        if heading * self.heading < 0.0
+            && let Some((side, _, push)) = self.contact(angle)
+        {
+            // The sample at the turning point has the changes before it.
+            self.friction.to(side, push);
+        }
+        self.heading = heading;
+    }
+
+    /// Returns side, obstacle and push of the contact at an `angle` of the base, in radians; `None` without a known one.
+    fn contact(&self, angle: f64) -> Option<(Side, i32, f64)> {
+        match self.phase {
+            Phase::Contact { side, obstacle } if !self.friction.is_lost => {
+                let push = self.turns.push(side, obstacle, angle).max(0.0);
+                Some((side, obstacle, push))
+            }
+            _ => None,
+        }
     }
 
     fn pass(&mut self, leg: &Leg, passage: Passage) {
@@ -102,98 +130,84 @@ impl<'a> Legs<'a> {
             angle,
             event,
             side,
+            obstacle,
             push,
             ..
         } = passage;
-        let contact = match event {
-            Some(WhiskEventKind::Touch) => self.friction.touch(side, push),
-            Some(WhiskEventKind::Undecided) => CourseContact {
-                side,
-                push,
-                phase: None,
-            },
-            _ => {
-                let contact = self.to(
-                    leg,
-                    angle,
-                    CourseContact {
-                        side,
-                        push,
-                        phase: None,
-                    },
-                );
-                self.friction.leave(event.is_some());
-                contact
-            }
-        };
-        self.add(leg, angle, event, contact);
-    }
-
-    /// Moves the contact to a push and the `angle` of the base there, in radians. Adds the snaps on the way.
-    fn to(&mut self, leg: &Leg, angle: f64, contact: CourseContact) -> CourseContact {
-        let CourseContact { side, push, .. } = contact;
-        let (contact, snaps) = self.friction.to(side, push);
-        for Snap {
-            push: at, before, ..
-        } in snaps
-        {
-            let phase = Some(before);
-            let snap = CourseContact {
-                side,
-                push: at,
-                phase,
-            };
-            let angle = side.sign().mul_add(at - push, angle);
-            self.add(leg, angle, Some(WhiskEventKind::Snap), snap);
+        if self.friction.is_lost {
+            return;
         }
-        contact
+        let (mut kind, phase) = (event, None);
+        let mut contact = CourseContact { side, push, phase };
+        match event {
+            Some(WhiskEventKind::Touch) => contact = self.friction.touch(side, push),
+            Some(WhiskEventKind::Undecided) => {}
+            _ => {
+                let (reached, changes) = self.friction.to(side, push);
+                self.change(leg, side, obstacle, changes);
+                if self.friction.is_lost {
+                    return;
+                }
+                contact = reached;
+                self.friction.leave(event.is_some());
+                if self.friction.is_lost {
+                    kind = Some(WhiskEventKind::Undecided);
+                }
+            }
+        }
+        self.add(leg, angle, kind, contact);
     }
 
-    /// Adds an event, or the last one if the contact is lost.
+    /// Adds the `changes` of the contact on `side` of an obstacle.
+    fn change(&mut self, leg: &Leg, side: Side, obstacle: i32, changes: Vec<ContactChange>) {
+        for ContactChange {
+            push,
+            before: phase,
+        } in changes
+        {
+            let angle = self.turns.touch(side, obstacle) + side.sign() * push;
+            let kind = match phase {
+                Some(_) => WhiskEventKind::Snap,
+                None => WhiskEventKind::Undecided,
+            };
+            self.add(leg, angle, Some(kind), CourseContact { side, push, phase });
+        }
+    }
+
+    /// Adds an event.
     fn add(&mut self, leg: &Leg, angle: f64, kind: Option<WhiskEventKind>, contact: CourseContact) {
-        let mut event = LegEvent {
+        let push = match kind {
+            Some(WhiskEventKind::Undecided) => f64::NAN,
+            _ => contact.push,
+        };
+        self.events.push(LegEvent {
             time_s: leg.time(angle),
             angle,
             kind,
-            contact,
-        };
-        if self.friction.is_lost {
-            event.kind = Some(WhiskEventKind::Undecided);
-            event.contact.push = f64::NAN;
-        }
-        self.events.push(event);
+            contact: CourseContact { push, ..contact },
+        });
     }
 
     /// Adds the sample at the end of a leg.
     fn end(&mut self, leg: Leg) {
-        let angle = leg.angles[1];
-        let mut contact = None;
-        if let Phase::Contact { side, obstacle } = self.phase
-            && !self.friction.is_lost
-        {
-            let push = self.turns.push(side, obstacle, angle).max(0.0);
-            let phase = None;
-            let reached = self.to(&leg, angle, CourseContact { side, push, phase });
-            if self.friction.is_lost {
-                self.add(&leg, angle, None, reached);
-            }
-            contact = Some(reached);
-        }
-        let mut phase = self.phase;
-        if self.friction.is_lost {
-            let reason = Undecided::Stuck;
-            (phase, contact) = (
-                Phase::Undecided {
-                    obstacle: 0,
-                    reason,
-                },
-                None,
-            );
-        }
-        self.samples.push(LegSample {
-            phase,
-            contact,
+        let mut sample = LegSample {
+            phase: self.phase,
+            contact: None,
             dissipated: self.friction.dissipated(),
-        });
+        };
+        if let Some((side, obstacle, push)) = self.contact(leg.angles[1]) {
+            let (contact, dissipated, changes) = self.friction.at(side, push);
+            self.change(&leg, side, obstacle, changes);
+            sample.contact = Some(contact);
+            sample.dissipated = dissipated;
+        }
+        if self.friction.is_lost {
+            sample.phase = Phase::Undecided {
+                obstacle: 0,
+                reason: Undecided::Stuck,
+            };
+            sample.contact = None;
+        }
+        self.samples.push(sample);
     }
 }

@@ -21,6 +21,8 @@ pub const ROUNDING: f64 = 8.0 * f64::EPSILON * TAU;
 /// Change of the phase at an angle of the base, in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
+    /// Index of the sample at the end of the leg on which the phase changes.
+    pub sample: usize,
     /// Time of the change, in s.
     pub time_s: f64,
     /// Angle of the base at which the phase changes, in radians.
@@ -57,12 +59,17 @@ pub trait Obstacles {
         let mut phases = vec![first];
         let mut passages = Vec::new();
         let times = course.times_s.windows(2);
-        for (angles, times) in course.angles_deg.windows(2).zip(times) {
+        for (leg, (angles, times)) in course.angles_deg.windows(2).zip(times).enumerate() {
             let [from, to] = [angles[0], angles[1]].map(f64::to_radians);
+            let sample = leg + 1;
             self.pass(&mut phase, from, to, |passage| {
                 let part = (passage.angle - from) / (to - from);
                 let time_s = (times[1] - times[0]).mul_add(part, times[0]);
-                passages.push(Passage { time_s, ..passage });
+                passages.push(Passage {
+                    sample,
+                    time_s,
+                    ..passage
+                });
             });
             phases.push(phase);
         }
@@ -70,7 +77,7 @@ pub trait Obstacles {
     }
 
     /// Moves the base from the angle `from` to `to`, in radians, and calls `event` at each touch, release and detachment. The times of
-    /// the changes are NaN.
+    /// the changes are NaN, and their samples 0.
     fn pass(&self, phase: &mut Phase, from: f64, to: f64, mut event: impl FnMut(Passage)) {
         let grows = to > from;
         loop {
@@ -90,9 +97,10 @@ pub trait Obstacles {
 
     /// Returns the event at which the phase `state` begins or ends at `angle`, in radians; `None` for a free whisker.
     fn passage(&self, state: Phase, angle: f64, grows: bool, begins: bool) -> Option<Passage> {
-        let time_s = f64::NAN;
+        let (sample, time_s) = (0, f64::NAN);
         match state {
             Phase::Undecided { obstacle, reason } if begins => Some(Passage {
+                sample,
                 time_s,
                 angle,
                 event: Some(WhiskEventKind::Undecided),
@@ -113,6 +121,7 @@ pub trait Obstacles {
                 // The end itself, without the rounding of angles: just before it, the state is nearly singular.
                 let end = self.end(side, obstacle).filter(|_| event.is_none());
                 Some(Passage {
+                    sample,
                     time_s,
                     angle,
                     event,

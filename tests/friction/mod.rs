@@ -3,6 +3,7 @@
 
 mod cells;
 mod course;
+mod events;
 mod random;
 mod sampled;
 mod sliding;
