@@ -79,7 +79,8 @@ fn curves_branches_and_courses_end_at_the_first_fold() {
         // The push passes the pair of folds to other stable states, which end later.
         let snaps = end.snaps_deg.unwrap();
         assert!(snaps.abs() > push_deg.abs(), "{snaps}");
-        assert_eq!(last.snaps_deg.map(f64::to_bits), Some(snaps.to_bits()));
+        // The steps of a branch are finer than those of a curve.
+        assert!((last.snaps_deg.unwrap() / snaps - 1.0).abs() < 1e-9);
 
         let rests = [Side::Cb, *side].map(|side| Rest::new(&whisker.rod(pole, side)));
         let touch = rests[1].pole_at_distance(distance_mm / whisker.length_mm);

@@ -1,8 +1,7 @@
 //! Events of a course behind a surface.
 
-use super::crossing::Crossing;
 use super::rows::TextureEvent;
-use super::sample::Held;
+use super::sample::{Crossing, Held};
 use crate::rod::Side;
 use crate::shooting::Reading;
 use crate::whisk::phase::Passage;

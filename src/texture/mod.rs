@@ -9,7 +9,6 @@
 //! where the chord of the resting whisker is normal to that line. It grows toward `x`, and pushes CB then.
 
 mod asperities;
-mod crossing;
 mod event;
 mod rows;
 mod sample;
@@ -27,8 +26,7 @@ use crate::whisk::phase::{Obstacles, Phase};
 use crate::whisk::states::{BothSides, RowPush};
 use crate::whisk::{AngleCourse, WhiskEventKind};
 use asperities::Asperities;
-use crossing::Moment;
-use sample::Held;
+use sample::{Crossing, Held};
 use tip::TipFrame;
 
 /// Course of a whisker behind a rough surface.
@@ -138,37 +136,19 @@ pub fn texture(
 
     let changes = passages.iter().map(|own| [own.time_s, own.angle]);
     let changes: Vec<[f64; 2]> = changes.collect();
-    let contacts_then = passages
+    let contacts = passages
         .iter()
         .map(|own| place.contact(own.side, own.obstacle, own.push));
-    let contacts_then: Vec<Contact> = contacts_then.collect();
-    let held_then = place.held(&states, &contacts_then, &changes);
-    let kinds = passages
-        .iter()
-        .zip(&contacts_then)
-        .map(|(passage, contact)| {
-            let end = contact.map(|own| states.detachment(own.side, own.row_push.0));
-            passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
-        });
+    let contacts: Vec<Contact> = contacts.collect();
+    let held_then = place.held(&states, &contacts, &changes);
+    let kinds = passages.iter().zip(&contacts).map(|(passage, contact)| {
+        let end = contact.map(|own| states.detachment(own.side, own.row_push.0));
+        passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
+    });
     let kinds: Vec<WhiskEventKind> = kinds.collect();
 
-    let mut then = passages.iter().zip(&contacts_then).peekable();
-    let mut course_moments = Vec::with_capacity(moments.len() + passages.len());
-    for (i, ([time_s, angle], contact)) in moments.iter().zip(&contacts).enumerate() {
-        while let Some((passage, contact)) = then.next_if(|(own, _)| own.sample <= i) {
-            course_moments.push(Moment {
-                time_s: passage.time_s,
-                angle: passage.angle,
-                contact: *contact,
-            });
-        }
-        course_moments.push(Moment {
-            time_s: *time_s,
-            angle: *angle,
-            contact: *contact,
-        });
-    }
-    let crossed = place.crossing(&states, &course_moments);
+    let samples = held.iter().zip(&moments);
+    let crossed = Crossing::first(samples.chain(held_then.iter().zip(&changes)));
     Ok(Texture {
         samples: sample::samples(course, &phases, &passages, &held, &place.tips, crossed),
         events: event::events(&passages, &kinds, &held_then, crossed),

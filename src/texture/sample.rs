@@ -1,6 +1,5 @@
 //! Samples of a course behind a surface, from the states in contact.
 
-use super::crossing::Crossing;
 use super::rows::{NoTextureState, TexturePhase, TextureSample};
 use super::tip::{TipFrame, TipPlace};
 use crate::rod::Side;
@@ -26,6 +25,33 @@ impl Held {
     }
 }
 
+/// First state in which the whisker meets the surface in two places. Other asperities would bend it there, too.
+#[derive(Clone, Copy)]
+pub struct Crossing {
+    pub time_s: f64,
+    /// Angle of the base at the crossing, in radians.
+    pub angle: f64,
+    pub held: Held,
+}
+
+impl Crossing {
+    /// Returns the first crossing among states, each at its `[time in s, angle in radians]`; `None` without one.
+    pub fn first<'a>(
+        states: impl Iterator<Item = (&'a Option<Held>, &'a [f64; 2])>,
+    ) -> Option<Self> {
+        let crossing = |(held, [time_s, angle]): (&Option<Held>, &[f64; 2])| {
+            let held = held.filter(|own| own.state.is_some_and(|(_, tip)| tip.crosses))?;
+            Some(Self {
+                time_s: *time_s,
+                angle: *angle,
+                held,
+            })
+        };
+        let crossings = states.filter_map(crossing);
+        crossings.min_by(|one, other| one.time_s.total_cmp(&other.time_s))
+    }
+}
+
 /// Returns the samples of a course, `[sample]`; all from the first crossing on are undecided.
 pub fn samples(
     course: &AngleCourse,
@@ -38,59 +64,57 @@ pub fn samples(
     let mut passages = passages.iter().peekable();
     let times = course.times_s().iter().zip(course.angles_deg());
     let states = times.zip(phases.iter().zip(held));
-    let samples = states
-        .enumerate()
-        .map(|(i, ((&time_s, &angle_deg), (phase, held)))| {
-            let mut has_slipped = false;
-            while let Some(passage) = passages.next_if(|passage| passage.sample <= i) {
-                has_slipped |= passage.event.is_none();
+    let samples = states.map(|((&time_s, &angle_deg), (phase, held))| {
+        let mut has_slipped = false;
+        while let Some(passage) = passages.next_if(|passage| passage.time_s <= time_s) {
+            has_slipped |= passage.event.is_none();
+        }
+        let crosses = crossed.is_some_and(|own| own.time_s <= time_s);
+        let reason = match phase {
+            _ if crosses => Some(NoTextureState::CrossesSurface),
+            Phase::Undecided { reason, .. } => Some(match reason {
+                Undecided::OnThePole => NoTextureState::OnAnAsperity,
+                Undecided::TipEdge => NoTextureState::TipEdge,
+                // Only a contact with friction is stuck, and textures have none.
+                Undecided::NotFound | Undecided::Stuck => NoTextureState::NotFound,
+            }),
+            Phase::Contact { .. } if held.is_none_or(|own| own.state.is_none()) => {
+                Some(NoTextureState::NotFound)
             }
-            let crosses = crossed.is_some_and(|own| own.time_s <= time_s);
-            let reason = match phase {
-                _ if crosses => Some(NoTextureState::CrossesSurface),
-                Phase::Undecided { reason, .. } => Some(match reason {
-                    Undecided::OnThePole => NoTextureState::OnAnAsperity,
-                    Undecided::TipEdge => NoTextureState::TipEdge,
-                    // Only a contact with friction is stuck, and textures have none.
-                    Undecided::NotFound | Undecided::Stuck => NoTextureState::NotFound,
-                }),
-                Phase::Contact { .. } if held.is_none_or(|own| own.state.is_none()) => {
-                    Some(NoTextureState::NotFound)
-                }
-                _ => None,
-            };
-            let held = held.filter(|_| !crosses);
-            let is_free = reason.is_none() && held.is_none();
-            let load = |of: fn(&Reading) -> f64| match is_free {
-                true => Some(0.0),
-                false => held.and_then(|own| own.value(of)),
-            };
-            let tip = match is_free {
-                true => Some(tips.free(angle_deg.to_radians())),
-                false => held.and_then(|own| own.state).map(|(_, tip)| tip),
-            };
-            TextureSample {
-                time_s,
-                angle_deg,
-                phase: match reason {
-                    Some(_) => TexturePhase::Undecided,
-                    None if has_slipped => TexturePhase::Slipping,
-                    None if is_free => TexturePhase::Free,
-                    None => TexturePhase::Stuck,
-                },
-                asperity: held.map(|own| own.asperity),
-                side: held.map(|own| own.side),
-                push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
-                arc_length_mm: held.and_then(|own| own.value(|state| state.arc_length_mm)),
-                tip_x_mm: tip.map(|tip| tip.x_mm),
-                tip_height_mm: tip.map(|tip| tip.height_mm),
-                force_un: load(|state| state.force_un),
-                base_force_x_un: load(|state| state.base_force_un.x),
-                base_force_y_un: load(|state| state.base_force_un.y),
-                base_moment_nnm: load(|state| state.base_moment_nnm),
-                energy_nj: load(|state| state.energy_nj),
-                reason,
-            }
-        });
+            _ => None,
+        };
+        let held = held.filter(|_| !crosses);
+        let is_free = reason.is_none() && held.is_none();
+        let load = |of: fn(&Reading) -> f64| match is_free {
+            true => Some(0.0),
+            false => held.and_then(|own| own.value(of)),
+        };
+        let tip = match is_free {
+            true => Some(tips.free(angle_deg.to_radians())),
+            false => held.and_then(|own| own.state).map(|(_, tip)| tip),
+        };
+        TextureSample {
+            time_s,
+            angle_deg,
+            phase: match reason {
+                Some(_) => TexturePhase::Undecided,
+                None if has_slipped => TexturePhase::Slipping,
+                None if is_free => TexturePhase::Free,
+                None => TexturePhase::Stuck,
+            },
+            asperity: held.map(|own| own.asperity),
+            side: held.map(|own| own.side),
+            push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
+            arc_length_mm: held.and_then(|own| own.value(|state| state.arc_length_mm)),
+            tip_x_mm: tip.map(|tip| tip.x_mm),
+            tip_height_mm: tip.map(|tip| tip.height_mm),
+            force_un: load(|state| state.force_un),
+            base_force_x_un: load(|state| state.base_force_un.x),
+            base_force_y_un: load(|state| state.base_force_un.y),
+            base_moment_nnm: load(|state| state.base_moment_nnm),
+            energy_nj: load(|state| state.energy_nj),
+            reason,
+        }
+    });
     samples.collect()
 }

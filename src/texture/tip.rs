@@ -1,6 +1,5 @@
 //! Position of the tip: the whisker beyond the contact is not bent, so that it has its shape at rest.
 
-use crate::numerics::Bracket;
 use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Surface, Whisker};
 use crate::shooting::Reading;
@@ -26,29 +25,22 @@ pub struct TipPlace {
     pub x_mm: f64,
     /// Height of the tip beyond the line of the asperities, in mm.
     pub height_mm: f64,
+    /// True if another part of the whisker than that next to the contact meets the line of the asperities.
+    pub crosses: bool,
 }
 
-/// Clearance of the free part of the whisker, which lies beyond its contact.
-#[derive(Clone, Copy, Debug)]
-pub struct Clearance {
-    /// Least height above the contact of a point of the free part, in parts of its arclength from there. It is negative if the whisker meets the line of the asperities again.
-    pub least: f64,
-    /// Direction of the tangent at the contact, in radians from the line of the surface.
-    direction: f64,
-    /// Largest turn of a chord from the contact, against its tangent, by a change of the contact along the whisker: the arclength of the contact times the largest curvature.
-    bend: f64,
+/// Point of the whisker beyond the contact.
+struct FreePoint {
+    /// Arclength, in mm.
+    s_mm: f64,
+    /// Position from the contact: along the surface, and toward it, in mm.
+    from_contact: DVec2,
+    /// Second coordinate of the unit tangent.
+    slope: f64,
 }
 
-impl Clearance {
-    /// Returns the largest change of the clearance to that of another state if direction and contact change monotonically in between. A chord
-    /// from the contact changes by at most half the largest curvature, and the tangent there by the largest curvature.
-    pub fn variation(&self, to: &Self) -> f64 {
-        (to.direction - self.direction).abs() + 1.5 * (to.bend - self.bend).abs()
-    }
-}
-
-/// Number of parts of the free part between which its lowest chord is looked for.
-const PARTS: u32 = 64;
+/// Height, in mm, by which a point beyond the contact may lie below it: rounding, many times over.
+const ROUNDING_MM: f64 = 1e-9;
 
 impl TipFrame {
     pub fn new(whisker: &Whisker, surface: &Surface) -> Self {
@@ -66,7 +58,7 @@ impl TipFrame {
 
     /// Returns the position of the tip of the free whisker with the base at `angle`, in radians.
     pub fn free(&self, angle: f64) -> TipPlace {
-        self.place(self.resting(self.rest.end(), angle))
+        self.place(self.resting(self.rest.end(), angle), false)
     }
 
     /// Returns the point at arclength `s`, in whisker lengths, of the free whisker with the base at `angle`, in radians. The point is in mm: along
@@ -78,65 +70,59 @@ impl TipFrame {
 
     /// Returns the position of the tip of the whisker in the state `reading` against an asperity at `x_mm`, with the base at `angle`, in radians.
     pub fn held(&self, x_mm: f64, side: Side, angle: f64, reading: &Reading) -> TipPlace {
-        let tangent = DVec2::from_angle(self.direction(angle, reading));
+        let direction = self.tangent - angle + reading.contact_angle_deg.to_radians();
+        let tangent = DVec2::from_angle(direction);
         let centre = DVec2::new(x_mm, self.distance_mm);
         let contact = centre + side.sign() * self.radius_mm * tangent.perp();
-        let (s, end) = (self.contact(reading), self.rest.end());
+        let end = self.rest.end();
+        let s = (reading.arc_length_mm / self.length_mm).min(end);
         let (at, at_rest) = self.rest.at_arclength(s);
-        let (tip, _) = self.rest.at_arclength(end);
         let turn = tangent.rotate(DVec2::new(at_rest.x, -at_rest.y));
-        self.place(contact + turn.rotate(tip - at) * self.length_mm)
+        let free = |s: f64| {
+            let (point, tangent) = self.rest.at_arclength(s);
+            let from_contact = turn.rotate(point - at) * self.length_mm;
+            FreePoint {
+                s_mm: s * self.length_mm,
+                from_contact,
+                slope: turn.rotate(tangent).y,
+            }
+        };
+        let (begin, tip) = (free(s), free(end));
+        let at_mm = |s_mm: f64| free(s_mm / self.length_mm);
+        let crosses = tangent.y <= 0.0 || self.descends(&begin, &tip, &at_mm);
+        self.place(contact + tip.from_contact, crosses)
     }
 
-    /// Returns the clearance of the free part in the state `reading`, with the base at `angle`, in radians.
-    pub fn clearance(&self, angle: f64, reading: &Reading) -> Clearance {
-        let direction = self.direction(angle, reading);
-        let tangent = DVec2::from_angle(direction);
-        let (s, end) = (self.contact(reading), self.rest.end());
-        let (at, at_rest) = self.rest.at_arclength(s);
-        let turn = tangent.rotate(DVec2::new(at_rest.x, -at_rest.y));
-        let slope = |to: f64| {
-            let (point, _) = self.rest.at_arclength(to);
-            turn.rotate(point - at).y / (to - s)
-        };
-        // The slope of a chord falls while the tangent at its end is below it.
-        let rise = |to: f64| {
-            let (point, tangent) = self.rest.at_arclength(to);
-            turn.rotate(tangent * (to - s) - (point - at)).y
-        };
-        let to = |part: u32| (end - s).mul_add(f64::from(part) / f64::from(PARTS), s);
-        let slopes = (1..=PARTS).map(|part| (part, slope(to(part))));
-        let contact = (0, tangent.y);
-        let (lowest, least) = match s < end {
-            true => slopes.fold(contact, |a, b| if b.1 < a.1 { b } else { a }),
-            false => contact,
-        };
-        let around = [lowest.saturating_sub(1), (lowest + 1).min(PARTS)].map(to);
-        let turns = Bracket::new(around, around.map(rise)).bisect(rise);
-        Clearance {
-            least: match turns > s {
-                true => least.min(slope(turns)),
-                false => least,
-            },
-            direction,
-            bend: self.sharpest_per_mm * self.length_mm * s,
+    /// Returns true if a point between two points of the free part lies below the contact. The second derivative of the height by the
+    /// arclength is at most the largest curvature: parts whose lowest possible height is that of the contact need no further points.
+    fn descends(
+        &self,
+        from: &FreePoint,
+        to: &FreePoint,
+        between: &impl Fn(f64) -> FreePoint,
+    ) -> bool {
+        let heights = [from, to].map(|own| own.from_contact.y);
+        let lowest = heights[0].min(heights[1]);
+        if lowest < -ROUNDING_MM {
+            return true;
         }
+        let length = to.s_mm - from.s_mm;
+        let bend = self.sharpest_per_mm * length;
+        // Above the chord less the largest sag, or above the parabola that the first point begins.
+        let above_chord = lowest - 0.125 * bend * length;
+        let above_parabola = heights[0].min(heights[0] + length * (from.slope - 0.5 * bend));
+        if above_chord.max(above_parabola) >= -2.0 * ROUNDING_MM {
+            return false;
+        }
+        let middle = between(from.s_mm + 0.5 * length);
+        self.descends(from, &middle, between) || self.descends(&middle, to, between)
     }
 
-    /// Returns the direction of the tangent at the contact, in radians from the line of the surface.
-    fn direction(&self, angle: f64, reading: &Reading) -> f64 {
-        self.tangent - angle + reading.contact_angle_deg.to_radians()
-    }
-
-    /// Returns the arclength of the contact, in whisker lengths.
-    fn contact(&self, reading: &Reading) -> f64 {
-        (reading.arc_length_mm / self.length_mm).min(self.rest.end())
-    }
-
-    fn place(&self, tip: DVec2) -> TipPlace {
+    fn place(&self, tip: DVec2, crosses: bool) -> TipPlace {
         TipPlace {
             x_mm: tip.x,
             height_mm: tip.y - self.distance_mm,
+            crosses,
         }
     }
 }
