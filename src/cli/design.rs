@@ -14,6 +14,7 @@ use whiskmap::input::Quantity;
 use whiskmap::render::designs;
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene, digits, rounded};
+use whiskmap::terminal::StandardOutput;
 use whiskmap::trace::DetachmentKind;
 
 #[derive(Debug, Args)]
@@ -173,7 +174,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
             return Ok(());
         }
     }
-    let mut out = io::stdout().lock();
+    let mut out = StandardOutput::open();
     for value in values {
         writeln!(out, "{}", digits(value))?;
     }

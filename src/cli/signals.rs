@@ -23,11 +23,12 @@ pub fn handle(temporary: TemporaryFiles, advice: &'static str) {
         };
         temporary.abandon();
         // The current line of a terminal may be a progress bar.
-        let is_watched = std::io::stderr().is_terminal();
-        let start = if is_watched { "\n" } else { "" };
+        if std::io::stderr().is_terminal() {
+            super::failure::message("");
+        }
         let name = low_level::signal_name(signal).unwrap_or("a signal");
         super::failure::message(&format!(
-            "{start}error: interrupted by {name}; unfinished files are removed{advice}"
+            "error: interrupted by {name}; unfinished files are removed{advice}"
         ));
         low_level::exit(128 + signal);
     });

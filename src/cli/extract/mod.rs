@@ -17,6 +17,7 @@ use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::plan::Digits;
 use whiskmap::scene::{LONGEST_TITLE, Parameter, Scene, SceneData};
 use whiskmap::store::{MapDescription, MapSlice, MapWriter, TemporaryFolder, ZarrStore};
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -55,7 +56,7 @@ pub fn run(args: &ExtractArgs, files: &mut Files) -> Result<(), Failure> {
         Some("exr") => map(&slice, &channels, path, files)?,
         _ => return refuse(path, "must end in .csv, .npy, .zarr or .exr"),
     }
-    writeln!(io::stdout(), "{}", path.display())?;
+    writeln!(StandardOutput::open(), "{}", path.display())?;
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! Temporary files and folders. They are removed when they are dropped and when the process is interrupted.
 //!
-//! A later process of the same user removes the files of an interrupted one, see [`Output::remove_leftovers`](super::Output).
+//! A later process of the same user removes those of an interrupted one, see [`Output::remove_leftovers`](super::Output).
 
 mod file;
 #[cfg(feature = "zarr")]
@@ -48,14 +48,15 @@ impl TemporaryFiles {
     /// after this wait forever.
     pub fn abandon(&self) {
         let list = self.list();
-        for path in list.iter() {
+        // A folder is listed before its files, from which threads that finish them still make new entries.
+        for path in list.iter().rev() {
             let _ = fs::remove_file(path);
             let _ = fs::remove_dir_all(path);
         }
         std::mem::forget(list);
     }
 
-    /// Checks that files can be made in `folder`, and removes temporary files of interrupted processes there.
+    /// Checks that files can be made in `folder`, and removes temporary files and folders of interrupted processes there.
     ///
     /// # Errors
     /// The folder does not exist or is not writable.

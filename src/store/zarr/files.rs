@@ -134,14 +134,13 @@ fn json(value: &Value) -> Vec<u8> {
     value.to_string().into_bytes()
 }
 
-/// Writes a file as a whole, piece by piece, into an existing folder. It is on the disk before this returns, because a run that resumes
-/// after a crash takes existing files for finished ones.
+/// Writes a file as a whole, piece by piece, into an existing folder.
 pub(super) fn write(
     path: &Path,
     pieces: &[impl AsRef<[u8]>],
     temporary: &TemporaryFiles,
 ) -> Result<(), StoreError> {
-    let written = finish(path, pieces, temporary, Output::finish_durably);
+    let written = finish(path, pieces, temporary, Output::finish);
     written.map_err(StoreError::at(path, StoreError::Write))
 }
 
