@@ -87,11 +87,8 @@ pub enum Failure {
     Checks { failed: usize, all: usize },
     #[error("cannot write {}: {cause}", path.display())]
     Write { path: PathBuf, cause: io::Error },
-    #[error("cannot start {count} threads: {cause}; give fewer by --threads or RAYON_NUM_THREADS")]
-    Threads {
-        count: usize,
-        cause: rayon::ThreadPoolBuildError,
-    },
+    #[error("cannot start threads ({count}): {cause}; set a smaller number by RAYON_NUM_THREADS")]
+    Threads { count: usize, cause: String },
     /// Standard output is closed or full.
     #[error("standard output: {0}")]
     Output(#[from] io::Error),

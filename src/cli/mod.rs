@@ -180,19 +180,27 @@ fn start(command: &Command) -> Result<(), Failure> {
         _ => (None, ""),
     };
     let temporary = TemporaryFiles::default();
-    signals::handle(temporary.clone(), advice);
+    signals::handle(temporary.clone(), advice).map_err(unstarted(1))?;
     // The command runs on a thread of the pool: from outside, every parallel call would first wake up a thread.
     let count = thread_count(threads)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(count)
         .stack_size(STACK)
         .build()
-        .map_err(|cause| Failure::Threads { count, cause })?;
+        .map_err(unstarted(count))?;
     let mut files = Files::new(temporary);
     pool.install(|| run(command, &mut files))
 }
 
-/// Environment variable with the number of threads, as in other programs that use rayon: without a number or 0, all cores.
+/// Returns a converter of errors from starting `count` threads.
+fn unstarted<E: ToString>(count: usize) -> impl FnOnce(E) -> Failure {
+    move |cause| Failure::Threads {
+        count,
+        cause: cause.to_string(),
+    }
+}
+
+/// Environment variable with the number of threads, as of other programs that use rayon; without it, and if it is 0, all cores are used.
 const THREADS: &str = "RAYON_NUM_THREADS";
 
 /// Returns the number of threads to start: that of `--threads`, of the environment, or of the processor's cores.

@@ -1,6 +1,7 @@
 //! `whiskmap map` on one whisker.
 
-use super::{Place, SCENE, names};
+use super::{Place, Run, SCENE, names};
+use std::fs;
 use std::io::Read;
 use std::process::Stdio;
 use whiskmap::store::StoredMap;
@@ -29,6 +30,35 @@ fn a_map_end_to_end() {
     let stored = StoredMap::open(&place.path("new/folder/scene.exr")).unwrap();
     assert_eq!(stored.counts.regimes["slip-off"], counts[2]);
     assert_eq!(stored.attribute("scene").unwrap(), SCENE);
+}
+
+/// Each run draws the picture of its own map, whichever has the name by then.
+#[test]
+fn runs_of_two_scenes_with_one_name_draw_their_own_pictures() {
+    let place = Place::with(SCENE);
+    for (folder, radius) in [("a", "0.25"), ("b", "0.5")] {
+        fs::create_dir(place.path(folder)).unwrap();
+        let scene = SCENE.replace("radius_mm = 0.25", &format!("radius_mm = {radius}"));
+        place.write(&format!("{folder}/scene.toml"), &scene);
+        let scene = format!("{folder}/scene.toml");
+        place.map(&[&scene, "-o", folder]);
+    }
+    let run = |number: usize| {
+        let scene = ["a/scene.toml", "b/scene.toml"][number % 2];
+        let mut command = place.plain_command(&["map", scene, "--engine=cpu", "--threads=1"]);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    };
+    let runs: Vec<_> = (0..16).map(run).collect();
+    for run in runs {
+        let run = Run::of(&run.wait_with_output().unwrap());
+        assert_eq!(run.code, Some(0), "{run:?}");
+    }
+    for name in ["scene.exr", "scene.png"] {
+        let found = place.bytes(&format!("outputs/{name}"));
+        let own = ["a", "b"].map(|folder| place.bytes(&format!("{folder}/{name}")));
+        assert!(own.contains(&found), "{name}");
+    }
 }
 
 #[test]

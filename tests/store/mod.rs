@@ -11,6 +11,7 @@ mod flipped_bits;
 mod identity;
 mod made_up;
 mod refused;
+mod replaced;
 
 use crate::map;
 use crate::sealed;
