@@ -6,7 +6,7 @@ use std::io::{self, IsTerminal, Write};
 
 /// Returns true for a character that changes how a terminal shows other ones: a control character of C0 or C1, or a mark, an
 /// embedding, an override or an isolate of bidirectional text.
-const fn is_control(c: char) -> bool {
+fn is_control(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }

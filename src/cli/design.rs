@@ -7,7 +7,7 @@ use super::output_file::STDOUT;
 use super::outputs::{PlotArgs, open};
 use super::pole::{self, PoleArgs, title};
 use clap::Args;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::design::{self, Design, DesignError, DesignGoal, DesignTarget};
 use whiskmap::input::Quantity;

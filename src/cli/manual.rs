@@ -5,7 +5,7 @@ use super::failure::Failure;
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
-use std::io::{self, Write};
+use std::io::Write;
 use whiskmap::input::did_you_mean;
 use whiskmap::terminal::StandardOutput;
 

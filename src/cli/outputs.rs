@@ -8,7 +8,7 @@ use super::size::SizeArgs;
 use super::units::ColumnUnits;
 use clap::Args;
 use serde::Serialize;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::render::{Chart, Picture, PictureFormat, PictureSize, Plot};
 use whiskmap::terminal::StandardOutput;

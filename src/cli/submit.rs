@@ -9,7 +9,7 @@ use super::plan::{PlanEstimate, memory};
 use super::sharded::shares;
 use super::slurm;
 use clap::{Args, Parser};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::Scene;
 use whiskmap::terminal::StandardOutput;

@@ -82,7 +82,7 @@ pub(super) fn lines(text: &str, separator: char) -> Result<Vec<CsvLine>, (usize,
         }
     }
     match last {
-        (_, cells) if cells == [SENTINEL[1]] => {
+        (_, cells) if cells == [SENTINEL[1]][..] => {
             lines.pop();
             Ok(lines)
         }

@@ -10,7 +10,7 @@ use super::files::Files;
 use super::output_file::unwritten;
 use super::selection::{SelectionArgs, channels};
 use clap::Args;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};

@@ -11,7 +11,7 @@ use super::output_file::STDOUT;
 use super::pole::check_single;
 use clap::Args;
 use serde_json::{Map, Value, json};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use table::{six_digits, table};
 use whiskmap::fit::{Fit, FitError, fit};
