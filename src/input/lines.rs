@@ -92,3 +92,41 @@ pub(super) fn lines(text: &str, separator: char) -> Result<Vec<CsvLine>, (usize,
 
 /// Message about a cell in quotes that goes on to the end of the file.
 const OPEN_QUOTE: &str = "has a cell that begins with a quote: must have a quote at its end, too";
+
+#[cfg(test)]
+mod tests {
+    use super::lines;
+
+    #[test]
+    fn a_quote_that_is_not_closed_is_found() {
+        for (text, line) in [
+            ("a,b\n1,\"2", 2),
+            ("a,b\n\"1,2\n3,4\n", 2),
+            ("a,b\n1,2\n\"", 3),
+            ("a,b\n\n# \"\n1,\"2\"\"\n", 4),
+            ("\"a,b\n1,2", 1),
+        ] {
+            let why = lines(text, ',').map(|lines| lines.len());
+            let line = why.map_err(|(found, _)| assert_eq!(found, line, "{text:?}"));
+            assert_eq!(line, Err(()), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn closed_quotes_are_read() {
+        for (text, last) in [
+            ("a,b\n1,\"2\"", "2"),
+            ("a,b\n1,\"2\"\"\"\n", "2\""),
+            ("a,b\n1,\"\nend\"\n# \"", "end"),
+            ("a,b\n1,2\"\n\n", "2\""),
+            ("a,b\n1,\" 2 \"\n# \"end\n", "2"),
+            ("a,b\nend,end", "end"),
+        ] {
+            let lines = lines(text, ',').unwrap_or_default();
+            assert_eq!(lines.len(), 2, "{text:?}");
+            assert_eq!(lines[1].cells.get(1), Some(last), "{text:?}");
+        }
+        let single = lines("end\nend", ',').unwrap_or_default();
+        assert_eq!(single.len(), 2);
+    }
+}

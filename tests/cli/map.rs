@@ -1,9 +1,11 @@
 //! `whiskmap map` on one whisker.
 
-use super::{Place, Run, SCENE, names};
+use super::{Place, SCENE, names};
 use std::fs;
 use std::io::Read;
 use std::process::Stdio;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use whiskmap::store::StoredMap;
 
 #[test]
@@ -32,33 +34,38 @@ fn a_map_end_to_end() {
     assert_eq!(stored.attribute("scene").unwrap(), SCENE);
 }
 
-/// Each run draws the picture of its own map, whichever has the name by then.
+/// While a map is written and drawn, another thread replaces it by another map, again and again.
 #[test]
-fn runs_of_two_scenes_with_one_name_draw_their_own_pictures() {
+fn the_picture_is_that_of_the_map_of_the_run() {
     let place = Place::with(SCENE);
-    for (folder, radius) in [("a", "0.25"), ("b", "0.5")] {
-        fs::create_dir(place.path(folder)).unwrap();
-        let scene = SCENE.replace("radius_mm = 0.25", &format!("radius_mm = {radius}"));
-        place.write(&format!("{folder}/scene.toml"), &scene);
-        let scene = format!("{folder}/scene.toml");
-        place.map(&[&scene, "-o", folder]);
-    }
-    let run = |number: usize| {
-        let scene = ["a/scene.toml", "b/scene.toml"][number % 2];
-        let mut command = place.plain_command(&["map", scene, "--engine=cpu", "--threads=1"]);
-        command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        command.spawn().unwrap()
-    };
-    let runs: Vec<_> = (0..16).map(run).collect();
-    for run in runs {
-        let run = Run::of(&run.wait_with_output().unwrap());
-        assert_eq!(run.code, Some(0), "{run:?}");
-    }
-    for name in ["scene.exr", "scene.png"] {
-        let found = place.bytes(&format!("outputs/{name}"));
-        let own = ["a", "b"].map(|folder| place.bytes(&format!("{folder}/{name}")));
-        assert!(own.contains(&found), "{name}");
-    }
+    let other = SCENE.replace("radius_mm = 0.25", "radius_mm = 0.5");
+    fs::create_dir(place.path("other")).unwrap();
+    place.write("other/scene.toml", &other);
+    place.map(&["other/scene.toml", "-o", "other"]);
+    place.map(&["scene.toml", "-o", "own"]);
+    fs::create_dir(place.path("outputs")).unwrap();
+    let is_done = AtomicBool::new(false);
+    thread::scope(|threads| {
+        threads.spawn(|| {
+            let next = place.path("outputs/next.exr");
+            for _ in 0..10_000_000 {
+                if is_done.load(Ordering::Relaxed) {
+                    break;
+                }
+                fs::copy(place.path("other/scene.exr"), &next).unwrap();
+                fs::rename(&next, place.path("outputs/scene.exr")).unwrap();
+            }
+        });
+        let map = ["map", "scene.toml", "--engine=cpu"];
+        let runs: Vec<_> = (0..8)
+            .map(|_| (place.run(&map), fs::read(place.path("outputs/scene.png"))))
+            .collect();
+        is_done.store(true, Ordering::Relaxed);
+        for (run, picture) in runs {
+            assert_eq!(run.code, Some(0), "{run:?}");
+            assert!(picture.unwrap() == place.bytes("own/scene.png"));
+        }
+    });
 }
 
 #[test]

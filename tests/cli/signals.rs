@@ -62,6 +62,33 @@ fn an_interrupted_run_cleans_up() {
     }
 }
 
+/// The store is written in a temporary folder, to which threads still add files when the signal arrives.
+#[test]
+fn an_interrupted_extract_leaves_no_folder() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml", "--no-png"]);
+    fs::create_dir(place.path("new")).unwrap();
+    let extract = ["extract", "outputs/scene.exr", "-o", "new/x.zarr"];
+    for _ in 0..40 {
+        let mut child = place.plain_command(&extract);
+        let mut child = child
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        while names(&place.path("new")).is_empty() && child.try_wait().unwrap().is_none() {
+            std::thread::yield_now();
+        }
+        if child.try_wait().unwrap().is_none() {
+            send("TERM", &child);
+        }
+        child.wait().unwrap();
+        let left = unfinished(&place, "new");
+        assert_eq!(left, [""; 0]);
+        let _ = fs::remove_dir_all(place.path("new/x.zarr"));
+    }
+}
+
 /// `nohup` ignores SIGHUP, and a shell ignores the other two for its background jobs. A process inherits this.
 #[test]
 fn tests_do_not_depend_on_ignored_signals() {

@@ -44,11 +44,20 @@ impl TemporaryFiles {
         Ok((made, listed))
     }
 
-    /// Removes all temporary files and folders of a process that is about to end without unwinding. Threads that begin or finish a file
-    /// after this wait forever.
+    /// Creates a folder and those that hold it, if need be, with no interruption in between.
+    ///
+    /// # Errors
+    /// An error of [`fs::create_dir_all`].
+    pub fn create_folders(&self, path: &Path) -> io::Result<()> {
+        let _list = self.list();
+        fs::create_dir_all(path)
+    }
+
+    /// Removes all temporary files and folders of a process that is about to end without unwinding. Threads that create a file or a folder
+    /// or finish a file after this wait forever.
     pub fn abandon(&self) {
         let list = self.list();
-        // A folder is listed before its files, from which threads that finish them still make new entries.
+        // The files in a folder are listed after it. Without them, no thread can add an entry to it.
         for path in list.iter().rev() {
             let _ = fs::remove_file(path);
             let _ = fs::remove_dir_all(path);
