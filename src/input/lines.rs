@@ -66,10 +66,10 @@ pub(super) fn lines(text: &str, separator: char) -> Result<Vec<CsvLine>, (usize,
         let mut cells = cells.map_err(|why| (number, why.to_string()))?;
         // A record's position is before the blank lines and comments that the reader has left out.
         let start = cells.position().map_or(0, |place| place.byte() as usize);
-        number += text[counted..start].matches('\n').count();
+        number += guarded[counted..start].matches('\n').count();
         counted = start;
         let left_out = |line: &&str| line.is_empty() || line.starts_with('#');
-        let above = text[start..].lines().take_while(left_out).count();
+        let above = guarded[start..].lines().take_while(left_out).count();
         last = (number + above, cells.clone());
         cells.trim();
         let is_comment = cells.get(0).is_some_and(|cell| cell.starts_with('#'));
