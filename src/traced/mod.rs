@@ -16,7 +16,7 @@ use glam::DVec2;
 /// Points more than the degree that a fit needs: three for length and pose, and one to have a distance left.
 const MORE_POINTS: usize = 4;
 
-/// Most points of a fit. It takes 5 s, and a whisker needs far fewer.
+/// Most points of a fit. It takes 3 s, and a whisker needs far fewer.
 const MOST_POINTS: usize = 50_000;
 
 /// Fewest points from which cross-validation chooses a degree.
