@@ -114,6 +114,8 @@ pub mod refine;
 pub mod sheet;
 mod stopwatch;
 #[doc(hidden)]
+pub mod terminal;
+#[doc(hidden)]
 pub use whiskmap_mechanics::{numerics, rod, shooting};
 
 pub use classify::{Regime, Status};

@@ -6,6 +6,7 @@ use std::io;
 use std::path::Path;
 use whiskmap::plan::PlanError;
 use whiskmap::store::StoreError;
+use whiskmap::terminal::escaped;
 use whiskmap::trace::NoState;
 use whiskmap::{Error, scene};
 
@@ -71,7 +72,7 @@ pub fn of_state(why: NoState) -> PyErr {
 pub fn of_store(why: &StoreError) -> PyErr {
     match why {
         StoreError::Read(path, cause) => of_io(path, cause),
-        _ => PyValueError::new_err(why.to_string()),
+        _ => PyValueError::new_err(escaped(&why.to_string())),
     }
 }
 

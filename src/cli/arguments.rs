@@ -17,6 +17,9 @@ pub fn angle(text: &str) -> Result<f64, String> {
     Quantity::AngleDeg.parse(text)
 }
 
+/// Numbers of threads that a run can have.
+pub const THREADS: RangeInclusive<u32> = 1..=1024;
+
 /// Returns a parser of whole numbers within `range`.
 pub fn whole(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone {
     move |text| {

@@ -11,6 +11,7 @@ use std::str::FromStr;
 use whiskmap::compare::{MapComparison, QuantityComparison, Within, compare};
 use whiskmap::plan::Digits;
 use whiskmap::store::{MapSource, StoreError};
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -94,7 +95,7 @@ fn print(
     maps: &[MapSource; 2],
     found: &MapComparison,
 ) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
+    let mut out = StandardOutput::open();
     for (path, map) in paths.into_iter().zip(maps) {
         writeln!(out, "{}: {}", path.display(), settings(map)?)?;
     }

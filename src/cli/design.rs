@@ -7,13 +7,14 @@ use super::output_file::STDOUT;
 use super::outputs::{PlotArgs, open};
 use super::pole::{self, PoleArgs, title};
 use clap::Args;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::design::{self, Design, DesignError, DesignGoal, DesignTarget};
 use whiskmap::input::Quantity;
 use whiskmap::render::designs;
 use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene, digits, rounded};
+use whiskmap::terminal::StandardOutput;
 use whiskmap::trace::DetachmentKind;
 
 #[derive(Debug, Args)]
@@ -173,7 +174,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
             return Ok(());
         }
     }
-    let mut out = io::stdout().lock();
+    let mut out = StandardOutput::open();
     for value in values {
         writeln!(out, "{}", digits(value))?;
     }

@@ -5,9 +5,10 @@ use super::failure::Failure;
 use std::io::Write;
 use whiskmap::engine::EngineDescription;
 use whiskmap::engine::gpu::{Precision, adapters};
+use whiskmap::terminal::StandardOutput;
 
 pub fn run() -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
+    let mut out = StandardOutput::open();
     let reports = adapters();
     let cpu = EngineDescription::of(None);
     let cpu = format!("{} on {}", cpu.engine, cpu.adapter);

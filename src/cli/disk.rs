@@ -3,7 +3,9 @@
 use super::estimate::files;
 use super::failure::Failure;
 use super::map_format::MapFormat;
+use super::output_file::unwritten;
 use indicatif::DecimalBytes;
+use std::io;
 use std::path::Path;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
@@ -31,15 +33,20 @@ pub fn check(
     let files = files(scene, plan, &[format])?;
     let bytes: f64 = files.iter().map(|files| files.bytes).sum();
     let needed = (share * bytes) as u64;
-    refused(folder, needed, free).map_or(Ok(()), |message| Err(Failure::Input(message)))
+    match lacking(needed, free) {
+        None => Ok(()),
+        Some(why) => Err(unwritten(folder)(io::Error::new(
+            io::ErrorKind::StorageFull,
+            why,
+        ))),
+    }
 }
 
 /// Returns the message for `needed` bytes, if fewer are `free`.
-fn refused(folder: &Path, needed: u64, free: u64) -> Option<String> {
+fn lacking(needed: u64, free: u64) -> Option<String> {
     (needed > free).then(|| {
         format!(
-            "--output {}: the map needs about {}, but {} are free; give a folder with more space, or --force",
-            folder.display(),
+            "the map needs about {}, but {} are free; give a folder with more space, or --force",
             DecimalBytes(needed),
             DecimalBytes(free)
         )
@@ -64,12 +71,12 @@ mod tests {
 
     #[test]
     fn a_full_disk_is_refused_with_what_it_lacks() {
-        let refused = |needed| refused(Path::new("maps"), needed, 1_500_000_000);
-        assert_eq!(refused(1_500_000_000), None);
+        let lacking = |needed| lacking(needed, 1_500_000_000);
+        assert_eq!(lacking(1_500_000_000), None);
         assert_eq!(
-            refused(2_250_000_000).as_deref(),
+            lacking(2_250_000_000).as_deref(),
             Some(
-                "--output maps: the map needs about 2.25 GB, but 1.50 GB are free; give a folder with more space, or --force"
+                "the map needs about 2.25 GB, but 1.50 GB are free; give a folder with more space, or --force"
             )
         );
     }

@@ -12,6 +12,7 @@ use std::process::{Command, Stdio};
 use whiskmap::measured::{MeasuredPoint, MeasuredPoints};
 use whiskmap::rod::Side;
 use whiskmap::store::MapSource;
+use whiskmap::terminal::StandardOutput;
 use whiskmap::trace::DetachmentKind;
 
 /// The page with the solver and an example scene, which `crates/web/build.sh` builds.
@@ -70,26 +71,29 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
     });
     let output = match &args.output {
         Some(output) => output.clone(),
-        None => default_output(&scene.name)?,
+        None => default_output(files, &scene.name)?,
     };
     let file = files.output("--output", &output)?;
     let Some(path) = file.write(page(&start.to_string()).as_bytes())? else {
         return Ok(());
     };
-    writeln!(std::io::stdout(), "{}", path.display())?;
+    writeln!(StandardOutput::open(), "{}", path.display())?;
     if !args.no_open && path != Path::new(STDOUT) && std::io::stdout().is_terminal() {
         open(&path);
     }
     Ok(())
 }
 
-/// Path of the page of a scene without `--output`. Of a scene with the name of this project's page, that page would be lost.
-fn default_output(name: &str) -> Result<PathBuf, Failure> {
-    let output = Path::new("outputs").join(format!("{name}.html"));
+/// Path of the page of a scene without `--output`, in a folder that is created. Of a scene with the name of this project's page, that
+/// page would be lost.
+fn default_output(files: &Files, name: &str) -> Result<PathBuf, Failure> {
+    let folder = Path::new("outputs");
+    let output = folder.join(format!("{name}.html"));
     if output == Path::new("outputs/explore.html") {
         let why = "--output: must be given for a scene named `explore`, because outputs/explore.html is a page of this project";
         return Err(Failure::Input(why.to_owned()));
     }
+    files.folder("--output", folder)?;
     Ok(output)
 }
 

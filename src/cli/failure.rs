@@ -1,5 +1,8 @@
 //! Failures of commands, their messages and exit codes.
 
+use super::Arguments;
+use clap::Parser;
+use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use whiskmap::bench::PeersError;
@@ -13,6 +16,7 @@ use whiskmap::plan::PlanError;
 use whiskmap::render::{EncodeError, RenderError};
 use whiskmap::scene::SceneError;
 use whiskmap::store;
+use whiskmap::terminal::escaped;
 use whiskmap::texture::TextureError;
 use whiskmap::trace::NoState;
 use whiskmap::whisk::WhiskError;
@@ -83,6 +87,8 @@ pub enum Failure {
     Checks { failed: usize, all: usize },
     #[error("cannot write {}: {cause}", path.display())]
     Write { path: PathBuf, cause: io::Error },
+    #[error("cannot start threads ({count}): {cause}; set a smaller number by RAYON_NUM_THREADS")]
+    Threads { count: usize, cause: String },
     /// Standard output is closed or full.
     #[error("standard output: {0}")]
     Output(#[from] io::Error),
@@ -123,7 +129,8 @@ impl Failure {
         match self {
             // A reader that stops early, like `head`, is not a failure.
             _ if self.is_broken_pipe() => return 0,
-            Self::Scene(error) => message(&error.render(color())),
+            // It is several lines, and in colour.
+            Self::Scene(error) => drop(writeln!(io::stderr(), "{}", error.render(color()))),
             _ => message(&format!("error: {self}")),
         }
         self.code()
@@ -154,9 +161,19 @@ fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
     format!("{}; {cure}", faults.join(", "))
 }
 
-/// Prints a line on standard error, and ignores a closed one.
+/// Prints a line on standard error, with its control characters escaped, and ignores a closed one.
 pub fn message(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", escaped(line));
+}
+
+/// Prints an error of clap about `arguments`. It quotes them as they are, so they are parsed again with control characters escaped.
+pub fn refuse(arguments: &[OsString], wrong: &clap::Error) {
+    let shown = arguments.iter().map(|own| escaped(&own.to_string_lossy()));
+    match Arguments::try_parse_from(shown) {
+        // A closed standard error hides the message, not the code.
+        Err(wrong) => drop(wrong.print()),
+        Ok(_) => message(&format!("error: {}", wrong.kind())),
+    }
 }
 
 /// Warns if some of `all` results are unresolved; `see` names the output that marks them.

@@ -1,7 +1,7 @@
 //! Inputs and outputs of a command. All are declared here, so that no output destroys an input or another output.
 
 use super::failure::{Failure, message};
-use super::output_file::{OutputFile, STDOUT};
+use super::output_file::{OutputFile, STDOUT, unwritten};
 use std::io;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::{Scene, digits, rounded};
@@ -185,6 +185,37 @@ pub fn check_folder(option: &str, path: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Failure of an output at its first check: invalid input if the path is wrong, a failure while running otherwise.
 fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error) -> Failure {
-    move |error| Failure::Input(format!("{option} {}: {error}; {advice}", path.display()))
+    move |error| match is_of_path(&error) {
+        true => Failure::Input(format!("{option} {}: {error}; {advice}", path.display())),
+        false => unwritten(path)(error),
+    }
+}
+
+/// Returns true for an error that another path would not have.
+fn is_of_path(error: &io::Error) -> bool {
+    use io::ErrorKind::{
+        AlreadyExists, CrossesDevices, ExecutableFileBusy, InvalidFilename, InvalidInput,
+        IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem, Unsupported,
+    };
+    // A circle of links has no stable kind.
+    #[cfg(unix)]
+    if error.raw_os_error() == Some(libc::ELOOP) {
+        return true;
+    }
+    matches!(
+        error.kind(),
+        AlreadyExists
+            | CrossesDevices
+            | ExecutableFileBusy
+            | InvalidFilename
+            | InvalidInput
+            | IsADirectory
+            | NotADirectory
+            | NotFound
+            | PermissionDenied
+            | ReadOnlyFilesystem
+            | Unsupported
+    )
 }

@@ -5,8 +5,9 @@ use super::failure::Failure;
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
-use std::io::{self, Write};
+use std::io::Write;
 use whiskmap::input::did_you_mean;
+use whiskmap::terminal::StandardOutput;
 
 /// Name of the program in completions.
 const PROGRAM: &str = "whiskmap";
@@ -37,7 +38,7 @@ pub struct ManArgs {
 pub fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Arguments::command(), PROGRAM, &mut script);
-    Ok(io::stdout().lock().write_all(&script)?)
+    Ok(StandardOutput::open().write_all(&script)?)
 }
 
 /// Prints the manual page of the program or of a command on standard output.
@@ -53,7 +54,7 @@ pub fn man(args: &ManArgs) -> Result<(), Failure> {
     let mut page = Vec::new();
     let source = concat!("whiskmap ", env!("CARGO_PKG_VERSION"));
     Man::new(command.clone()).source(source).render(&mut page)?;
-    Ok(io::stdout().lock().write_all(&page)?)
+    Ok(StandardOutput::open().write_all(&page)?)
 }
 
 /// Returns the definitions of the program and its commands, with the names of the manual pages.

@@ -1,6 +1,6 @@
 //! Command `whiskmap map`.
 
-use super::arguments::whole;
+use super::arguments::{THREADS, whole};
 use super::digits::DigitsArgs;
 use super::disk;
 use super::engine::EngineArgs;
@@ -23,7 +23,7 @@ use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::scene::Scene;
-use whiskmap::store::{MapDescription, MapWriter, Output, StoredMap};
+use whiskmap::store::{MapDescription, MapWriter, Output};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -49,7 +49,7 @@ pub struct MapArgs {
     #[command(flatten)]
     pub engine: EngineArgs,
     /// Number of CPU threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole(THREADS))]
     pub threads: Option<u32>,
     #[command(flatten)]
     tolerance: ToleranceArgs,
@@ -112,16 +112,10 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         return sharded::fill(&path, &args.run, files, &scene, plan, &about, &mut engine);
     }
     let file = args.output.join(format!("{}.exr", scene.name));
-    let is_regular = files.output("--output", &file)?.output.is_regular();
+    files.output("--output", &file)?;
     let picture = (!args.no_png).then(|| file.with_extension("png"));
     if let Some(picture) = &picture {
         files.output("--output", picture)?;
-    }
-    if picture.is_some() && !is_regular {
-        return Err(Failure::Input(format!(
-            "--output {}: is no regular file, so no picture can be drawn of it; give --no-png",
-            file.display()
-        )));
     }
     if !args.run.force {
         disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
@@ -135,13 +129,10 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let keep = |panels: &mut Vec<_>| writer.write_panels(panels);
     let summary = compute(&scene, &plan, engine, plan.cells, keep)?;
-    writer.finish(summary.engine_cells, summary.audit)?;
+    let map = writer.finish(summary.engine_cells, summary.audit)?;
     let mut written = vec![file];
     if let Some(path) = picture {
-        let regimes = render::map(
-            &StoredMap::open(&written[0])?.into(),
-            &MapOptions::default(),
-        )?;
+        let regimes = render::map(&map.into(), &MapOptions::default())?;
         let output = Output::create(&path, files.temporary()).map_err(unwritten(&path))?;
         written.push(path.clone());
         PictureFile {

@@ -57,11 +57,12 @@ use failure::Failure;
 use files::Files;
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::num::NonZero;
 use whiskmap::store::TemporaryFiles;
 
 /// Compute where a whisker pushed against a pole stays in contact, slips off or is pulled off
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(version, bin_name = "whiskmap", arg_required_else_help = true, after_help = EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -148,13 +149,13 @@ enum Command {
 
 /// Parses the arguments of a command line, of which the first is the name of the program. Runs the command and returns the exit code.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let result = match Arguments::try_parse_from(arguments) {
+    let given: Vec<OsString> = arguments.into_iter().collect();
+    let result = match Arguments::try_parse_from(&given) {
         Ok(arguments) => stdout::check()
             .map_err(Failure::Output)
             .and_then(|()| start(&arguments.command)),
         Err(wrong) if wrong.use_stderr() => {
-            // A closed standard error hides the message, not the code.
-            let _ = wrong.print();
+            failure::refuse(&given, &wrong);
             return failure::INVALID_INPUT;
         }
         Err(help) => stdout::check()
@@ -179,20 +180,45 @@ fn start(command: &Command) -> Result<(), Failure> {
         _ => (None, ""),
     };
     let temporary = TemporaryFiles::default();
-    signals::handle(temporary.clone(), advice);
+    signals::handle(temporary.clone(), advice).map_err(unstarted(1))?;
     // The command runs on a thread of the pool: from outside, every parallel call would first wake up a thread.
+    let count = thread_count(threads)?;
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or_default() as usize)
+        .num_threads(count)
         .stack_size(STACK)
-        .build();
-    let pool = pool.map_err(|error| {
-        Failure::Input(match threads {
-            Some(threads) => format!("--threads {threads}: {error}"),
-            None => format!("threads for the processor's cores: {error}"),
-        })
-    })?;
+        .build()
+        .map_err(unstarted(count))?;
     let mut files = Files::new(temporary);
     pool.install(|| run(command, &mut files))
+}
+
+/// Returns a converter of errors from starting `count` threads.
+fn unstarted<E: ToString>(count: usize) -> impl FnOnce(E) -> Failure {
+    move |cause| Failure::Threads {
+        count,
+        cause: cause.to_string(),
+    }
+}
+
+/// Environment variable with the number of threads, as of other programs that use rayon; without it, and if it is 0, all cores are used.
+const THREADS: &str = "RAYON_NUM_THREADS";
+
+/// Returns the number of threads to start: that of `--threads`, of the environment, or of the processor's cores.
+///
+/// # Errors
+/// If the environment variable has a number that `--threads` does not accept.
+fn thread_count(option: Option<u32>) -> Result<usize, Failure> {
+    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+    if let Some(count) = option {
+        return Ok(count as usize);
+    }
+    let text = std::env::var(THREADS).unwrap_or_default();
+    if matches!(&*text, "" | "0") {
+        return Ok(cores());
+    }
+    let count = arguments::whole(arguments::THREADS)(&text);
+    let count = count.map_err(|why| Failure::Input(format!("{THREADS}={text}: {why}")))?;
+    Ok(count as usize)
 }
 
 fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {

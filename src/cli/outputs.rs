@@ -8,9 +8,10 @@ use super::size::SizeArgs;
 use super::units::ColumnUnits;
 use clap::Args;
 use serde::Serialize;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::render::{Chart, Picture, PictureFormat, PictureSize, Plot};
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 pub struct OutputArgs {
@@ -90,7 +91,7 @@ impl OpenOutputs {
         if is_alone {
             return Ok(());
         }
-        let mut out = io::stdout().lock();
+        let mut out = StandardOutput::open();
         let own = [table, plot].into_iter().flatten().flatten();
         for path in own.chain(tables) {
             writeln!(out, "{}", path.display())?;

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::store::MapSlice;
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -118,7 +119,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
         message("note: no detachment line is drawn: the map has no channel margin_deg");
     }
     if path != Path::new(STDOUT) {
-        writeln!(std::io::stdout(), "{}", path.display())?;
+        writeln!(StandardOutput::open(), "{}", path.display())?;
     }
     Ok(())
 }

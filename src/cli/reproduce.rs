@@ -12,6 +12,7 @@ use whiskmap::measured::{MeasuredAngle, MeasuredPoint};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::PictureFormat;
 use whiskmap::scene::Whisker;
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -97,7 +98,7 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
         ];
         opened.push((figure, tables, pictures));
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = StandardOutput::open();
     for (figure, tables, pictures) in opened {
         for picture in pictures {
             let path = picture.file.path.clone();

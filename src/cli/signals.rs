@@ -1,11 +1,15 @@
 //! Interrupts: remove unfinished files, print one line, exit with 128 + the signal's number.
 
+use std::io;
 use whiskmap::store::TemporaryFiles;
 
 /// Ends the process on SIGHUP, SIGINT or SIGTERM, removes the `temporary` files, and prints `advice`. A signal that is ignored, for
 /// example by `nohup`, stays ignored.
+///
+/// # Errors
+/// If the thread that waits for signals cannot be started.
 #[cfg(unix)]
-pub fn handle(temporary: TemporaryFiles, advice: &'static str) {
+pub fn handle(temporary: TemporaryFiles, advice: &'static str) -> io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::{iterator::Signals, low_level};
     use std::io::IsTerminal;
@@ -15,27 +19,31 @@ pub fn handle(temporary: TemporaryFiles, advice: &'static str) {
         .filter(|signal| !is_ignored(*signal));
     // Without handlers, the default action ends the process, and the next run removes its leftovers.
     let Ok(mut signals) = Signals::new(handled) else {
-        return;
+        return Ok(());
     };
-    std::thread::spawn(move || {
+    let wait = move || {
         let Some(signal) = signals.forever().next() else {
             return;
         };
         temporary.abandon();
         // The current line of a terminal may be a progress bar.
-        let is_watched = std::io::stderr().is_terminal();
-        let start = if is_watched { "\n" } else { "" };
+        if std::io::stderr().is_terminal() {
+            super::failure::message("");
+        }
         let name = low_level::signal_name(signal).unwrap_or("a signal");
         super::failure::message(&format!(
-            "{start}error: interrupted by {name}; unfinished files are removed{advice}"
+            "error: interrupted by {name}; unfinished files are removed{advice}"
         ));
         low_level::exit(128 + signal);
-    });
+    };
+    std::thread::Builder::new().spawn(wait).map(drop)
 }
 
 /// Does nothing on systems without these signals: the next run removes the leftovers of an interrupted run.
 #[cfg(not(unix))]
-pub fn handle(_: TemporaryFiles, _: &'static str) {}
+pub fn handle(_: TemporaryFiles, _: &'static str) -> io::Result<()> {
+    Ok(())
+}
 
 #[cfg(unix)]
 #[allow(

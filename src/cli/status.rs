@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use whiskmap::classify::Regime;
 use whiskmap::plan::Digits;
 use whiskmap::store::{BlockState, CheckDepth, StoreError, TemporaryFiles, ZarrStore};
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -122,7 +123,7 @@ pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure>
 fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {
     let grid = &store.scene.grid;
     let cells = grid.push_angle_deg.len() * grid.distance_mm.len() * grid.whisker_count();
-    let mut out = std::io::stdout().lock();
+    let mut out = StandardOutput::open();
     writeln!(out, "{}", store.scene.title)?;
     writeln!(out, "{:>12}  of {} blocks", found.done, store.block_count())?;
     writeln!(
@@ -164,7 +165,7 @@ fn repair(
     for block in &found.damaged {
         removed += usize::from(store.remove_damaged(*block)?);
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = StandardOutput::open();
     writeln!(out, "metadata rewritten: {metadata}")?;
     writeln!(out, "blocks removed: {removed}")?;
     Ok(())

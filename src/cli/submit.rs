@@ -1,6 +1,6 @@
 //! Command `whiskmap submit`: job array for Slurm.
 
-use super::arguments::whole;
+use super::arguments::{THREADS, whole};
 use super::failure::{Failure, message};
 use super::files::{check_folder, read_scene};
 use super::map::MapArgs;
@@ -9,9 +9,10 @@ use super::plan::{PlanEstimate, memory};
 use super::sharded::shares;
 use super::slurm;
 use clap::{Args, Parser};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::Scene;
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -41,7 +42,7 @@ pub struct SubmitArgs {
     #[arg(long, value_name = "TIME", value_parser = slurm::time, allow_hyphen_values = true)]
     time: Option<String>,
     /// Number of threads of a task
-    #[arg(long, value_name = "N", value_parser = whole(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole(THREADS))]
     cpus_per_task: Option<u32>,
     /// Memory of a task in a format of Slurm, such as 500M [default: by an estimate]
     #[arg(long, value_name = "SIZE", value_parser = slurm::memory, allow_hyphen_values = true)]
@@ -80,7 +81,7 @@ pub fn run(args: &SubmitArgs) -> Result<(), Failure> {
             "note: with --engine gpu, add the line that requests a GPU on your cluster, such as `#SBATCH --gres=gpu:1`",
         );
     }
-    io::stdout().lock().write_all(script.as_bytes())?;
+    StandardOutput::open().write_all(script.as_bytes())?;
     Ok(())
 }
 

@@ -12,6 +12,7 @@ use whiskmap::map::{self, Panel, Stage, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 use whiskmap::store::StoreError;
+use whiskmap::terminal::StandardOutput;
 
 /// Computes `cells` of `plan` with a progress bar, and passes panels to `keep`; warns if the engine fails.
 pub fn compute(
@@ -53,7 +54,7 @@ pub fn report(
 }
 
 fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = StandardOutput::open();
     let engine = &summary.engine_cells;
     writeln!(out, "{}", scene.title)?;
     for (regime, cells) in Regime::ALL.iter().zip(summary.regimes) {

@@ -3,10 +3,11 @@
 use super::failure::Failure;
 use std::io::Write;
 use whiskmap::paper::{CheckVerdict, ExpectedNumber, checks};
+use whiskmap::terminal::StandardOutput;
 
 pub fn run() -> Result<(), Failure> {
     let checks = checks();
-    let mut out = std::io::stdout().lock();
+    let mut out = StandardOutput::open();
     let wide = |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or_default();
     let case = wide(&mut checks.iter().map(|check| check.case.len()));
     let quantity = wide(&mut checks.iter().map(|check| check.quantity.len()));

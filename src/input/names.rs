@@ -1,5 +1,7 @@
 //! Names and values in messages: shortened, or with a known name that resembles them.
 
+use crate::terminal::escaped;
+
 /// Least similarity of a suggested name, as in clap.
 const SIMILAR: f64 = 0.7;
 
@@ -82,15 +84,6 @@ fn is_of_another_unit(name: &str, other: &str) -> bool {
 
 /// The most characters that a message quotes of a text, at its beginning and at its end.
 const QUOTED: [usize; 2] = [60, 20];
-
-/// Escapes the control characters of a text, so that a terminal does not obey them.
-pub(crate) fn escaped(text: &str) -> String {
-    let parts = text.chars().map(|c| match c {
-        control if control.is_control() => control.escape_default().to_string(),
-        other => other.to_string(),
-    });
-    parts.collect()
-}
 
 /// Escapes a value or key for a message, and cuts the middle of a long one.
 pub(crate) fn shortened(text: &str) -> String {

@@ -1,12 +1,37 @@
 //! Bytes of an input file, and the text that they encode.
 
+use std::fs::{self, File};
 use std::io::{self, Read};
+use std::path::Path;
 
 /// Longest scene or measurement of a benchmark in MiB: far longer than any.
 pub(crate) const TEXT_MIB: u64 = 1;
 
 /// Longest table in MiB: a million samples of a course take 24.
 pub(super) const TABLE_MIB: u64 = 32;
+
+/// Opens the regular file at `path` to read it; `None` for a folder, a pipe or a device. All of it is read from this handle: another
+/// process may replace the file meanwhile.
+///
+/// # Errors
+/// If it cannot be opened.
+pub(crate) fn open_regular(path: &Path) -> io::Result<Option<File>> {
+    let mut options = File::options();
+    options.read(true);
+    // A pipe without a writer would block forever.
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags((OFlags::NONBLOCK | OFlags::NOCTTY).bits().cast_signed());
+    }
+    match options.open(path) {
+        Ok(file) => Ok(file.metadata()?.is_file().then_some(file)),
+        // Unix opens no socket, and Windows no folder.
+        Err(_) if fs::metadata(path).is_ok_and(|about| !about.is_file()) => Ok(None),
+        Err(why) => Err(why),
+    }
+}
 
 /// Reads all bytes of an input file or stream, at most `most_mib` MiB.
 ///

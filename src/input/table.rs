@@ -1,8 +1,9 @@
 //! Reader of all CSV files: a header, and columns by their names.
 
 use super::lines::{CsvLine, lines, normalised, separator};
-use super::names::{did_you_mean, escaped, shortened};
+use super::names::{did_you_mean, shortened};
 use super::source::{TABLE_MIB, bounded, decoded};
+use crate::terminal::escaped;
 use std::fs::File;
 use std::io;
 use std::path::Path;
@@ -61,10 +62,13 @@ impl CsvTable {
     /// If the file cannot be read, is longer than 32 MiB, is no such text, or for the reasons of [`CsvTable::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
         let path = path.as_ref();
-        Self::decode(
-            File::open(path).and_then(|file| bounded(file, TABLE_MIB)),
-            &path.to_string_lossy(),
-        )
+        Self::read_file(File::open(path), path)
+    }
+
+    /// Reads the CSV file that is open as `file`; messages call it `path`.
+    pub(crate) fn read_file(file: io::Result<File>, path: &Path) -> Result<Self, CsvError> {
+        let bytes = file.and_then(|file| bounded(file, TABLE_MIB));
+        Self::decode(bytes, &path.to_string_lossy())
     }
 
     /// Reads a CSV file from standard input.
@@ -85,12 +89,12 @@ impl CsvTable {
     /// Splits the text of a CSV file into cells. Messages call the file `origin`.
     ///
     /// # Errors
-    /// If there is no row, or a row has fewer cells than the header has names, or more that are not empty.
+    /// If there is no row, a quote is not closed, or a row has fewer cells than the header has names, or more that are not empty.
     pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
         let text = normalised(text);
         let separator = separator(&text);
         let lines = lines(&text, separator);
-        let mut lines = lines.map_err(|why| CsvError::whole(origin, why.to_string()))?;
+        let mut lines = lines.map_err(|(line, what)| CsvError::at(origin, line, what))?;
         if lines.len() < 2 {
             let what = "has no rows: must have a header and at least one row below it";
             return Err(CsvError::whole(origin, what));

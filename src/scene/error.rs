@@ -6,6 +6,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use thiserror::Error;
 
 use crate::input::{did_you_mean, shortened};
+use crate::terminal::{escaped, escaped_but};
 
 /// Error of a scene that cannot be read or is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -117,7 +118,7 @@ impl SceneError {
     }
 
     /// Returns the message of the error over several lines: what is wrong, then file, line and column, and the line itself with a mark.
-    /// It begins with `error: `; colours are ANSI escapes.
+    /// It begins with `error: `; colours are ANSI escapes, and control characters are escaped.
     #[must_use]
     pub fn render(&self, color: bool) -> String {
         let renderer = if color {
@@ -125,18 +126,23 @@ impl SceneError {
         } else {
             Renderer::plain()
         };
+        let [origin, message] = [&self.origin, &self.message].map(|text| escaped(text));
         let Some(span) = &self.span else {
-            let message = match self.origin.as_str() {
-                "" => self.message.clone(),
-                origin => format!("{origin}: {}", self.message),
+            let message = match origin.as_str() {
+                "" => message,
+                origin => format!("{origin}: {message}"),
             };
             let title = Level::ERROR.primary_title(message);
             return renderer.render(&[Group::with_title(title)]);
         };
-        let snippet = Snippet::source(&self.text)
-            .path(&self.origin)
-            .annotation(AnnotationKind::Primary.span(span.clone()));
-        let title = Level::ERROR.primary_title(&self.message);
+        // The renderer itself has signs for the control characters of ASCII.
+        let shown = |text: &str| escaped_but(text, |c| c.is_ascii());
+        let start = shown(&self.text[..span.start]).len();
+        let end = start + shown(&self.text[span.clone()]).len();
+        let snippet = Snippet::source(shown(&self.text))
+            .path(origin)
+            .annotation(AnnotationKind::Primary.span(start..end));
+        let title = Level::ERROR.primary_title(message);
         renderer.render(&[title.element(snippet)])
     }
 }

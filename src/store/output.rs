@@ -3,6 +3,7 @@
 use super::file_id::{FileId, folder_of};
 use super::target::OutputTarget;
 use super::temporary::{TemporaryFile, TemporaryFiles};
+use crate::terminal::StandardOutput;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ pub struct Output(Destination);
 
 #[derive(Debug)]
 enum Destination {
-    Stdout,
+    Stdout(StandardOutput),
     Regular {
         file: TemporaryFile,
         target: PathBuf,
@@ -33,7 +34,7 @@ impl Output {
     /// Creates an output that writes to standard output at once.
     #[must_use]
     pub fn stdout() -> Self {
-        Self(Destination::Stdout)
+        Self(Destination::Stdout(StandardOutput::open()))
     }
 
     /// Creates an output for the file at `path`; until it is finished, its bytes are in one of the temporary `files`.
@@ -81,66 +82,57 @@ impl Output {
     #[must_use]
     pub fn id(&self) -> Option<FileId> {
         match &self.0 {
-            Destination::Stdout => Some(FileId::of_stdout()),
+            Destination::Stdout(_) => Some(FileId::of_stdout()),
             Destination::Regular { target, .. } => FileId::of(target),
             Destination::Stream { .. } => None,
         }
     }
 
-    /// Finishes a regular file such that its bytes are on the disk before its name, and its name before this returns. A crash of the
-    /// machine damages neither. It takes 1 to 5 ms.
-    ///
-    /// # Errors
-    /// An error of [`Output::finish`].
-    #[cfg(feature = "zarr")]
-    pub(super) fn finish_durably(self) -> io::Result<()> {
-        self.finish_synced(Self::finish)
-    }
-
-    /// Finishes a regular file like [`Output::finish_durably`], unless a file of its name is there: of several processes that
+    /// Finishes a regular file like [`Output::finish`], unless a file of its name is there: of several processes that
     /// do this at the same time one succeeds.
     ///
     /// # Errors
     /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), or an error of [`Output::finish`].
     #[cfg(feature = "zarr")]
     pub(super) fn finish_new(self) -> io::Result<()> {
-        self.finish_synced(|output| match output.0 {
-            Destination::Regular { file, target } => file.persist_new(&target),
+        match self.0 {
+            Destination::Regular { file, target } => {
+                named(file, &target, TemporaryFile::persist_new)
+            }
             _ => Err(io::ErrorKind::AlreadyExists.into()),
-        })
+        }
     }
 
-    #[cfg(feature = "zarr")]
-    fn finish_synced(mut self, finish: fn(Self) -> io::Result<()>) -> io::Result<()> {
-        let folder = self.target().map(|target| folder_of(target).to_owned());
-        if let (Some(file), true) = (self.file(), folder.is_some()) {
-            file.sync_all()?;
-        }
-        finish(self)?;
-        // Only Unix opens folders.
-        match folder {
-            Some(folder) if cfg!(unix) => File::open(folder)?.sync_all(),
-            _ => Ok(()),
-        }
+    /// Finishes the output like [`Output::finish`], and returns its file. That is still the file of this output when another one has
+    /// got its name.
+    ///
+    /// # Errors
+    /// An error of [`Output::finish`], or the output is standard output.
+    pub(super) fn finish_open(mut self) -> io::Result<File> {
+        let file = self.file().map(|file| file.try_clone());
+        let file = file.ok_or(io::ErrorKind::NotSeekable)??;
+        self.finish()?;
+        Ok(file)
     }
 
     /// The file that has the bytes until the output is finished; `None` for standard output.
     fn file(&mut self) -> Option<&mut File> {
         match &mut self.0 {
-            Destination::Stdout => None,
+            Destination::Stdout(_) => None,
             Destination::Regular { file, .. } => Some(file.file()),
             Destination::Stream { kept, .. } => Some(kept),
         }
     }
 
-    /// Flushes the output and gives the file its name.
+    /// Finishes the output. The bytes of a regular file are on the disk before its name, and its name before this returns: a crash of the
+    /// machine leaves the old file or the new one. It takes 1 to 5 ms.
     ///
     /// # Errors
-    /// The file cannot be renamed, or the device takes no more.
+    /// The file cannot be brought to the disk or renamed, or the device takes no more.
     pub fn finish(self) -> io::Result<()> {
         match self.0 {
-            Destination::Stdout => io::stdout().flush(),
-            Destination::Regular { file, target } => file.persist(&target),
+            Destination::Stdout(mut stdout) => stdout.flush(),
+            Destination::Regular { file, target } => named(file, &target, TemporaryFile::persist),
             Destination::Stream { mut kept, target } => {
                 // What is open for appending is never shortened or overwritten, even where it is a file.
                 let mut stream = File::options().append(true).open(target)?;
@@ -151,18 +143,49 @@ impl Output {
     }
 }
 
+/// Gives a file its name by `rename`, between its bytes and the entry of its folder on the disk.
+fn named(
+    mut file: TemporaryFile,
+    target: &Path,
+    rename: fn(TemporaryFile, &Path) -> io::Result<()>,
+) -> io::Result<()> {
+    file.file().sync_all()?;
+    rename(file, target)?;
+    sync_folder(folder_of(target))
+}
+
+/// Brings the names in a folder to the disk. Only Unix opens folders, some users may not, and some network file systems bring no
+/// folder to the disk: there, a crash of the machine can still take the new name back.
+pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        Err(why)
+            if matches!(
+                why.kind(),
+                io::ErrorKind::PermissionDenied
+                    | io::ErrorKind::InvalidInput
+                    | io::ErrorKind::Unsupported
+            ) =>
+        {
+            Ok(())
+        }
+        synced => synced,
+    }
+}
+
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self.file() {
-            Some(file) => file.write(bytes),
-            None => io::stdout().write(bytes),
+        match &mut self.0 {
+            Destination::Stdout(stdout) => stdout.write(bytes),
+            Destination::Regular { file, .. } => file.file().write(bytes),
+            Destination::Stream { kept, .. } => kept.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match self.file() {
-            Some(file) => file.flush(),
-            None => io::stdout().flush(),
+        match &mut self.0 {
+            Destination::Stdout(stdout) => stdout.flush(),
+            Destination::Regular { file, .. } => file.file().flush(),
+            Destination::Stream { kept, .. } => kept.flush(),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::attributes::{self, DIGITS};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
 use super::{CellCounts, Channels, StoreError, header};
+use crate::input::open_regular;
 use crate::plan::Digits;
 use crate::scene::Grid;
 use exr::block::UncompressedBlock;
@@ -14,6 +15,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Values of a channel: `[distance][push_angle]` of one panel, or of several panels one after the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +46,7 @@ impl ChannelValues {
     }
 }
 
-/// An EXR map on disk whose header is read and checked.
+/// An EXR map on disk whose header is read and checked. It stays open: a file that replaces it meanwhile is not read.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct StoredMap {
@@ -61,6 +63,7 @@ pub struct StoredMap {
     /// Number of cells of each regime and status in the stored map.
     pub counts: CellCounts,
     path: PathBuf,
+    file: Mutex<BufReader<File>>,
     meta: MetaData,
     /// Positions of the blocks of each part.
     offsets: OffsetTables,
@@ -73,7 +76,18 @@ impl StoredMap {
     /// # Errors
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
-        let mut file = open(path)?;
+        let file = open_regular(path).map_err(StoreError::at(path, StoreError::Read))?;
+        Self::of_file(
+            path,
+            file.ok_or_else(|| StoreError::NotAFile(path.to_owned()))?,
+        )
+    }
+
+    /// Reads the header of the EXR map that is open as `file`; messages call it `path`.
+    pub(super) fn of_file(path: &Path, file: File) -> Result<Self, StoreError> {
+        let mut file = BufReader::new(file);
+        file.rewind()
+            .map_err(StoreError::at(path, StoreError::Read))?;
         let meta = header::read(path, &mut file)?;
         let foreign = StoreError::at(path, StoreError::NotAMap);
         let axes = header::parse(&meta, "axes").map_err(&foreign)?;
@@ -91,6 +105,7 @@ impl StoredMap {
             layout,
             grid,
             path: path.to_owned(),
+            file: Mutex::new(file),
             meta,
             channels,
         })
@@ -170,11 +185,10 @@ impl StoredMap {
             return Err(StoreError::NoSuchPanel { index, panels: all });
         }
         let (part, channel) = self.find(name)?;
-        let mut file = open(&self.path)?;
         let mut bytes = Vec::new();
         for panel in panels {
             for block in 0..self.layout.blocks_per_panel() {
-                self.read_block(&mut file, [part, panel, block], channel, &mut bytes)
+                self.read_block([part, panel, block], channel, &mut bytes)
                     .map_err(|cause| {
                         let place = format!("channel `{name}`, panel {panel}, block {block}");
                         StoreError::Damaged(self.path.clone(), format!("{place}: {cause}"))
@@ -203,14 +217,16 @@ impl StoredMap {
     /// Appends the samples of one channel in one block to `bytes`.
     fn read_block(
         &self,
-        file: &mut BufReader<File>,
         [part, panel, block]: [usize; 3],
         channel: usize,
         bytes: &mut Vec<u8>,
     ) -> exr::error::Result<()> {
         let place = panel * self.layout.blocks_per_panel() + block;
-        file.seek(SeekFrom::Start(self.offsets[part][place]))?;
-        let chunk = Chunk::read(file, &self.meta)?;
+        let chunk = {
+            let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+            file.seek(SeekFrom::Start(self.offsets[part][place]))?;
+            Chunk::read(&mut *file, &self.meta)?
+        };
         let read = UncompressedBlock::decompress_chunk(chunk, &self.meta, false)?;
         if read.index != self.layout.block(part, panel, block) {
             return Err(io::Error::other("another block is in its place").into());
@@ -222,14 +238,4 @@ impl StoredMap {
         }
         Ok(())
     }
-}
-
-/// Opens a regular file: reading seeks, and a pipe without a writer would never open.
-fn open(path: &Path) -> Result<BufReader<File>, StoreError> {
-    let about = std::fs::metadata(path).map_err(StoreError::at(path, StoreError::Read))?;
-    if !about.is_file() {
-        return Err(StoreError::NotAFile(path.to_owned()));
-    }
-    let file = File::open(path).map_err(StoreError::at(path, StoreError::Read))?;
-    Ok(BufReader::new(file))
 }

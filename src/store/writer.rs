@@ -3,7 +3,9 @@
 use super::attributes::{self, MapDescription, attribute};
 use super::chunk::{chunk, samples};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
-use super::{CellCounts, Channels, Output, Panel, StoreError, TemporaryFiles, header, zip};
+use super::{
+    CellCounts, Channels, Output, Panel, StoreError, StoredMap, TemporaryFiles, header, zip,
+};
 use crate::map::{Audit, EngineCells};
 use crate::plan::{Digits, Plan};
 use crate::scene::Grid;
@@ -179,7 +181,8 @@ impl MapWriter {
         packed.sum()
     }
 
-    /// Writes counts and checksum into the header and gives the EXR map its name. Returns the counts.
+    /// Writes counts and checksum into the header and gives the EXR map its name. Returns the map, open for reading: whatever replaces it
+    /// meanwhile is not read.
     ///
     /// # Errors
     /// A panel is missing, or the file cannot be written or renamed; then no map appears.
@@ -187,7 +190,7 @@ impl MapWriter {
         mut self,
         engine_cells: EngineCells,
         audit: Audit,
-    ) -> Result<CellCounts, StoreError> {
+    ) -> Result<StoredMap, StoreError> {
         if self.written != self.layout.panels() {
             return Err(StoreError::Incomplete {
                 written: self.written,
@@ -206,14 +209,13 @@ impl MapWriter {
             .map_err(StoreError::at(&self.path, StoreError::Encode))?;
         header::seal(&mut preamble);
         self.write_at(0, &[preamble])?;
-        let Self {
-            path, file, counts, ..
-        } = self;
-        file.into_inner()
+        let Self { path, file, .. } = self;
+        let file = file
+            .into_inner()
             .map_err(IntoInnerError::into_error)
-            .and_then(Output::finish)
+            .and_then(Output::finish_open)
             .map_err(StoreError::at(&path, StoreError::Write))?;
-        Ok(counts)
+        StoredMap::of_file(&path, file)
     }
 
     /// Writes `pieces` one after another.

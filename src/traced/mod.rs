@@ -16,6 +16,9 @@ use glam::DVec2;
 /// Points more than the degree that a fit needs: three for length and pose, and one to have a distance left.
 const MORE_POINTS: usize = 4;
 
+/// Most points of a fit. It takes 3 s, and a whisker needs far fewer.
+const MOST_POINTS: usize = 50_000;
+
 /// Fewest points from which cross-validation chooses a degree.
 const FEWEST_POINTS: usize = 8;
 
@@ -99,7 +102,7 @@ impl TracedShape {
     /// [`MOST_DEGREE`]. Without one, cross-validation chooses the degree.
     ///
     /// # Errors
-    /// If there are too few points, one is no number, repeats the one before it or folds back toward the base, or the points lie off
+    /// If there are too few points or more than 50,000, one is no number, repeats the one before it or folds back toward the base, or the points lie off
     /// every such curve.
     pub fn fit(points_mm: Vec<[f64; 2]>, degree: Option<usize>) -> Result<Self, TracedError> {
         let most = most_degree(points_mm.len(), degree)?;
@@ -191,6 +194,13 @@ impl TracedShape {
 
 /// Returns the largest degree of the curves to fit to `count` points.
 fn most_degree(count: usize, degree: Option<usize>) -> Result<usize, TracedError> {
+    if count > MOST_POINTS {
+        let must = format!(
+            "must be at most {MOST_POINTS} points, are {count}: leave out points, such as all but every {}th",
+            count.div_ceil(MOST_POINTS).next_multiple_of(10)
+        );
+        return Err(TracedError::whole(must));
+    }
     let needed = match degree {
         Some(degree) if degree > MOST_DEGREE => {
             let must = format!("must have a degree from 0 to {MOST_DEGREE}, is {degree}");

@@ -172,6 +172,37 @@ fn blocks_under_a_wrong_root_stay() {
     }
 }
 
+/// The files of two arrays lie in each other's folder, where no file has the right name. They still belong to the store.
+#[test]
+fn arrays_in_each_others_folder_are_computed_again() {
+    let place = Place::with(SMALL);
+    for channels in ["regime", "regime,force_un"] {
+        let own = ["--channels", channels];
+        good(&place, "whole", &own);
+        for option in ["--verify", "--repair"] {
+            good(&place, "out", &own);
+            let folder = |name: &str| place.path("out/scene.zarr").join(name);
+            for (from, to) in [
+                ("regime", "aside"),
+                ("regime_cells", "regime"),
+                ("aside", "regime_cells"),
+            ] {
+                fs::rename(folder(from), folder(to)).unwrap();
+            }
+            status(&place, option).assert_said(1, "1 block is missing");
+            let run = good(&place, "out", &[&own[..], &["--resume"]].concat());
+            assert!(run.err.contains("blocks: 1 of 1"), "{run:?}");
+            for (name, bytes) in files(&place.path("whole")) {
+                let found = fs::read(place.path("out").join(&name)).unwrap();
+                assert!(found == bytes, "{}", name.display());
+            }
+            assert_eq!(status(&place, "--verify").code, Some(0));
+            fs::remove_dir_all(place.path("out")).unwrap();
+        }
+        fs::remove_dir_all(place.path("whole")).unwrap();
+    }
+}
+
 #[test]
 fn a_folder_of_others_is_no_store() {
     let place = Place::with(SMALL);

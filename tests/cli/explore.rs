@@ -1,7 +1,7 @@
 //! `whiskmap explore`.
 
 use super::traces::good;
-use super::{Place, SCENE};
+use super::{Place, SCENE, names};
 use serde_json::Value;
 
 /// Scene and points on a page, as its script reads them.
@@ -39,6 +39,14 @@ fn a_map_and_a_store_have_their_scene() {
         let page = good(&place, &["explore", &map, "-o", "-"]);
         assert_eq!(start(page.out.as_bytes())["scene"]["text"], SCENE);
     }
+}
+
+#[test]
+fn a_page_without_a_name_is_in_a_folder_that_is_created() {
+    let place = Place::with(SCENE);
+    let run = good(&place, &["explore", "scene.toml"]);
+    assert_eq!(run.out, "outputs/scene.html\n");
+    assert_eq!(names(&place.path("outputs")), ["scene.html"]);
 }
 
 #[test]

@@ -1,10 +1,11 @@
-//! Temporary files of interrupted runs, and runs at once in one folder.
+//! Temporary files and folders of interrupted runs, and runs at once in one folder.
 
 use super::traces::good;
 use super::{Place, Run, SCENE, names};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::process::{Command, Stdio};
+use whiskmap::store::{TemporaryFiles, TemporaryFolder};
 
 /// Returns the name of this host, as in the names of temporary files.
 fn host() -> String {
@@ -26,11 +27,19 @@ fn only_leftovers_are_removed() {
     }
     place.write(&leftover("-2+aB3dE6gH9jK2"), "");
     place.write(&leftover("+notes.txt"), "");
+    // As a killed `extract` leaves it.
     folder(&exact("3"));
+    place.write(&format!("{}/zarr.json", exact("3")), "");
     place.pipe(&exact("4"));
     symlink("scene.toml", place.path(&exact("5"))).unwrap();
+    folder(".whiskmap-another.host+aB3dE6gH9jK6");
+    let files = TemporaryFiles::default();
+    let running = TemporaryFolder::create(&place.path("x.zarr"), &files).unwrap();
+    assert!(!place.path(&exact("3")).exists());
+    folder(&exact("3"));
+    place.write(&exact("1"), "");
     let mut kept = names(&place.path(""));
-    kept.retain(|name| *name != exact("1"));
+    kept.retain(|name| ![exact("1"), exact("3")].contains(name));
     good(
         &place,
         &[
@@ -43,6 +52,7 @@ fn only_leftovers_are_removed() {
     );
     fs::remove_file(place.path("t.csv")).unwrap();
     assert_eq!(names(&place.path("")), kept);
+    assert!(running.path().exists());
 }
 
 /// Each run removes leftovers in the folder to which the others write.

@@ -31,6 +31,43 @@ fn a_map_end_to_end() {
     assert_eq!(stored.attribute("scene").unwrap(), SCENE);
 }
 
+/// While a map is written and drawn, another thread replaces it by another map, again and again. Windows replaces no file that is open.
+#[cfg(unix)]
+#[test]
+fn the_picture_is_that_of_the_map_of_the_run() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::{fs, thread};
+    let place = Place::with(SCENE);
+    let other = SCENE.replace("radius_mm = 0.25", "radius_mm = 0.5");
+    fs::create_dir(place.path("other")).unwrap();
+    place.write("other/scene.toml", &other);
+    place.map(&["other/scene.toml", "-o", "other"]);
+    place.map(&["scene.toml", "-o", "own"]);
+    fs::create_dir(place.path("outputs")).unwrap();
+    let is_done = AtomicBool::new(false);
+    thread::scope(|threads| {
+        threads.spawn(|| {
+            let next = place.path("outputs/next.exr");
+            for _ in 0..10_000_000 {
+                if is_done.load(Ordering::Relaxed) {
+                    break;
+                }
+                fs::copy(place.path("other/scene.exr"), &next).unwrap();
+                fs::rename(&next, place.path("outputs/scene.exr")).unwrap();
+            }
+        });
+        let map = ["map", "scene.toml", "--engine=cpu"];
+        let runs: Vec<_> = (0..8)
+            .map(|_| (place.run(&map), fs::read(place.path("outputs/scene.png"))))
+            .collect();
+        is_done.store(true, Ordering::Relaxed);
+        for (run, picture) in runs {
+            assert_eq!(run.code, Some(0), "{run:?}");
+            assert!(picture.unwrap() == place.bytes("own/scene.png"));
+        }
+    });
+}
+
 #[test]
 fn the_same_bytes_every_time_and_with_any_number_of_threads() {
     let place = Place::with(SCENE);

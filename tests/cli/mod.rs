@@ -17,6 +17,8 @@ mod digits;
 mod engine;
 mod explore;
 mod extract;
+#[cfg(target_os = "linux")]
+mod faults;
 #[cfg(unix)]
 mod files;
 mod fit;
@@ -49,6 +51,8 @@ mod store;
 #[cfg(unix)]
 mod submit;
 mod sweep;
+#[cfg(unix)]
+mod terminal;
 mod texture;
 mod tolerance;
 mod traces;

@@ -116,10 +116,8 @@ fn maps_too_large_for_the_disk() {
     let place = Place::with(&format!("{large}{axes}"));
     for format in ["exr", "zarr"] {
         let run = place.run(&["map", "scene.toml", "--engine=cpu", "--format", format]);
-        run.assert_refused(&[
-            "--output outputs: the map needs about ",
-            " are free; give a folder with more space, or --force",
-        ]);
+        run.assert_said(1, "error: cannot write outputs: the map needs about ");
+        run.assert_said(1, " are free; give a folder with more space, or --force\n");
         assert_eq!(names(&place.path("outputs")), [""; 0]);
     }
     let forced = ["map", "scene.toml", "--engine=cpu", "--force"];
@@ -167,28 +165,64 @@ fn a_folder_without_permission() {
     let place = Place::with(SCENE);
     let locked = place.path("locked");
     fs::create_dir(&locked).unwrap();
-    fs::set_permissions(&locked, fs::Permissions::from_mode(0o555)).unwrap();
-    let mut command =
-        place.plain_command(&["map", "scene.toml", "--engine", "cpu", "-o", "locked"]);
-    if tempfile::tempfile_in(&locked).is_ok() {
+    // Without --output, both commands create the same folder.
+    place.write("locked/scene.toml", SCENE);
+    let lock = |mode| fs::set_permissions(&locked, fs::Permissions::from_mode(mode)).unwrap();
+    lock(0o555);
+    let is_allowed = tempfile::tempfile_in(&locked).is_ok();
+    let mut program = Path::new(env!("CARGO_BIN_EXE_whiskmap")).to_owned();
+    if is_allowed {
         // The program may be in a folder that other users cannot enter.
-        let program = place.path("whiskmap");
+        let original = std::mem::replace(&mut program, place.path("whiskmap"));
         // A copy by this process would be open for writing in a child that another test starts meanwhile, and then cannot be run.
         let mut copy = std::process::Command::new("cp");
-        copy.args([Path::new(env!("CARGO_BIN_EXE_whiskmap")), &program]);
+        copy.args([&original, &program]);
         assert!(copy.status().unwrap().success());
         fs::set_permissions(place.path(""), fs::Permissions::from_mode(0o755)).unwrap();
-        let arguments: Vec<_> = command.get_args().map(ToOwned::to_owned).collect();
-        command = std::process::Command::new(program);
-        command
-            .args(arguments)
-            .current_dir(place.path(""))
-            .uid(NOBODY)
-            .gid(NOBODY);
     }
-    let run = Run::of(&command.output().unwrap());
-    run.assert_refused(&["--output locked: ", "ermission"]);
-    assert_eq!(names(&locked), [""; 0]);
+    let run = |folder: &str, arguments: &[&str]| {
+        let mut command = std::process::Command::new(&program);
+        command.args(arguments).current_dir(place.path(folder));
+        if is_allowed {
+            command.uid(NOBODY).gid(NOBODY);
+        }
+        Run::of(&command.output().unwrap())
+    };
+    let map = ["map", "scene.toml", "--engine=cpu"];
+    let explore = ["explore", "scene.toml"];
+    let in_locked = run("", &[&map[..], &["-o", "locked"]].concat());
+    in_locked.assert_refused(&["--output locked: Permission denied"]);
+    for command in [&map[..], &explore] {
+        run("locked", command).assert_refused(&["--output outputs: Permission denied"]);
+    }
+    assert_eq!(names(&locked), ["scene.toml"]);
+    // A folder that exists, and is read-only itself.
+    lock(0o755);
+    fs::create_dir(locked.join("outputs")).unwrap();
+    let inner = locked.join("outputs");
+    fs::set_permissions(&inner, fs::Permissions::from_mode(0o555)).unwrap();
+    for command in [&map[..], &explore] {
+        run("locked", command).assert_refused(&["--output outputs: Permission denied"]);
+    }
+}
+
+/// The environment variable of rayon has the limits of `--threads`, which comes first.
+#[test]
+fn threads_of_the_environment_are_limited() {
+    let place = Place::with(SCENE);
+    let plan = |threads: &str, arguments: &[&str]| {
+        let mut command = place.plain_command(&[&["plan", "scene.toml"], arguments].concat());
+        let command = command.env("RAYON_NUM_THREADS", threads);
+        Run::of(&command.output().unwrap())
+    };
+    for threads in ["20000", "1025", "many", "-1"] {
+        let must = "must be a whole number between 1 and 1024";
+        plan(threads, &[]).assert_refused(&[&format!("RAYON_NUM_THREADS={threads}: {must}")]);
+        assert_eq!(plan(threads, &["--threads=2"]).code, Some(0));
+    }
+    for threads in ["", "0", "2"] {
+        assert_eq!(plan(threads, &[]).code, Some(0));
+    }
 }
 
 #[test]

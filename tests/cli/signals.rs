@@ -5,9 +5,9 @@ use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, SystemTime};
 
-/// Scene of a sweep that takes minutes.
+/// Scene of a sweep that takes half a minute, so that it ends by itself where no signal ends it.
 fn long() -> String {
-    let axes = "taper = { from = 0, to = 0.9, count = 400 }\ncurvature_per_mm = { from = 0, to = 0.04, count = 400 }";
+    let axes = "taper = { from = 0, to = 0.9, count = 80 }\ncurvature_per_mm = { from = 0, to = 0.04, count = 80 }";
     let scene = SCENE
         .lines()
         .filter(|line| !line.starts_with("tip_radius_um"));
@@ -60,6 +60,45 @@ fn an_interrupted_run_cleans_up() {
         assert_eq!(run.err.lines().last(), Some(&*said), "{run:?}");
         assert_eq!(names(&place.path("outputs")), [""; 0]);
     }
+}
+
+/// The store is written in a temporary folder, to which threads still add files when the signal arrives.
+#[test]
+fn an_interrupted_extract_leaves_no_folder() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml", "--no-png"]);
+    fs::create_dir(place.path("new")).unwrap();
+    let extract = ["extract", "outputs/scene.exr", "-o", "new/x.zarr"];
+    for _ in 0..40 {
+        let mut child = place.plain_command(&extract);
+        let mut child = child
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        while names(&place.path("new")).is_empty() && child.try_wait().unwrap().is_none() {
+            std::thread::yield_now();
+        }
+        if child.try_wait().unwrap().is_none() {
+            send("TERM", &child);
+        }
+        child.wait().unwrap();
+        let left = unfinished(&place, "new");
+        assert_eq!(left, [""; 0]);
+        let _ = fs::remove_dir_all(place.path("new/x.zarr"));
+    }
+}
+
+/// `nohup` ignores SIGHUP, and a shell ignores the other two for its background jobs. A process inherits this.
+#[test]
+fn tests_do_not_depend_on_ignored_signals() {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", "trap '' HUP INT QUIT TERM; exec \"$0\" \"$@\""]);
+    shell.arg(std::env::current_exe().unwrap());
+    shell.args(["--exact", "cli::signals::an_interrupted_run_cleans_up"]);
+    let output = shell.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("1 passed"), "{said}");
 }
 
 /// A run that waits for the reader of a pipe has its table in an unnamed file. It installs handlers before it reads its scene.

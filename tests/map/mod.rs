@@ -151,4 +151,5 @@ pub fn write(path: &Path, scene: &SceneData) -> CellCounts {
     writer
         .finish(EngineCells::default(), Audit::default())
         .unwrap()
+        .counts
 }

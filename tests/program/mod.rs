@@ -56,6 +56,8 @@ impl Place {
             .current_dir(self.0.path())
             // The program must not print the errors of libraries that need this variable.
             .env_remove("XDG_RUNTIME_DIR");
+        #[cfg(unix)]
+        isolate(&mut command);
         command
     }
 
@@ -74,6 +76,33 @@ impl Place {
     pub fn bytes(&self, name: &str) -> Vec<u8> {
         fs::read(self.path(name)).unwrap()
     }
+}
+
+/// Most CPU time of a run in seconds. A run that no test ends, because a signal does not reach it, ends by itself.
+#[cfg(unix)]
+const CPU_SECONDS: u64 = 1200;
+
+/// Gives a program the default actions of signals, also those that `nohup` and shells ignore for background jobs, and limits its CPU time.
+#[cfg(unix)]
+#[allow(unsafe_code, reason = "only the child itself can set its signals")]
+fn isolate(command: &mut std::process::Command) {
+    use std::os::unix::process::CommandExt;
+    let set = || {
+        let limit = libc::rlimit {
+            rlim_cur: CPU_SECONDS,
+            rlim_max: CPU_SECONDS,
+        };
+        // SAFETY: both calls may be made between `fork` and `exec`, and read nothing but their arguments.
+        unsafe {
+            for signal in [libc::SIGHUP, libc::SIGINT, libc::SIGQUIT, libc::SIGTERM] {
+                libc::signal(signal, libc::SIG_DFL);
+            }
+            libc::setrlimit(libc::RLIMIT_CPU, &raw const limit);
+        }
+        Ok(())
+    };
+    // SAFETY: `set` allocates nothing and takes no lock.
+    unsafe { command.pre_exec(set) };
 }
 
 /// Returns the sorted names of the entries of a folder; none without a folder.

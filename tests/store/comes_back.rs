@@ -137,7 +137,8 @@ fn unresolved_cells_do_not_count_for_the_worst_residual() {
     writer.write_panels(&[panel]).unwrap();
     let counts = writer
         .finish(EngineCells::default(), Audit::default())
-        .unwrap();
+        .unwrap()
+        .counts;
     // Residuals of made-up cells are at most 70e-9.
     assert!(counts.worst_residual.unwrap() < 1e-6);
 }

@@ -11,6 +11,9 @@ mod flipped_bits;
 mod identity;
 mod made_up;
 mod refused;
+// Windows replaces no file that is open.
+#[cfg(unix)]
+mod replaced;
 
 use crate::map;
 use crate::sealed;

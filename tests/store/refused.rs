@@ -101,7 +101,8 @@ fn a_panel_that_does_not_fit_is_refused() {
     writer.write_panels(&[good.clone(), good]).unwrap();
     let counts = writer
         .finish(EngineCells::default(), Audit::default())
-        .unwrap();
+        .unwrap()
+        .counts;
     assert_eq!(counts.regimes.values().sum::<u64>(), 40);
 }
 

@@ -2,6 +2,7 @@
 
 use std::fs;
 use whiskmap::scene::{Parameter, Scene};
+use whiskmap::traced::TracedShape;
 
 const WHISKER: &str = "title = \"traced\"\n[whisker]\nbase_radius_um = 30\ntip_radius_um = 1.5\n\
                        youngs_modulus_gpa = 3\n";
@@ -20,6 +21,17 @@ fn arc(count: u32) -> Vec<[f64; 2]> {
         [20.0 * angle.sin(), 20.0 * (1.0 - angle.cos())]
     };
     (0..count).map(point).collect()
+}
+
+/// A fit to so many points would take minutes without a word.
+#[test]
+fn too_many_points_are_refused_at_once() {
+    let why = TracedShape::fit(arc(1_000_000), None).unwrap_err();
+    assert_eq!(
+        why.to_string(),
+        "must be at most 50000 points, are 1000000: leave out points, such as all but every 20th"
+    );
+    assert!(TracedShape::fit(arc(50_000), Some(0)).is_ok());
 }
 
 fn refusal(text: &str) -> String {

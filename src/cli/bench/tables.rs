@@ -2,10 +2,11 @@
 
 use std::io::{self, Write};
 use whiskmap::bench::{CELLS, NOISY, Report, Timing, named};
+use whiskmap::terminal::StandardOutput;
 
 /// Prints all measurements in at most 80 columns, except the names of adapters.
 pub fn tables(report: &Report) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = StandardOutput::open();
     writeln!(out, "{}: {} states\n", report.scene, report.states)?;
     for engine in &report.engines {
         let name = named(&engine.name, engine.threads);

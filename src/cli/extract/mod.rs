@@ -10,13 +10,14 @@ use super::files::Files;
 use super::output_file::unwritten;
 use super::selection::{SelectionArgs, channels};
 use clap::Args;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::plan::Digits;
 use whiskmap::scene::{LONGEST_TITLE, Parameter, Scene, SceneData};
 use whiskmap::store::{MapDescription, MapSlice, MapWriter, TemporaryFolder, ZarrStore};
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -55,7 +56,7 @@ pub fn run(args: &ExtractArgs, files: &mut Files) -> Result<(), Failure> {
         Some("exr") => map(&slice, &channels, path, files)?,
         _ => return refuse(path, "must end in .csv, .npy, .zarr or .exr"),
     }
-    writeln!(io::stdout(), "{}", path.display())?;
+    writeln!(StandardOutput::open(), "{}", path.display())?;
     Ok(())
 }
 

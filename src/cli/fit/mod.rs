@@ -11,12 +11,13 @@ use super::output_file::STDOUT;
 use super::pole::check_single;
 use clap::Args;
 use serde_json::{Map, Value, json};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use table::{six_digits, table};
 use whiskmap::fit::{Fit, FitError, fit};
 use whiskmap::measured::MeasuredPoints;
 use whiskmap::scene::{Parameter, Scene, digits};
+use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -104,7 +105,7 @@ fn print(title: &str, fit: &Fit, outputs: Vec<(OutputFile, String)>) -> Result<(
     for (file, text) in outputs {
         let regular = file.write(text.as_bytes())?;
         if let Some(path) = regular.filter(|_| !is_streamed) {
-            writeln!(io::stdout(), "{}", path.display())?;
+            writeln!(StandardOutput::open(), "{}", path.display())?;
         }
     }
     Ok(())

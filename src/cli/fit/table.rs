@@ -4,6 +4,7 @@ use super::super::data;
 use std::io::{self, Write};
 use whiskmap::fit::{Estimate, Fit};
 use whiskmap::scene::{digits, rounded};
+use whiskmap::terminal::StandardOutput;
 
 /// Returns the text of a missing standard error in the table.
 fn no_error(fit: &Fit, estimate: &Estimate) -> &'static str {
@@ -43,7 +44,7 @@ pub fn six_digits(value: f64) -> String {
 
 /// Prints the table of a fit; the JSON has all digits of the values.
 pub fn table(title: &str, fit: &Fit) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = StandardOutput::open();
     writeln!(out, "{title}")?;
     if fit.not_a_fit.is_some() {
         writeln!(out, "not a fit")?;

@@ -10,11 +10,12 @@ use std::ops::Range;
 use whiskmap::engine::on_gpu;
 use whiskmap::plan::{Cost, Plan, ROD_STATES, effects};
 use whiskmap::scene::{Scene, digits, rounded};
+use whiskmap::terminal::StandardOutput;
 
 /// Prints the plan and the estimated cost of a map of `scene`.
 pub fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
     let (plan, cost) = (&estimate.plan, &estimate.cost);
-    let mut out = std::io::stdout().lock();
+    let mut out = StandardOutput::open();
     writeln!(out, "{}\n", scene.title)?;
     writeln!(out, "{:16}  {:3}  {:12}  why", "effect", "", "cost when on")?;
     for effect in effects(scene, plan.method.effects) {
@@ -111,7 +112,7 @@ pub fn print_shards(
     shares: &[ShardShare],
     mut first: usize,
 ) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = StandardOutput::open();
     let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
     let mut line = |name: &str, share: ShardShare| {
         let [seconds, bytes] = estimate.share(share.whiskers);

@@ -1,7 +1,8 @@
 //! Lists of pairs of numbers in a scene file, measured radii and traced points: a list, or the name of a CSV file.
 
 use std::fmt;
-use std::fs;
+use std::fs::File;
+use std::io;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +10,7 @@ use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 
-use crate::input::{CsvError, CsvTable};
+use crate::input::{CsvError, CsvTable, open_regular};
 use crate::scene::{profile, shape};
 
 /// Kind of pairs in a scene file.
@@ -130,15 +131,14 @@ impl<K: PairKind> PairList<K> {
             ));
         };
         let path = folder.join(name);
-        // A pipe without a writer would never open.
-        if fs::metadata(&path).is_ok_and(|about| !about.is_file()) {
-            return Err("must name a regular file".to_owned());
+        match open_regular(&path).transpose() {
+            Some(file) => Self::from_csv(file, path).map_err(|why| why.to_string()),
+            None => Err("must name a regular file".to_owned()),
         }
-        Self::from_csv(path).map_err(|why| why.to_string())
     }
 
-    fn from_csv(path: PathBuf) -> Result<GivenPairs, CsvError> {
-        let table = CsvTable::read(&path)?;
+    fn from_csv(file: io::Result<File>, path: PathBuf) -> Result<GivenPairs, CsvError> {
+        let table = CsvTable::read_file(file, &path)?;
         let [first, second] = K::COLUMNS;
         let note = table.require(&[&[first], &[second]], &[])?;
         let column = |name| table.numbers(name, "a number", f64::is_finite);

@@ -69,10 +69,10 @@ impl TemporaryFile {
         Ok(())
     }
 
-    /// Removes the temporary files beside this one whose processes have ended. Files of other users stay.
+    /// Removes the temporary files and folders beside this one whose processes have ended. Those of other users stay.
     ///
     /// A process that has ended has lost its lock. Locks of other hosts may not be visible here, so their files must also
-    /// be [`ABANDONED`] by the clock that dates them and this file.
+    /// be [`ABANDONED`] by the clock that dates them and this file. Their folders stay: a folder may be old, and files in it new.
     pub fn remove_leftovers(&self) {
         let (Some(folder), Ok(own)) = (self.file.path().parent(), self.file.as_file().metadata())
         else {
@@ -89,27 +89,36 @@ impl TemporaryFile {
             let host = name.to_str().and_then(host_of);
             let about = host.zip(entry.metadata().ok());
             about.is_some_and(|(host, about)| {
-                let is_ours = about.is_file() && is_of_one_user(&about, &own);
-                is_ours && (host == host_here || is_abandoned(&about))
+                let is_here = host == host_here;
+                let is_gone_by = match about.is_dir() {
+                    true => is_here,
+                    false => about.is_file() && (is_here || is_abandoned(&about)),
+                };
+                is_gone_by && is_of_one_user(&about, &own)
             })
         };
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
             if !is_gone(&entry) {
                 continue;
             }
+            let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
             // Kept open, and so locked, until it is removed.
-            let file = not_following().open(entry.path());
+            let file = not_following(is_folder).open(entry.path());
             if file.as_ref().is_ok_and(|file| file.try_lock().is_ok()) {
-                let _ = fs::remove_file(entry.path());
+                let _ = match is_folder {
+                    true => fs::remove_dir_all(entry.path()),
+                    false => fs::remove_file(entry.path()),
+                };
             }
         }
     }
 }
 
 /// Options to open a leftover: whatever has taken its name since, no link is followed and no pipe waited for.
-fn not_following() -> OpenOptions {
+fn not_following(is_folder: bool) -> OpenOptions {
     let mut options = File::options();
-    options.write(true);
+    // No folder is opened for writing, and NFS locks no file that is not.
+    options.read(is_folder).write(!is_folder);
     #[cfg(unix)]
     {
         use rustix::fs::OFlags;

@@ -3,27 +3,31 @@
 use super::name::{RANDOM, prefix};
 use super::{ListedPath, TemporaryFiles};
 use crate::store::file_id::folder_of;
+use crate::store::output::sync_folder;
 use crate::store::target::check_links;
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Temporary folder that gets its name when it is complete. It is removed when it is dropped and when the process is interrupted. A
-/// process that ends without unwinding leaves it.
+/// Temporary folder that gets its name when it is complete. It is removed when it is dropped and when the process is interrupted. If
+/// the process is killed, the next one on the same host removes it.
 #[derive(Debug)]
 pub struct TemporaryFolder {
     folder: TempDir,
+    /// The folder, locked while the process runs; `None` where folders cannot be opened.
+    _lock: Option<File>,
     _listed: ListedPath,
 }
 
 impl TemporaryFolder {
-    /// Creates an empty temporary folder beside `target`.
+    /// Creates an empty temporary folder beside `target`, and removes those of interrupted processes there.
     ///
     /// # Errors
     /// The folder of `target` does not exist, is not writable, or lies behind a link that must not be followed.
     pub fn create(target: &Path, files: &TemporaryFiles) -> io::Result<Self> {
         check_links(folder_of(target))?;
+        files.prepare(folder_of(target))?;
         let prefix = prefix();
         let mut builder = tempfile::Builder::new();
         builder.prefix(&prefix).rand_bytes(RANDOM);
@@ -31,11 +35,20 @@ impl TemporaryFolder {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
         let make = || builder.tempdir_in(folder_of(target));
-        let (folder, listed) = files.make(make, TempDir::path)?;
-        Ok(Self {
-            folder,
-            _listed: listed,
-        })
+        loop {
+            let (folder, listed) = files.make(make, TempDir::path)?;
+            // Without a lock, the folder of an interrupted process stays.
+            let lock = File::open(folder.path()).ok();
+            let _ = lock.as_ref().map(File::lock);
+            // Before it was locked, another process may have removed it as a leftover.
+            if !matches!(folder.path().try_exists(), Ok(false)) {
+                return Ok(Self {
+                    folder,
+                    _lock: lock,
+                    _listed: listed,
+                });
+            }
+        }
     }
 
     /// Returns the path of the temporary folder until it is finished.
@@ -51,6 +64,6 @@ impl TemporaryFolder {
     pub fn finish(self, target: &Path) -> io::Result<()> {
         fs::rename(self.folder.path(), target)?;
         let _ = self.folder.keep();
-        Ok(())
+        sync_folder(folder_of(target))
     }
 }

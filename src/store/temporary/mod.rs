@@ -1,6 +1,6 @@
 //! Temporary files and folders. They are removed when they are dropped and when the process is interrupted.
 //!
-//! A later process of the same user removes the files of an interrupted one, see [`Output::remove_leftovers`](super::Output).
+//! A later process of the same user removes those of an interrupted one, see [`Output::remove_leftovers`](super::Output).
 
 mod file;
 #[cfg(feature = "zarr")]
@@ -44,18 +44,28 @@ impl TemporaryFiles {
         Ok((made, listed))
     }
 
-    /// Removes all temporary files and folders of a process that is about to end without unwinding. Threads that begin or finish a file
-    /// after this wait forever.
+    /// Creates a folder and those that hold it, if need be, with no interruption in between.
+    ///
+    /// # Errors
+    /// An error of [`fs::create_dir_all`].
+    pub fn create_folders(&self, path: &Path) -> io::Result<()> {
+        let _list = self.list();
+        fs::create_dir_all(path)
+    }
+
+    /// Removes all temporary files and folders of a process that is about to end without unwinding. Threads that create a file or a folder
+    /// or finish a file after this wait forever.
     pub fn abandon(&self) {
         let list = self.list();
-        for path in list.iter() {
+        // The files in a folder are listed after it. Without them, no thread can add an entry to it.
+        for path in list.iter().rev() {
             let _ = fs::remove_file(path);
             let _ = fs::remove_dir_all(path);
         }
         std::mem::forget(list);
     }
 
-    /// Checks that files can be made in `folder`, and removes temporary files of interrupted processes there.
+    /// Checks that files can be made in `folder`, and removes temporary files and folders of interrupted processes there.
     ///
     /// # Errors
     /// The folder does not exist or is not writable.

@@ -8,6 +8,7 @@ use super::read::open_regular;
 use crate::classify::Regime;
 use crate::store::{NOT_COMPUTED, StoreError, check_links};
 use rayon::prelude::*;
+use std::collections::HashSet;
 use std::fs;
 use std::io::{self, Read};
 use std::ops::Range;
@@ -189,9 +190,10 @@ impl ZarrStore {
         Ok(true)
     }
 
-    /// Returns the owner of the blocks in the store's folder, by the first bytes of their files.
+    /// Returns the owner of the blocks in the store's folder, by the first bytes of their files. A file of this store in the place of
+    /// another one is damaged, but belongs to it.
     pub(super) fn owner(&self) -> BlockOwner {
-        let mut owner = BlockOwner::Nobody;
+        let mut found = HashSet::new();
         for array in &self.arrays {
             let folder = self.path.join(&array.name);
             for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -202,10 +204,21 @@ impl ZarrStore {
                 if identity == self.expected(array, &entry.path()).identity {
                     return BlockOwner::This;
                 }
-                owner = BlockOwner::Other;
+                found.insert(identity);
             }
         }
-        owner
+        let is_found = |array: &ZarrArray, block| {
+            let expected = self.expected(array, &self.file(array, block));
+            found.contains(&expected.identity)
+        };
+        let mut blocks = 0..self.block_count();
+        if found.is_empty() {
+            BlockOwner::Nobody
+        } else if blocks.any(|block| self.arrays.iter().any(|array| is_found(array, block))) {
+            BlockOwner::This
+        } else {
+            BlockOwner::Other
+        }
     }
 }
 

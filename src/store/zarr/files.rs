@@ -23,7 +23,7 @@ impl ZarrStore {
     /// # Errors
     /// The existing store was created with other settings or must not exist, or one of its folders cannot be written.
     pub fn begin(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
-        let made = check_links(&self.path).and_then(|()| fs::create_dir_all(&self.path));
+        let made = check_links(&self.path).and_then(|()| temporary.create_folders(&self.path));
         made.map_err(StoreError::at(&self.path, StoreError::Write))?;
         let root = self.path.join(METADATA);
         let created = finish(&root, &[self.root()], temporary, Output::finish_new);
@@ -33,7 +33,7 @@ impl ZarrStore {
         }
         for array in &self.arrays {
             let folder = self.path.join(&array.name);
-            let made = check_links(&folder).and_then(|()| fs::create_dir_all(&folder));
+            let made = check_links(&folder).and_then(|()| temporary.create_folders(&folder));
             made.map_err(StoreError::at(&folder, StoreError::Write))?;
         }
         let restored = self.restore_metadata(temporary)?;
@@ -124,7 +124,9 @@ pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, StoreError> 
 /// Writes a metadata file again. Returns true if it existed.
 fn restore(path: &Path, bytes: &[u8], temporary: &TemporaryFiles) -> Result<bool, StoreError> {
     let was_there = path.exists();
-    let folder = path.parent().map_or(Ok(()), fs::create_dir_all);
+    let folder = path
+        .parent()
+        .map_or(Ok(()), |folder| temporary.create_folders(folder));
     folder.map_err(StoreError::at(path, StoreError::Write))?;
     write(path, &[bytes], temporary)?;
     Ok(was_there)
@@ -134,14 +136,13 @@ fn json(value: &Value) -> Vec<u8> {
     value.to_string().into_bytes()
 }
 
-/// Writes a file as a whole, piece by piece, into an existing folder. It is on the disk before this returns, because a run that resumes
-/// after a crash takes existing files for finished ones.
+/// Writes a file as a whole, piece by piece, into an existing folder.
 pub(super) fn write(
     path: &Path,
     pieces: &[impl AsRef<[u8]>],
     temporary: &TemporaryFiles,
 ) -> Result<(), StoreError> {
-    let written = finish(path, pieces, temporary, Output::finish_durably);
+    let written = finish(path, pieces, temporary, Output::finish);
     written.map_err(StoreError::at(path, StoreError::Write))
 }
 

@@ -6,8 +6,9 @@ use super::encoding::ValueKind;
 use super::metadata::CELLS;
 use super::shard::ExpectedFile;
 use crate::classify::Regime;
+use crate::input;
 use crate::store::{ChannelValues, StoreError};
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::ops::Range;
 use std::path::Path;
@@ -61,11 +62,11 @@ impl ZarrStore {
             let (block, first) = self.blocks.find(next);
             let end = self.blocks.whiskers(block).end.min(whiskers.end);
             let file = self.file(array, block);
-            let read = self.read_file(array, &file).map_err(|why| match why {
+            let (expected, packed) = self.read_file(array, &file).map_err(|why| match why {
+                _ if self.check_place().is_err() => StoreError::Displaced(self.path.clone()),
                 StoreError::NotComputed(_) => StoreError::Unfinished(self.path.clone()),
                 why => why,
-            });
-            let (expected, packed) = read?;
+            })?;
             let chunks = expected.chunks / self.blocks.slots();
             let frames: Vec<&[u8]> = expected.frames(&packed).collect();
             for index in first..first + (end - next) {
@@ -121,14 +122,12 @@ impl ZarrStore {
     }
 }
 
-/// Opens a regular file of a store. It opens no other file, because a pipe, for example, might block forever.
+/// Opens a regular file of a store.
 pub(super) fn open_regular(path: &Path) -> Result<File, StoreError> {
     let failed = |why: io::Error| match why.kind() {
         io::ErrorKind::NotFound => StoreError::NotComputed(path.to_owned()),
         _ => StoreError::Read(path.to_owned(), why),
     };
-    if !fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(StoreError::NotAFile(path.to_owned()));
-    }
-    File::open(path).map_err(failed)
+    let file = input::open_regular(path).map_err(failed)?;
+    file.ok_or_else(|| StoreError::NotAFile(path.to_owned()))
 }
