@@ -49,9 +49,9 @@ pub enum Task {
     },
     /// Task: compute the detachment curve of both sides.
     Curve {
-        /// Range `[least, greatest]` of distances of first touch from the base, in mm.
+        /// Range `[least, greatest]` of distances of first touch from the base, in mm; equal for one distance.
         distance_mm: [f64; 2],
-        /// Number of distances of the detachment curve.
+        /// Number of distances of the detachment curve; 1 for equal ends.
         count: usize,
     },
     /// Task: compute the effects of all numbers of the scene on the detachments of both sides at one distance.
@@ -94,7 +94,7 @@ impl Request {
                 traces::branches(&scene, *distance_mm, *push_angle_deg, count).into()
             }
             Task::Curve { distance_mm, count } => {
-                traces::curve(&scene, *distance_mm, (*count).clamp(2, MOST))?.into()
+                traces::curve(&scene, *distance_mm, (*count).clamp(1, MOST))?.into()
             }
             Task::Sensitivities { distance_mm } => {
                 json!({ "distance_mm": distance_mm, "rows": effects(&scene, *distance_mm) }).into()
