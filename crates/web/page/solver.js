@@ -13,7 +13,11 @@ export async function compiled() {
 }
 
 // Error of a request that a newer one has replaced, or that was stopped.
-export class Superseded extends Error {}
+export class Superseded extends Error {
+    constructor() {
+        super('stopped');
+    }
+}
 
 export class Solver {
     constructor(module, onBusy) {
@@ -40,6 +44,7 @@ export class Solver {
         return new Promise((resolve, reject) => {
             this.waiting.get(kind)?.reject(new Superseded());
             this.waiting.set(kind, { kind, request, resolve, reject, id: ++this.count });
+            if (!this.worker) this.start();
             const { running } = this;
             if (running?.kind === kind && performance.now() - running.begun > PATIENCE) {
                 this.fail(new Superseded());
@@ -75,15 +80,15 @@ export class Solver {
             this.fail(new Error('the solver has failed; the last valid result stays'));
             return;
         }
-        const error = new Error('the solver cannot start in this browser');
-        for (const { reject } of this.waiting.values()) reject(error);
+        this.worker = null;
+        for (const { reject } of this.waiting.values()) reject(new Error('the solver cannot start in this browser'));
         this.waiting.clear();
         this.onBusy?.(null);
     }
 
     // Ends the running request with an error, and starts a new worker.
     fail(error) {
-        this.worker.terminate();
+        this.worker?.terminate();
         this.running?.reject(error);
         this.running = null;
         this.start();
