@@ -11,7 +11,7 @@ import { drawMap, drawPlane, startMap } from './map.js';
 import { showPoints, showPointsError, startPoints } from './points.js';
 import { showNoState, showState } from './readout.js';
 import { change, known, on, state } from './state.js';
-import { CHANNELS, UNITS, inUnit, size, titled } from './text.js';
+import { CHANNELS, UNITS, inUnit, sizeOf, titled } from './text.js';
 import { drawCourse, showCourse, startWhisk } from './whisk.js';
 import { drawWhisker } from './whisker.js';
 
@@ -71,7 +71,7 @@ function startTools() {
     find('channel').addEventListener('change', ({ target }) => change({ channel: target.value || null }));
     find('scale').addEventListener('change', ({ target }) => change({ scale: target.value }));
     ranges = ['range-from', 'range-to'].map((id, i) => startField(find(id), find(`error-${id}`), (value) => {
-        change({ range: state.range.map((end, own) => (own !== i ? end : value && value * size(state.channel))) });
+        change({ range: state.range.map((end, own) => (own !== i ? end : value && value * sizeOf(state.channel))) });
         return '';
     }, true));
     find('units').append(...Object.entries(UNITS).map(([quantity, units]) => el('label', {}, `${quantity} `,

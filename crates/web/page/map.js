@@ -4,7 +4,7 @@ import { blank, blankPixel, css, hatched, isDark, regimeColour, regimePixels, sc
 import { el, find, svg } from './dom.js';
 import { draw, extent, labels, logTicks, ticks, widest } from './plot.js';
 import { change, fitted, known, on, state } from './state.js';
-import { inUnit, isLoad, size as sizeOf, spoken, titled, unit, withUnit } from './text.js';
+import { inUnit, isLoad, sizeOf, spoken, titled, unit, withUnit } from './text.js';
 
 const plane = find('plane');
 const [canvas, overlay] = plane.children;

@@ -1,7 +1,7 @@
 // Plots in SVG: axes with ticks, lines and dots in the units of the data; the ticks have the units that the reader has chosen.
 
 import { svg } from './dom.js';
-import { shown, size, titled } from './text.js';
+import { shown, sizeOf, titled } from './text.js';
 
 // Most ticks of an axis. A range that doubles cannot divide has fewer than it wants.
 const MOST_TICKS = 100;
@@ -39,9 +39,9 @@ export function labels(values) {
 
 // Ticks of an axis with the numbers of a name, in the reader's unit: `{ value, label }`, at values in the unit of the data.
 function marks([from, to], count, name) {
-    const values = from < to ? ticks([from / size(name), to / size(name)], count) : [from / size(name)];
+    const values = from < to ? ticks([from / sizeOf(name), to / sizeOf(name)], count) : [from / sizeOf(name)];
     const all = labels(values);
-    return values.map((value, i) => ({ value: value * size(name), label: all[i] }));
+    return values.map((value, i) => ({ value: value * sizeOf(name), label: all[i] }));
 }
 
 // The ends of the finite values of an axis, with a margin; `also` lists values that must lie between them.

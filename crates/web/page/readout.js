@@ -35,16 +35,20 @@ export function showState() {
     speak();
 }
 
-const isChanged = () => Object.keys(state.whisker.values).length > 0;
+// True if the scene is not that of a file: it has other values, is one of a sweep, or comes from a map.
+function isChanged() {
+    const { origin, values } = state.whisker;
+    return known.scene.is_of_sweep || Object.keys(values).length > 0 || !/\.toml$/i.test(origin);
+}
 
 // The command line that computes the state at the pointer or, without a state, the ends of contact at its distance. A scene that differs from
 // its file is on standard input.
 function showCommand() {
     const { push_angle_deg: push, distance_mm: distance, stable } = known.state;
-    const scene = isChanged() ? '-' : `'${`${known.scene.name}.toml`.replace(/'/g, "'\\''")}'`;
+    const scene = isChanged() ? '-' : `'${state.whisker.origin.replace(/^-/, './-').replace(/'/g, "'\\''")}'`;
     const [name, place] = stable.points ? ['shape', ` --push-angle ${exact(push)}`] : ['curve', ''];
     find('command').textContent = `whiskmap ${name} ${scene} --distance ${exact(distance)}${place}`;
-    find('command-note').textContent = isChanged() ? 'the copy contains the changed scene, as a here-document' : '';
+    find('command-note').textContent = isChanged() ? 'the copy contains the scene of this whisker, as a here-document' : '';
 }
 
 // The text that reproduces the state in a shell. No line of the scene ends the here-document.

@@ -32,13 +32,13 @@ const kind = (name) => ENDS.find(([end]) => name.endsWith(end))?.[1] ?? (name ==
 
 // The unit in which the numbers of a name are shown, and its size in the unit of the data.
 export const unit = (name) => state.units[kind(name)] ?? kind(name);
-export const size = (name) => UNITS[kind(name)]?.[unit(name)] ?? 1;
+export const sizeOf = (name) => UNITS[kind(name)]?.[unit(name)] ?? 1;
 
 // The unit of a parameter in a scene, which the reader cannot choose.
 export const ownUnit = (name) => Object.keys(UNITS[kind(name)] ?? { [kind(name)]: 1 })[0];
 
 // A value of a name in the unit that the reader has chosen, without and with the unit.
-export const inUnit = (name, value, digits) => shown(value == null ? value : value / size(name), digits);
+export const inUnit = (name, value, digits) => shown(value == null ? value : value / sizeOf(name), digits);
 export const withUnit = (name, value, digits) => `${inUnit(name, value, digits)}${unit(name) === '\u00b0' ? '' : ' '}${unit(name)}`.trim();
 
 const SPOKEN = { m: 'metre', N: 'newton', J: 'joule', s: 'second', rad: 'radian', '\u00b0': 'degree', lengths: 'length' };

@@ -76,7 +76,7 @@ impl Request {
     fn respond(&self) -> Result<Response, String> {
         let scene = self.scene()?;
         Ok(match &self.task {
-            Task::Scene => scene::description(&scene)?.into(),
+            Task::Scene => scene::description(&scene, self.parsed()?.is_sweep())?.into(),
             Task::Toml => {
                 json!({ "toml": scene::toml(&self.one(Vec::new())?, &self.changes()?)? }).into()
             }
@@ -110,13 +110,16 @@ impl Request {
     }
 
     fn one(&self, values: Vec<(Parameter, f64)>) -> Result<Scene, String> {
-        let scene = Scene::parse(&self.text, &self.origin);
-        let scene = scene.and_then(|scene| scene.of_whisker(0));
+        let scene = self.parsed()?.of_whisker(0);
         let scene = scene.and_then(|scene| match values.is_empty() {
             true => Ok(scene),
             false => scene.with_parameters(&values),
         });
         scene.map_err(|why| why.to_string())
+    }
+
+    fn parsed(&self) -> Result<Scene, String> {
+        Scene::parse(&self.text, &self.origin).map_err(|why| why.to_string())
     }
 
     fn changes(&self) -> Result<Vec<(Parameter, f64)>, String> {
