@@ -76,7 +76,7 @@ const curveLine = (curve, side, name) =>
 
 // Draws the detachment curve with measured points, and the residuals of the points below.
 export function drawDetachment() {
-    if (!known.curve || !state.view) return;
+    if (!known.curve || !state.view) return find('detachment').replaceChildren();
     const name = known.points?.angle ?? 'push_angle_deg';
     const lines = [[known.pinnedCurve, 'pinned'], [known.curve, 'stable']].flatMap(([curve, kind]) =>
         curve ? ['cf', 'cb'].map((side) => ({ points: curveLine(curve, side, name), class: kind })) : []);

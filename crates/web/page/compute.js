@@ -129,7 +129,13 @@ function curve(whisker) {
     return request({ curve: { distance_mm: [from, to], count: from < to ? CURVE : 1 } }, whisker);
 }
 
-const computeCurve = () => state.view && fill(courses, 'curve', curve(), quiet);
+// Without a curve, the one of another whisker must not stay.
+const noCurve = () => {
+    known.curve = null;
+    shown.curve();
+};
+
+const computeCurve = () => state.view && fill(courses, 'curve', curve(), noCurve);
 
 function computePinned() {
     known.pinnedCurve = null;

@@ -6,7 +6,7 @@ import { shown, sizeOf, titled } from './text.js';
 // Most ticks of an axis. A range that doubles cannot divide has fewer than it wants.
 const MOST_TICKS = 100;
 
-// More dots than this, such as those of a whole file, are drawn as one path, without titles.
+// More dots than this, such as those of a whole file, are drawn as one path, without titles, at whole pixels, each once.
 const MOST_DOTS = 2000;
 
 // Round numbers between the ends of an axis, about `count` of them.
@@ -124,7 +124,8 @@ export function draw(node, spec) {
     }
     const dots = spec.dots ?? [];
     if (dots.length > MOST_DOTS) {
-        inside.append(svg('path', { class: `dots ${dots[0].class}`, d: dots.map(({ at: [x, y] }) => `M${place.x(x).toFixed(1)} ${place.y(y).toFixed(1)}h0`).join('') }));
+        const places = new Set(dots.map(({ at: [x, y] }) => `M${Math.round(place.x(x))} ${Math.round(place.y(y))}h0`));
+        inside.append(svg('path', { class: 'dots', d: [...places].join('') }));
     } else for (const { at: [x, y], class: name, error, title } of dots) {
         if (error) inside.append(svg('path', { class: `line ${name}`, d: path(error, place) }));
         inside.append(svg('circle', { class: `dot ${name}`, cx: place.x(x), cy: place.y(y), r: 3.5 }, ...(title ? [svg('title', {}, title)] : [])));
