@@ -159,7 +159,7 @@ export const inputs = {
         const page = await open(built);
         const xs = Array.from({ length: 40000 }, (_, i) => i / 2000);
         const points = xs.map((x, i) => `[${x.toFixed(4)}, ${(0.02 * x * x + 0.001 * ((i * 7919) % 13)).toFixed(4)}]`);
-        const shape = scene.replace(/^(length_mm|parabola_per_mm|vertex_mm) .*\n/gm, '').replace(/^\[pole\]/m, `[whisker.rest]\npoints = [${points}]\ndegree = 2\n\n[pole]`);
+        const shape = scene.replace(/^(length_mm|parabola_per_mm|vertex_mm|\[whisker\.curvature\]) .*\n/gm, '').replace(/^\[pole\]/m, `[whisker.rest]\npoints = [${points}]\ndegree = 2\n\n[pole]`);
         await drop(page, 'points.toml', shape.replace(/^title = .*$/m, 'title = "Many points"'));
         await until('the scene', () => page.title(), (own) => own.startsWith('Many points'));
         await finished(page);
