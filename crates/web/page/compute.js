@@ -16,10 +16,8 @@ const DRAFT_DEG = 0.01;
 const CURVE = 160;
 const BRANCH = 60;
 
-// A row's sensitivities and course are computed when the pointer has rested for this long, in ms.
+// A row's sensitivities and course are computed when the pointer has rested for this long, in ms, and a map is finished when nothing moves.
 const REST = 150;
-
-// A map is finished when nothing has moved for this long, in ms.
 const QUIET = 80;
 
 let scenes, maps, traces, rows, courses, shown;
@@ -60,7 +58,7 @@ export function adopt(kind, whiskerOf, parts = {}) {
     const own = {};
     if (kind === 'scene') newest.clear();
     newest.set(kind, own);
-    return (adopted = adopted.then(async () => {
+    const next = adopted.then(async () => {
         if (newest.get(kind) !== own) return null;
         const whisker = whiskerOf(state.whisker);
         const [scene, message] = await described(whisker);
@@ -71,7 +69,9 @@ export function adopt(kind, whiskerOf, parts = {}) {
         const moved = places.filter(([part, own]) => part in parts || JSON.stringify(own) !== JSON.stringify(state[part]));
         change({ ...parts, ...Object.fromEntries(moved), whisker });
         return '';
-    }));
+    });
+    adopted = next.catch(() => null);
+    return next;
 }
 
 // The description of a whisker's scene, or the message why there is none.
@@ -130,11 +130,7 @@ function curve(whisker) {
 }
 
 // Without a curve, the one of another whisker must not stay.
-const noCurve = () => {
-    known.curve = null;
-    shown.curve();
-};
-
+const noCurve = () => ((known.curve = null), shown.curve());
 const computeCurve = () => state.view && fill(courses, 'curve', curve(), noCurve);
 
 function computePinned() {

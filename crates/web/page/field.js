@@ -27,8 +27,6 @@ export function startField(field, error, accept, isOptional = false) {
         if (own === count && message !== null) say(message);
     };
     field.addEventListener('change', () => enter(isOptional && !field.value.trim() ? null : parsed(field.value)));
-    const show = (text) => {
-        if (!error.textContent && document.activeElement !== field) field.value = text;
-    };
+    const show = (text) => error.textContent || document.activeElement === field || (field.value = text);
     return { enter, show, clear: () => (count++, say('')) };
 }

@@ -43,23 +43,14 @@ const show = {
         drawMap();
         find('engine').dataset.drawn = JSON.stringify([known.map.isDraft, known.map.whisker.values, known.map.push_angle_deg, known.map.distance_mm]);
     },
-    curve() {
-        drawPlane();
-        drawDetachment();
-    },
+    curve: () => (drawPlane(), drawDetachment()),
     pinnedCurve: () => show.curve(),
-    state() {
-        showState();
-        drawWhisker();
-    },
+    state: () => (showState(), drawWhisker()),
     pinnedState: () => show.state(),
     branches: () => (drawBranches(), drawWhisker()),
     sensitivities: drawSensitivities,
     whisk: () => showCourse(''),
-    points() {
-        showPoints();
-        show.curve();
-    },
+    points: () => (showPoints(), show.curve()),
     error: showFailure,
     noState: showNoState,
     noWhisk: showCourse,

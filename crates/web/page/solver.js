@@ -13,11 +13,7 @@ export async function compiled() {
 }
 
 // Error of a request that a newer one has replaced, or that was stopped.
-export class Superseded extends Error {
-    constructor() {
-        super('stopped');
-    }
-}
+export class Superseded extends Error {}
 
 export class Solver {
     constructor(module, onBusy) {
@@ -42,12 +38,12 @@ export class Solver {
     // Computes the task of a request. The promise rejects with the message of the solver, or with `Superseded`.
     compute(kind, request) {
         return new Promise((resolve, reject) => {
-            this.waiting.get(kind)?.reject(new Superseded());
+            this.waiting.get(kind)?.reject(new Superseded('stopped'));
             this.waiting.set(kind, { kind, request, resolve, reject, id: ++this.count });
             if (!this.worker) this.start();
             const { running } = this;
             if (running?.kind === kind && performance.now() - running.begun > PATIENCE) {
-                this.fail(new Superseded());
+                this.fail(new Superseded('stopped'));
             }
             this.next();
         });
@@ -96,9 +92,9 @@ export class Solver {
 
     // Gives up all requests.
     stop() {
-        for (const { reject } of this.waiting.values()) reject(new Superseded());
+        for (const { reject } of this.waiting.values()) reject(new Superseded('stopped'));
         this.waiting.clear();
-        this.fail(new Superseded());
+        this.fail(new Superseded('stopped'));
         this.next();
     }
 }

@@ -26,9 +26,7 @@ export function on(parts, f) {
 // Changes parts of the state.
 export function change(parts) {
     Object.assign(state, parts);
-    for (const listener of listeners) {
-        if (listener.parts.some((part) => part in parts)) listener.f();
-    }
+    for (const { parts: own, f } of listeners) if (own.some((part) => part in parts)) f();
 }
 
 // A whisker with other values. A taper and a radius at the tip are one number.
