@@ -12,7 +12,7 @@ WEB = Path(__file__).parent
 ROOT = WEB.parents[1]
 
 # Each module after those that it imports.
-MODULES = "dom text state colours plot solver compute whisker whisk charts controls readout points files map main".split()
+MODULES = "dom state text link field colours plot solver compute whisker whisk charts controls readout points files map main".split()
 
 # A comma or a blank more would change the hash of a script, and the browser would refuse it.
 IMPORT = re.compile(r"^import \{ (.*) \} from '\./(\w+)\.js';$", re.MULTILINE)

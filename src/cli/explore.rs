@@ -66,7 +66,7 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
         Ok::<_, Failure>(json!({ "name": points.origin, "csv": csv(&points) }))
     });
     let start = json!({
-        "scene": { "text": scene.to_toml(), "origin": format!("{}.toml", scene.name) },
+        "scene": { "text": scene.to_toml(), "origin": name_of(&args.file) },
         "points": points.transpose()?,
     });
     let output = match &args.output {
@@ -82,6 +82,12 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
         open(&path);
     }
     Ok(())
+}
+
+/// Name of the file in the page's messages and commands, without its folder.
+fn name_of(file: &Path) -> String {
+    let name = file.file_name().unwrap_or(file.as_os_str());
+    name.to_string_lossy().into_owned()
 }
 
 /// Path of the page of a scene without `--output`, in a folder that is created. Of a scene with the name of this project's page, that

@@ -27,6 +27,7 @@ fn a_page_has_scene_and_points() {
     assert_eq!(run.out, "page.html\n");
     let start = start(&place.bytes("page.html"));
     assert_eq!(start["scene"]["text"], scene);
+    assert_eq!(start["scene"]["origin"], "scene.toml");
     assert_eq!(start["points"]["csv"], points);
 }
 
@@ -37,7 +38,10 @@ fn a_map_and_a_store_have_their_scene() {
         place.map(&["scene.toml", "--no-png", "-o", ".", "--format", format]);
         let map = format!("scene.{format}");
         let page = good(&place, &["explore", &map, "-o", "-"]);
-        assert_eq!(start(page.out.as_bytes())["scene"]["text"], SCENE);
+        let start = start(page.out.as_bytes());
+        assert_eq!(start["scene"]["text"], SCENE);
+        // A name that is not that of a scene file: commands on the page contain the scene.
+        assert_eq!(start["scene"]["origin"], map);
     }
 }
 

@@ -1,6 +1,6 @@
 // Tests of two fingers, of the stop button, and of workers that are replaced while they compute or after they fail.
 
-import { assert, built, compareState, drop, finished, open, root, sceneText, until } from './page.mjs';
+import { assert, built, compareState, drop, enter, finished, open, root, sceneText, until } from './page.mjs';
 
 const measured = `${root}/scenes/measured.toml`;
 
@@ -20,10 +20,7 @@ async function openMeasured() {
     return page;
 }
 
-async function setField(page, name, value) {
-    await page.fill(`#field-${name}`, String(value));
-    await page.press(`#field-${name}`, 'Enter');
-}
+const setField = (page, name, value) => enter(page, `field-${name}`, value);
 
 export const gestures = {
     async 'two fingers zoom'() {
@@ -50,11 +47,17 @@ export const gestures = {
         await setField(page, 'friction', 0.9);
         await page.waitForSelector('#stop:not([hidden])');
         await page.click('#stop');
-        await until('stopped', () => page.textContent('#error-friction'), (text) => text.startsWith('stopped'));
+        await until('stopped', () => page.textContent('#failure'), (text) => text.startsWith('stopped'));
         await page.waitForSelector('#stop', { state: 'hidden' });
         const [isDraft, values] = JSON.parse(await page.$eval('#engine', (own) => own.dataset.drawn));
         assert(isDraft || values.friction !== 0.9, 'the work went on to its end');
         await setField(page, 'friction', 0.8);
+        await finished(page, (own) => own.friction === 0.8);
+        assert((await page.textContent('#failure')) === '', 'the message stays');
+        await page.click('#whole');
+        await page.waitForSelector('#stop:not([hidden])');
+        await page.click('#stop');
+        await page.click('#again');
         await finished(page, (own) => own.friction === 0.8);
         await page.context().close();
     },

@@ -16,11 +16,12 @@ export const faults = [];
 
 let browser;
 
-// Opens a page at an address, in a window of some size and colour scheme, runs `onStart` in it, and waits for its finished map.
-export async function open(url, { size = [1280, 900], colorScheme = 'light', hasTouch = false, onStart = null } = {}) {
+// Opens a page at an address, in a window of some size and colour scheme, runs `onStart` in it, and waits for its finished map or else
+// for `isReady`.
+export async function open(url, { size = [1280, 900], colorScheme = 'light', hasTouch = false, onStart = null, isReady = finished } = {}) {
     browser ??= await chromium.launch({ executablePath, args: FLAGS });
     const [width, height] = size;
-    const context = await browser.newContext({ viewport: { width, height }, colorScheme, hasTouch, acceptDownloads: true });
+    const context = await browser.newContext({ viewport: { width, height }, colorScheme, hasTouch, acceptDownloads: true, permissions: ['clipboard-read', 'clipboard-write'] });
     const page = await context.newPage();
     page.on('console', (message) => faults.push(`console: ${message.text()}`));
     page.on('pageerror', (error) => faults.push(`error: ${error.stack}`));
@@ -30,7 +31,7 @@ export async function open(url, { size = [1280, 900], colorScheme = 'light', has
     });
     if (onStart) await page.addInitScript(onStart);
     await page.goto(url);
-    await finished(page);
+    await isReady(page);
     return page;
 }
 
@@ -75,14 +76,14 @@ export function table(text) {
 
 const channel = (page, name) => page.$eval(`[data-channel="${name}"] td`, (cell) => Number(cell.dataset.value));
 
-// The push angle and the distance of the state that is shown, from the command on the page, once it is that of the pointer.
+// The push angle and the distance of the state that is shown, once it is that of the pointer.
 export async function shownAt(page) {
     const place = () => page.evaluate(() => {
-        const command = document.getElementById('command').textContent.match(/--distance (\S+) --push-angle (\S+)$/);
+        const shown = JSON.parse(document.getElementById('place').dataset.at ?? '{}');
         const pointer = JSON.parse(document.getElementById('plane').dataset.pointer);
-        return { distance: command?.[1], push: command?.[2], pointer };
+        return { ...shown, pointer };
     });
-    return until('the pointer', place, ({ distance, push, pointer }) => Number(distance) === pointer.distance && Number(push) === pointer.push);
+    return until('the pointer', place, ({ distance, push, pointer }) => distance === pointer.distance && push === pointer.push);
 }
 
 // Compares the state on the page with `whiskmap shape`.
@@ -94,6 +95,12 @@ export async function compareState(page, scene) {
     for (const name of ['force_un', 'base_moment_nnm', 'arc_length_mm', 'contact_angle_deg', 'energy_nj', 'peak_strain']) {
         await until(name, () => channel(page, name), (value) => Math.abs(value - state[name]) <= 1e-9 * Math.max(1, Math.abs(state[name])));
     }
+}
+
+// Enters a text into a field.
+export async function enter(page, id, text) {
+    await page.fill(`#${id}`, String(text));
+    await page.press(`#${id}`, 'Enter');
 }
 
 // Drops a file on the page.

@@ -2,7 +2,7 @@
 
 import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { assert, cone, finished, folder, move, near, respond, root, run, sceneText, shownAt, table, until, whiskmap } from './page.mjs';
+import { assert, cone, enter, finished, folder, move, near, respond, root, run, sceneText, shownAt, table, until, whiskmap } from './page.mjs';
 
 const DISTANCE = 15.66;
 
@@ -112,26 +112,26 @@ export const rows = {
         await page.focus('#whisk-time');
         await page.keyboard.press('ArrowRight');
         assert((await time()) === paused + 1, `${await time()} after ${paused}`);
-        await page.fill('#whisk-frequency', '20');
-        await page.press('#whisk-frequency', 'Enter');
+        await enter(page, 'whisk-frequency', 20);
         await until('the last time', () => page.$eval('#whisk-now', (own) => own.textContent), (text) => text !== '');
-        await page.fill('#whisk-amplitude', '-5');
-        await page.press('#whisk-amplitude', 'Enter');
-        await until('a message', () => page.textContent('#whisk-error'), (text) => text.includes('must be above 0'));
+        await enter(page, 'whisk-amplitude', -5);
+        const message = () => page.textContent('#error-amplitude_deg');
+        await until('a message', message, (text) => text.includes('must be above 0'));
+        await enter(page, 'whisk-frequency', 15);
+        await until('a course of the other number', () => page.textContent('#whisk-now'), (text) => text !== '');
+        assert((await page.inputValue('#whisk-amplitude')) === '-5', 'the refused text has gone');
         // A course of the last valid numbers leaves the message of the field.
         const note = await page.textContent('#whisk-note');
         await page.focus('#plane');
         await page.keyboard.press('Shift+ArrowUp');
         await until('a course elsewhere', () => page.textContent('#whisk-note'), (text) => text !== note);
-        assert((await page.textContent('#whisk-error')).includes('must be above 0'), 'the message has gone');
-        await page.fill('#whisk-amplitude', '25');
-        await page.press('#whisk-amplitude', 'Enter');
-        await until('no message', () => page.textContent('#whisk-error'), (text) => text === '');
+        assert((await message()).includes('must be above 0'), 'the message has gone');
+        await enter(page, 'whisk-amplitude', 25);
+        await until('no message', message, (text) => text === '');
     },
 
     async 'a course that the program refuses shows its message'(page) {
-        await page.fill('#field-friction', '0.2');
-        await page.press('#field-friction', 'Enter');
+        await enter(page, 'field-friction', 0.2);
         await finished(page, (values) => values.friction === 0.2);
         const { distance } = await shownAt(page);
         const program = spawnSync(whiskmap, ['whisk', '-', `--distance=${distance}`, '--sine=25,10,0.2'], { encoding: 'utf8', input: `${readFileSync(cone, 'utf8')}\n[contact]\nfriction = 0.2\n` });

@@ -27,6 +27,10 @@ if [ ! -d "$folder/node_modules/playwright-core" ]; then
     npm install --silent --no-audit --no-fund --prefix "$folder" playwright-core@1.56
 fi
 cp tests/explore/*.mjs "$folder"
+# Node.js imports the page's modules too.
+rm -rf "$folder/page"
+cp -r crates/web/page "$folder/page"
+echo '{"type": "module"}' >"$folder/page/package.json"
 rm -f "$folder"/*.png
 node "$folder/test.mjs" "$whiskmap" "$chromium" "$folder" "$PWD" "${2:-}"
 firefox="$(command -v firefox || command -v firefox-esr || true)"

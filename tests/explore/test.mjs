@@ -3,6 +3,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { gestures } from './gestures.mjs';
 import { assert, built, close, compareState, cone, drop, faults, finished, folder, move, near, open, only, respond, root, run, shownAt, table, until } from './page.mjs';
+import { inputs } from './inputs.mjs';
 import { rows } from './rows.mjs';
 import { times } from './times.mjs';
 
@@ -155,6 +156,7 @@ const tests = {
         await other.context().close();
     },
 
+    ...inputs,
     ...rows,
     ...gestures,
     ...times,

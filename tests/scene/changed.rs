@@ -147,5 +147,8 @@ fn rewritten_text_keeps_the_comments() {
     assert!(text.starts_with(&expected), "{text}");
     let tapered = scene.to_toml_with(&[(Parameter::Taper, 0.5)]).unwrap();
     assert!(tapered.contains("tip_radius_um = 15.0 "), "{tapered}");
+    // 30 (1 - 0.7) is 9.000000000000002.
+    let tapered = scene.to_toml_with(&[(Parameter::Taper, 0.7)]).unwrap();
+    assert!(tapered.contains("tip_radius_um = 9.0 "), "{tapered}");
     assert!(scene.to_toml_with(&[(Parameter::Taper, 1.5)]).is_err());
 }

@@ -1,11 +1,9 @@
 // Charts: the branches and sensitivities at the row of the pointer, the detachment curve, and residuals of measured points.
 
 import { find } from './dom.js';
-import { draw, ends, rem } from './plot.js';
+import { draw, ends } from './plot.js';
 import { known, state, title } from './state.js';
-import { shown, titled } from './text.js';
-
-const PUSH = 'Push angle (\u00b0)';
+import { withUnit } from './text.js';
 
 // Stable and unstable parts of both branches as lines of a value by push angle; the parts meet at the fold.
 function branchLines(name) {
@@ -31,13 +29,13 @@ export function drawBranches() {
         draw(find(id), {
             x: ends(all.map(([x]) => x), [0]),
             y: ends(all.map(([, y]) => y), name === 'force_un' ? [0] : []),
-            xTitle: PUSH,
-            yTitle: titled(name),
+            xName: 'push_angle_deg',
+            yName: name,
             lines,
-            dots: marked.map((point) => ({ at: [point.push_angle_deg, point[name]], class: 'end', title: `${point.mark} at ${shown(point.push_angle_deg)}\u00b0` })),
+            dots: marked.map((point) => ({ at: [point.push_angle_deg, point[name]], class: 'end', title: `${point.mark} at ${withUnit('push_angle_deg', point.push_angle_deg)}` })),
             vertical: state.pointer.push,
         });
-        find(`${id}-note`).textContent = `at ${shown(distance)} mm; stable solid, unstable dashed`;
+        find(`${id}-note`).textContent = `at ${withUnit('distance_mm', distance)}; stable solid, unstable dashed`;
     }
 }
 
@@ -56,22 +54,21 @@ export function drawSensitivities() {
     const shownRows = rows.filter((row) => largest.includes(row.variable) && row.push_of_1_percent_deg != null);
     const bars = shownRows.map(({ side, variable: name, push_of_1_percent_deg: change }) => {
         const y = largest.indexOf(name) + (side === 'cb' ? HALF : -HALF);
-        return { from: [0, y - HALF], to: [change, y + HALF], class: side, title: `${variable(name)}, ${side.toUpperCase()}: ${shown(change)}\u00b0` };
+        return { from: [0, y - HALF], to: [change, y + HALF], class: side, title: `${variable(name)}, ${side.toUpperCase()}: ${withUnit('change_deg', change)}` };
     });
     draw(find('sensitivities'), {
         x: ends(shownRows.map((row) => row.push_of_1_percent_deg), [0]),
         y: [-0.7, Math.max(largest.length, 1) - 0.3],
-        xTitle: 'Change of push angle (\u00b0)',
+        xName: 'change_deg',
         yNames: largest.map(variable),
-        margin: { left: 9.5 * rem() },
         bars,
         vertical: 0,
     });
     const end = (side) => {
         const { kind, push_angle_deg: push, reason } = rows.find((row) => row.side === side);
-        return `${side.toUpperCase()}: ${push == null ? (reason ?? kind) : `${kind} at ${shown(push, 4)}\u00b0`}`;
+        return `${side.toUpperCase()}: ${push == null ? (reason ?? kind) : `${kind} at ${withUnit('push_angle_deg', push, 4)}`}`;
     };
-    find('sensitivities-note').textContent = rows.length ? `+1 % of each number at ${shown(distance_mm)} mm; ${end('cb')}; ${end('cf')}` : '';
+    find('sensitivities-note').textContent = rows.length ? `+1 % of each number at ${withUnit('distance_mm', distance_mm)}; ${end('cb')}; ${end('cf')}` : '';
 }
 
 const curveLine = (curve, side, name) =>
@@ -79,7 +76,7 @@ const curveLine = (curve, side, name) =>
 
 // Draws the detachment curve with measured points, and the residuals of the points below.
 export function drawDetachment() {
-    if (!known.curve || !state.view) return;
+    if (!known.curve || !state.view) return find('detachment').replaceChildren();
     const name = known.points?.angle ?? 'push_angle_deg';
     const lines = [[known.pinnedCurve, 'pinned'], [known.curve, 'stable']].flatMap(([curve, kind]) =>
         curve ? ['cf', 'cb'].map((side) => ({ points: curveLine(curve, side, name), class: kind })) : []);
@@ -89,17 +86,19 @@ export function drawDetachment() {
         at: [row.distance_mm, row[key]],
         class: 'measured',
         error: bars(row[key], row),
-        title: `line ${row.line}: measured ${shown(row.measured_deg)}\u00b0, computed ${shown(row.predicted_deg)}\u00b0`,
+        title: `line ${row.line}: measured ${withUnit('measured_deg', row.measured_deg)}, computed ${withUnit('predicted_deg', row.predicted_deg)}`,
     }));
     const x = state.view.distance;
+    // A line of one distance would not be seen.
+    const single = lines.filter(({ points }) => points.length === 1).map(({ points: [at], class: kind }) => ({ at, class: kind === 'pinned' ? kind : 'end' }));
     const inView = (points) => points.filter(([at]) => at >= x[0] && at <= x[1]).map(([, y]) => y);
     draw(find('detachment'), {
         x,
         y: ends([...lines.flatMap((line) => inView(line.points)), ...inView(rows.map((row) => [row.distance_mm, row.measured_deg]))], [0]),
-        xTitle: 'Distance at first touch (mm)',
-        yTitle: name === 'push_angle_deg' ? PUSH : 'Chord angle (\u00b0)',
+        xName: 'distance_mm',
+        yName: name,
         lines,
-        dots: dots('measured_deg'),
+        dots: [...single, ...dots('measured_deg')],
         vertical: state.pointer?.distance,
     });
     find('residual-figure').hidden = !rows.length;
@@ -107,8 +106,8 @@ export function drawDetachment() {
     draw(find('residuals'), {
         x,
         y: ends(rows.flatMap((row) => [row.residual_deg - (row.sd_deg ?? 0), row.residual_deg + (row.sd_deg ?? 0)]), [0]),
-        xTitle: 'Distance at first touch (mm)',
-        yTitle: 'Measured \u2212 computed (\u00b0)',
+        xName: 'distance_mm',
+        yName: 'residual_deg',
         dots: dots('residual_deg'),
         horizontal: 0,
     });

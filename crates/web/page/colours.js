@@ -63,8 +63,8 @@ function between(stops, at) {
     });
 }
 
-// The scale of a channel: which fraction of its colours a value has, and the colours. `kind` is `auto`, `linear` or `log`; a range
-// `[from, to]` by hand may leave out an end.
+// The scale of a channel: which fraction of its colours a value has, and the colours; null if no value has a colour. `kind` is `auto`, `linear`
+// or `log`; a range `[from, to]` by hand may leave out an end, and is ignored if it does not grow or is not above 0 on a logarithmic scale.
 export function scaleOf(values, kind, range, isLoad) {
     const sorted = values.filter(Number.isFinite).sort();
     if (!sorted.length) return null;
@@ -72,17 +72,20 @@ export function scaleOf(values, kind, range, isLoad) {
     const positive = sorted.findIndex((value) => value > 0);
     const low = positive < 0 ? NaN : quantile(0.01, positive);
     const greatest = sorted[sorted.length - 1];
-    const isLog = kind === 'log' || (kind === 'auto' && isLoad && sorted[0] >= 0 && greatest / low > 100);
+    const isLog = kind === 'log' || (kind === 'auto' && isLoad && sorted[0] >= 0 && greatest / low > 100 && range.every((end) => end === null || end > 0));
     let [from, to] = isLog ? [low, greatest] : [sorted[0], greatest];
     const isDiverging = !isLog && from < 0 && to > 0;
     if (isDiverging) [from, to] = [-Math.max(-from, to), Math.max(-from, to)];
-    [from, to] = [range[0] ?? from, range[1] ?? to];
-    if (!(to > from) || (isLog && !(from > 0))) return null;
+    const fits = ([low, high]) => high > low && (!isLog || low > 0);
+    const wanted = [range[0] ?? from, range[1] ?? to];
+    const isIgnored = range.some((end) => end !== null) && !fits(wanted);
+    if (!isIgnored) [from, to] = wanted;
+    if (!fits([from, to])) return null;
     const stops = isDiverging ? RED_BLUE : VIRIDIS;
     const part = isLog ? (value) => Math.log(value / from) / Math.log(to / from) : (value) => (value - from) / (to - from);
     const colour = (at) => between(stops, at);
     const steps = Uint32Array.from({ length: STEPS }, (_, i) => pixel(colour(i / (STEPS - 1))));
     const none = blankPixel();
     const step = (at) => Math.round(Math.min(Math.max(at, 0), 1) * (STEPS - 1));
-    return { from, to, isLog, part, colour, pixel: (value) => (Number.isFinite(value) ? steps[step(part(value))] : none) };
+    return { from, to, isLog, isIgnored, part, colour, pixel: (value) => (Number.isFinite(value) ? steps[step(part(value))] : none) };
 }

@@ -2,7 +2,7 @@
 
 import { debounced, find } from './dom.js';
 import { Solver, Superseded, compiled } from './solver.js';
-import { known, on, request, state } from './state.js';
+import { change, known, on, placed, request, state } from './state.js';
 
 // Cells of a finished map, and of drafts along each axis.
 const CELLS = 256;
@@ -16,13 +16,11 @@ const DRAFT_DEG = 0.01;
 const CURVE = 160;
 const BRANCH = 60;
 
-// A row's sensitivities and course are computed when the pointer has rested for this long, in ms.
+// A row's sensitivities and course are computed when the pointer has rested for this long, in ms, and a map is finished when nothing moves.
 const REST = 150;
-
-// A map is finished when nothing has moved for this long, in ms.
 const QUIET = 80;
 
-let maps, traces, rows, courses, shown;
+let scenes, maps, traces, rows, courses, shown;
 let draft = 2;
 
 // Starts the solvers. `show` has a function for each result, and for errors.
@@ -34,14 +32,10 @@ export async function start(show) {
         busy[name] = running;
         find('stop').hidden = !Object.values(busy).some(Boolean);
     };
-    maps = new Solver(module, onBusy('maps'));
-    traces = new Solver(module, onBusy('traces'));
-    rows = new Solver(module, onBusy('rows'));
-    courses = new Solver(module, onBusy('courses'));
+    [scenes, maps, traces, rows, courses] = ['scenes', 'maps', 'traces', 'rows', 'courses'].map((name) => new Solver(module, onBusy(name)));
     find('stop').addEventListener('click', stop);
-    on(['whisker'], () => fill(traces, 'scene', request('scene')));
-    on(['whisker', 'view', 'channel'], computeMap);
-    on(['whisker', 'view'], computeCurve);
+    on(['whisker', 'view', 'channel'], () => (drawn.map = computeMap()));
+    on(['whisker', 'view'], () => (drawn.curve = computeCurve()));
     on(['whisker', 'pointer', 'pinned'], computeState);
     on(['pinned', 'view'], computePinned);
     on(['whisker', 'points'], comparePoints);
@@ -50,8 +44,48 @@ export async function start(show) {
 }
 
 function stop() {
-    for (const solver of [maps, traces, rows, courses]) solver.stop();
-    shown.stopped();
+    for (const solver of [scenes, maps, traces, rows, courses]) solver.stop();
+    shown.error('stopped');
+}
+
+let adopted = Promise.resolve();
+const newest = new Map();
+
+// Changes the whisker, and other parts of the state, if the solver accepts its scene; otherwise the last one stays. `whiskerOf` makes it from
+// the present one. Resolves to the message of an error, empty without one, or to null if a newer whisker of its kind replaces it. The
+// kind `scene` replaces all.
+export function adopt(kind, whiskerOf, parts = {}) {
+    const own = {};
+    if (kind === 'scene') newest.clear();
+    newest.set(kind, own);
+    const next = adopted.then(async () => {
+        if (newest.get(kind) !== own) return null;
+        const whisker = whiskerOf(state.whisker);
+        const [scene, message] = await described(whisker);
+        if (!scene) return message;
+        known.scene = scene;
+        const { view, pointer } = { ...state, ...parts };
+        const places = Object.entries(placed(view, pointer));
+        const moved = places.filter(([part, own]) => part in parts || JSON.stringify(own) !== JSON.stringify(state[part]));
+        change({ ...parts, ...Object.fromEntries(moved), whisker });
+        return '';
+    });
+    adopted = next.catch(() => null);
+    return next;
+}
+
+// The description of a whisker's scene, or the message why there is none.
+export const described = (whisker, kind = 'scene') => scenes.compute(kind, request('scene', whisker)).then((scene) => [scene, ''], ({ message }) => [null, message]);
+
+const drawn = { map: null, curve: null };
+
+// Waits for map and curve of what is shown last. Resolves to whether both are finished; they may have failed.
+export async function finished() {
+    for (;;) {
+        const own = { ...drawn };
+        const isDone = await Promise.all([own.map, own.curve]);
+        if (own.map === drawn.map && own.curve === drawn.curve) return isDone.every(Boolean);
+    }
 }
 
 // Calls `f` with the response to a request unless a newer one replaces it; `fail` gets the message of an error.
@@ -74,9 +108,10 @@ const fill = (solver, part, own, fail, { whisker } = state) => responded(solver,
 const quiet = () => {};
 async function computeMap() {
     const { view, channel, whisker } = state;
-    if (!view) return;
+    if (!view) return false;
+    const size = (cells) => [view.push, view.distance].map(([from, to]) => (from < to ? cells : 1));
     const task = (cells, tolerance_deg) =>
-        request({ map: { push_angle_deg: view.push, distance_mm: view.distance, size: [cells, cells], channel, tolerance_deg } });
+        request({ map: { push_angle_deg: view.push, distance_mm: view.distance, size: size(cells), channel, tolerance_deg } });
     const take = (isDraft) => (map) => {
         known.map = { ...map, channel, isDraft, whisker };
         shown.map();
@@ -85,14 +120,18 @@ async function computeMap() {
     };
     const isDrawn = await responded(maps, 'map', task(DRAFTS[draft], DRAFT_DEG), take(true));
     await new Promise((resolve) => setTimeout(resolve, QUIET));
-    if (isDrawn && whisker === state.whisker && view === state.view && channel === state.channel) {
-        await responded(maps, 'map', task(CELLS, null), take(false));
-    }
+    const isLast = whisker === state.whisker && view === state.view && channel === state.channel;
+    return isDrawn && isLast && responded(maps, 'map', task(CELLS, null), take(false));
 }
 
-const curve = (whisker) => request({ curve: { distance_mm: state.view.distance, count: CURVE } }, whisker);
+function curve(whisker) {
+    const [from, to] = state.view.distance;
+    return request({ curve: { distance_mm: [from, to], count: from < to ? CURVE : 1 } }, whisker);
+}
 
-const computeCurve = () => state.view && fill(courses, 'curve', curve(), quiet);
+// Without a curve, the one of another whisker must not stay.
+const noCurve = () => ((known.curve = null), shown.curve());
+const computeCurve = () => state.view && fill(courses, 'curve', curve(), noCurve);
 
 function computePinned() {
     known.pinnedCurve = null;

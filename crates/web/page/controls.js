@@ -1,8 +1,10 @@
 // Controls: a slider and a number field for each number of the scene.
 
+import { adopt } from './compute.js';
 import { el, find } from './dom.js';
-import { change, changeValues, known, state } from './state.js';
-import { shown, unit } from './text.js';
+import { startField } from './field.js';
+import { change, known, state, withValues } from './state.js';
+import { ownUnit, shown } from './text.js';
 
 // Parameters with the ends of their sliders, by the whisker of the file: `of` has its numbers.
 const PARAMETERS = {
@@ -24,13 +26,6 @@ const PARAMETERS = {
 };
 
 const rows = new Map();
-let touched = null;
-
-// Sets a value that the reader has chosen.
-function set(name, value) {
-    touched = name;
-    changeValues({ [name]: value });
-}
 
 // Makes the controls of a scene that has just been opened.
 export function makeControls() {
@@ -41,52 +36,34 @@ export function makeControls() {
     find('numbers').replaceChildren(...names.map((name) => {
         const own = parameters.find((parameter) => parameter.name === name);
         const [from, to] = PARAMETERS[name](of);
-        const field = el('input', { id: `field-${name}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false', 'aria-describedby': `error-${name}`, onchange: () => read(name) });
-        const slider = el('input', { type: 'range', min: from, max: to, step: 'any', 'aria-label': own.title, oninput: (event) => set(name, Number(Number(event.target.value).toPrecision(4))) });
+        const field = el('input', { id: `field-${name}`, type: 'text', inputmode: 'decimal', autocomplete: 'off', spellcheck: 'false', 'aria-describedby': `error-${name}` });
         const error = el('p', { class: 'error', id: `error-${name}`, role: 'alert' });
-        rows.set(name, { field, slider, error });
-        return el('div', { class: 'control' }, el('label', { for: field.id, title: `${own.title}: ${own.key}` }, own.title.replace(/ \(.*\)/, '')), el('span', { class: 'value' }, field, el('span', { class: 'unit' }, unit(name))), slider, error);
+        const entry = startField(field, error, (value) => adopt(name, (whisker) => withValues(whisker, { [name]: value })));
+        const slider = el('input', { type: 'range', min: from, max: to, step: 'any', 'aria-label': own.title, oninput: (event) => entry.enter(Number(Number(event.target.value).toPrecision(4))) });
+        rows.set(name, { entry, slider });
+        return el('div', { class: 'control' }, el('label', { for: field.id, title: `${own.title}: ${own.key}` }, own.title.replace(/ \(.*\)/, '')), el('span', { class: 'value' }, field, el('span', { class: 'unit' }, ownUnit(name))), slider, error);
     }));
     showValues();
 }
 
-function read(name) {
-    const { field } = rows.get(name);
-    const value = Number(field.value.trim().replace('\u2212', '-').replace(',', '.'));
-    touched = name;
-    if (field.value.trim() === '' || !Number.isFinite(value)) showError(`${name}: must be a number`);
-    else set(name, value);
-}
-
-// Shows the values of the scene, and takes away the error of a value that is now allowed.
+// Shows the values of the scene, but for fields whose text is refused.
 export function showValues() {
     for (const { name, value } of known.scene.parameters) {
         const row = rows.get(name);
         if (!row) continue;
-        if (document.activeElement !== row.field || name !== touched) row.field.value = shown(value, 6);
+        row.entry.show(shown(value, 6));
         row.slider.value = value;
-        row.slider.setAttribute('aria-valuetext', `${shown(value)} ${unit(name)}`);
+        row.slider.setAttribute('aria-valuetext', `${shown(value)} ${ownUnit(name)}`);
     }
-    showError('');
     find('effects').replaceChildren(...known.scene.effects.map((effect) => el('li', { class: effect.on ? 'on' : 'off', title: effect.why }, effect.name)));
     find('warnings').textContent = known.scene.warnings.join('\n');
-}
-
-// Shows an error at the control that was changed last, or else above the controls.
-export function showError(message) {
-    for (const [name, { field, error }] of rows) {
-        const own = name === touched ? message : '';
-        error.textContent = own;
-        field.setAttribute('aria-invalid', String(own !== ''));
-    }
-    find('scene-error').textContent = rows.has(touched) ? '' : message;
 }
 
 // Buttons for all values: back to the file, and a second whisker for comparison.
 export function startControls() {
     find('reset').addEventListener('click', () => {
-        touched = null;
-        change({ whisker: { ...state.whisker, values: {} } });
+        for (const { entry } of rows.values()) entry.clear();
+        adopt('scene', (whisker) => ({ ...whisker, values: {} }));
     });
     find('pin').addEventListener('click', () => change({ pinned: state.pinned ? null : state.whisker }));
 }

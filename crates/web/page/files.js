@@ -1,8 +1,10 @@
 // Files that the reader saves: the scene, the detachment curve, and pictures of the map.
 
-import { toml } from './compute.js';
+import { finished, toml } from './compute.js';
 import { find, save, svg } from './dom.js';
-import { known, link } from './state.js';
+import { link } from './link.js';
+import { command } from './readout.js';
+import { known } from './state.js';
 import { exact } from './text.js';
 
 // Properties of style that a picture outside the page must carry itself.
@@ -40,29 +42,50 @@ async function savePng() {
 
 // The detachment curve with the columns of `whiskmap curve`.
 function csv() {
-    const rows = known.curve?.rows ?? [];
-    const columns = Object.keys(rows[0] ?? {});
+    const { rows, columns } = known.curve;
     return [columns, ...rows.map((row) => columns.map((column) => exact(row[column])))].map((cells) => `${cells.join(',')}\n`).join('');
 }
 
+const say = (message) => (find('saved').textContent = message);
+
+const copied = (text) => navigator.clipboard?.writeText(text).then(() => true, () => false);
+
 async function copyLink() {
     location.hash = await link();
-    const done = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
-    find('saved').textContent = done ? 'link copied' : 'the address of this page is the link';
+    say((await copied(location.href)) ? 'link copied' : 'the address of this page is the link');
 }
+
+async function copyCommand() {
+    const text = await command();
+    if (text) say((await copied(text)) ? 'command copied' : 'the browser does not allow copying');
+}
+
+// Saves what is drawn once it is finished.
+const whenFinished = (f) => async () => {
+    say('waiting for the finished map');
+    const isFinished = await finished();
+    say(isFinished ? '' : 'nothing is saved, because the map is not finished');
+    if (isFinished) await f();
+};
 
 const SAVE = {
     'save-toml': async () => {
         const text = await toml();
         if (text) save(`${known.scene.name}.toml`, text, 'application/toml');
     },
-    'save-csv': () => save(`${known.scene.name}-curve.csv`, csv(), 'text/csv'),
-    'save-svg': () => save(`${known.scene.name}.svg`, picture().text, 'image/svg+xml'),
-    'save-png': savePng,
+    'save-csv': whenFinished(() => save(`${known.scene.name}-curve.csv`, csv(), 'text/csv')),
+    'save-svg': whenFinished(() => save(`${known.scene.name}.svg`, picture().text, 'image/svg+xml')),
+    'save-png': whenFinished(savePng),
     'copy-link': copyLink,
-    'copy-command': () => navigator.clipboard?.writeText(find('command').textContent),
+    'copy-command': copyCommand,
 };
 
 export function startFiles() {
-    for (const [id, f] of Object.entries(SAVE)) find(id).addEventListener('click', f);
+    for (const [id, f] of Object.entries(SAVE)) find(id).addEventListener('click', async () => {
+        try {
+            await f();
+        } catch ({ message }) {
+            say(message);
+        }
+    });
 }

@@ -1,76 +1,82 @@
 // The page: its parts, and what each does when a result arrives.
 
 import { drawBranches, drawDetachment, drawSensitivities } from './charts.js';
-import { start } from './compute.js';
-import { makeControls, showError, showPinned, showValues, startControls } from './controls.js';
+import { adopt, described, start } from './compute.js';
+import { makeControls, showPinned, showValues, startControls } from './controls.js';
 import { debounced, el, find } from './dom.js';
+import { startField } from './field.js';
 import { startFiles } from './files.js';
+import { fromLink, link } from './link.js';
 import { drawMap, drawPlane, startMap } from './map.js';
 import { showPoints, showPointsError, startPoints } from './points.js';
 import { showNoState, showState } from './readout.js';
-import { change, fromLink, known, link, on, state } from './state.js';
-import { CHANNELS, shown, titled } from './text.js';
+import { change, known, on, state } from './state.js';
+import { CHANNELS, UNITS, inUnit, sizeOf, titled } from './text.js';
 import { drawCourse, showCourse, startWhisk } from './whisk.js';
 import { drawWhisker } from './whisker.js';
 
 // The scene whose controls are on the page.
 let opened = null;
+let ranges;
+
+// Shows the whisker, with new controls for a new scene.
+function showScene() {
+    const { title } = known.scene;
+    find('title').textContent = title;
+    document.title = `${title} \u00b7 whiskmap`;
+    if (opened === state.whisker.text) return showValues();
+    opened = state.whisker.text;
+    makeControls();
+}
+
+// Shows a message about the whole page, until something changes; with `isAgain`, the reader can repeat the computation.
+function showFailure(message, isAgain = true) {
+    find('failure').textContent = message;
+    find('again').hidden = !message || !isAgain;
+}
 
 // What is done with each result.
 const show = {
-    scene() {
-        const { title, push_angle_deg: push, distance_mm: distance } = known.scene;
-        find('title').textContent = title;
-        document.title = `${title} \u00b7 whiskmap`;
-        if (opened === state.whisker.text) return showValues();
-        opened = state.whisker.text;
-        known.whole = { push, distance };
-        makeControls();
-        const middle = ([from, to]) => Number((from + 0.56 * (to - from)).toPrecision(3));
-        change({ view: state.view ?? known.whole, pointer: state.pointer ?? { push: middle(push), distance: middle(distance) } });
-    },
     map() {
         const { ms, engine, size, unresolved } = known.map;
         find('engine').textContent = `${size.join(' \u00d7 ')} cells, ${Math.round(ms)} ms, ${engine}${unresolved ? `, ${unresolved} unresolved` : ''}`;
         drawMap();
         find('engine').dataset.drawn = JSON.stringify([known.map.isDraft, known.map.whisker.values, known.map.push_angle_deg, known.map.distance_mm]);
     },
-    curve() {
-        drawPlane();
-        drawDetachment();
-    },
+    curve: () => (drawPlane(), drawDetachment()),
     pinnedCurve: () => show.curve(),
-    state() {
-        showState();
-        drawWhisker();
-    },
+    state: () => (showState(), drawWhisker()),
     pinnedState: () => show.state(),
     branches: () => (drawBranches(), drawWhisker()),
     sensitivities: drawSensitivities,
     whisk: () => showCourse(''),
-    points() {
-        showPoints();
-        show.curve();
-    },
-    error: showError,
+    points: () => (showPoints(), show.curve()),
+    error: showFailure,
     noState: showNoState,
     noWhisk: showCourse,
     pointsError: showPointsError,
-    stopped: () => showError('stopped; change a number to compute again'),
 };
 
 function startTools() {
     find('channel').append(el('option', { value: '' }, 'Regimes'), ...Object.keys(CHANNELS).slice(0, 11).map((name) => el('option', { value: name }, titled(name))));
     find('channel').addEventListener('change', ({ target }) => change({ channel: target.value || null }));
     find('scale').addEventListener('change', ({ target }) => change({ scale: target.value }));
-    const ends = [find('range-from'), find('range-to')];
-    const end = ({ value }) => (value.trim() !== '' && Number.isFinite(Number(value)) ? Number(value) : null);
-    for (const field of ends) field.addEventListener('change', () => change({ range: ends.map(end) }));
+    ranges = ['range-from', 'range-to'].map((id, i) => startField(find(id), find(`error-${id}`), (value) => {
+        change({ range: state.range.map((end, own) => (own !== i ? end : value && value * sizeOf(state.channel))) });
+        return '';
+    }, true));
+    find('units').append(...Object.entries(UNITS).map(([quantity, units]) => el('label', {}, `${quantity} `,
+        el('select', { id: `unit-${quantity}`, onchange: ({ target }) => change({ units: { ...state.units, [quantity]: target.value } }) },
+            ...Object.keys(units).map((name) => el('option', { value: name }, name))))));
+    find('again').addEventListener('click', () => change({ whisker: state.whisker }));
+    on(['whisker', 'view', 'channel', 'points'], () => showFailure(''));
+    on(['whisker'], showScene);
+    on(['units'], showUnits);
     find('whole').addEventListener('click', () => change({ view: known.whole }));
-    on(['channel', 'scale', 'range'], showTools);
+    on(['channel', 'scale', 'range', 'units'], showTools);
     on(['pinned'], showPinned);
-    const remember = debounced(400, async () => history.replaceState(null, '', `#${await link()}`));
-    on(['whisker', 'pinned', 'view', 'channel', 'scale', 'range', 'pointer', 'points', 'whisk'], remember);
+    const remember = debounced(400, () => link().then((own) => history.replaceState(null, '', `#${own}`)).catch(() => {}));
+    on(Object.keys(state), remember);
     for (const id of ['bifurcation', 'whisker']) new ResizeObserver(() => redraw()).observe(find(id));
 }
 
@@ -78,7 +84,17 @@ function showTools() {
     find('channel').value = state.channel ?? '';
     find('scale').value = state.scale;
     find('quantity').hidden = !state.channel;
-    ['range-from', 'range-to'].forEach((id, i) => (find(id).value = state.range[i] ?? ''));
+    ranges.forEach((field, i) => field.show(state.range[i] === null || !state.channel ? '' : inUnit(state.channel, state.range[i])));
+}
+
+// Shows everything in the reader's units.
+function showUnits() {
+    for (const [quantity, name] of Object.entries(state.units)) find(`unit-${quantity}`).value = name;
+    for (const option of find('channel').options) if (option.value) option.textContent = titled(option.value);
+    if (known.state) showState();
+    showPoints();
+    showCourse(known.whisk ? '' : find('whisk-error').textContent);
+    redraw();
 }
 
 function redraw() {
@@ -89,12 +105,24 @@ function redraw() {
     if (state.view) drawDetachment();
 }
 
-// The scene of the page, or what the link says instead.
-async function first() {
+// Opens what the link of the address contains. What is not valid there is left out, with a message: without a valid scene, the present one
+// stays, or that of the file opens.
+async function open() {
     const { scene, points } = JSON.parse(find('start').textContent);
     const own = { whisker: { ...scene, values: {} }, points };
     const hash = location.hash.slice(1);
-    return hash ? { ...own, ...(await fromLink(hash).catch(() => ({}))) } : own;
+    const { parts, bad } = hash ? await fromLink(hash).catch(() => ({ parts: {}, bad: ['everything'] })) : { parts: {}, bad: [] };
+    if (parts.pinned && (await described(parts.pinned, 'pinned'))[1]) {
+        delete parts.pinned;
+        bad.push('pinned');
+    }
+    const { whisker, ...others } = { ...state, ...(hash && state.whisker ? {} : own), ...parts };
+    const message = await adopt('scene', () => whisker, others);
+    if (message && !state.whisker) await adopt('scene', () => own.whisker, { points });
+    if (!state.whisker) find('engine').textContent = '';
+    const damage = bad.length ? `The link is damaged. Left out: ${bad.join(', ')}.\n` : '';
+    const refused = message ? `The scene${hash ? ' of the link' : ''} is refused: ${message}` : '';
+    if (damage || refused) showFailure(damage + refused, false);
 }
 
 startMap();
@@ -103,8 +131,11 @@ startPoints();
 startFiles();
 startTools();
 startWhisk();
-await start(show);
-change({ ...state, ...(await first()) });
-addEventListener('hashchange', async () => {
-    if (location.hash.slice(1) !== (await link())) change({ ...state, ...(await first()) });
-});
+try {
+    await start(show);
+    await open();
+    addEventListener('hashchange', async () => location.hash.slice(1) !== (await link().catch(() => '')) && open());
+} catch ({ message }) {
+    find('engine').textContent = '';
+    showFailure(`the solver cannot start in this browser: ${message}`, false);
+}

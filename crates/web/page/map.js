@@ -2,9 +2,9 @@
 
 import { blank, blankPixel, css, hatched, isDark, regimeColour, regimePixels, scaleOf, stripesOf } from './colours.js';
 import { el, find, svg } from './dom.js';
-import { draw, logTicks, ticks } from './plot.js';
-import { change, known, on, state } from './state.js';
-import { isLoad, shown, titled } from './text.js';
+import { draw, extent, labels, logTicks, ticks, widest } from './plot.js';
+import { change, fitted, known, on, state } from './state.js';
+import { inUnit, isLoad, sizeOf, spoken, titled, unit, withUnit } from './text.js';
 
 const plane = find('plane');
 const [canvas, overlay] = plane.children;
@@ -44,13 +44,16 @@ function paint() {
     cells.width = width;
     cells.height = height;
     cells.getContext('2d').putImageData(picture, 0, 0);
-    const { push_angle_deg: [p0, p1], distance_mm: [d0, d1] } = known.map;
-    const [half, tall] = [(p1 - p0) / (width - 1) / 2, (d1 - d0) / (height - 1) / 2];
-    image = { push: [p0 - half, p1 + half], distance: [d0 - tall, d1 + tall] };
+    // The first and last cells are centred on the ends; a single one fills the axis.
+    const around = ([from, to], count) => (count > 1 ? [from - (to - from) / (count - 1) / 2, to + (to - from) / (count - 1) / 2] : extent([from, to]));
+    image = { push: around(known.map.push_angle_deg, width), distance: around(known.map.distance_mm, height) };
 }
 
-const boundary = (curve, side) =>
-    curve.rows.filter((row) => row.side === side && row.push_angle_deg != null).map((row) => [row.push_angle_deg, row.distance_mm]);
+// The detachments of one side as a line of the map, across the map if it has one distance.
+function boundary(curve, side) {
+    const points = curve.rows.filter((row) => row.side === side && row.push_angle_deg != null).map((row) => [row.push_angle_deg, row.distance_mm]);
+    return points.length === 1 ? extent(state.view.distance).map((end) => [points[0][0], end]) : points;
+}
 
 const boundaries = (curve, name) => (curve ? ['cf', 'cb'].map((side) => ({ points: boundary(curve, side), class: name })) : []);
 
@@ -63,14 +66,15 @@ export function drawPlane() {
     place = draw(overlay, {
         x: push,
         y: distance,
-        xTitle: plane.clientWidth > 600 ? 'Push angle since first touch (\u00b0): pole on the concave side (CF) < 0 < convex side (CB)' : 'Push angle (\u00b0): CF < 0 < CB',
-        yTitle: 'Distance at first touch (mm)',
+        xTitle: plane.clientWidth > 600 ? `Push angle since first touch (${unit('push_deg')}): pole on the concave side (CF) < 0 < convex side (CB)` : `Push angle (${unit('push_deg')}): CF < 0 < CB`,
+        xName: 'push_angle_deg',
+        yName: 'distance_mm',
         lines: [...boundaries(known.pinnedCurve, 'pinned casing'), ...boundaries(known.pinnedCurve, 'pinned'), ...boundaries(known.curve, 'casing'), ...boundaries(known.curve, 'edge')],
         dots: measured.map((row) => ({
             at: [row.measured_deg, row.distance_mm],
             class: 'measured',
             error: row.sd_deg ? [[row.measured_deg - row.sd_deg, row.distance_mm], [row.measured_deg + row.sd_deg, row.distance_mm]] : null,
-            title: `${row.side.toUpperCase()}, ${shown(row.distance_mm)} mm: measured ${shown(row.measured_deg)}\u00b0, computed ${shown(row.predicted_deg)}\u00b0`,
+            title: `${row.side.toUpperCase()}, ${withUnit('distance_mm', row.distance_mm)}: measured ${withUnit('measured_deg', row.measured_deg)}, computed ${withUnit('predicted_deg', row.predicted_deg)}`,
         })),
     });
     overlay.append(svg('g', { class: 'cross' }), svg('rect', { class: 'box', width: 0, height: 0 }));
@@ -117,31 +121,35 @@ function drawLegend() {
         return;
     }
     if (!scale) {
-        find('legend').replaceChildren(el('li', {}, 'No colours for this range: its ends must grow, and be above 0 on a logarithmic scale.'));
+        find('legend').replaceChildren(el('li', {}, 'No colours: the values are equal, or not above 0 on a logarithmic scale.'));
         return;
     }
-    const bar = svg('svg', { class: 'bar', viewBox: '0 0 320 34', role: 'img', 'aria-label': `${titled(channel)} from ${shown(scale.from)} to ${shown(scale.to)}` });
-    for (let i = 0; i < 80; i++) bar.append(svg('rect', { x: 10 + i * 3.75, y: 0, width: 4, height: 14, fill: css(scale.colour(i / 79)) }));
-    for (const value of scale.isLog ? logTicks([scale.from, scale.to]) : ticks([scale.from, scale.to], 5)) {
-        const x = 10 + 300 * scale.part(value);
-        bar.append(svg('line', { x1: x, x2: x, y1: 14, y2: 18 }), svg('text', { x, y: 30, 'text-anchor': 'middle' }, shown(value)));
-    }
-    find('legend').replaceChildren(el('li', {}, titled(channel)), el('li', {}, bar), entry(css(blank()), 'no contact'), ...(hasMarks ? [entry(css(blank()), 'slides to base, or sticks', isDark() ? '#fff' : '#000')] : []));
+    const bar = svg('svg', { class: 'bar', viewBox: '0 0 320 34', role: 'img', 'aria-label': `${titled(channel)} from ${spoken(channel, scale.from)} to ${spoken(channel, scale.to)}` });
+    for (let i = 0; i < 80; i++) bar.append(svg('rect', { x: 25 + i * 3.375, y: 0, width: 4, height: 14, fill: css(scale.colour(i / 79)) }));
+    const ends = [scale.from, scale.to].map((value) => value / sizeOf(channel));
+    const marks = scale.isLog ? logTicks(ends) : ticks(ends, 5);
+    const texts = scale.isLog ? marks.map((value) => labels([value])[0]) : labels(marks);
+    let free = 0;
+    marks.forEach((value, i) => {
+        const [x, half] = [25 + 270 * scale.part(value * sizeOf(channel)), widest([texts[i]]) / 2];
+        bar.append(svg('line', { x1: x, x2: x, y1: 14, y2: 18 }), ...(x - half < free ? [] : [svg('text', { x, y: 30, 'text-anchor': 'middle' }, texts[i])]));
+        if (x - half >= free) free = x + half + 4;
+    });
+    const ignored = `The range is ignored: its ends must grow${scale.isLog ? ', and be above 0' : ''}.`;
+    find('legend').replaceChildren(...(scale.isIgnored ? [el('li', { class: 'error', role: 'alert' }, ignored)] : []), el('li', {}, titled(channel)), el('li', {}, bar), entry(css(blank()), 'no contact'), ...(hasMarks ? [entry(css(blank()), 'slides to base, or sticks', isDark() ? '#fff' : '#000')] : []));
 }
 
-// Zoom by a factor around a place; the view stays within what the solver allows.
-export function zoom(factor, [push, distance]) {
+// Zooms by a factor around a place.
+function zoom(factor, [push, distance]) {
     if (!state.view) return;
     const around = ([from, to], at) => [at + (from - at) * factor, at + (to - at) * factor];
     setView(around(state.view.push, push), around(state.view.distance, distance));
 }
 
-export function setView(push, distance) {
-    const [nearest, farthest] = known.scene.distances_mm;
-    const within = ([from, to], least, most) => [Math.max(from, least), Math.min(to, most)];
-    const view = { push: within(push, -180, 180), distance: within(distance, nearest * 1.0001, Math.min(farthest, 1.5 * known.whole.distance[1])) };
-    const isWide = ([from, to], least) => to - from > least;
-    if (isWide(view.push, 1e-4) && isWide(view.distance, 1e-6 * known.whole.distance[1])) change({ view });
+// Shows a part of the map, within what the solver allows.
+function setView(push, distance) {
+    const view = fitted({ push, distance });
+    if (view) change({ view });
 }
 
 const at = (event) => {
@@ -150,11 +158,11 @@ const at = (event) => {
 };
 
 // Moves the pointer, within the view.
-export function point(push, distance) {
+function point(push, distance) {
     if (!state.view) return;
     const within = (value, [from, to]) => Math.min(Math.max(value, from), to);
     // Six digits are finer than pixels, and people can copy them.
-    const rounded = (value, ends) => Number(within(value, ends).toPrecision(6));
+    const rounded = (value, ends) => within(Number(value.toPrecision(6)), ends);
     change({ pointer: { push: rounded(push, state.view.push), distance: rounded(distance, state.view.distance) } });
 }
 
@@ -227,5 +235,5 @@ export function startMap() {
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => known.map && drawMap());
     on(['view'], drawPlane);
     on(['pointer'], drawCross);
-    on(['scale', 'range'], () => known.map && drawMap());
+    on(['scale', 'range', 'units'], () => known.map && drawMap());
 }

@@ -1,9 +1,9 @@
 // Measured points: a CSV file, its residuals, and fits.
 
 import { el, find } from './dom.js';
-import { fit } from './compute.js';
-import { change, changeValues, known, state, title } from './state.js';
-import { shown, unit } from './text.js';
+import { adopt, fit } from './compute.js';
+import { change, known, state, title, withValues } from './state.js';
+import { ownUnit, shown, withUnit } from './text.js';
 
 // Largest size of a file, in bytes: the limit of scenes.
 const LARGEST = 1 << 20;
@@ -15,8 +15,9 @@ const LIKELY = ['tip_radius_um', 'parabola_per_mm', 'vertex_mm', 'length_mm', 'b
 export async function open(file) {
     if (file.size > LARGEST) return showPointsError(`${file.name}: must be at most 1 MiB`);
     const text = await file.text();
-    if (/\.toml$/i.test(file.name)) change({ whisker: { text, origin: file.name, values: {} }, view: null, pointer: null, pinned: null });
-    else change({ points: { name: file.name, csv: text } });
+    if (!/\.toml$/i.test(file.name)) return change({ points: { name: file.name, csv: text } });
+    const message = await adopt('scene', () => ({ text, origin: file.name, values: {} }), { view: null, pointer: null, pinned: null });
+    showPointsError(message ? `${message}\nThe last scene stays.` : '');
 }
 
 // Shows the points and their misfit.
@@ -29,7 +30,7 @@ export function showPoints() {
     if (!points) return;
     const { count, rms_deg, bias_deg, rows, of_another_kind } = points.beside;
     const kinds = of_another_kind ? `, ${of_another_kind} of another kind` : '';
-    find('misfit').textContent = `${count} of ${rows.length} points: RMS ${shown(rms_deg, 3)}\u00b0, bias ${shown(bias_deg, 3)}\u00b0${kinds}`;
+    find('misfit').textContent = `${count} of ${rows.length} points: RMS ${withUnit('rms_deg', rms_deg, 3)}, bias ${withUnit('bias_deg', bias_deg, 3)}${kinds}`;
     find('misfit').dataset.rms = rms_deg;
     if (find('free').childElementCount) return;
     const names = LIKELY.filter((name) => known.scene.parameters.some((own) => own.name === name));
@@ -46,10 +47,11 @@ async function fitted() {
     const found = await fit(free);
     find('fit').disabled = false;
     if (!found) return;
-    changeValues(Object.fromEntries(found.estimates.map(({ name, value }) => [name, value])));
+    const message = await adopt('fit', (whisker) => withValues(whisker, Object.fromEntries(found.estimates.map(({ name, value }) => [name, value]))));
+    showPointsError(message ?? '');
     const estimates = found.estimates.map(({ name, value, standard_error, is_at_limit }) => {
         const error = standard_error == null ? (is_at_limit ? ' (at its limit)' : ' (not determined)') : ` \u00b1 ${shown(standard_error, 2)}`;
-        return el('li', { 'data-name': name, 'data-value': value }, `${title(name)} ${shown(value)}${error} ${unit(name)}`);
+        return el('li', { 'data-name': name, 'data-value': value }, `${title(name)} ${shown(value)}${error} ${ownUnit(name)}`);
     });
     const verdict = found.not_a_fit ? [el('li', { class: 'error' }, found.not_a_fit)] : [];
     find('estimates').replaceChildren(...estimates, ...verdict);

@@ -38,11 +38,12 @@ export class Solver {
     // Computes the task of a request. The promise rejects with the message of the solver, or with `Superseded`.
     compute(kind, request) {
         return new Promise((resolve, reject) => {
-            this.waiting.get(kind)?.reject(new Superseded());
+            this.waiting.get(kind)?.reject(new Superseded('stopped'));
             this.waiting.set(kind, { kind, request, resolve, reject, id: ++this.count });
+            if (!this.worker) this.start();
             const { running } = this;
             if (running?.kind === kind && performance.now() - running.begun > PATIENCE) {
-                this.fail(new Superseded());
+                this.fail(new Superseded('stopped'));
             }
             this.next();
         });
@@ -75,15 +76,15 @@ export class Solver {
             this.fail(new Error('the solver has failed; the last valid result stays'));
             return;
         }
-        const error = new Error('the solver cannot start in this browser');
-        for (const { reject } of this.waiting.values()) reject(error);
+        this.worker = null;
+        for (const { reject } of this.waiting.values()) reject(new Error('the solver cannot start in this browser'));
         this.waiting.clear();
         this.onBusy?.(null);
     }
 
     // Ends the running request with an error, and starts a new worker.
     fail(error) {
-        this.worker.terminate();
+        this.worker?.terminate();
         this.running?.reject(error);
         this.running = null;
         this.start();
@@ -91,9 +92,9 @@ export class Solver {
 
     // Gives up all requests.
     stop() {
-        for (const { reject } of this.waiting.values()) reject(new Superseded());
+        for (const { reject } of this.waiting.values()) reject(new Superseded('stopped'));
         this.waiting.clear();
-        this.fail(new Superseded());
+        this.fail(new Superseded('stopped'));
         this.next();
     }
 }

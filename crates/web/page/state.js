@@ -1,19 +1,16 @@
 // State of the page: the whisker, what is shown of it, and the place of the pointer. Listeners are called when a part changes.
 
-// `whisker` is `{ text, origin, values }`: the scene, and the values that replace those in it.
+// `whisker` is `{ text, origin, values }`: a valid scene, and the values that replace those in it.
 export const state = {
-    whisker: null,
-    pinned: null,
-    view: null,
-    channel: null,
-    scale: 'auto',
-    range: [null, null],
-    pointer: null,
-    points: null,
+    whisker: null, pinned: null, view: null, channel: null, scale: 'auto', range: [null, null], pointer: null, points: null,
     whisk: { amplitude_deg: 25, frequency_hz: 10 },
+    units: { length: 'mm', angle: '\u00b0', force: '\u00b5N', moment: 'nN m', energy: 'nJ', time: 'ms' },
 };
 
-// Responses of the solver; `scene` is `description` in the solver.
+// The greatest values of a course of whisking.
+export const COURSE = { amplitude_deg: 180, frequency_hz: 1000 };
+
+// Responses of the solver; `scene` is `description` in the solver. `whole` is the view of the whole map.
 export const known = { scene: null, whole: null, map: null, curve: null, pinnedCurve: null, state: null };
 
 // The title of a parameter.
@@ -29,76 +26,52 @@ export function on(parts, f) {
 // Changes parts of the state.
 export function change(parts) {
     Object.assign(state, parts);
-    for (const listener of listeners) {
-        if (listener.parts.some((part) => part in parts)) listener.f();
-    }
+    for (const { parts: own, f } of listeners) if (own.some((part) => part in parts)) f();
 }
 
-// Replaces values of the whisker. A taper and a radius at the tip are one number.
-export function changeValues(values) {
-    const all = { ...state.whisker.values };
+// A whisker with other values. A taper and a radius at the tip are one number.
+export function withValues(whisker, values) {
+    const all = { ...whisker.values };
     for (const [name, value] of Object.entries(values)) {
         if (name === 'taper') delete all.tip_radius_um;
         if (name === 'tip_radius_um') delete all.taper;
         delete all[name];
         all[name] = value;
     }
-    change({ whisker: { ...state.whisker, values: all } });
+    return { ...whisker, values: all };
 }
 
 // A request to the solver for a whisker.
 export const request = (task, { text, origin, values } = state.whisker) => ({ text, origin, values: Object.entries(values), task });
 
-const STORED = ['whisker', 'pinned', 'view', 'channel', 'scale', 'range', 'pointer', 'points', 'whisk'];
+// The narrowest views: in degrees, and as a part of the greatest distance.
+const NARROW_DEG = 1e-4;
+const NARROW = 1e-6;
 
-// Most bytes of the state in a link. A short link can unpack to a thousand times its length.
-const MOST_BYTES = 4 << 20;
+const within = (value, [least, most]) => Math.min(Math.max(value, least), most);
 
-async function through(stream, bytes) {
-    const reader = new Blob([bytes]).stream().pipeThrough(stream).getReader();
-    const parts = [];
-    let size = 0;
-    for (let part = await reader.read(); !part.done; part = await reader.read()) {
-        size += part.value.length;
-        if (size > MOST_BYTES) {
-            await reader.cancel();
-            throw new RangeError('the link holds more than 4 MiB');
-        }
-        parts.push(part.value);
-    }
-    return new Uint8Array(await new Blob(parts).arrayBuffer());
+// Push angles and distances of which the solver makes maps.
+function limits() {
+    const [nearest, farthest] = known.scene.distances_mm;
+    return { push: [-180, 180], distance: [nearest * 1.0001, Math.min(farthest, 1.5 * known.whole.distance[1])] };
 }
 
-// The state as the part of a link after `#`.
-export async function link() {
-    const stored = Object.fromEntries(STORED.map((part) => [part, state[part]]));
-    const packed = await through(new CompressionStream('deflate-raw'), new TextEncoder().encode(JSON.stringify(stored)));
-    return btoa(String.fromCharCode(...packed)).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
+// The part of a view within the limits; null if it is too narrow. A map of one push angle or one distance stays one.
+export function fitted(view) {
+    const { whole } = known;
+    const part = (name) => (whole[name][0] === whole[name][1] ? whole[name] : view[name].map((end) => within(end, limits()[name])));
+    const [push, distance] = [part('push'), part('distance')];
+    const isWide = ([from, to], least, own) => own[0] === own[1] || to - from > least;
+    return isWide(push, NARROW_DEG, whole.push) && isWide(distance, NARROW * whole.distance[1], whole.distance) ? { push, distance } : null;
 }
 
-const isRange = (ends) => Array.isArray(ends) && ends.length === 2 && ends.every(Number.isFinite) && ends[0] < ends[1];
-
-const isWhisker = (own) =>
-    typeof own?.text === 'string' && typeof own.origin === 'string' && own.values && Object.values(own.values).every(Number.isFinite);
-
-// A course of whisking that the solver accepts.
-export const isCourse = (own) =>
-    own?.amplitude_deg > 0 && own.amplitude_deg <= 180 && own.frequency_hz > 0 && own.frequency_hz <= 1000;
-
-// The state in a link; what is no valid part of it is left out.
-export async function fromLink(hash) {
-    const packed = Uint8Array.from(atob(hash.replace(/-/g, '+').replace(/_/g, '/')), (character) => character.charCodeAt(0));
-    const stored = JSON.parse(new TextDecoder().decode(await through(new DecompressionStream('deflate-raw'), packed)));
-    const isValid = {
-        whisker: isWhisker,
-        pinned: isWhisker,
-        view: (own) => isRange(own?.push) && isRange(own?.distance),
-        channel: (own) => own === null || typeof own === 'string',
-        scale: (own) => ['auto', 'linear', 'log'].includes(own),
-        range: (own) => Array.isArray(own) && own.length === 2 && own.every((end) => end === null || Number.isFinite(end)),
-        pointer: (own) => Number.isFinite(own?.push) && Number.isFinite(own?.distance),
-        whisk: isCourse,
-        points: (own) => typeof own?.name === 'string' && typeof own.csv === 'string',
-    };
-    return Object.fromEntries(STORED.filter((part) => isValid[part](stored[part])).map((part) => [part, stored[part]]));
+// View and pointer of the scene that is known now, as near to the given ones as it allows.
+export function placed(view, pointer) {
+    const single = ([from, to], least) => (to - from > least ? [from, to] : [from, from]);
+    const { push_angle_deg: push, distance_mm: distance } = known.scene;
+    known.whole = { push: single(push, NARROW_DEG), distance: single(distance, NARROW * distance[1]) };
+    const middle = ([from, to]) => Number((from + 0.56 * (to - from)).toPrecision(from < to ? 3 : 17));
+    const at = pointer ?? { push: middle(push), distance: middle(distance) };
+    const clamped = (name) => within(at[name], known.whole[name][0] === known.whole[name][1] ? known.whole[name] : limits()[name]);
+    return { view: (view && fitted(view)) ?? known.whole, pointer: { push: clamped('push'), distance: clamped('distance') } };
 }

@@ -1,22 +1,22 @@
 // The course of whisking in front of the pole at the pointer's distance: an animation, and the force over time.
 
 import { find, svg } from './dom.js';
+import { startField } from './field.js';
 import { draw, ends } from './plot.js';
-import { change, isCourse, known, on, state } from './state.js';
-import { shown } from './text.js';
+import { COURSE, change, known, on, state } from './state.js';
+import { shown, spoken, withUnit } from './text.js';
 
 // Samples of the course for a ms of the animation: a period takes 4 s.
 const PER_MS = 0.03;
 
-const LIMITS = 'must be above 0, and at most 180\u00b0 and 1000 Hz';
 const [picture, slider] = [find('whisk-shape'), find('whisk-time')];
-let [playing, box, refused] = [null, null, ''];
+let [playing, box] = [null, null];
 
 // Shows a new course, or the message why there is none.
 export function showCourse(message) {
     const course = (known.whisk = message ? null : known.whisk);
-    find('whisk-error').textContent = message || refused;
-    find('whisk-note').textContent = course ? `at ${shown(course.distance_mm)} mm, without inertia; detachments lose ${shown(course.lost_nj, 4)} nJ` : '';
+    find('whisk-error').textContent = message;
+    find('whisk-note').textContent = course ? `at ${withUnit('distance_mm', course.distance_mm)}, without inertia; detachments lose ${withUnit('lost_nj', course.lost_nj, 4)}` : '';
     slider.disabled = find('whisk-play').disabled = !course;
     if (course) {
         slider.max = course.samples.length - 1;
@@ -28,6 +28,17 @@ export function showCourse(message) {
     drawCourse();
 }
 
+// The force over time through the events: as `plot` in `src/render/courses.rs`.
+function forceLine({ samples, events }) {
+    let next = 0;
+    return samples.flatMap(({ time_s, force_un, regime }) => {
+        const own = [];
+        for (; next < events.length && events[next].time_s <= time_s; next++) own.push([events[next].time_s, events[next].force_un]);
+        if (own.length && regime === 'free') own.push([own[own.length - 1][0], 0]);
+        return [...own, [time_s, force_un]];
+    });
+}
+
 // Draws the whisker at the chosen time, and the force over time.
 export function drawCourse() {
     if (!known.whisk) {
@@ -36,21 +47,21 @@ export function drawCourse() {
     }
     const { samples, events } = known.whisk;
     const sample = samples[slider.value];
-    const time = ({ time_s }) => 1000 * time_s;
     draw(find('whisk-force'), {
-        x: [0, time(samples[samples.length - 1])],
+        x: [0, samples[samples.length - 1].time_s],
         y: ends([...samples, ...events].map(({ force_un }) => force_un), [0]),
-        xTitle: 'Time (ms)',
-        yTitle: 'Contact force (\u00b5N)',
-        lines: [{ points: samples.filter(({ force_un }) => force_un != null).map((own) => [time(own), own.force_un]), class: 'stable' }],
-        dots: events.map((own) => ({ at: [time(own), own.force_un ?? 0], class: /-off$/.test(own.event) ? 'end' : 'touch', title: `${own.event} on ${own.side.toUpperCase()} at ${shown(own.angle_deg)}\u00b0` })),
-        vertical: time(sample),
+        xName: 'time_s',
+        yName: 'force_un',
+        lines: [{ points: forceLine(known.whisk), class: 'stable' }],
+        dots: events.map((own) => ({ at: [own.time_s, own.force_un ?? 0], class: /-off$/.test(own.event) ? 'end' : 'touch', title: `${own.event} on ${own.side.toUpperCase()} at ${withUnit('angle_deg', own.angle_deg)}` })),
+        vertical: sample.time_s,
     });
     drawShape(known.whisk);
     const { regime, side, force_un, reason } = sample;
-    const words = [regime, side?.toUpperCase(), reason, force_un > 0 && `${shown(force_un, 3)} \u00b5N`].filter(Boolean);
-    find('whisk-now').textContent = `${shown(time(sample), 4)} ms, base at ${shown(sample.angle_deg, 3)}\u00b0: ${words.join(', ')}`;
-    slider.setAttribute('aria-valuetext', find('whisk-now').textContent);
+    const words = [regime, side?.toUpperCase(), reason, force_un > 0 && withUnit('force_un', force_un, 3)].filter(Boolean);
+    find('whisk-now').textContent = `${withUnit('time_s', sample.time_s, 4)}, base at ${withUnit('angle_deg', sample.angle_deg, 3)}: ${words.join(', ')}`;
+    const force = force_un > 0 ? `, ${spoken('force_un', force_un, 3)}` : '';
+    slider.setAttribute('aria-valuetext', `${spoken('time_s', sample.time_s, 4)}, base at ${spoken('angle_deg', sample.angle_deg, 3)}: ${words.slice(0, force ? -1 : undefined).join(', ')}${force}`);
 }
 
 // The whisker of the chosen sample, in the same equal scales for the whole course.
@@ -93,15 +104,15 @@ function play() {
 
 export function startWhisk() {
     const fields = { amplitude_deg: find('whisk-amplitude'), frequency_hz: find('whisk-frequency') };
-    for (const [name, field] of Object.entries(fields)) {
-        field.addEventListener('change', () => {
-            const whisk = { ...state.whisk, [name]: Number(field.value) };
-            refused = isCourse(whisk) ? '' : `${name} = ${field.value}: ${LIMITS}`;
-            if (refused) find('whisk-error').textContent = refused;
-            else change({ whisk });
+    const entries = Object.entries(fields).map(([name, field]) => {
+        const entry = startField(field, find(`error-${name}`), (value) => {
+            if (!(value > 0 && value <= COURSE[name])) return `${name} = ${shown(value)}: must be above 0 and at most ${COURSE[name]}`;
+            change({ whisk: { ...state.whisk, [name]: value } });
+            return '';
         });
-    }
-    const show = () => Object.entries(fields).forEach(([name, field]) => (field.value = state.whisk[name]));
+        return () => entry.show(shown(state.whisk[name], 6));
+    });
+    const show = () => entries.forEach((entry) => entry());
     on(['whisk'], show);
     show();
     slider.addEventListener('input', drawCourse);

@@ -2,8 +2,8 @@
 
 import { find, svg } from './dom.js';
 import { known, state } from './state.js';
-import { shown } from './text.js';
-import { ticks } from './plot.js';
+import { ticks, widest } from './plot.js';
+import { withUnit } from './text.js';
 
 const picture = find('whisker');
 
@@ -50,16 +50,19 @@ function force({ points, contact, state: found }, place, length) {
     const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     const span = Math.hypot(dx, dy) || 1;
     const [ux, uy] = [(dx / span) * 7, (dy / span) * 7];
+    const label = withUnit('force_un', force_un, 3);
+    const [long, { width, height }] = [widest([label]) + 4, picture.getBoundingClientRect()];
+    const x0 = Math.min(Math.max(to[0] + ux - (ux < 0 ? long : 0), 4), width - long);
     const head = `M${to[0]} ${to[1]}L${to[0] - ux - uy / 2} ${to[1] - uy + ux / 2}L${to[0] - ux + uy / 2} ${to[1] - uy - ux / 2}Z`;
     return [
         svg('line', { class: 'line force', x1: from[0], y1: from[1], x2: to[0] - ux / 2, y2: to[1] - uy / 2 }),
         svg('path', { class: 'arrow', d: head }),
-        svg('text', { class: 'force', x: to[0] + ux, y: to[1] + uy + 4, 'text-anchor': ux < 0 ? 'end' : 'start' }, `${shown(force_un, 3)} \u00b5N`),
+        svg('text', { class: 'force', x: x0, y: Math.min(Math.max(to[1] + uy + 4, 14), height - 34) }, label),
     ];
 }
 
 function scaleBar(length, scale, height) {
     const [, size] = ticks([0, length], 4);
     const [x, y] = [10, height - 12];
-    return svg('g', { class: 'scale' }, svg('line', { x1: x, x2: x + size * scale, y1: y, y2: y }), svg('text', { x, y: y - 6 }, `${shown(size)} mm`));
+    return svg('g', { class: 'scale' }, svg('line', { x1: x, x2: x + size * scale, y1: y, y2: y }), svg('text', { x, y: y - 6 }, withUnit('length_mm', size)));
 }

@@ -49,9 +49,9 @@ pub enum Task {
     },
     /// Task: compute the detachment curve of both sides.
     Curve {
-        /// Range `[least, greatest]` of distances of first touch from the base, in mm.
+        /// Range `[least, greatest]` of distances of first touch from the base, in mm; equal for one distance.
         distance_mm: [f64; 2],
-        /// Number of distances of the detachment curve.
+        /// Number of distances of the detachment curve; 1 for equal ends.
         count: usize,
     },
     /// Task: compute the effects of all numbers of the scene on the detachments of both sides at one distance.
@@ -76,7 +76,7 @@ impl Request {
     fn respond(&self) -> Result<Response, String> {
         let scene = self.scene()?;
         Ok(match &self.task {
-            Task::Scene => scene::description(&scene)?.into(),
+            Task::Scene => scene::description(&scene, self.parsed()?.is_sweep())?.into(),
             Task::Toml => {
                 json!({ "toml": scene::toml(&self.one(Vec::new())?, &self.changes()?)? }).into()
             }
@@ -94,7 +94,7 @@ impl Request {
                 traces::branches(&scene, *distance_mm, *push_angle_deg, count).into()
             }
             Task::Curve { distance_mm, count } => {
-                traces::curve(&scene, *distance_mm, (*count).clamp(2, MOST))?.into()
+                traces::curve(&scene, *distance_mm, (*count).clamp(1, MOST))?.into()
             }
             Task::Sensitivities { distance_mm } => {
                 json!({ "distance_mm": distance_mm, "rows": effects(&scene, *distance_mm) }).into()
@@ -110,13 +110,16 @@ impl Request {
     }
 
     fn one(&self, values: Vec<(Parameter, f64)>) -> Result<Scene, String> {
-        let scene = Scene::parse(&self.text, &self.origin);
-        let scene = scene.and_then(|scene| scene.of_whisker(0));
+        let scene = self.parsed()?.of_whisker(0);
         let scene = scene.and_then(|scene| match values.is_empty() {
             true => Ok(scene),
             false => scene.with_parameters(&values),
         });
         scene.map_err(|why| why.to_string())
+    }
+
+    fn parsed(&self) -> Result<Scene, String> {
+        Scene::parse(&self.text, &self.origin).map_err(|why| why.to_string())
     }
 
     fn changes(&self) -> Result<Vec<(Parameter, f64)>, String> {

@@ -5,8 +5,8 @@ use whiskmap::classify::{Regime, Status};
 use whiskmap::plan::{Plan, STATE_CHANNELS, effects};
 use whiskmap::scene::{Parameter, Scene};
 
-/// Returns title, units, numbers, effects and axes of a scene, and the names of codes and channels.
-pub fn description(scene: &Scene) -> Result<Value, String> {
+/// Returns title, units, numbers, effects and axes of a scene, the names of codes and channels, and whether it is one whisker of a sweep.
+pub fn description(scene: &Scene, is_of_sweep: bool) -> Result<Value, String> {
     let parameters = Parameter::ALL.into_iter();
     let parameters = parameters.filter_map(|parameter| {
         Some(json!({
@@ -27,6 +27,7 @@ pub fn description(scene: &Scene) -> Result<Value, String> {
     Ok(json!({
         "title": scene.title,
         "name": scene.name,
+        "is_of_sweep": is_of_sweep,
         "length_mm": units.length_mm,
         "unit_force_un": units.force_un,
         "parameters": parameters.collect::<Vec<_>>(),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use whiskmap::friction::Sliding;
 use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{AxisValues, Scene};
-use whiskmap::trace::{NoState, StableBranch, WhiskerPart, WhiskerShape};
+use whiskmap::trace::{Detachment, NoState, StableBranch, WhiskerPart, WhiskerShape};
 use whiskmap::{Channel, Options, Regime, Status};
 
 /// Number of points of a whisker's shape.
@@ -111,7 +111,7 @@ pub fn branches(scene: &Scene, distance_mm: f64, push_deg: Option<f64>, count: u
     json!({ "distance_mm": distance_mm, "push_angle_deg": push_deg, "cf": cf, "cb": cb, "unstable": unstable })
 }
 
-/// Returns the detachments at `count` distances, CF then CB, as from `whiskmap curve`.
+/// Returns the detachments at `count` distances, CF then CB, as from `whiskmap curve`, and the names of its columns in their order.
 pub fn curve(scene: &Scene, [from, to]: [f64; 2], count: usize) -> Result<Value, String> {
     let scene = scene
         .to_builder()
@@ -120,5 +120,6 @@ pub fn curve(scene: &Scene, [from, to]: [f64; 2], count: usize) -> Result<Value,
     let scene = scene.map_err(|why| why.to_string())?;
     let curve = whiskmap::curve(&scene, Options::default()).map_err(|why| why.to_string())?;
     let rows = curve.into_iter().map(|(_, end)| end);
-    Ok(json!({ "rows": rows.collect::<Vec<_>>() }))
+    let columns = Detachment::COLUMNS.iter().map(|(name, _)| name);
+    Ok(json!({ "rows": rows.collect::<Vec<_>>(), "columns": columns.collect::<Vec<_>>() }))
 }

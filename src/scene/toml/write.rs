@@ -8,6 +8,7 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, TableLike, TomlError, Val
 use crate::scene::axis::{AxisScale, AxisValues};
 use crate::scene::deviations::ROWS;
 use crate::scene::error::SceneError;
+use crate::scene::limits::rounded;
 use crate::scene::parameter::Parameter;
 use crate::scene::profile::KEY as ROWS_KEY;
 use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY, POINTS_KEY};
@@ -16,6 +17,10 @@ use crate::traced::TracedShape;
 
 use super::place::place_in;
 use super::rows::PairsCsv;
+
+/// Significant digits with which every `f64` is parsed exactly, and of a number that follows from others: the last ones would be rounding.
+const EXACT_DIGITS: usize = 17;
+const DERIVED_DIGITS: usize = 15;
 
 /// TOML text of a scene: the source text of a scene that was read; otherwise it is written from the numbers when it is displayed.
 ///
@@ -63,7 +68,8 @@ impl Scene {
         self.text.to_string()
     }
 
-    /// Returns the TOML text of this scene with other values of some parameters, in their units. Comments and layout stay.
+    /// Returns the TOML text of this scene with other values of some parameters, in their units. Comments and layout stay. A taper becomes the
+    /// radius at the tip, with 15 digits.
     ///
     /// # Errors
     /// If a value is not allowed, as in [`Scene::with_parameters`].
@@ -73,11 +79,12 @@ impl Scene {
         let mut document: DocumentMut =
             document.map_err(|why: TomlError| SceneError::whole(&self.name, why.message()))?;
         for (parameter, _) in values {
-            let parameter = match parameter {
-                Parameter::Taper => Parameter::TipRadiusUm,
-                own => *own,
+            let (parameter, digits) = match parameter {
+                Parameter::Taper => (Parameter::TipRadiusUm, DERIVED_DIGITS),
+                own => (*own, EXACT_DIGITS),
             };
             if let Some(value) = parameter.value(&changed) {
+                let value = rounded(value, digits);
                 put(document.as_table_mut(), parameter.key(), value);
             }
         }
