@@ -22,7 +22,7 @@ mod traces;
 mod _whiskmap {
     #[pymodule_export]
     use super::about::{
-        arithmetic, channel_attributes, channels, coordinates, inks, parameters, regimes,
+        arithmetic, axis_title, channel_attributes, channels, coordinates, inks, parameters, regimes,
         variables, version,
     };
     #[pymodule_export]
