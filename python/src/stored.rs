@@ -64,6 +64,16 @@ impl StoredMap {
         std::iter::once(Ok(title)).chain(others).collect()
     }
 
+    /// Returns a warning about a map of another version; `None` about one of this version.
+    fn warning(&self) -> PyResult<Option<String>> {
+        let version = self.map.stored().foreign_version();
+        let version = version.map_err(|why| of_store(&why))?;
+        Ok(version.map(|version| {
+            let (path, own) = (self.path.display(), env!("CARGO_PKG_VERSION"));
+            format!("{path} was written by whiskmap {version}, not by {own}; its channels may have another meaning")
+        }))
+    }
+
     /// Reads a channel of some whiskers, `[whisker, distance, push angle]` in one dimension. The last sweep axis varies fastest.
     fn read<'py>(
         &self,

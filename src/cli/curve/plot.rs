@@ -1,7 +1,9 @@
 //! Plots of detachment curves: the push angle or a load to the right, the distance upward.
 
 use clap::ValueEnum;
-use whiskmap::render::{CurveAxis, DISTANCE, DrawnCurve, Plot, Stroke, curves, regions};
+use whiskmap::render::{
+    CurveAxis, DISTANCE, DrawnCurve, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, Plot, Stroke, curves, regions,
+};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweptWhisker};
 use whiskmap::shooting::Resolution;
