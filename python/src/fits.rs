@@ -33,17 +33,18 @@ pub struct FitResult<'py> {
     warnings: Vec<String>,
 }
 
-/// Fits the `free` parameters of the scene's only whisker to the CSV table `points`.
+/// Fits the `free` parameters of the scene's only whisker to the CSV table `points`, which messages call `origin`.
 #[pyfunction]
 pub fn fit<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     points: &str,
+    origin: &str,
     free: Vec<String>,
 ) -> PyResult<FitResult<'py>> {
     single(&scene.0)?;
     let refused = |why: String| PyValueError::new_err(why);
-    let points = MeasuredPoints::parse(points, "points").map_err(|why| refused(why.to_string()))?;
+    let points = MeasuredPoints::parse(points, origin).map_err(|why| refused(why.to_string()))?;
     let free: PyResult<Vec<Parameter>> = free
         .iter()
         .map(|name| arguments::parameter("free", name))

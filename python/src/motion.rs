@@ -11,7 +11,9 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use whiskmap::force::{self, CurvatureFrames, ForceMethod, FrameForce, forces_until};
+use whiskmap::force::{
+    CurvatureFrames, ForceMethod, FrameForce, forces_until, warning as force_warning,
+};
 use whiskmap::scene::Scene;
 use whiskmap::texture::{
     AsperityStay, TextureError, TextureEvent, TextureSample, TipBin, texture_until,
@@ -126,12 +128,13 @@ pub fn texture<'py>(
 /// Columns of forces, and a warning.
 type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>);
 
-/// Computes the forces in the frames of the CSV table `frames`.
+/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`.
 #[pyfunction]
 pub fn force<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     frames: &str,
+    origin: &str,
     model: bool,
 ) -> PyResult<ForceColumns<'py>> {
     let scene = &scene.0;
@@ -142,12 +145,12 @@ pub fn force<'py>(
         false => ForceMethod::Lever,
     };
     let whisker = scene.first_whisker().whisker;
-    let read = CurvatureFrames::parse(frames, "frames", whisker.length_mm, method);
+    let read = CurvatureFrames::parse(frames, origin, whisker.length_mm, method);
     let read = read.map_err(|why| refused(&why))?;
     let job = |cancel: &Arc<AtomicBool>| {
         let found = forces_until(&whisker, &scene.pole, &read.frames, method, cancel);
         let table = Table::new(&found, FrameForce::COLUMNS, cancel);
-        (table, force::warning(&found))
+        (table, force_warning(&found))
     };
     let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;
     Ok((table.into_columns(py)?, warning))

@@ -14,7 +14,7 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import by_index, csv_text, naming_rows, number, side_of
+from whiskmap._values import by_index, csv_text, naming_rows, number, origin_of, side_of
 from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def fit(scene: Scene, points: str | os.PathLike[str] | Mapping[str, Any], free: 
     if isinstance(free, str):
         raise TypeError(f"free = {free!r}: must be a list of names")
     with naming_rows("points", points):
-        found = _whiskmap.fit(_checked(scene), csv_text("points", points), list(free))
+        found = _whiskmap.fit(_checked(scene), csv_text("points", points), origin_of("points", points), list(free))
     warn(by_index("points", points, text) for text in found["warnings"])
     names, units, values, errors, at_limit = zip(*found["estimates"])
     correlation = np.array(found["correlation"], dtype=np.float64)

@@ -13,7 +13,7 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, rest_coords, variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, naming_rows, number, real_array
+from whiskmap._values import csv_text, naming_rows, number, origin_of, real_array
 from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
@@ -188,7 +188,7 @@ def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, m
     if not isinstance(frames, (str, os.PathLike)) and hasattr(frames, "keys"):
         frames = {str(name): _or_empty(str(name), frames[name]) for name in frames.keys()}
     with naming_rows("frames", given):
-        columns, warning = _whiskmap.force(checked, csv_text("frames", frames), bool(model))
+        columns, warning = _whiskmap.force(checked, csv_text("frames", frames), origin_of("frames", given), bool(model))
     warn([warning])
     return _over_time(columns, scene)
 

@@ -59,8 +59,13 @@ def side_of(side: Any, *, is_one: bool = False) -> str:
     return side.lower()
 
 
+def origin_of(name: str, given: Any) -> str:
+    """Return the name of a table in messages: that of its file, or of its argument."""
+    return os.fspath(given) if isinstance(given, (str, os.PathLike)) else name
+
+
 def by_index(name: str, given: Any, text: str) -> str:
-    """Return a message about a table, with the index of a row in columns that were given by name instead of the line of a file."""
+    """Return a message about a table, with the index of a row in columns that were given by name instead of the line of a text."""
     if isinstance(given, (str, os.PathLike)):
         return text
     return re.sub(rf"\b{name}:(\d+):", lambda line: f"{name}[{int(line[1]) - 2}]:", text)

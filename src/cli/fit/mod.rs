@@ -15,8 +15,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use table::table;
 use whiskmap::fit::{Fit, FitError, fit};
-use whiskmap::measured::MeasuredPoints;
-use whiskmap::scene::{Parameter, Scene, digits};
+use whiskmap::scene::Parameter;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
