@@ -245,7 +245,11 @@ fn a_cut_course_begins_in_contact() {
             let angles: Vec<f64> = (0..=40).map(|i| sign * f64::from(i) * 0.5).collect();
             let before = [-sign, 0.0].map(|deg| if sign < 0.0 { 5.0 + deg } else { deg });
             let whole = through(&scene, DISTANCE, &[&before[..], &angles].concat()).unwrap();
-            assert!(whole.warnings().is_empty() == (sign > 0.0), "{:?}", whole.warnings());
+            assert!(
+                whole.warnings().is_empty() == (sign > 0.0),
+                "{:?}",
+                whole.warnings()
+            );
             let cut = &angles[20..];
             let times = (0..cut.len()).map(|i| (22 + i) as f64).collect();
             let course = AngleCourse::new(times, cut.to_vec()).unwrap();
@@ -262,7 +266,10 @@ fn a_cut_course_begins_in_contact() {
             assert_eq!(free.samples[0].regime, WhiskRegime::Free);
             let assumed = of(None);
             assert_eq!(assumed.samples, free.samples);
-            let is_beyond = assumed.warnings().iter().any(|own| own.contains("beyond first touch"));
+            let is_beyond = assumed
+                .warnings()
+                .iter()
+                .any(|own| own.contains("beyond first touch"));
             assert_eq!(is_beyond, sign > 0.0);
         }
     }

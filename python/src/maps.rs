@@ -99,7 +99,10 @@ fn warnings(is_unexpanded: bool, summary: &Summary) -> Vec<String> {
     let unresolved = (unresolved > 0)
         .then(|| format!("{unresolved} of {all} cells are unresolved: see the variable `status`"));
     let spectral = is_unexpanded.then(|| spectral.to_owned());
-    [spectral, failure, unresolved].into_iter().flatten().collect()
+    [spectral, failure, unresolved]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Computes the panels of all whiskers, and gathers the channels.

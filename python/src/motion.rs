@@ -18,9 +18,7 @@ use whiskmap::scene::Scene;
 use whiskmap::texture::{
     AsperityStay, TextureError, TextureEvent, TextureSample, TipBin, texture_until,
 };
-use whiskmap::whisk::{
-    AngleCourse, WhiskError, WhiskEvent, WhiskOptions, WhiskSample, whisk_with,
-};
+use whiskmap::whisk::{AngleCourse, WhiskError, WhiskEvent, WhiskOptions, WhiskSample, whisk_with};
 
 /// Columns of samples and events, lost and dissipated energy in nJ, angle of the first touch on CF in degrees, and warnings.
 type WhiskColumns<'py> = (

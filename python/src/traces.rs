@@ -50,7 +50,7 @@ pub fn branch<'py>(
     check_points(points)?;
     let scene = at_pole(py, scene, distance_mm)?;
     let job = |cancel: &Arc<AtomicBool>| {
-        let points = branch_of(&scene, distance_mm, side)?.points(points)?;
+        let points = branch_of(&scene, distance_mm, side)?.points_until(points, cancel)?;
         Ok(Table::new(&points, BranchPoint::COLUMNS, cancel))
     };
     let table = threads::run(py, None, |_| Ok(()), job)?;

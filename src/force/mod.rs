@@ -97,9 +97,8 @@ pub enum ForceMethod {
 pub fn warning(forces: &[FrameForce]) -> Option<String> {
     let without = forces.iter().filter(|force| force.reason.is_some()).count();
     let all = forces.len();
-    (without > 0).then(|| {
-        format!("{without} of {all} frames have no force, for the reasons in the table")
-    })
+    (without > 0)
+        .then(|| format!("{without} of {all} frames have no force, for the reasons in the table"))
 }
 
 /// Computes the force in each of the `frames` of `whisker` at `pole`, whose friction is left out, `[frame]`. With [`ForceMethod::Lever`], a
@@ -133,9 +132,7 @@ pub fn forces_until(
             return lever.free(frame.time_s);
         };
         match &model {
-            Some(_) if cancel.load(Ordering::Relaxed) => {
-                lever.none(frame.time_s, NoForce::NoState)
-            }
+            Some(_) if cancel.load(Ordering::Relaxed) => lever.none(frame.time_s, NoForce::NoState),
             Some(model) => model.force(&lever, frame, contact),
             None => lever.force(frame, contact),
         }

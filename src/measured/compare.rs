@@ -61,7 +61,9 @@ impl MeasuredPoints {
         let (rows, origin) = (comparison.left_out(), &self.origin);
         let warning = |row: &ComparedPoint| {
             let (line, distance) = (row.line, digits(row.distance_mm));
-            format!("{origin}:{line}: left out: by theory this side never detaches at {distance} mm")
+            format!(
+                "{origin}:{line}: left out: by theory this side never detaches at {distance} mm"
+            )
         };
         rows.map(warning).collect()
     }

@@ -56,8 +56,14 @@ impl Whisk {
                 digits(angle_deg)
             )
         });
-        let spans = self.events.iter().filter(|own| own.event == WhiskEventKind::Undecided);
-        let undecided = self.samples.iter().filter(|own| own.regime == WhiskRegime::Undecided);
+        let spans = self
+            .events
+            .iter()
+            .filter(|own| own.event == WhiskEventKind::Undecided);
+        let undecided = self
+            .samples
+            .iter()
+            .filter(|own| own.regime == WhiskRegime::Undecided);
         let (spans, undecided) = (spans.count(), undecided.count());
         let without = (undecided > 0 || spans > 0).then(|| {
             let all = self.samples.len();
@@ -241,7 +247,7 @@ pub fn whisk_with(
 }
 
 /// Number of states that are computed between two looks at the flag that cancels.
-pub(crate) const STATES_AT_ONCE: usize = 1 << 12;
+pub(crate) const STATES_AT_ONCE: usize = 1 << 10;
 
 /// Returns the phase in which a course begins at the angle `first_deg`, in degrees.
 fn begin(turns: &Turns, first_deg: f64, start: Option<CourseStart>) -> Result<Phase, WhiskError> {

@@ -126,13 +126,17 @@ fn a_start_beyond_first_touch_is_named() {
     let place = Place::with(SCENE);
     place.write("a.csv", "time_s,angle_deg\n0,10\n1,12\n");
     let angles = ["--angles", "a.csv"];
-    let assumed = "warning: the first angle is 10 deg, beyond first touch: the whisker is assumed to be free";
+    let assumed =
+        "warning: the first angle is 10 deg, beyond first touch: the whisker is assumed to be free";
     let run = whisk(&place, &angles);
     assert!(run.code == Some(0) && run.err.contains(assumed), "{run:?}");
     assert!(run.out.contains(",free,"), "{run:?}");
     for (start, regime) in [("free", ",free,"), ("contact", ",contact,cb,10,")] {
         let run = whisk(&place, &[&angles[..], &["--start", start]].concat());
-        assert!(run.code == Some(0) && !run.err.contains("warning"), "{run:?}");
+        assert!(
+            run.code == Some(0) && !run.err.contains("warning"),
+            "{run:?}"
+        );
         assert!(run.out.contains(regime), "{run:?}");
     }
     place.write("a.csv", "time_s,angle_deg\n0,20\n1,12\n");

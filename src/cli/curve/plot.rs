@@ -2,7 +2,8 @@
 
 use clap::ValueEnum;
 use whiskmap::render::{
-    CurveAxis, DISTANCE, DrawnCurve, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, Plot, Stroke, curves, regions,
+    CurveAxis, DISTANCE, DrawnCurve, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, Plot, Stroke,
+    curves, regions,
 };
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweptWhisker};
