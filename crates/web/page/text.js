@@ -21,18 +21,18 @@ export const unit = (name) => UNITS.find(([end]) => name.endsWith(end))?.[1] ?? 
 // Channels by name.
 export const CHANNELS = {
     force_un: 'Contact force',
-    base_moment_nnm: 'Moment at the base',
-    base_force_x_un: 'Force on the base, along',
-    base_force_y_un: 'Force on the base, across',
+    base_moment_nnm: 'Bending moment at the base',
+    base_force_x_un: 'Force on the base along the whisker',
+    base_force_y_un: 'Force on the base across the whisker',
     energy_nj: 'Bending energy',
-    arc_length_mm: 'Arc length to the contact',
-    contact_distance_mm: 'Distance to the contact',
+    arc_length_mm: 'Arc length from base to contact',
+    contact_distance_mm: 'Distance from base to contact',
     contact_angle_deg: 'Contact angle',
     push_chord_deg: 'Chord angle',
-    margin_deg: 'Push left until detachment',
+    margin_deg: 'Push angle left until detachment',
     residual: 'Residual',
-    peak_strain: 'Largest strain',
-    peak_strain_mm: 'Largest strain at',
+    peak_strain: 'Largest bending strain',
+    peak_strain_mm: 'Arc length to the largest bending strain',
 };
 
 // A name with its unit, as the title of an axis.
