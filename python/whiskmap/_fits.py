@@ -178,10 +178,9 @@ def design(
     distance = number("distance_mm", distance_mm)
     is_load = goal.startswith("max_")
     own = None if side is None else side_of(side)
+    sides: list[str | None] = [own]
     if own == "both":
         sides = ["cf", "cb"] if is_load else [None]
-    else:
-        sides = [own]
     parts = [(of, *_whiskmap.design(_checked(scene), parameter, goal, value, distance, of)) for of in sides]
     names = [of or ("cb" if value > 0 else "cf") for of, *_ in parts]
     values = np.concatenate([part[1] for part in parts])

@@ -62,7 +62,7 @@ def map(
     ImportError
         If `progress` is True and tqdm is missing.
     KeyboardInterrupt
-        On Ctrl-C, after the current rows.
+        On Ctrl-C.
     """
     if channels is not None and isinstance(channels, str):
         raise TypeError(f"channels = {channels!r}: must be a list of names")

@@ -122,8 +122,8 @@ def whisk(
     """
     checked, distance = _checked(scene), number("distance_mm", distance_mm)
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
-    own = _whiskmap.whisk(checked, distance, *_one_dimensional(*course), start)
-    samples, events, lost, dissipated, cf_touch, warnings = own
+    time, angle = _one_dimensional(*course)
+    samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(checked, distance, time, angle, start)
     warn(warnings)
     about = {"distance_mm": distance}
     return Whisk(_over_time(samples, scene, about), _numbered(events, scene, about), lost, dissipated, cf_touch)

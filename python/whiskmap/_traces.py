@@ -44,7 +44,7 @@ def curve(scene: Scene, *, tolerance_deg: float | None = None, threads: int | No
     ValueError
         If the tolerance cannot be kept.
     KeyboardInterrupt
-        On Ctrl-C, after the current whiskers.
+        On Ctrl-C.
     """
     columns = _whiskmap.curve(_checked(scene), tolerance_deg, threads)
     coords = scene_coords(scene)

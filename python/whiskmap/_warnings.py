@@ -6,6 +6,7 @@ import sys
 import warnings
 from collections.abc import Iterable
 from importlib import import_module
+from types import FrameType
 
 
 class SceneWarning(UserWarning):
@@ -14,7 +15,8 @@ class SceneWarning(UserWarning):
 
 def warn(texts: Iterable[str | None]) -> None:
     """Issue each text as a warning at the innermost line outside of the package, so that Python shows it once a place."""
-    frame, level = sys._getframe(1), 2
+    frame: FrameType | None = sys._getframe(1)
+    level = 2
     while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "whiskmap":
         frame, level = frame.f_back, level + 1
     for text in texts:

@@ -192,14 +192,14 @@ def _axes(ax: Axes | None) -> Axes:
 
 
 def _legend(axes: Axes, handles: list[Patch]) -> None:
-    figure = axes.get_figure(root=True)
-    width = axes.get_window_extent().width / figure.dpi
-    if width >= _NARROW:
+    from matplotlib.figure import Figure
+
+    figure = axes.figure
+    if axes.get_window_extent().width / figure.dpi >= _NARROW:
         axes.legend(handles=handles, loc="best", fontsize="small")
         return
     # A layout that makes room below the axes, unless the figure has one.
-    if figure.get_layout_engine() is None:
+    if isinstance(figure, Figure) and figure.get_layout_engine() is None:
         figure.set_layout_engine("constrained")
     # The pad is that of ticks, numbers and title of the axis, in sizes of the font.
-    place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "borderaxespad": 5.0}
-    axes.legend(handles=handles, ncols=2, fontsize="small", **place)
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=5.0, ncols=2, fontsize="small")
