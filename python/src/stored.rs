@@ -82,21 +82,17 @@ impl StoredMap {
         whiskers: Vec<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (mut codes, mut quantities) = (Vec::new(), Vec::new());
-        let read = |whisker: &usize| {
-            let index = self.order.get(*whisker);
-            let index = index
-                .ok_or_else(|| PyIndexError::new_err(format!("there is no whisker {whisker}")))?;
-            match self
-                .map
-                .read_panel(channel, *index)
-                .map_err(|why| of_store(&why))?
-            {
+        for whisker in whiskers {
+            let index = self.order.get(whisker);
+            let none = || PyIndexError::new_err(format!("there is no whisker {whisker}"));
+            let index = *index.ok_or_else(none)?;
+            let panel = py.detach(|| self.map.read_panel(channel, index));
+            match panel.map_err(|why| of_store(&why))? {
                 ChannelValues::U32(own) => codes.extend(own),
                 ChannelValues::F32(own) => quantities.extend(own),
             }
-            Ok::<(), PyErr>(())
-        };
-        py.detach(|| whiskers.iter().try_for_each(read))?;
+            py.check_signals()?;
+        }
         Ok(match (channel, codes.is_empty()) {
             (_, true) => PyArray1::from_vec(py, quantities).into_any(),
             ("newton_steps", false) => PyArray1::from_vec(py, codes).into_any(),

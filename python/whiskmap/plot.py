@@ -202,4 +202,4 @@ def _legend(axes: Axes, handles: list[Patch]) -> None:
     if isinstance(figure, Figure) and figure.get_layout_engine() is None:
         figure.set_layout_engine("constrained")
     # The pad is that of ticks, numbers and title of the axis, in sizes of the font.
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=5.0, ncols=2, fontsize="small")
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=5.0, fontsize="x-small")
