@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 require("matplotlib", "plot")
 
+PUSH_ANGLE = axis_title("push_angle_deg", False)
+DISTANCE = axis_title("distance_mm", False)
+
 # Axes narrower than this, in inches, have no room for a legend.
 _NARROW = 4.0
 
@@ -51,7 +54,7 @@ def regimes(ds: xr.Dataset, *, ax: Axes | None = None, legend: bool = True) -> Q
     colours = [colour for _, _, colour, _ in known]
     norm = BoundaryNorm([-0.5, *(code + 0.5 for code in codes)], len(codes))
     mesh = axes.pcolormesh(ds["push_angle_deg"], ds["distance_mm"], regime, cmap=ListedColormap(colours), norm=norm)
-    axes.set(xlabel=axis_title("push_angle_deg", False), ylabel=axis_title("distance_mm", False))
+    axes.set(xlabel=PUSH_ANGLE, ylabel=DISTANCE)
     if legend:
         present = np.unique(regime)
         _legend(axes, [Patch(color=colour, label=name) for code, name, colour, _ in known if code in present])
@@ -85,7 +88,7 @@ def curve(ds: xr.Dataset, *, x: str = "push_angle_deg", ax: Axes | None = None, 
                 label = None if kind in named else kind
                 named.add(kind)
                 lines += axes.plot(values, own["distance_mm"], **{"color": colours[kind], "label": label} | line)
-    axes.set(xlabel=axis_title(x, True), ylabel=axis_title("distance_mm", False))
+    axes.set(xlabel=axis_title(x, True), ylabel=DISTANCE)
     return lines
 
 
@@ -129,7 +132,7 @@ def branch(ds: xr.Dataset, *, y: str = "arc_length_mm", ax: Axes | None = None, 
             own = one.isel(point=one["mark"].values == mark)
             if own.sizes["point"]:
                 draw(own, "o", mark, mark)
-    axes.set(xlabel=axis_title("push_angle_deg", False), ylabel=axis_title(y, False))
+    axes.set(xlabel=PUSH_ANGLE, ylabel=axis_title(y, False))
     return artists
 
 
