@@ -49,8 +49,15 @@ pub enum TextureError {
     #[error(transparent)]
     Surface(#[from] SceneError),
     /// The base turns away from the surface.
-    #[error("angle {0} deg: must be between -90 and 90 deg from the normal of the surface")]
-    Angle(f64),
+    #[error(
+        "angle_deg[{index}] = {angle_deg}: must be between -90 and 90 deg from the normal of the surface"
+    )]
+    Angle {
+        /// Index of the sample whose angle is out of range.
+        index: usize,
+        /// Angle of the sample, in degrees.
+        angle_deg: f64,
+    },
     /// The resting whisker does not fit between two asperities.
     #[error(
         "the resting whisker does not fit between asperities {} and {}, at {} and {} mm: surface.spacing_um must be larger, or \
@@ -127,8 +134,9 @@ pub fn texture_until(
 ) -> Result<Texture, TextureError> {
     surface.check(whisker)?;
     let angles = course.angles_deg();
-    if let Some(angle) = angles.iter().find(|angle| angle.abs() > 90.0) {
-        return Err(TextureError::Angle(*angle));
+    if let Some(index) = angles.iter().position(|angle| angle.abs() > 90.0) {
+        let angle_deg = angles[index];
+        return Err(TextureError::Angle { index, angle_deg });
     }
     let tips = TipFrame::new(whisker, surface);
     let (asperities, states) = Asperities::new(whisker, surface, &tips)?;

@@ -26,7 +26,7 @@ use crate::scene::{Pole, Whisker, digits};
 use crate::sheet::Row;
 use crate::trace::NoState;
 use legs::Legs;
-use phase::Phase;
+use phase::{Phase, ROUNDING};
 use readings::Found;
 use states::SideStates;
 use turns::Turns;
@@ -242,7 +242,8 @@ pub fn whisk_with(
         samples: samples.collect(),
         events,
         cf_touch_deg: turns.cf_touch.to_degrees(),
-        assumed_free_deg: (options.start.is_none() && first > 0.0).then_some(first),
+        assumed_free_deg: (options.start.is_none() && first.to_radians() > ROUNDING)
+            .then_some(first),
     })
 }
 
