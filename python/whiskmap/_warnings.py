@@ -21,7 +21,7 @@ def warn(texts: Iterable[str | None]) -> None:
         frame, level = frame.f_back, level + 1
     for text in texts:
         if text is not None:
-            warnings.warn(text, SceneWarning, stacklevel=level - 1)
+            warnings.warn(text, SceneWarning, stacklevel=level)
 
 
 def require(module: str, extra: str) -> None:
