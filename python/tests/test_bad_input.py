@@ -26,7 +26,7 @@ CASES = {
     "range of an element": (wm.SceneError, r"^taper\[2\] = 1.5: must be between 0 and 1", lambda s: wm.detachment(s, taper=[0, 1, 1.5], distance_mm=9, side="cb")),
     "distance": (wm.SceneError, r"^distance_mm\[1\] = 300: must be", lambda s: wm.detachment(s, distance_mm=[15, 300.0], side="cb")),
     "range of an element of two dimensions": (wm.SceneError, r"^taper\[1, 0\] = -1: must be", lambda s: wm.detachment(s, taper=[[0.5], [-1]], distance_mm=[[9, 10]])),
-    "two names of one number": (TypeError, "taper and tip_radius_um: give one of them", lambda s: s.replace(tip_radius_um=2, taper=0.5)),
+    "two names of one number": (TypeError, "tip_radius_um and taper: give one of them|taper and tip_radius_um: give one of them", lambda s: s.replace(tip_radius_um=2, taper=0.5)),
     "two names of one axis": (TypeError, "parabola_per_mm and curvature_per_mm|curvature_per_mm and parabola_per_mm", lambda s: s.replace(curvature_per_mm=[0, 0.1], parabola_per_mm=0.02)),
     "side of a branch": (ValueError, "side = 'left': must be one of 'both', 'cb', 'cf'", lambda s: wm.branch(s, 15.0, "left")),
     "side of an array": (ValueError, r"side\[1\] = 'left': must be 'cb' or 'cf'", lambda s: wm.detachment(s, distance_mm=1, side=["cb", "left"])),
