@@ -153,7 +153,7 @@ def test_a_start_in_contact_is_that_of_the_program(cone, tmp_path):
 
 
 def test_a_start_that_is_impossible_is_refused(cone):
-    with pytest.raises(ValueError, match="cannot begin in contact: the first angle is 20 deg; pushes on CB end at 15.607"):
+    with pytest.raises(ValueError, match="cannot begin in contact: the first angle is 20 deg; pushes on CB end at 15.609"):
         wm.whisk(cone, 15.66, [0, 1], [20, 0], start="contact")
     with pytest.raises(ValueError, match="choose the start `contact`"):
         wm.whisk(cone, 15.66, [0, 1], [1, 0])
