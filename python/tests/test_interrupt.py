@@ -38,7 +38,7 @@ CALLS = {
     "fit": (
         "rng = np.random.default_rng(1); n = 400; p = {'side': ['cb'] * n, 'distance_mm': rng.uniform(3, 19, n),"
         " 'push_angle_deg': rng.uniform(1, 90, n)}",
-        "wm.fit(cone, p, ['tip_radius_um', 'parabola_per_mm', 'base_radius_um', 'length_mm', 'pole_radius_mm', 'friction'])",
+        "wm.fit(cone, p, ['tip_radius_um', 'parabola_per_mm', 'base_radius_um', 'length_mm', 'pole_radius_mm'])",
     ),
     "design": ("", "[wm.design(cone, 'taper', distance_mm=15.0, side='cb', max_force_un=5) for _ in range(99)]"),
     "scene of traced points": (
