@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use whiskmap::render::{DISTANCE, PUSH_ANGLE, axis_title};
 
 /// Hash of what the page is made of, but for the library: FNV-1a of 64 bits over names and contents, as in `crates/web/assemble.py`.
 fn sources(root: &Path) -> String {
@@ -66,4 +67,34 @@ fn the_page_stays_small() {
     });
     let lines: usize = lines.sum();
     assert!(lines <= 2000, "{lines} lines");
+}
+
+/// Quantities have the words with which the program names their axes, with a capital.
+#[test]
+fn quantities_of_the_page_are_named_as_by_the_program() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/web/page");
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let words = |title: &str| {
+        let (first, rest) = title.split(" (").next().unwrap().split_at(1);
+        first.to_uppercase() + rest
+    };
+    let text = read("text.js");
+    let (_, list) = text.split_once("export const CHANNELS = {").unwrap();
+    let (list, _) = list.split_once("};").unwrap();
+    let entries = list.trim().lines();
+    let entries = entries.map(|line| {
+        line.trim()
+            .trim_end_matches("',")
+            .split_once(": '")
+            .unwrap()
+    });
+    let entries: Vec<_> = entries.collect();
+    assert!(entries.len() > 10, "{entries:?}");
+    for (name, title) in entries {
+        assert_eq!(title, words(&axis_title(name)), "{name}");
+    }
+    let drawn = ["text.js", "charts.js", "map.js"].map(read).concat();
+    for title in [PUSH_ANGLE, DISTANCE] {
+        assert!(drawn.contains(&words(title)), "{title}");
+    }
 }

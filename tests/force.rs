@@ -84,14 +84,14 @@ fn forces_of_states_come_back() {
         for &push in pushes {
             for part in [0.0, 0.05, 0.3] {
                 let (frame, state) = frame(&scene, distance, push, part);
-                let wanted = state.side.sign() * state.force_un;
+                let wanted = state.force_un;
                 for method in [ForceMethod::Lever, ForceMethod::Model] {
                     let found = force(&scene, &frame, method);
                     let context = format!("{name} {push} {part} {method:?} {found:?} {wanted}");
                     let own = found.force_un.unwrap_or_else(|| panic!("{context}"));
                     assert!((own / wanted - 1.0).abs() < 1e-9, "{context}");
                     // The moment and the force at the base change their signs along some pushes.
-                    let force = wanted.abs();
+                    let force = wanted;
                     for (own, wanted, size) in [
                         (
                             found.base_moment_nnm,
@@ -222,7 +222,7 @@ fn states_beside_the_largest_curvature_come_back() {
             let push = 0.01 * f64::from(i) * branch.stable_end_deg();
             let (frame, state) = frame_of(&branch, push, true, part).unwrap();
             let found = force(&scene, &frame, ForceMethod::Model);
-            let wanted = state.side.sign() * state.force_un;
+            let wanted = state.force_un;
             let context = format!("{name} {side:?} {distance} {push} {part}: {found:?} {wanted}");
             let own = found.force_un.unwrap_or_else(|| panic!("{context}"));
             // Measured: 7.3e-11.

@@ -4,8 +4,8 @@ use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Branch, DetachmentKind, curve};
 use whiskmap::whisk::{
-    AngleCourse, CourseError, Undecided, Whisk, WhiskError, WhiskEvent, WhiskEventKind,
-    WhiskRegime, whisk,
+    AngleCourse, CourseError, CourseStart, Undecided, Whisk, WhiskError, WhiskEvent,
+    WhiskEventKind, WhiskOptions, WhiskRegime, whisk, whisk_with,
 };
 
 const DISTANCE: f64 = 15.66;
@@ -233,4 +233,57 @@ fn the_ends_of_the_ranges_of_a_sine_are_accepted() {
         sine(0.51, 10.0),
         Err(CourseError::Frequency { .. })
     ));
+}
+
+/// A course that is cut in the middle of a touch has the states of the whole course if it begins in contact. Without a start, a free
+/// whisker is assumed, and a warning says so.
+#[test]
+fn a_cut_course_begins_in_contact() {
+    for friction in [0.0, 0.3] {
+        let scene = scene("cone").with(Parameter::Friction, friction).unwrap();
+        for sign in [1.0, -1.0] {
+            let angles: Vec<f64> = (0..=40).map(|i| sign * f64::from(i) * 0.5).collect();
+            let before = [-sign, 0.0].map(|deg| if sign < 0.0 { 5.0 + deg } else { deg });
+            let whole = through(&scene, DISTANCE, &[&before[..], &angles].concat()).unwrap();
+            assert!(
+                whole.warnings().is_empty() == (sign > 0.0),
+                "{:?}",
+                whole.warnings()
+            );
+            let cut = &angles[20..];
+            let times = (0..cut.len()).map(|i| (22 + i) as f64).collect();
+            let course = AngleCourse::new(times, cut.to_vec()).unwrap();
+            let of = |start| {
+                let mut options = WhiskOptions::default();
+                options.start = start;
+                whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options).unwrap()
+            };
+            let held = of(Some(CourseStart::Contact));
+            assert_eq!(held.samples[..], whole.samples[22..], "{friction} {sign}");
+            assert_eq!(held.events[..], whole.events[1..], "{friction} {sign}");
+            assert!(held.warnings().is_empty());
+            let free = of(Some(CourseStart::Free));
+            assert_eq!(free.samples[0].regime, WhiskRegime::Free);
+            let assumed = of(None);
+            assert_eq!(assumed.samples, free.samples);
+            let is_beyond = assumed
+                .warnings()
+                .iter()
+                .any(|own| own.contains("beyond first touch"));
+            assert_eq!(is_beyond, sign > 0.0);
+        }
+    }
+}
+
+/// Beyond the ends of both pushes, no course can begin in contact.
+#[test]
+fn a_course_begins_in_contact_only_where_a_side_holds_the_whisker() {
+    let scene = scene("cone");
+    let course = AngleCourse::new(vec![0.0, 1.0], vec![20.0, 0.0]).unwrap();
+    let mut options = WhiskOptions::default();
+    options.start = Some(CourseStart::Contact);
+    let found = whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options);
+    let why = found.unwrap_err().to_string();
+    let wanted = "cannot begin in contact: the first angle is 20 deg; pushes on CB end at 15.609";
+    assert!(why.starts_with(wanted), "{why}");
 }

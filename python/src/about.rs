@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use whiskmap::input::Quantity;
 use whiskmap::numerics::ArithmeticClass;
-use whiskmap::render::{Ink, regime_fill};
+use whiskmap::render::{self, Ink, regime_fill};
 use whiskmap::scene::Parameter;
 use whiskmap::sensitivity::Variable;
 use whiskmap::{Channels, Regime, store};
@@ -92,6 +92,15 @@ pub fn regimes() -> Vec<(u32, &'static str, String, String)> {
         (own.code(), own.name(), ground, stripes)
     })
     .collect()
+}
+
+/// Returns the title of the axis that shows a variable, with its unit; of detachments, if `is_end` is true.
+#[pyfunction]
+pub fn axis_title(name: &str, is_end: bool) -> String {
+    match is_end {
+        true => render::end_title(name),
+        false => render::axis_title(name),
+    }
 }
 
 /// Returns the colours of lines by what they show; the series are `0` to `6`.

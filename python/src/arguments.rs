@@ -5,14 +5,24 @@ use pyo3::prelude::*;
 use whiskmap::input::did_you_mean;
 use whiskmap::rod::Side;
 use whiskmap::scene::Parameter;
+use whiskmap::whisk::CourseStart;
 use whiskmap::{Channels, MapEngine, Precision};
 
-/// Returns the side with this name.
+/// Returns the side with this name, in capitals or not.
 pub fn side(name: &str) -> PyResult<Side> {
-    match name {
+    match &*name.to_lowercase() {
         "cb" => Ok(Side::Cb),
         "cf" => Ok(Side::Cf),
         _ => Err(refused("side", name, "must be 'cb' or 'cf'")),
+    }
+}
+
+/// Returns the start of a course with this name.
+pub fn start(name: &str) -> PyResult<CourseStart> {
+    match name {
+        "free" => Ok(CourseStart::Free),
+        "contact" => Ok(CourseStart::Contact),
+        _ => Err(refused("start", name, "must be 'free' or 'contact'")),
     }
 }
 

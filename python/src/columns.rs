@@ -3,8 +3,10 @@
 use crate::about::units;
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::Value;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Columns that have texts; an empty text stands for none.
 const TEXTS: [&str; 11] = [
@@ -21,6 +23,9 @@ const TEXTS: [&str; 11] = [
     "end",
 ];
 
+/// Number of rows that are converted between two looks at the flag that cancels.
+const ROWS_AT_ONCE: usize = 1 << 13;
+
 /// Name, values, unit and meaning of a column.
 pub type Column<'py> = (
     &'static str,
@@ -29,43 +34,72 @@ pub type Column<'py> = (
     String,
 );
 
-/// Returns the columns of a table: numbers as arrays of `f64`, NaN where there is none, truths as arrays of `bool`, and lists of texts.
-pub fn columns<'py, Row: Serialize>(
-    py: Python<'py>,
-    rows: &[Row],
-    about: &[(&'static str, &'static str)],
-) -> PyResult<Vec<Column<'py>>> {
-    let rows: Vec<Value> = rows
-        .iter()
-        .map(|row| serde_json::to_value(row).unwrap_or_default())
-        .collect();
-    let column = |&(name, meaning): &(&'static str, &'static str)| {
-        let cells = rows.iter().map(|row| &row[name]);
-        let meaning = meaning.trim().to_owned();
-        if TEXTS.contains(&name) {
-            let texts: Vec<&str> = cells
-                .map(|cell| cell.as_str().unwrap_or_default())
-                .collect();
-            return Ok((name, texts.into_pyobject(py)?.into_any(), None, meaning));
+/// Values of a column, `[row]`.
+enum Values {
+    Texts(Vec<String>),
+    Truths(Vec<bool>),
+    Numbers(Vec<f64>),
+}
+
+/// Table of the library as columns, without objects of Python. It is made on the threads of a computation.
+pub struct Table {
+    columns: Vec<(&'static str, Values, &'static str)>,
+}
+
+impl Table {
+    /// Creates the columns of `rows`: numbers are NaN where there is none. After a cancellation, rows are missing.
+    pub fn new<Row: Serialize + Sync>(
+        rows: &[Row],
+        about: &[(&'static str, &'static str)],
+        cancel: &AtomicBool,
+    ) -> Self {
+        let value = |row: &Row| serde_json::to_value(row).unwrap_or_default();
+        let first = rows.first().map(value).unwrap_or_default();
+        let empty = |&(name, meaning): &(&'static str, &'static str)| {
+            let values = match &first[name] {
+                _ if TEXTS.contains(&name) => Values::Texts(Vec::new()),
+                Value::Bool(_) => Values::Truths(Vec::new()),
+                _ => Values::Numbers(Vec::with_capacity(rows.len())),
+            };
+            (name, values, meaning.trim())
+        };
+        let mut columns: Vec<_> = about.iter().map(empty).collect();
+        for rows in rows.chunks(ROWS_AT_ONCE) {
+            if cancel.load(Ordering::Relaxed) {
+                break;
+            }
+            let rows: Vec<Value> = rows.par_iter().map(value).collect();
+            columns.par_iter_mut().for_each(|(name, values, _)| {
+                let cells = rows.iter().map(|row| &row[*name]);
+                match values {
+                    Values::Texts(own) => {
+                        own.extend(cells.map(|cell| cell.as_str().unwrap_or_default().to_owned()));
+                    }
+                    Values::Truths(own) => {
+                        own.extend(cells.map(|cell| cell.as_bool().unwrap_or_default()));
+                    }
+                    Values::Numbers(own) => {
+                        own.extend(cells.map(|cell| cell.as_f64().unwrap_or(f64::NAN)));
+                    }
+                }
+            });
         }
-        if rows.first().is_some_and(|row| row[name].is_boolean()) {
-            let truths = cells.map(|cell| cell.as_bool().unwrap_or_default());
-            return Ok((
-                name,
-                PyArray1::from_iter(py, truths).into_any(),
-                None,
-                meaning,
-            ));
-        }
-        let numbers = cells
-            .map(|cell| cell.as_f64().unwrap_or(f64::NAN))
-            .collect();
-        Ok((
-            name,
-            PyArray1::<f64>::from_vec(py, numbers).into_any(),
-            Some(units(name)),
-            meaning,
-        ))
-    };
-    about.iter().map(column).collect()
+        Self { columns }
+    }
+
+    /// Returns the columns as arrays of `f64` or `bool`, and lists of texts.
+    pub fn into_columns(self, py: Python<'_>) -> PyResult<Vec<Column<'_>>> {
+        let column = |(name, values, meaning): (&'static str, Values, &'static str)| {
+            let (values, unit) = match values {
+                Values::Texts(own) => (own.into_pyobject(py)?.into_any(), None),
+                Values::Truths(own) => (PyArray1::from_vec(py, own).into_any(), None),
+                Values::Numbers(own) => {
+                    let unit = Some(units(name));
+                    (PyArray1::from_vec(py, own).into_any(), unit)
+                }
+            };
+            Ok((name, values, unit, meaning.to_owned()))
+        };
+        self.columns.into_iter().map(column).collect()
+    }
 }

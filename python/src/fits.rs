@@ -1,7 +1,7 @@
 //! Fits to measured detachments, and designs.
 
 use crate::arguments;
-use crate::columns::{Column, columns};
+use crate::columns::{Column, Table};
 use crate::errors::of_scene;
 use crate::scene::CheckedScene;
 use crate::threads;
@@ -9,8 +9,9 @@ use crate::traces::single;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use whiskmap::design::{DesignError, DesignGoal, DesignTarget};
-use whiskmap::fit::FitError;
+use std::sync::atomic::AtomicBool;
+use whiskmap::design::{DesignError, DesignGoal, DesignTarget, design_until};
+use whiskmap::fit::{FitError, fit_until};
 use whiskmap::measured::{ComparedPoint, MeasuredPoints};
 use whiskmap::rod::Side;
 use whiskmap::scene::Parameter;
@@ -29,30 +30,40 @@ pub struct FitResult<'py> {
     is_explained: bool,
     not_a_fit: Option<String>,
     points: Vec<Column<'py>>,
+    warnings: Vec<String>,
 }
 
-/// Fits the `free` parameters of the scene's only whisker to the CSV table `points`.
+/// Fits the `free` parameters of the scene's only whisker to the CSV table `points`, which messages call `origin`.
 #[pyfunction]
 pub fn fit<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     points: &str,
+    origin: &str,
     free: Vec<String>,
 ) -> PyResult<FitResult<'py>> {
     single(&scene.0)?;
     let refused = |why: String| PyValueError::new_err(why);
-    let points = MeasuredPoints::parse(points, "points").map_err(|why| refused(why.to_string()))?;
+    let points = MeasuredPoints::parse(points, origin).map_err(|why| refused(why.to_string()))?;
     let free: PyResult<Vec<Parameter>> = free
         .iter()
         .map(|name| arguments::parameter("free", name))
         .collect();
     let free = free?;
-    let job = |_: &Arc<_>| whiskmap::fit(&scene.0, &points, &free);
-    let fit = threads::run(py, None, |_| Ok(()), job)?.map_err(|why| match why {
+    let job = |cancel: &Arc<AtomicBool>| {
+        let fit = fit_until(&scene.0, &points, &free, cancel)?;
+        let table = Table::new(&fit.comparison.rows, ComparedPoint::COLUMNS, cancel);
+        Ok((fit, table))
+    };
+    let found = threads::run(py, None, |_| Ok(()), job)?;
+    let (fit, table) = found.map_err(|why| match why {
         FitError::Scene(why) => of_scene(py, &why),
         FitError::NotConverged(_) => PyRuntimeError::new_err(why.to_string()),
         _ => refused(why.to_string()),
     })?;
+    let noted = [points.crossed(), fit.moved_start(&scene.0, &points)];
+    let warnings = noted.into_iter().flatten().chain(fit.warnings(&points));
+    let warnings = warnings.collect();
     let estimates = fit.estimates.iter();
     let estimates = estimates.map(|own| {
         (
@@ -70,7 +81,8 @@ pub fn fit<'py>(
         chi_square: fit.chi_square,
         degrees_of_freedom: fit.degrees_of_freedom,
         not_a_fit: fit.not_a_fit.map(|why| why.to_string()),
-        points: columns(py, &fit.comparison.rows, ComparedPoint::COLUMNS)?,
+        points: table.into_columns(py)?,
+        warnings,
         scene: CheckedScene(fit.scene),
     })
 }
@@ -98,7 +110,7 @@ pub fn design(
         goal,
         value,
     };
-    let job = |_: &Arc<_>| whiskmap::design::design(&scene.0, parameter, &target);
+    let job = |cancel: &Arc<AtomicBool>| design_until(&scene.0, parameter, &target, cancel);
     let found = threads::run(py, None, |_| Ok(()), job)?.map_err(|why| match why {
         DesignError::Distance(why) => of_scene(py, &why),
         _ => PyValueError::new_err(why.to_string()),

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Grid, Scene};
-use whiskmap::{Channel, Channels, Error, Options, Panel, Summary};
+use whiskmap::{Channel, Channels, Error, MapEngine, Options, Panel, Summary};
 
 /// Values of one channel of all whiskers, in the order of the axes: `[sweep axes.., distance, push angle]`.
 enum ChannelArray {
@@ -22,8 +22,13 @@ enum ChannelArray {
 /// Arrays of channels by name.
 type ChannelArrays = Vec<(&'static str, ChannelArray)>;
 
-/// Names and arrays of channels, the name of the engine, and its hardware.
-type MapArrays<'py> = (Vec<(&'static str, Bound<'py, PyAny>)>, String, String);
+/// Names and arrays of channels, the name of the engine, its hardware, and warnings.
+type MapArrays<'py> = (
+    Vec<(&'static str, Bound<'py, PyAny>)>,
+    String,
+    String,
+    Vec<String>,
+);
 
 /// Computes the map of `scene`. `progress` is called with the numbers of finished cells and of all cells.
 #[pyfunction]
@@ -50,7 +55,9 @@ pub fn map<'py>(
     options.on_progress = Some(Arc::new(move |finished, _| {
         cells.store(finished, Ordering::Relaxed)
     }));
-    let all = Plan::in_memory(scene).map_err(|why| of_plan(&why))?.cells;
+    let plan = Plan::in_memory(scene).map_err(|why| of_plan(&why))?;
+    let is_unexpanded = options.engine == MapEngine::Spectral && plan.method.effects.profile;
+    let all = plan.cells;
     let report = |finished: usize| match &progress {
         Some(progress) => progress.call1((finished, all)).map(drop),
         None => Ok(()),
@@ -66,6 +73,7 @@ pub fn map<'py>(
     )?
     .map_err(|why| of_front(&why))?;
     report(all)?;
+    let warnings = warnings(is_unexpanded, &summary);
     let arrays = arrays.into_iter().map(|(name, values)| {
         let array = match values {
             ChannelArray::Codes(codes) => PyArray1::from_vec(py, codes).into_any(),
@@ -78,7 +86,23 @@ pub fn map<'py>(
         arrays.collect(),
         summary.engine.engine,
         summary.engine.adapter,
+        warnings,
     ))
+}
+
+/// Returns the warnings about a map. `is_unexpanded` is true for the spectral engine with measured radii.
+fn warnings(is_unexpanded: bool, summary: &Summary) -> Vec<String> {
+    let spectral = "engine = 'spectral': a whisker with measured radii has no expansions; the CPU engine solves every cell";
+    let failure = summary.engine_failure.as_ref();
+    let failure = failure.map(|why| format!("{why}; the CPU solved the remaining cells"));
+    let (unresolved, all) = (summary.unresolved(), summary.cells());
+    let unresolved = (unresolved > 0)
+        .then(|| format!("{unresolved} of {all} cells are unresolved: see the variable `status`"));
+    let spectral = is_unexpanded.then(|| spectral.to_owned());
+    [spectral, failure, unresolved]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Computes the panels of all whiskers, and gathers the channels.

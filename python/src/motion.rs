@@ -1,6 +1,7 @@
 //! Courses of whiskers in time, and forces from the change of curvature, as columns.
 
-use crate::columns::{Column, columns};
+use crate::arguments;
+use crate::columns::{Column, Table};
 use crate::errors::of_state;
 use crate::scene::CheckedScene;
 use crate::threads;
@@ -9,17 +10,28 @@ use numpy::PyReadonlyArray1;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use whiskmap::force::{CurvatureFrames, ForceMethod, FrameForce, forces};
+use std::sync::atomic::AtomicBool;
+use whiskmap::force::{
+    CurvatureFrames, ForceMethod, FrameForce, forces_until, warning as force_warning,
+};
 use whiskmap::scene::Scene;
 use whiskmap::texture::{
-    AsperityStay, TextureError, TextureEvent, TextureSample, TipBin, texture as texture_of,
+    AsperityStay, TextureError, TextureEvent, TextureSample, TipBin, texture_until,
 };
-use whiskmap::whisk::{AngleCourse, WhiskError, WhiskEvent, WhiskSample, whisk as whisk_of};
+use whiskmap::whisk::{AngleCourse, WhiskError, WhiskEvent, WhiskOptions, WhiskSample, whisk_with};
 
-/// Columns of samples and events, lost and dissipated energy in nJ, and angle of the first touch on CF in degrees.
-type WhiskColumns<'py> = (Vec<Column<'py>>, Vec<Column<'py>>, f64, f64, f64);
+/// Columns of samples and events, lost and dissipated energy in nJ, angle of the first touch on CF in degrees, and warnings.
+type WhiskColumns<'py> = (
+    Vec<Column<'py>>,
+    Vec<Column<'py>>,
+    f64,
+    f64,
+    f64,
+    Vec<String>,
+);
 
-/// Computes the course of the scene's only whisker in front of one pole, with the angles of the base at these times.
+/// Computes the course of the scene's only whisker in front of one pole, with the angles of the base at these times. `start` names the state
+/// in which it begins.
 #[pyfunction]
 pub fn whisk<'py>(
     py: Python<'py>,
@@ -27,25 +39,36 @@ pub fn whisk<'py>(
     distance_mm: f64,
     time_s: PyReadonlyArray1<'py, f64>,
     angle_deg: PyReadonlyArray1<'py, f64>,
+    start: Option<&str>,
 ) -> PyResult<WhiskColumns<'py>> {
     let scene = at_pole(py, scene, distance_mm)?;
     let course = course(&time_s, &angle_deg)?;
-    let job = |_: &Arc<_>| whisk_of(&scene.whisker, &scene.pole, distance_mm, &course);
-    let found = threads::run(py, None, |_| Ok(()), job)?.map_err(|why| match why {
+    let start = start.map(arguments::start).transpose()?;
+    let job = |cancel: &Arc<AtomicBool>| {
+        let mut options = WhiskOptions::default();
+        (options.start, options.cancel) = (start, Some(Arc::clone(cancel)));
+        let found = whisk_with(&scene.whisker, &scene.pole, distance_mm, &course, &options)?;
+        let samples = Table::new(&found.samples, WhiskSample::COLUMNS, cancel);
+        let events = Table::new(&found.events, WhiskEvent::COLUMNS, cancel);
+        Ok((found, samples, events))
+    };
+    let found = threads::run(py, None, |_| Ok(()), job)?;
+    let (found, samples, events) = found.map_err(|why: WhiskError| match why {
         WhiskError::Pole(why) => of_state(why),
         WhiskError::Unresolved(_) => PyRuntimeError::new_err(why.to_string()),
         why => refused(&why),
     })?;
     Ok((
-        columns(py, &found.samples, WhiskSample::COLUMNS)?,
-        columns(py, &found.events, WhiskEvent::COLUMNS)?,
+        samples.into_columns(py)?,
+        events.into_columns(py)?,
         found.lost_nj(),
         found.dissipated_nj(),
         found.cf_touch_deg,
+        found.warnings(),
     ))
 }
 
-/// Columns of samples, events, stays and of the histogram of the tip, lost energy in nJ, and number of asperities within reach.
+/// Columns of samples, events, stays and of the histogram of the tip, lost energy in nJ, number of asperities within reach, and a warning.
 type TextureColumns<'py> = (
     Vec<Column<'py>>,
     Vec<Column<'py>>,
@@ -53,6 +76,7 @@ type TextureColumns<'py> = (
     Vec<Column<'py>>,
     f64,
     usize,
+    Option<String>,
 );
 
 /// Computes the course of the scene's only whisker behind its surface, with the angles of the base at these times.
@@ -72,29 +96,45 @@ pub fn texture<'py>(
     })?;
     without_friction(scene, "asperities have no friction in this model")?;
     let course = course(&time_s, &angle_deg)?;
-    let job = |_: &Arc<_>| texture_of(&scene.whisker, &surface, &course);
-    let found = threads::run(py, None, |_| Ok(()), job)?.map_err(|why| match why {
-        TextureError::Unresolved { .. } => PyRuntimeError::new_err(why.to_string()),
-        why => refused(&why),
-    })?;
+    let job = |cancel: &Arc<AtomicBool>| {
+        let found = texture_until(&scene.whisker, &surface, &course, cancel)?;
+        let tables = [
+            Table::new(&found.samples, TextureSample::COLUMNS, cancel),
+            Table::new(&found.events, TextureEvent::COLUMNS, cancel),
+            Table::new(&found.stays(), AsperityStay::COLUMNS, cancel),
+            Table::new(&found.tip_histogram(), TipBin::COLUMNS, cancel),
+        ];
+        Ok((found, tables))
+    };
+    let found = threads::run(py, None, |_| Ok(()), job)?;
+    let (found, [samples, events, stays, histogram]) =
+        found.map_err(|why: TextureError| match why {
+            TextureError::Unresolved { .. } => PyRuntimeError::new_err(why.to_string()),
+            why => refused(&why),
+        })?;
     Ok((
-        columns(py, &found.samples, TextureSample::COLUMNS)?,
-        columns(py, &found.events, TextureEvent::COLUMNS)?,
-        columns(py, &found.stays(), AsperityStay::COLUMNS)?,
-        columns(py, &found.tip_histogram(), TipBin::COLUMNS)?,
+        samples.into_columns(py)?,
+        events.into_columns(py)?,
+        stays.into_columns(py)?,
+        histogram.into_columns(py)?,
         found.lost_nj(),
         found.reached,
+        found.warning(),
     ))
 }
 
-/// Computes the forces in the frames of the CSV table `frames`.
+/// Columns of forces, and a warning.
+type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>);
+
+/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`.
 #[pyfunction]
 pub fn force<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     frames: &str,
+    origin: &str,
     model: bool,
-) -> PyResult<Vec<Column<'py>>> {
+) -> PyResult<ForceColumns<'py>> {
     let scene = &scene.0;
     single(scene)?;
     without_friction(scene, "the force is taken as normal to the whisker")?;
@@ -103,11 +143,15 @@ pub fn force<'py>(
         false => ForceMethod::Lever,
     };
     let whisker = scene.first_whisker().whisker;
-    let read = CurvatureFrames::parse(frames, "frames", whisker.length_mm, method);
+    let read = CurvatureFrames::parse(frames, origin, whisker.length_mm, method);
     let read = read.map_err(|why| refused(&why))?;
-    let job = |_: &Arc<_>| forces(&whisker, &scene.pole, &read.frames, method);
-    let found = threads::run(py, None, |_| Ok(()), job)?;
-    columns(py, &found, FrameForce::COLUMNS)
+    let job = |cancel: &Arc<AtomicBool>| {
+        let found = forces_until(&whisker, &scene.pole, &read.frames, method, cancel);
+        let table = Table::new(&found, FrameForce::COLUMNS, cancel);
+        (table, force_warning(&found))
+    };
+    let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;
+    Ok((table.into_columns(py)?, warning))
 }
 
 fn course(

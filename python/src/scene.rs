@@ -145,6 +145,12 @@ impl CheckedScene {
         self.0.warnings()
     }
 
+    /// Returns degree, rms distance in mm and whether the degree was chosen, of a fit to traced points.
+    fn rest_fit(&self) -> Option<(usize, f64, bool)> {
+        let traced = self.0.traced()?;
+        Some((traced.degree, traced.rms_mm, traced.is_degree_chosen))
+    }
+
     /// Scenes are equal if all their values are, whatever their texts.
     fn __eq__(&self, other: &Self) -> bool {
         let (own, other) = (&*self.0, &*other.0);

@@ -64,6 +64,16 @@ impl StoredMap {
         std::iter::once(Ok(title)).chain(others).collect()
     }
 
+    /// Returns a warning about a map of another version; `None` about one of this version.
+    fn warning(&self) -> PyResult<Option<String>> {
+        let version = self.map.stored().foreign_version();
+        let version = version.map_err(|why| of_store(&why))?;
+        Ok(version.map(|version| {
+            let (path, own) = (self.path.display(), env!("CARGO_PKG_VERSION"));
+            format!("{path} was written by whiskmap {version}, not by {own}; its channels may have another meaning")
+        }))
+    }
+
     /// Reads a channel of some whiskers, `[whisker, distance, push angle]` in one dimension. The last sweep axis varies fastest.
     fn read<'py>(
         &self,
@@ -72,21 +82,17 @@ impl StoredMap {
         whiskers: Vec<usize>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (mut codes, mut quantities) = (Vec::new(), Vec::new());
-        let read = |whisker: &usize| {
-            let index = self.order.get(*whisker);
-            let index = index
-                .ok_or_else(|| PyIndexError::new_err(format!("there is no whisker {whisker}")))?;
-            match self
-                .map
-                .read_panel(channel, *index)
-                .map_err(|why| of_store(&why))?
-            {
+        for whisker in whiskers {
+            let index = self.order.get(whisker);
+            let none = || PyIndexError::new_err(format!("there is no whisker {whisker}"));
+            let index = *index.ok_or_else(none)?;
+            let panel = py.detach(|| self.map.read_panel(channel, index));
+            match panel.map_err(|why| of_store(&why))? {
                 ChannelValues::U32(own) => codes.extend(own),
                 ChannelValues::F32(own) => quantities.extend(own),
             }
-            Ok::<(), PyErr>(())
-        };
-        py.detach(|| whiskers.iter().try_for_each(read))?;
+            py.check_signals()?;
+        }
         Ok(match (channel, codes.is_empty()) {
             (_, true) => PyArray1::from_vec(py, quantities).into_any(),
             ("newton_steps", false) => PyArray1::from_vec(py, codes).into_any(),

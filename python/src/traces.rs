@@ -1,13 +1,14 @@
 //! Detachment curves, branches and shapes as columns.
 
 use crate::arguments;
-use crate::columns::{Column, columns};
+use crate::columns::{Column, Table};
 use crate::errors::{of_front, of_scene, of_state};
 use crate::scene::CheckedScene;
 use crate::threads::{self, ThreadCount};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::{BranchPoint, Detachment, ShapePoint, WhiskerShape};
@@ -26,13 +27,14 @@ pub fn curve<'py>(
 ) -> PyResult<Vec<Column<'py>>> {
     let mut options = Options::default();
     options.tolerance_deg = arguments::tolerance(tolerance_deg)?;
-    let job = |cancel: &Arc<_>| {
+    let job = |cancel: &Arc<AtomicBool>| {
         options.cancel = Some(Arc::clone(cancel));
-        whiskmap::curve(&scene.0, options)
+        let ends = whiskmap::curve(&scene.0, options)?;
+        let ends: Vec<Detachment> = ends.into_iter().map(|(_, end)| end).collect();
+        Ok(Table::new(&ends, Detachment::COLUMNS, cancel))
     };
-    let ends = threads::run(py, threads, |_| Ok(()), job)?.map_err(|why| of_front(&why))?;
-    let ends: Vec<Detachment> = ends.into_iter().map(|(_, end)| end).collect();
-    columns(py, &ends, Detachment::COLUMNS)
+    let table = threads::run(py, threads, |_| Ok(()), job)?;
+    table.map_err(|why| of_front(&why))?.into_columns(py)
 }
 
 /// Computes `points` points of the branch of the scene's only whisker at one pole.
@@ -47,9 +49,12 @@ pub fn branch<'py>(
     let side = arguments::side(side)?;
     check_points(points)?;
     let scene = at_pole(py, scene, distance_mm)?;
-    let job = |_: &Arc<_>| branch_of(&scene, distance_mm, side)?.points(points);
-    let points = threads::run(py, None, |_| Ok(()), job)?;
-    columns(py, &points.map_err(of_state)?, BranchPoint::COLUMNS)
+    let job = |cancel: &Arc<AtomicBool>| {
+        let points = branch_of(&scene, distance_mm, side)?.points_until(points, cancel)?;
+        Ok(Table::new(&points, BranchPoint::COLUMNS, cancel))
+    };
+    let table = threads::run(py, None, |_| Ok(()), job)?;
+    table.map_err(of_state)?.into_columns(py)
 }
 
 /// Columns of the points of a shape, centre and radius of the pole in mm, residual, and the columns of the state, of one row.
@@ -71,18 +76,22 @@ pub fn shape<'py>(
         return Err(PyValueError::new_err(must));
     }
     let scene = at_pole(py, scene, distance_mm)?;
-    let job = |_: &Arc<_>| {
+    let job = |cancel: &Arc<AtomicBool>| {
         let branch = branch_of(&scene, distance_mm, Side::of_push(push_angle_deg))?;
         let state = branch.state(push_angle_deg.to_radians(), stable)?;
-        Ok(WhiskerShape::new(&branch, &state, points))
+        let shape = WhiskerShape::new(&branch, &state, points);
+        let points = Table::new(&shape.points, ShapePoint::COLUMNS, cancel);
+        let state = Table::new(&[shape.state], BranchPoint::COLUMNS, cancel);
+        Ok((shape, points, state))
     };
-    let shape = threads::run(py, None, |_| Ok(()), job)?.map_err(of_state)?;
+    let found = threads::run(py, None, |_| Ok(()), job)?;
+    let (shape, points, state) = found.map_err(of_state)?;
     Ok((
-        columns(py, &shape.points, ShapePoint::COLUMNS)?,
+        points.into_columns(py)?,
         shape.pole_mm,
         shape.pole_radius_mm,
         shape.residual,
-        columns(py, &[shape.state], BranchPoint::COLUMNS)?,
+        state.into_columns(py)?,
     ))
 }
 

@@ -77,3 +77,11 @@ def test_least_squares_of_scipy_finds_the_whisker(cone):
     fit = wm.fit(cone, points, ["tip_radius_um", "parabola_per_mm"])
     np.testing.assert_allclose(found.x, fit.estimates.value, rtol=1e-4)
     assert 2 * found.cost == pytest.approx(fit.chi_square, rel=1e-6)
+
+
+def test_sides_may_be_in_capitals(cone):
+    wanted = wm.detachment(cone, distance_mm=[12.0, 15.0], side=["cb", "cf"])
+    for side in (["CB", "Cf"], np.array(["CB", "CF"]), np.array(["cB", "cf"], dtype=object)):
+        np.testing.assert_array_equal(wm.detachment(cone, distance_mm=[12.0, 15.0], side=side).push_angle_deg, wanted.push_angle_deg)
+    both = wm.detachment(cone, distance_mm=[12.0, 15.0], side="BOTH")
+    np.testing.assert_array_equal(both.push_angle_deg, wm.detachment(cone, distance_mm=[12.0, 15.0]).push_angle_deg)

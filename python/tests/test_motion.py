@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import warnings
 
 import numpy as np
 import pandas as pd
@@ -95,7 +96,7 @@ def test_surfaces_stay_in_scenes():
 
 def test_what_is_refused_is_named(cone):
     time, angle = sine(20, 10, 0.1)
-    with pytest.raises(ValueError, match="times must grow"):
+    with pytest.raises(ValueError, match=r"time_s\[1\] = 0.099: must be more than the time before it, 0.1 s"):
         wm.whisk(cone, 15.66, time[::-1], angle)
     with pytest.raises(ValueError, match="begins in contact"):
         wm.whisk(cone, 15.66, time, angle + 1)
@@ -108,7 +109,7 @@ def test_what_is_refused_is_named(cone):
     with pytest.raises(ValueError, match="has no surface"):
         wm.texture(cone, time, angle)
     rough = wm.Scene.read(ROOT / "scenes/texture_cone.toml")
-    with pytest.raises(ValueError, match="must be between -90 and 90"):
+    with pytest.raises(ValueError, match=r"angle_deg\[\d+\] = 9\d.*: must be between -90 and 90"):
         wm.texture(rough, time, 5 * angle)
     for call in (lambda scene: wm.texture(scene, time, angle), lambda scene: wm.force(scene, FRAMES)):
         with pytest.raises(ValueError, match="friction = 0.1: must be 0"):
@@ -117,3 +118,80 @@ def test_what_is_refused_is_named(cone):
         wm.force(cone, {"time_s": [0.0]})
     with pytest.raises(TypeError, match="frames = 3"):
         wm.force(cone, 3)
+
+
+def cut(scene: wm.Scene, first: int) -> tuple[wm.Whisk, np.ndarray, np.ndarray]:
+    """A whole course, and the times and angles of its samples from one of them on."""
+    time, angle = sine(14, 5, 0.2)
+    return wm.whisk(scene, 15.66, time, angle), time[first:], angle[first:]
+
+
+@pytest.mark.parametrize("friction", [0, 0.3])
+def test_a_course_that_is_cut_in_a_touch_begins_in_contact(cone, friction):
+    scene = cone.replace(friction=friction)
+    whole, time, angle = cut(scene, 30)
+    assert angle[0] > 10 and whole.samples.regime[30] == "contact"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        held = wm.whisk(scene, 15.66, time, angle, start="contact")
+        free = wm.whisk(scene, 15.66, time, angle, start="free")
+    same(held.samples, whole.samples.isel(time_s=slice(30, None)).to_dataframe())
+    assert list(held.events.event.values) == list(whole.events.event.values[1:])
+    assert free.samples.regime[0] == "free" and free.samples.force_un[0] == 0
+    with pytest.warns(wm.SceneWarning, match=r"first angle is 11\.\d* deg, beyond first touch: the whisker is assumed to be free"):
+        assumed = wm.whisk(scene, 15.66, time, angle)
+    xr.testing.assert_identical(assumed.samples, free.samples)
+
+
+def test_a_start_in_contact_is_that_of_the_program(cone, tmp_path):
+    _, time, angle = cut(cone, 30)
+    angles = tmp_path / "angles.csv"
+    pd.DataFrame({"time_s": time, "angle_deg": angle}).to_csv(angles, index=False)
+    for start in ("contact", "free"):
+        expected = table("whisk", CONE, "--distance", 15.66, "--angles", angles, "--start", start)
+        same(wm.whisk(cone, 15.66, time, angle, start=start).samples, expected)
+
+
+def test_a_start_that_is_impossible_is_refused(cone):
+    with pytest.raises(ValueError, match="cannot begin in contact: the first angle is 20 deg; pushes on CB end at 15.609"):
+        wm.whisk(cone, 15.66, [0, 1], [20, 0], start="contact")
+    with pytest.raises(ValueError, match="choose the start `contact`"):
+        wm.whisk(cone, 15.66, [0, 1], [1, 0])
+    with pytest.raises(ValueError, match="start = 'touch': must be 'free' or 'contact'"):
+        wm.whisk(cone, 15.66, [0, 1], [0, 1], start="touch")
+
+
+@pytest.mark.parametrize("model", [False, True])
+def test_a_force_is_never_negative(cone, model):
+    """On CF too: the direction is that of the force on the base."""
+    state = wm.shape(cone, 15.66, -10.0, points=101)
+    contact = int(np.flatnonzero(state.part.values == "contact")[0])
+    turn = np.exp(1j * np.radians(-10.0))
+    place = [(complex(*point) * turn) for point in zip(state.x_mm.values, state.y_mm.values)]
+    frame = {
+        "time_s": [0.0],
+        "curvature_per_mm": [float(state.curvature_per_mm[5])],
+        "at_arc_length_mm": [float(state.arc_length_mm[5])],
+        "at_x_mm": [place[5].real],
+        "at_y_mm": [place[5].imag],
+        "contact_x_mm": [place[contact].real],
+        "contact_y_mm": [place[contact].imag],
+        "contact_angle_deg": [float(state.angle_deg[contact]) - 10.0],
+    }
+    found = wm.force(cone, frame, model=model)
+    assert float(found.force_un[0]) == pytest.approx(state.attrs["force_un"], rel=1e-8)
+    assert float(found.base_force_y_un[0]) == pytest.approx(state.attrs["base_force_y_un"], rel=1e-8)
+
+
+def test_a_refused_number_of_an_array_is_named(cone):
+    time, angle = sine(20, 10, 0.01)
+    broken = angle.copy()
+    broken[3] = np.nan
+    with pytest.raises(ValueError, match=r"angle_deg\[3\] = NaN: must be between -360 and 360"):
+        wm.whisk(cone, 15.66, time, broken)
+    frame = pd.read_csv(FRAMES, comment="#")
+    frame.loc[4, "at_arc_length_mm"] = 99
+    with pytest.raises(ValueError, match=r"^frames\[4\]: at_arc_length_mm = 99"):
+        wm.force(cone, frame)
+    with pytest.raises(TypeError, match=r"frames\['time_s'\]\[1\] = \(\): must be a number"):
+        wm.force(cone, {"time_s": np.array([0.0, ()], dtype=object)})

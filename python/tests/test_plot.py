@@ -1,9 +1,11 @@
-"""Plots on matplotlib axes: artists in the colours of the program."""
+"""Plots on matplotlib axes: artists in the colours of the program, with its titles."""
 
 from __future__ import annotations
 
 import matplotlib
 import numpy as np
+import pytest
+from conftest import ROOT, program
 from matplotlib.colors import to_hex
 
 import whiskmap as wm
@@ -33,3 +35,68 @@ def test_every_plot_returns_artists_of_its_axes(small, cone):
     assert all(own.axes is axis for own, axis in zip([mesh, curve[0], branch[0], whisker, bars[0]], axes))
     assert wm.plot.curve(wm.curve(cone).sel(side="cb"), linewidth=3)[0].get_linewidth() == 3
     plt.gcf().canvas.draw()
+
+
+def test_a_branch_of_both_sides_has_each_name_once(cone):
+    _, axes = plt.subplots()
+    artists = wm.plot.branch(wm.branch(cone, 15.66, "both"), ax=axes)
+    assert [line.get_linestyle() for line in artists] == ["-", "--", "-", "--", "None", "None"]
+    assert axes.get_legend_handles_labels()[1] == ["stable", "unstable", "slip-off"]
+
+
+def test_the_distance_grows_upward(small, cone):
+    for draw, ds in ((wm.plot.regimes, wm.map(small)), (wm.plot.curve, wm.curve(cone))):
+        _, axes = plt.subplots()
+        draw(ds, ax=axes)
+        low, high = axes.get_ylim()
+        assert low < high
+
+
+@pytest.mark.parametrize("size", [(3.3, 3.0), (6.4, 4.8), (12.0, 4.0)])
+def test_the_legend_does_not_hide_the_cells_of_narrow_axes(small, size):
+    figure, axes = plt.subplots(figsize=size)
+    ds = wm.map(small)
+    wm.plot.regimes(ds, ax=axes)
+    figure.canvas.draw()
+    [legend] = [own for own in axes.get_children() if isinstance(own, matplotlib.legend.Legend)]
+    box, inside = legend.get_window_extent(), axes.get_window_extent()
+    assert box.overlaps(inside) == (size[0] > 6)
+    # It lies in the figure, clear of the title of the axis.
+    assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.x1
+    title = axes.xaxis.label.get_window_extent()
+    assert box.y1 <= title.y0 or size[0] > 6
+    present = {name for code, name, *_ in _whiskmap.regimes() if code in ds.regime.values}
+    assert {own.get_text() for own in legend.get_texts()} == present
+
+
+def test_regimes_without_a_cell_have_no_entry(small):
+    figure, axes = plt.subplots()
+    wm.plot.regimes(wm.map(small).isel(distance_mm=slice(0, 2), push_angle_deg=slice(10, 14)), ax=axes)
+    assert [own.get_text() for own in axes.get_legend().get_texts()] == ["contact"]
+    assert len(figure.legends) == 0
+
+
+def test_titles_of_axes_are_those_of_the_program(small, cone, tmp_path):
+    path = ROOT / "scenes/cone.toml"
+    cases = {
+        "curve": (wm.plot.curve, wm.curve(small), {}, ("curve", path, "--csv", tmp_path / "curve.csv")),
+        "force": (wm.plot.curve, wm.curve(small), {"x": "force_un"}, None),
+        "branch": (wm.plot.branch, wm.branch(cone, 15.66), {}, ("branch", path, "--distance", 15.66, "--csv", tmp_path / "branch.csv")),
+    }
+    for column in ("force_un", "base_moment_nnm", "contact_angle_deg"):
+        arguments = ("branch", path, "--distance", 15.66, "--y", column, "--csv", tmp_path / f"{column}.csv")
+        cases[column] = (wm.plot.branch, wm.branch(cone, 15.66), {"y": column}, arguments)
+    for name, (draw, ds, options, arguments) in cases.items():
+        _, axes = plt.subplots()
+        draw(ds, ax=axes, **options)
+        if arguments is None:
+            assert axes.get_xlabel() == "contact force at detachment (\u00b5N)"
+            continue
+        picture = tmp_path / f"{name}.svg"
+        program(*arguments, "--plot", picture)
+        svg = picture.read_text()
+        for title in (axes.get_xlabel(), axes.get_ylabel()):
+            assert f">{title}<" in svg, title
+    _, axes = plt.subplots()
+    wm.plot.regimes(wm.map(small), ax=axes)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("push angle (deg)", "distance at first touch (mm)")

@@ -7,6 +7,7 @@ import pickle
 from dataclasses import fields
 
 import numpy as np
+import pandas as pd
 import pytest
 from conftest import ROOT
 
@@ -88,6 +89,49 @@ def test_refused_scenes_name_key_value_and_what_is_allowed(cone):
     assert refused.value.key is None
     with pytest.raises(FileNotFoundError, match="nowhere.toml"):
         wm.Scene.read("nowhere.toml")
-    assert cone.replace(youngs_modulus_gpa=3000).warnings == [
-        "whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?"
-    ]
+
+
+def test_replace_does_not_depend_on_the_order_of_keywords(cone):
+    changes = {
+        "taper": [0.5, 0.9],
+        "pole_radius_mm": [0.1, 0.2],
+        "base_radius_um": 40.0,
+        "curvature_per_mm": [0.0, 0.02],
+        "friction": 0.1,
+        "distance_mm": [9.0, 12.0],
+        "title": "Another",
+    }
+    wanted = cone.replace(**changes)
+    for shift in range(len(changes)):
+        names = [*changes][shift:] + [*changes][:shift]
+        for order in (names, names[::-1]):
+            own = cone.replace(**{name: changes[name] for name in order})
+            assert own == wanted and list(own.coords) == list(wanted.coords)
+
+
+def test_profiles_and_traced_points_are_data_frames(cone):
+    measured, traced = (wm.Scene.read(ROOT / f"scenes/{name}.toml") for name in ("measured", "traced"))
+    rows = np.array(measured.whisker.profile)
+    frame = pd.DataFrame({"radius_um": rows[:, 1], "note": "", "arc_length_mm": rows[:, 0]})
+    points = np.array(traced.whisker.rest_points)
+    xy = pd.DataFrame(points, columns=["x_mm", "y_mm"])
+    for own in (rows, frame, frame.to_dict("list"), rows.tolist()):
+        assert measured.replace(profile=own) == measured
+    for own in (points, xy, xy.to_dict("list"), points.tolist()):
+        assert traced.replace(rest_points=own) == traced
+    whisker = wm.Whisker(base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, rest_points=xy)
+    assert wm.Scene(whisker=whisker, pole=traced.pole, grid=traced.grid, title=traced.title, name=traced.name) == traced
+
+
+def test_a_traced_shape_reports_its_fit(cone):
+    traced = wm.Scene.read(ROOT / "scenes/traced.toml").replace(distance_mm=[9.0, 12.0])
+    fit = traced.rest_fit
+    assert cone.rest_fit is None and fit.is_degree_chosen and fit.degree == 2 and 0.02 < fit.rms_mm < 0.06
+    assert traced.replace(rest_degree=3).rest_fit.degree == 3
+    results = [wm.curve(traced), wm.branch(traced, 12.0), wm.branch(traced, 12.0, "both"), wm.shape(traced, 12.0, 5.0)]
+    results += [wm.sensitivity(traced, 12.0)]
+    results += [wm.whisk(traced, 12.0, [0, 1], [-1, 5]).samples, wm.whisk(traced, 12.0, [0, 1], [-1, 5]).events]
+    for ds in results:
+        frame = ds.to_dataframe()
+        assert (frame.rest_degree == fit.degree).all() and (frame.rest_rms_mm == fit.rms_mm).all()
+    assert "rest_degree" not in wm.curve(cone.replace(distance_mm=[9.0])).coords

@@ -52,6 +52,11 @@ def test_branches_and_shapes_are_the_programs_tables(cone):
     ds = wm.shape(cone, 15.66, 10, points=60)
     same(ds, table("shape", CONE, "--distance", 15.66, "--push-angle", 10, "--points", 60))
     assert np.hypot(ds.pole_x_mm - ds.x_mm, ds.pole_y_mm - ds.y_mm).min() == pytest.approx(0.25, abs=1e-9)
+    for name in ("CF", "Cf"):
+        xr.testing.assert_identical(wm.branch(cone, 15.66, name, points=50), wm.branch(cone, 15.66, "cf", points=50))
+    both = wm.branch(cone, 15.66, "both", points=50)
+    for name in ("cf", "cb"):
+        xr.testing.assert_equal(both.sel(side=name, drop=True), wm.branch(cone, 15.66, name, points=50))
     with pytest.raises(wm.StateError, match="slipped off at 15.6"):
         wm.shape(cone, 15.66, 20)
     with pytest.raises(wm.StateError, match="out of reach"):
@@ -69,6 +74,13 @@ def test_fits_and_designs_are_the_programs(cone):
     xr.testing.assert_equal(wm.fit(cone, frame.to_dict("list"), free).estimates, fit.estimates)
     assert fit.scene.whisker.tip_radius_um == fit.estimates.value[0]
     design = wm.design(cone, "tip_radius_um", distance_mm=15.66, slip_off_deg=20)
+    assert list(design.sides) == ["cb"] and (design.ends.side == "cb").all()
+    for side in ("both", "CB"):
+        again = wm.design(cone, "tip_radius_um", distance_mm=15.66, slip_off_deg=20, side=side)
+        np.testing.assert_array_equal(again.values, design.values)
+    own = {name: wm.design(cone, "tip_radius_um", distance_mm=15.66, side=name, max_force_un=20) for name in ("cb", "CF", "both")}
+    both = own["both"]
+    assert list(both.values) == sorted([*own["cb"].values, *own["CF"].values]) and set(both.sides) == {"cb", "cf"}
     assert design.values == pytest.approx([4.063], abs=1e-3) and set(design.ends.kind.values) >= {"slip-off"}
 
 

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 
 from whiskmap._parts import Grid, Pole, Range, Surface, Whisker
 from whiskmap._scene import Scene
+from whiskmap._warnings import SceneWarning
 from whiskmap._whiskmap import SceneError, StateError, version
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ if TYPE_CHECKING:
 __version__ = version()
 
 # `map` and `open` would hide those of Python.
-__all__ = ["Grid", "Pole", "Range", "Scene", "SceneError", "StateError", "Surface", "Whisker"]
+__all__ = ["Grid", "Pole", "Range", "Scene", "SceneError", "SceneWarning", "StateError", "Surface", "Whisker"]
 
 # numpy and xarray are imported when a function is first used.
 _MODULES = {

@@ -28,6 +28,18 @@ def scene_coords(scene: Scene) -> dict[str, xr.Variable]:
     return coords(coordinates(scene._checked))
 
 
+def rest_coords(scene: Scene) -> dict[str, xr.Variable]:
+    """Return degree and rms distance of a traced shape as scalar coordinates, which are columns of data frames; nothing without one."""
+    fit = scene.rest_fit
+    if fit is None:
+        return {}
+    meanings = {
+        "rest_degree": (fit.degree, {"long_name": "degree of the curvature that is fitted to traced points"}),
+        "rest_rms_mm": (fit.rms_mm, {"units": "mm", "long_name": "rms distance of the traced points from the fitted curve"}),
+    }
+    return {name: xr.Variable((), value, about) for name, (value, about) in meanings.items()}
+
+
 def attributes(scene: Scene, engine: str | None = None) -> dict[str, Any]:
     """Return the global attributes of a dataset, which are enough to compute it again."""
     own = {"Conventions": "CF-1.11", "title": scene.title, "scene": scene.to_toml()}

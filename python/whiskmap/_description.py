@@ -73,6 +73,19 @@ def set_parameter(parameter: str, value: Any, given: dict[str, Any], axes: dict[
         given[parameter] = number(parameter, value)
 
 
+def order_of(changes: Mapping[str, Any]) -> list[str]:
+    """Return the names of changes in an order that does not depend on theirs, if no two of them set one number."""
+    known = list(PARAMETERS)
+    names = sorted(changes, key=lambda name: (known.index(name) if name in PARAMETERS else -1, name))
+    numbers: dict[str, str] = {}
+    for name in names:
+        parameter = PARAMETERS.get(name, name)
+        other = numbers.setdefault(_TIPS[0] if parameter in _TIPS else parameter, name)
+        if other != name:
+            raise TypeError(f"{other} and {name}: give one of them, because both set one number")
+    return names
+
+
 def resembling(name: str) -> str:
     """Return a hint at the parameter whose name resembles this one, or an empty text."""
     from difflib import get_close_matches

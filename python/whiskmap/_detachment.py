@@ -12,7 +12,7 @@ from whiskmap import _whiskmap
 from whiskmap._maps import _checked
 from whiskmap._description import PARAMETERS, resembling
 from whiskmap._scene import Scene
-from whiskmap._values import real_array
+from whiskmap._values import real_array, side_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -88,7 +88,8 @@ def detachment(
     distance_mm : array_like
         Distances from the base to the contact at first touch.
     side : {"both", "cb", "cf"} or array_like of str
-        Side of the whisker that the pole is on: convex or concave. "both" adds an axis of two values at the end: CF, then CB.
+        Side of the whisker that the pole is on: convex or concave, in capitals or not. "both" adds an axis of two values at the end: CF,
+        then CB.
     jac : bool or sequence of str
         Variables of the derivatives: names of parameters, and "distance_mm". True selects all parameters that are given here, in
         their order. A variable varies with all other values fixed that are given: with `taper`, the radius at the base varies at
@@ -109,7 +110,7 @@ def detachment(
     TypeError
         If a name is unknown, or values are no real numbers.
     SceneError
-        If a value is out of its range: the message names the element, in C order, and the value.
+        If a value is out of its range: the message names the argument, the index and the value.
     ValueError
         If the arguments do not broadcast, or a value is not finite.
 
@@ -145,20 +146,24 @@ def detachment(
             raise ValueError(f"{name}{list(map(int, place)) or ''} = {array[place]}: must be finite")
     variables = _variables(jac, tuple(parameters))
     is_cb = _is_cb(side)
-    if isinstance(side, str) and side == "both":
+    has_both = isinstance(side, str) and side.lower() == "both"
+    if has_both:
         arrays = {name: array[..., None] for name, array in arrays.items()}
     shape = _shape(arrays | {"side": is_cb})
     fixed = {name: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
     flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items() if name not in fixed}
-    kinds, residual, quantities = _whiskmap.detachment(
-        None if scene is None else _checked(scene),
-        fixed,
-        {name: array for name, array in flat.items() if name != "distance_mm"},
-        flat["distance_mm"],
-        np.broadcast_to(is_cb, shape).ravel(),
-        variables,
-        threads,
-    )
+    try:
+        kinds, residual, quantities = _whiskmap.detachment(
+            None if scene is None else _checked(scene),
+            fixed,
+            {name: array for name, array in flat.items() if name != "distance_mm"},
+            flat["distance_mm"],
+            np.broadcast_to(is_cb, shape).ravel(),
+            variables,
+            threads,
+        )
+    except _whiskmap.SceneError as why:
+        raise _named(why, arrays, shape, has_both) from None
     return Detachment(
         kind=_KINDS[kinds].reshape(shape),
         residual=residual.reshape(shape),
@@ -178,12 +183,33 @@ def _variables(jac: bool | Sequence[str], given: tuple[str, ...]) -> tuple[str, 
 
 def _is_cb(side: Any) -> NDArray[np.bool_]:
     """True for CB, False for CF; "both" is one axis of both."""
-    if isinstance(side, str) and side == "both":
-        return np.array([False, True])
+    if isinstance(side, str):
+        return np.array([False, True]) if side_of(side) == "both" else np.array(side_of(side) == "cb")
     sides = np.asarray(side)
-    if sides.dtype.kind not in "UO" or not np.isin(sides, ["cb", "cf"]).all():
-        raise ValueError(f"side = {side!r}: must be 'both', 'cb', 'cf', or an array of 'cb' and 'cf'")
-    return np.asarray(sides == "cb")
+    lower = np.array([own.lower() if isinstance(own, str) else "" for own in sides.ravel()], dtype=np.str_).reshape(sides.shape)
+    is_wrong = ~np.isin(lower, ["cb", "cf"])
+    if is_wrong.any():
+        place = np.unravel_index(int(np.argmax(is_wrong)), sides.shape)
+        value = sides[place] if sides.dtype.kind == "O" else sides[place].item()
+        raise ValueError(f"side{list(map(int, place)) or ''} = {value!r}: must be 'cb' or 'cf'")
+    return np.asarray(lower == "cb")
+
+
+def _named(why: _whiskmap.SceneError, arrays: dict[str, NDArray[Any]], shape: tuple[int, ...], has_both: bool) -> _whiskmap.SceneError:
+    """Return the error of an element with the name of its argument and its index there; of a scalar, as it is."""
+    name = (why.key or "").rpartition(".")[2].partition("[")[0]
+    element = [int(index) for index in np.unravel_index(why.element, shape)]
+    if name in arrays:
+        array = arrays[name]
+        own = [index if size > 1 else 0 for index, size in zip(element[len(element) - array.ndim :], array.shape)]
+        own = own[:-1] if has_both else own
+        text = f"{name}{own or ''} = {why.value}: {why.allowed}"
+    else:
+        element = element[:-1] if has_both else element
+        text = f"element {element}: {why}" if element else str(why)
+    named = _whiskmap.SceneError(text)
+    named.key, named.value, named.allowed = why.key, why.value, why.allowed
+    return named
 
 
 def _shape(arrays: dict[str, NDArray[Any]]) -> tuple[int, ...]:

@@ -14,7 +14,8 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, number
+from whiskmap._values import by_index, csv_text, naming_rows, number, origin_of, side_of
+from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -72,10 +73,18 @@ def fit(scene: Scene, points: str | os.PathLike[str] | Mapping[str, Any], free: 
         If the file cannot be read.
     RuntimeError
         If the iteration does not converge.
+
+    Warns
+    -----
+    SceneWarning
+        If a parameter is not determined or at a limit, residuals are larger than their deviations, points are left out or have the other
+        side's sign, or a parameter does not start at the scene's value.
     """
     if isinstance(free, str):
         raise TypeError(f"free = {free!r}: must be a list of names")
-    found = _whiskmap.fit(_checked(scene), csv_text("points", points), list(free))
+    with naming_rows("points", points):
+        found = _whiskmap.fit(_checked(scene), csv_text("points", points), origin_of("points", points), list(free))
+    warn(by_index("points", points, text) for text in found["warnings"])
     names, units, values, errors, at_limit = zip(*found["estimates"])
     correlation = np.array(found["correlation"], dtype=np.float64)
     estimates = xr.Dataset(
@@ -106,13 +115,16 @@ class Design:
     ----------
     values : array of float
         Every value of the parameter with which the push reaches the target, growing; empty if there is none.
+    sides : array of str
+        Side of the push of each value: "cb" or "cf".
     range : tuple of float
         Least and greatest value that the scene accepts.
     ends : xarray.Dataset
-        `kind` of the detachment and the value of the target's quantity, `reached`, over the range, by `value`.
+        `kind` of the detachment and the value of the target's quantity, `reached`, over the range, by `value`, with the `side`.
     """
 
     values: NDArray[np.float64]
+    sides: NDArray[np.str_]
     range: tuple[float, float]
     ends: xr.Dataset
 
@@ -122,7 +134,7 @@ def design(
     parameter: str,
     *,
     distance_mm: float,
-    side: Literal["cb", "cf"] | None = None,
+    side: Literal["both", "cb", "cf"] | None = None,
     slip_off_deg: float | None = None,
     pull_off_deg: float | None = None,
     max_force_un: float | None = None,
@@ -139,8 +151,9 @@ def design(
         Name of the parameter to vary, such as "taper".
     distance_mm : float
         Distance from the base to the contact at first touch.
-    side : {"cb", "cf"}, optional
-        Side of the whisker that the pole is on; needed for a load, else given by the sign of the angle.
+    side : {"both", "cb", "cf"}, optional
+        Side of the whisker that the pole is on; needed for a load, else given by the sign of the angle. "both" searches both sides for a
+        load.
     slip_off_deg, pull_off_deg : float, optional
         Push angle at which the whisker slips off or is pulled off: positive CB, negative CF.
     max_force_un, max_moment_nnm, max_strain : float, optional
@@ -163,6 +176,22 @@ def design(
         raise TypeError(f"design() takes exactly one of {', '.join(targets)}; {len(given)} were given")
     [(goal, value)] = given.items()
     distance = number("distance_mm", distance_mm)
-    values, ends, at, kinds, reached = _whiskmap.design(_checked(scene), parameter, goal, value, distance, side)
-    of_ends = {"kind": ("value", kinds), "reached": ("value", np.array(reached, dtype=np.float64))}
-    return Design(np.array(values), (ends[0], ends[1]), xr.Dataset(of_ends, {"value": np.array(at)}))
+    is_load = goal.startswith("max_")
+    own = None if side is None else side_of(side)
+    sides: list[str | None] = [own]
+    if own == "both":
+        sides = ["cf", "cb"] if is_load else [None]
+    parts = [(of, *_whiskmap.design(_checked(scene), parameter, goal, value, distance, of)) for of in sides]
+    names = [of or ("cb" if value > 0 else "cf") for of, *_ in parts]
+    values = np.concatenate([part[1] for part in parts])
+    order = np.argsort(values, kind="stable")
+    found_on = np.repeat(names, [len(part[1]) for part in parts])
+    ends = [
+        xr.Dataset(
+            {"kind": ("value", kinds), "reached": ("value", np.array(reached, dtype=np.float64))},
+            {"value": np.array(at), "side": ("value", [name] * len(at))},
+        )
+        for name, (_, _, _, at, kinds, reached) in zip(names, parts)
+    ]
+    [least, greatest] = parts[0][2]
+    return Design(values[order], found_on[order], (least, greatest), xr.concat(ends, "value"))

@@ -13,6 +13,7 @@ import xarray as xr
 from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, scene_coords
 from whiskmap._scene import Scene
+from whiskmap._warnings import require, warn
 
 Progress = Callable[[int, int], object]
 
@@ -39,7 +40,7 @@ def map(
         Names of the variables to compute, such as ``["regime", "force_un", "d_push_d_taper"]``; all but derivatives if left out.
         `d_push_d_taper` is the derivative of the push angle at the row's detachment.
     progress : bool or callable
-        True shows a progress bar if tqdm is installed. A callable gets the number of finished cells and of all cells.
+        True shows a progress bar of tqdm, the extra `progress`. A callable gets the number of finished cells and of all cells.
     threads : int, optional
         Number of threads; one for each core, or `RAYON_NUM_THREADS`, if left out.
 
@@ -58,14 +59,17 @@ def map(
         If the tolerance cannot be kept, or an argument is not allowed.
     RuntimeError
         If there is no GPU although one is required.
+    ImportError
+        If `progress` is True and tqdm is missing.
     KeyboardInterrupt
-        On Ctrl-C, after the current rows.
+        On Ctrl-C.
     """
     if channels is not None and isinstance(channels, str):
         raise TypeError(f"channels = {channels!r}: must be a list of names")
     names = None if channels is None else list(channels)
     with _progress(progress) as report:
-        arrays, used, _ = _whiskmap.map(_checked(scene), engine, tolerance_deg, names, threads, report)
+        arrays, used, _, warnings = _whiskmap.map(_checked(scene), engine, tolerance_deg, names, threads, report)
+    warn(warnings)
     coords = scene_coords(scene)
     shape = tuple(own.size for own in coords.values())
     variables = {}
@@ -119,10 +123,8 @@ def _progress(progress: bool | Progress) -> AbstractContextManager[Progress | No
     if callable(progress):
         return nullcontext(progress)
     if progress:
-        try:
-            return _Bar()
-        except ImportError:
-            return nullcontext(None)
+        require("tqdm", "progress")
+        return _Bar()
     return nullcontext(None)
 
 

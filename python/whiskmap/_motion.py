@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import xarray as xr
 
 from whiskmap import _whiskmap
-from whiskmap._datasets import attributes, variables
+from whiskmap._datasets import attributes, rest_coords, variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, number, real_array
+from whiskmap._values import csv_text, naming_rows, number, origin_of, real_array
+from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -78,7 +79,14 @@ class Texture:
     reached: int
 
 
-def whisk(scene: Scene, distance_mm: float, time_s: ArrayLike, angle_deg: ArrayLike) -> Whisk:
+def whisk(
+    scene: Scene,
+    distance_mm: float,
+    time_s: ArrayLike,
+    angle_deg: ArrayLike,
+    *,
+    start: Literal["contact", "free"] | None = None,
+) -> Whisk:
     """Compute the quasi-static course of a whisker whose base rotates in front of one pole.
 
     Parameters
@@ -91,24 +99,34 @@ def whisk(scene: Scene, distance_mm: float, time_s: ArrayLike, angle_deg: ArrayL
         Times of the samples in s, which grow; at least two.
     angle_deg : array_like
         Angle of the base at each of the times: 0 at first touch on CB, growing with the push there. It changes along straight lines
-        between samples. The course begins without contact.
+        between samples.
+    start : {"contact", "free"}, optional
+        State at the first angle. In "contact", the base has pushed the whisker there from first touch: on CB if that side holds it, otherwise
+        on CF. A "free" whisker beyond first touch has passed the pole; that is assumed, with a warning, if left out.
 
     Raises
     ------
     ValueError
-        If the times do not grow, an angle is beyond a turn, or the course begins in contact.
+        If the times do not grow, an angle is beyond a turn, or the whisker cannot be in the state at the start.
     StateError
         If the resting whisker does not reach the pole.
     SceneError
         If the scene allows no pole at this distance.
     RuntimeError
         If a detachment is not found.
+
+    Warns
+    -----
+    SceneWarning
+        If a free whisker beyond first touch is assumed, or samples are undecided.
     """
     checked, distance = _checked(scene), number("distance_mm", distance_mm)
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
-    samples, events, lost, dissipated, cf_touch = _whiskmap.whisk(checked, distance, *_one_dimensional(*course))
-    about = attributes(scene) | {"distance_mm": distance}
-    return Whisk(_over_time(samples, about), _numbered(events, about), lost, dissipated, cf_touch)
+    time, angle = _one_dimensional(*course)
+    samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(checked, distance, time, angle, start)
+    warn(warnings)
+    about = {"distance_mm": distance}
+    return Whisk(_over_time(samples, scene, about), _numbered(events, scene, about), lost, dissipated, cf_touch)
 
 
 def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
@@ -133,10 +151,10 @@ def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
         If a detachment is not found.
     """
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
-    samples, events, stays, histogram, lost, reached = _whiskmap.texture(_checked(scene), *_one_dimensional(*course))
-    about = attributes(scene)
-    bins = xr.Dataset(variables(histogram, ("bin",), (-1,)), attrs=about)
-    return Texture(_over_time(samples, about), _numbered(events, about), _numbered(stays, about), bins, lost, reached)
+    samples, events, stays, histogram, lost, reached, warning = _whiskmap.texture(_checked(scene), *_one_dimensional(*course))
+    warn([warning])
+    bins = xr.Dataset(variables(histogram, ("bin",), (-1,)), rest_coords(scene), attributes(scene))
+    return Texture(_over_time(samples, scene), _numbered(events, scene), _numbered(stays, scene), bins, lost, reached)
 
 
 def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, model: bool = False) -> xr.Dataset:
@@ -166,10 +184,13 @@ def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, m
     OSError
         If the file cannot be read.
     """
-    checked = _checked(scene)
+    checked, given = _checked(scene), frames
     if not isinstance(frames, (str, os.PathLike)) and hasattr(frames, "keys"):
         frames = {str(name): _or_empty(str(name), frames[name]) for name in frames.keys()}
-    return _over_time(_whiskmap.force(checked, csv_text("frames", frames), bool(model)), attributes(scene))
+    with naming_rows("frames", given):
+        columns, warning = _whiskmap.force(checked, csv_text("frames", frames), origin_of("frames", given), bool(model))
+    warn([warning])
+    return _over_time(columns, scene)
 
 
 def _or_empty(name: str, values: Iterable[Any]) -> Iterable[Any]:
@@ -184,10 +205,11 @@ def _one_dimensional(*arrays: Any) -> tuple[Any, ...]:
     return arrays
 
 
-def _over_time(columns: Iterable[_Column], about: Mapping[str, Any]) -> xr.Dataset:
+def _over_time(columns: Iterable[_Column], scene: Scene, about: Mapping[str, Any] | None = None) -> xr.Dataset:
     own = variables(columns, ("time_s",), (-1,))
-    return xr.Dataset(own, attrs=about).set_coords("time_s")
+    return xr.Dataset(own, rest_coords(scene), attributes(scene) | dict(about or {})).set_coords("time_s")
 
 
-def _numbered(columns: Iterable[_Column], about: Mapping[str, Any]) -> xr.Dataset:
-    return xr.Dataset(variables(columns, ("number",), (-1,)), attrs=about)
+def _numbered(columns: Iterable[_Column], scene: Scene, about: Mapping[str, Any] | None = None) -> xr.Dataset:
+    own = variables(columns, ("number",), (-1,))
+    return xr.Dataset(own, rest_coords(scene), attributes(scene) | dict(about or {}))

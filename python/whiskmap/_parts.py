@@ -11,7 +11,8 @@ from whiskmap._values import number, numbers
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-PAIRS = {"profile": "rows of arclength and radius", "rest_points": "points of x and y"}
+# Columns of the numbers that come in pairs.
+PAIRS = {"profile": ("arc_length_mm", "radius_um"), "rest_points": ("x_mm", "y_mm")}
 
 
 class _Parts:
@@ -64,16 +65,18 @@ class Whisker(_Parts):
         Radii at base and tip; needed without `profile`.
     taper : float, optional
         1 - tip radius / base radius, instead of `tip_radius_um`: 0 is a cylinder, 1 a perfect cone.
-    profile : array_like, optional
-        Measured rows of arclength (mm) and radius (um), of shape (rows, 2), instead of the radii.
+    profile : array_like or pandas.DataFrame, optional
+        Measured rows of arclength (mm) and radius (um), of shape (rows, 2), or columns `arc_length_mm` and `radius_um`, instead of the
+        radii.
     profile_scale, tip_extension_mm : float, optional
         Factor of the measured radii; length of the cone that continues the last two rows.
     parabola_per_mm, vertex_mm : float, optional
         Resting shape ``y = A (x - vertex)^2``; straight if left out.
     spiral_per_mm, spiral_per_mm2 : float, optional
         Resting shape as an Euler spiral: curvature at the base, and its growth along the whisker.
-    rest_points : array_like, optional
-        Resting shape as points in mm that were traced from base to tip, of shape (points, 2): a curve of polynomial curvature is fitted.
+    rest_points : array_like or pandas.DataFrame, optional
+        Resting shape as points in mm that were traced from base to tip, of shape (points, 2), or columns `x_mm` and `y_mm`. A curve of
+        polynomial curvature is fitted.
         It bends toward the CF side where it turns counterclockwise. A whisker of another length has the same shape at another scale.
     rest_degree : int, optional
         Degree of the curvature, 0 to 6; cross-validation chooses it if left out.
@@ -198,9 +201,17 @@ def set_field(own: object, name: str, value: object) -> None:
 
 
 def pairs_of(name: str, pairs: Any) -> list[list[float]]:
-    """Measured rows or traced points as lists of two numbers."""
+    """Measured rows or traced points as lists of two numbers, from rows or from columns by name."""
+    first, second = PAIRS[name]
+    if hasattr(pairs, "keys"):
+        if missing := [own for own in PAIRS[name] if own not in pairs.keys()]:
+            raise ValueError(f"{name}: must have the columns {first} and {second}, has no {' and no '.join(missing)}")
+        columns = [numbers(f"{name}[{own!r}]", pairs[own]) for own in PAIRS[name]]
+        if len(columns[0]) != len(columns[1]):
+            raise ValueError(f"{name}: columns must be equally long, have {len(columns[0])} and {len(columns[1])} numbers")
+        return [list(pair) for pair in zip(*columns)]
     if isinstance(pairs, (str, bytes)) or not isinstance(pairs, Iterable):
-        raise TypeError(f"{name} = {pairs!r}: must be {PAIRS[name]}")
+        raise TypeError(f"{name} = {pairs!r}: must be rows of {first} and {second}, or these columns")
     rows = [numbers(f"{name}[{index}]", row) for index, row in enumerate(pairs)]
     for index, row in enumerate(rows):
         if len(row) != 2:

@@ -4,16 +4,36 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
-from whiskmap._description import PARAMETERS, build, range_of, resembling, set_parameter
+from whiskmap._description import PARAMETERS, build, order_of, range_of, resembling, set_parameter
 from whiskmap._parts import PAIRS, Grid, Pole, Surface, Whisker, axis_of, degree_of, pairs_of
+from whiskmap._warnings import warn
 from whiskmap._whiskmap import CheckedScene, coordinates
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class RestFit:
+    """Curve through the traced points of a resting whisker.
+
+    Attributes
+    ----------
+    degree : int
+        Degree of the curvature as a polynomial of the arclength.
+    rms_mm : float
+        Root mean square of the distances of the points from the curve, in mm.
+    is_degree_chosen : bool
+        True if cross-validation chose the degree.
+    """
+
+    degree: int
+    rms_mm: float
+    is_degree_chosen: bool
 
 
 class Scene:
@@ -62,6 +82,7 @@ class Scene:
         given |= {"pole_radius_mm": pole.radius_mm or None, "friction": pole.friction or None}
         axes = {"push_angle_deg": grid.push_angle_deg, "distance_mm": grid.distance_mm, **grid.sweep}
         self._checked = build(title, given, whisker.profile, (whisker.rest_points, whisker.rest_degree), axes, uncertainty, surface, name)
+        warn(self.warnings)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Scene:
@@ -74,11 +95,15 @@ class Scene:
         SceneError
             If it is no scene.
         """
-        return cls._of(CheckedScene.read(os.fspath(path)))
+        return cls._of(CheckedScene.read(os.fspath(path)))._warned()
 
     @classmethod
     def parse(cls, text: str, name: str = "scene") -> Scene:
         """Check the text of a scene file. `name` is that of the scene if the text gives none."""
+        return cls._parsed(text, name)._warned()
+
+    @classmethod
+    def _parsed(cls, text: str, name: str) -> Scene:
         return cls._of(CheckedScene.parse(text, f"{name}.toml"))
 
     @classmethod
@@ -86,6 +111,10 @@ class Scene:
         scene = cls.__new__(cls)
         scene._checked = checked
         return scene
+
+    def _warned(self) -> Scene:
+        warn(self.warnings)
+        return self
 
     def replace(self, **changes: Any) -> Scene:
         """Return the scene with other values.
@@ -95,14 +124,22 @@ class Scene:
         **changes
             A number sets a parameter, such as ``taper=0.5`` or ``pole_radius_mm=1``; it ends a sweep of it. A `Range`, a list or
             an array makes the parameter a sweep axis. None leaves a value out. Also `push_angle_deg`, `distance_mm`, `profile`,
-            `rest_points`, `rest_degree`, `title`, `name`, `uncertainty` and `surface`.
+            `rest_points`, `rest_degree`, `title`, `name`, `uncertainty` and `surface`. Their order does not matter.
+
+        Raises
+        ------
+        TypeError
+            If a name is unknown, or two names set one number: `taper` and `tip_radius_um`, `parabola_per_mm` and `curvature_per_mm`.
+        SceneError
+            If a value is out of its range or contradicts another one.
         """
         title, given, rows, traced, listed, uncertainty, _, name = self._checked.description()
         axes: dict[str, Any] = dict(listed)
         changed: dict[str, Any] = dict(given)
         texts: dict[str, Any] = {"title": title, "name": name, "uncertainty": uncertainty, "surface": self.surface, "profile": rows}
         texts["rest_points"], texts["rest_degree"] = traced or (None, None)
-        for key, value in changes.items():
+        for key in order_of(changes):
+            value = changes[key]
             if key in texts:
                 texts[key] = value
             elif key in ("push_angle_deg", "distance_mm"):
@@ -114,7 +151,8 @@ class Scene:
         rows, points = (None if texts[own] is None else pairs_of(own, texts[own]) for own in PAIRS)
         is_dropped = points is None and "rest_degree" not in changes
         rest = (points, None if is_dropped else degree_of(texts["rest_degree"]))
-        return Scene._of(build(texts["title"], changed, rows, rest, axes, texts["uncertainty"], texts["surface"], texts["name"]))
+        built = build(texts["title"], changed, rows, rest, axes, texts["uncertainty"], texts["surface"], texts["name"])
+        return Scene._of(built)._warned()
 
     @property
     def title(self) -> str:
@@ -168,8 +206,14 @@ class Scene:
 
     @property
     def warnings(self) -> list[str]:
-        """One line for each number that looks like one in another unit."""
+        """One line for each number that looks like one in another unit, as a `SceneWarning` has it when the scene is made."""
         return self._checked.warnings()
+
+    @property
+    def rest_fit(self) -> RestFit | None:
+        """The fit to traced points, or None without such points."""
+        own = self._checked.rest_fit()
+        return None if own is None else RestFit(*own)
 
     def to_toml(self) -> str:
         """Return the text of a scene file: the one that was read, or one written from the values."""
@@ -186,4 +230,4 @@ class Scene:
         return hash((self.title, self.name))
 
     def __reduce__(self) -> tuple[Any, tuple[str, str]]:
-        return (Scene.parse, (self.to_toml(), self.name))
+        return (Scene._parsed, (self.to_toml(), self.name))

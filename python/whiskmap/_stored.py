@@ -14,6 +14,7 @@ from xarray.core import indexing
 
 from whiskmap import _whiskmap
 from whiskmap._datasets import coords
+from whiskmap._warnings import require, warn
 
 _TYPES = {"regime": np.uint8, "status": np.uint8, "newton_steps": np.uint32}
 
@@ -40,7 +41,11 @@ def open(path: str | os.PathLike[str], *, chunks: Any = None) -> xr.Dataset:
         If the file cannot be read.
     ValueError
         If it is no map, or damaged.
+    ImportError
+        If `chunks` is given and dask, the extra `lazy`, is missing.
     """
+    if chunks is not None:
+        require("dask", "lazy")
     return xr.open_dataset(os.fspath(path), engine=WhiskmapBackend, chunks=chunks)
 
 
@@ -56,6 +61,7 @@ class WhiskmapBackend(BackendEntrypoint):
         if not isinstance(filename_or_obj, (str, os.PathLike)):
             raise TypeError(f"{filename_or_obj!r}: must be the path of an EXR file or a Zarr store")
         stored = _whiskmap.StoredMap(os.fspath(filename_or_obj))
+        warn([stored.warning()])
         dropped = {drop_variables} if isinstance(drop_variables, str) else set(drop_variables or ())
         own = coords(stored.coordinates())
         shape = tuple(axis.size for axis in own.values())

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import xarray as xr
 
 from whiskmap import _whiskmap
-from whiskmap._datasets import attributes, row, scene_coords, variables
+from whiskmap._datasets import attributes, rest_coords, row, scene_coords, variables
 from whiskmap._detachment import detachment
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import number, real_array
+from whiskmap._values import number, real_array, side_of
+from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-Side = Literal["cb", "cf"]
+Side = Literal["both", "cb", "cf"]
 
 
 def curve(scene: Scene, *, tolerance_deg: float | None = None, threads: int | None = None) -> xr.Dataset:
@@ -43,7 +44,7 @@ def curve(scene: Scene, *, tolerance_deg: float | None = None, threads: int | No
     ValueError
         If the tolerance cannot be kept.
     KeyboardInterrupt
-        On Ctrl-C, after the current whiskers.
+        On Ctrl-C.
     """
     columns = _whiskmap.curve(_checked(scene), tolerance_deg, threads)
     coords = scene_coords(scene)
@@ -52,7 +53,10 @@ def curve(scene: Scene, *, tolerance_deg: float | None = None, threads: int | No
     coords |= {"side": xr.Variable("side", ["cf", "cb"]), "distance_mm": distance}
     shape = [own.size for own in coords.values()]
     own = variables(columns, tuple(coords), shape, without=("side", "distance_mm"))
-    return xr.Dataset(own, coords, attributes(scene))
+    kind = own["kind"].values
+    unresolved = np.count_nonzero(kind == "unresolved")
+    warn([f"{unresolved} of {kind.size} ends are unresolved: see the variable `kind`"] if unresolved else [])
+    return xr.Dataset(own, coords | rest_coords(scene), attributes(scene))
 
 
 def branch(scene: Scene, distance_mm: float, side: Side = "cb", *, points: int = 200) -> xr.Dataset:
@@ -64,8 +68,8 @@ def branch(scene: Scene, distance_mm: float, side: Side = "cb", *, points: int =
         A scene of one whisker. Its grid is not used.
     distance_mm : float
         Distance from the base to the contact at first touch.
-    side : {"cb", "cf"}
-        Side of the whisker that the pole is on: convex or concave.
+    side : {"both", "cb", "cf"}
+        Side of the whisker that the pole is on: convex or concave. "both" adds a dimension `side`: CF, then CB.
     points : int
         Number of points, evenly spaced along the branch.
 
@@ -84,9 +88,17 @@ def branch(scene: Scene, distance_mm: float, side: Side = "cb", *, points: int =
         If the continuation fails.
     """
     distance = number("distance_mm", distance_mm)
-    columns = _whiskmap.branch(_checked(scene), distance, side, points)
-    own = variables(columns, ("point",), (-1,), without=("side", "distance_mm"))
-    return xr.Dataset(own, attrs=attributes(scene) | {"distance_mm": distance, "side": side})
+    checked, both = _checked(scene), side_of(side)
+    about = attributes(scene) | {"distance_mm": distance}
+    sides = ["cf", "cb"] if both == "both" else [both]
+    branches = []
+    for own in sides:
+        columns = _whiskmap.branch(checked, distance, own, points)
+        found = variables(columns, ("point",), (-1,), without=("side", "distance_mm"))
+        branches.append(xr.Dataset(found, rest_coords(scene), about | {"side": own}))
+    if both == "both":
+        return xr.concat(branches, xr.Variable("side", sides), coords="minimal", compat="override").assign_attrs(side=both)
+    return branches[0]
 
 
 def shape(
@@ -123,8 +135,8 @@ def shape(
     distance, push = number("distance_mm", distance_mm), number("push_angle_deg", push_angle_deg)
     columns, pole, radius, residual, state = _whiskmap.shape(_checked(scene), distance, push, stable, points)
     own = variables(columns, ("point",), (-1,))
-    about = {"pole_x_mm": pole[0], "pole_y_mm": pole[1], "pole_radius_mm": radius, "residual": residual}
-    return xr.Dataset(own, attrs=attributes(scene) | about | dict(row(state, without=("stable",))))
+    about: dict[str, Any] = {"pole_x_mm": pole[0], "pole_y_mm": pole[1], "pole_radius_mm": radius, "residual": residual}
+    return xr.Dataset(own, rest_coords(scene), attributes(scene) | about | dict(row(state, without=("stable",))))
 
 
 def sensitivity(scene: Scene, distance_mm: ArrayLike | None = None, *, threads: int | None = None) -> xr.Dataset:
@@ -163,5 +175,5 @@ def sensitivity(scene: Scene, distance_mm: ArrayLike | None = None, *, threads: 
         own[name] = xr.Variable(("distance_mm", "side"), getattr(ends, name))
         own[f"d_{name}"] = xr.Variable(("distance_mm", "side", "variable"), by)
     of_variable = {"variable": list(names), "value": ("variable", list(values)), "units": ("variable", list(units))}
-    coords = {"distance_mm": distances, "side": ["cf", "cb"], **of_variable}
+    coords = {"distance_mm": distances, "side": ["cf", "cb"], **of_variable, **rest_coords(scene)}
     return xr.Dataset(own, coords, attributes(scene)).transpose("variable", "side", "distance_mm", missing_dims="ignore")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +51,37 @@ def real_array(name: str, values: ArrayLike) -> NDArray[Any]:
     return array.astype(np.float64, copy=False)
 
 
+def side_of(side: Any, *, is_one: bool = False) -> str:
+    """Return "cb", "cf" or "both", whatever its capitals; `is_one` refuses "both"."""
+    allowed = ("cb", "cf") if is_one else ("both", "cb", "cf")
+    if not isinstance(side, str) or side.lower() not in allowed:
+        raise ValueError(f"side = {side!r}: must be one of {', '.join(map(repr, allowed))}")
+    return side.lower()
+
+
+def origin_of(name: str, given: Any) -> str:
+    """Return the name of a table in messages: that of its file, or of its argument."""
+    return os.fspath(given) if isinstance(given, (str, os.PathLike)) else name
+
+
+def by_index(name: str, given: Any, text: str) -> str:
+    """Return a message about a table, with the index of a row in columns that were given by name instead of the line of a text."""
+    if isinstance(given, (str, os.PathLike)):
+        return text
+    return re.sub(rf"\b{name}:(\d+):", lambda line: f"{name}[{int(line[1]) - 2}]:", text)
+
+
+@contextmanager
+def naming_rows(name: str, given: Any) -> Iterator[None]:
+    """Raise errors about a table with the index of the row, as `by_index` does."""
+    try:
+        yield
+    except ValueError as why:
+        if type(why) is not ValueError:
+            raise
+        raise ValueError(by_index(name, given, str(why))) from None
+
+
 def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> str:
     """Return the text of a CSV file, or columns by name as such a text; None is an empty cell."""
     import numpy as np
@@ -61,12 +94,13 @@ def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> 
     lengths = {own: len(values) for own, values in listed.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"{name}: columns must be equally long, have {lengths}")
-    cells = zip(*([_cell(value) for value in values] for values in listed.values()))
+    texts = ([_cell(f"{name}[{own!r}][{index}]", value) for index, value in enumerate(values)] for own, values in listed.items())
+    cells = zip(*texts)
     return "\n".join(",".join(row) for row in [tuple(listed), *cells]) + "\n"
 
 
-def _cell(value: Any) -> str:
+def _cell(name: str, value: Any) -> str:
     if value is None:
         return ""
-    text = value if isinstance(value, str) else repr(float(value))
+    text = value if isinstance(value, str) else repr(number(name, value))
     return '"' + text.replace('"', '""') + '"'

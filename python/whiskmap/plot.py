@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from whiskmap._whiskmap import inks
+from whiskmap._warnings import require
+from whiskmap._whiskmap import axis_title, inks
 from whiskmap._whiskmap import regimes as _regimes
 
 if TYPE_CHECKING:
@@ -16,9 +17,15 @@ if TYPE_CHECKING:
     from matplotlib.collections import QuadMesh
     from matplotlib.container import BarContainer
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
-PUSH_ANGLE = "push angle (deg)"
-DISTANCE = "distance of first touch (mm)"
+require("matplotlib", "plot")
+
+PUSH_ANGLE = axis_title("push_angle_deg", False)
+DISTANCE = axis_title("distance_mm", False)
+
+# Axes narrower than this, in inches, have no room for a legend.
+_NARROW = 4.0
 
 
 def regimes(ds: xr.Dataset, *, ax: Axes | None = None, legend: bool = True) -> QuadMesh:
@@ -31,7 +38,7 @@ def regimes(ds: xr.Dataset, *, ax: Axes | None = None, legend: bool = True) -> Q
     ax : matplotlib.axes.Axes, optional
         The current axes if left out.
     legend : bool
-        False draws no legend.
+        False draws no legend. It names the regimes of the cells; below narrow axes, otherwise inside.
 
     Returns
     -------
@@ -47,12 +54,10 @@ def regimes(ds: xr.Dataset, *, ax: Axes | None = None, legend: bool = True) -> Q
     colours = [colour for _, _, colour, _ in known]
     norm = BoundaryNorm([-0.5, *(code + 0.5 for code in codes)], len(codes))
     mesh = axes.pcolormesh(ds["push_angle_deg"], ds["distance_mm"], regime, cmap=ListedColormap(colours), norm=norm)
-    # As in the program's pictures, the nearest distance is at the top.
-    axes.set(xlabel=PUSH_ANGLE, ylabel=DISTANCE, ylim=(ds["distance_mm"].max(), ds["distance_mm"].min()))
+    axes.set(xlabel=PUSH_ANGLE, ylabel=DISTANCE)
     if legend:
         present = np.unique(regime)
-        patches = [Patch(color=colour, label=name) for code, name, colour, _ in known if code in present]
-        axes.legend(handles=patches, loc="best", fontsize="small")
+        _legend(axes, [Patch(color=colour, label=name) for code, name, colour, _ in known if code in present])
     return mesh
 
 
@@ -83,7 +88,7 @@ def curve(ds: xr.Dataset, *, x: str = "push_angle_deg", ax: Axes | None = None, 
                 label = None if kind in named else kind
                 named.add(kind)
                 lines += axes.plot(values, own["distance_mm"], **{"color": colours[kind], "label": label} | line)
-    axes.set(xlabel=_label(ds, x), ylabel=DISTANCE)
+    axes.set(xlabel=axis_title(x, True), ylabel=DISTANCE)
     return lines
 
 
@@ -93,7 +98,7 @@ def branch(ds: xr.Dataset, *, y: str = "arc_length_mm", ax: Axes | None = None, 
     Parameters
     ----------
     ds : xarray.Dataset
-        A dataset of `branch`.
+        A dataset of `branch`, of one side or both.
     y : str
         Variable along the vertical axis.
     ax : matplotlib.axes.Axes, optional
@@ -108,19 +113,26 @@ def branch(ds: xr.Dataset, *, y: str = "arc_length_mm", ax: Axes | None = None, 
     axes = _axes(ax)
     colours = inks()
     artists: list[Artist] = []
-    stable = ds["stable"].values
-    # The last stable state also begins the unstable part.
-    parts = [(stable, "-", "stable"), (~stable | np.append(~stable[1:], False), "--", "unstable")]
-    for chosen, stroke, name in parts:
-        if chosen.any():
-            own = ds.isel(point=chosen)
-            look = {"color": colours["slip-off"], "linestyle": stroke, "label": name} | line
-            artists += axes.plot(own["push_angle_deg"], own[y], **look)
-    for mark in ("slip-off", "pull-off"):
-        own = ds.isel(point=ds["mark"].values == mark)
-        if own.sizes["point"]:
-            artists += axes.plot(own["push_angle_deg"], own[y], "o", color=colours[mark], label=mark)
-    axes.set(xlabel=PUSH_ANGLE, ylabel=_label(ds, y))
+    named: set[str] = set()
+
+    def draw(own: xr.Dataset, stroke: str, name: str, colour: str) -> None:
+        look = {"color": colours[colour], "label": None if name in named else name}
+        named.add(name)
+        artists.extend(axes.plot(own["push_angle_deg"], own[y], stroke, **look | (line if stroke != "o" else {})))
+
+    branches = [ds.isel(side=index) for index in range(ds.sizes["side"])] if "side" in ds.dims else [ds]
+    for one in branches:
+        stable = one["stable"].values
+        # The last stable state also begins the unstable part.
+        for chosen, stroke, name in [(stable, "-", "stable"), (~stable | np.append(~stable[1:], False), "--", "unstable")]:
+            if chosen.any():
+                draw(one.isel(point=chosen), stroke, name, "slip-off")
+    for one in branches:
+        for mark in ("slip-off", "pull-off"):
+            own = one.isel(point=one["mark"].values == mark)
+            if own.sizes["point"]:
+                draw(own, "o", mark, mark)
+    axes.set(xlabel=PUSH_ANGLE, ylabel=axis_title(y, False))
     return artists
 
 
@@ -170,7 +182,7 @@ def sensitivity(ds: xr.Dataset, *, ax: Axes | None = None, **bars: Any) -> BarCo
     change = (ds["d_push_angle_deg"] * ds["value"] / 100).squeeze()
     change = change[(change.notnull() & (change != 0)).values][::-1]
     drawn = axes.barh(list(change["variable"].values), change.values, **{"color": inks()["pull-off"]} | bars)
-    axes.set(xlabel="change of the push angle at detachment for 1 % (deg)")
+    axes.set(xlabel=axis_title("push_of_1_percent_deg", False))
     return drawn
 
 
@@ -182,7 +194,15 @@ def _axes(ax: Axes | None) -> Axes:
     return plt.gca()
 
 
-def _label(ds: xr.Dataset, name: str) -> str:
-    units = ds[name].attrs.get("units", "1")
-    plain = name.rsplit("_", 1)[0] if units != "1" else name
-    return plain.replace("_", " ") + (f" ({units})" if units != "1" else "")
+def _legend(axes: Axes, handles: list[Patch]) -> None:
+    from matplotlib.figure import Figure
+
+    figure = axes.figure
+    if axes.get_window_extent().width / figure.dpi >= _NARROW:
+        axes.legend(handles=handles, loc="best", fontsize="small")
+        return
+    # A layout that makes room below the axes, unless the figure has one.
+    if isinstance(figure, Figure) and figure.get_layout_engine() is None:
+        figure.set_layout_engine("constrained")
+    # The pad is that of ticks, numbers and title of the axis, in sizes of the font.
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=5.0, fontsize="x-small")

@@ -23,29 +23,16 @@ pub fn read(files: &mut Files, path: &Path) -> Result<MeasuredPoints, Failure> {
     if let Some(note) = &points.note {
         message(&format!("note: {note}"));
     }
-    let all = points.points.len();
-    let signs = points.points.iter();
-    let crossed = signs.filter(|point| point.side.sign() * point.angle_deg < 0.0);
-    let crossed = crossed.count();
-    if crossed > 0 {
-        message(&format!(
-            "warning: {crossed} of {all} points in {} have an angle of the other side's sign: it is positive for cb, negative \
-             for cf",
-            points.origin
-        ));
+    if let Some(warning) = points.crossed() {
+        message(&format!("warning: {warning}"));
     }
     Ok(points)
 }
 
 /// Prints the measured points that are left out because their side never detaches by theory.
 pub fn name_left_out(points: &MeasuredPoints, comparison: &Comparison) {
-    for row in comparison.left_out() {
-        message(&format!(
-            "warning: {}:{}: left out: by theory this side never detaches at {} mm",
-            points.origin,
-            row.line,
-            digits(row.distance_mm)
-        ));
+    for warning in points.left_out(comparison) {
+        message(&format!("warning: {warning}"));
     }
 }
 

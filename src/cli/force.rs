@@ -8,7 +8,7 @@ use super::outputs::OutputArgs;
 use super::pole::check_single;
 use clap::Args;
 use std::path::{Path, PathBuf};
-use whiskmap::force::{CurvatureFrames, ForceMethod, FrameForce, forces};
+use whiskmap::force::{self, CurvatureFrames, ForceMethod, FrameForce, forces};
 use whiskmap::render::forces as chart;
 
 const EXAMPLES: &str = "\
@@ -69,12 +69,8 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let mut outputs = args.outputs.open(files)?;
     let found = forces(&whisker, &scene.pole, &read.frames, method);
-    let without = found.iter().filter(|force| force.reason.is_some()).count();
-    if without > 0 {
-        message(&format!(
-            "warning: {without} of {} frames have no force, for the reasons in the table",
-            found.len()
-        ));
+    if let Some(warning) = force::warning(&found) {
+        message(&format!("warning: {warning}"));
     }
     outputs.rows(&found)?;
     outputs.finish_chart(|| chart(&scene.title, &found), [])

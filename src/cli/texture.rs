@@ -140,19 +140,16 @@ fn summarise(texture: &Texture) {
         let own = texture.samples.iter().filter(|own| own.phase == phase);
         own.count()
     };
-    let [stuck, slipping, free, undecided] = [
+    let [stuck, slipping, free] = [
         TexturePhase::Stuck,
         TexturePhase::Slipping,
         TexturePhase::Free,
-        TexturePhase::Undecided,
     ]
     .map(phase);
     message(&format!(
         "of {all} samples, {stuck} are stuck, {slipping} slipping, {free} free"
     ));
-    if undecided > 0 {
-        message(&format!(
-            "warning: {undecided} of {all} samples are undecided, for the reasons in the table"
-        ));
+    if let Some(warning) = texture.warning() {
+        message(&format!("warning: {warning}"));
     }
 }

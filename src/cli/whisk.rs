@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use whiskmap::render::courses;
 use whiskmap::scene::{digits, rounded};
 use whiskmap::whisk::{
-    self, Whisk, WhiskError, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample,
+    self, CourseStart, Whisk, WhiskError, WhiskEvent, WhiskEventKind, WhiskOptions, WhiskSample,
 };
 
 const EXAMPLES: &str = "\
@@ -21,7 +21,8 @@ Examples:
 
 The angle of the base is 0 where the resting whisker first touches the pole on CB, and grows with the push there. A whisker that \
 detaches swings to the other side of the pole, and touches it there on the way back. The course is quasi-static: inertia is left \
-out. Between samples the angle changes along straight lines, on which events are exact. A course must begin without contact.";
+out. Between samples the angle changes along straight lines, on which events are exact. A course begins without contact unless --start \
+is contact. A first angle beyond first touch needs --start: the whisker may be free past the pole, or in contact.";
 
 #[derive(Debug, Args)]
 #[command(
@@ -34,6 +35,9 @@ pub struct WhiskArgs {
     pole: PoleArgs,
     #[command(flatten)]
     course: CourseArgs,
+    /// State of the whisker at the first angle
+    #[arg(long, value_name = "STATE")]
+    start: Option<CourseStart>,
     /// Write touches, releases, slip-offs, pull-offs and snaps to FILE, as CSV
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
@@ -50,12 +54,16 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let events = args.events.as_deref();
     let events = events.map(|path| args.outputs.table(files, "--events", path));
     let events = events.transpose()?;
-    let found =
-        whisk::whisk(&whisker, &scene.pole, distance, &course).map_err(|why| match why {
-            WhiskError::Pole(why) => refuse(distance, why),
-            WhiskError::Unresolved(_) => Failure::Course(why),
-            why => Failure::Input(format!("{}: {why}", args.course.source())),
-        })?;
+    let options = WhiskOptions {
+        start: args.start,
+        ..WhiskOptions::default()
+    };
+    let found = whisk::whisk_with(&whisker, &scene.pole, distance, &course, &options);
+    let found = found.map_err(|why| match why {
+        WhiskError::Pole(why) => refuse(distance, why),
+        WhiskError::Unresolved(_) => Failure::Course(why),
+        why => Failure::Input(format!("{}: {why}", args.course.source())),
+    })?;
     outputs.rows(&found.samples)?;
     let events = events.map(|mut table| {
         table.rows(&found.events)?;
@@ -66,8 +74,7 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     outputs.finish_chart(|| courses(&title(&scene, &[distance]), &found), events)
 }
 
-/// Prints the number of events of each kind, and the energies that detachments lose and that friction dissipates, and warns of samples
-/// without a state.
+/// Prints the number of events of each kind, the energies that detachments lose and that friction dissipates, and warnings.
 fn summarise(whisk: &Whisk) {
     let count = |kind| {
         whisk
@@ -95,16 +102,7 @@ fn summarise(whisk: &Whisk) {
     if taken != 0.0 {
         message(&format!("snaps {snaps}; friction dissipates {dissipated}"));
     }
-    let spans = count(WhiskEventKind::Undecided);
-    let undecided = whisk
-        .samples
-        .iter()
-        .filter(|sample| sample.regime == WhiskRegime::Undecided);
-    let undecided = undecided.count();
-    if undecided > 0 || spans > 0 {
-        let all = whisk.samples.len();
-        message(&format!(
-            "warning: {undecided} of {all} samples are undecided, for the reasons in the table; {spans} such spans begin"
-        ));
+    for warning in whisk.warnings() {
+        message(&format!("warning: {warning}"));
     }
 }

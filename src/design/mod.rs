@@ -16,6 +16,7 @@ pub use target::{DesignGoal, DesignTarget};
 use crate::scene::{Parameter, Scene, SceneError, digits};
 use crate::trace::DetachmentKind;
 use search::DesignSearch;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Relative difference of values below which they are one solution, or a range leaves no choice.
 const EQUAL: f64 = 1e-9;
@@ -69,6 +70,9 @@ pub enum DesignError {
     /// The scene accepts no pole at the distance of the design.
     #[error(transparent)]
     Distance(#[from] SceneError),
+    /// The design was cancelled.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl Design {
@@ -119,6 +123,19 @@ pub fn design(
     parameter: Parameter,
     target: &DesignTarget,
 ) -> Result<Design, DesignError> {
+    design_until(scene, parameter, target, &AtomicBool::new(false))
+}
+
+/// Finds every value of `parameter` as [`design`] does. If `cancel` is true, the function soon returns an error.
+///
+/// # Errors
+/// Fails as [`design`] does, and if it is cancelled.
+pub fn design_until(
+    scene: &Scene,
+    parameter: Parameter,
+    target: &DesignTarget,
+    cancel: &AtomicBool,
+) -> Result<Design, DesignError> {
     if let Some(axis) = scene.grid.sweep.first() {
         return Err(DesignError::Sweep(axis.parameter.axis()));
     }
@@ -135,6 +152,7 @@ pub fn design(
         scene,
         parameter,
         target,
+        cancel,
     };
     let ends = search.scan(range);
     let mut values: Vec<f64> = ends
@@ -142,6 +160,9 @@ pub fn design(
         .filter(|piece| target.accepts(piece[0].kind))
         .flat_map(|piece| search.solutions(piece))
         .collect();
+    if cancel.load(Ordering::Relaxed) {
+        return Err(DesignError::Cancelled);
+    }
     values.sort_by(f64::total_cmp);
     values.dedup_by(|b, a| (*b - *a).abs() <= EQUAL * a.abs());
     let mut design = Design {
@@ -174,6 +195,7 @@ pub fn ends_between(
         scene: &with_one_pole(scene, target)?,
         parameter,
         target,
+        cancel: &AtomicBool::new(false),
     };
     Ok(search.scan(range))
 }

@@ -7,6 +7,7 @@ use crate::scene::{Parameter, Scene};
 use crate::trace::DetachmentKind;
 use rayon::prelude::*;
 use std::convert::Infallible;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Width of the interval of a change of kind, in parts of the interval between two samples: 50 halvings.
 const CHANGE_WIDTH: f64 = 1e-15;
@@ -19,12 +20,15 @@ pub struct DesignSearch<'a> {
     pub scene: &'a Scene,
     pub parameter: Parameter,
     pub target: &'a DesignTarget,
+    pub cancel: &'a AtomicBool,
 }
 
 impl DesignSearch<'_> {
-    /// The end at a value of the parameter; `Unresolved` if the scene refuses the value.
+    /// The end at a value of the parameter; `Unresolved` if the scene refuses the value, and after a cancellation.
     fn end(&self, value: f64) -> DesignEnd {
-        let moved = self.scene.with_parameters(&[(self.parameter, value)]);
+        let moved = || self.scene.with_parameters(&[(self.parameter, value)]).ok();
+        let is_cancelled = self.cancel.load(Ordering::Relaxed);
+        let moved = (!is_cancelled).then(moved).flatten();
         let reached = moved.map(|scene| self.target.reached(&scene));
         let (kind, reached) = reached.unwrap_or((DetachmentKind::Unresolved, None));
         DesignEnd {

@@ -33,6 +33,9 @@ pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
     }
     for (i, [lowest, highest]) in ranges.into_iter().enumerate() {
         for factor in FACTORS {
+            if misfit.is_cancelled() {
+                return Err(FitError::Cancelled);
+            }
             let mut from = start.clone();
             from[i] = (factor * start[i]).clamp(lowest, highest);
             // The scene may refuse a start.

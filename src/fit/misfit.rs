@@ -4,6 +4,7 @@ use crate::measured::MeasuredPoints;
 use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, Whisker};
 use crate::sensitivity::Variable;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Step of differences, in units of the parameters. Truncation and the rounding of curves take at most 5e-9 of a cone's central ones.
 const STEP: f64 = 1e-5;
@@ -17,10 +18,17 @@ pub(super) struct Misfit<'a> {
     /// Unit of each free parameter, `[parameter]`: a power of 2 near its natural size, so that nothing is rounded by it. Parameters in
     /// this module are divided by their units.
     pub units: Vec<f64>,
+    cancel: &'a AtomicBool,
 }
 
 impl<'a> Misfit<'a> {
-    pub fn new(scene: &'a Scene, points: &'a MeasuredPoints, free: &'a [Parameter]) -> Self {
+    /// Creates the misfit. If `cancel` is true, it has neither residuals nor derivatives.
+    pub fn new(
+        scene: &'a Scene,
+        points: &'a MeasuredPoints,
+        free: &'a [Parameter],
+        cancel: &'a AtomicBool,
+    ) -> Self {
         let first = scene.first_whisker();
         let units = free.iter().map(|own| size(*own, &first.whisker));
         Self {
@@ -30,7 +38,13 @@ impl<'a> Misfit<'a> {
             units: units
                 .map(|size| libm::exp2(libm::log2(size).round()))
                 .collect(),
+            cancel,
         }
+    }
+
+    /// Returns true if the fit is cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
     }
 
     /// Returns the scene's values of the free parameters, each divided by its unit in [`Misfit::units`]: `[parameter]`. The scene must give them all.
@@ -56,10 +70,16 @@ impl<'a> Misfit<'a> {
         self.scene.with_parameters(&values)
     }
 
+    /// Returns the scene with these `parameters`; `None` where it is refused, and after a cancellation.
+    fn accepted(&self, parameters: &[f64]) -> Option<Scene> {
+        let scene = (!self.is_cancelled()).then(|| self.scene(parameters).ok());
+        scene.flatten()
+    }
+
     /// Returns predicted less measured angles over their standard deviations, dimensionless: `[point]`. `None` where the scene refuses
     /// the parameters, or a point is out of reach or never detaches.
     pub fn residuals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
-        let scene = self.scene(parameters).ok()?;
+        let scene = self.accepted(parameters)?;
         let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
         self.points.check_reach(&whisker, &pole).ok()?;
         let rows = self.points.beside(&whisker, &pole).rows;
@@ -110,7 +130,7 @@ impl<'a> Misfit<'a> {
 
     /// Returns the exact columns of the Jacobian; `None` where the scene refuses the parameters, or an end has no derivative.
     fn derivatives(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let SweptWhisker { whisker, pole, .. } = self.scene(parameters).ok()?.first_whisker();
+        let SweptWhisker { whisker, pole, .. } = self.accepted(parameters)?.first_whisker();
         let variables: Vec<Variable> = self.free.iter().map(|own| (*own).into()).collect();
         let mut columns = self.points.derivatives(&whisker, &pole, &variables)?;
         // With a free taper, the radius at the tip follows the one at the base. No detachment depends on the size of a cone.

@@ -16,11 +16,12 @@ pub use verdict::{LikelyCause, NotAFit};
 use crate::input::{CsvError, each_once};
 use crate::least_squares::dot;
 use crate::measured::{Comparison, MeasuredPoints};
-use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, digits};
+use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, digits, rounded};
 use bounded::{NO_JACOBIAN, best};
 use covariance::Covariance;
 use misfit::Misfit;
 use start::within_reach;
+use std::sync::atomic::AtomicBool;
 
 /// Result of a fit: the fitted scene, parameters, correlations and chi-square.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +45,53 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// Returns one line for each point that is left out, each parameter at a limit, and each parameter that the points do not determine,
+    /// and one for residuals that are larger than their standard deviations. `points` are those of the fit.
+    #[must_use]
+    pub fn warnings(&self, points: &MeasuredPoints) -> Vec<String> {
+        let is_fit = self.not_a_fit.is_none();
+        let of_parameter = |own: &Estimate| {
+            let name = own.parameter.name();
+            if own.is_at_limit {
+                let value = digits(own.value);
+                return Some(format!(
+                    "{name}: {value} is the last value that the scene accepts, so there is no standard error"
+                ));
+            }
+            let is_free = is_fit && own.standard_error.is_none();
+            is_free.then(|| format!("{name}: not determined by these points"))
+        };
+        let is_large = is_fit && points.have_deviations && !self.is_explained();
+        let large = is_large.then(|| {
+            let ratio = (self.chi_square / self.degrees_of_freedom.max(1) as f64).sqrt();
+            format!(
+                "residuals are {ratio:.1} times as large as sd_deg: standard errors are too small by about that factor"
+            )
+        });
+        let parameters = self.estimates.iter().filter_map(of_parameter);
+        let left_out = points.left_out(&self.comparison).into_iter();
+        left_out.chain(parameters).chain(large).collect()
+    }
+
+    /// Returns one line for the parameter that does not start at its value in `scene`; `None` without one. `scene` and `points` are those
+    /// of the fit.
+    #[must_use]
+    pub fn moved_start(&self, scene: &Scene, points: &MeasuredPoints) -> Option<String> {
+        let MovedStart {
+            parameter,
+            value,
+            line,
+            distance_mm,
+        } = self.moved?;
+        let own = parameter.value(scene).unwrap_or(f64::NAN);
+        let [distance, start, own] = [distance_mm, value, own].map(|own| digits(rounded(own, 6)));
+        Some(format!(
+            "{}:{line}: {distance} mm is out of reach of the scene's whisker: {} starts at {start} instead of {own}",
+            points.origin,
+            parameter.name()
+        ))
+    }
+
     /// Returns true if the standard deviations of the points explain `chi_square`. If not, the deviations are too small, and so
     /// are the standard errors.
     #[must_use]
@@ -110,6 +158,9 @@ pub enum FitError {
     /// The iteration of the fit has not reached a minimum.
     #[error("the fit has not converged: {0}")]
     NotConverged(&'static str),
+    /// The fit was cancelled.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 /// Width of a range, relative to the value, below which there is nothing to fit.
@@ -123,6 +174,19 @@ const NARROWEST: f64 = 1e-6;
 /// # Errors
 /// If a parameter cannot be free, a point is beyond the whisker for every tried start, points are too few, or the iteration does not converge.
 pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<Fit, FitError> {
+    fit_until(scene, points, free, &AtomicBool::new(false))
+}
+
+/// Fits parameters as [`fit`] does. If `cancel` is true, the function soon returns an error.
+///
+/// # Errors
+/// Fails as [`fit`] does, and if it is cancelled.
+pub fn fit_until(
+    scene: &Scene,
+    points: &MeasuredPoints,
+    free: &[Parameter],
+    cancel: &AtomicBool,
+) -> Result<Fit, FitError> {
     let free = &each_once(free)[..];
     check(scene, free)?;
     let (start, moved) = within_reach(scene, points, free)?;
@@ -135,7 +199,7 @@ pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result
             used: used.points.len(),
         });
     }
-    let misfit = Misfit::new(scene, &used, free);
+    let misfit = Misfit::new(scene, &used, free, cancel);
     let best = best(&misfit)?;
     let fitted = misfit.scene(&best)?;
     let here = misfit.residuals(&best);

@@ -76,7 +76,7 @@ impl Bending {
         let force = self.moment_nnm / lever;
         let on_base = force * tangent.perp();
         FrameForce {
-            force_un: Some(force),
+            force_un: Some(force.abs()),
             base_force_x_un: Some(on_base.x),
             base_force_y_un: Some(on_base.y),
             base_moment_nnm: Some(position.perp_dot(on_base)),

@@ -16,6 +16,7 @@ use glam::DVec2;
 use model::Model;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Contact in a frame, in the frame of the base: the first axis is the base's tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +66,7 @@ row! {
         pub curvature_change_per_mm: f64,
         /// Bending moment at the measured point, in nN m: positive turns the tip to the left.
         pub moment_nnm: f64,
-        /// Force between pole and whisker, normal to both, in uN: positive to the left (CB).
+        /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
         pub base_force_x_un: Option<f64>,
@@ -91,6 +92,15 @@ pub enum ForceMethod {
     Model,
 }
 
+/// Returns one line for frames without a force; `None` without such frames.
+#[must_use]
+pub fn warning(forces: &[FrameForce]) -> Option<String> {
+    let without = forces.iter().filter(|force| force.reason.is_some()).count();
+    let all = forces.len();
+    (without > 0)
+        .then(|| format!("{without} of {all} frames have no force, for the reasons in the table"))
+}
+
 /// Computes the force in each of the `frames` of `whisker` at `pole`, whose friction is left out, `[frame]`. With [`ForceMethod::Lever`], a
 /// frame in contact without the angle of the contact has the reason [`NoForce::NoLever`].
 #[must_use]
@@ -99,6 +109,18 @@ pub fn forces(
     pole: &Pole,
     frames: &[CurvatureFrame],
     method: ForceMethod,
+) -> Vec<FrameForce> {
+    forces_until(whisker, pole, frames, method, &AtomicBool::new(false))
+}
+
+/// Computes the forces as [`forces`] does. If `cancel` is true, the function soon returns, and the remaining frames have no force.
+#[must_use]
+pub fn forces_until(
+    whisker: &Whisker,
+    pole: &Pole,
+    frames: &[CurvatureFrame],
+    method: ForceMethod,
+    cancel: &AtomicBool,
 ) -> Vec<FrameForce> {
     let distances = frames.iter().filter_map(|frame| frame.contact);
     let distances = distances.map(|contact| DVec2::from(contact.contact_mm).length());
@@ -110,6 +132,7 @@ pub fn forces(
             return lever.free(frame.time_s);
         };
         match &model {
+            Some(_) if cancel.load(Ordering::Relaxed) => lever.none(frame.time_s, NoForce::NoState),
             Some(model) => model.force(&lever, frame, contact),
             None => lever.force(frame, contact),
         }

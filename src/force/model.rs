@@ -76,7 +76,7 @@ impl Model {
         let force = point.y * rod.radius(point.x).powi(2);
         let on_base = force * DVec2::new(base.tangent.y, base.tangent.x) * units.force_un;
         FrameForce {
-            force_un: Some(force * units.force_un),
+            force_un: Some((force * units.force_un).abs()),
             base_force_x_un: Some(on_base.x),
             base_force_y_un: Some(on_base.y),
             base_moment_nnm: Some(-force * base.position.x * units.moment_nnm),

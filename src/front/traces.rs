@@ -32,15 +32,18 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
     let distances = &scene.grid.distance_mm;
     let curves = |group: Vec<_>| {
         sides(&group, |own: &SweptWhisker, side| {
-            curve_at(resolution, &own.whisker, &own.pole, side, distances)
+            match options.is_cancelled() {
+                true => Vec::new(),
+                false => curve_at(resolution, &own.whisker, &own.pole, side, distances),
+            }
         })
     };
     let mut ends = Vec::with_capacity(2 * scene.whisker_count() * distances.len());
     for group in scene.whisker_groups(whiskers_at_once(distances.len())) {
+        ends.extend(curves(group));
         if options.is_cancelled() {
             return Err(Error::Cancelled);
         }
-        ends.extend(curves(group));
     }
     Ok(ends)
 }

@@ -2,7 +2,7 @@
 
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::rod::Side;
-use crate::scene::{Pole, Whisker};
+use crate::scene::{Pole, Whisker, digits};
 use crate::sensitivity::{Derivatives, Variable, detachments};
 use crate::shooting::Resolution;
 use crate::trace::row;
@@ -42,6 +42,32 @@ pub struct Comparison {
 }
 
 impl MeasuredPoints {
+    /// Returns one line for points whose angle has the other side's sign; `None` without such points.
+    #[must_use]
+    pub fn crossed(&self) -> Option<String> {
+        let is_crossed = |point: &&MeasuredPoint| point.side.sign() * point.angle_deg < 0.0;
+        let crossed = self.points.iter().filter(is_crossed).count();
+        (crossed > 0).then(|| {
+            let (all, origin) = (self.points.len(), &self.origin);
+            format!(
+                "{crossed} of {all} points in {origin} have an angle of the other side's sign: it is positive for cb, negative for cf"
+            )
+        })
+    }
+
+    /// Returns one line for each point without a prediction in `comparison`, because by theory its side never detaches.
+    #[must_use]
+    pub fn left_out(&self, comparison: &Comparison) -> Vec<String> {
+        let (rows, origin) = (comparison.left_out(), &self.origin);
+        let warning = |row: &ComparedPoint| {
+            let (line, distance) = (row.line, digits(row.distance_mm));
+            format!(
+                "{origin}:{line}: left out: by theory this side never detaches at {distance} mm"
+            )
+        };
+        rows.map(warning).collect()
+    }
+
     /// Compares the points with the detachments of `whisker` at `pole`.
     #[must_use]
     pub fn beside(&self, whisker: &Whisker, pole: &Pole) -> Comparison {

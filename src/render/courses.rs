@@ -1,16 +1,14 @@
 //! Charts of courses: angle of the base, force and moment over time.
 
+use super::labels::{TIME, axis_title};
 use super::{Chart, Dot, Ink, Line, Plot, Stroke};
 use crate::force::FrameForce;
 use crate::whisk::{Whisk, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 
-const TIME: &str = "time (s)";
-const FORCE: &str = "contact force (\u{b5}N)";
-const MOMENT: &str = "moment at the base (nN m)";
-
 /// Quantity of a course over time.
 struct Curve {
-    label: &'static str,
+    /// Name of the column with the quantity.
+    name: &'static str,
     sample: fn(&WhiskSample) -> Option<f64>,
     event: fn(&WhiskEvent) -> Option<f64>,
     /// Value of a free whisker right after the event.
@@ -19,19 +17,19 @@ struct Curve {
 
 const CURVES: [Curve; 3] = [
     Curve {
-        label: "angle of the base (deg)",
+        name: "angle_deg",
         sample: |sample| Some(sample.angle_deg),
         event: |event| Some(event.angle_deg),
         free: |event| event.angle_deg,
     },
     Curve {
-        label: FORCE,
+        name: "force_un",
         sample: |sample| sample.force_un,
         event: |event| event.force_un,
         free: |_| 0.0,
     },
     Curve {
-        label: MOMENT,
+        name: "base_moment_nnm",
         sample: |sample| sample.base_moment_nnm,
         event: |event| event.base_moment_nnm,
         free: |_| 0.0,
@@ -57,21 +55,21 @@ pub fn courses(title: &str, whisk: &Whisk) -> Chart {
 /// Returns a chart of measured forces: contact force and moment at the base over time. Lines break where there is no force.
 #[must_use]
 pub fn forces(title: &str, forces: &[FrameForce]) -> Chart {
-    let plot = |label: &str, value: fn(&FrameForce) -> Option<f64>| {
+    let plot = |name: &str, value: fn(&FrameForce) -> Option<f64>| {
         let points = forces
             .iter()
             .map(|force| [force.time_s, value(force).unwrap_or(f64::NAN)]);
         Plot {
             x_label: TIME.to_owned(),
-            y_label: label.to_owned(),
+            y_label: axis_title(name),
             lines: vec![Line::new(points.collect(), Ink::Black, Stroke::Solid)],
             ..Plot::default()
         }
     };
     Chart {
         plots: vec![
-            plot(FORCE, |force| force.force_un),
-            plot(MOMENT, |force| force.base_moment_nnm),
+            plot("force_un", |force| force.force_un),
+            plot("base_moment_nnm", |force| force.base_moment_nnm),
         ],
         title: title.to_owned(),
         columns: 1,
@@ -95,7 +93,7 @@ fn plot(whisk: &Whisk, curve: &Curve) -> Plot {
     }
     Plot {
         x_label: TIME.to_owned(),
-        y_label: curve.label.to_owned(),
+        y_label: axis_title(curve.name),
         lines: vec![Line::new(points, Ink::Black, Stroke::Solid)],
         dots: whisk
             .events

@@ -6,6 +6,20 @@ use whiskmap_plot::Region;
 
 /// Label of the axis of push angles.
 pub const PUSH_ANGLE: &str = "push angle (deg)";
+/// Label of the axis of times.
+pub const TIME: &str = "time (s)";
+/// Label of the axis of angles of the base.
+pub const BASE_ANGLE: &str = "angle of the base (deg)";
+/// Label of the axis of changes of the push angle.
+pub const PUSH_CHANGE: &str = "change of the push angle at detachment for +1 % (deg)";
+/// Label of the axis of push angles at detachment.
+pub const END_PUSH: &str = "push angle at detachment (deg)";
+/// Label of the axis of chord angles at detachment.
+pub const END_CHORD: &str = "chord angle at detachment (deg)";
+/// Label of the axis of forces at detachment.
+pub const END_FORCE: &str = "contact force at detachment (\u{b5}N)";
+/// Label of the axis of moments at detachment.
+pub const END_MOMENT: &str = "bending moment at the base at detachment (nN m)";
 /// Label of the axis of distances.
 pub const DISTANCE: &str = "distance at first touch (mm)";
 
@@ -65,11 +79,38 @@ pub fn channel(name: &str) -> String {
         "contact_distance_mm" => "distance from base to contact (mm)",
         "energy_nj" => "bending energy (nJ)",
         "margin_deg" => "push angle left until detachment (deg)",
+        "peak_strain" => "largest bending strain",
+        "peak_strain_mm" => "arc length to the largest bending strain (mm)",
         "residual" => "residual (whisker lengths)",
         "newton_steps" => "Newton steps",
         other => other,
     };
     label.to_owned()
+}
+
+/// Returns the title of the axis that shows a column or a channel of this name, with its unit.
+#[must_use]
+pub fn axis_title(name: &str) -> String {
+    match name {
+        "push_angle_deg" => PUSH_ANGLE.to_owned(),
+        "distance_mm" => DISTANCE.to_owned(),
+        "time_s" => TIME.to_owned(),
+        "angle_deg" => BASE_ANGLE.to_owned(),
+        "push_of_1_percent_deg" => PUSH_CHANGE.to_owned(),
+        name => channel(name),
+    }
+}
+
+/// Returns the title of the axis that shows a column of this name of detachments, with its unit.
+#[must_use]
+pub fn end_title(name: &str) -> String {
+    match name {
+        "push_angle_deg" => END_PUSH.to_owned(),
+        "push_chord_deg" => END_CHORD.to_owned(),
+        "force_un" => END_FORCE.to_owned(),
+        "base_moment_nnm" => END_MOMENT.to_owned(),
+        name => axis_title(name),
+    }
 }
 
 /// Returns true if a channel is a load or an energy: these span decades, as they vanish at first touch.

@@ -16,7 +16,10 @@ mod sensitivities;
 mod textures;
 
 pub use courses::{courses, forces};
-pub use labels::{DISTANCE, PUSH_ANGLE, regions};
+pub use labels::{
+    DISTANCE, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, PUSH_ANGLE, axis_title, end_title,
+    regions,
+};
 pub use map::{map, regime_fill};
 pub use options::MapOptions;
 pub use overlays::{bands, error_bars, measured};

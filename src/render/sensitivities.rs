@@ -40,7 +40,7 @@ pub fn sensitivities(effects: &[VariableEffect]) -> Plot {
         })
     };
     Plot {
-        x_label: "change of the push angle at detachment for +1 % (deg)".to_owned(),
+        x_label: labels::PUSH_CHANGE.to_owned(),
         y_names: variables.iter().map(|(own, _)| own.name()).collect(),
         bands: effects.iter().filter_map(bar).collect(),
         ..Plot::default()

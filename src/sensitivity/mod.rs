@@ -35,6 +35,7 @@ use crate::trace::{
     Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, crossings, detachments as ends,
 };
 use differentiated::Differentiated;
+use std::sync::atomic::AtomicBool;
 
 /// A detachment with its derivatives.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,7 +165,8 @@ pub fn branch(
     variables: &[Variable],
 ) -> Result<Vec<StateDerivatives>, NoState> {
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
-    let states = Branch::new(whisker, pole, side, distance_mm)?.states(count)?;
+    let states =
+        Branch::new(whisker, pole, side, distance_mm)?.states(count, &AtomicBool::new(false))?;
     let states = states.into_iter().map(|(at, point)| StateDerivatives {
         by: differentiated.of_state(at.into(), point.sliding, point.stable, distance_mm),
         point,

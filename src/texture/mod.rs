@@ -24,9 +24,10 @@ use crate::rod::Side;
 use crate::scene::{SceneError, Surface, Whisker};
 use crate::whisk::phase::{Obstacles, Phase};
 use crate::whisk::states::{BothSides, RowPush};
-use crate::whisk::{AngleCourse, WhiskEventKind};
+use crate::whisk::{AngleCourse, STATES_AT_ONCE, WhiskEventKind};
 use asperities::Asperities;
 use sample::{Crossing, Held};
+use std::sync::atomic::{AtomicBool, Ordering};
 use tip::TipFrame;
 
 /// Course of a whisker behind a rough surface.
@@ -48,8 +49,15 @@ pub enum TextureError {
     #[error(transparent)]
     Surface(#[from] SceneError),
     /// The base turns away from the surface.
-    #[error("angle {0} deg: must be between -90 and 90 deg from the normal of the surface")]
-    Angle(f64),
+    #[error(
+        "angle_deg[{index}] = {angle_deg}: must be between -90 and 90 deg from the normal of the surface"
+    )]
+    Angle {
+        /// Index of the sample whose angle is out of range.
+        index: usize,
+        /// Angle of the sample, in degrees.
+        angle_deg: f64,
+    },
     /// The resting whisker does not fit between two asperities.
     #[error(
         "the resting whisker does not fit between asperities {} and {}, at {} and {} mm: surface.spacing_um must be larger, or \
@@ -82,6 +90,9 @@ pub enum TextureError {
         /// Side of the whisker that the asperity is on.
         side: Side,
     },
+    /// The course was cancelled.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 /// Computes the course of `whisker` behind `surface`.
@@ -108,10 +119,24 @@ pub fn texture(
     surface: &Surface,
     course: &AngleCourse,
 ) -> Result<Texture, TextureError> {
+    texture_until(whisker, surface, course, &AtomicBool::new(false))
+}
+
+/// Computes the course as [`texture`] does. If `cancel` is true, the function soon returns an error.
+///
+/// # Errors
+/// Fails as [`texture`] does, and if it is cancelled.
+pub fn texture_until(
+    whisker: &Whisker,
+    surface: &Surface,
+    course: &AngleCourse,
+    cancel: &AtomicBool,
+) -> Result<Texture, TextureError> {
     surface.check(whisker)?;
     let angles = course.angles_deg();
-    if let Some(angle) = angles.iter().find(|angle| angle.abs() > 90.0) {
-        return Err(TextureError::Angle(*angle));
+    if let Some(index) = angles.iter().position(|angle| angle.abs() > 90.0) {
+        let angle_deg = angles[index];
+        return Err(TextureError::Angle { index, angle_deg });
     }
     let tips = TipFrame::new(whisker, surface);
     let (asperities, states) = Asperities::new(whisker, surface, &tips)?;
@@ -132,7 +157,7 @@ pub fn texture(
         place.contact(side, obstacle, push)
     });
     let contacts: Vec<Contact> = contacts.collect();
-    let held = place.held(&states, &contacts, &moments);
+    let held = place.held(&states, &contacts, &moments, cancel)?;
 
     let changes = passages.iter().map(|own| [own.time_s, own.angle]);
     let changes: Vec<[f64; 2]> = changes.collect();
@@ -140,7 +165,7 @@ pub fn texture(
         .iter()
         .map(|own| place.contact(own.side, own.obstacle, own.push));
     let contacts: Vec<Contact> = contacts.collect();
-    let held_then = place.held(&states, &contacts, &changes);
+    let held_then = place.held(&states, &contacts, &changes, cancel)?;
     let kinds = passages.iter().zip(&contacts).map(|(passage, contact)| {
         let end = contact.map(|own| states.detachment(own.side, own.row_push.0));
         passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
@@ -188,9 +213,16 @@ impl Placed<'_> {
         states: &BothSides,
         contacts: &[Contact],
         moments: &[[f64; 2]],
-    ) -> Vec<Option<Held>> {
+        cancel: &AtomicBool,
+    ) -> Result<Vec<Option<Held>>, TextureError> {
         let row = |contact: &Contact| contact.map(|own| (own.side, own.row_push));
-        let readings = states.readings(&contacts.iter().map(row).collect::<Vec<_>>());
+        let mut readings = Vec::with_capacity(contacts.len());
+        for own in contacts.chunks(STATES_AT_ONCE) {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(TextureError::Cancelled);
+            }
+            readings.extend(states.readings(&own.iter().map(row).collect::<Vec<_>>()));
+        }
         let held = contacts.iter().zip(readings).zip(moments);
         let held = held.map(|((contact, reading), [_, angle])| {
             let AsperityContact {
@@ -207,11 +239,22 @@ impl Placed<'_> {
                     .map(|reading| (reading, self.tips.held(x_mm, side, *angle, &reading))),
             })
         });
-        held.collect()
+        Ok(held.collect())
     }
 }
 
 impl Texture {
+    /// Returns one line for samples without a state; `None` without such samples.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        let is_undecided = |own: &&TextureSample| own.phase == TexturePhase::Undecided;
+        let undecided = self.samples.iter().filter(is_undecided).count();
+        let all = self.samples.len();
+        (undecided > 0).then(|| {
+            format!("{undecided} of {all} samples are undecided, for the reasons in the table")
+        })
+    }
+
     /// Returns the energy that the detachments of the course lose, in nJ; NaN if the loss of one is not known.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {

@@ -13,6 +13,10 @@ use crate::shooting::batch::Method;
 use crate::shooting::{PeakStrain, Reader, Reading};
 use glam::DVec2;
 use serde::Serialize;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Number of points that are computed between two looks at the flag that cancels.
+const POINTS_AT_ONCE: usize = 1 << 10;
 
 /// Branch: all states of one whisker at one pole that are connected with first touch.
 #[derive(Clone, Debug)]
@@ -134,18 +138,42 @@ impl Branch {
     /// # Errors
     /// The corrector fails at a point between two nodes of the continuation.
     pub fn points(&self, count: usize) -> Result<Vec<BranchPoint>, NoState> {
-        let states = self.states(count)?;
+        self.points_until(count, &AtomicBool::new(false))
+    }
+
+    /// Returns points of the branch as [`Branch::points`] does. If `cancel` is true, the function soon returns an error.
+    ///
+    /// # Errors
+    /// Fails as [`Branch::points`] does, and if it is cancelled.
+    pub fn points_until(
+        &self,
+        count: usize,
+        cancel: &AtomicBool,
+    ) -> Result<Vec<BranchPoint>, NoState> {
+        let states = self.states(count, cancel)?;
         Ok(states.into_iter().map(|(_, point)| point).collect())
     }
 
-    /// Returns the points of [`Branch::points`], each with `(tau, load)` of its contact.
-    pub(crate) fn states(&self, count: usize) -> Result<Vec<(DVec2, BranchPoint)>, NoState> {
+    /// Returns the points of [`Branch::points_until`], each with `(tau, load)` of its contact.
+    pub(crate) fn states(
+        &self,
+        count: usize,
+        cancel: &AtomicBool,
+    ) -> Result<Vec<(DVec2, BranchPoint)>, NoState> {
+        let go_on = || match cancel.load(Ordering::Relaxed) {
+            true => Err(self.failed()),
+            false => Ok(()),
+        };
         let Continuation { nodes, fold, end } = &self.continuation;
         let lengths = self.lengths();
         let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
         let guess = |target: &f64| interpolate(nodes, &lengths, *target);
         let (near, starts): (Vec<usize>, Vec<DVec2>) = targets.iter().map(guess).unzip();
-        let corrected = self.level.correct(&starts, ON_CURVE);
+        let mut corrected = Vec::with_capacity(starts.len());
+        for starts in starts.chunks(POINTS_AT_ONCE) {
+            go_on()?;
+            corrected.extend(self.level.correct(starts, ON_CURVE));
+        }
         let (last, last_node) = (targets.len() - 1, nodes.len() - 1);
         let end_mark = match (fold, end) {
             (Some(_), Edge::Fold) => BranchMark::SecondFold,
@@ -171,22 +199,27 @@ impl Branch {
         }
         let stable = fold_at.map_or(marked.len(), |fold| fold + 1);
         let nodes: Vec<CurveNode> = marked.iter().map(|(node, _)| *node).collect();
-        let mut states = self.pushed(&nodes[..stable])?;
+        let mut states = Vec::with_capacity(nodes.len());
+        for nodes in nodes[..stable].chunks(POINTS_AT_ONCE) {
+            go_on()?;
+            states.extend(self.pushed(nodes)?);
+        }
         states.extend(self.beyond_fold(&nodes[stable..]));
         let is_detachment =
             |mark: &BranchMark| matches!(mark, BranchMark::SlipOff | BranchMark::PullOff);
         let snaps_deg = self.snaps_deg();
         let points = marked.iter().zip(states).enumerate();
         let points = points.map(|(i, ((_, mark), state))| {
+            go_on()?;
             let mark = mark.filter(|mark| self.detaches() || !is_detachment(mark));
             let point = BranchPoint {
                 mark,
                 snaps_deg: mark.filter(is_detachment).and(snaps_deg),
                 ..self.point(&state, i < stable)
             };
-            (state.node.point, point)
+            Ok((state.node.point, point))
         });
-        Ok(points.collect())
+        points.collect()
     }
 
     /// Returns the push angle, in degrees, up to which the row has other stable states where those from first touch end.

@@ -28,16 +28,31 @@ pub enum CourseError {
         angles: usize,
     },
     /// A time does not grow.
-    #[error("time {time_s} s after {before_s} s: times must grow")]
+    #[error("time_s[{index}] = {time_s}: must be more than the time before it, {before_s} s")]
     Time {
+        /// Index of the sample that does not grow.
+        index: usize,
         /// Time of the sample that does not grow, in s.
         time_s: f64,
         /// Time of the sample before the one that does not grow, in s.
         before_s: f64,
     },
-    /// A number is not finite or an angle is beyond a turn.
-    #[error("{0}: must be a finite time, or an angle between -360 and 360 degrees")]
-    Number(f64),
+    /// A time is not finite.
+    #[error("time_s[{index}] = {time_s}: must be finite")]
+    NotFinite {
+        /// Index of the sample whose time is not finite.
+        index: usize,
+        /// Time of the sample, in s.
+        time_s: f64,
+    },
+    /// An angle is beyond a turn, or no number.
+    #[error("angle_deg[{index}] = {angle_deg}: must be between -360 and 360")]
+    Angle {
+        /// Index of the sample whose angle is out of range.
+        index: usize,
+        /// Angle of the sample, in degrees.
+        angle_deg: f64,
+    },
     /// A sine has fewer than two samples in a period.
     #[error(
         "frequency {frequency_hz} Hz with {rate_hz} samples per second: must be at most half as large"
@@ -66,17 +81,22 @@ impl AngleCourse {
         if times < 2 || times != angles {
             return Err(CourseError::Count { times, angles });
         }
-        let is_bad = |(time, angle): (&f64, &f64)| match (time.is_finite(), is_angle(*angle)) {
-            (false, _) => Some(*time),
-            (_, false) => Some(*angle),
-            _ => None,
-        };
-        if let Some(number) = times_s.iter().zip(&angles_deg).find_map(is_bad) {
-            return Err(CourseError::Number(number));
+        if let Some(index) = times_s.iter().position(|time| !time.is_finite()) {
+            let time_s = times_s[index];
+            return Err(CourseError::NotFinite { index, time_s });
         }
-        if let Some(pair) = times_s.windows(2).find(|pair| pair[1] <= pair[0]) {
-            let [before_s, time_s] = [pair[0], pair[1]];
-            return Err(CourseError::Time { time_s, before_s });
+        if let Some(index) = angles_deg.iter().position(|angle| !is_angle(*angle)) {
+            let angle_deg = angles_deg[index];
+            return Err(CourseError::Angle { index, angle_deg });
+        }
+        if let Some(before) = times_s.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let [before_s, time_s] = [times_s[before], times_s[before + 1]];
+            let index = before + 1;
+            return Err(CourseError::Time {
+                index,
+                time_s,
+                before_s,
+            });
         }
         Ok(Self {
             times_s,

@@ -67,7 +67,7 @@ impl Leg {
 }
 
 impl<'a> Legs<'a> {
-    /// Creates the course in progress that begins in `phase`, without contact. `sides` are the states on `[CB, CF]`.
+    /// Creates the course in progress that begins in `phase`. `sides` are the states on `[CB, CF]`.
     pub fn new(turns: &'a Turns, phase: Phase, sides: [Option<&'a SideStates>; 2]) -> Self {
         Self {
             turns,
@@ -79,8 +79,13 @@ impl<'a> Legs<'a> {
         }
     }
 
-    /// Adds the sample at the `angle` of the base, in radians, and the time in s. No event lies between it and the last passage.
-    pub fn sample(&mut self, angle: f64, time_s: f64) {
+    /// Adds the first sample of the course, at the `angle` of the base, in radians, and the time in s. A contact has moved there from
+    /// first touch.
+    pub fn first(&mut self, angle: f64, time_s: f64) {
+        if let Phase::Contact { side, obstacle } = self.phase {
+            let push = self.turns.push(side, obstacle, angle).max(0.0);
+            self.friction.touch(side, push);
+        }
         self.end(Leg {
             angles: [angle; 2],
             times: [time_s; 2],

@@ -12,18 +12,21 @@ mod legs;
 pub(crate) mod phase;
 mod readings;
 mod rows;
+mod start;
 pub(crate) mod states;
 mod turns;
 
 pub use course::{AngleCourse, CourseError};
 pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
+pub use start::{CourseStart, WhiskOptions};
 
 use crate::rod::{Rest, Side};
-use crate::scene::{Pole, Whisker};
+use crate::scene::{Pole, Whisker, digits};
 use crate::sheet::Row;
 use crate::trace::NoState;
 use legs::Legs;
+use phase::{Phase, ROUNDING};
 use readings::Found;
 use states::SideStates;
 use turns::Turns;
@@ -37,9 +40,38 @@ pub struct Whisk {
     pub events: Vec<WhiskEvent>,
     /// Angle of the base at first touch on CF, in degrees. It differs from 0 with the radius of the pole.
     pub cf_touch_deg: f64,
+    /// First angle of the base, in degrees, if it lies beyond first touch and no start was given: the whisker is then assumed to be free.
+    /// `None` without this assumption.
+    pub assumed_free_deg: Option<f64>,
 }
 
 impl Whisk {
+    /// Returns one line for the assumption of a free whisker beyond first touch, and one for samples without a state; none without these.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let start = self.assumed_free_deg.map(|angle_deg| {
+            format!(
+                "the first angle is {} deg, beyond first touch: the whisker is assumed to be free, past the pole; choose the start \
+                 `contact` or `free`",
+                digits(angle_deg)
+            )
+        });
+        let spans = self
+            .events
+            .iter()
+            .filter(|own| own.event == WhiskEventKind::Undecided);
+        let undecided = self
+            .samples
+            .iter()
+            .filter(|own| own.regime == WhiskRegime::Undecided);
+        let (spans, undecided) = (spans.count(), undecided.count());
+        let without = (undecided > 0 || spans > 0).then(|| {
+            let all = self.samples.len();
+            format!("{undecided} of {all} samples are undecided, for the reasons in the table; {spans} such spans begin")
+        });
+        start.into_iter().chain(without).collect()
+    }
+
     /// Returns the energy that friction dissipates along the course, in nJ; NaN if a part of the course is undecided.
     #[must_use]
     pub fn dissipated_nj(&self) -> f64 {
@@ -80,7 +112,7 @@ pub enum WhiskError {
     /// The course begins in contact, where the state depends on what was before.
     #[error(
         "begins in contact: the first angle is {angle_deg} deg; must be at most 0 deg, or at least {cf_touch_deg:.6} deg, where the \
-         whisker touches the pole from its other side"
+         whisker touches the pole from its other side; choose the start `contact` for a course that begins in contact"
     )]
     Begin {
         /// First angle of the course, in degrees.
@@ -88,9 +120,25 @@ pub enum WhiskError {
         /// Angle of the base at first touch on CF, in degrees.
         cf_touch_deg: f64,
     },
+    /// The course should begin in contact, but no side holds the whisker at the first angle.
+    #[error(
+        "cannot begin in contact: the first angle is {angle_deg} deg; pushes on CB end at {cb_end_deg:.6} deg{}",
+        .cf_end_deg.map_or_else(String::new, |end| format!(", and on CF at {end:.6} deg"))
+    )]
+    NotHeld {
+        /// First angle of the course, in degrees.
+        angle_deg: f64,
+        /// Angle of the base at which a push on CB ends, in degrees.
+        cb_end_deg: f64,
+        /// Angle of the base at which a push on CF ends, in degrees; `None` if the resting whisker does not reach the pole there.
+        cf_end_deg: Option<f64>,
+    },
     /// The end of the push was not found on this side.
     #[error("the detachment on {0:?} was not found")]
     Unresolved(Side),
+    /// The course was cancelled by [`WhiskOptions::cancel`].
+    #[error("cancelled")]
+    Cancelled,
 }
 
 /// Computes the course of `whisker` in front of `pole`, which first touches it at `distance_mm` from the base on CB.
@@ -113,6 +161,20 @@ pub fn whisk(
     pole: &Pole,
     distance_mm: f64,
     course: &AngleCourse,
+) -> Result<Whisk, WhiskError> {
+    whisk_with(whisker, pole, distance_mm, course, &WhiskOptions::default())
+}
+
+/// Computes the course as [`whisk`] does, with a start and a flag that cancels.
+///
+/// # Errors
+/// Fails as [`whisk`] does. Also if the course should begin in contact, but no side holds the whisker, and if it is cancelled.
+pub fn whisk_with(
+    whisker: &Whisker,
+    pole: &Pole,
+    distance_mm: f64,
+    course: &AngleCourse,
+    options: &WhiskOptions,
 ) -> Result<Whisk, WhiskError> {
     let rods = [Side::Cb, Side::Cf].map(|side| whisker.rod(pole, side));
     let rests = rods.each_ref().map(Rest::new);
@@ -139,22 +201,35 @@ pub fn whisk(
         cf_end: cf_states.as_ref().map(|states| states.end(0)),
     };
     let first = course.angles_deg[0];
-    let phase = turns.begin(first.to_radians()).ok_or(WhiskError::Begin {
-        angle_deg: first,
-        cf_touch_deg: turns.cf_touch.to_degrees(),
-    })?;
+    let phase = begin(&turns, first, options.start)?;
     let found = Found {
         cb: &cb_states,
         cf: cf_states.as_ref(),
     };
     let mut legs = Legs::new(&turns, phase, [Some(found.cb), found.cf]);
-    legs.sample(first.to_radians(), course.times_s[0]);
+    legs.first(first.to_radians(), course.times_s[0]);
     let times = course.times_s.windows(2);
     for (angles, times) in course.angles_deg.windows(2).zip(times) {
+        if options.is_cancelled() {
+            return Err(WhiskError::Cancelled);
+        }
         let angles = [angles[0], angles[1]].map(f64::to_radians);
         legs.leg(angles, [times[0], times[1]]);
     }
-    let samples = found.samples(&legs.samples);
+    let mut samples = Vec::with_capacity(legs.samples.len());
+    for own in legs.samples.chunks(STATES_AT_ONCE) {
+        if options.is_cancelled() {
+            return Err(WhiskError::Cancelled);
+        }
+        samples.extend(found.samples(own));
+    }
+    let mut events = Vec::with_capacity(legs.events.len());
+    for own in legs.events.chunks(STATES_AT_ONCE) {
+        if options.is_cancelled() {
+            return Err(WhiskError::Cancelled);
+        }
+        events.extend(found.events(own));
+    }
     let times = course.times_s.iter().zip(&course.angles_deg);
     let samples = times
         .zip(samples)
@@ -165,7 +240,28 @@ pub fn whisk(
         });
     Ok(Whisk {
         samples: samples.collect(),
-        events: found.events(&legs.events),
+        events,
         cf_touch_deg: turns.cf_touch.to_degrees(),
+        assumed_free_deg: (options.start.is_none() && first.to_radians() > ROUNDING)
+            .then_some(first),
     })
+}
+
+/// Number of states that are computed between two looks at the flag that cancels.
+pub(crate) const STATES_AT_ONCE: usize = 1 << 10;
+
+/// Returns the phase in which a course begins at the angle `first_deg`, in degrees.
+fn begin(turns: &Turns, first_deg: f64, start: Option<CourseStart>) -> Result<Phase, WhiskError> {
+    let first = first_deg.to_radians();
+    match start {
+        Some(CourseStart::Contact) => turns.held(first).ok_or_else(|| WhiskError::NotHeld {
+            angle_deg: first_deg,
+            cb_end_deg: turns.cb_end.to_degrees(),
+            cf_end_deg: turns.cf_end.map(|end| (turns.cf_touch - end).to_degrees()),
+        }),
+        _ => turns.begin(first).ok_or(WhiskError::Begin {
+            angle_deg: first_deg,
+            cf_touch_deg: turns.cf_touch.to_degrees(),
+        }),
+    }
 }

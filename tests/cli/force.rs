@@ -43,7 +43,8 @@ fn both_methods_agree_on_the_example() {
     );
     let svg = String::from_utf8(place.bytes("f.svg")).unwrap();
     assert!(
-        svg.contains(">contact force (\u{b5}N)<") && svg.contains(">moment at the base (nN m)<")
+        svg.contains(">contact force (\u{b5}N)<")
+            && svg.contains(">bending moment at the base (nN m)<")
     );
 }
 

@@ -57,7 +57,7 @@ fn a_sine_and_its_angles_give_one_course() {
     for label in [
         "angle of the base (deg)",
         "contact force (\u{b5}N)",
-        "moment at the base (nN m)",
+        "bending moment at the base (nN m)",
         "slip-off",
     ] {
         assert!(svg.contains(&format!(">{label}<")), "{label}");
@@ -118,4 +118,28 @@ fn wrong_courses_are_refused() {
             "1,1,1",
         ])
         .assert_refused(&["--distance 19.9", "out of reach"]);
+}
+
+/// A course that begins beyond first touch says what it assumes, and `--start` chooses.
+#[test]
+fn a_start_beyond_first_touch_is_named() {
+    let place = Place::with(SCENE);
+    place.write("a.csv", "time_s,angle_deg\n0,10\n1,12\n");
+    let angles = ["--angles", "a.csv"];
+    let assumed =
+        "warning: the first angle is 10 deg, beyond first touch: the whisker is assumed to be free";
+    let run = whisk(&place, &angles);
+    assert!(run.code == Some(0) && run.err.contains(assumed), "{run:?}");
+    assert!(run.out.contains(",free,"), "{run:?}");
+    for (start, regime) in [("free", ",free,"), ("contact", ",contact,cb,10,")] {
+        let run = whisk(&place, &[&angles[..], &["--start", start]].concat());
+        assert!(
+            run.code == Some(0) && !run.err.contains("warning"),
+            "{run:?}"
+        );
+        assert!(run.out.contains(regime), "{run:?}");
+    }
+    place.write("a.csv", "time_s,angle_deg\n0,20\n1,12\n");
+    let run = whisk(&place, &["--angles", "a.csv", "--start", "contact"]);
+    run.assert_refused(&["--angles a.csv: cannot begin in contact: the first angle is 20 deg"]);
 }

@@ -60,7 +60,7 @@ impl RoughCourse {
         let [low, high] = [cf.min(-1.0), cb.max(found.cf_touch_deg)];
         // To one side, back, and so on: at least half of the turning points are in contact.
         own.turns = vec![-0.5];
-        if seed % 2 == 0 {
+        if seed.is_multiple_of(2) {
             own.turns.push(1.5 * high + 0.5);
         }
         for i in 0..7 {

@@ -136,7 +136,13 @@ fn courses_that_cannot_be_are_refused() {
     let refused = |surface: &Surface, angles: &[f64]| {
         texture(&cone.whisker, surface, &course(angles)).unwrap_err()
     };
-    assert_eq!(refused(&surface, &[0.0, 91.0]), TextureError::Angle(91.0));
+    assert_eq!(
+        refused(&surface, &[0.0, 91.0]),
+        TextureError::Angle {
+            index: 1,
+            angle_deg: 91.0
+        }
+    );
     let thick = Surface {
         asperity_radius_um: 400.0,
         ..SINGLE

@@ -52,10 +52,11 @@ export function spoken(name, value, digits) {
 
 // Channels by name.
 export const CHANNELS = {
-    force_un: 'Contact force', base_moment_nnm: 'Moment at the base', base_force_x_un: 'Force on the base, along',
-    base_force_y_un: 'Force on the base, across', energy_nj: 'Bending energy', arc_length_mm: 'Arc length to the contact',
-    contact_distance_mm: 'Distance to the contact', contact_angle_deg: 'Contact angle', push_chord_deg: 'Chord angle',
-    margin_deg: 'Push left until detachment', residual: 'Residual', peak_strain: 'Largest strain', peak_strain_mm: 'Largest strain at',
+    force_un: 'Contact force', base_moment_nnm: 'Bending moment at the base', base_force_x_un: 'Force on the base along the whisker',
+    base_force_y_un: 'Force on the base across the whisker', energy_nj: 'Bending energy', arc_length_mm: 'Arc length from base to contact',
+    contact_distance_mm: 'Distance from base to contact', contact_angle_deg: 'Contact angle', push_chord_deg: 'Chord angle',
+    margin_deg: 'Push angle left until detachment', residual: 'Residual', peak_strain: 'Largest bending strain',
+    peak_strain_mm: 'Arc length to the largest bending strain',
 };
 
 const AXES = { push_angle_deg: 'Push angle', distance_mm: 'Distance at first touch', time_s: 'Time', change_deg: 'Change of push angle', residual_deg: 'Measured \u2212 computed' };

@@ -3,7 +3,7 @@
 mod rows;
 
 use crate::arguments::{parameter, refused};
-use crate::errors::{SceneError, of_scene};
+use crate::errors::of_scene;
 use crate::scene::CheckedScene;
 use crate::threads::{self, ThreadCount};
 use crate::traces::single;
@@ -98,7 +98,7 @@ pub fn detachment<'py>(
     };
     let (count, width) = (rows.distance_mm.len(), rows.variables.len());
     let ends = threads::run(py, threads, |_| Ok(()), |cancel| rows.ends(cancel))?;
-    let ends = ends.map_err(|refused| of_row(py, &refused, count))?;
+    let ends = ends.map_err(|refused| of_row(py, &refused))?;
     let mut kinds = vec![0; count];
     for own in &ends {
         kinds[own.row] = own.end.kind as u8;
@@ -123,18 +123,9 @@ pub fn detachment<'py>(
     Ok((kinds, values(|end| end.residual), quantities.into()))
 }
 
-/// Returns the exception of a refused row, with its index if there are several.
-fn of_row(py: Python<'_>, refused: &RefusedRow, count: usize) -> PyErr {
-    let plain = of_scene(py, &refused.why);
-    if count == 1 {
-        return plain;
-    }
-    let exception = SceneError::new_err(format!("element {}: {}", refused.row, plain.value(py)));
-    for name in ["key", "value", "allowed"] {
-        let copied = plain.value(py).getattr(name);
-        if let Err(why) = copied.and_then(|value| exception.value(py).setattr(name, value)) {
-            return why;
-        }
-    }
-    exception
+/// Returns the exception of a refused row, with its index as the attribute `element`.
+fn of_row(py: Python<'_>, refused: &RefusedRow) -> PyErr {
+    let exception = of_scene(py, &refused.why);
+    let named = exception.value(py).setattr("element", refused.row);
+    named.map_or_else(|why| why, |()| exception)
 }

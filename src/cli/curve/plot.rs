@@ -1,7 +1,10 @@
 //! Plots of detachment curves: the push angle or a load to the right, the distance upward.
 
 use clap::ValueEnum;
-use whiskmap::render::{CurveAxis, DISTANCE, DrawnCurve, Plot, Stroke, curves, regions};
+use whiskmap::render::{
+    CurveAxis, DISTANCE, DrawnCurve, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, Plot, Stroke,
+    curves, regions,
+};
 use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweptWhisker};
 use whiskmap::shooting::Resolution;
@@ -77,16 +80,16 @@ impl CurveColumn {
     pub const fn axis(self) -> CurveAxis {
         match self {
             Self::PushAngleDeg => CurveAxis {
-                label: "push angle at detachment (deg)",
+                label: END_PUSH,
                 value: |end| end.push_angle_deg,
             },
             // The sign keeps the sides apart.
             Self::ForceUn => CurveAxis {
-                label: "force at detachment (\u{b5}N)",
+                label: END_FORCE,
                 value: |end| Some(end.side.sign() * end.force_un?),
             },
             Self::BaseMomentNnm => CurveAxis {
-                label: "moment at the base at detachment (nN m)",
+                label: END_MOMENT,
                 value: |end| end.base_moment_nnm,
             },
         }
@@ -125,6 +128,6 @@ const UPWARD: CurveAxis = CurveAxis {
 
 /// Horizontal axis of plots of measured chord angles, in degrees.
 pub const CHORD: CurveAxis = CurveAxis {
-    label: "chord angle at detachment (deg)",
+    label: END_CHORD,
     value: |end| end.push_chord_deg,
 };

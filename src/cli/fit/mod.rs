@@ -13,10 +13,9 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use table::{six_digits, table};
+use table::table;
 use whiskmap::fit::{Fit, FitError, fit};
-use whiskmap::measured::MeasuredPoints;
-use whiskmap::scene::{Parameter, Scene, digits};
+use whiskmap::scene::Parameter;
 use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
@@ -70,9 +69,12 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
         }
         _ => why.into(),
     })?;
-    name_moved(&points, &scene, &found);
-    data::name_left_out(&points, &found.comparison);
-    warn(&points, &found);
+    if let Some(note) = found.moved_start(&scene, &points) {
+        message(&format!("note: {note}"));
+    }
+    for warning in found.warnings(&points) {
+        message(&format!("warning: {warning}"));
+    }
     let toml = toml.filter(|_| found.not_a_fit.is_none());
     let json = json.map(|file| (file, format!("{:#}\n", document(&found))));
     let values = found.estimates.iter();
@@ -109,42 +111,6 @@ fn print(title: &str, fit: &Fit, outputs: Vec<(OutputFile, String)>) -> Result<(
         }
     }
     Ok(())
-}
-
-/// Prints the parameter that does not start at the value of the scene, whose whisker does not reach a point.
-fn name_moved(points: &MeasuredPoints, scene: &Scene, fit: &Fit) {
-    let Some(moved) = fit.moved else {
-        return;
-    };
-    let own = moved.parameter.value(scene).unwrap_or(f64::NAN);
-    let [distance, start, own] = [moved.distance_mm, moved.value, own].map(six_digits);
-    message(&format!(
-        "note: {}:{}: {distance} mm is out of reach of the scene's whisker: {} starts at {start} instead of {own}",
-        points.origin,
-        moved.line,
-        moved.parameter.name()
-    ));
-}
-
-/// Warns of parameters at a limit, parameters that the points do not determine, and too small standard deviations.
-fn warn(points: &MeasuredPoints, fit: &Fit) {
-    for estimate in &fit.estimates {
-        let name = estimate.parameter.name();
-        if estimate.is_at_limit {
-            message(&format!(
-                "warning: {name}: {} is the last value that the scene accepts, so there is no standard error",
-                digits(estimate.value)
-            ));
-        } else if estimate.standard_error.is_none() && fit.not_a_fit.is_none() {
-            message(&format!("warning: {name}: not determined by these points"));
-        }
-    }
-    if points.have_deviations && !fit.is_explained() && fit.not_a_fit.is_none() {
-        let ratio = (fit.chi_square / fit.degrees_of_freedom.max(1) as f64).sqrt();
-        message(&format!(
-            "warning: residuals are {ratio:.1} times as large as sd_deg: standard errors are too small by about that factor"
-        ));
-    }
 }
 
 /// Returns the fit as JSON, with parameters by name.

@@ -1,0 +1,78 @@
+"""Ctrl-C ends every call soon: a computation looks at signals while it runs."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+# Statements that make the arguments `prepared`, and the call that is interrupted. Each call takes many seconds.
+CALLS = {
+    "map": ("scene = cone.replace(taper=wm.Range(0, 1, 900))", "wm.map(scene, engine='cpu')"),
+    "curve of many whiskers": ("scene = cone.replace(taper=wm.Range(0, 1, 9000))", "wm.curve(scene)"),
+    "curve of many distances": (
+        "scene = cone.replace(distance_mm=wm.Range(2, 19.9, 65536), friction=0.3)",
+        "[wm.curve(scene) for _ in range(20)]",
+    ),
+    "detachment": ("taper = np.linspace(0, 1, 400_000)", "wm.detachment(cone, distance_mm=15.0, side='cb', taper=taper, jac=['taper'])"),
+    "sensitivity": ("", "[wm.sensitivity(cone, np.linspace(2, 19, 4000)) for _ in range(50)]"),
+    "branch": ("", "[wm.branch(cone, 15.66, points=1_000_000) for _ in range(9)]"),
+    "shape": ("", "[wm.shape(cone, 15.66, 10, points=1_000_000) for _ in range(50)]"),
+    "whisk": ("t = np.arange(1_000_000) / 1000; a = 40 * np.sin(2 * np.pi * 10 * t)", "wm.whisk(cone, 15.66, t, a)"),
+    "whisk with friction": (
+        "t = np.arange(1_000_000) / 1000; a = 40 * np.sin(2 * np.pi * 10 * t); rough = cone.replace(friction=0.3)",
+        "wm.whisk(rough, 15.66, t, a)",
+    ),
+    "texture": (
+        "rough = wm.Scene.read(sys.argv[1] + '/scenes/texture_cone.toml'); t = np.arange(1_000_000) / 1000; a = 15 * np.sin(t)",
+        "wm.texture(rough, t, a)",
+    ),
+    "force of the model": (
+        "f = pd.read_csv(sys.argv[1] + '/scenes/frames.csv', comment='#'); f = pd.concat([f] * 400, ignore_index=True);"
+        " f['time_s'] = np.arange(len(f))",
+        "wm.force(cone, f, model=True)",
+    ),
+    "fit": (
+        "rng = np.random.default_rng(1); n = 400; p = {'side': ['cb'] * n, 'distance_mm': rng.uniform(3, 19, n),"
+        " 'push_angle_deg': rng.uniform(1, 90, n)}",
+        "wm.fit(cone, p, ['tip_radius_um', 'parabola_per_mm', 'base_radius_um', 'length_mm', 'pole_radius_mm'])",
+    ),
+    "design": ("", "[wm.design(cone, 'taper', distance_mm=15.0, side='cb', max_force_un=5) for _ in range(99)]"),
+    "scene of traced points": (
+        "x = np.linspace(0, 15, 8000); xy = np.c_[x, 0.02 * x**2 + 0.1 * np.sin(3 * x)]",
+        "[cone.replace(parabola_per_mm=None, vertex_mm=None, rest_points=xy) for _ in range(99)]",
+    ),
+}
+
+SCRIPT = """
+import signal, sys, threading, time
+import numpy as np
+import pandas as pd
+import whiskmap as wm
+signal.signal(signal.SIGINT, signal.default_int_handler)
+cone = wm.Scene.read(sys.argv[1] + "/scenes/cone.toml")
+{prepared}
+wm.curve(cone.replace(distance_mm=[9.0]))
+print("begun", flush=True)
+try:
+    try:
+        {call}
+    finally:
+        ended = time.monotonic()
+except KeyboardInterrupt:
+    print("interrupted", ended, flush=True)
+"""
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_ctrl_c_ends_the_call(name):
+    prepared, call = CALLS[name]
+    command = [sys.executable, "-c", SCRIPT.format(prepared=prepared, call=call), str(ROOT)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "begun\n", process.stderr.read()
+    process.send_signal(signal.SIGINT)
+    out, error = process.communicate(timeout=60)
+    assert out.startswith("interrupted") and process.returncode == 0, error
