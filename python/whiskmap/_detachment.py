@@ -46,6 +46,8 @@ class Detachment:
         Bending energy of the whisker.
     residual : array of float
         Remaining error, relative to the distance of the pole.
+    snaps_deg : array of float
+        Push angle up to which other stable states exist at this end: the whisker may snap there. NaN without such states.
     variables : tuple of str
         Names of the variables of `jac`.
     jac : dict of str to array of float
@@ -65,6 +67,7 @@ class Detachment:
     base_moment_nnm: NDArray[np.float64]
     energy_nj: NDArray[np.float64]
     residual: NDArray[np.float64]
+    snaps_deg: NDArray[np.float64]
     variables: tuple[str, ...]
     jac: dict[str, NDArray[np.float64]]
 
@@ -153,7 +156,7 @@ def detachment(
     fixed = {name: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
     flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items() if name not in fixed}
     try:
-        kinds, residual, quantities = _whiskmap.detachment(
+        kinds, residual, snaps, quantities = _whiskmap.detachment(
             None if scene is None else _checked(scene),
             fixed,
             {name: array for name, array in flat.items() if name != "distance_mm"},
@@ -167,6 +170,7 @@ def detachment(
     return Detachment(
         kind=_KINDS[kinds].reshape(shape),
         residual=residual.reshape(shape),
+        snaps_deg=snaps.reshape(shape),
         variables=variables,
         jac={name: by.reshape(*shape, len(variables)) for name, _, by in quantities} if variables else {},
         **{name: values.reshape(shape) for name, values, _ in quantities},

@@ -115,4 +115,6 @@ def detachment(
     is_cb: NDArray[bool_],
     variables: Sequence[str],
     threads: int | None,
-) -> tuple[NDArray[uint8], NDArray[float64], list[tuple[str, NDArray[float64], NDArray[float64]]]]: ...
+) -> tuple[
+    NDArray[uint8], NDArray[float64], NDArray[float64], list[tuple[str, NDArray[float64], NDArray[float64]]]
+]: ...

@@ -4,10 +4,10 @@ use super::{Place, Run, SCENE, names};
 
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
                      arc_length_mm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
-                     peak_strain_mm,contact_angle_deg,residual,sliding";
+                     peak_strain_mm,contact_angle_deg,residual,sliding,snaps_deg";
 pub const BRANCH: &str = "distance_mm,side,stable,push_angle_deg,push_chord_deg,arc_length_mm,contact_angle_deg,force_un,\
                       base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,peak_strain_mm,det,\
-                      mark,sliding";
+                      mark,sliding,snaps_deg";
 pub const SHAPE: &str = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,strain,part";
 pub const SPREAD: &str = "side,distance_mm,kind,push_angle_deg,slip_off,pull_off,out_of_reach,unresolved,p5_deg,p25_deg,\
                       p50_deg,p75_deg,p95_deg,mean_deg,sd_deg,sd_first_order_deg,\

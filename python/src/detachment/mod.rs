@@ -47,9 +47,10 @@ type QuantityArrays<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// Kinds of the ends, residuals, and quantities.
+/// Kinds of the ends, residuals, push angles up to which a whisker may snap, and quantities.
 type DetachmentArrays<'py> = (
     Bound<'py, PyArray1<u8>>,
+    Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Vec<QuantityArrays<'py>>,
 );
@@ -120,7 +121,8 @@ pub fn detachment<'py>(
         (name, values(value), PyArray1::from_vec(py, by))
     });
     let kinds = PyArray1::from_vec(py, kinds);
-    Ok((kinds, values(|end| end.residual), quantities.into()))
+    let snaps = values(|end| end.snaps_deg);
+    Ok((kinds, values(|end| end.residual), snaps, quantities.into()))
 }
 
 /// Returns the exception of a refused row, with its index as the attribute `element`.
