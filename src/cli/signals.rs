@@ -1,5 +1,7 @@
-//! Interrupts: remove unfinished files, print one line, exit with 128 + the signal's number.
+//! Interrupts: remove unfinished files, print one line, exit with 128 + the signal's number, or with the code of Windows.
 
+use super::failure::message;
+use std::io::IsTerminal;
 use whiskmap::store::TemporaryFiles;
 
 /// Ends the process on SIGHUP, SIGINT or SIGTERM, removes the `temporary` files, and prints `advice`. A signal that is ignored, for
@@ -8,7 +10,6 @@ use whiskmap::store::TemporaryFiles;
 pub fn handle(temporary: TemporaryFiles, advice: &'static str) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::{iterator::Signals, low_level};
-    use std::io::IsTerminal;
 
     let handled = [SIGHUP, SIGINT, SIGTERM]
         .into_iter()
@@ -21,21 +22,37 @@ pub fn handle(temporary: TemporaryFiles, advice: &'static str) {
         let Some(signal) = signals.forever().next() else {
             return;
         };
-        temporary.abandon();
-        // The current line of a terminal may be a progress bar.
-        let is_watched = std::io::stderr().is_terminal();
-        let start = if is_watched { "\n" } else { "" };
         let name = low_level::signal_name(signal).unwrap_or("a signal");
-        super::failure::message(&format!(
-            "{start}error: interrupted by {name}; unfinished files are removed{advice}"
-        ));
+        clean_up(&temporary, name, advice);
         low_level::exit(128 + signal);
     });
 }
 
-/// Does nothing on systems without these signals: the next run removes the leftovers of an interrupted run.
-#[cfg(not(unix))]
-pub fn handle(_: TemporaryFiles, _: &'static str) {}
+/// Ends the process on Ctrl-C, Ctrl-Break or when its console is closed, removes the `temporary` files, and prints `advice`. The exit code is
+/// that of a process without a handler.
+#[cfg(windows)]
+pub fn handle(temporary: TemporaryFiles, advice: &'static str) {
+    const STATUS_CONTROL_C_EXIT: u32 = 0xC000_013A;
+    // Without the handler, the system ends the process, and the next run removes its leftovers.
+    let _ = ctrlc::set_handler(move || {
+        clean_up(&temporary, "Ctrl-C", advice);
+        std::process::exit(STATUS_CONTROL_C_EXIT.cast_signed());
+    });
+}
+
+/// Removes the unfinished files of a process that `what` ends, and prints `advice`.
+fn clean_up(temporary: &TemporaryFiles, what: &str, advice: &str) {
+    temporary.abandon();
+    // The current line of a terminal may be a progress bar.
+    let start = if std::io::stderr().is_terminal() {
+        "\n"
+    } else {
+        ""
+    };
+    message(&format!(
+        "{start}error: interrupted by {what}; unfinished files are removed{advice}"
+    ));
+}
 
 #[cfg(unix)]
 #[allow(

@@ -11,4 +11,5 @@ pub use quantity::Quantity;
 pub use table::{CsvError, CsvTable};
 
 pub(crate) use names::shortened;
-pub(crate) use source::{TEXT_MIB, bounded};
+pub(crate) use source::{TEXT_MIB, bounded, open};
+pub(crate) use table::MOST_SECONDS;

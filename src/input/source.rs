@@ -1,12 +1,26 @@
 //! Bytes of an input file, and the text that they encode.
 
+use std::fs::File;
 use std::io::{self, Read};
+use std::path::Path;
 
 /// Longest scene or measurement of a benchmark in MiB: far longer than any.
 pub(crate) const TEXT_MIB: u64 = 1;
 
 /// Longest table in MiB: a million samples of a course take 24.
 pub(super) const TABLE_MIB: u64 = 32;
+
+/// Opens an input file.
+///
+/// # Errors
+/// If it cannot be opened. That a path is a folder is an error here or of the first read.
+pub(crate) fn open(path: &Path) -> io::Result<File> {
+    // Windows opens no folder, and calls that a lack of permission.
+    if cfg!(windows) && path.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    File::open(path)
+}
 
 /// Reads all bytes of an input file or stream, at most `most_mib` MiB.
 ///

@@ -2,8 +2,7 @@
 
 use super::lines::{CsvLine, lines, normalised, separator};
 use super::names::{did_you_mean, escaped, shortened};
-use super::source::{TABLE_MIB, bounded, decoded};
-use std::fs::File;
+use super::source::{TABLE_MIB, bounded, decoded, open};
 use std::io;
 use std::path::Path;
 
@@ -62,7 +61,7 @@ impl CsvTable {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
         let path = path.as_ref();
         Self::decode(
-            File::open(path).and_then(|file| bounded(file, TABLE_MIB)),
+            open(path).and_then(|file| bounded(file, TABLE_MIB)),
             &path.to_string_lossy(),
         )
     }
@@ -230,7 +229,30 @@ impl CsvTable {
         let must = format!("{must}{}", if is_quoted { DECIMAL_COMMAS } else { "" });
         self.values(column, &must, |cell| number(cell.to_owned()))
     }
+
+    /// Returns the column `time_s` of the CSV file: times in s that grow, row by row. Without such a column there are no times.
+    ///
+    /// # Errors
+    /// The first cell that is no number or out of its range, or the first line whose time does not grow.
+    pub(crate) fn times_s(&self) -> Result<Vec<f64>, CsvError> {
+        let must = format!("a number between -{MOST_SECONDS:e} and {MOST_SECONDS:e}");
+        let times = self.numbers("time_s", &must, |time| time.abs() <= MOST_SECONDS)?;
+        let times = times.unwrap_or_default();
+        let mut pairs = times.windows(2).zip(self.lines().skip(1));
+        match pairs.find(|(pair, _)| pair[1] <= pair[0]) {
+            None => Ok(times),
+            Some((pair, line)) => {
+                let [before, time] = [pair[0], pair[1]];
+                let what =
+                    format!("time_s = {time}: must be more than {before} of the line before");
+                Err(CsvError::at(&self.origin, line, what))
+            }
+        }
+    }
 }
+
+/// Largest size of a time, in s: 30,000 years, so that a clock may begin at any date.
+pub(crate) const MOST_SECONDS: f64 = 1e12;
 
 /// Largest number of unknown names for which a known one is looked for.
 const MOST_HINTS: usize = 100;

@@ -78,11 +78,16 @@ fn inode(about: &fs::Metadata) -> FileKey {
     }
 }
 
-/// The canonical path of something that need not exist: of its innermost part that does, with the rest as it is.
+/// The canonical path of something that need not exist: of its innermost part that does, with the rest as it is. Where names that differ
+/// in case are usually one file, the rest is in lower case.
 fn resolved(path: &Path) -> Option<PathBuf> {
     let path = std::path::absolute(path).ok()?;
     path.ancestors().find_map(|part| {
         let rest = path.strip_prefix(part).ok()?;
+        let rest = match cfg!(any(windows, target_vendor = "apple")) {
+            true => rest.as_os_str().to_ascii_lowercase().into(),
+            false => rest.to_owned(),
+        };
         Some(part.canonicalize().ok()?.join(rest))
     })
 }

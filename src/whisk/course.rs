@@ -1,6 +1,6 @@
 //! Angle of the base over time.
 
-use crate::input::{CsvError, CsvTable};
+use crate::input::{CsvError, CsvTable, MOST_SECONDS};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -35,8 +35,10 @@ pub enum CourseError {
         /// Time of the sample before the one that does not grow, in s.
         before_s: f64,
     },
-    /// A number is not finite or an angle is beyond a turn.
-    #[error("{0}: must be a finite time, or an angle between -360 and 360 degrees")]
+    /// A time or an angle is out of its range.
+    #[error(
+        "{0}: must be a time between -{MOST_SECONDS:e} and {MOST_SECONDS:e} s, or an angle between -360 and 360 degrees"
+    )]
     Number(f64),
     /// A sine has fewer than two samples in a period.
     #[error(
@@ -66,7 +68,8 @@ impl AngleCourse {
         if times < 2 || times != angles {
             return Err(CourseError::Count { times, angles });
         }
-        let is_bad = |(time, angle): (&f64, &f64)| match (time.is_finite(), is_angle(*angle)) {
+        let is_time = |time: f64| time.abs() <= MOST_SECONDS;
+        let is_bad = |(time, angle): (&f64, &f64)| match (is_time(*time), is_angle(*angle)) {
             (false, _) => Some(*time),
             (_, false) => Some(*angle),
             _ => None,
@@ -135,19 +138,9 @@ impl AngleCourse {
 
     fn of(table: &CsvTable) -> Result<Self, CsvError> {
         let note = table.require(&[&["time_s"], &["angle_deg"]], &[])?;
-        let times_s = table.numbers("time_s", "a finite number", f64::is_finite)?;
+        let times_s = table.times_s()?;
         let angles_deg = table.numbers("angle_deg", "a number between -360 and 360", is_angle)?;
-        let (times_s, angles_deg) = (times_s.unwrap_or_default(), angles_deg.unwrap_or_default());
-        let pairs = times_s.windows(2).zip(table.lines().skip(1));
-        let mut falling = pairs.filter(|(pair, _)| pair[1] <= pair[0]);
-        if let Some((pair, line)) = falling.next() {
-            let what = format!(
-                "time_s = {}: must be more than {} of the line before",
-                pair[1], pair[0]
-            );
-            return Err(CsvError::at(&table.origin, line, what));
-        }
-        let course = Self::new(times_s, angles_deg);
+        let course = Self::new(times_s, angles_deg.unwrap_or_default());
         let course = course.map_err(|why| CsvError::whole(&table.origin, why.to_string()))?;
         Ok(Self { note, ..course })
     }

@@ -8,31 +8,30 @@ mod bench;
 mod branch;
 mod compare;
 mod curve;
-#[cfg(unix)]
 mod damage;
 mod data;
 mod design;
-#[cfg(unix)]
 mod digits;
 mod engine;
 mod explore;
 mod extract;
+// Devices, named pipes and links.
 #[cfg(unix)]
 mod files;
 mod fit;
 mod force;
-#[cfg(unix)]
 mod integrity;
-#[cfg(unix)]
 mod leftovers;
 mod manual;
 mod map;
 mod marks;
+mod numbers;
 mod other;
 mod paper;
 mod pictures;
 mod plan;
 use crate::program;
+// Links and modes.
 #[cfg(unix)]
 mod protected;
 mod refused;
@@ -40,12 +39,12 @@ mod render;
 use crate::sealed;
 mod sensitivity;
 mod shape;
-#[cfg(unix)]
 mod signals;
+// Redirection by a shell.
 #[cfg(unix)]
 mod stdout;
-#[cfg(unix)]
 mod store;
+// Slurm, and its shell.
 #[cfg(unix)]
 mod submit;
 mod sweep;
@@ -56,5 +55,7 @@ mod uncertainty;
 mod units;
 mod verdict;
 mod whisk;
+#[cfg(windows)]
+mod windows;
 
 use program::{Place, Run, SCENE, names};

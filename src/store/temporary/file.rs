@@ -55,9 +55,12 @@ impl TemporaryFile {
         self.file.as_file_mut()
     }
 
-    /// Gives the temporary file its name, and replaces the file that has it.
+    /// Gives the temporary file its name, and replaces the file that has it, even one that is being read.
     pub fn persist(self, name: &Path) -> io::Result<()> {
-        self.file.persist(name)?;
+        let mut file = self.unlocked();
+        // On Windows, the rename of `tempfile` does not replace an open file.
+        fs::rename(file.path(), name)?;
+        file.disable_cleanup(true);
         Ok(())
     }
 
@@ -65,8 +68,16 @@ impl TemporaryFile {
     /// NFS, by a hard link.
     #[cfg(feature = "zarr")]
     pub fn persist_new(self, name: &Path) -> io::Result<()> {
-        self.file.persist_noclobber(name)?;
+        self.unlocked().persist_noclobber(name)?;
         Ok(())
+    }
+
+    /// Returns the file without its lock on Windows, where nobody can read a locked file.
+    fn unlocked(self) -> NamedTempFile {
+        if cfg!(windows) {
+            let _ = self.file.as_file().unlock();
+        }
+        self.file
     }
 
     /// Removes the temporary files beside this one whose processes have ended. Files of other users stay.
