@@ -3,7 +3,8 @@
 use super::{Place, Run};
 
 /// Scene of which the tests replace single lines.
-const BASE: &str = r#"[whisker]
+const BASE: &str = r#"title = "A small map"
+[whisker]
 length_mm = 20
 base_radius_um = 30
 tip_radius_um = 1.5
