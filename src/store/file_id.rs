@@ -48,17 +48,18 @@ impl FileId {
         }
     }
 
-    /// Returns the identity of the file at standard input; `None` unless a file is redirected to it.
+    /// Returns the identity of the file at standard input; `None` unless a file is redirected to it, and on Windows.
     #[must_use]
     pub fn of_stdin() -> Option<Self> {
         let stdin = Path::new("/dev/stdin");
-        stdin.exists().then(|| Self::of(stdin)).flatten()
+        let has_name = cfg!(unix) && stdin.exists();
+        has_name.then(|| Self::of(stdin)).flatten()
     }
 
-    /// Returns the identity of standard output: of the file that it is redirected to, if there is one.
+    /// Returns the identity of standard output: of the file that it is redirected to, if there is one. On Windows no redirection is known.
     pub(super) fn of_stdout() -> Self {
-        let redirected = Self::of(Path::new("/dev/stdout"));
-        redirected.unwrap_or(Self(FileKey::Stdout))
+        let redirected = cfg!(unix).then(|| Self::of(Path::new("/dev/stdout")));
+        redirected.flatten().unwrap_or(Self(FileKey::Stdout))
     }
 
     /// Returns the identities of the folders that hold `path`, from the innermost one on: `[folder]`.
