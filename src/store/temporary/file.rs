@@ -56,11 +56,11 @@ impl TemporaryFile {
     }
 
     /// Gives the temporary file its name, and replaces the file that has it, even one that is being read.
-    pub fn persist(self, name: &Path) -> io::Result<()> {
-        let mut file = self.unlocked();
+    pub fn persist(mut self, name: &Path) -> io::Result<()> {
+        self.let_readers_in();
         // On Windows, the rename of `tempfile` does not replace an open file.
-        fs::rename(file.path(), name)?;
-        file.disable_cleanup(true);
+        fs::rename(self.file.path(), name)?;
+        self.file.disable_cleanup(true);
         Ok(())
     }
 
@@ -68,16 +68,16 @@ impl TemporaryFile {
     /// NFS, by a hard link.
     #[cfg(feature = "zarr")]
     pub fn persist_new(self, name: &Path) -> io::Result<()> {
-        self.unlocked().persist_noclobber(name)?;
+        self.let_readers_in();
+        self.file.persist_noclobber(name)?;
         Ok(())
     }
 
-    /// Returns the file without its lock on Windows, where nobody can read a locked file.
-    fn unlocked(self) -> NamedTempFile {
+    /// Unlocks the file on Windows, where nobody can read a locked file.
+    fn let_readers_in(&self) {
         if cfg!(windows) {
             let _ = self.file.as_file().unlock();
         }
-        self.file
     }
 
     /// Removes the temporary files beside this one whose processes have ended. Files of other users stay.
