@@ -7,11 +7,12 @@ use std::process::{Command, Stdio};
 
 /// Returns the name of this host, as in the names of temporary files.
 fn host() -> String {
-    // `hostname` has the letters of `COMPUTERNAME` in another case.
-    let name = std::env::var("COMPUTERNAME").unwrap_or_else(|_| {
+    let name = if cfg!(windows) {
+        std::env::var("COMPUTERNAME").unwrap()
+    } else {
         let name = Command::new("uname").arg("-n").output().unwrap().stdout;
         String::from_utf8(name).unwrap()
-    });
+    };
     let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
     name.chars().filter(is_plain).take(64).collect()
 }
