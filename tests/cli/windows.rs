@@ -135,7 +135,10 @@ fn folders_in_the_place_of_files_are_named() {
 fn the_null_device_is_written_to_and_not_named() {
     let place = Place::with(SCENE);
     let shape = ["shape", "scene.toml", "--distance=9", "--push-angle=1"];
-    let run = good(&place, &[&shape[..], &["--csv=nul", "--plot=p.svg"]].concat());
+    let run = good(
+        &place,
+        &[&shape[..], &["--csv=nul", "--plot=p.svg"]].concat(),
+    );
     assert_eq!(run.out, "p.svg\n");
     assert_eq!(names(&place.path("")), ["p.svg", "scene.toml"]);
 }
