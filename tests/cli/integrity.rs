@@ -1,8 +1,8 @@
 //! Stores that several runs create at once, that are moved while a run fills them, or that claim huge sizes.
 
 #[cfg(unix)]
-use super::store::begun;
-use super::store::{MAP, SWEEP, assert_complete, assert_same, files, good, is_hidden};
+use super::store::{MAP, begun};
+use super::store::{SWEEP, assert_complete, assert_same, files, good, is_hidden};
 use super::{Place, Run};
 use std::fs;
 #[cfg(unix)]
