@@ -1,8 +1,7 @@
 //! Costs and errors of other programs, as `benches/peers/run.sh` writes them.
 
-use crate::input::{TEXT_MIB, bounded};
+use crate::input::{TEXT_MIB, bounded, open};
 use serde::Deserialize;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// Error in radians below which the 11 digits of AUTO's push angles show none.
@@ -68,7 +67,7 @@ impl Peers {
             path: path.to_owned(),
             what,
         };
-        let bytes = File::open(path).and_then(|file| bounded(file, TEXT_MIB));
+        let bytes = open(path).and_then(|file| bounded(file, TEXT_MIB));
         let bytes = bytes.map_err(|cause| error(format!("cannot read the file: {cause}")))?;
         Self::parse(&bytes).map_err(error)
     }

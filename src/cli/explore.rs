@@ -148,6 +148,8 @@ fn open(path: &Path) {
         "windows" => "explorer",
         _ => "xdg-open",
     };
+    // Windows' `explorer` ignores a relative path with slashes, and a name may begin like an option.
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut command = Command::new(program);
     command.arg(path).stdin(Stdio::null());
     command.stdout(Stdio::null()).stderr(Stdio::null());

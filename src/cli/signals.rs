@@ -1,6 +1,7 @@
-//! Interrupts: remove unfinished files, print one line, exit with 128 + the signal's number.
+//! Interrupts: remove unfinished files, print one line, exit with 128 + the signal's number, or with the code of Windows.
 
-use std::io;
+use super::failure::message;
+use std::io::{self, IsTerminal};
 use whiskmap::store::TemporaryFiles;
 
 /// Ends the process on SIGHUP, SIGINT or SIGTERM, removes the `temporary` files, and prints `advice`. A signal that is ignored, for
@@ -12,7 +13,6 @@ use whiskmap::store::TemporaryFiles;
 pub fn handle(temporary: TemporaryFiles, advice: &'static str) -> io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::{iterator::Signals, low_level};
-    use std::io::IsTerminal;
 
     let handled = [SIGHUP, SIGINT, SIGTERM]
         .into_iter()
@@ -25,24 +25,36 @@ pub fn handle(temporary: TemporaryFiles, advice: &'static str) -> io::Result<()>
         let Some(signal) = signals.forever().next() else {
             return;
         };
-        temporary.abandon();
-        // The current line of a terminal may be a progress bar.
-        if std::io::stderr().is_terminal() {
-            super::failure::message("");
-        }
         let name = low_level::signal_name(signal).unwrap_or("a signal");
-        super::failure::message(&format!(
-            "error: interrupted by {name}; unfinished files are removed{advice}"
-        ));
+        clean_up(&temporary, name, advice);
         low_level::exit(128 + signal);
     };
     std::thread::Builder::new().spawn(wait).map(drop)
 }
 
-/// Does nothing on systems without these signals: the next run removes the leftovers of an interrupted run.
-#[cfg(not(unix))]
-pub fn handle(_: TemporaryFiles, _: &'static str) -> io::Result<()> {
+/// Ends the process on Ctrl-C, Ctrl-Break or when its console is closed, removes the `temporary` files, and prints `advice`. The exit code is
+/// that of a process without a handler.
+#[cfg(windows)]
+pub fn handle(temporary: TemporaryFiles, advice: &'static str) -> io::Result<()> {
+    const STATUS_CONTROL_C_EXIT: u32 = 0xC000_013A;
+    // Without the handler, the system ends the process, and the next run removes its leftovers.
+    let _ = ctrlc::set_handler(move || {
+        clean_up(&temporary, "Ctrl-C", advice);
+        std::process::exit(STATUS_CONTROL_C_EXIT.cast_signed());
+    });
     Ok(())
+}
+
+/// Removes the unfinished files of a process that `what` ends, and prints `advice`.
+fn clean_up(temporary: &TemporaryFiles, what: &str, advice: &str) {
+    temporary.abandon();
+    // The current line of a terminal may be a progress bar.
+    if io::stderr().is_terminal() {
+        message("");
+    }
+    message(&format!(
+        "error: interrupted by {what}; unfinished files are removed{advice}"
+    ));
 }
 
 #[cfg(unix)]

@@ -28,6 +28,9 @@ const ANGLE: &str = "contact_angle_deg";
 /// Optional columns: the position of the measured point.
 const AT: [&str; 2] = ["at_x_mm", "at_y_mm"];
 
+/// Largest size of a position in mm and of a curvature in 1/mm. The largest whisker has 1e5 mm, and the largest curvature of a scene is 1e6.
+const MOST: f64 = 1e6;
+
 impl CurvatureFrames {
     /// Reads the frames of a CSV file for a whisker of `length_mm`; `-` is standard input. Frames without contact have empty cells for it.
     ///
@@ -75,35 +78,30 @@ impl CurvatureFrames {
             );
             return Err(CsvError::whole(&table.origin, what));
         }
-        let finite = |name: &str| table.numbers(name, "a finite number", f64::is_finite);
-        let times = finite("time_s")?.unwrap_or_default();
-        let falling = times.windows(2).zip(table.lines().skip(1));
-        if let Some((pair, line)) = falling.into_iter().find(|(pair, _)| pair[1] <= pair[0]) {
-            let [before, time] = [pair[0], pair[1]];
-            let what = format!("time_s = {time}: must be more than {before} of the line before");
-            return Err(CsvError::at(&table.origin, line, what));
-        }
-        let curvatures = finite("curvature_per_mm")?.unwrap_or_default();
-        let must =
+        let times = table.times_s()?;
+        let must = format!("a number between -{MOST:e} and {MOST:e}");
+        let number = |name: &str| table.numbers(name, &must, |number| number.abs() <= MOST);
+        let curvatures = number("curvature_per_mm")?.unwrap_or_default();
+        let at = number(AT[0])?.zip(number(AT[1])?);
+        let on_whisker =
             format!("a number of at least 0 and less than {length_mm}, the whisker's length in mm");
         let is_on_whisker = |mm: f64| (0.0..length_mm).contains(&mm);
         let places = table
-            .numbers("at_arc_length_mm", &must, is_on_whisker)?
+            .numbers("at_arc_length_mm", &on_whisker, is_on_whisker)?
             .unwrap_or_default();
-        let at = finite(AT[0])?.zip(finite(AT[1])?);
-        let optional = |name: &str, most: f64, must: &str| {
+        let number_or_none = |name: &str, most: f64, must: &str| {
             let is_good = |number: &f64| number.abs() <= most;
             table.values(name, must, |cell| match cell {
                 "" => Some(None),
                 cell => cell.parse().ok().filter(is_good).map(Some),
             })
         };
-        let finite = "a finite number, or empty without contact";
+        let must = format!("{must}, or empty without contact");
         let [xs, ys] =
-            ["contact_x_mm", "contact_y_mm"].map(|name| optional(name, f64::MAX, finite));
+            ["contact_x_mm", "contact_y_mm"].map(|name| number_or_none(name, MOST, &must));
         let (xs, ys) = (xs?.unwrap_or_default(), ys?.unwrap_or_default());
         let angle = "a number between -360 and 360, or empty without contact";
-        let angles = optional(ANGLE, 360.0, angle)?;
+        let angles = number_or_none(ANGLE, 360.0, angle)?;
         let mut frames = Vec::with_capacity(times.len());
         for (i, line) in table.lines().enumerate() {
             let contact_angle_deg = angles.as_ref().and_then(|angles| angles[i]);

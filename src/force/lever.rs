@@ -14,6 +14,8 @@ pub struct Bending {
     pub change_per_mm: f64,
     /// Bending moment, in nN m.
     moment_nnm: f64,
+    /// Length of the whisker, in mm.
+    length_mm: f64,
 }
 
 impl Bending {
@@ -29,6 +31,7 @@ impl Bending {
                 .map_or_else(|| rest.at_arclength(s).0 * length, DVec2::from),
             change_per_mm,
             moment_nnm: change_per_mm * length * rod.stiffness(s) * whisker.units().moment_nnm,
+            length_mm: length,
         }
     }
 
@@ -70,7 +73,8 @@ impl Bending {
         let tangent = DVec2::new(libm::cos(angle.to_radians()), libm::sin(angle.to_radians()));
         let position = DVec2::from(contact.contact_mm);
         let lever = (position - self.at).dot(tangent);
-        if lever <= 0.0 {
+        // A shorter lever is a rounding error of the two positions.
+        if lever <= f64::EPSILON * self.length_mm {
             return none;
         }
         let force = self.moment_nnm / lever;

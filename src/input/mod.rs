@@ -11,4 +11,5 @@ pub use quantity::Quantity;
 pub use table::{CsvError, CsvTable};
 
 pub(crate) use names::shortened;
-pub(crate) use source::{TEXT_MIB, bounded, open_regular};
+pub(crate) use source::{TEXT_MIB, bounded, open, open_regular};
+pub(crate) use table::MOST_SECONDS;

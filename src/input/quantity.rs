@@ -133,7 +133,8 @@ impl Quantity {
         let sizes = self.sizes(unit);
         let unknown = || format!("unit {}: {}", shortened(unit), self.allowed());
         let [own, size] = sizes.ok_or_else(unknown)?;
-        Ok(converted(number, size, own))
+        let converted = Some(converted(number, size, own)).filter(|number| number.is_finite());
+        converted.ok_or_else(|| format!("must be {kind}, such as {examples}"))
     }
 
     /// Converts a number in the quantity's own unit to another `unit`. Returns `None` for a unit of another quantity.
@@ -222,6 +223,7 @@ mod tests {
             (LengthMm, "1,5", "must be a length"),
             (AngleDeg, "nan", "must be an angle"),
             (AngleDeg, "1e999", "must be an angle"),
+            (LengthMm, "1e308m", "must be a length"),
             (Number, "", "must be a number"),
             (Number, &format!("1{}", "x".repeat(1000)), &shortened),
         ] {

@@ -33,6 +33,18 @@ pub(crate) fn open_regular(path: &Path) -> io::Result<Option<File>> {
     }
 }
 
+/// Opens an input file.
+///
+/// # Errors
+/// If it cannot be opened. That a path is a folder is an error here or of the first read.
+pub(crate) fn open(path: &Path) -> io::Result<File> {
+    // Windows opens no folder, and calls that a lack of permission.
+    if cfg!(windows) && path.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    File::open(path)
+}
+
 /// Reads all bytes of an input file or stream, at most `most_mib` MiB.
 ///
 /// # Errors

@@ -2,7 +2,7 @@
 
 use super::lines::{CsvLine, lines, normalised, separator};
 use super::names::{did_you_mean, shortened};
-use super::source::{TABLE_MIB, bounded, decoded};
+use super::source::{TABLE_MIB, bounded, decoded, open};
 use crate::terminal::escaped;
 use std::fs::File;
 use std::io;
@@ -62,7 +62,7 @@ impl CsvTable {
     /// If the file cannot be read, is longer than 32 MiB, is no such text, or for the reasons of [`CsvTable::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
         let path = path.as_ref();
-        Self::read_file(File::open(path), path)
+        Self::read_file(open(path), path)
     }
 
     /// Reads the CSV file that is open as `file`; messages call it `path`.
@@ -234,7 +234,30 @@ impl CsvTable {
         let must = format!("{must}{}", if is_quoted { DECIMAL_COMMAS } else { "" });
         self.values(column, &must, |cell| number(cell.to_owned()))
     }
+
+    /// Returns the column `time_s` of the CSV file: times in s that grow, row by row. Without such a column there are no times.
+    ///
+    /// # Errors
+    /// The first cell that is no number or out of its range, or the first line whose time does not grow.
+    pub(crate) fn times_s(&self) -> Result<Vec<f64>, CsvError> {
+        let must = format!("a number between -{MOST_SECONDS:e} and {MOST_SECONDS:e}");
+        let times = self.numbers("time_s", &must, |time| time.abs() <= MOST_SECONDS)?;
+        let times = times.unwrap_or_default();
+        let mut pairs = times.windows(2).zip(self.lines().skip(1));
+        match pairs.find(|(pair, _)| pair[1] <= pair[0]) {
+            None => Ok(times),
+            Some((pair, line)) => {
+                let [before, time] = [pair[0], pair[1]];
+                let what =
+                    format!("time_s = {time}: must be more than {before} of the line before");
+                Err(CsvError::at(&self.origin, line, what))
+            }
+        }
+    }
 }
+
+/// Largest size of a time, in s: 30,000 years, so that a clock may begin at any date.
+pub(crate) const MOST_SECONDS: f64 = 1e12;
 
 /// Largest number of unknown names for which a known one is looked for.
 const MOST_HINTS: usize = 100;

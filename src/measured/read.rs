@@ -75,8 +75,8 @@ impl MeasuredPoints {
         })?;
         let is_positive = |number: f64| number > 0.0 && number.is_finite();
         let distances_mm = table.numbers("distance_mm", "a positive number", is_positive)?;
-        let is_deviation = |number: f64| number >= LEAST_SD_DEG && number.is_finite();
-        let must = format!("a number of at least {}", digits(LEAST_SD_DEG));
+        let is_deviation = |number: f64| (LEAST_SD_DEG..=360.0).contains(&number);
+        let must = format!("a number between {} and 360", digits(LEAST_SD_DEG));
         let deviations_deg = table.numbers("sd_deg", &must, is_deviation)?;
         let turn = "a number between -360 and 360";
         let angles_deg = table.numbers(angle.column(), turn, |number| number.abs() <= 360.0)?;

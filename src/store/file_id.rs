@@ -48,17 +48,18 @@ impl FileId {
         }
     }
 
-    /// Returns the identity of the file at standard input; `None` unless a file is redirected to it.
+    /// Returns the identity of the file at standard input; `None` unless a file is redirected to it, and on Windows.
     #[must_use]
     pub fn of_stdin() -> Option<Self> {
         let stdin = Path::new("/dev/stdin");
-        stdin.exists().then(|| Self::of(stdin)).flatten()
+        let has_name = cfg!(unix) && stdin.exists();
+        has_name.then(|| Self::of(stdin)).flatten()
     }
 
-    /// Returns the identity of standard output: of the file that it is redirected to, if there is one.
+    /// Returns the identity of standard output: of the file that it is redirected to, if there is one. On Windows no redirection is known.
     pub(super) fn of_stdout() -> Self {
-        let redirected = Self::of(Path::new("/dev/stdout"));
-        redirected.unwrap_or(Self(FileKey::Stdout))
+        let redirected = cfg!(unix).then(|| Self::of(Path::new("/dev/stdout")));
+        redirected.flatten().unwrap_or(Self(FileKey::Stdout))
     }
 
     /// Returns the identities of the folders that hold `path`, from the innermost one on: `[folder]`.
@@ -78,11 +79,16 @@ fn inode(about: &fs::Metadata) -> FileKey {
     }
 }
 
-/// The canonical path of something that need not exist: of its innermost part that does, with the rest as it is.
+/// The canonical path of something that need not exist: of its innermost part that does, with the rest as it is. Where names that differ
+/// in case are usually one file, the rest is in lower case.
 fn resolved(path: &Path) -> Option<PathBuf> {
     let path = std::path::absolute(path).ok()?;
     path.ancestors().find_map(|part| {
         let rest = path.strip_prefix(part).ok()?;
+        let rest = match cfg!(any(windows, target_vendor = "apple")) {
+            true => rest.as_os_str().to_ascii_lowercase().into(),
+            false => rest.to_owned(),
+        };
         Some(part.canonicalize().ok()?.join(rest))
     })
 }

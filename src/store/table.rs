@@ -2,17 +2,20 @@
 
 use super::Output;
 use serde::Serialize;
-use std::io;
+use std::io::{self, Write};
 
-/// CSV table that is being written.
+/// CSV table that is being written. A number that does not exist is an empty cell.
 #[derive(Debug)]
-pub struct TableFile(csv::Writer<Output>);
+pub struct TableFile(csv::Writer<FiniteCells>);
 
 impl TableFile {
     /// Creates a CSV table that is written to `output`.
     #[must_use]
     pub fn new(output: Output) -> Self {
-        Self(csv::Writer::from_writer(output))
+        Self(csv::Writer::from_writer(FiniteCells {
+            output,
+            cell: Vec::new(),
+        }))
     }
 
     /// Appends `rows` to the CSV table; the names of the fields of the first one are the header.
@@ -29,8 +32,45 @@ impl TableFile {
     /// # Errors
     /// When the output takes no more.
     pub fn finish(self) -> io::Result<()> {
-        let output = self.0.into_inner();
-        output.map_err(csv::IntoInnerError::into_error)?.finish()
+        let cells = self.0.into_inner();
+        let cells = cells.map_err(csv::IntoInnerError::into_error)?;
+        cells.output.finish()
+    }
+}
+
+/// Bytes of a CSV table on their way to the output. A number that is not finite becomes an empty cell, as it is `null` in JSON.
+#[derive(Debug)]
+struct FiniteCells {
+    output: Output,
+    /// Cell whose end is not yet written to this.
+    cell: Vec<u8>,
+}
+
+impl Write for FiniteCells {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut complete = Vec::with_capacity(self.cell.len() + bytes.len());
+        for part in bytes.split_inclusive(|byte| b",\n".contains(byte)) {
+            self.cell.extend_from_slice(part);
+            let Some((end @ (b',' | b'\n'), text)) = self.cell.split_last() else {
+                continue;
+            };
+            if matches!(text, b"NaN" | b"inf" | b"-inf") {
+                debug_assert!(
+                    false,
+                    "a row must have `None` for a number that does not exist"
+                );
+                complete.push(*end);
+            } else {
+                complete.extend_from_slice(&self.cell);
+            }
+            self.cell.clear();
+        }
+        self.output.write_all(&complete)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.output.flush()
     }
 }
 

@@ -42,6 +42,10 @@ impl OutputTarget {
         if is_descriptor(&path) {
             return fs::metadata(&path).map(|_| Self::Stream(path));
         }
+        // Windows has no metadata of its null device.
+        if cfg!(windows) && path.as_os_str().eq_ignore_ascii_case("NUL") {
+            return Ok(Self::Stream(path));
+        }
         match fs::metadata(&path) {
             Ok(about) if about.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
             Ok(about) if !about.is_file() => Ok(Self::Stream(path)),

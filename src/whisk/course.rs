@@ -1,6 +1,6 @@
 //! Angle of the base over time.
 
-use crate::input::{CsvError, CsvTable};
+use crate::input::{CsvError, CsvTable, MOST_SECONDS};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -37,10 +37,10 @@ pub enum CourseError {
         /// Time of the sample before the one that does not grow, in s.
         before_s: f64,
     },
-    /// A time is not finite.
-    #[error("time_s[{index}] = {time_s}: must be finite")]
-    NotFinite {
-        /// Index of the sample whose time is not finite.
+    /// A time is out of its range.
+    #[error("time_s[{index}] = {time_s}: must be between -{MOST_SECONDS:e} and {MOST_SECONDS:e}")]
+    TimeRange {
+        /// Index of the sample whose time is out of range.
         index: usize,
         /// Time of the sample, in s.
         time_s: f64,
@@ -81,9 +81,12 @@ impl AngleCourse {
         if times < 2 || times != angles {
             return Err(CourseError::Count { times, angles });
         }
-        if let Some(index) = times_s.iter().position(|time| !time.is_finite()) {
+        if let Some(index) = times_s
+            .iter()
+            .position(|time| !(-MOST_SECONDS..=MOST_SECONDS).contains(time))
+        {
             let time_s = times_s[index];
-            return Err(CourseError::NotFinite { index, time_s });
+            return Err(CourseError::TimeRange { index, time_s });
         }
         if let Some(index) = angles_deg.iter().position(|angle| !is_angle(*angle)) {
             let angle_deg = angles_deg[index];
@@ -155,19 +158,9 @@ impl AngleCourse {
 
     fn of(table: &CsvTable) -> Result<Self, CsvError> {
         let note = table.require(&[&["time_s"], &["angle_deg"]], &[])?;
-        let times_s = table.numbers("time_s", "a finite number", f64::is_finite)?;
+        let times_s = table.times_s()?;
         let angles_deg = table.numbers("angle_deg", "a number between -360 and 360", is_angle)?;
-        let (times_s, angles_deg) = (times_s.unwrap_or_default(), angles_deg.unwrap_or_default());
-        let pairs = times_s.windows(2).zip(table.lines().skip(1));
-        let mut falling = pairs.filter(|(pair, _)| pair[1] <= pair[0]);
-        if let Some((pair, line)) = falling.next() {
-            let what = format!(
-                "time_s = {}: must be more than {} of the line before",
-                pair[1], pair[0]
-            );
-            return Err(CsvError::at(&table.origin, line, what));
-        }
-        let course = Self::new(times_s, angles_deg);
+        let course = Self::new(times_s, angles_deg.unwrap_or_default());
         let course = course.map_err(|why| CsvError::whole(&table.origin, why.to_string()))?;
         Ok(Self { note, ..course })
     }

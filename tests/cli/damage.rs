@@ -225,6 +225,7 @@ fn a_folder_of_others_is_no_store() {
 }
 
 /// A pipe without a writer would never open, and a circle of links may hide a whole file.
+#[cfg(unix)]
 #[test]
 fn what_is_no_file_is_neither_read_nor_removed() {
     let place = Place::with(SMALL);

@@ -1,6 +1,5 @@
 //! Selection of engine and adapter by `map`.
 
-#[cfg(unix)]
 use super::store::{SWEEP, assert_same};
 use super::{Place, Run, SCENE};
 use std::fs;
@@ -158,7 +157,6 @@ fn measured_radii_warn_that_every_cell_falls_back() {
 }
 
 /// Shards and a resumed run write the bytes of a single run; a store keeps its engine.
-#[cfg(unix)]
 #[test]
 fn a_store_by_the_spectral_engine_is_resumed_with_the_same_bytes() {
     let place = Place::with(&SWEEP.replace("to = 70, count = 64", "to = 70, count = 256"));

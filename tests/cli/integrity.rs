@@ -1,9 +1,13 @@
 //! Stores that several runs create at once, that are moved while a run fills them, or that claim huge sizes.
 
-use super::store::{MAP, SWEEP, assert_complete, assert_same, begun, files, good, is_hidden};
+#[cfg(unix)]
+use super::store::{MAP, begun};
+use super::store::{SWEEP, assert_complete, assert_same, files, good, is_hidden};
 use super::{Place, Run};
 use std::fs;
-use std::process::{Command, Stdio};
+#[cfg(unix)]
+use std::process::Command;
+use std::process::Stdio;
 
 /// One block of two whiskers.
 pub const SMALL: &str = r#"title = "One block"
@@ -82,6 +86,8 @@ fn of_two_runs_that_create_a_store_differently_one_succeeds() {
     }
 }
 
+/// Windows moves no folder with open files.
+#[cfg(unix)]
 #[test]
 fn a_store_that_is_moved_or_removed_is_not_begun_twice() {
     for is_moved in [true, false] {
@@ -146,6 +152,7 @@ fn a_failed_extract_leaves_no_store() {
 }
 
 /// The program, which may take 3 GB of memory.
+#[cfg(unix)]
 fn in_little_memory(place: &Place, arguments: &[&str]) -> Run {
     let mut shell = Command::new("sh");
     shell.args([
@@ -157,6 +164,7 @@ fn in_little_memory(place: &Place, arguments: &[&str]) -> Run {
     Run::of(&output.unwrap())
 }
 
+#[cfg(unix)]
 #[test]
 fn sizes_that_a_store_claims_are_not_allocated() {
     let place = Place::with(SMALL);

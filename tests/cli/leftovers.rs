@@ -3,14 +3,17 @@
 use super::traces::good;
 use super::{Place, Run, SCENE, names};
 use std::fs;
-use std::os::unix::fs::symlink;
 use std::process::{Command, Stdio};
 use whiskmap::store::{TemporaryFiles, TemporaryFolder};
 
 /// Returns the name of this host, as in the names of temporary files.
 fn host() -> String {
-    let name = Command::new("uname").arg("-n").output().unwrap().stdout;
-    let name = String::from_utf8(name).unwrap();
+    let name = if cfg!(windows) {
+        std::env::var("COMPUTERNAME").unwrap()
+    } else {
+        let name = Command::new("uname").arg("-n").output().unwrap().stdout;
+        String::from_utf8(name).unwrap()
+    };
     let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
     name.chars().filter(is_plain).take(64).collect()
 }
@@ -30,8 +33,11 @@ fn only_leftovers_are_removed() {
     // As a killed `extract` leaves it.
     folder(&exact("3"));
     place.write(&format!("{}/zarr.json", exact("3")), "");
-    place.pipe(&exact("4"));
-    symlink("scene.toml", place.path(&exact("5"))).unwrap();
+    #[cfg(unix)]
+    {
+        place.pipe(&exact("4"));
+        std::os::unix::fs::symlink("scene.toml", place.path(&exact("5"))).unwrap();
+    }
     folder(".whiskmap-another.host+aB3dE6gH9jK6");
     let files = TemporaryFiles::default();
     let running = TemporaryFolder::create(&place.path("x.zarr"), &files).unwrap();

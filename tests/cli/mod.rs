@@ -8,33 +8,32 @@ mod bench;
 mod branch;
 mod compare;
 mod curve;
-#[cfg(unix)]
 mod damage;
 mod data;
 mod design;
-#[cfg(unix)]
 mod digits;
 mod engine;
 mod explore;
 mod extract;
 #[cfg(target_os = "linux")]
 mod faults;
+// Devices, named pipes and links.
 #[cfg(unix)]
 mod files;
 mod fit;
 mod force;
-#[cfg(unix)]
 mod integrity;
-#[cfg(unix)]
 mod leftovers;
 mod manual;
 mod map;
 mod marks;
+mod numbers;
 mod other;
 mod paper;
 mod pictures;
 mod plan;
 use crate::program;
+// Links and modes.
 #[cfg(unix)]
 mod protected;
 mod refused;
@@ -42,12 +41,12 @@ mod render;
 use crate::sealed;
 mod sensitivity;
 mod shape;
-#[cfg(unix)]
 mod signals;
+// Redirection by a shell.
 #[cfg(unix)]
 mod stdout;
-#[cfg(unix)]
 mod store;
+// Slurm, and its shell.
 #[cfg(unix)]
 mod submit;
 mod sweep;
@@ -60,5 +59,7 @@ mod uncertainty;
 mod units;
 mod verdict;
 mod whisk;
+#[cfg(windows)]
+mod windows;
 
 use program::{Place, Run, SCENE, names};

@@ -44,7 +44,6 @@ fn every_channel_can_be_drawn() {
 }
 
 /// The picture of a part of a store equals that of the part's map.
-#[cfg(unix)]
 #[test]
 fn stores_and_parts_are_drawn_like_maps() {
     let place = Place::with(super::store::SWEEP);

@@ -1,6 +1,8 @@
 //! Leftovers of interrupted runs, which the next run removes.
 
-use super::{Place, Run, SCENE, names};
+#[cfg(unix)]
+use super::Run;
+use super::{Place, SCENE, names};
 use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, SystemTime};
@@ -36,6 +38,7 @@ fn unfinished(place: &Place, folder: &str) -> Vec<String> {
 }
 
 /// Sends the signal to the run.
+#[cfg(unix)]
 pub fn send(signal: &str, child: &Child) {
     let kill = format!("kill -{signal} {}", child.id());
     assert!(
@@ -47,6 +50,7 @@ pub fn send(signal: &str, child: &Child) {
     );
 }
 
+#[cfg(unix)]
 #[test]
 fn an_interrupted_run_cleans_up() {
     let place = Place::with(&long());
@@ -102,6 +106,7 @@ fn tests_do_not_depend_on_ignored_signals() {
 }
 
 /// A run that waits for the reader of a pipe has its table in an unnamed file. It installs handlers before it reads its scene.
+#[cfg(unix)]
 #[test]
 fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
     let place = Place::with(SCENE);

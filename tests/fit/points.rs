@@ -93,7 +93,7 @@ fn errors_name_the_line_the_value_and_what_is_allowed() {
     );
     for (number, name, must) in [
         ("15.5", "distance_mm", "a positive number"),
-        ("0.5\n", "sd_deg", "a number of at least 1e-6"),
+        ("0.5\n", "sd_deg", "a number between 1e-6 and 360"),
     ] {
         for bad in ["far", "", "0", "-1", "nan", "inf", "1e999"] {
             let new = if number.ends_with('\n') {
@@ -130,7 +130,9 @@ fn errors_name_the_line_the_value_and_what_is_allowed() {
         with("cf,12,-41,,0.7", "cf"),
         "p.csv:3: has 1 cell: must have 5, one a column"
     );
-    assert!(with("0.5\n", "1e-7\n").ends_with("sd_deg = 1e-7: must be a number of at least 1e-6"));
+    assert!(
+        with("0.5\n", "1e-7\n").ends_with("sd_deg = 1e-7: must be a number between 1e-6 and 360")
+    );
     let long = with("cb,", &format!("{},", "x".repeat(100_000)));
     assert!(long.len() < 200, "{long}");
 }

@@ -32,16 +32,16 @@ pub fn tables(report: &Report) -> io::Result<()> {
             .map_or_else(|| "-".to_owned(), |part| format!("{:.0}%", 100.0 * part));
         writeln!(
             out,
-            "{} {:15} {:16} {:5.2} {} {:5.0e} {:6.0e} {:6.0e} {:6.0e} {of_peak:>4}",
+            "{} {:15} {:16} {:5.2} {} {:>5} {:>6} {:>6} {:>6} {of_peak:>4}",
             if row.pareto { "*" } else { " " },
             named(&row.engine, row.threads),
             row.rung.to_string(),
             row.us_per_state,
             spread(&row.seconds),
-            errors.angle_deg.worst,
-            errors.angle_deg.p99,
-            errors.arc_length.worst,
-            errors.force.worst,
+            error(errors.angle_deg.worst),
+            error(errors.angle_deg.p99),
+            error(errors.arc_length.worst),
+            error(errors.force.worst),
         )?;
     }
     for failure in &report.failures {
@@ -75,12 +75,12 @@ pub fn tables(report: &Report) -> io::Result<()> {
     for row in &report.detachments {
         writeln!(
             out,
-            "nystrom8 x{:<3} {:23.1} {:>6} {:19.0e} {:7.0e}",
+            "nystrom8 x{:<3} {:23.1} {:>6} {:>19} {:>7}",
             row.steps,
             row.us_per_point,
             spread(&row.seconds),
-            row.angle_deg.worst,
-            row.angle_deg.p99
+            error(row.angle_deg.worst),
+            error(row.angle_deg.p99)
         )?;
     }
     maps(&mut out, report)?;
@@ -224,6 +224,15 @@ fn verdicts(out: &mut impl Write, report: &Report) -> io::Result<()> {
         writeln!(out, "verdict: no GPU was measured")?;
     }
     Ok(())
+}
+
+/// Formats a largest error with one digit; `-` for an infinite one, that of a state that was not found.
+fn error(largest: f64) -> String {
+    if largest.is_finite() {
+        format!("{largest:.0e}")
+    } else {
+        "-".to_owned()
+    }
 }
 
 /// Formats the spread of a timing in percent, or as a multiple of the median from 10 times on; `!` marks a noisy one.

@@ -1,7 +1,6 @@
 //! Reading of scene files and texts into checked scenes.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
@@ -10,7 +9,7 @@ use serde::Deserialize;
 use toml_edit::Document;
 use toml_edit::de::Deserializer;
 
-use crate::input::{TEXT_MIB, bounded, did_you_mean, shortened};
+use crate::input::{TEXT_MIB, bounded, did_you_mean, open, shortened};
 use crate::scene::axis::NOT_GROWING;
 use crate::scene::builder::Deviations;
 use crate::scene::deviations;
@@ -39,7 +38,7 @@ impl Scene {
             return from_source(io::stdin().lock(), "<stdin>", Path::new("scene"));
         }
         let origin = path.to_string_lossy();
-        let file = File::open(path).map_err(|why| unreadable(&origin, &why))?;
+        let file = open(path).map_err(|why| unreadable(&origin, &why))?;
         from_source(file, &origin, path)
     }
 

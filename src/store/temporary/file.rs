@@ -55,9 +55,12 @@ impl TemporaryFile {
         self.file.as_file_mut()
     }
 
-    /// Gives the temporary file its name, and replaces the file that has it.
-    pub fn persist(self, name: &Path) -> io::Result<()> {
-        self.file.persist(name)?;
+    /// Gives the temporary file its name, and replaces the file that has it, even one that is being read.
+    pub fn persist(mut self, name: &Path) -> io::Result<()> {
+        self.let_readers_in();
+        // On Windows, the rename of `tempfile` does not replace an open file.
+        fs::rename(self.file.path(), name)?;
+        self.file.disable_cleanup(true);
         Ok(())
     }
 
@@ -65,8 +68,16 @@ impl TemporaryFile {
     /// NFS, by a hard link.
     #[cfg(feature = "zarr")]
     pub fn persist_new(self, name: &Path) -> io::Result<()> {
+        self.let_readers_in();
         self.file.persist_noclobber(name)?;
         Ok(())
+    }
+
+    /// Unlocks the file on Windows, where nobody can read a locked file.
+    fn let_readers_in(&self) {
+        if cfg!(windows) {
+            let _ = self.file.as_file().unlock();
+        }
     }
 
     /// Removes the temporary files and folders beside this one whose processes have ended. Those of other users stay.

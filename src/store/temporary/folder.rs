@@ -62,6 +62,10 @@ impl TemporaryFolder {
     /// # Errors
     /// A file, or a folder that is not empty, has the name.
     pub fn finish(self, target: &Path) -> io::Result<()> {
+        if cfg!(windows) {
+            // Windows replaces no folder, not even an empty one, and this removes no other.
+            let _ = fs::remove_dir(target);
+        }
         fs::rename(self.folder.path(), target)?;
         let _ = self.folder.keep();
         sync_folder(folder_of(target))

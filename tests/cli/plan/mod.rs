@@ -1,7 +1,6 @@
 //! `whiskmap plan`.
 
 mod effects;
-#[cfg(unix)]
 mod shards;
 mod size;
 

@@ -94,6 +94,10 @@ fn samples(rod: &Rod, tau: f64, load: f64, resolution: Resolution) -> Vec<f64> {
 /// over whisker lengths.
 #[must_use]
 pub fn bending_strain(rod: &Rod, s: f64, moment: f64) -> f64 {
+    // At the tip of a perfect cone the stiffness is 0, too: the whisker keeps its rest shape there.
+    if moment == 0.0 {
+        return 0.0;
+    }
     let [radius, _] = radius(rod, s);
     radius * moment.abs() / rod.stiffness(s)
 }
