@@ -81,13 +81,8 @@ fn quantities_of_the_page_are_named_as_by_the_program() {
     let text = read("text.js");
     let (_, list) = text.split_once("export const CHANNELS = {").unwrap();
     let (list, _) = list.split_once("};").unwrap();
-    let entries = list.trim().lines();
-    let entries = entries.map(|line| {
-        line.trim()
-            .trim_end_matches("',")
-            .split_once(": '")
-            .unwrap()
-    });
+    let entries = list.trim().trim_end_matches("',").split("',");
+    let entries = entries.map(|entry| entry.trim().split_once(": '").unwrap());
     let entries: Vec<_> = entries.collect();
     assert!(entries.len() > 10, "{entries:?}");
     for (name, title) in entries {

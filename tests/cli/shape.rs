@@ -150,7 +150,12 @@ fn sliding_toward_the_base_is_reported() {
         let run = place.run(&[&shape[..], &[distance, "--push-angle", push]].concat());
         assert_eq!(run.err, "");
         let state = String::from_utf8(place.bytes("state.csv")).unwrap();
-        state.trim().rsplit(',').next().unwrap().to_owned()
+        let lines: Vec<Vec<&str>> = state
+            .lines()
+            .map(|line| line.split(',').collect())
+            .collect();
+        let column = lines[0].iter().position(|name| *name == "sliding").unwrap();
+        lines[1][column].to_owned()
     };
     // On 17 mm the contact sticks from -8.43 to -9.65 degrees.
     let found = [("9", "-5"), ("17", "-9"), ("9", "-20"), ("9", "5")];

@@ -33,7 +33,8 @@ fn a_sine_and_its_angles_give_one_course() {
         "{run:?}"
     );
     let text = |name: &str| String::from_utf8(place.bytes(name)).unwrap();
-    let header = "time_s,event,side,angle_deg,push_angle_deg,force_un,base_moment_nnm,energy_nj";
+    let header =
+        "time_s,event,side,angle_deg,push_angle_deg,force_un,base_moment_nnm,energy_nj,snaps_deg";
     let events = text("e.csv");
     let events = cells(&events, header);
     let kinds: Vec<_> = events.iter().map(|event| [event[1], event[2]]).collect();
@@ -131,7 +132,7 @@ fn a_start_beyond_first_touch_is_named() {
     let run = whisk(&place, &angles);
     assert!(run.code == Some(0) && run.err.contains(assumed), "{run:?}");
     assert!(run.out.contains(",free,"), "{run:?}");
-    for (start, regime) in [("free", ",free,"), ("contact", ",contact,cb,10,")] {
+    for (start, regime) in [("free", ",free,"), ("contact", ",contact,cb,10.0,")] {
         let run = whisk(&place, &[&angles[..], &["--start", start]].concat());
         assert!(
             run.code == Some(0) && !run.err.contains("warning"),

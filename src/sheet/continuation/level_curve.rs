@@ -18,11 +18,11 @@ pub const ON_CURVE: f64 = 1e-14;
 /// Stretch of a level curve that a continuation follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stretch {
-    /// From a stable state to the fold or the tip.
+    /// Stable states, up to the fold or the tip.
     Stable,
-    /// From a stable state past the fold to the tip or the second fold.
+    /// Stable states, and unstable states past the fold, up to the tip or the second fold.
     PastFold,
-    /// From a fold along unstable states to the next fold or the tip.
+    /// Unstable states from a fold, up to the next fold or the tip.
     Unstable,
 }
 
