@@ -67,7 +67,7 @@ row! {
         pub mark: Option<BranchMark>,
         /// Sliding direction of the contact, with friction: tip, base or sticks.
         pub sliding: Option<Sliding>,
-        /// Push angle up to which other stable states exist at slip-off or pull-off, in degrees: the whisker may snap there.
+        /// Push up to which the whisker may snap to other stable states, in degrees.
         pub snaps_deg: Option<f64>,
     }
 }

@@ -64,7 +64,7 @@ row! {
         pub residual: Option<f64>,
         /// Sliding direction, with friction; the end assumes tip.
         pub sliding: Option<Sliding>,
-        /// Push angle up to which other stable states exist at this end, in degrees: the whisker may snap there.
+        /// Push up to which the whisker may snap to other stable states, in degrees.
         pub snaps_deg: Option<f64>,
     }
 }

@@ -38,7 +38,7 @@ pub enum CourseError {
         before_s: f64,
     },
     /// A time is out of its range.
-    #[error("time_s[{index}] = {time_s}: must be between -{MOST_SECONDS:e} and {MOST_SECONDS:e}")]
+    #[error("time_s[{index}] = {time_s:?}: must be between -{MOST_SECONDS:e} and {MOST_SECONDS:e}")]
     TimeRange {
         /// Index of the sample whose time is out of range.
         index: usize,

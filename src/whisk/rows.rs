@@ -106,7 +106,7 @@ row! {
         pub base_moment_nnm: Option<f64>,
         /// Bending energy of the whisker, in nJ; it is lost if the whisker detaches.
         pub energy_nj: Option<f64>,
-        /// Push angle up to which other stable states exist at a detachment, in degrees: the whisker may snap there.
+        /// Push up to which the whisker may snap to other stable states, in degrees.
         pub snaps_deg: Option<f64>,
     }
 }

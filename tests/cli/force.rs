@@ -54,7 +54,7 @@ fn wrong_frames_are_refused() {
     for (rows, said) in [
         (
             "0,x,2,15,4,30",
-            "f.csv:2: curvature_per_mm = x: must be a finite number",
+            "f.csv:2: curvature_per_mm = x: must be a number between -1e6 and 1e6",
         ),
         (
             "0,0.03,20,15,4,30",
