@@ -97,11 +97,9 @@ impl Chord<'_> {
         self.may_fall(sense * (self.to.push - self.from.push), by)
     }
 
-    /// Returns true if the contact may move toward the base somewhere between the nodes. First touch is left out: it lies on the shape at rest,
-    /// and misses the curve by the error of the integration.
+    /// Returns true if the contact may move toward the base somewhere between the nodes, after first touch.
     fn contact_may_turn(&self) -> bool {
-        let is_touch = self.from.point.y == 0.0;
-        !is_touch && self.may_fall(self.to.point.x - self.from.point.x, |_| DVec2::X)
+        !self.is_from_touch() && self.may_fall(self.to.point.x - self.from.point.x, |_| DVec2::X)
     }
 
     /// Returns true if a quantity that grows by `rise` from node to node may fall between them. `by` returns its derivatives by
@@ -183,10 +181,16 @@ impl Chord<'_> {
             && self.up_to(*node).leads_on()
     }
 
-    /// Returns true if the directions of the curve at both nodes form an angle of at most 60 degrees.
+    /// Returns true if the directions of the curve at both nodes form an angle of at most 60 degrees, or the chord begins at first touch.
     pub fn leads_on(&self) -> bool {
         let [from, to] = [&self.from, &self.to].map(|node| self.level.direction(node));
-        from.dot(to) > 0.5
+        self.is_from_touch() || from.dot(to) > 0.5
+    }
+
+    /// Returns true if the chord begins at first touch. That state lies on the shape at rest, and misses the curve by the error of the
+    /// integration.
+    fn is_from_touch(&self) -> bool {
+        self.from.point.y == 0.0
     }
 }
 
