@@ -97,12 +97,12 @@ impl Chord<'_> {
         self.may_fall(sense * (self.to.push - self.from.push), by)
     }
 
-    /// Returns true if the contact may move toward the base somewhere between the nodes, after first touch.
+    /// Returns true if the contact may move toward the base somewhere between the nodes.
     fn contact_may_turn(&self) -> bool {
-        !self.is_from_touch() && self.may_fall(self.to.point.x - self.from.point.x, |_| DVec2::X)
+        self.may_fall(self.to.point.x - self.from.point.x, |_| DVec2::X)
     }
 
-    /// Returns true if a quantity that grows by `rise` from node to node may fall between them. `by` returns its derivatives by
+    /// Returns true if a quantity that grows by `rise` from node to node may fall between them, except next to first touch. `by` returns its derivatives by
     /// `(tau, load)` at a node.
     ///
     /// The slope of a cubic along the chord is `from (1 - t) + to t + bulge t (1 - t)`; `t` runs from 0 to 1. The slopes at the nodes and the
@@ -124,7 +124,8 @@ impl Chord<'_> {
         };
         let off = BULGE_OFF * bulge.abs() + change_off * (to - from).abs();
         let least = from.max(0.0).sqrt() + to.max(0.0).sqrt();
-        off - bulge >= least * least && self.length() > SHORTEST_TURN
+        let is_positive = off - bulge < least * least;
+        !is_positive && self.length() > SHORTEST_TURN && !self.is_from_touch()
     }
 
     /// Returns true if the contact moves past a measured radius, where the slope of the radius jumps: there `det` has a kink.
