@@ -90,7 +90,7 @@ pub(super) fn lines(text: &str, separator: char) -> Result<Vec<CsvLine>, (usize,
     }
 }
 
-/// Message about a cell in quotes that goes on to the end of the file.
+/// Message about a cell whose closing quote is missing.
 const OPEN_QUOTE: &str = "has a cell that begins with a quote: must have a quote at its end, too";
 
 #[cfg(test)]

@@ -12,32 +12,34 @@ const ENOSPC: i32 = 28;
 const EROFS: i32 = 30;
 const EDQUOT: i32 = 122;
 
-/// Program with the library that makes calls of the system fail.
+/// Program with a preloaded library that makes calls of the system fail.
 struct FaultyPlace {
     place: Place,
-    library: PathBuf,
+    preloaded: PathBuf,
 }
 
 impl FaultyPlace {
     fn new() -> Self {
         let place = Place::with(SCENE);
-        let library = place.path("faults.so");
+        let preloaded = place.path("faults.so");
         let mut compiler = Command::new("cc");
         compiler
             .args(["-shared", "-fPIC", "-O1", "-o"])
-            .arg(&library);
+            .arg(&preloaded);
         compiler.arg(concat!(
             env!("CARGO_MANIFEST_DIR"),
             "/tests/program/faults.c"
         ));
         assert!(compiler.arg("-ldl").status().unwrap().success());
-        Self { place, library }
+        Self { place, preloaded }
     }
 
     /// Runs the program; the calls named `fault` fail with the error `errno`, after as many that do not.
     fn run(&self, arguments: &[&str], fault: &str, errno: i32, after: usize) -> Run {
         let mut command = self.place.plain_command(arguments);
-        command.env("LD_PRELOAD", &self.library).env("FAULT", fault);
+        command
+            .env("LD_PRELOAD", &self.preloaded)
+            .env("FAULT", fault);
         command.env("ERRNO", errno.to_string());
         let command = command.env("AFTER", after.to_string());
         Run::of(&command.output().unwrap())
