@@ -221,3 +221,111 @@ fn branches_agree_with_curves_on_random_rows() {
     }
     assert!(compared > 300, "{compared}");
 }
+
+/// Rod with measured radii, `[arclength, radius]` in parts of the length and of the base radius.
+fn measured(rows: &[[f64; 2]], pole: f64, friction: f64) -> Rod {
+    Rod {
+        taper: 1.0 - rows[rows.len() - 1][1],
+        pole,
+        friction,
+        profile: Some(Arc::new(RadiusProfile::new(rows, 1.0))),
+        ..Rod::default()
+    }
+}
+
+/// Traced rod with much friction and curvature.
+fn traced() -> Rod {
+    let terms = [
+        2.654_884_177_567_555_3,
+        1.761_418_882_575_023_9,
+        -1.226_190_879_796_888,
+        -0.470_227_172_253_574,
+        -0.561_198_326_888_229_5,
+        0.304_118_807_419_533_6,
+        -0.145_882_973_113_839_35,
+    ];
+    Rod {
+        taper: 0.250_807_513_056_135_86,
+        friction: -0.972_814_226_406_048_4,
+        polynomial: Some(Arc::new(CurvaturePolynomial::new(terms))),
+        ..Rod::default()
+    }
+}
+
+/// Level curves that nearly meet another branch at a saddle of `D`, in steps far longer than the gap between them, and one that reaches the
+/// tip twice, between two nodes. The ends come from a continuation in steps of a hundredth, with a search of the minima of `det` between its
+/// nodes.
+#[test]
+fn pushes_end_before_gaps_shorter_than_a_step() {
+    let waist = measured(
+        &[
+            [0.0, 1.0],
+            [0.120_273_790_851_375_23, 0.701_816_237_684_189_9],
+            [0.565_614_881_010_162_7, 0.859_236_950_672_322_1],
+            [1.0, 0.795_023_202_215_322_2],
+        ],
+        0.025_842_504_292_571_4,
+        0.933_739_850_467_233_6,
+    );
+    let step = measured(
+        &[
+            [0.0, 1.0],
+            [0.133_142_525_111_076_44, 0.504_016_329_239_883_3],
+            [0.502_633_312_183_676_6, 0.581_387_739_024_055],
+            [0.551_307_402_512_389_3, 0.956_953_606_309_727_5],
+            [0.702_410_845_145_232_1, 0.839_133_484_331_663_1],
+            [1.0, 0.804_790_098_253_018_5],
+        ],
+        0.008_199_250_898_155_463,
+        0.0,
+    );
+    let cases = [
+        (
+            waist,
+            Side::Cb,
+            0.308_197_230_046_580_3,
+            Edge::Fold,
+            5.618_329_609_858,
+        ),
+        (
+            step,
+            Side::Cb,
+            0.350_664_723_819_827_4,
+            Edge::Tip,
+            10.122_996_071_435,
+        ),
+        (
+            traced(),
+            Side::Cf,
+            0.110_074_426_2,
+            Edge::Fold,
+            5.123_694_933_287,
+        ),
+    ];
+    for (rod, side, distance, edge, end) in cases {
+        let found = Sheet::new(Method::fine(), &rod, side, &[distance]).crossings[0][0];
+        // Measured: 4e-9, where the end changes by 13,000 radians for a change of 1 in `ln D`.
+        let off = (found.push - end).abs();
+        assert!(found.edge == edge && off < 1e-8, "{found:?} {off:e}");
+    }
+}
+
+/// Where friction and curvature leave no state that slides at a small push, there is no end to report.
+#[test]
+fn a_contact_that_jams_at_first_touch_has_no_end() {
+    let rod = traced();
+    let rest = Rest::new(&rod);
+    for distance in [0.636_76, 0.637_909_01, 0.65] {
+        let row = Row::new(&rest, distance);
+        let level = LevelCurve::new(Method::fine(), &rod, Side::Cf, &row);
+        assert!(level.touch().full.map.det() < 0.0, "{distance}");
+        let sheet = Sheet::new(Method::fine(), &rod, Side::Cf, &[distance]);
+        assert!(sheet.touches(0));
+        assert!(
+            sheet.crossings[0]
+                .first()
+                .is_none_or(|end| end.is_unknown()),
+            "{distance}"
+        );
+    }
+}

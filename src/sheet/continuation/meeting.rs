@@ -22,6 +22,9 @@ const BULGE_OFF: f64 = 0.5;
 const CHANGE_OFF: f64 = 0.05;
 const KINK_OFF: f64 = 1.0;
 
+/// Slope along a chord at one of its nodes, in parts of the rise, that rounding leaves at a fold.
+const FLAT: f64 = 1e-6;
+
 /// Length of a chord, as [`LevelCurve::length`] measures it, on which a pair of folds cannot be distinguished from rounding.
 const SHORTEST_TURN: f64 = 1e-6;
 
@@ -124,7 +127,8 @@ impl Chord<'_> {
         };
         let off = BULGE_OFF * bulge.abs() + change_off * (to - from).abs();
         let least = from.max(0.0).sqrt() + to.max(0.0).sqrt();
-        let is_positive = off - bulge < least * least;
+        let is_growing = from.min(to) >= -FLAT * rise.abs();
+        let is_positive = is_growing && off - bulge < least * least;
         !is_positive && self.length() > SHORTEST_TURN && !self.is_from_touch()
     }
 

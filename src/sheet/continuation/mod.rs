@@ -98,6 +98,12 @@ fn follow_with_retry(
     ended
 }
 
+/// Returns true if `node` is a first touch from which the contact cannot slide: friction and curvature are so strong that the pole would
+/// have to go back for it.
+fn jams(node: &CurveNode) -> bool {
+    node.point.y == 0.0 && node.full.map.det() < 0.0
+}
+
 fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Continuation>> {
     let mut ended = vec![None; starts.len()];
     let Some((first, _)) = starts.iter().flatten().next() else {
@@ -105,7 +111,7 @@ fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Cont
     };
     let newton = BatchNewton::new(first.method, u32::MAX);
     let steppers = starts.iter().enumerate().filter_map(|(index, start)| {
-        let (level, node) = (*start)?;
+        let (level, node) = start.filter(|(_, node)| !jams(node))?;
         Some(Stepper::new(index, level, node, stretch, miss))
     });
     let mut open: Vec<Stepper> = steppers.collect();

@@ -19,8 +19,13 @@ const SHARPEST_TURN: f64 = 0.1;
 /// Length below which chords may form any angle: after a longer chord, no step is short enough for a small angle.
 const SHORT_CHORD: f64 = 0.01 * NODE_DISTANCE;
 
-/// Length of a chord that may hide edges below which the errors of inaccurate nodes may decide.
+/// Length below which a chord that had to be shortened shows that the errors of inaccurate nodes may decide where the curve leads: it may
+/// pass a saddle of `D`, beyond which level curves that differ by such an error lie far apart.
 const RESTART_CHORD: f64 = 0.5 * NODE_DISTANCE;
+
+/// Largest distance of a node from its prediction, in parts of the step, both in parts of the scale. Where a step leads past a saddle of
+/// `D`, to another branch of the level curve, the distance is about that of the step times the sine of the angle between the branches.
+const MOST_CORRECTED: f64 = 0.1;
 
 /// First step of the continuation, relative to contact and load.
 const FIRST_ARC_STEP: f64 = 0.05;
@@ -112,10 +117,14 @@ impl<'a> Stepper<'a> {
     /// Returns the next node at a point of the curve, if the point lies ahead and not too far away.
     fn next(&self, point: DVec2, full: FullState) -> Option<CurveNode> {
         let (level, last) = (self.level, self.last());
-        let moved = (point - last.point) / level.scale(last.point);
+        let scale = level.scale(last.point);
+        let moved = (point - last.point) / scale;
+        let corrected = (point - self.predicted) / scale;
         let is_ahead = moved.dot(self.along) > 0.5 * moved.length();
+        let is_predicted = corrected.length() <= MOST_CORRECTED * moved.length();
         let next = level.node(point, &full, last.push, last.angle);
-        (is_ahead && self.fits(&next) && self.chord(next).leads_on()).then_some(next)
+        let is_next = is_ahead && is_predicted && self.fits(&next) && self.chord(next).leads_on();
+        is_next.then_some(next)
     }
 
     /// Predicts the next node by the polynomial through up to three nodes and their tangents.
@@ -167,6 +176,11 @@ impl<'a> Stepper<'a> {
     /// Adds the node `next` to the continuation and predicts the one after it. Returns false where the continuation ends without an edge.
     pub fn add(&mut self, next: CurveNode) -> bool {
         let length = self.level.length(self.last(), &next);
+        let before = self.nodes.windows(2).next_back();
+        let before = before.map_or(0.0, |nodes| self.level.length(&nodes[0], &nodes[1]));
+        if self.miss > ON_CURVE && length < RESTART_CHORD && length < 0.5 * before {
+            return false;
+        }
         self.steps.push(self.step);
         self.step *= (NODE_DISTANCE / length).clamp(0.5, 2.0);
         self.nodes.push(next);
