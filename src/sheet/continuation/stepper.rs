@@ -176,15 +176,20 @@ impl<'a> Stepper<'a> {
     /// Adds the node `next` to the continuation and predicts the one after it. Returns false where the continuation ends without an edge.
     pub fn add(&mut self, next: CurveNode) -> bool {
         let length = self.level.length(self.last(), &next);
-        let before = self.nodes.windows(2).next_back();
-        let before = before.map_or(0.0, |nodes| self.level.length(&nodes[0], &nodes[1]));
-        if self.miss > ON_CURVE && length < RESTART_CHORD && length < 0.5 * before {
+        if self.miss > ON_CURVE && self.fold.is_none() && self.was_shortened(length) {
             return false;
         }
         self.steps.push(self.step);
         self.step *= (NODE_DISTANCE / length).clamp(0.5, 2.0);
         self.nodes.push(next);
         self.advance()
+    }
+
+    /// Returns true if a chord of this `length` is so much shorter than the one before that the step had to be shortened.
+    fn was_shortened(&self, length: f64) -> bool {
+        let before = self.nodes.windows(2).next_back();
+        let before = before.map_or(0.0, |nodes| self.level.length(&nodes[0], &nodes[1]));
+        length < RESTART_CHORD && length < 0.5 * before
     }
 
     /// Adds the node of an edge to the continuation. Returns true if it is the first fold.
