@@ -6,6 +6,7 @@ use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
 use crate::sheet::row::Edge;
 use glam::DVec2;
+use std::f64::consts::FRAC_PI_3;
 
 /// Largest miss in `ln D` at the tip, where moving the contact would cause a larger error.
 const TIP_MISS: f64 = 1e-11;
@@ -22,8 +23,11 @@ const BULGE_OFF: f64 = 0.5;
 const CHANGE_OFF: f64 = 0.05;
 const KINK_OFF: f64 = 1.0;
 
-/// Slope along a chord at one of its nodes, in parts of the rise, that rounding leaves at a fold.
+/// Slope at the end of a chord, in parts of the rise, that rounding leaves at a fold.
 const FLAT: f64 = 1e-6;
+
+/// Largest angle, in radians, between the directions of the curve at neighbouring nodes: 60 degrees.
+pub const MOST_TURN: f64 = FRAC_PI_3;
 
 /// Length of a chord, as [`LevelCurve::length`] measures it, on which a pair of folds cannot be distinguished from rounding.
 const SHORTEST_TURN: f64 = 1e-6;
@@ -127,8 +131,8 @@ impl Chord<'_> {
         };
         let off = BULGE_OFF * bulge.abs() + change_off * (to - from).abs();
         let least = from.max(0.0).sqrt() + to.max(0.0).sqrt();
-        let is_growing = from.min(to) >= -FLAT * rise.abs();
-        let is_positive = is_growing && off - bulge < least * least;
+        let ends_growing = to >= -FLAT * rise.abs();
+        let is_positive = ends_growing && off - bulge < least * least;
         !is_positive && self.length() > SHORTEST_TURN && !self.is_from_touch()
     }
 
@@ -183,13 +187,17 @@ impl Chord<'_> {
         let length = |from, to| self.level.length(from, to);
         let reach = 2.0 * self.length() + f64::EPSILON;
         length(&self.from, node).max(length(&self.to, node)) <= reach
-            && self.up_to(*node).leads_on()
+            && self.up_to(*node).turn() < MOST_TURN
     }
 
-    /// Returns true if the directions of the curve at both nodes form an angle of at most 60 degrees, or the chord begins at first touch.
-    pub fn leads_on(&self) -> bool {
+    /// Returns the angle between the directions of the curve at both nodes, in radians; 0 for a chord that begins at first touch.
+    pub fn turn(&self) -> f64 {
         let [from, to] = [&self.from, &self.to].map(|node| self.level.direction(node));
-        self.is_from_touch() || from.dot(to) > 0.5
+        if self.is_from_touch() {
+            0.0
+        } else {
+            from.angle_to(to).abs()
+        }
     }
 
     /// Returns true if the chord begins at first touch. That state lies on the shape at rest, and misses the curve by the error of the

@@ -4,7 +4,7 @@ use crate::newton::{NewtonProblem, NewtonStep};
 use crate::rod::Rod;
 use crate::sheet::continuation::corrector::{CORRECTOR_TRAJECTORIES, Corrector};
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
-use crate::sheet::continuation::meeting::Chord;
+use crate::sheet::continuation::meeting::{Chord, MOST_TURN};
 use crate::sheet::row::Edge;
 use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
@@ -23,9 +23,13 @@ const SHORT_CHORD: f64 = 0.01 * NODE_DISTANCE;
 /// pass a saddle of `D`, beyond which level curves that differ by such an error lie far apart.
 const RESTART_CHORD: f64 = 0.5 * NODE_DISTANCE;
 
-/// Largest distance of a node from its prediction, in parts of the step, both in parts of the scale. Where a step leads past a saddle of
-/// `D`, to another branch of the level curve, the distance is about that of the step times the sine of the angle between the branches.
+/// Distance of a node from its prediction, in parts of the step, beyond which the step may have led past a saddle of `D`, to another
+/// branch of the level curve. It is then about the step times the sine of the angle between the branches, by which the direction turns.
 const MOST_CORRECTED: f64 = 0.1;
+
+/// Largest angle, in radians, between the directions of the curve at neighbouring nodes, if the second one is not where it was predicted. The
+/// error of the integration changes in steps, and can move a node without turning its direction.
+const LEAST_TURN: f64 = 0.1;
 
 /// First step of the continuation, relative to contact and load.
 const FIRST_ARC_STEP: f64 = 0.05;
@@ -121,10 +125,11 @@ impl<'a> Stepper<'a> {
         let moved = (point - last.point) / scale;
         let corrected = (point - self.predicted) / scale;
         let is_ahead = moved.dot(self.along) > 0.5 * moved.length();
-        let is_predicted = corrected.length() <= MOST_CORRECTED * moved.length();
         let next = level.node(point, &full, last.push, last.angle);
-        let is_next = is_ahead && is_predicted && self.fits(&next) && self.chord(next).leads_on();
-        is_next.then_some(next)
+        let chord = self.chord(next);
+        let is_predicted = corrected.length() <= MOST_CORRECTED * moved.length();
+        let is_on_branch = chord.turn() < if is_predicted { MOST_TURN } else { LEAST_TURN };
+        (is_ahead && is_on_branch && self.fits(&next)).then_some(next)
     }
 
     /// Predicts the next node by the polynomial through up to three nodes and their tangents.
@@ -185,11 +190,10 @@ impl<'a> Stepper<'a> {
         self.advance()
     }
 
-    /// Returns true if a chord of this `length` is so much shorter than the one before that the step had to be shortened.
+    /// Returns true if the step to a node at this `length` had to be shortened, and is short.
     fn was_shortened(&self, length: f64) -> bool {
-        let before = self.nodes.windows(2).next_back();
-        let before = before.map_or(0.0, |nodes| self.level.length(&nodes[0], &nodes[1]));
-        length < RESTART_CHORD && length < 0.5 * before
+        let before = self.steps.last();
+        length < RESTART_CHORD && before.is_some_and(|before| self.step <= 0.5 * before)
     }
 
     /// Adds the node of an edge to the continuation. Returns true if it is the first fold.
