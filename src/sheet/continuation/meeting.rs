@@ -24,7 +24,7 @@ const CHANGE_OFF: f64 = 0.05;
 const KINK_OFF: f64 = 1.0;
 
 /// Slope at the end of a chord, in parts of the rise, that rounding leaves at a fold.
-const FLAT: f64 = 1e-6;
+const FLAT_END: f64 = 1e-6;
 
 /// Largest angle, in radians, between the directions of the curve at neighbouring nodes: 60 degrees.
 pub const MOST_TURN: f64 = FRAC_PI_3;
@@ -131,7 +131,7 @@ impl Chord<'_> {
         };
         let off = BULGE_OFF * bulge.abs() + change_off * (to - from).abs();
         let least = from.max(0.0).sqrt() + to.max(0.0).sqrt();
-        let ends_growing = to >= -FLAT * rise.abs();
+        let ends_growing = to >= -FLAT_END * rise.abs();
         let is_positive = ends_growing && off - bulge < least * least;
         !is_positive && self.length() > SHORTEST_TURN && !self.is_from_touch()
     }
