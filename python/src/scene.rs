@@ -2,9 +2,12 @@
 
 use crate::arguments::{parameter, refused};
 use crate::errors::of_scene;
+use crate::threads;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use whiskmap::scene::{AxisScale, AxisValues, Deviations, Parameter, Scene, Surface};
 use whiskmap::traced::TracedShape;
 
@@ -72,7 +75,8 @@ impl CheckedScene {
             builder = builder.profile(rows);
         }
         if let Some((points, degree)) = traced {
-            let shape = py.detach(|| TracedShape::fit(points, degree));
+            let fit = |cancel: &Arc<AtomicBool>| TracedShape::fit_until(points, degree, cancel);
+            let shape = threads::run(py, None, |_| Ok(()), fit)?;
             builder = builder.traced(shape.map_err(|why| of_scene(py, &why.into()))?);
         }
         for (name, values) in axes {

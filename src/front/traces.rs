@@ -11,6 +11,9 @@ use crate::scene::Parameter;
 use crate::scene::{Scene, SweepPlace, SweptWhisker};
 use crate::trace::{Branch, Detachment, NoState, WhiskerShape, curve_at, sides, whiskers_at_once};
 
+/// Maximum number of distances between two looks at the flag that cancels.
+const DISTANCES_AT_ONCE: usize = 4096;
+
 /// Computes where every whisker of `scene` detaches: at each distance, CF before CB.
 ///
 /// ```
@@ -32,10 +35,11 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
     let distances = &scene.grid.distance_mm;
     let curves = |group: Vec<_>| {
         sides(&group, |own: &SweptWhisker, side| {
-            match options.is_cancelled() {
-                true => Vec::new(),
-                false => curve_at(resolution, &own.whisker, &own.pole, side, distances),
-            }
+            let parts = distances.chunks(DISTANCES_AT_ONCE);
+            let parts = parts.filter(|_| !options.is_cancelled());
+            parts
+                .flat_map(|part| curve_at(resolution, &own.whisker, &own.pole, side, part))
+                .collect()
         })
     };
     let mut ends = Vec::with_capacity(2 * scene.whisker_count() * distances.len());

@@ -8,6 +8,7 @@ use super::curve::{CurvePose, CurveTable, CurveTerms, Foot};
 use crate::least_squares::minimise;
 use crate::rod::CURVATURE_TERMS;
 use glam::DVec2;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Largest degree of the curvature of a fitted curve, as a polynomial of the arclength.
 pub const MOST_DEGREE: usize = CURVATURE_TERMS - 1;
@@ -44,13 +45,18 @@ pub struct CurveFit {
 pub struct TracedPoints<'a> {
     points: &'a [DVec2],
     terms: CurveTerms,
+    /// Flag that cancels: if true, fits end with an error.
+    cancel: &'a AtomicBool,
 }
 
 impl<'a> TracedPoints<'a> {
-    /// Prepares fits to `points`, from base to tip, at least two.
-    pub fn new(points: &'a [DVec2]) -> Self {
-        let terms = CurveTerms::new();
-        Self { points, terms }
+    /// Prepares fits to `points`, from base to tip, at least two. They end when `cancel` becomes true.
+    pub fn new(points: &'a [DVec2], cancel: &'a AtomicBool) -> Self {
+        Self {
+            points,
+            terms: CurveTerms::new(),
+            cancel,
+        }
     }
 
     /// Table of the curve with these `unknowns`, in units of `length`, from the first point.
@@ -92,6 +98,9 @@ impl<'a> TracedPoints<'a> {
             feet.iter().map(|foot| foot.distance).collect()
         };
         let jacobian = |unknowns: &[f64], _: &[f64]| {
+            if self.cancel.load(Ordering::Relaxed) {
+                return Err("cancelled");
+            }
             let table = self.table(unknowns);
             let (sin, cos) = libm::sincos(unknowns[0]);
             let (tangent, normal) = (DVec2::new(cos, sin), DVec2::new(-sin, cos));

@@ -12,6 +12,7 @@ use crate::rod::{CURVATURE_TERMS, CurvaturePolynomial};
 pub use curve_fit::MOST_DEGREE;
 use curve_fit::{CurveFit, TracedPoints};
 use glam::DVec2;
+use std::sync::atomic::AtomicBool;
 
 /// Points more than the degree that a fit needs: three for length and pose, and one to have a distance left.
 const MORE_POINTS: usize = 4;
@@ -105,10 +106,22 @@ impl TracedShape {
     /// If there are too few points or more than 50,000, one is no number, repeats the one before it or folds back toward the base, or the points lie off
     /// every such curve.
     pub fn fit(points_mm: Vec<[f64; 2]>, degree: Option<usize>) -> Result<Self, TracedError> {
+        Self::fit_until(points_mm, degree, &AtomicBool::new(false))
+    }
+
+    /// Fits a curve as [`TracedShape::fit`] does, until `cancel` becomes true.
+    ///
+    /// # Errors
+    /// As [`TracedShape::fit`], and after a cancellation.
+    pub fn fit_until(
+        points_mm: Vec<[f64; 2]>,
+        degree: Option<usize>,
+        cancel: &AtomicBool,
+    ) -> Result<Self, TracedError> {
         let most = most_degree(points_mm.len(), degree)?;
         let reach = check(&points_mm)?;
         let points: Vec<DVec2> = points_mm.iter().map(|point| (*point).into()).collect();
-        let traced = TracedPoints::new(&points);
+        let traced = TracedPoints::new(&points, cancel);
         let failed = |why| {
             TracedError::whole(format!(
                 "must lie along a smooth curve: the fit to it does not converge ({why})"
