@@ -105,6 +105,16 @@ fn isolate(command: &mut std::process::Command) {
     unsafe { command.pre_exec(set) };
 }
 
+/// Returns the system's message for a file that is missing in a folder.
+pub fn no_file() -> String {
+    fs::metadata("nowhere").unwrap_err().to_string()
+}
+
+/// Returns the system's message for a file whose folder is missing.
+pub fn no_folder() -> String {
+    fs::metadata("nowhere/file").unwrap_err().to_string()
+}
+
 /// Returns the sorted names of the entries of a folder; none without a folder.
 pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
