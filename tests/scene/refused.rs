@@ -119,7 +119,11 @@ fn unreadable_files_have_different_messages() {
     };
     let none = message(&folder.path().join("none.toml"));
     assert!(none.contains(&format!("cannot be read: {}", no_file())));
-    assert!(message(folder.path()).to_lowercase().contains("cannot be read: is a directory"));
+    assert!(
+        message(folder.path())
+            .to_lowercase()
+            .contains("cannot be read: is a directory")
+    );
     assert!(message(&file("large.toml", &vec![b'#'; (1 << 20) + 1])).contains("longer than 1 MiB"));
     let latin = message(&file("latin.toml", b"title = 'x'\n# 5 \xb5m\n"));
     assert!(latin.contains("not UTF-8 text: byte 0xB5"), "{latin}");
