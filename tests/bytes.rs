@@ -31,6 +31,17 @@ fn hashed(hash: u64, panel: &Panel) -> u64 {
     fnv(hash, numbers.flatten().flat_map(|x| x.to_le_bytes()))
 }
 
+/// The C libraries of some systems round twice.
+#[test]
+fn products_with_sums_are_rounded_once() {
+    let [x, y, z] = std::hint::black_box([
+        1.788_540_419_251_572_6,
+        1.993_620_867_321_968_9_f64,
+        -3.565_671_501_868_718,
+    ]);
+    assert_eq!(x.mul_add(y, z), -2.205_283_176_707_903_2e-16);
+}
+
 /// The hash of each shipped scene, thinned, by the name of its file.
 #[test]
 fn maps_of_a_class_have_equal_bits() {

@@ -1,9 +1,9 @@
 //! Documentation: commands run, links and paths exist, every column is described, every summary stands alone.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
-use assert_cmd::Command;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use whiskmap::force::FrameForce;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::sensitivity::VariableEffect;
@@ -71,8 +71,7 @@ fn every_command_of_the_pages_runs() {
     let mut ran = 0;
     for (page, text) in pages() {
         for call in calls(&text) {
-            let run = Command::cargo_bin("whiskmap")
-                .expect("the program")
+            let run = Command::new(env!("CARGO_BIN_EXE_whiskmap"))
                 .args(&call)
                 .current_dir(place.path())
                 .output()

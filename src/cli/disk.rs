@@ -60,7 +60,34 @@ fn free(folder: &Path) -> Option<u64> {
     disk.f_bavail.checked_mul(disk.f_frsize)
 }
 
-#[cfg(not(unix))]
+#[cfg(windows)]
+#[allow(unsafe_code, reason = "only a call of the system returns the space")]
+fn free(folder: &Path) -> Option<u64> {
+    use std::os::windows::ffi::OsStrExt;
+    #[link(name = "kernel32")]
+    unsafe extern "system" {
+        fn GetDiskFreeSpaceExW(
+            folder: *const u16,
+            for_user: *mut u64,
+            disk: *mut u64,
+            free: *mut u64,
+        ) -> i32;
+    }
+    let name: Vec<u16> = folder.as_os_str().encode_wide().chain([0]).collect();
+    let [mut for_user, mut disk, mut free] = [0; 3];
+    // SAFETY: the name ends in 0, and each other pointer is to a number of 64 bits.
+    let is_known = unsafe {
+        GetDiskFreeSpaceExW(
+            name.as_ptr(),
+            &raw mut for_user,
+            &raw mut disk,
+            &raw mut free,
+        )
+    } != 0;
+    is_known.then_some(for_user)
+}
+
+#[cfg(not(any(unix, windows)))]
 fn free(_: &Path) -> Option<u64> {
     None
 }

@@ -193,15 +193,32 @@ fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error)
     }
 }
 
+#[cfg(not(unix))]
+const ERROR_SHARING_VIOLATION: i32 = 32;
+#[cfg(not(unix))]
+const ERROR_LOCK_VIOLATION: i32 = 33;
+#[cfg(not(unix))]
+const ERROR_CANT_RESOLVE_FILENAME: i32 = 1921;
+
 /// Returns true for an error that another path would not have.
 fn is_of_path(error: &io::Error) -> bool {
     use io::ErrorKind::{
         AlreadyExists, CrossesDevices, ExecutableFileBusy, InvalidFilename, InvalidInput,
         IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem, Unsupported,
     };
-    // A circle of links has no stable kind.
+    // Errors without a stable kind: a circle of links and, on Windows, a file that another program keeps for itself.
     #[cfg(unix)]
-    if error.raw_os_error() == Some(libc::ELOOP) {
+    const OTHERS: [i32; 1] = [libc::ELOOP];
+    #[cfg(not(unix))]
+    const OTHERS: [i32; 3] = [
+        ERROR_SHARING_VIOLATION,
+        ERROR_LOCK_VIOLATION,
+        ERROR_CANT_RESOLVE_FILENAME,
+    ];
+    if error
+        .raw_os_error()
+        .is_some_and(|code| OTHERS.contains(&code))
+    {
         return true;
     }
     matches!(

@@ -54,7 +54,9 @@ impl StageTimes {
 pub(super) fn process_seconds() -> Option<f64> {
     #[cfg(unix)]
     return Some(seconds(rustix::time::ClockId::ProcessCPUTime));
-    #[cfg(not(unix))]
+    #[cfg(windows)]
+    return windows::process_seconds();
+    #[cfg(not(any(unix, windows)))]
     None
 }
 
@@ -63,7 +65,9 @@ pub(super) fn process_seconds() -> Option<f64> {
 pub fn thread_seconds() -> Option<f64> {
     #[cfg(unix)]
     return Some(seconds(rustix::time::ClockId::ThreadCPUTime));
-    #[cfg(not(unix))]
+    #[cfg(windows)]
+    return windows::thread_seconds();
+    #[cfg(not(any(unix, windows)))]
     None
 }
 
@@ -71,4 +75,55 @@ pub fn thread_seconds() -> Option<f64> {
 fn seconds(clock: rustix::time::ClockId) -> f64 {
     let time = rustix::time::clock_gettime(clock);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+#[cfg(windows)]
+#[allow(unsafe_code, reason = "only calls of the system return CPU times")]
+mod windows {
+    /// Times of a process or a thread: in 100 ns, of its start, its end, and what it spent in the system and outside.
+    type Times = unsafe extern "system" fn(isize, *mut u64, *mut u64, *mut u64, *mut u64) -> i32;
+
+    #[link(name = "kernel32")]
+    unsafe extern "system" {
+        fn GetProcessTimes(
+            process: isize,
+            start: *mut u64,
+            end: *mut u64,
+            system: *mut u64,
+            user: *mut u64,
+        ) -> i32;
+        fn GetThreadTimes(
+            thread: isize,
+            start: *mut u64,
+            end: *mut u64,
+            system: *mut u64,
+            user: *mut u64,
+        ) -> i32;
+    }
+
+    const CURRENT_PROCESS: isize = -1;
+    const CURRENT_THREAD: isize = -2;
+
+    pub fn process_seconds() -> Option<f64> {
+        seconds(GetProcessTimes, CURRENT_PROCESS)
+    }
+
+    pub fn thread_seconds() -> Option<f64> {
+        seconds(GetThreadTimes, CURRENT_THREAD)
+    }
+
+    fn seconds(times: Times, handle: isize) -> Option<f64> {
+        let [mut start, mut end, mut system, mut user] = [0; 4];
+        // SAFETY: each pointer is to a number of 64 bits, and the handle is that of the caller itself.
+        let is_known = unsafe {
+            times(
+                handle,
+                &raw mut start,
+                &raw mut end,
+                &raw mut system,
+                &raw mut user,
+            )
+        } != 0;
+        is_known.then(|| 1e-7 * (system + user) as f64)
+    }
 }

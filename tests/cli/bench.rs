@@ -184,7 +184,8 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     // The link is kept.
     #[cfg(unix)]
     std::os::unix::fs::symlink("real.json", place.path("b.json")).unwrap();
-    let peers = concat!(env!("CARGO_MANIFEST_DIR"), "/outputs/peers.json");
+    let peers = std::path::absolute("outputs/peers.json").unwrap();
+    let peers = peers.to_str().unwrap();
     let options = ["--json", "b.json", "--plot", "b.svg", "--peers", peers];
     let run = good(
         &place,

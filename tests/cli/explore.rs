@@ -3,6 +3,7 @@
 use super::traces::good;
 use super::{Place, SCENE, names};
 use serde_json::Value;
+use std::path::Path;
 
 /// Scene and points on a page, as its script reads them.
 fn start(page: &[u8]) -> Value {
@@ -49,7 +50,8 @@ fn a_map_and_a_store_have_their_scene() {
 fn a_page_without_a_name_is_in_a_folder_that_is_created() {
     let place = Place::with(SCENE);
     let run = good(&place, &["explore", "scene.toml"]);
-    assert_eq!(run.out, "outputs/scene.html\n");
+    let page = Path::new("outputs").join("scene.html");
+    assert_eq!(run.out, format!("{}\n", page.display()));
     assert_eq!(names(&place.path("outputs")), ["scene.html"]);
 }
 

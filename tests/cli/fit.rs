@@ -1,7 +1,7 @@
 //! `whiskmap fit`.
 
 use super::data::{DATA, curve, place};
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, no_folder};
 use serde_json::Value;
 use whiskmap::scene::Scene;
 
@@ -248,7 +248,7 @@ fn wrong_input_is_refused_before_any_file_is_made() {
     );
     refused(
         &["--free", "taper", "-o", "nowhere/f.toml"],
-        &["--output nowhere/f.toml: No such file"],
+        &[&format!("--output nowhere/f.toml: {}", no_folder())],
     );
     refused(
         &["--free", "taper", "-o", "f", "--json", "f"],

@@ -1,6 +1,8 @@
 //! `whiskmap completions` and `whiskmap man`.
 
-use super::{Place, Run};
+use super::Place;
+#[cfg(unix)]
+use super::Run;
 
 fn place() -> Place {
     Place::with("")

@@ -62,4 +62,4 @@ mod whisk;
 #[cfg(windows)]
 mod windows;
 
-use program::{Place, Run, SCENE, names};
+use program::{Place, Run, SCENE, names, no_file, no_folder};

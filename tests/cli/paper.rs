@@ -2,6 +2,7 @@
 
 use super::traces::good;
 use super::{Place, SCENE, names};
+use std::path::Path;
 
 #[test]
 fn figures_come_with_their_tables() {
@@ -10,7 +11,8 @@ fn figures_come_with_their_tables() {
     let mut files: Vec<&str> = run
         .out
         .lines()
-        .map(|line| line.trim_start_matches("new/folder/"))
+        .map(|line| Path::new(line).strip_prefix("new/folder").unwrap())
+        .map(|name| name.to_str().unwrap())
         .collect();
     files.sort_unstable();
     assert_eq!(files, names(&place.path("new/folder")));

@@ -1,8 +1,9 @@
 //! Invalid input: one message, exit code 2, no file created.
 
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, no_file};
 use std::fs;
 use std::io::{BufRead, BufReader};
+#[cfg(unix)]
 use std::path::Path;
 use std::process::Stdio;
 
@@ -26,7 +27,8 @@ fn scenes_that_cannot_be_read() {
     fs::create_dir(place.path("folder")).unwrap();
     let map = |scene: &str| place.run(&["map", scene, "--engine", "cpu"]);
     map("scene.toml").assert_refused(&["scene.toml:1:9", "title = = 3"]);
-    map("nowhere.toml").assert_refused(&["nowhere.toml: cannot be read: No such file"]);
+    let said = format!("nowhere.toml: cannot be read: {}", no_file());
+    map("nowhere.toml").assert_refused(&[&said]);
     map("folder").assert_refused(&["folder: cannot be read"]);
     fs::write(place.path("bytes.toml"), b"title = \"\xff\"").unwrap();
     map("bytes.toml").assert_refused(&["not UTF-8 text: byte 0xFF"]);

@@ -1,6 +1,6 @@
 //! `whiskmap render`.
 
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, no_file, no_folder};
 
 #[test]
 fn render_draws_the_picture_again() {
@@ -185,7 +185,7 @@ fn render_refuses_what_is_no_map() {
     let run = place.run(&["render", "scene.toml"]);
     run.assert_refused(&["scene.toml", "not an EXR file"]);
     let run = place.run(&["render", "nowhere.exr"]);
-    run.assert_refused(&["nowhere.exr", "No such file"]);
+    run.assert_refused(&["nowhere.exr", &no_file()]);
     place
         .run(&["render", "outputs"])
         .assert_refused(&["outputs"]);
@@ -238,7 +238,7 @@ fn a_picture_that_cannot_be_written_leaves_nothing() {
     for ending in ["png", "svg"] {
         let (nowhere, taken) = (format!("nowhere/map.{ending}"), format!("taken.{ending}"));
         std::fs::create_dir(place.path(&taken)).unwrap();
-        for (path, why) in [(&nowhere, "No such file"), (&taken, "is a directory")] {
+        for (path, why) in [(&nowhere, &*no_folder()), (&taken, "is a directory")] {
             let run = place.run(&["render", "outputs/scene.exr", "-o", path]);
             run.assert_refused(&[&format!("--output {path}: {why}")]);
         }

@@ -67,6 +67,7 @@ fn an_interrupted_run_cleans_up() {
 }
 
 /// The store is written in a temporary folder, to which threads still add files when the signal arrives.
+#[cfg(unix)]
 #[test]
 fn an_interrupted_extract_leaves_no_folder() {
     let place = Place::with(SCENE);
@@ -94,6 +95,7 @@ fn an_interrupted_extract_leaves_no_folder() {
 }
 
 /// `nohup` ignores SIGHUP, and a shell ignores the other two for its background jobs. A process inherits this.
+#[cfg(unix)]
 #[test]
 fn tests_do_not_depend_on_ignored_signals() {
     let mut shell = Command::new("sh");

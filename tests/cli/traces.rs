@@ -1,6 +1,6 @@
 //! Common behaviour of `whiskmap curve`, `branch` and `shape`: tables, plots, refused input.
 
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, no_folder};
 
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
                      arc_length_mm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
@@ -165,11 +165,11 @@ fn wrong_arguments_are_refused_before_any_work() {
     );
     refused(
         &["--plot", "nowhere/p.png"],
-        &["--plot nowhere/p.png: No such file"],
+        &[&format!("--plot nowhere/p.png: {}", no_folder())],
     );
     refused(
         &["--csv", "nowhere/t.csv"],
-        &["--csv nowhere/t.csv: No such file"],
+        &[&format!("--csv nowhere/t.csv: {}", no_folder())],
     );
     refused(&["--csv", "."], &["--csv .: is a directory"]);
     refused(

@@ -36,10 +36,8 @@ fn names_in_another_case_are_one_file() {
             .assert_refused(&["must be two files"]);
     }
     // The new table takes one of the names of the file; the input keeps the other.
-    good(
-        &place,
-        &["curve", "scene.toml", "--data=pts.csv", "--csv=hard.csv"],
-    );
+    let run = place.run(&["curve", "scene.toml", "--data=pts.csv", "--csv=hard.csv"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(place.bytes("pts.csv"), DATA.as_bytes());
 }
 

@@ -205,5 +205,5 @@ fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
     // Sums of rounded seconds.
     assert!(sequence <= wall + 1e-9, "{all:?}: {sequence} of {wall}");
     assert_eq!(summary.device_seconds > 0.0, has_engine);
-    assert_eq!(summary.cpu_seconds.is_some_and(|cpu| cpu > 0.0), cfg!(unix));
+    assert!(summary.cpu_seconds.is_some_and(|cpu| cpu > 0.0));
 }

@@ -4,7 +4,7 @@
 
 use assert_cmd::Command;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::process::Output;
 use tempfile::TempDir;
 
@@ -105,6 +105,16 @@ fn isolate(command: &mut std::process::Command) {
     unsafe { command.pre_exec(set) };
 }
 
+/// Returns the system's message for a file that is missing in a folder.
+pub fn no_file() -> String {
+    fs::metadata("nowhere").unwrap_err().to_string()
+}
+
+/// Returns the system's message for a file whose folder is missing.
+pub fn no_folder() -> String {
+    fs::metadata("nowhere/file").unwrap_err().to_string()
+}
+
 /// Returns the sorted names of the entries of a folder; none without a folder.
 pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
@@ -155,21 +165,27 @@ impl Run {
         assert_eq!(self.count(disagreements), 0, "{self:?}");
     }
 
-    /// Checks the exit code, and that standard error contains `said`.
-    pub fn assert_said(&self, code: i32, said: &str) {
-        assert_eq!(self.code, Some(code), "{self:?}");
-        assert!(self.err.contains(said), "{self:?}");
+    /// Returns standard error with slashes in paths, which Windows separates by backslashes.
+    pub fn messages(&self) -> String {
+        self.err.replace(MAIN_SEPARATOR, "/")
     }
 
-    /// Checks for invalid input: exit code 2, no standard output, one message with all `parts`.
+    /// Checks the exit code, and that standard error contains `said`, where paths have slashes.
+    pub fn assert_said(&self, code: i32, said: &str) {
+        assert_eq!(self.code, Some(code), "{self:?}");
+        assert!(self.messages().contains(said), "{self:?}");
+    }
+
+    /// Checks for invalid input: exit code 2, no standard output, one message with all `parts`, where paths have slashes.
     pub fn assert_refused(&self, parts: &[&str]) {
         assert_eq!(self.code, Some(2), "{self:?}");
         assert_eq!(self.out, "", "{self:?}");
         assert!(self.err.starts_with("error: "), "{self:?}");
         assert_eq!(self.err.matches("error: ").count(), 1, "{self:?}");
         assert!(!self.err.contains('\u{1b}'), "colours in a pipe: {self:?}");
+        let messages = self.messages();
         for part in parts {
-            assert!(self.err.contains(part), "no {part:?} in {self:?}");
+            assert!(messages.contains(part), "no {part:?} in {self:?}");
         }
     }
 }

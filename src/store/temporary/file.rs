@@ -113,21 +113,39 @@ impl TemporaryFile {
                 continue;
             }
             let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
-            // Kept open, and so locked, until it is removed.
-            let file = not_following(is_folder).open(entry.path());
-            if file.as_ref().is_ok_and(|file| file.try_lock().is_ok()) {
-                let _ = match is_folder {
-                    true => fs::remove_dir_all(entry.path()),
-                    false => fs::remove_file(entry.path()),
-                };
+            // Locked until it is removed, except on Windows, which removes no folder that nobody else may open.
+            let Some(locked) = lock_leftover(&entry.path(), is_folder) else {
+                continue;
+            };
+            if cfg!(windows) && is_folder {
+                drop(locked);
             }
+            let _ = match is_folder {
+                true => fs::remove_dir_all(entry.path()),
+                false => fs::remove_file(entry.path()),
+            };
         }
     }
 }
 
-/// Options to open a leftover: whatever has taken its name since, no link is followed and no pipe waited for.
-fn not_following(is_folder: bool) -> OpenOptions {
+/// Returns options to open a folder.
+pub fn folder_options() -> OpenOptions {
     let mut options = File::options();
+    options.read(true);
+    #[cfg(windows)]
+    {
+        use std::os::windows::fs::OpenOptionsExt;
+        // Without this flag, Windows opens no folder.
+        const FILE_FLAG_BACKUP_SEMANTICS: u32 = 0x0200_0000;
+        options.custom_flags(FILE_FLAG_BACKUP_SEMANTICS);
+    }
+    options
+}
+
+/// Opens and locks a leftover; returns `None` while its process runs. Whatever has taken its name since, no link is followed and no
+/// pipe waited for.
+fn lock_leftover(path: &Path, is_folder: bool) -> Option<File> {
+    let mut options = folder_options();
     // No folder is opened for writing, and NFS locks no file that is not.
     options.read(is_folder).write(!is_folder);
     #[cfg(unix)]
@@ -136,7 +154,14 @@ fn not_following(is_folder: bool) -> OpenOptions {
         use std::os::unix::fs::OpenOptionsExt;
         options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed());
     }
-    options
+    #[cfg(windows)]
+    if is_folder {
+        use std::os::windows::fs::OpenOptionsExt;
+        // Windows locks no folder, but one that is open elsewhere cannot be opened without sharing.
+        return options.share_mode(0).open(path).ok();
+    }
+    let file = options.open(path).ok()?;
+    file.try_lock().is_ok().then_some(file)
 }
 
 #[cfg(unix)]

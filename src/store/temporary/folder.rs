@@ -1,5 +1,6 @@
 //! Temporary folders, which get their names when they are complete.
 
+use super::file::folder_options;
 use super::name::{RANDOM, prefix};
 use super::{ListedPath, TemporaryFiles};
 use crate::store::file_id::folder_of;
@@ -15,7 +16,7 @@ use tempfile::TempDir;
 #[derive(Debug)]
 pub struct TemporaryFolder {
     folder: TempDir,
-    /// The folder, locked while the process runs; `None` where folders cannot be opened.
+    /// The folder, open and so locked while the process runs; `None` where folders cannot be opened.
     _lock: Option<File>,
     _listed: ListedPath,
 }
@@ -38,7 +39,11 @@ impl TemporaryFolder {
         loop {
             let (folder, listed) = files.make(make, TempDir::path)?;
             // Without a lock, the folder of an interrupted process stays.
-            let lock = File::open(folder.path()).ok();
+            let lock = folder_options().open(folder.path());
+            if is_opened_elsewhere(&lock) {
+                continue;
+            }
+            let lock = lock.ok();
             let _ = lock.as_ref().map(File::lock);
             // Before it was locked, another process may have removed it as a leftover.
             if !matches!(folder.path().try_exists(), Ok(false)) {
@@ -70,4 +75,11 @@ impl TemporaryFolder {
         let _ = self.folder.keep();
         sync_folder(folder_of(target))
     }
+}
+
+/// Returns true if another process of Windows is about to remove the folder as a leftover, before it was open here.
+fn is_opened_elsewhere(folder: &io::Result<File>) -> bool {
+    const ERROR_SHARING_VIOLATION: i32 = 32;
+    let code = folder.as_ref().err().and_then(io::Error::raw_os_error);
+    cfg!(windows) && code == Some(ERROR_SHARING_VIOLATION)
 }

@@ -1,7 +1,11 @@
 //! Sizes of files, and memory, that `whiskmap plan` prints.
 
-use super::{STRAIGHT, bytes, fact, memory_mib, plan};
-use crate::cli::{Place, Run};
+#[cfg(target_os = "linux")]
+use super::fact;
+use super::{STRAIGHT, bytes, memory_mib, plan};
+use crate::cli::Place;
+#[cfg(target_os = "linux")]
+use crate::cli::Run;
 
 /// Returns the bytes of all files below a folder.
 fn size(path: &std::path::Path) -> u64 {

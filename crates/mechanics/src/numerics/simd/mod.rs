@@ -12,6 +12,8 @@ mod registers;
 
 #[cfg(target_arch = "aarch64")]
 mod aarch64;
+#[cfg(all(windows, target_env = "gnu"))]
+mod mingw;
 #[cfg(target_arch = "wasm32")]
 mod wasm32;
 #[cfg(target_arch = "x86_64")]
