@@ -193,31 +193,27 @@ fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error)
     }
 }
 
-#[cfg(not(unix))]
-const ERROR_SHARING_VIOLATION: i32 = 32;
-#[cfg(not(unix))]
-const ERROR_LOCK_VIOLATION: i32 = 33;
-#[cfg(not(unix))]
-const ERROR_CANT_RESOLVE_FILENAME: i32 = 1921;
-
 /// Returns true for an error that another path would not have.
 fn is_of_path(error: &io::Error) -> bool {
     use io::ErrorKind::{
         AlreadyExists, CrossesDevices, ExecutableFileBusy, InvalidFilename, InvalidInput,
         IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem, Unsupported,
     };
-    // Errors without a stable kind: a circle of links and, on Windows, a file that another program keeps for itself.
-    #[cfg(unix)]
-    const OTHERS: [i32; 1] = [libc::ELOOP];
-    #[cfg(not(unix))]
-    const OTHERS: [i32; 3] = [
-        ERROR_SHARING_VIOLATION,
-        ERROR_LOCK_VIOLATION,
-        ERROR_CANT_RESOLVE_FILENAME,
+    // Errors without a stable kind: a circle of links and, on Windows, a file that another program keeps for itself
+    // (ERROR_CANT_RESOLVE_FILENAME, ERROR_SHARING_VIOLATION, ERROR_LOCK_VIOLATION).
+    let others: &[i32] = &[
+        #[cfg(unix)]
+        libc::ELOOP,
+        #[cfg(windows)]
+        1921,
+        #[cfg(windows)]
+        32,
+        #[cfg(windows)]
+        33,
     ];
     if error
         .raw_os_error()
-        .is_some_and(|code| OTHERS.contains(&code))
+        .is_some_and(|code| others.contains(&code))
     {
         return true;
     }

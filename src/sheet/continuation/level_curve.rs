@@ -39,6 +39,13 @@ pub struct CurveNode {
     pub angle: f64,
 }
 
+impl CurveNode {
+    /// Returns true for a first touch: the whisker is at rest.
+    pub(super) fn is_first_touch(&self) -> bool {
+        self.point.y == 0.0
+    }
+}
+
 /// Level curve of one row, with the direction in which it is followed.
 #[derive(Clone, Debug)]
 pub struct LevelCurve {

@@ -109,8 +109,8 @@ impl Chord<'_> {
         self.may_fall(self.to.point.x - self.from.point.x, |_| DVec2::X)
     }
 
-    /// Returns true if a quantity that grows by `rise` from node to node may fall between them, except next to first touch. `by` returns its derivatives by
-    /// `(tau, load)` at a node.
+    /// Returns true if a quantity that grows by `rise` from node to node may fall between them. `by` returns its derivatives by `(tau, load)` at
+    /// a node. Chords from first touch are left out: that state lies on the shape at rest, and misses the curve by the error of the integration.
     ///
     /// The slope of a cubic along the chord is `from (1 - t) + to t + bulge t (1 - t)`; `t` runs from 0 to 1. The slopes at the nodes and the
     /// rise determine it. The slope of the quantity is lower by at most `off t (1 - t)`. So it is positive between the nodes if
@@ -133,7 +133,7 @@ impl Chord<'_> {
         let least = from.max(0.0).sqrt() + to.max(0.0).sqrt();
         let ends_growing = to >= -FLAT_END * rise.abs();
         let is_positive = ends_growing && off - bulge < least * least;
-        !is_positive && self.length() > SHORTEST_TURN && !self.is_from_touch()
+        !is_positive && self.length() > SHORTEST_TURN && !self.from.is_first_touch()
     }
 
     /// Returns true if the contact moves past a measured radius, where the slope of the radius jumps: there `det` has a kink.
@@ -193,17 +193,11 @@ impl Chord<'_> {
     /// Returns the angle between the directions of the curve at both nodes, in radians; 0 for a chord that begins at first touch.
     pub fn turn(&self) -> f64 {
         let [from, to] = [&self.from, &self.to].map(|node| self.level.direction(node));
-        if self.is_from_touch() {
+        if self.from.is_first_touch() {
             0.0
         } else {
             from.angle_to(to).abs()
         }
-    }
-
-    /// Returns true if the chord begins at first touch. That state lies on the shape at rest, and misses the curve by the error of the
-    /// integration.
-    fn is_from_touch(&self) -> bool {
-        self.from.point.y == 0.0
     }
 }
 

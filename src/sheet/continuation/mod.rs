@@ -101,7 +101,7 @@ fn follow_with_retry(
 /// Returns true if `node` is a first touch from which the contact cannot slide: friction and curvature are so strong that the pole would
 /// have to go back for it.
 fn jams(node: &CurveNode) -> bool {
-    node.point.y == 0.0 && node.full.map.det() < 0.0
+    node.is_first_touch() && node.full.map.det() < 0.0
 }
 
 fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Continuation>> {

@@ -19,8 +19,8 @@ const SHARPEST_TURN: f64 = 0.1;
 /// Length below which chords may form any angle: after a longer chord, no step is short enough for a small angle.
 const SHORT_CHORD: f64 = 0.01 * NODE_DISTANCE;
 
-/// Length below which a chord that had to be shortened shows that the errors of inaccurate nodes may decide where the curve leads: it may
-/// pass a saddle of `D`, beyond which level curves that differ by such an error lie far apart.
+/// Length of a doubtful chord below which the errors of inaccurate nodes may decide. Beyond a saddle of `D`, level curves that differ by such an
+/// error lie far apart.
 const RESTART_CHORD: f64 = 0.5 * NODE_DISTANCE;
 
 /// Distance of a node from its prediction, in parts of the step, beyond which the step may have led past a saddle of `D`, to another
@@ -181,19 +181,19 @@ impl<'a> Stepper<'a> {
     /// Adds the node `next` to the continuation and predicts the one after it. Returns false where the continuation ends without an edge.
     pub fn add(&mut self, next: CurveNode) -> bool {
         let length = self.level.length(self.last(), &next);
-        if self.miss > ON_CURVE && self.fold.is_none() && self.was_shortened(length) {
-            return false;
-        }
         self.steps.push(self.step);
         self.step *= (NODE_DISTANCE / length).clamp(0.5, 2.0);
         self.nodes.push(next);
         self.advance()
     }
 
-    /// Returns true if the step to a node at this `length` had to be shortened, and is short.
-    fn was_shortened(&self, length: f64) -> bool {
+    /// Returns true if the errors of inaccurate nodes may decide where the curve leads, or which edges it meets: the `chord` to the next node
+    /// is short because the step had to be shortened, or it still may hide edges.
+    fn needs_exact_nodes(&self, chord: &Chord, hides_edges: bool) -> bool {
         let before = self.steps.last();
-        length < RESTART_CHORD && before.is_some_and(|before| self.step <= 0.5 * before)
+        let was_shortened = before.is_some_and(|before| self.step <= 0.5 * before);
+        let is_doubtful = hides_edges || was_shortened && self.fold.is_none();
+        self.miss > ON_CURVE && is_doubtful && chord.length() < RESTART_CHORD
     }
 
     /// Adds the node of an edge to the continuation. Returns true if it is the first fold.
@@ -234,18 +234,23 @@ impl<'a> NewtonProblem<'a> for Stepper<'a> {
             }
             NewtonStep::Shoot(_) | NewtonStep::Fail => None,
         };
-        let chord = next.map(|next| (next, self.chord(next)));
-        let mut may_go_on = match chord {
-            Some((next, chord)) if !chord.hides_edges() => {
-                if chord.may_meet() {
+        let mut may_go_on = match next {
+            Some(next) => {
+                let chord = self.chord(next);
+                let hides_edges = chord.hides_edges();
+                if self.needs_exact_nodes(&chord, hides_edges) {
+                    // The continuation begins again with nodes on the curve.
+                    false
+                } else if hides_edges {
+                    self.shorten()
+                } else if chord.may_meet() {
                     self.candidate = Some(next);
                     return NewtonStep::Accept;
+                } else {
+                    self.add(next)
                 }
-                self.add(next)
             }
-            // The errors of the nodes would decide which edges are there. The continuation begins again with nodes on the curve.
-            Some((_, chord)) if self.miss > ON_CURVE && chord.length() < RESTART_CHORD => false,
-            _ => self.shorten(),
+            None => self.shorten(),
         };
         while may_go_on && self.predicted.x <= 0.0 {
             may_go_on = self.shorten();
