@@ -53,7 +53,7 @@ pub fn measure(
         report.failures.push(format!("GPU: {why}"));
         return;
     }
-    let requests = Request::all(scene, task, |_, side| side);
+    let requests = Request::all(scene, task, |side| side);
     let all = adapters();
     let without = all.iter().filter(|adapter| !adapter.shader_f64);
     let without = without.map(|adapter| format!("{}: no f64 in shaders", adapter.info.name));

@@ -7,7 +7,7 @@ use super::cell_work::{CellWork, SolvedOn};
 use super::machine::{MACHINES, Machine};
 use super::task::Task;
 use crate::engine::Precision;
-use crate::plan::USUAL_PATCH;
+use crate::plan::USUAL_NET;
 use crate::shooting::batch::Method;
 use serde::Serialize;
 
@@ -99,7 +99,7 @@ pub fn computed(task: &Task, states: f64, threads: usize, report: &Report) -> Ve
         let resolution = precision.resolution(Method::fine().resolution);
         CellWork::of_shader(precision, task.mean_steps(resolution), states)
     };
-    let terms = USUAL_PATCH[1] as f64;
+    let terms = USUAL_NET[1] as f64;
     let engines = [
         ("gpu f32", shader(Precision::F32)),
         ("gpu f64", shader(Precision::F64)),

@@ -22,7 +22,7 @@ impl Request {
     pub fn all(
         scene: &Scene,
         task: &Task,
-        expand: impl Fn(Method, WhiskerSide) -> WhiskerSide,
+        expand: impl Fn(WhiskerSide) -> WhiskerSide,
     ) -> Vec<Self> {
         let method = Method::fine().with_effects(task.effects);
         let sides = whisker_sides(scene).into_iter().zip(&task.rods).enumerate();
@@ -37,7 +37,7 @@ impl Request {
             let targets = poles.map(|pole| task.target(index as u32, pole)).collect();
             let rows = (0..distances.len()).map(|row| (0, row));
             let side = WhiskerSide::new(Arc::new(columns), own.whisker.units(), sheet);
-            let side = expand(method, side);
+            let side = expand(side);
             let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
             batch.has_points = true;
             Self { batch, targets }

@@ -4,10 +4,10 @@ use super::request::{Points, Request};
 use super::task::Task;
 use super::timing::{Timing, timed};
 use super::{BenchEngine, Measurement, Report, Rung, peak::peak, pool};
-use crate::engine::{EngineError, Spectral, SpectralSheet, WhiskerSide};
+use crate::engine::{EngineError, Spectral, WhiskerSide};
 use crate::numerics::Unit;
 use crate::scene::Scene;
-use crate::shooting::batch::Method;
+use crate::sheet::net::Net;
 use serde::Serialize;
 use std::convert::Infallible;
 use std::hint::black_box;
@@ -54,7 +54,7 @@ pub fn measure(
         return Ok(());
     }
     let all = rayon::current_num_threads();
-    let plain = Request::all(scene, task, |_, side| side);
+    let plain = Request::all(scene, task, |side| side);
     let mut engines = vec![1];
     engines.extend((all > 1).then_some(all));
     for threads in engines {
@@ -78,7 +78,7 @@ pub fn measure(
                 engine.first_result_s = begun.elapsed().as_secs_f64();
             }
             if threads == 1 {
-                let seconds = pool.install(|| one_time(&plain, task, runs, bound));
+                let seconds = pool.install(|| one_time(&plain, runs, bound));
                 let expansions = expansions(&row, seconds, bound, task, report);
                 report.expansions.push(expansions);
             }
@@ -98,8 +98,8 @@ pub fn measure(
 /// Largest number of states along an expanded row of the `requests`.
 fn states(requests: &[Request]) -> usize {
     let sides = requests.iter().flat_map(|own| own.batch.sides.iter());
-    let sheets = sides.filter_map(|side| side.spectral.as_ref());
-    sheets.map(SpectralSheet::states).max().unwrap_or(0)
+    let nets = sides.filter_map(|side| side.net.as_ref());
+    nets.map(Net::states).max().unwrap_or(0)
 }
 
 /// Measures the evaluation of expansions with this `bound` on the threads of the current pool; `None` if no state is certified.
@@ -110,7 +110,7 @@ fn row(
     engine: &BenchEngine,
     bound: f64,
 ) -> Option<Measurement> {
-    let expand = |method, side: WhiskerSide| side.with_spectral_sheet(method, bound);
+    let expand = |side: WhiskerSide| side.with_net(bound);
     let requests = Request::all(scene, task, expand);
     let solver = Spectral::new(bound);
     let Ok((seconds, cells)) = timed(runs, || {
@@ -135,12 +135,11 @@ fn row(
 }
 
 /// Times the expansions of all whisker sides.
-fn one_time(requests: &[Request], task: &Task, runs: usize, bound: f64) -> Timing {
-    let method = Method::fine().with_effects(task.effects);
+fn one_time(requests: &[Request], runs: usize, bound: f64) -> Timing {
     let sides = || requests.iter().flat_map(|own| own.batch.sides.iter());
     let Ok((seconds, ())) = timed(runs, || {
         for side in sides() {
-            black_box(SpectralSheet::new(method, side, bound));
+            black_box(side.net(bound));
         }
         Ok::<_, Infallible>(())
     });

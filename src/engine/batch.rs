@@ -168,11 +168,11 @@ impl RowBatch {
         rows.flat_map(|(whole, part)| part.each().map(|cell| whole.first + cell).zip(part.first..))
     }
 
-    /// Returns true if an engine can solve some cells of the batch: there are base points or spectral sheets.
+    /// Returns true if an engine can solve some cells of the batch: there are base points or nets.
     #[must_use]
     pub fn is_for_engine(&self) -> bool {
-        let has_sheet = |row: &BatchRow| self.sides[row.side].spectral.is_some();
-        !self.base_points.is_empty() || self.rows.iter().any(has_sheet)
+        let has_net = |row: &BatchRow| self.sides[row.side].net.is_some();
+        !self.base_points.is_empty() || self.rows.iter().any(has_net)
     }
 
     /// Returns the batch with base points for all rows that can have them, with trajectories in the steps of `resolution`.

@@ -21,7 +21,7 @@ pub use cells::{Cell, CellRun, Cells, Outcome};
 pub use columns::{Column, SideColumns};
 pub use cpu::Cpu;
 pub use side::{FORCE, Values, WhiskerSide};
-pub use spectral::{Spectral, SpectralSheet};
+pub use spectral::Spectral;
 pub use worker::Worker;
 
 use crate::rod::Effects;
@@ -72,9 +72,8 @@ impl EngineDescription {
 pub enum EngineInput {
     /// Base points with trajectories in the steps of this resolution. The engine works on a thread of its own.
     BasePoints(Resolution),
-    /// The spectral sheets of whisker sides, with at most this residual, in whisker lengths. The engine works on the threads of the current
-    /// pool.
-    SpectralSheets(f64),
+    /// The nets of whisker sides, with at most this residual, in whisker lengths. The engine works on the threads of the current pool.
+    Nets(f64),
 }
 
 /// Engine: solves the cells of row batches, on any thread.

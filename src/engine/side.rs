@@ -1,13 +1,13 @@
 //! Whisker sides: one side of one whisker, and the channel values of its states in map units.
 
-use super::{BasePoint, Cell, Outcome, SideColumns, SpectralSheet};
+use super::{BasePoint, Cell, Outcome, SideColumns};
 use crate::friction::FrictionState;
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
 use crate::rod::{Units, arclength};
 use crate::scene::Parameter;
+use crate::sheet::net::Net;
 use crate::sheet::{Crossing, Row, Sheet};
-use crate::shooting::batch::Method;
 use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
 use std::sync::Arc;
@@ -27,8 +27,8 @@ pub struct WhiskerSide {
     pub sheet: Sheet,
     /// Channel values `[channel]` of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
     pub unit_values: Values,
-    /// Expansions of the rows of the whisker side; `None` if no engine needs them, or no row has any.
-    pub spectral: Option<SpectralSheet>,
+    /// Net of the whisker side; `None` if no engine needs it, or it has no row.
+    pub net: Option<Net>,
     /// Derivatives of the push angle at the detachment of each row, in degrees per unit of the parameter: `[row][parameter]`. Empty
     /// without such channels.
     pub push_derivatives: Vec<Vec<(Parameter, f32)>>,
@@ -44,17 +44,35 @@ impl WhiskerSide {
             unit_values: values(&reader.of_one(sheet.side.sign())),
             columns,
             sheet,
-            spectral: None,
+            net: None,
             push_derivatives: Vec::new(),
             reader,
         }
     }
 
-    /// Returns this whisker side with a spectral sheet by `method`, whose states have a residual of at most `most` whisker lengths.
+    /// Returns this whisker side with its net, whose states have a residual of at most `most` whisker lengths, for the rows whose cells take
+    /// more time by trajectories.
     #[must_use]
-    pub fn with_spectral_sheet(self, method: Method, most: f64) -> Self {
-        let spectral = SpectralSheet::new(method, &self, most);
-        Self { spectral, ..self }
+    pub fn with_net(self, most: f64) -> Self {
+        let net = self.net(most);
+        Self { net, ..self }
+    }
+
+    /// Computes the net of this whisker side, as [`Self::with_net`] adds it.
+    #[must_use]
+    pub fn net(&self, most: f64) -> Option<Net> {
+        let cells = |row: usize| {
+            let end = self.sheet.crossings[row].first();
+            let end = end.map_or(0.0, |end| end.push);
+            self.columns.magnitudes.partition_point(|push| *push < end)
+        };
+        Net::new(&self.sheet, cells, most)
+    }
+
+    /// Returns the converter of the side's states to map units.
+    #[must_use]
+    pub const fn reader(&self) -> &Reader {
+        &self.reader
     }
 
     /// Returns true if the contact on this whisker side has friction.

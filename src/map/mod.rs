@@ -45,7 +45,7 @@ pub fn run<E: Send>(
     let (start, cpu_start) = (Stopwatch::start(), process_seconds());
     let input = engine.as_ref();
     let input = input.map(|own| own.input(plan.method.resolution));
-    let has_thread = !matches!(input, Some(EngineInput::SpectralSheets(_)));
+    let has_thread = !matches!(input, Some(EngineInput::Nets(_)));
     let mut packing = StageTimes::default();
     let mut summary = Worker::with(engine, has_thread, |worker| {
         let mut pipeline = Pipeline::new(scene, plan, worker, input);

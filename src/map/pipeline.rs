@@ -66,7 +66,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
         let (columns, pushes) = side_columns(push_angle_deg, &plan.sides);
         let mut method = plan.method;
-        if let Some(EngineInput::SpectralSheets(_)) = input {
+        if let Some(EngineInput::Nets(_)) = input {
             // Coarser steps are so few that their number changes along a row: states would not be analytic.
             method.resolution = method.resolution.at_least_fine();
         }
@@ -76,7 +76,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             method,
             rows_at_once: match input {
                 // After a failed audit, the bytes depend on where a batch ends.
-                Some(EngineInput::SpectralSheets(_)) => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
+                Some(EngineInput::Nets(_)) => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
                 Some(_) => plan.rows_at_once,
                 None => rows(cells),
             },
@@ -135,7 +135,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
 
     /// Returns true if the engine works on the threads of the pool, as a stage of its own.
     fn engine_is_stage(&self) -> bool {
-        matches!(self.input, Some(EngineInput::SpectralSheets(_)))
+        matches!(self.input, Some(EngineInput::Nets(_)))
     }
 
     /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether the `panels` are

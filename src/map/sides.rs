@@ -49,7 +49,7 @@ pub fn whisker_sides(
                 of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
         }
         match input {
-            Some(EngineInput::SpectralSheets(most)) => side.with_spectral_sheet(method, most),
+            Some(EngineInput::Nets(most)) => side.with_net(most),
             _ => side,
         }
     });

@@ -13,7 +13,7 @@ pub use channels::{Channel, Channels, STATE_CHANNELS};
 pub use digits::{Digits, rounded};
 pub use effects::{Cost, Effect, effects};
 pub use error::PlanError;
-pub use expansions::{ExpansionCount, STATES_OF_ROW, USUAL_PATCH, expansion_cost};
+pub use expansions::{ExpansionCount, USUAL_NET, net_cost};
 pub use memory::{BYTES_PER_THREAD, MEMORY_LIMIT};
 
 use crate::rod::{Effects, Rod, Side};

@@ -15,6 +15,7 @@ mod continuation;
 mod edges;
 mod fold;
 mod lattice;
+pub mod net;
 mod row;
 mod samples;
 mod span;

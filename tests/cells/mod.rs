@@ -80,7 +80,7 @@ impl RandomRows {
             let columns = columns.iter().find(is_ours).unwrap();
             let sheet = Sheet::new(method, rod, columns.side, distances);
             WhiskerSide::new(Arc::clone(columns), NO_UNITS, sheet)
-                .with_spectral_sheet(method, Spectral::default().residual_bound())
+                .with_net(Spectral::default().residual_bound())
         });
         Self {
             method,

@@ -1,15 +1,6 @@
-//! The spectral engine: cells from certified Chebyshev expansions of their rows, without trajectories of their own.
+//! The spectral engine: cells from the nets of whisker sides ([`Net`](crate::sheet::net::Net)), without trajectories of their own.
 
-mod certificate;
-mod exact_row;
-mod expansion_tail;
-mod patch;
-mod patch_size;
 mod row;
-mod row_interval;
-mod sheet;
-
-pub use sheet::SpectralSheet;
 
 use super::cells::CellsMut;
 use super::{
@@ -19,6 +10,7 @@ use super::{
 use crate::numerics::Unit;
 use crate::numerics::inverse::InverseBlock;
 use crate::sheet::Edge;
+use crate::sheet::net::NET_RESIDUAL;
 use crate::shooting::Resolution;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -44,7 +36,7 @@ pub struct Spectral {
 impl Default for Spectral {
     /// An engine with a residual of at most 1e-10 whisker lengths.
     fn default() -> Self {
-        Self::new(sheet::MOST)
+        Self::new(NET_RESIDUAL)
     }
 }
 
@@ -58,15 +50,14 @@ impl Spectral {
         }
     }
 
-    /// Solves the cells of `batch` whose side has a [`SpectralSheet`].
+    /// Solves the cells of `batch` whose side has a net with their row.
     #[must_use]
     pub fn solve(&self, batch: &RowBatch) -> Cells {
         let mut cells = Cells::new(batch, Outcome::NoBasePoint);
         let rows: Vec<_> = batch.rows.iter().zip(cells.rows_mut(batch)).collect();
         rows.into_par_iter().for_each(|(row, into)| {
             let side = &batch.sides[row.side];
-            let sheet = side.spectral.as_ref();
-            if let Some(expansion) = sheet.and_then(|sheet| sheet.row(side, row.row)) {
+            if let Some(expansion) = RowExpansion::of(side, row.row, self.most) {
                 write(side, row, &expansion, self.most, into);
             }
         });
@@ -116,7 +107,7 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64
                 let miss = (found[lane] - pushes[from + lane]).abs() * distance;
                 let bound = expansion.residual + miss;
                 // NaN is not below any bound.
-                let is_inside = (-OUTSIDE..=1.0 + OUTSIDE).contains(&block.places[lane]);
+                let is_inside = (-OUTSIDE..=expansion.inverse.end + OUTSIDE).contains(&block.places[lane]);
                 let is_certified = is_inside && bound <= most;
                 outcome[from + lane] = match sheet.is_at_tip(tau[lane], bound) {
                     _ if !is_certified => Outcome::Missed,
@@ -150,7 +141,7 @@ impl Engine for Spectral {
     }
 
     fn input(&self, _: Resolution) -> EngineInput {
-        EngineInput::SpectralSheets(self.most)
+        EngineInput::Nets(self.most)
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {

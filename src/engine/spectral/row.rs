@@ -1,10 +1,15 @@
-//! Expansions of one row: push angle, contact, load and channel values as functions of the row parameter.
+//! Expansions of one row: push angle, contact, load and channel values as functions of the row's part of the load.
 
 use crate::engine::{Values, WhiskerSide};
 use crate::numerics::expansion::Chebyshev;
 use crate::numerics::inverse::Inverse;
+use crate::numerics::newton_form_simd::keep;
+use crate::numerics::newton_form_simd::LaneNumbers;
+use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 use crate::plan::STATE_CHANNELS;
+use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
 use crate::sheet::{Crossing, Edge, Sheet};
+use crate::shooting::Reader;
 
 /// Number of functions that are expanded along a row.
 pub const FUNCTIONS: usize = 3 + STATE_CHANNELS.len();
@@ -16,16 +21,12 @@ pub type Numbers = [f64; FUNCTIONS];
 /// Weights that convert errors of [`Numbers`] to whisker lengths, `[function]`.
 pub type Weights = [f64; FUNCTIONS];
 
-/// Error in whisker lengths that an error as large as the value's size along the row counts as: values may be ten times less accurate
-/// than states.
-const VALUE_WEIGHT: f64 = 0.1;
-
 /// Weighted coefficient below which an expansion ends: below the rounding of the states.
 const ROUNDING: f64 = 1e-15;
 
 /// Returns the weights of channel values along a row with this `end`. The energy is at most the moment times the push angle, in radians,
 /// and the chord angle at most about the push angle.
-pub fn value_weights(side: &WhiskerSide, end: &Crossing) -> Values {
+fn value_weights(side: &WhiskerSide, end: &Crossing) -> Values {
     let push = end.push.min(1.0);
     let [arc, angle, force, x, y, moment, chord, distance, energy] = side.sizes(end);
     let sizes = [
@@ -42,24 +43,54 @@ pub fn value_weights(side: &WhiskerSide, end: &Crossing) -> Values {
     sizes.map(|size| VALUE_WEIGHT / size)
 }
 
-/// Returns the numbers of a state from its push angle, `tau`, load and channel values.
-pub fn numbers(push: f64, tau: f64, load: f64, values: &Values) -> Numbers {
-    let mut numbers = [push; FUNCTIONS];
-    (numbers[1], numbers[2]) = (tau, load);
-    numbers[3..].copy_from_slice(values);
-    numbers
+/// Returns the weights of the numbers of a `row` of `side`.
+fn weights(side: &WhiskerSide, row: usize) -> Weights {
+    let distance = side.sheet.rows[row].pole_distance;
+    let end = &side.sheet.crossings[row][0];
+    let mut weights = [distance; FUNCTIONS];
+    (weights[1], weights[2]) = (distance / end.tau, distance / end.load.abs());
+    weights[3..].copy_from_slice(&value_weights(side, end));
+    weights
 }
 
-/// Returns the larger of two errors in one unit; NaN if either is.
-pub fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
+/// Returns the numbers of the states of a row, `[state]`.
+fn numbers(reader: &Reader, states: &NetRow) -> Vec<Numbers> {
+    let unit = Unit::detect();
+    let mut all = Vec::with_capacity(states.blocks.len() * WIDTH);
+    for block in &states.blocks {
+        let channels = unit.run(ChannelValues { reader, block });
+        all.extend((0..block.count).map(|lane| {
+            let mut numbers = [block.push[lane]; FUNCTIONS];
+            (numbers[1], numbers[2]) = (block.tau[lane], block.load[lane]);
+            for (number, values) in numbers[3..].iter_mut().zip(&channels) {
+                *number = values[lane];
+            }
+            numbers
+        }));
+    }
+    all
 }
 
-/// Returns the largest of the weighted `errors`, in whisker lengths; NaN if one is.
-pub fn largest(errors: &Numbers, weights: &Weights) -> f64 {
-    let weighted = errors.iter().zip(weights);
-    let weighted = weighted.map(|(error, weight)| error.abs() * weight);
-    weighted.fold(0.0, larger)
+/// Channel values of a block of states.
+struct ChannelValues<'a> {
+    reader: &'a Reader,
+    block: &'a NetBlock,
+}
+
+impl SimdTask for ChannelValues<'_> {
+    type Output = [LaneNumbers; STATE_CHANNELS.len()];
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Self::Output {
+        let mut channels = [[0.0; WIDTH]; STATE_CHANNELS.len()];
+        for from in (0..self.block.count).step_by(T::LANES) {
+            let found = self.reader.channels(self.block.numbers.pack::<T>(from));
+            for (lanes, found) in channels.iter_mut().zip(found) {
+                keep(lanes, from, found);
+            }
+        }
+        channels
+    }
 }
 
 /// A certified row.
@@ -76,11 +107,25 @@ pub struct RowExpansion {
 const FOLD_SLOPE: f64 = 1e-3;
 
 impl RowExpansion {
-    /// Shortens the expansions of `row` to what rounding leaves. Returns `None` if a coefficient is not finite, if the push angle does not
-    /// grow along them, or if they contradict the end of the row, which is computed apart: they must end at its push angle, and be flat
-    /// there at a fold, or have their contact at the tip.
-    pub fn new(
+    /// Returns the expansions of a `row` of `side` with a residual of at most `most` whisker lengths, from its net; `None` without them.
+    #[must_use]
+    pub fn of(side: &WhiskerSide, row: usize, most: f64) -> Option<Self> {
+        let (states, residual) = side.net.as_ref()?.row(&side.sheet, row)?;
+        let weights = weights(side, row);
+        let functions = Chebyshev::through(&numbers(side.reader(), &states));
+        let [last, _] = functions.tails();
+        let residual = larger(residual, MARGIN * largest(&last, &weights));
+        // NaN is not below any bound.
+        let expansion = || Self::new(functions, states.end, &weights, residual, &side.sheet, row);
+        (residual <= most).then(expansion)?
+    }
+
+    /// Shortens the expansions of `row`, which ends at the argument `end`, to what rounding leaves. Returns `None` if a coefficient is not
+    /// finite, if the push angle does not grow up to the end, or if the expansions contradict the end, which is computed apart: they must
+    /// have its push angle there, and be flat at a fold, or have their contact at the tip.
+    fn new(
         mut functions: Chebyshev<FUNCTIONS>,
+        end: f64,
         weights: &Weights,
         residual: f64,
         sheet: &Sheet,
@@ -96,14 +141,14 @@ impl RowExpansion {
         if !coefficients.all(|coefficient| coefficient.is_finite()) {
             return None;
         }
-        let end = &sheet.crossings[row][0];
-        let [push, tau, ..] = functions.at(1.0);
-        let is_at_edge = match end.edge {
-            Edge::Fold => functions.slope(0, 1.0) <= FOLD_SLOPE * push,
+        let crossing = &sheet.crossings[row][0];
+        let [push, tau, ..] = functions.at(end);
+        let is_at_edge = match crossing.edge {
+            Edge::Fold => functions.slope(0, end) <= FOLD_SLOPE * push,
             Edge::Tip => sheet.is_at_tip(tau, residual),
         };
-        let off = (push - end.push).abs() * sheet.rows[row].pole_distance;
-        let inverse = Inverse::new(functions)?;
+        let off = (push - crossing.push).abs() * sheet.rows[row].pole_distance;
+        let inverse = Inverse::new(functions, end)?;
         (off <= residual && is_at_edge).then_some(Self { inverse, residual })
     }
 }
@@ -111,12 +156,25 @@ impl RowExpansion {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
-    use super::super::exact_row::ExactRow;
-    use super::super::patch::tests::cone;
-    use super::super::sheet::MOST;
     use super::*;
-    use crate::numerics::expansion::chebyshev_points;
+    use crate::engine::SideColumns;
+    use crate::rod::Side;
+    use crate::scene::Scene;
+    use crate::sheet::net::NET_RESIDUAL as MOST;
     use crate::shooting::batch::Method;
+    use std::sync::Arc;
+
+    /// The cone of the paper with more rows at the tip than its map has.
+    fn cone() -> WhiskerSide {
+        let scene = Scene::parse(include_str!("../../../scenes/cone.toml"), "cone.toml").unwrap();
+        let swept = scene.whisker(0);
+        let pushes: Vec<f64> = (1..60).map(f64::from).collect();
+        let columns = Arc::new(SideColumns::new(&pushes, Side::Cb, 0));
+        let (rod, units) = (swept.rod(columns.side), swept.whisker.units());
+        let distances: Vec<f64> = (0..200).map(|i| 0.4 + 0.003 * f64::from(i)).collect();
+        let sheet = Sheet::new(Method::fine(), &rod, columns.side, &distances);
+        WhiskerSide::new(columns, units, sheet).with_net(MOST)
+    }
 
     #[test]
     fn the_largest_error_has_no_sign_and_nan_stays() {
@@ -125,6 +183,32 @@ mod tests {
         assert_eq!(largest(&errors, &weights), 6.0);
         assert_eq!([larger(1.0, 2.0), larger(2.0, 1.0)], [2.0, 2.0]);
         assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan());
+    }
+
+    /// Channel values in SIMD lanes are those of the converter of single states.
+    #[test]
+    fn values_of_a_net_are_those_of_a_trajectory() {
+        use crate::shooting::FirstVariation;
+        use crate::shooting::batch::Batch;
+        let side = cone();
+        let sheet = &side.sheet;
+        let mut compared = 0;
+        for row in (0..sheet.rows.len()).step_by(20) {
+            let Some((states, _)) = side.net.as_ref().unwrap().row(sheet, row) else {
+                continue;
+            };
+            let sizes = side.sizes(&sheet.crossings[row][0]);
+            for [push, tau, load, values @ ..] in numbers(side.reader(), &states) {
+                let exact: Vec<FirstVariation> =
+                    Batch::new(Method::fine()).shoot_at(&sheet.rod, [(tau, load)]);
+                let exact = side.values_at(&sheet.rows[row], tau, &exact[0].full, push);
+                for ((own, exact), size) in values.into_iter().zip(exact).zip(sizes) {
+                    assert!((own - exact).abs() < 1e-9 * size, "{row}: {own} {exact}");
+                }
+                compared += 1;
+            }
+        }
+        assert!(compared > 100, "{compared}");
     }
 
     /// Expansions of one row at each edge are accepted; every change that contradicts the end is refused.
@@ -137,17 +221,17 @@ mod tests {
             let row = rows
                 .find(|row| sheet.crossings[*row][0].edge == edge)
                 .unwrap();
-            let exact = ExactRow::all(Method::fine(), sheet, &[row], 32, MOST)
-                .remove(0)
-                .unwrap();
-            let (sound, weights) = (exact.expansion(&side), exact.weights(&side));
-            let accepted = |residual: f64, change: &dyn Fn(&mut Chebyshev<FUNCTIONS>)| {
+            let (states, _) = side.net.as_ref().unwrap().row(sheet, row).unwrap();
+            let weights = weights(&side, row);
+            let sound = Chebyshev::through(&numbers(side.reader(), &states));
+            let count = sound.coefficients.len();
+            let accepted = |residual: f64, end: f64, change: &dyn Fn(&mut Chebyshev<FUNCTIONS>)| {
                 let mut functions = sound.clone();
                 change(&mut functions);
-                RowExpansion::new(functions, &weights, residual, sheet, row)
+                RowExpansion::new(functions, end, &weights, residual, sheet, row)
             };
             let is_accepted = |residual, change: &dyn Fn(&mut Chebyshev<FUNCTIONS>)| {
-                accepted(residual, change).is_some()
+                accepted(residual, states.end, change).is_some()
             };
             assert!(is_accepted(MOST, &|_| ()));
             let distance = sheet.rows[row].pole_distance;
@@ -164,17 +248,13 @@ mod tests {
             // Coefficients end where rounding does.
             let length = |size: f64| {
                 let last = weights.map(|weight| size / weight);
-                let longer = accepted(MOST, &|own| own.coefficients.push(last)).unwrap();
-                longer.inverse.functions.coefficients.len()
+                let longer = accepted(MOST, states.end, &|own| own.coefficients.push(last));
+                longer.unwrap().inverse.functions.coefficients.len()
             };
-            assert!(length(1e-16) <= 32);
-            assert_eq!(length(1e-14), 33);
+            assert!(length(1e-16) <= count);
+            assert_eq!(length(1e-14), count + 1);
             // Expansions that end before the fold are not flat enough.
-            let shortened = |part: f64| {
-                let points = chebyshev_points(32).iter();
-                let values: Vec<Numbers> = points.map(|x| sound.at(part * x)).collect();
-                is_accepted(1e-4, &|own| *own = Chebyshev::through(&values))
-            };
+            let shortened = |part: f64| accepted(1e-4, part * states.end, &|_| ()).is_some();
             if is_fold {
                 assert_eq!([1.0, 0.9998, 0.998].map(shortened), [true, true, false]);
             }

@@ -1,6 +1,6 @@
 //! Inverse of a growing Chebyshev expansion, with further functions at the same place, side by side in SIMD lanes.
 //!
-//! The first function grows on `[0, 1]` and may be flat at 1, as the push angle of a row is at a fold. Near a flat end it is a
+//! The first function grows from 0 to an end in `[0, 1]`, and may be flat there, as the push angle of a row is at a fold. Near a flat end it is a
 //! parabola, and the place is linear in the square root of what is left to the end. So starts are interpolated in this root, and
 //! each step solves the quadratic Taylor polynomial (E. Halley's irrational method, 1694). Its error is cubed by each step.
 
@@ -20,22 +20,24 @@ const TOGETHER: usize = 4;
 #[derive(Clone, Copy, Debug, Default)]
 struct InverseStart {
     value: f64,
-    /// Square root of what is left to the value at 1.
+    /// Square root of what is left to the value at the end.
     root: f64,
 }
 
-/// Functions on `[0, 1]` with a table that inverts the first one, which grows.
+/// Functions on `[0, 1]` with a table that inverts the first one, which grows up to an end.
 #[derive(Clone, Debug)]
 pub struct Inverse<const D: usize> {
     /// Expansion of the functions, the first of which is inverted.
     pub functions: Chebyshev<D>,
+    /// Argument up to which the first function is inverted, in `[0, 1]`.
+    pub end: f64,
     starts: [InverseStart; INTERVALS + 1],
 }
 
 /// Arguments at which the first function has a block of target values, and all functions there.
 #[derive(Clone, Copy, Debug)]
 pub struct InverseBlock<const D: usize> {
-    /// Arguments in `[0, 1]` found for the targets, one in each lane.
+    /// Arguments found for the targets, one in each lane.
     pub places: [f64; WIDTH],
     /// Values of the functions at the arguments found, `[function][lane]`. Where the first differs from the target, the steps have not
     /// converged.
@@ -43,10 +45,11 @@ pub struct InverseBlock<const D: usize> {
 }
 
 impl<const D: usize> Inverse<D> {
-    /// Tabulates the first function of an expansion for its inversion. Returns `None` if it does not grow from one start to the next.
+    /// Tabulates the first function of an expansion for its inversion up to the argument `end`. Returns `None` if it does not grow from one
+    /// start to the next.
     #[must_use]
-    pub fn new(functions: Chebyshev<D>) -> Option<Self> {
-        let values = Unit::detect().run(Table(&functions));
+    pub fn new(functions: Chebyshev<D>, end: f64) -> Option<Self> {
+        let values = Unit::detect().run(Table(&functions, end));
         let last = values[INTERVALS];
         let start = |value: f64| InverseStart {
             value,
@@ -55,11 +58,12 @@ impl<const D: usize> Inverse<D> {
         let grows = values.windows(2).all(|pair| pair[0] < pair[1]);
         grows.then(|| Self {
             functions,
+            end,
             starts: values.map(start),
         })
     }
 
-    /// Value of the first function at 1.
+    /// Value of the first function at the end.
     const fn last(&self) -> f64 {
         self.starts[INTERVALS].value
     }
@@ -71,7 +75,8 @@ impl<const D: usize> Inverse<D> {
         }
         let [from, to] = [self.starts[*after], self.starts[*after + 1]];
         let root = (self.last() - target).max(0.0).sqrt();
-        (*after as f64 + (from.root - root) / (from.root - to.root)) / INTERVALS as f64
+        let place = *after as f64 + (from.root - root) / (from.root - to.root);
+        place * (self.end / INTERVALS as f64)
     }
 
     /// Finds the arguments at which the first function has the growing `targets`. Calls `take` for each [`WIDTH`] of them with the index
@@ -83,7 +88,7 @@ impl<const D: usize> Inverse<D> {
             let mut task = Steps {
                 functions: &self.functions,
                 targets: [self.last(); WIDTH],
-                starts: [1.0; WIDTH],
+                starts: [self.end; WIDTH],
             };
             for (lane, target) in chunk.iter().enumerate() {
                 task.targets[lane] = target.min(self.last());
@@ -94,8 +99,8 @@ impl<const D: usize> Inverse<D> {
     }
 }
 
-/// Values of the first function at the starts.
-struct Table<'a, const D: usize>(&'a Chebyshev<D>);
+/// Values of the first function at the starts, up to an end.
+struct Table<'a, const D: usize>(&'a Chebyshev<D>, f64);
 
 impl<const D: usize> SimdTask for Table<'_, D> {
     type Output = [f64; INTERVALS + 1];
@@ -104,7 +109,8 @@ impl<const D: usize> SimdTask for Table<'_, D> {
     fn run<T: Lanes>(self) -> Self::Output {
         let mut values = [0.0; INTERVALS + 1];
         for from in (0..=INTERVALS).step_by(T::LANES) {
-            let places = std::array::from_fn(|lane| (from + lane) as f64 / INTERVALS as f64);
+            let part = self.1 / INTERVALS as f64;
+            let places = std::array::from_fn(|lane| (from + lane) as f64 * part);
             let [found] = self.0.series::<T, 1>(0, T::pack(places));
             for (value, found) in values[from..].iter_mut().zip(&found.unpack()[..T::LANES]) {
                 *value = *found;
@@ -172,21 +178,27 @@ mod tests {
     use crate::numerics::expansion::chebyshev_points;
     use std::f64::consts::FRAC_PI_2;
 
-    /// The sine up to its flat top, and a function that is not flat there.
-    fn arc(count: usize) -> Option<Inverse<5>> {
+    /// The sine up to its flat top at `end`, and a function that is not flat there.
+    fn arc(count: usize, end: f64) -> Option<Inverse<5>> {
         let values: Vec<[f64; 5]> = chebyshev_points(count)
             .iter()
             .map(|x| {
-                let x = FRAC_PI_2 * x;
+                let x = FRAC_PI_2 * x / end;
                 [x.sin(), x, x.cos(), 1.0, (-x).exp()]
             })
             .collect();
-        Inverse::new(Chebyshev::through(&values))
+        Inverse::new(Chebyshev::through(&values), end)
     }
 
     #[test]
     fn a_flat_end_is_inverted() {
-        let inverse = arc(24).unwrap();
+        for end in [1.0, 0.9] {
+            inverts_up_to(end);
+        }
+    }
+
+    fn inverts_up_to(end: f64) {
+        let inverse = arc(24, end).unwrap();
         let targets: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 1000.0).collect();
         let mut count = 0;
         inverse.solve(&targets, |from, len, block| {
@@ -198,7 +210,7 @@ mod tests {
                 // The angle is as uncertain as the square root of rounding at the top.
                 let error = 3e-15 / x.cos().max(3e-8);
                 assert!((angle - x).abs() < error, "{target} {angle}");
-                assert!((block.places[lane] * FRAC_PI_2 - angle).abs() < 1e-14);
+                assert!((block.places[lane] * FRAC_PI_2 / end - angle).abs() < 1e-14);
                 assert!((cosine - angle.cos()).abs() < 1e-14 && (one - 1.0).abs() < 1e-14);
                 assert!((decay - (-angle).exp()).abs() < 1e-14, "{target}");
                 count += 1;
@@ -209,7 +221,7 @@ mod tests {
 
     #[test]
     fn targets_beyond_the_end_are_put_there() {
-        arc(24).unwrap().solve(&[0.5, 1.5], |_, len, block| {
+        arc(24, 1.0).unwrap().solve(&[0.5, 1.5], |_, len, block| {
             assert_eq!(len, 2);
             assert!((block.places[1] - 1.0).abs() < 1e-6 && block.values[0][1] <= 1.0 + 1e-15);
         });
@@ -221,6 +233,6 @@ mod tests {
             .iter()
             .map(|x| [x * (0.9 - x)])
             .collect();
-        assert!(Inverse::new(Chebyshev::through(&falling)).is_none());
+        assert!(Inverse::new(Chebyshev::through(&falling), 1.0).is_none());
     }
 }

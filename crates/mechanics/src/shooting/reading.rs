@@ -1,7 +1,9 @@
 //! Readings: states of the whisker in physical units.
 
 use super::FullState;
-use crate::numerics::nearest_turn;
+use super::contact::direction;
+use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
+use crate::numerics::{Lanes, Real, nearest_turn};
 use crate::rod::{Rest, Rod, Units, arclength_at};
 use glam::DVec2;
 
@@ -26,6 +28,58 @@ pub struct Reading {
     pub contact_distance_mm: f64,
     /// Bending energy of the whisker, in nanojoules.
     pub energy_nj: f64,
+}
+
+/// Dimensionless numbers of a state from which its reading follows, or of several states in SIMD lanes. Lengths are in whisker lengths,
+/// angles in radians.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StateNumbers<T> {
+    /// Arclength of the contact.
+    pub arclength: T,
+    /// Angle of the whisker's tangent at the contact from the base's tangent.
+    pub contact_angle: T,
+    /// Signed force at the contact, with the sign of the load, in `E I_base/L_w^2`.
+    pub force: T,
+    /// Unit tangent `[cos, sin]` of the base in the frame of [`FullState`].
+    pub tangent: [T; 2],
+    /// Position of the base in the frame of [`FullState`].
+    pub position: [T; 2],
+    /// Chord angle of the paper's Fig. 1D.
+    pub chord: T,
+    /// Bending energy, in `E I_base/L_w`.
+    pub energy: T,
+}
+
+impl StateNumbers<LaneNumbers> {
+    /// Returns the numbers of the states from the index `from` on in SIMD lanes.
+    #[must_use]
+    #[inline(always)]
+    pub fn pack<T: Lanes>(&self, from: usize) -> StateNumbers<T> {
+        let two = |own: &[LaneNumbers; 2]| own.each_ref().map(|own| pack(own, from));
+        StateNumbers {
+            arclength: pack(&self.arclength, from),
+            contact_angle: pack(&self.contact_angle, from),
+            force: pack(&self.force, from),
+            tangent: two(&self.tangent),
+            position: two(&self.position),
+            chord: pack(&self.chord, from),
+            energy: pack(&self.energy, from),
+        }
+    }
+
+    /// Stores the numbers of states in SIMD lanes, from the index `from` on.
+    #[inline(always)]
+    pub fn keep<T: Lanes>(&mut self, from: usize, states: StateNumbers<T>) {
+        keep(&mut self.arclength, from, states.arclength);
+        keep(&mut self.contact_angle, from, states.contact_angle);
+        keep(&mut self.force, from, states.force);
+        for i in 0..2 {
+            keep(&mut self.tangent[i], from, states.tangent[i]);
+            keep(&mut self.position[i], from, states.position[i]);
+        }
+        keep(&mut self.chord, from, states.chord);
+        keep(&mut self.energy, from, states.energy);
+    }
 }
 
 /// Converter of the states of one rod to physical units.
@@ -108,22 +162,75 @@ impl Reader {
     /// direction `touch`. Both angles are in radians.
     #[must_use]
     pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
-        let units = &self.units;
+        let numbers = self.numbers(tau, full, touch + push, push);
+        let [arc, angle, force, x, y, moment, chord, distance, energy] = self.channels(numbers);
+        Reading {
+            arc_length_mm: arc,
+            contact_angle_deg: angle,
+            force_un: force,
+            base_force_un: DVec2::new(x, y),
+            base_moment_nnm: moment,
+            push_chord_deg: chord,
+            contact_distance_mm: distance,
+            energy_nj: energy,
+        }
+    }
+
+    /// Returns the numbers of the state `full` with the contact at `tau`. The pole is in the direction `phi` from the base, and `chord` is near the
+    /// chord angle: both in radians, with whole turns.
+    #[must_use]
+    pub fn numbers(&self, tau: f64, full: &FullState, phi: f64, chord: f64) -> StateNumbers<f64> {
         let to_base = DVec2::new(full.tangent.x, -full.tangent.y);
         let contact = to_base.rotate(-full.position);
         let to_pole = self.to_pole - full.position;
-        let distance = contact.length();
-        let resting = self.rest.point_at_distance(distance);
-        let chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
-        Reading {
-            arc_length_mm: arclength_at(self.taper, tau) * units.length_mm,
-            contact_angle_deg: (touch + push - to_pole.to_angle() + self.tilt).to_degrees(),
-            force_un: full.force.abs() * self.normal * units.force_un,
-            base_force_un: full.force * DVec2::new(full.tangent.y, full.tangent.x) * units.force_un,
-            base_moment_nnm: -full.force * full.position.x * units.moment_nnm,
-            push_chord_deg: nearest_turn(chord, push).to_degrees(),
-            contact_distance_mm: distance * units.length_mm,
-            energy_nj: full.energy * units.moment_nnm,
+        let resting = self.rest.point_at_distance(contact.length());
+        let own_chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
+        StateNumbers {
+            arclength: arclength_at(self.taper, tau),
+            contact_angle: phi - to_pole.to_angle() + self.tilt,
+            force: full.force,
+            tangent: full.tangent.to_array(),
+            position: full.position.to_array(),
+            chord: nearest_turn(own_chord, chord),
+            energy: full.energy,
         }
+    }
+
+    /// Returns the channels of a state from its `numbers`, in the order and the units of the fields of [`Reading`].
+    #[must_use]
+    #[inline(always)]
+    pub fn channels<T: Real>(&self, numbers: StateNumbers<T>) -> [T; 9] {
+        let StateNumbers {
+            force,
+            tangent: [cos, sin],
+            position: [x, y],
+            ..
+        } = numbers;
+        let Units {
+            length_mm,
+            force_un,
+            moment_nnm,
+            ..
+        } = self.units;
+        let (length, degrees) = (T::of(length_mm), T::of(1f64.to_degrees()));
+        let whole = (force * force).sqrt();
+        [
+            numbers.arclength * length,
+            numbers.contact_angle * degrees,
+            whole * T::of(self.normal) * T::of(force_un),
+            force * sin * T::of(force_un),
+            force * cos * T::of(force_un),
+            -force * x * T::of(moment_nnm),
+            numbers.chord * degrees,
+            (x * x + y * y).sqrt() * length,
+            numbers.energy * T::of(moment_nnm),
+        ]
+    }
+
+    /// Returns the base's unit tangent `[cos, sin]` in the frame of [`FullState`] for a contact angle, in radians.
+    #[must_use]
+    #[inline(always)]
+    pub fn tangent<T: Real>(&self, contact_angle: T) -> [T; 2] {
+        direction(T::of(self.tilt) - contact_angle)
     }
 }

@@ -1,0 +1,138 @@
+//! Certificate of panels: trajectories at places of rows between the nodes.
+
+use super::{PanelRow, SMALLEST_RESIDUAL};
+use super::panel::NetPanel;
+use super::row::NetRow;
+use crate::numerics::WIDTH;
+use crate::numerics::expansion::Chebyshev;
+use crate::sheet::case::SheetCase;
+use crate::sheet::{Row, Sheet};
+use crate::shooting::{FirstVariation, Reader};
+
+/// Factor by which a bound exceeds the largest error seen: the error between a few places may be larger than there.
+pub const MARGIN: f64 = 4.0;
+
+/// Error in whisker lengths that an error as large as the value's size along the row counts as: values may be ten times less accurate
+/// than states.
+pub const VALUE_WEIGHT: f64 = 0.1;
+
+/// Number of rows of a panel, and of places along each, at which states are checked.
+const CHECKS: usize = 8;
+
+/// Returns the larger of two errors in one unit; NaN if either is.
+#[must_use]
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
+}
+
+/// Returns the largest of the weighted `errors`, in whisker lengths; NaN if one is.
+#[must_use]
+pub fn largest<const N: usize>(errors: &[f64; N], weights: &[f64; N]) -> f64 {
+    let weighted = errors.iter().zip(weights);
+    let weighted = weighted.map(|(error, weight)| error.abs() * weight);
+    weighted.fold(0.0, larger)
+}
+
+/// Number of checked functions of a state.
+const CHECKED: usize = 8;
+
+/// Checked functions of a state, `[function]`: magnitude of the push angle, `tau`, load, contact angle, position `[x, y]` of the base, chord
+/// angle, energy.
+type Checked = [f64; CHECKED];
+
+/// Expansions of the checked functions along a row.
+struct CheckedRow {
+    row: Row,
+    functions: Chebyshev<CHECKED>,
+    /// Weights that convert errors of position, contact angle, chord angle and energy to whisker lengths.
+    weights: [f64; 5],
+    end: f64,
+}
+
+impl CheckedRow {
+    fn new(sheet: &Sheet, index: usize, states: &NetRow) -> Option<Self> {
+        let values = states.blocks.iter().flat_map(|block| {
+            (0..block.count).map(|lane| {
+                let numbers = &block.numbers;
+                let [x, y] = &numbers.position;
+                let all = [
+                    &block.push,
+                    &block.tau,
+                    &block.load,
+                    &numbers.contact_angle,
+                    x,
+                    y,
+                    &numbers.chord,
+                    &numbers.energy,
+                ];
+                all.map(|own: &[f64; WIDTH]| own[lane])
+            })
+        });
+        let values: Vec<Checked> = values.collect();
+        let end = sheet.crossings[index].first()?;
+        let rod = &sheet.rod;
+        let arc = crate::rod::arclength(rod, end.tau);
+        let force = (end.load * rod.radius(end.tau).powi(2)).abs();
+        let push = end.push.min(1.0);
+        let sizes = [1.0, arc, arc, push, push * force * arc];
+        Some(Self {
+            row: sheet.rows[index],
+            functions: Chebyshev::through(&values),
+            weights: sizes.map(|size| VALUE_WEIGHT / size),
+            end: states.end,
+        })
+    }
+}
+
+/// Returns a bound on the errors of the states of `panel`, in whisker lengths. It follows from trajectories at places of some of its `rows`,
+/// and from the error `by_decay` that the coefficients left out are expected to make. It is at least
+/// [`SMALLEST_RESIDUAL`]; NaN if a number is, or if no row has states.
+pub fn certified(
+    sheet: &Sheet,
+    reader: &Reader,
+    panel: &NetPanel,
+    rows: &[PanelRow],
+    by_decay: f64,
+) -> f64 {
+    let last = rows.len() - 1;
+    let mut chosen: Vec<usize> = (0..CHECKS).map(|i| rows[i * last / (CHECKS - 1)].row).collect();
+    chosen.dedup();
+    let checked = chosen.into_iter().filter_map(|row| {
+        let states = panel.row(sheet, row)?;
+        CheckedRow::new(sheet, row, &states)
+    });
+    let checked: Vec<CheckedRow> = checked.collect();
+    if checked.is_empty() {
+        return f64::NAN;
+    }
+    // Even parts are no Chebyshev points.
+    let place = |i: usize| (i as f64 + 0.37) / CHECKS as f64;
+    let expanded = checked.iter().flat_map(|own| {
+        (0..CHECKS).map(move |i| (own, own.functions.at(place(i) * own.end)))
+    });
+    let expanded: Vec<(&CheckedRow, Checked)> = expanded.collect();
+    let case = SheetCase {
+        method: sheet.method,
+        rod: &sheet.rod,
+        side: sheet.side,
+    };
+    let points = expanded.iter().map(|(_, own)| (own[1], own[2]));
+    let exact: Vec<FirstVariation> = case.shoot(points);
+    let sign = sheet.side.sign();
+    let misses = expanded.iter().zip(&exact).map(|((own, found), exact)| {
+        let [push, tau, _, angle, x, y, chord, energy] = *found;
+        let push = sign * push;
+        let numbers = reader.numbers(tau, &exact.full, own.row.touch + push, chord);
+        let [exact_x, exact_y] = numbers.position;
+        let errors = [
+            angle - numbers.contact_angle,
+            x - exact_x,
+            y - exact_y,
+            chord - numbers.chord,
+            energy - numbers.energy,
+        ];
+        let miss = exact.full.map.pole.distance(own.row.pole(push));
+        larger(miss, largest(&errors, &own.weights))
+    });
+    larger(MARGIN * misses.fold(by_decay, larger), SMALLEST_RESIDUAL)
+}
