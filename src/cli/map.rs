@@ -92,7 +92,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         .as_ref()
         .map(|own| own.input(plan.method.resolution));
     match (input, left_deg) {
-        (Some(EngineInput::SpectralSheets(most)), Some(_)) => message(&format!(
+        (Some(EngineInput::Nets(most)), Some(_)) => message(&format!(
             "accuracy: residuals of at most {most:.1e} of the length"
         )),
         _ => args.tolerance.report(accuracy),
