@@ -7,7 +7,7 @@ use crate::refine::ContactState;
 use crate::rod::{Units, arclength};
 use crate::scene::Parameter;
 use crate::sheet::net::Net;
-use crate::sheet::{Crossing, Row, Sheet};
+use crate::sheet::{Crossing, Sheet};
 use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
 use std::sync::Arc;
@@ -81,15 +81,14 @@ impl WhiskerSide {
         self.sheet.rod.friction != 0.0
     }
 
-    /// The values of a state of `row` at the signed `push`, in radians.
-    fn values(&self, row: usize, tau: f64, full: &FullState, push: f64) -> Values {
-        self.values_at(&self.sheet.rows[row], tau, full, push)
-    }
-
-    /// Returns the channel values `[channel]` of a state of any `row` of this whisker at the signed `push`, in radians.
+    /// Returns the channel values `[channel]` of a state of `row` at the signed `push`, in radians.
     #[must_use]
-    pub fn values_at(&self, row: &Row, tau: f64, full: &FullState, push: f64) -> Values {
-        values(&self.reader.read(tau, full, row.touch, push))
+    pub fn values(&self, row: usize, tau: f64, full: &FullState, push: f64) -> Values {
+        values(
+            &self
+                .reader
+                .read(tau, full, self.sheet.rows[row].touch, push),
+        )
     }
 
     /// Returns the channel values `[channel]` of a state with friction of `row` at the signed `push`, in radians.

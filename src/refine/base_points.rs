@@ -3,7 +3,7 @@
 //! They lie at Chebyshev points of the row parameter `w`, from first touch to the end of the row. Between them, a Chebyshev expansion
 //! gives the components of the state that are analytic along the row. Each base point carries it as Taylor polynomials around itself.
 
-use super::row_states::{EXACT_STEP, ExactState, RowState, row_states};
+use super::row_states::{ExactState, RowState, row_states};
 use crate::engine::{
     BasePoint, BaseTrajectory, BatchRow, MOST_TRAJECTORY_STEPS, RowBatch, RowTerms, WhiskerSide,
 };
@@ -28,7 +28,7 @@ pub fn base_points(batch: &RowBatch) -> Vec<Vec<BasePoint>> {
     let wanted: Vec<Option<(f64, Vec<RowState>)>> = wanted.collect();
     let flat = wanted.iter().flatten().flat_map(|(_, states)| states);
     let flat: Vec<RowState> = flat.copied().collect();
-    let found = row_states(batch.method, &flat, EXACT_STEP);
+    let found = row_states(batch.method, &flat);
     let mut found = found.chunks(NODES);
     let rows = batch.rows.iter().zip(wanted);
     let rows = rows.map(|(row, wanted)| {
@@ -51,7 +51,7 @@ pub fn base_points(batch: &RowBatch) -> Vec<Vec<BasePoint>> {
 }
 
 /// Row span from first touch to a sound end of the row.
-pub struct SpanFromTouch<'a> {
+struct SpanFromTouch<'a> {
     sheet: &'a Sheet,
     row: usize,
     span: RowSpan,

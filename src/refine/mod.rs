@@ -8,7 +8,7 @@ mod near_fold;
 mod newton;
 mod row_states;
 
-pub use base_points::{SpanFromTouch, base_points};
+pub use base_points::base_points;
 
 use crate::sheet::{Guess, Sheet};
 use crate::shooting::FullState;
@@ -18,7 +18,6 @@ use near_fold::FoldVerdict;
 use newton::newton;
 pub use newton::{LARGEST_Q, LEFT_BY_STEP, ROUNDING};
 use rayon::prelude::*;
-pub use row_states::{ExactState, RowState, row_states};
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.
 pub const GOAL: f64 = 1e-12;

@@ -39,7 +39,7 @@ pub struct ExactState {
 
 /// Longest Newton step whose end is extrapolated where states are exact to rounding, as base points are: all cells of a base point inherit
 /// its error.
-pub const EXACT_STEP: f64 = 3e-8;
+const EXACT_STEP: f64 = 3e-8;
 
 /// Maximum number of trajectories for each state.
 const ROW_STATE_TRAJECTORIES: u32 = 8;
@@ -47,7 +47,6 @@ const ROW_STATE_TRAJECTORIES: u32 = 8;
 struct RowProblem<'a> {
     state: RowState<'a>,
     ln_distance: f64,
-    longest_step: f64,
     derivatives: FirstVariation,
 }
 
@@ -72,7 +71,7 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
         let step = DVec2::new(miss.perp_dot(by_load), by_tau.perp_dot(miss));
         let step = step / by_tau.perp_dot(by_load);
         let (step, length) = limited(step, arclength(self.rod(), at.x), at.y);
-        if length <= self.longest_step {
+        if length <= EXACT_STEP {
             NewtonStep::Extrapolate(step)
         } else {
             NewtonStep::Shoot(at + step)
@@ -81,29 +80,17 @@ impl<'a> NewtonProblem<'a> for RowProblem<'a> {
 }
 
 /// Finds the `states`, one result for each: `[state]`. A result is `None` where Newton's method fails, or leads off the stable sheet.
-///
-/// Newton steps up to `longest_step` are extrapolated. They leave an error of at most [`LEFT_BY_STEP`](super::LEFT_BY_STEP) times the square
-/// of the step, in units of the contact's arclength and the pole's distance together.
-pub fn row_states(
-    method: Method,
-    states: &[RowState],
-    longest_step: f64,
-) -> Vec<Option<ExactState>> {
+pub fn row_states(method: Method, states: &[RowState]) -> Vec<Option<ExactState>> {
     let chunks = states.par_chunks(chunk_size(states.len()));
     chunks
-        .flat_map_iter(|states| solve(method, states, longest_step))
+        .flat_map_iter(|states| solve(method, states))
         .collect()
 }
 
-fn solve<'a>(
-    method: Method,
-    states: &[RowState<'a>],
-    longest_step: f64,
-) -> Vec<Option<ExactState>> {
+fn solve<'a>(method: Method, states: &[RowState<'a>]) -> Vec<Option<ExactState>> {
     let problem = |state: &RowState<'a>| RowProblem {
         ln_distance: libm::log(state.sheet.rows[state.row].pole_distance),
         state: *state,
-        longest_step,
         derivatives: FirstVariation::default(),
     };
     let mut problems: Vec<RowProblem> = states.iter().map(problem).collect();

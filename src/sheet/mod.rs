@@ -6,8 +6,8 @@
 //! Newton start, or shows that the cell has no solution ([`Sheet::guesses`]). Crossings and guesses are computed independently of each
 //! other.
 //!
-//! `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, and `edges/` computes where a row leaves the sheet.
-//! `continuation/` follows a row from state to state where the lattice or the edges are not certified.
+//! `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, and `edges/` computes where a row leaves the sheet. `net/`
+//! represents the states of rows by few trajectories, for an engine. `continuation/` follows a row from state to state where the lattice or the edges are not certified.
 
 mod case;
 mod certificate;
@@ -174,25 +174,6 @@ impl Sheet {
     pub fn tip_blur(&self) -> f64 {
         let samples = self.samples.as_ref();
         samples.map_or(0.0, |samples| 2.0 * samples.edges.tip_error)
-    }
-
-    /// Returns this sheet with other rows, which are not continued; `None` without certified samples.
-    #[must_use]
-    pub fn with_rows(&self, rows: Vec<Row>) -> Option<Self> {
-        let samples = self.samples.clone()?;
-        let case = SheetCase {
-            method: self.method,
-            rod: &self.rod,
-            side: self.side,
-        };
-        Some(Self {
-            crossings: crossings(case, &samples.edges, &rows),
-            continued: Vec::new(),
-            rows,
-            samples: Some(samples),
-            rod: self.rod.clone(),
-            ..*self
-        })
     }
 
     /// Returns true if the contact at `tau` of a state with this `residual`, in whisker lengths, is at the tip.

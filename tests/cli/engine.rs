@@ -19,22 +19,22 @@ fn auto_does_not_start_a_gpu_for_a_small_map() {
     let said = said(&run);
     assert!(said.starts_with("cpu f64 on "), "{said}");
     let counts =
-        "(auto: at most 288 cells a side, expansions cost 2640; a GPU is not timed below 0.1 s)";
+        "(auto: at most 288 cells a side, expansions cost 456; a GPU is not timed below 0.1 s)";
     assert!(said.ends_with(counts), "{said}");
 }
 
-/// Rows of 256 cells on each side: the map takes less time with expansions, and is too small for a GPU.
+/// Rows of 256 cells on each side: the map takes less time with a net, and is too small for a GPU.
 #[test]
-fn auto_expands_rows_where_the_counts_say_so() {
+fn auto_takes_the_net_where_the_counts_say_so() {
     let place = wide();
     let run = place.run(&["map", "scene.toml", "--no-png"]);
     let said = said(&run);
     assert!(said.starts_with("spectral f64 on "), "{said}");
     let counts =
-        "(auto: at most 6144 cells a side, expansions cost 2640; a GPU is not timed below 0.1 s)";
+        "(auto: at most 6144 cells a side, expansions cost 456; a GPU is not timed below 0.1 s)";
     assert!(said.ends_with(counts), "{said}");
     let plan = place.run(&["plan", "scene.toml"]);
-    let line = "engine        spectral f64: at most 6144 cells a side, expansions cost 2640";
+    let line = "engine        spectral f64: at most 6144 cells a side, expansions cost 456";
     assert!(plan.out.contains(line), "{plan:?}");
 }
 

@@ -25,8 +25,7 @@ tests! {
         measured_radii_fall_back;
 }
 
-/// Rows in patches; `maps_of_random_sweeps_are_those_of_the_cpu` has rows that are expanded alone. At the contact and load of each solved cell, a trajectory meets the pole to its
-/// residual. Channel values differ from those of the CPU engine by at most 1e-9 of their size along the row, beside the rounding to `f32`.
+/// At the contact and load of each solved cell, a trajectory meets the pole to its residual. Channel values differ from those of the CPU engine by at most 1e-9 of their size along the row, beside the rounding to `f32`.
 fn states_and_values_are_within_their_bounds() {
     for (rows, count) in [(160, 4), (240, 2)] {
         let (mut solved, mut all) = (0, 0);
@@ -163,7 +162,7 @@ fn maps_of_shipped_scenes_are_those_of_the_cpu() {
     for scene in shipped() {
         let scene = scene.thinned(192, 2);
         let cells = compare(&scene);
-        // Rows of a small grid, and single rows, have fewer cells than their expansions have states.
+        // The cells of a small grid, or of a single row, may take less time than a net.
         let grid = &scene.grid;
         let is_small = grid.push_angle_deg.len() < 128 || grid.distance_mm.len() < 2;
         let has_profile = Plan::new(&scene).unwrap().method.effects.profile;
@@ -177,7 +176,7 @@ fn maps_of_shipped_scenes_are_those_of_the_cpu() {
     }
 }
 
-/// A sweep over two tapers and two curvatures with random other parameters: enough rows for patches, or a few long ones.
+/// A sweep over two tapers and two curvatures with random other parameters: many rows, or a few long ones.
 fn random_sweep(seed: u64) -> Scene {
     let mut random = Random(seed);
     let mut between = |low: f64, high: f64| random.between(low, high);

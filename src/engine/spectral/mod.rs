@@ -107,7 +107,8 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64
                 let miss = (found[lane] - pushes[from + lane]).abs() * distance;
                 let bound = expansion.residual + miss;
                 // NaN is not below any bound.
-                let is_inside = (-OUTSIDE..=expansion.inverse.end + OUTSIDE).contains(&block.places[lane]);
+                let is_inside =
+                    (-OUTSIDE..=expansion.inverse.end + OUTSIDE).contains(&block.places[lane]);
                 let is_certified = is_inside && bound <= most;
                 outcome[from + lane] = match sheet.is_at_tip(tau[lane], bound) {
                     _ if !is_certified => Outcome::Missed,

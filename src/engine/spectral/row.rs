@@ -3,8 +3,7 @@
 use crate::engine::{Values, WhiskerSide};
 use crate::numerics::expansion::Chebyshev;
 use crate::numerics::inverse::Inverse;
-use crate::numerics::newton_form_simd::keep;
-use crate::numerics::newton_form_simd::LaneNumbers;
+use crate::numerics::newton_form_simd::{LaneNumbers, keep};
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 use crate::plan::STATE_CHANNELS;
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
@@ -201,7 +200,7 @@ mod tests {
             for [push, tau, load, values @ ..] in numbers(side.reader(), &states) {
                 let exact: Vec<FirstVariation> =
                     Batch::new(Method::fine()).shoot_at(&sheet.rod, [(tau, load)]);
-                let exact = side.values_at(&sheet.rows[row], tau, &exact[0].full, push);
+                let exact = side.values(row, tau, &exact[0].full, push);
                 for ((own, exact), size) in values.into_iter().zip(exact).zip(sizes) {
                     assert!((own - exact).abs() < 1e-9 * size, "{row}: {own} {exact}");
                 }

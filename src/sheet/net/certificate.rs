@@ -1,8 +1,8 @@
 //! Certificate of panels: trajectories at places of rows between the nodes.
 
-use super::{PanelRow, SMALLEST_RESIDUAL};
 use super::panel::NetPanel;
 use super::row::NetRow;
+use super::{PanelRow, SMALLEST_RESIDUAL};
 use crate::numerics::WIDTH;
 use crate::numerics::expansion::Chebyshev;
 use crate::sheet::case::SheetCase;
@@ -95,7 +95,9 @@ pub fn certified(
     by_decay: f64,
 ) -> f64 {
     let last = rows.len() - 1;
-    let mut chosen: Vec<usize> = (0..CHECKS).map(|i| rows[i * last / (CHECKS - 1)].row).collect();
+    let mut chosen: Vec<usize> = (0..CHECKS)
+        .map(|i| rows[i * last / (CHECKS - 1)].row)
+        .collect();
     chosen.dedup();
     let checked = chosen.into_iter().filter_map(|row| {
         let states = panel.row(sheet, row)?;
@@ -107,9 +109,9 @@ pub fn certified(
     }
     // Even parts are no Chebyshev points.
     let place = |i: usize| (i as f64 + 0.37) / CHECKS as f64;
-    let expanded = checked.iter().flat_map(|own| {
-        (0..CHECKS).map(move |i| (own, own.functions.at(place(i) * own.end)))
-    });
+    let expanded = checked
+        .iter()
+        .flat_map(|own| (0..CHECKS).map(move |i| (own, own.functions.at(place(i) * own.end))));
     let expanded: Vec<(&CheckedRow, Checked)> = expanded.collect();
     let case = SheetCase {
         method: sheet.method,

@@ -117,17 +117,16 @@ impl Net {
         most: f64,
         halvings: u32,
     ) {
-        let [first, .., last] = rows else { return };
+        let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
+            return;
+        };
         let contacts = rows.iter().fold(first.contacts, |[from, to], own| {
             [from, to.max(own.contacts[1])]
         });
-        let halves = || {
-            let middle = first.contacts[0].midpoint(last.contacts[0]);
-            rows.split_at(rows.partition_point(|own| own.contacts[0] < middle))
-        };
-        let is_wide = contacts[1] - contacts[0] > WIDEST;
-        let (near, far) = halves();
-        if is_wide && near.len() > 1 && far.len() > 1 {
+        let middle = first.contacts[0].midpoint(last.contacts[0]);
+        let (near, far) = rows.split_at(rows.partition_point(|own| own.contacts[0] < middle));
+        let may_halve = !near.is_empty() && !far.is_empty();
+        if may_halve && contacts[1] - contacts[0] > WIDEST {
             self.cover(sheet, near, cells, most, halvings);
             self.cover(sheet, far, cells, most, halvings);
             return;
@@ -139,7 +138,7 @@ impl Net {
                 self.panel_of[own.row] = Some(self.panels.len());
             }
             self.panels.push(panel);
-        } else if halvings > 0 && pays(NetSize::first(most)) {
+        } else if may_halve && halvings > 0 && pays(NetSize::first(most)) {
             self.cover(sheet, near, cells, most, halvings - 1);
             self.cover(sheet, far, cells, most, halvings - 1);
         }

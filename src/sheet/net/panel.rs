@@ -62,7 +62,11 @@ fn along(sheet: &Sheet, contacts: [f64; 2]) -> Option<Chebyshev<2>> {
     let samples = sheet.samples.as_ref()?;
     let mut near = 1.0;
     let mut tau_at = |part: f64| {
-        near = tau_of(&sheet.rod, contacts[0] + part * (contacts[1] - contacts[0]), near);
+        near = tau_of(
+            &sheet.rod,
+            contacts[0] + part * (contacts[1] - contacts[0]),
+            near,
+        );
         near
     };
     let scale = chebyshev_points(SCALE).iter().map(|part| {
@@ -132,7 +136,15 @@ impl NetPanel {
     fn weights(&self) -> Functions {
         let [ln_tau, _] = self.along.at(0.0);
         let position = VALUE_WEIGHT / libm::exp(ln_tau).min(1.0);
-        [1.0, 1.0, VALUE_WEIGHT, position, position, VALUE_WEIGHT, VALUE_WEIGHT]
+        [
+            1.0,
+            1.0,
+            VALUE_WEIGHT,
+            position,
+            position,
+            VALUE_WEIGHT,
+            VALUE_WEIGHT,
+        ]
     }
 
     /// Returns the states of `row` of `sheet`; `None` if the row has no simple span from first touch, or is not in the panel.
@@ -179,12 +191,7 @@ impl NetPanel {
 }
 
 /// Returns the part `p` of the load at the end of `row`.
-fn end_part(
-    sheet: &Sheet,
-    row: usize,
-    contacts: [f64; 2],
-    along: &Chebyshev<2>,
-) -> Option<f64> {
+fn end_part(sheet: &Sheet, row: usize, contacts: [f64; 2], along: &Chebyshev<2>) -> Option<f64> {
     let end = simple_end(sheet, row)?;
     let [from, to] = contacts;
     let [_, ln_q] = along.at((u_of(&sheet.rod, end.tau) - from) / (to - from));
@@ -309,7 +316,11 @@ mod tests {
     fn a_spoiled_coefficient_is_refused() {
         let (sheet, rows) = cone();
         let edge = |row: &PanelRow| sheet.crossings[row.row][0].edge;
-        assert!([Edge::Fold, Edge::Tip].iter().all(|own| rows.iter().any(|row| edge(row) == *own)));
+        assert!(
+            [Edge::Fold, Edge::Tip]
+                .iter()
+                .all(|own| rows.iter().any(|row| edge(row) == *own))
+        );
         let sound = panel(&sheet, &rows);
         assert!(bound(&sheet, &rows, &sound) <= sound.residual);
         let NetSize { contacts, loads } = sound.size;
@@ -358,7 +369,10 @@ mod tests {
                 let spoiled = with_tensor(&sound, tensor);
                 let [in_u, in_p] = spoiled.tails().map(|tail| tail.last);
                 let error = certified(&sheet, &sound.reader, &spoiled, &rows, larger(in_u, in_p));
-                assert!(!(error <= MOST), "node {node}, function {function}: {error:e}");
+                assert!(
+                    !(error <= MOST),
+                    "node {node}, function {function}: {error:e}"
+                );
             }
         }
     }

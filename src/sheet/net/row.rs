@@ -5,8 +5,8 @@ use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
 use crate::numerics::tensor::LevelBlock;
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH, nearest_turn};
 use crate::sheet::{Row, Sheet};
-use crate::shooting::contact::{direction, exp, radius_and_arclength};
 use crate::shooting::StateNumbers;
+use crate::shooting::contact::{direction, exp, radius_and_arclength};
 
 /// States of a row side by side in SIMD lanes.
 #[derive(Clone, Copy, Debug)]
@@ -94,8 +94,11 @@ impl SimdTask for States<'_> {
             numbers: StateNumbers::default(),
         };
         for from in (0..block.count).step_by(T::LANES) {
-            let [_, phi, angle, x, y, chord, energy] =
-                self.points.values.each_ref().map(|own| pack::<T>(own, from));
+            let [_, phi, angle, x, y, chord, energy] = self
+                .points
+                .values
+                .each_ref()
+                .map(|own| pack::<T>(own, from));
             let [ln_tau, ln_q] = self.points.along.each_ref().map(|own| pack::<T>(own, from));
             let (sign, tau) = (T::of(self.sign), exp(ln_tau));
             let load = sign * pack(self.parts, from) * exp(ln_q - ln_tau - ln_tau);

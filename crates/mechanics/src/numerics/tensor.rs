@@ -32,7 +32,11 @@ impl<const D: usize> ChebyshevTensor<D> {
                 Chebyshev::through(&values)
             })
             .collect();
-        let of = |power: usize| in_x.iter().map(move |own| own.coefficients[power]).collect();
+        let of = |power: usize| {
+            in_x.iter()
+                .map(move |own| own.coefficients[power])
+                .collect()
+        };
         Self {
             coefficients: (0..rows.len()).map(of).collect(),
         }
@@ -330,7 +334,8 @@ mod tests {
     /// Along `x + y^2/4 = c` the functions are known; more columns than lanes.
     #[test]
     fn functions_are_found_on_a_level_line() {
-        let function = |x: f64, y: f64| [x + 0.25 * y * y, (x + 2.0 * y).sin(), 1.0 / (2.0 + x * y)];
+        let function =
+            |x: f64, y: f64| [x + 0.25 * y * y, (x + 2.0 * y).sin(), 1.0 / (2.0 + x * y)];
         let tensor = tensor(function);
         let values: Vec<[f64; 1]> = chebyshev_points(20).iter().map(|x| [x.exp()]).collect();
         let along = Chebyshev::through(&values);
@@ -352,13 +357,20 @@ mod tests {
         // The line leaves the square at the last columns.
         assert!(columns.level(0.15, &along).is_none() && columns.level(1.01, &along).is_none());
         let [in_x, in_y] = tensor.tails();
-        assert!([in_x[0], in_y[0]].as_flattened().iter().all(|tail| *tail < 1e-12));
+        assert!(
+            [in_x[0], in_y[0]]
+                .as_flattened()
+                .iter()
+                .all(|tail| *tail < 1e-12)
+        );
     }
 
     #[test]
     fn a_function_that_falls_has_no_level_line() {
         let tensor = tensor(|x, y| [x * (0.9 - x) + y, 0.0, 0.0]);
-        let along = Chebyshev { coefficients: vec![[1.0]] };
+        let along = Chebyshev {
+            coefficients: vec![[1.0]],
+        };
         assert!(tensor.columns(&[0.5]).level(0.55, &along).is_none());
     }
 }
