@@ -19,7 +19,7 @@ fn auto_does_not_start_a_gpu_for_a_small_map() {
     let said = said(&run);
     assert!(said.starts_with("cpu f64 on "), "{said}");
     let counts =
-        "(auto: at most 288 cells a side, expansions cost 456; a GPU is not timed below 0.1 s)";
+        "(auto: at most 288 cells a side, expansions cost 1440; a GPU is not timed below 0.1 s)";
     assert!(said.ends_with(counts), "{said}");
 }
 
@@ -31,10 +31,10 @@ fn auto_takes_the_net_where_the_counts_say_so() {
     let said = said(&run);
     assert!(said.starts_with("spectral f64 on "), "{said}");
     let counts =
-        "(auto: at most 6144 cells a side, expansions cost 456; a GPU is not timed below 0.1 s)";
+        "(auto: at most 6144 cells a side, expansions cost 1440; a GPU is not timed below 0.1 s)";
     assert!(said.ends_with(counts), "{said}");
     let plan = place.run(&["plan", "scene.toml"]);
-    let line = "engine        spectral f64: at most 6144 cells a side, expansions cost 456";
+    let line = "engine        spectral f64: at most 6144 cells a side, expansions cost 1440";
     assert!(plan.out.contains(line), "{plan:?}");
 }
 
