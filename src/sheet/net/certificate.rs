@@ -7,7 +7,7 @@ use crate::numerics::WIDTH;
 use crate::numerics::expansion::Chebyshev;
 use crate::sheet::case::SheetCase;
 use crate::sheet::{Row, Sheet};
-use crate::shooting::{FirstVariation, Reader};
+use crate::shooting::{PlainState, Reader};
 
 /// Factor by which a bound exceeds the largest error seen: the error between a few places may be larger than there.
 pub const MARGIN: f64 = 4.0;
@@ -119,12 +119,12 @@ pub fn certified(
         side: sheet.side,
     };
     let points = expanded.iter().map(|(_, own)| (own[1], own[2]));
-    let exact: Vec<FirstVariation> = case.shoot(points);
+    let exact: Vec<PlainState> = case.shoot(points);
     let sign = sheet.side.sign();
     let misses = expanded.iter().zip(&exact).map(|((own, found), exact)| {
         let [push, tau, _, angle, x, y, chord, energy] = *found;
         let push = sign * push;
-        let numbers = reader.numbers(tau, &exact.full, own.row.touch + push, chord);
+        let numbers = reader.numbers(tau, exact, own.row.touch + push, chord);
         let [exact_x, exact_y] = numbers.position;
         let errors = [
             angle - numbers.contact_angle,
@@ -133,7 +133,7 @@ pub fn certified(
             chord - numbers.chord,
             energy - numbers.energy,
         ];
-        let miss = exact.full.map.pole.distance(own.row.pole(push));
+        let miss = exact.pole.distance(own.row.pole(push));
         larger(miss, largest(&errors, &own.weights))
     });
     larger(MARGIN * misses.fold(by_decay, larger), SMALLEST_RESIDUAL)

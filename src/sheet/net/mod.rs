@@ -30,7 +30,7 @@ pub const NET_RESIDUAL: f64 = 1e-10;
 const SMALLEST_RESIDUAL: f64 = 1e-12;
 
 /// Largest range of contacts of a panel in `u`.
-const WIDEST: f64 = 4.0;
+const WIDEST: f64 = 7.0;
 
 /// Number of times that the rows of a panel without a certificate are halved.
 const HALVINGS: u32 = 2;
@@ -138,7 +138,8 @@ impl Net {
                 self.panel_of[own.row] = Some(self.panels.len());
             }
             self.panels.push(panel);
-        } else if may_halve && halvings > 0 && pays(NetSize::first(most)) {
+        } else if may_halve && halvings > 0 && pays(NetSize::first(most, contacts[1] - contacts[0]))
+        {
             self.cover(sheet, near, cells, most, halvings - 1);
             self.cover(sheet, far, cells, most, halvings - 1);
         }
@@ -167,7 +168,7 @@ fn smallest_panel(
     most: f64,
     pays: impl Fn(NetSize) -> bool,
 ) -> Option<NetPanel> {
-    let mut size = Some(NetSize::first(most));
+    let mut size = Some(NetSize::first(most, contacts[1] - contacts[0]));
     for _ in 0..TRIES {
         match NetPanel::new(sheet, rows, contacts, size.filter(|own| pays(*own))?, most) {
             Ok(panel) => return Some(panel),

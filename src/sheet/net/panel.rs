@@ -11,7 +11,7 @@ use crate::rod::Units;
 use crate::sheet::Sheet;
 use crate::sheet::case::SheetCase;
 use crate::sheet::fold::coordinate::{tau_of, u_of};
-use crate::shooting::{FirstVariation, Reader};
+use crate::shooting::{PlainState, Reader};
 
 /// Number of functions of a tensor.
 pub const FUNCTIONS: usize = 7;
@@ -24,8 +24,15 @@ type Functions = [f64; FUNCTIONS];
 const ALONG: usize = 32;
 const SCALE: usize = 9;
 
+/// Number of columns of a row of its own, over the loads of the panel: `[constant, for each part of the largest load]`. On a shorter range,
+/// fewer are as accurate; the last coefficients of the row show it.
+const OWN: [f64; 2] = [0.5, 0.5];
+
 /// Smallest part of a panel's largest load at which a row has the columns of the panel. A row with a smaller load at its end gets its own.
 const SHARED: f64 = 0.95;
+
+/// Weighted coefficient below which a polynomial of the load ends: below the rounding of the states.
+const ROUNDING: f64 = 1e-15;
 
 /// Smallest part of the fold's load at the end of a row. Values of a row with a smaller load are too small beside the errors of the net.
 const SMALLEST_END: f64 = 0.05;
@@ -114,6 +121,10 @@ impl NetPanel {
         if !(MARGIN * error <= most) {
             return Err(size.enough(tails, most));
         }
+        let weights = panel.weights();
+        panel
+            .tensor
+            .shorten(|terms| largest(terms, &weights) < ROUNDING);
         panel.residual = certified(sheet, &panel.reader, &panel, rows, error);
         if panel.residual <= most {
             Ok(panel)
@@ -157,8 +168,11 @@ impl NetPanel {
             .then(|| self.states(sheet, row, &self.columns, self.top, end))
             .flatten();
         shared.or_else(|| {
-            let places = chebyshev_points(self.size.loads).iter();
-            let places: Vec<f64> = places.map(|point| point * (end / self.top)).collect();
+            let part = end / self.top;
+            let count = (OWN[0] + OWN[1] * part) * self.size.loads as f64;
+            // A part of the loads is a small number.
+            let places = chebyshev_points(count.ceil() as usize).iter();
+            let places: Vec<f64> = places.map(|point| point * part).collect();
             self.states(sheet, row, &self.tensor.columns(&places), end, end)
         })
     }
@@ -174,7 +188,8 @@ impl NetPanel {
     ) -> Option<NetRow> {
         let row = &sheet.rows[row];
         let points = columns.level(libm::log(row.pole_distance), &self.along)?;
-        let parts = chebyshev_points(self.size.loads).iter();
+        let count = points.iter().map(|block| block.count).sum();
+        let parts = chebyshev_points(count).iter();
         let parts: Vec<f64> = parts.map(|point| top * point).collect();
         let line = RowLine {
             sheet,
@@ -222,7 +237,7 @@ fn tensor(
     let nodes = contacts
         .iter()
         .flat_map(|(tau, most)| loads.iter().map(move |part| (*tau, part * most)));
-    let states: Vec<FirstVariation> = case.shoot(nodes);
+    let states: Vec<PlainState> = case.shoot(nodes);
     // Directions are continuous along the load, and from contact to contact at the smallest load.
     let mut first = 0.0;
     let rows = contacts
@@ -232,14 +247,13 @@ fn tensor(
             let (mut phi, mut chord) = (first, 0.0);
             let mut values: Vec<Functions> = Vec::with_capacity(states.len());
             for state in states {
-                let pole = state.full.map.pole;
-                phi = nearest_turn(pole.to_angle(), phi);
-                let numbers = reader.numbers(*tau, &state.full, phi, chord);
+                phi = nearest_turn(state.pole.to_angle(), phi);
+                let numbers = reader.numbers(*tau, state, phi, chord);
                 chord = numbers.chord;
                 let [x, y] = numbers.position;
                 let lever = numbers.force.abs() * numbers.arclength;
                 values.push([
-                    libm::log(pole.length()),
+                    libm::log(state.pole.length()),
                     phi,
                     numbers.contact_angle,
                     x,
@@ -303,6 +317,11 @@ mod tests {
         certified(sheet, &panel.reader, panel, rows, 0.0)
     }
 
+    /// The tensor of a panel with all its coefficients.
+    fn whole(sheet: &Sheet, panel: &NetPanel) -> ChebyshevTensor<FUNCTIONS> {
+        tensor(sheet, &panel.reader, panel.size, &panel.along, panel.top)
+    }
+
     fn with_tensor(panel: &NetPanel, tensor: ChebyshevTensor<FUNCTIONS>) -> NetPanel {
         NetPanel {
             columns: tensor.columns(chebyshev_points(panel.size.loads)),
@@ -324,7 +343,8 @@ mod tests {
         let sound = panel(&sheet, &rows);
         assert!(bound(&sheet, &rows, &sound) <= sound.residual);
         let NetSize { contacts, loads } = sound.size;
-        let largest = sound.tensor.coefficients.iter().flatten();
+        let whole = whole(&sheet, &sound);
+        let largest = whole.coefficients.iter().flatten();
         let largest = largest.fold([0.0; FUNCTIONS], |most, own| {
             std::array::from_fn(|i| f64::max(most[i], own[i].abs()))
         });
@@ -332,7 +352,7 @@ mod tests {
             let (power, function) = (place / FUNCTIONS, place % FUNCTIONS);
             let (in_u, in_p) = (power / loads, power % loads);
             let spoiled = |change: &dyn Fn(&mut f64)| {
-                let mut tensor = sound.tensor.clone();
+                let mut tensor = whole.clone();
                 change(&mut tensor.coefficients[in_u][in_p][function]);
                 bound(&sheet, &rows, &with_tensor(&sound, tensor))
             };
@@ -350,6 +370,7 @@ mod tests {
     fn a_spoiled_node_is_refused() {
         let (sheet, rows) = cone();
         let sound = panel(&sheet, &rows);
+        let whole = whole(&sheet, &sound);
         let NetSize { contacts, loads } = sound.size;
         for node in (0..contacts * loads).step_by(29) {
             let (in_u, in_p) = (node / loads, node % loads);
@@ -360,7 +381,7 @@ mod tests {
             };
             let (by_u, by_p) = (weight(contacts, in_u), weight(loads, in_p));
             for function in 0..FUNCTIONS {
-                let mut tensor = sound.tensor.clone();
+                let mut tensor = whole.clone();
                 for (terms, [by_u]) in tensor.coefficients.iter_mut().zip(&by_u) {
                     for (term, [by_p]) in terms.iter_mut().zip(&by_p) {
                         term[function] += 1e-6 * by_u * by_p;

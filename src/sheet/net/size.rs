@@ -12,9 +12,15 @@ const HOPELESS: f64 = 1.0;
 /// Factor by which more points are taken than the rate at the last coefficients calls for.
 const SAFETY: f64 = 1.1;
 
-/// Numbers of contacts, and of loads at each contact, of the first panel: `[constant, for each decimal digit of the bound]`. Measured on
-/// the shipped scenes: for a bound of 1e-10, most panels with fewer are refused.
-const FIRST: [[f64; 2]; 2] = [[4.0, 2.0], [2.0, 2.0]];
+/// Contacts and loads of the first panel beside those for each decimal digit of the bound.
+const FIRST: [f64; 2] = [4.0, 2.0];
+
+/// Contacts for each decimal digit of the bound, and for each in a range of 1 in `u`. For a bound of 1e-10, 24 are mostly enough for a range of
+/// 4, and 31 for one of 7.
+const CONTACTS: [f64; 2] = [1.0, 0.25];
+
+/// Loads for each decimal digit of the bound.
+const LOADS: f64 = 2.0;
 
 /// Size of a panel.
 #[derive(Clone, Copy, Debug)]
@@ -35,12 +41,15 @@ pub struct NetTail {
 }
 
 impl NetSize {
-    /// Returns the size of the first panel for a bound of `most` whisker lengths: its coefficients show how many states more are needed.
-    pub fn first(most: f64) -> Self {
+    /// Returns the size of the first panel over this `range` of `u` for a bound of `most` whisker lengths: its coefficients show how many states
+    /// more are needed.
+    pub fn first(most: f64, range: f64) -> Self {
         let digits = -libm::log10(most);
-        let [contacts, loads] = FIRST.map(|[constant, each]| {
+        let [constant, each] = CONTACTS;
+        let counts = [constant + each * range, LOADS];
+        let [contacts, loads] = std::array::from_fn(|i| {
             // A bound has at most 12 digits.
-            let count = (constant + each * digits).ceil() as usize;
+            let count = (FIRST[i] + counts[i] * digits).ceil() as usize;
             count.clamp(2 * TAIL + 1, MOST_POINTS)
         });
         Self { contacts, loads }

@@ -158,6 +158,9 @@ impl<const D: usize> Chebyshev<D> {
     }
 }
 
+/// Numbers of the widest register: [`MOST_POINTS`] is a multiple of it.
+const REGISTER: usize = 8;
+
 /// Coefficients from values: plain loops, which a compiler turns into vectors of any unit, without fused products.
 struct Transform<'a, const D: usize> {
     values: &'a [[f64; D]],
@@ -170,9 +173,11 @@ impl<const D: usize> SimdTask for Transform<'_, D> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> Vec<[f64; D]> {
         let mut columns = [[0.0; MOST_POINTS]; D];
+        // Whole registers, but not all of the columns.
+        let count = self.values.len().next_multiple_of(REGISTER);
         for (values, weights) in self.values.iter().zip(self.transform) {
             for (column, value) in columns.iter_mut().zip(values) {
-                for (coefficient, weight) in column.iter_mut().zip(weights) {
+                for (coefficient, weight) in column[..count].iter_mut().zip(&weights[..count]) {
                     *coefficient += weight * value;
                 }
             }

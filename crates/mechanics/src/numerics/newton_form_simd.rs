@@ -152,7 +152,8 @@ impl<const N: usize, const M: usize> SimdTask for Newton<'_, N, M> {
 #[inline(always)]
 pub fn pack<T: Lanes>(numbers: &LaneNumbers, from: usize) -> T {
     let mut lanes = [0.0; WIDTH];
-    lanes[..WIDTH - from].copy_from_slice(&numbers[from..]);
+    // A constant length makes one load of the copy.
+    lanes[..T::LANES].copy_from_slice(&numbers[from..from + T::LANES]);
     T::pack(lanes)
 }
 

@@ -63,6 +63,15 @@ impl<const D: usize> ChebyshevTensor<D> {
         ]
     }
 
+    /// Removes coefficients for which `is_rounding` is true, from the last polynomial of `y` on, for each polynomial of `x`.
+    pub fn shorten(&mut self, is_rounding: impl Fn(&[f64; D]) -> bool) {
+        for in_y in &mut self.coefficients {
+            while in_y.last().is_some_and(&is_rounding) {
+                in_y.pop();
+            }
+        }
+    }
+
     /// Returns the columns of the tensor at each `y` of `places`.
     ///
     /// # Panics
@@ -104,7 +113,8 @@ impl<const D: usize> SimdTask for Contraction<'_, D> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
         let mut columns = vec![[[0.0; WIDTH]; D]; self.coefficients.len()];
-        let count = self.coefficients[0].len();
+        let counts = self.coefficients.iter().map(Vec::len);
+        let count = counts.max().unwrap_or(0);
         for from in (0..WIDTH).step_by(T::LANES) {
             let y = T::of(2.0).mul_add(pack(self.places, from), T::of(-1.0));
             let mut polynomials = [T::of(1.0); MOST_POINTS];
@@ -268,10 +278,22 @@ impl<const D: usize> SimdTask for Starts<'_, D> {
     fn run<T: Lanes>(self) -> Self::Output {
         let mut starts = [[0.0; WIDTH]; INTERVALS + 1];
         for from in (0..WIDTH).step_by(T::LANES) {
-            for (i, start) in starts.iter_mut().enumerate() {
-                let x = T::of(i as f64 / INTERVALS as f64);
-                let [value] = values::<T, D, 1>(self.0, 0, from, x);
-                keep(start, from, value);
+            for (group, starts) in starts.chunks_mut(TOGETHER).enumerate() {
+                let place = |i: usize| (group * TOGETHER + i) as f64 / INTERVALS as f64;
+                let ys: [T; TOGETHER] = std::array::from_fn(|i| T::of(2.0 * place(i) - 1.0));
+                let (mut later, mut latest) = ([T::of(0.0); TOGETHER], [T::of(0.0); TOGETHER]);
+                for (power, terms) in self.0.iter().enumerate().rev() {
+                    let term = pack::<T>(&terms[0], from);
+                    for (i, y) in ys.into_iter().enumerate() {
+                        let factor = if power == 0 { y } else { y + y };
+                        let rest = term - latest[i];
+                        latest[i] = later[i];
+                        later[i] = factor.mul_add(latest[i], rest);
+                    }
+                }
+                for (start, value) in starts.iter_mut().zip(later) {
+                    keep(start, from, value);
+                }
             }
         }
         starts

@@ -78,6 +78,35 @@ pub struct FullState {
     pub energy: f64,
 }
 
+/// A state of the whisker without derivatives, in the frame of [`FullState`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlainState {
+    /// Centre of the pole in the frame of the base, in whisker lengths.
+    pub pole: DVec2,
+    /// Unit tangent of the base in the frame of the contact.
+    pub tangent: DVec2,
+    /// Position of the base in the frame of the contact, in whisker lengths.
+    pub position: DVec2,
+    /// Signed force at the contact, with the sign of the load, in `E I_base/L_w^2`.
+    pub force: f64,
+    /// Bending energy of the state, in `E I_base/L_w`.
+    pub energy: f64,
+}
+
+impl FullState {
+    /// Returns the state without derivatives.
+    #[must_use]
+    pub const fn plain(&self) -> PlainState {
+        PlainState {
+            pole: self.map.pole,
+            tangent: self.tangent,
+            position: self.position,
+            force: self.force,
+            energy: self.energy,
+        }
+    }
+}
+
 /// Derivative of a [`FullState`] by a variable, such as a coordinate of the sheet: `tau` at fixed load, or the load `f/rho^2` at fixed
 /// `tau`. Each field has the unit of the state's value per unit of the variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -28,7 +28,8 @@ pub use integrator::{
 };
 pub use intrinsic::{Intrinsic, Polynomial, Spiral, Straight};
 pub use map::{
-    FirstVariation, FullState, LONGEST_STEP, SecondVariation, ShootingMap, StateDerivative, limited,
+    FirstVariation, FullState, LONGEST_STEP, PlainState, SecondVariation, ShootingMap,
+    StateDerivative, limited,
 };
 pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use parabola::{Bent, TANGENT as REST_TANGENT, TERMS as REST_TERMS};

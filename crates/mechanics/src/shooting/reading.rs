@@ -1,7 +1,7 @@
 //! Readings: states of the whisker in physical units.
 
-use super::FullState;
 use super::contact::direction;
+use super::{FullState, PlainState};
 use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
 use crate::numerics::{Lanes, Real, nearest_turn};
 use crate::rod::{Rest, Rod, Units, arclength_at};
@@ -162,7 +162,7 @@ impl Reader {
     /// direction `touch`. Both angles are in radians.
     #[must_use]
     pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
-        let numbers = self.numbers(tau, full, touch + push, push);
+        let numbers = self.numbers(tau, &full.plain(), touch + push, push);
         let [arc, angle, force, x, y, moment, chord, distance, energy] = self.channels(numbers);
         Reading {
             arc_length_mm: arc,
@@ -176,23 +176,23 @@ impl Reader {
         }
     }
 
-    /// Returns the numbers of the state `full` with the contact at `tau`. The pole is in the direction `phi` from the base, and `chord` is near the
+    /// Returns the numbers of a `state` with the contact at `tau`. The pole is in the direction `phi` from the base, and `chord` is near the
     /// chord angle: both in radians, with whole turns.
     #[must_use]
-    pub fn numbers(&self, tau: f64, full: &FullState, phi: f64, chord: f64) -> StateNumbers<f64> {
-        let to_base = DVec2::new(full.tangent.x, -full.tangent.y);
-        let contact = to_base.rotate(-full.position);
-        let to_pole = self.to_pole - full.position;
+    pub fn numbers(&self, tau: f64, state: &PlainState, phi: f64, chord: f64) -> StateNumbers<f64> {
+        let to_base = DVec2::new(state.tangent.x, -state.tangent.y);
+        let contact = to_base.rotate(-state.position);
+        let to_pole = self.to_pole - state.position;
         let resting = self.rest.point_at_distance(contact.length());
         let own_chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
         StateNumbers {
             arclength: arclength_at(self.taper, tau),
             contact_angle: phi - to_pole.to_angle() + self.tilt,
-            force: full.force,
-            tangent: full.tangent.to_array(),
-            position: full.position.to_array(),
+            force: state.force,
+            tangent: state.tangent.to_array(),
+            position: state.position.to_array(),
             chord: nearest_turn(own_chord, chord),
-            energy: full.energy,
+            energy: state.energy,
         }
     }
 

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use whiskmap_mechanics::rod::{RadiusProfile, Rod};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap_mechanics::shooting::{Resolution, SecondVariation, ShootingMap};
+use whiskmap_mechanics::shooting::{
+    FirstVariation, PlainState, Resolution, SecondVariation, ShootingMap,
+};
 
 /// A rod that lives until the test program ends.
 fn kept(rod: Rod) -> &'static Rod {
@@ -70,6 +72,27 @@ fn outputs_keep_the_order_of_conditions() {
         });
         let all: Vec<Option<ShootingMap>> = all.into_iter().map(Some).collect();
         assert_eq!(each, all);
+    }
+}
+
+/// Trajectories without derivatives reach the states of those with derivatives, up to rounding.
+#[test]
+fn plain_states_are_those_with_derivatives() {
+    for conditions in [conditions(300), measured(300)] {
+        let batch = Batch::new(method(20));
+        let (plain, full) = (batch.shoot(&conditions), batch.shoot(&conditions));
+        let pairs: Vec<(PlainState, FirstVariation)> = plain.into_iter().zip(full).collect();
+        for (plain, full) in pairs {
+            let full = full.full.plain();
+            let apart = [
+                plain.pole.distance(full.pole),
+                plain.tangent.distance(full.tangent),
+                plain.position.distance(full.position),
+                (plain.force - full.force).abs() / (1.0 + full.force.abs()),
+                (plain.energy - full.energy).abs() / (1.0 + full.energy),
+            ];
+            assert!(apart.iter().all(|own| *own < 1e-13), "{apart:?}");
+        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! The contact in lanes against the standard library.
 
 use whiskmap_mechanics::rod::{Rest, Rod, arclength};
-use whiskmap_mechanics::shooting::contact::{arc, exp, parabola_tangent, radius_and_arclength};
+use whiskmap_mechanics::shooting::contact::{
+    arc, direction, exp, parabola_tangent, radius_and_arclength,
+};
 
 #[test]
 fn algebra_is_as_good_as_the_library() {
@@ -24,6 +26,11 @@ fn algebra_is_as_good_as_the_library() {
     }
     for x in [-25.6, -3.0, -1e-9, 0.0, 1e-3, 1.0, 25.6_f64] {
         assert!((exp(x) / x.exp() - 1.0).abs() < 1e-14, "{x}");
+    }
+    for angle in [-25.0, -3.0, -1e-9, 0.0, 1e-3, 1.0, 25.0_f64] {
+        let [cos, sin] = direction(angle);
+        assert!((cos - angle.cos()).abs() < 6e-14, "{angle}");
+        assert!((sin - angle.sin()).abs() < 6e-14, "{angle}");
     }
     for bend in [0.0, 1e-9, 0.02, 0.4, 1.5, 10.0] {
         for slope in [-3.0, -0.3, 0.0, 1e-6, 2.0] {

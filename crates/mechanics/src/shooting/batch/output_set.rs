@@ -3,14 +3,17 @@
 use super::block::Block;
 use super::block_key::BlockKey;
 use super::kernel::Trajectories;
-use super::pole::{PoleCentre, spread};
+use super::pole::{Complex, PoleCentre, spread};
 use crate::numerics::{Lanes, Unit, WIDTH};
 use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{
     Arrival, BaseDerivatives, Energetic, GeneralFirst, GeneralSecond, SecondBaseDerivatives,
     SensitivitySet, SimilarFirst, SimilarSecond, Triple,
 };
-use crate::shooting::{FirstVariation, FullState, SecondVariation, ShootingMap, StateDerivative};
+use crate::shooting::{
+    FirstVariation, FullState, NoSensitivity, PlainState, SecondVariation, ShootingMap,
+    StateDerivative,
+};
 use glam::DVec2;
 
 /// A set of outputs that a batch computes for each trajectory: the derivatives to carry, and the outputs from their values at the base.
@@ -40,6 +43,44 @@ pub trait OutputSet: Copy + Default + Send + 'static {
 impl From<FirstVariation> for ShootingMap {
     fn from(variation: FirstVariation) -> Self {
         variation.full.map
+    }
+}
+
+impl From<FirstVariation> for PlainState {
+    fn from(variation: FirstVariation) -> Self {
+        variation.full.plain()
+    }
+}
+
+impl OutputSet for PlainState {
+    type OnOneLane = FirstVariation;
+    type General<T: Lanes> = Energetic<NoSensitivity>;
+    type Similar<T: Lanes> = Energetic<NoSensitivity>;
+
+    #[inline(always)]
+    fn answers<T: Lanes>(
+        arrival: &Arrival<T>,
+        pole: [T; 2],
+        ((), energy): ((), T),
+    ) -> [Self; WIDTH] {
+        let Complex { re, im } = PoleCentre::new(arrival, pole).pole;
+        let [cos, sin, x, y, _] = arrival.rod;
+        let numbers = [re, im, cos, sin, x, y, arrival.contact.force, energy];
+        spread(
+            numbers,
+            |_, [pole_x, pole_y, cos, sin, x, y, force, energy]| Self {
+                pole: DVec2::new(pole_x, pole_y),
+                tangent: DVec2::new(cos, sin),
+                position: DVec2::new(x, y),
+                force,
+                energy,
+            },
+        )
+    }
+
+    #[inline(never)]
+    fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH] {
+        unit.run(Trajectories::new(key, block))
     }
 }
 

@@ -12,7 +12,7 @@ pub use similar::{SimilarFirst, SimilarSecond};
 
 use crate::numerics::Real;
 use crate::shooting::contact::Contact;
-use crate::shooting::{Carried, Planar, Sensitivity};
+use crate::shooting::{Carried, NoSensitivity, Planar, Sensitivity};
 use std::marker::PhantomData;
 
 /// Derivatives of `[theta, X, Y]`: the angle of the tangent in radians, and the position in whisker lengths.
@@ -68,6 +68,18 @@ pub struct SecondBaseDerivatives<T> {
 #[inline(always)]
 fn twice<T: Real>(c: T, s: T, turns: T, angle: T) -> (T, T) {
     (s.mul_add(angle, c * turns), s * turns - c * angle)
+}
+
+impl<T: Real> SensitivitySet<T> for NoSensitivity {
+    type AtBase = ();
+
+    #[inline(always)]
+    fn start(_: &Contact<T>) -> Carried<T, Self> {
+        ((), ((), ()))
+    }
+
+    #[inline(always)]
+    fn at_base(_: &Arrival<T>, _: Carried<T, Self>) {}
 }
 
 /// A set of carried derivatives together with the bending energy in `E I_base/L_w`. The energy's relative error grows with the inverse of
