@@ -24,7 +24,7 @@ type Functions = [f64; FUNCTIONS];
 const ALONG: usize = 32;
 const SCALE: usize = 9;
 
-/// Number of columns of a row of its own, over the loads of the panel: `[constant, for each part of the largest load]`. On a shorter range,
+/// Number of columns of a row of its own, over those of the panel's rows: `[constant, for each part of the largest load]`. On a shorter range,
 /// fewer are as accurate; the last coefficients of the row show it.
 const OWN: [f64; 2] = [0.5, 0.5];
 
@@ -112,7 +112,7 @@ impl NetPanel {
             contacts,
             top,
             along,
-            columns: tensor.columns(chebyshev_points(size.loads)),
+            columns: tensor.columns(chebyshev_points(size.columns())),
             tensor,
             reader,
         };
@@ -169,7 +169,7 @@ impl NetPanel {
             .flatten();
         shared.or_else(|| {
             let part = end / self.top;
-            let count = (OWN[0] + OWN[1] * part) * self.size.loads as f64;
+            let count = (OWN[0] + OWN[1] * part) * self.size.columns() as f64;
             // A part of the loads is a small number.
             let places = chebyshev_points(count.ceil() as usize).iter();
             let places: Vec<f64> = places.map(|point| point * part).collect();
@@ -324,7 +324,7 @@ mod tests {
 
     fn with_tensor(panel: &NetPanel, tensor: ChebyshevTensor<FUNCTIONS>) -> NetPanel {
         NetPanel {
-            columns: tensor.columns(chebyshev_points(panel.size.loads)),
+            columns: tensor.columns(chebyshev_points(panel.size.columns())),
             tensor,
             ..panel.clone()
         }
