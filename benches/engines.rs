@@ -71,8 +71,8 @@ fn engines(criterion: &mut Criterion) {
         // Without a GPU driver only the CPU is measured.
         engines.extend(Gpu::open(None, precision).map(|gpu| Box::new(gpu) as Box<dyn Engine>));
     }
-    for whiskers in [1, 32, 512] {
-        let rows = RandomRows::new(USUAL, whiskers, 2, |_, _| ());
+    for whiskers in [1, 8, 64] {
+        let rows = RandomRows::many(96, USUAL, whiskers, 2, |_, _| ());
         for engine in &mut engines {
             let batch = rows.batch(engine.as_ref());
             group.throughput(Throughput::Elements(batch.cells() as u64));

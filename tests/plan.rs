@@ -23,7 +23,11 @@ impl Engine for Counting {
     }
 
     fn residual_bound(&self) -> f64 {
-        1.0
+        1e-8
+    }
+
+    fn has_device(&self) -> bool {
+        true
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {
@@ -34,12 +38,7 @@ impl Engine for Counting {
 
     fn collect(&mut self) -> Result<Cells, EngineError> {
         let batch = self.submitted.pop_front().unwrap();
-        let mut cells = Cells::new(&batch, Outcome::NoBasePoint);
-        for base in &batch.base_points {
-            let from = base.trajectory.first_cell;
-            cells.outcome[from..from + base.cells.len()].fill(Outcome::OutsideTrust);
-        }
-        Ok(cells)
+        Ok(Cells::new(&batch, Outcome::Missed))
     }
 }
 
@@ -69,18 +68,18 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
         &mut |_| ControlFlow::Continue(()),
         discard,
     );
-    // Rows of few cells have no base points.
+    // Few cells have no net.
     let is_asked = scene.grid.push_angle_deg.len() > 100;
     assert_eq!(engine.calls, if is_asked { plan.engine_calls } else { 0 });
     assert_eq!(summary.cells(), plan.cells as u64);
     let EngineCells {
-        outside_trust,
-        without_base_point,
+        missed,
+        without_row,
         ..
     } = summary.engine_cells;
     let of_cpu = EngineCells {
-        outside_trust,
-        without_base_point,
+        missed,
+        without_row,
         ..EngineCells::default()
     };
     assert_eq!(summary.engine_cells, of_cpu);

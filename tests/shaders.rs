@@ -1,4 +1,4 @@
-//! The shaders without a device: every text that the engine can build is valid, with every set of effects that it has.
+//! The shaders without a device: every text that the engine can build is valid, with every choice of planes and every set of effects.
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
@@ -6,17 +6,34 @@
 )]
 
 use crate::effect_sets;
-
 use naga::back::PipelineConstants;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use whiskmap::engine::gpu::{Precision, shaders};
-use whiskmap::rod::Effects;
+use whiskmap::engine::gpu::{Planes, Precision, shaders};
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
+/// Constants of a shader by name.
+type Constants<const N: usize> = [(&'static str, f64); N];
+
+/// The constants of every choice of planes.
+fn choices() -> Vec<Constants<2>> {
+    let flags = [(false, false), (false, true), (true, false), (true, true)];
+    let constants = flags.map(|(has_values, has_points)| {
+        shaders::overrides(Planes {
+            has_values,
+            has_points,
+        })
+    });
+    constants.to_vec()
+}
+
 /// Parses and validates `text`, for every entry point and with the values of its constants put in.
-fn validate(text: &str, precision: Precision, effects: &[Effects]) -> Result<(), String> {
+fn validate<const N: usize>(
+    text: &str,
+    precision: Precision,
+    choices: &[Constants<N>],
+) -> Result<(), String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|e| e.emit_to_string(text))?;
     let capabilities = match precision {
         Precision::F32 => Capabilities::empty(),
@@ -27,16 +44,16 @@ fn validate(text: &str, precision: Precision, effects: &[Effects]) -> Result<(),
         .validate(&module)
         .map_err(|e| e.emit_to_string(text))?;
     for entry in &module.entry_points {
-        for effects in effects {
-            let constants: PipelineConstants = shaders::overrides(*effects)
-                .map(|(name, value)| (name.to_owned(), value))
-                .into_iter()
-                .collect();
+        for constants in choices {
+            let named = constants
+                .iter()
+                .map(|(name, value)| ((*name).to_owned(), *value));
+            let constants: PipelineConstants = named.collect();
             let entry_point = Some((entry.stage, entry.name.as_str()));
             let (module, _) = process_overrides(&module, &info, entry_point, &constants)
-                .map_err(|e| format!("{effects:?}: {e}"))?;
+                .map_err(|e| format!("{constants:?}: {e}"))?;
             let resolved = Validator::new(ValidationFlags::all(), capabilities).validate(&module);
-            resolved.map_err(|e| format!("{effects:?}: {e:?}"))?;
+            resolved.map_err(|e| format!("{constants:?}: {e:?}"))?;
         }
     }
     Ok(())
@@ -45,28 +62,23 @@ fn validate(text: &str, precision: Precision, effects: &[Effects]) -> Result<(),
 #[test]
 fn every_text_is_valid() {
     for precision in PRECISIONS {
-        let sets: Vec<Effects> = effect_sets::on_gpu().collect();
-        for (text, sets) in [
-            (shaders::cells(precision), &sets[..]),
-            (shaders::peak(precision), &[]),
-        ] {
-            validate(&text, precision, sets).unwrap_or_else(|e| panic!("{e}"));
-        }
+        let sets: Vec<_> = effect_sets::all().map(shaders::effects).collect();
+        validate(&shaders::shoot(precision), precision, &sets).unwrap_or_else(|e| panic!("{e}"));
+        validate(&shaders::cells(precision), precision, &choices())
+            .unwrap_or_else(|e| panic!("{e}"));
     }
 }
 
 #[test]
 fn a_broken_text_is_refused() {
-    let none = [Effects::default()];
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
-        ("= base_point[POSITIONS].xy", "= base_point[POSITIONS].xyz"),
-        ("override TAPER: bool;", ""),
+        ("cell.point = state.yz", "cell.point = state.xyz"),
+        ("override HAS_VALUES: bool;", ""),
     ] {
         assert!(text.contains(good));
-        assert!(validate(&text.replace(good, bad), Precision::F32, &none).is_err());
+        assert!(validate(&text.replace(good, bad), Precision::F32, &choices()).is_err());
     }
     // Double precision is a capability.
-    let text = shaders::cells(Precision::F64);
-    assert!(validate(&text, Precision::F32, &none).is_err());
+    assert!(validate(&shaders::cells(Precision::F64), Precision::F32, &choices()).is_err());
 }

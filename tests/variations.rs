@@ -9,10 +9,8 @@ use crate::effect_sets;
 use crate::random_rods;
 
 use glam::DVec2;
-use std::sync::Arc;
-use whiskmap::engine::{POWERS, RowBatch, RowTerms, SideColumns, WhiskerSide};
-use whiskmap::refine::{CellTarget, RefineOutcome, TOLERANCE, base_points, refine, states};
-use whiskmap::rod::{Effects, Rod, Side, Units, arclength};
+use whiskmap::refine::{TOLERANCE, states};
+use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
@@ -231,90 +229,4 @@ fn the_energy_is_known_toward_the_tip() {
         eprintln!("{radius}: {energy:e}, {apart:e}");
         assert!(apart < bound, "{radius}: {apart:e}");
     }
-}
-
-/// Columns of a row.
-const COLUMNS: usize = 48;
-
-/// Values in whisker lengths and `E I_base/L_w^2`.
-const NO_UNITS: Units = Units {
-    length_mm: 1.0,
-    force_un: 1.0,
-    moment_nnm: 1.0,
-    strain: 1.0,
-};
-
-/// Between base points the Taylor polynomials of a row give the contact of each cell, on lattices and along continued rows.
-#[test]
-fn base_points_follow_their_row() {
-    let method = Method::fine();
-    let mut random = random_rods::Random(23);
-    // Rows and the largest error, on lattices and continued.
-    let mut found = [(0, 0.0_f64); 2];
-    for i in 0..60 {
-        let usual = random_rods::rod(random_rods::USUAL, &mut random);
-        let side = if usual.pole < 0.0 { Side::Cf } else { Side::Cb };
-        let rod = match i % 2 {
-            0 => usual,
-            _ => Rod {
-                bend: random.between(0.8, 1.5),
-                friction: side.sign() * random.between(0.6, 1.0),
-                ..usual
-            },
-        };
-        let distances = [(); 6].map(|()| random.between(0.1, 1.0));
-        let sheet = Sheet::new(method, &rod, side, &distances);
-        let push = |i: usize| (side.sign() * 0.03 * i as f64).to_degrees();
-        let mut push_angle_deg: Vec<f64> = (1..=COLUMNS).map(push).collect();
-        push_angle_deg.sort_by(f64::total_cmp);
-        let columns = Arc::new(SideColumns::new(&push_angle_deg, side, 0));
-        let sides = [WhiskerSide::new(Arc::clone(&columns), NO_UNITS, sheet)];
-        let rows = (0..distances.len()).map(|row| (0, row));
-        let batch = RowBatch::new(method, sides.into(), [].into(), rows);
-        let (sheet, pushes) = (&batch.sides[0].sheet, &columns.magnitudes);
-        let all = base_points(&batch);
-        let (count, worst) = &mut found[usize::from(sheet.is_continued())];
-        for (row, points) in batch.rows.iter().zip(&all) {
-            *count += usize::from(!points.is_empty());
-            for point in points {
-                let here = point.row[0][1] / point.tau - 1.0;
-                assert!(here.abs() < 1e-12, "{here:e}");
-                let pushes = &pushes[point.cells.start as usize..point.cells.end as usize];
-                let target = |push: &f64| CellTarget {
-                    rod: 0,
-                    tau: point.tau,
-                    load: point.load,
-                    pole: sheet.rows[row.row].pole(side.sign() * push),
-                };
-                let targets: Vec<CellTarget> = pushes.iter().map(target).collect();
-                let refined = refine(method, &[sheet], &targets);
-                for (push, refined) in pushes.iter().zip(refined) {
-                    if refined.outcome == RefineOutcome::Solved {
-                        let tau = tau_at(&point.row, side.sign() * push);
-                        *worst = worst.max((tau / refined.state.tau - 1.0).abs());
-                    }
-                }
-            }
-        }
-    }
-    eprintln!("rows and errors on lattices and continued: {found:?}");
-    // Measured 3.6e-7 and 2.5e-6: what a polynomial through 16 states leaves, friction of up to 1 among the continued.
-    for ((rows, worst), limit) in found.into_iter().zip([1e-6, 1e-5]) {
-        assert!(rows > 10 && worst < limit, "{found:?}");
-    }
-}
-
-/// `tau` where the push angle of a row's Taylor polynomials is `push`.
-fn tau_at(row: &[RowTerms; POWERS], push: f64) -> f64 {
-    let at = |w: f64, which: usize| {
-        let terms = row.iter().rev();
-        terms.fold([0.0; 2], |[value, slope], term| {
-            [value * w + term[which], slope * w + value]
-        })
-    };
-    let newton = (0..8).fold(0.0, |w, _| {
-        let [value, slope] = at(w, 0);
-        w + (push - value) / slope
-    });
-    at(newton, 1)[0]
 }

@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use crate::refine::GOAL;
 use crate::scene::Scene;
 
-/// Largest bound on the residual of the spectral engine, in whisker lengths. Most of the first patches keep it, so a larger one saves nothing.
+/// Largest bound on the residual of the spectral engine, in whisker lengths.
 const LARGEST_BOUND: f64 = 1e-5;
 
 /// Relative rounding error of a bound that is computed from a tolerance and back.

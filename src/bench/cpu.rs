@@ -1,6 +1,5 @@
 //! Measurements of the CPU engine: scalar, SIMD vectors on one thread, and on all threads.
 
-use super::peak::peak;
 use super::solver::{Hit, Solver};
 use super::task::{Task, places};
 use super::timing::timed;
@@ -8,7 +7,6 @@ use super::{BenchEngine, Measurement, Report, Rung, pool};
 use crate::engine::EngineError;
 use crate::numerics::Unit;
 use crate::shooting::Resolution;
-use crate::shooting::batch::flops_of_nystrom8;
 use std::convert::Infallible;
 use std::time::Instant;
 
@@ -42,23 +40,14 @@ pub fn measure(
             solver(Resolution::FINE).solve(task.effects, &task.rods, &task.targets[..1])
         });
         let first_result_s = start.elapsed().as_secs_f64();
-        let mut engine = BenchEngine {
+        let engine = BenchEngine {
             name,
             threads: Some(threads),
             adapter: unit.to_string(),
-            peak_gflops: 0.0,
             first_result_s,
         };
-        let mut rows = Resolution::LADDER.map(|resolution| {
-            pool.install(|| {
-                // Before each row, because a machine with other work is slower at times.
-                engine.peak_gflops = engine.peak_gflops.max(peak(unit));
-                row(task, runs, &engine, solver(resolution))
-            })
-        });
-        for row in &mut rows {
-            row.of_peak = row.gflops.map(|gflops| gflops / engine.peak_gflops);
-        }
+        let row = |resolution| row(task, runs, &engine, solver(resolution));
+        let rows = Resolution::LADDER.map(|resolution| pool.install(|| row(resolution)));
         report.rows.extend(rows);
         report.engines.push(engine);
     }
@@ -72,15 +61,12 @@ fn row(task: &Task, runs: usize, engine: &BenchEngine, solver: Solver) -> Measur
         Ok::<Vec<Hit>, Infallible>(hits)
     });
     let resolution = solver.resolution;
-    let work = task.work(&hits, |condition| {
-        let steps = resolution.steps(condition.rod, condition.tau, condition.load);
-        flops_of_nystrom8(task.effects, steps, condition)
-    });
+    let trajectories = hits.iter().map(|hit| f64::from(hit.steps)).sum();
     let rung = Rung {
         integrator: "nystrom8",
         steps: resolution.least,
     };
     let stages = [0.0, 1e3 * seconds.median, 0.0, 0.0];
     let errors = task.errors(&places(&hits));
-    Measurement::new(engine, rung, seconds, stages, Some(work), errors)
+    Measurement::new(engine, rung, seconds, stages, Some(trajectories), errors)
 }

@@ -1,13 +1,12 @@
 //! Measurements of every GPU adapter, in `f32` and, if supported, in `f64`.
 
-use super::request::{Points, Request};
+use super::request::{Points, Request, states};
 use super::task::Task;
 use super::timing::{median, timed};
 use super::{BenchEngine, Measurement, Report, Rung};
 use crate::engine::gpu::{Gpu, Precision, adapters};
 use crate::engine::{Cells, Engine as _, EngineError, RowBatch, on_gpu};
 use crate::scene::Scene;
-use crate::shooting::batch::Method;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -53,7 +52,6 @@ pub fn measure(
         report.failures.push(format!("GPU: {why}"));
         return;
     }
-    let requests = Request::all(scene, task, |side| side);
     let all = adapters();
     let without = all.iter().filter(|adapter| !adapter.shader_f64);
     let without = without.map(|adapter| format!("{}: no f64 in shaders", adapter.info.name));
@@ -61,31 +59,29 @@ pub fn measure(
     for one in candidates() {
         let adapter = &all[one.adapter].info.name;
         on_step(&format!("gpu {}, {adapter}", one.precision));
-        if let Err(why) = measure_one(&requests, task, runs, report, &one) {
+        if let Err(why) = measure_one(scene, task, runs, report, &one) {
             let failure = format!("{adapter}, {}: {why}", one.precision);
             report.failures.push(failure);
         }
     }
 }
 
-/// Solves `batch`, the cells of a request with base points. Returns the cells and the milliseconds of the stages.
+/// Solves `batch`, the cells of a request without the expansions of their rows. Returns the cells and the milliseconds of the stages.
 fn solve(gpu: &mut Gpu, batch: &RowBatch) -> Result<(Cells, [f64; 4]), EngineError> {
     let begun = Instant::now();
-    let mut batch = batch.clone();
-    let base_points = std::mem::take(&mut batch.base_points);
-    batch.set_base_points(base_points, gpu.resolution(batch.method.resolution));
-    let trajectories = begun.elapsed();
+    let batch = batch.clone().with_expansions(gpu.row_residual());
+    let rows = begun.elapsed();
     gpu.submit(Arc::new(batch))?;
     let cells = gpu.collect()?;
     let times = std::mem::take(&mut gpu.times);
-    let upload = trajectories + times.upload;
+    let upload = rows + times.upload;
     let stages = [upload, times.dispatch, times.waiting, times.readback];
     let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
     Ok((cells, stages.map(ms)))
 }
 
 fn measure_one(
-    requests: &[Request],
+    scene: &Scene,
     task: &Task,
     runs: usize,
     report: &mut Report,
@@ -94,17 +90,13 @@ fn measure_one(
     let start = Instant::now();
     let mut gpu = Gpu::open(Some(one.adapter), one.precision)?;
     gpu.is_timed = true;
-    let resolution = one.precision.resolution(Method::fine().resolution);
-    let batches = requests.iter().map(|own| own.batch.clone());
-    let batches: Vec<RowBatch> = batches
-        .map(|batch| batch.with_base_points(resolution))
-        .collect();
+    let requests = Request::all(scene, task, |side| side.with_net(gpu.row_residual()));
     let mut first_result_s = None;
     let mut of_runs: [Vec<f64>; 4] = Default::default();
     let mut run = || {
         let (mut points, mut stages) = (Points::new(), [0.0; 4]);
-        for (request, batch) in requests.iter().zip(&batches) {
-            let (cells, ms) = solve(&mut gpu, batch)?;
+        for request in &requests {
+            let (cells, ms) = solve(&mut gpu, &request.batch)?;
             points.extend(request.solved(&cells));
             stages = std::array::from_fn(|i| stages[i] + ms[i]);
         }
@@ -121,19 +113,18 @@ fn measure_one(
         name: one.name.clone(),
         threads: None,
         adapter: gpu.describe().adapter,
-        peak_gflops: 1e-9 * gpu.peak(runs)?,
         first_result_s: first_result_s.unwrap_or_default(),
     };
     if points.is_empty() {
-        let failure = format!("{}: no state beside a base point", engine.name);
+        let failure = format!("{}: no state of a row of a net", engine.name);
         report.failures.push(failure);
         return Ok(());
     }
     // The first two runs warm up.
     let stages = of_runs.map(|ms| median(ms.into_iter().skip(2)));
     let rung = Rung {
-        integrator: "differences",
-        steps: resolution.least,
+        integrator: "chebyshev",
+        steps: states(&requests) as u32,
     };
     let errors = task.only(&targets).errors(&points);
     let row = Measurement::new(&engine, rung, seconds, stages, None, errors);

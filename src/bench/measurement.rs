@@ -1,7 +1,7 @@
 //! Measurement of one engine at one accuracy.
 
 use super::BenchEngine;
-use super::task::{Errors, Work};
+use super::task::Errors;
 use super::timing::{Timing, median};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -21,8 +21,8 @@ pub struct Measurement {
     pub rung: Rung,
     /// Times for all states, in seconds.
     pub seconds: Timing,
-    /// Wall milliseconds of the engine's stages, medians of the runs; 0 where the engine has no such stage. `upload`: trajectories of
-    /// base points, packing and submitting; `dispatch`: solving, by the device's clock on a GPU that has one; `waiting`: for the device;
+    /// Wall milliseconds of the engine's stages, medians of the runs; 0 where the engine has no such stage. `upload`: rows,
+    /// packing and submitting; `dispatch`: solving, by the device's clock on a GPU that has one; `waiting`: for the device;
     /// `readback`: unpacking.
     pub stages_ms: StageTimes,
     /// Time for one state, in microseconds.
@@ -31,10 +31,6 @@ pub struct Measurement {
     pub states_per_s: f64,
     /// Rate of the engine in trajectories per second.
     pub trajectories_per_s: f64,
-    /// Rate of the integration in billions of floating-point operations per second, counted on the CPU only; `None` for other engines.
-    pub gflops: Option<f64>,
-    /// Rate of floating-point operations over the engine's peak rate, dimensionless; `None` if it is not counted.
-    pub of_peak: Option<f64>,
     /// Errors of the states that the engine found.
     pub errors: Errors,
     /// True if no other measurement is both faster and more accurate.
@@ -47,12 +43,11 @@ impl Measurement {
         rung: Rung,
         seconds: Timing,
         stages_ms: [f64; 4],
-        work: Option<Work>,
+        trajectories: Option<f64>,
         errors: Errors,
     ) -> Self {
         let states = errors.states as f64;
-        let trajectories = work.as_ref().map_or(states, |work| work.trajectories);
-        let gflops = work.map(|work| 1e-9 * work.operations / seconds.median);
+        let trajectories = trajectories.unwrap_or(states);
         Self {
             engine: engine.name.clone(),
             threads: engine.threads,
@@ -66,8 +61,6 @@ impl Measurement {
             us_per_state: 1e6 * seconds.median / states,
             states_per_s: states / seconds.median,
             trajectories_per_s: trajectories / seconds.median,
-            gflops,
-            of_peak: None,
             errors,
             pareto: false,
         }

@@ -1,36 +1,30 @@
-//! Error against time for every engine of this machine, on the states of a scene; times of whole maps, measured here and computed for
-//! other machines.
+//! Error against time for every engine of this machine, on the states of a scene, and times of whole maps.
 //!
-//! The CPU solves targets from the guesses of the lattice. A GPU solves those of the same cells whose rows have base points, and the spectral
-//! engine those whose rows have expansions, both of which are found beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
+//! The CPU solves targets from the guesses of the lattice. The spectral engine and a GPU solve those of the same cells whose rows have
+//! expansions; nets are made beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
 
-mod cell_work;
 mod cpu;
 mod detachment;
 mod gpu;
-mod machine;
 mod measurement;
-mod model;
-mod peak;
 mod peers;
 mod request;
 mod solver;
 mod spectral;
 mod task;
 mod timing;
+mod trajectories;
 mod verdict;
 mod whole;
 
-pub use cell_work::{CellWork, SolvedOn};
 pub use detachment::Detachments;
-pub use machine::{MACHINES, Machine};
 pub use measurement::{Measurement, Rung, StageTimes};
-pub use model::{CELLS, ComputedMap, MapParts};
 pub use peers::{Peer, Peers, PeersError};
 pub use solver::Solver;
 pub use spectral::Expansions;
 pub use task::{Errors, Spread};
 pub use timing::{NOISY, Timing};
+pub use trajectories::Trajectories;
 pub use verdict::Verdict;
 pub use whole::WholeMap;
 
@@ -40,7 +34,7 @@ use crate::scene::Scene;
 use serde::Serialize;
 use task::Task;
 
-/// Measured engine and its peak rate.
+/// Measured engine.
 #[derive(Clone, Debug, Serialize)]
 pub struct BenchEngine {
     /// Name of the engine, as in [`Measurement::engine`].
@@ -49,8 +43,6 @@ pub struct BenchEngine {
     pub threads: Option<usize>,
     /// Hardware of the engine: processor or adapter, with driver.
     pub adapter: String,
-    /// Peak rate of the engine in billions of multiplications and additions per second: the largest one measured.
-    pub peak_gflops: f64,
     /// Time from the start of the engine to its first result, in seconds: opening, compiling, one cell.
     pub first_result_s: f64,
 }
@@ -70,6 +62,8 @@ pub struct Report {
     pub rows: Vec<Measurement>,
     /// Expansions of the spectral engine, from coarse to fine bounds: `[bound]`.
     pub expansions: Vec<Expansions>,
+    /// Plain trajectories by the CPU, then by each GPU: `[engine]`.
+    pub trajectories: Vec<Trajectories>,
     /// Measurements of detachment curves, from coarse to fine steps: `[rung]`.
     pub detachments: Vec<Detachments>,
     /// Number of cells of each whole map.
@@ -78,8 +72,6 @@ pub struct Report {
     pub maps: Vec<WholeMap>,
     /// Comparisons of engines, `[pair]`: the fastest two on the CPU, then each GPU engine with the fastest engine on the CPU.
     pub verdicts: Vec<Verdict>,
-    /// Large maps on other machines, computed and not measured: `[map]`.
-    pub computed: Vec<ComputedMap>,
     /// Names of engines that could not be measured, each with the reason: `[engine]`.
     pub failures: Vec<String>,
 }
@@ -138,15 +130,12 @@ pub fn run(
     cpu::measure(&task, effort.runs, &mut report, on_step)?;
     spectral::measure(&scene, &task, effort.runs, &mut report, on_step)?;
     gpu::measure(&scene, &task, effort.runs, &mut report, on_step);
+    trajectories::measure(&task, effort.runs, &mut report, on_step);
     on_step("detachments");
     report.detachments = detachment::measure(&scene, effort.runs);
     mark_pareto(&mut report.rows);
     whole::measure(&of_maps, effort.runs, &mut report, on_step)?;
     report.verdicts = Verdict::all(&report.maps);
-    let cells =
-        scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len() * scene.whisker_count();
-    let states = task.targets.len() as f64 / cells as f64;
-    report.computed = model::computed(&task, states, rayon::current_num_threads(), &report);
     Ok(Some(report))
 }
 

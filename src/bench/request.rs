@@ -4,6 +4,7 @@ use super::task::{Task, whisker_sides};
 use crate::engine::{Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
 use crate::scene::Scene;
 use crate::sheet::Sheet;
+use crate::sheet::net::Net;
 use crate::shooting::batch::Method;
 use std::sync::Arc;
 
@@ -18,11 +19,11 @@ pub struct Request {
 pub type Points = Vec<(usize, (f64, f64))>;
 
 impl Request {
-    /// Returns a request for each whisker side of `scene`, `[side]`, with the expansions that `expand` adds to it.
+    /// Returns a request for each whisker side of `scene`, `[side]`, with the net that `with_net` adds to it.
     pub fn all(
         scene: &Scene,
         task: &Task,
-        expand: impl Fn(WhiskerSide) -> WhiskerSide,
+        with_net: impl Fn(WhiskerSide) -> WhiskerSide,
     ) -> Vec<Self> {
         let method = Method::fine().with_effects(task.effects);
         let sides = whisker_sides(scene).into_iter().zip(&task.rods).enumerate();
@@ -37,7 +38,7 @@ impl Request {
             let targets = poles.map(|pole| task.target(index as u32, pole)).collect();
             let rows = (0..distances.len()).map(|row| (0, row));
             let side = WhiskerSide::new(Arc::new(columns), own.whisker.units(), sheet);
-            let side = expand(side);
+            let side = with_net(side);
             let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
             batch.has_points = true;
             Self { batch, targets }
@@ -54,4 +55,11 @@ impl Request {
         });
         points.collect()
     }
+}
+
+/// Returns the largest number of states along a row of a net of the `requests`.
+pub fn states(requests: &[Request]) -> usize {
+    let sides = requests.iter().flat_map(|own| own.batch.sides.iter());
+    let nets = sides.filter_map(|side| side.net.as_ref());
+    nets.map(Net::states).max().unwrap_or(0)
 }

@@ -1,13 +1,12 @@
 //! Measurements of the spectral engine at several bounds: cells of expanded rows, and the one-time cost of the expansions.
 
-use super::request::{Points, Request};
+use super::request::{Points, Request, states};
 use super::task::Task;
 use super::timing::{Timing, timed};
-use super::{BenchEngine, Measurement, Report, Rung, peak::peak, pool};
+use super::{BenchEngine, Measurement, Report, Rung, pool};
 use crate::engine::{EngineError, Spectral, WhiskerSide};
 use crate::numerics::Unit;
 use crate::scene::Scene;
-use crate::sheet::net::Net;
 use serde::Serialize;
 use std::convert::Infallible;
 use std::hint::black_box;
@@ -24,7 +23,7 @@ const BOUNDS: [f64; 5] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
 pub struct Expansions {
     /// Maximum bound on the residual of a state, in whisker lengths.
     pub bound: f64,
-    /// Number of states along each row of a patch.
+    /// Number of states along each row of a net.
     pub states: usize,
     /// Part of the sample's states that are certified, from 0 to 1.
     pub certified: f64,
@@ -65,7 +64,6 @@ pub fn measure(
             name,
             threads: Some(threads),
             adapter: Unit::detect().to_string(),
-            peak_gflops: pool.install(|| peak(Unit::detect())),
             first_result_s: 0.0,
         };
         let begun = Instant::now();
@@ -95,13 +93,6 @@ pub fn measure(
     Ok(())
 }
 
-/// Largest number of states along an expanded row of the `requests`.
-fn states(requests: &[Request]) -> usize {
-    let sides = requests.iter().flat_map(|own| own.batch.sides.iter());
-    let nets = sides.filter_map(|side| side.net.as_ref());
-    nets.map(Net::states).max().unwrap_or(0)
-}
-
 /// Measures the evaluation of expansions with this `bound` on the threads of the current pool; `None` if no state is certified.
 fn row(
     scene: &Scene,
@@ -114,7 +105,10 @@ fn row(
     let requests = Request::all(scene, task, expand);
     let solver = Spectral::new(bound);
     let Ok((seconds, cells)) = timed(runs, || {
-        let cells = requests.iter().map(|own| solver.solve(&own.batch));
+        let cells = requests.iter().map(|own| {
+            let batch = own.batch.clone().with_expansions(bound);
+            solver.solve(&batch)
+        });
         Ok::<_, Infallible>(cells.collect::<Vec<_>>())
     });
     let points = requests.iter().zip(&cells);

@@ -31,14 +31,6 @@ fn key(rod: u32, pole: DVec2) -> (u32, [u64; 2]) {
     (rod, pole.to_array().map(f64::to_bits))
 }
 
-/// Work of an engine in one measurement: numbers of trajectories and of floating-point operations.
-pub struct Work {
-    /// Number of trajectories that the engine integrated.
-    pub trajectories: f64,
-    /// Number of floating-point operations of the engine's trajectories.
-    pub operations: f64,
-}
-
 /// Returns `(tau, load)` of every hit, dimensionless: `[hit]`.
 pub fn places(hits: &[Hit]) -> Vec<(f64, f64)> {
     hits.iter().map(|hit| (hit.tau, hit.load)).collect()
@@ -166,34 +158,14 @@ impl Task {
             .collect()
     }
 
+    /// Returns the initial conditions of the exact states: `[target]`.
+    pub fn exact_conditions(&self) -> Vec<InitialCondition<'_>> {
+        self.conditions(&self.exact)
+    }
+
     fn condition(&self, target: &CellTarget, (tau, load): (f64, f64)) -> InitialCondition<'_> {
         let rod = &self.rods[target.rod as usize];
         InitialCondition { rod, tau, load }
-    }
-
-    /// Returns the work on `hits`; `count` returns the operations of a trajectory, and is called for every 64th target.
-    pub fn work(&self, hits: &[Hit], count: impl Fn(&InitialCondition) -> u64) -> Work {
-        const EVERY: usize = 64;
-        let steps = |hit: &Hit| f64::from(hit.steps);
-        let pairs = || hits.iter().zip(&self.targets).step_by(EVERY);
-        let counted: f64 = pairs()
-            .map(|(hit, target)| {
-                count(&self.condition(target, (target.tau, target.load))) as f64 * steps(hit)
-            })
-            .sum();
-        let sampled: f64 = pairs().map(|(hit, _)| steps(hit)).sum();
-        let trajectories = hits.iter().map(steps).sum();
-        Work {
-            trajectories,
-            operations: counted / sampled.max(1.0) * trajectories,
-        }
-    }
-
-    /// Returns the mean number of steps of the trajectories of all states at this resolution.
-    pub fn mean_steps(&self, resolution: Resolution) -> f64 {
-        let steps = self.conditions(&self.exact).into_iter();
-        let steps = steps.map(|own| f64::from(resolution.steps(own.rod, own.tau, own.load)));
-        steps.sum::<f64>() / self.targets.len() as f64
     }
 
     /// Returns the errors of the states at `points`, the `(tau, load)` of every target.

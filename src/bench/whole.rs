@@ -25,7 +25,7 @@ pub struct WholeMap {
     pub adapter: Option<String>,
     /// Times from the plan to the last panel packed, in seconds.
     pub seconds: Timing,
-    /// Wall milliseconds of the map by stage, medians of the runs: `sheets`, `base_points`, `expansions`, `guesses`, `refinement` and
+    /// Wall milliseconds of the map by stage, medians of the runs: `sheets`, `rows`, `cells`, `guesses`, `refinement` and
     /// `classification` in sequence. Beside them are `packing`, `device` (the busy engine) and `waiting` for it.
     pub stages_ms: StageTimes,
     /// CPU time of the process for one cell, in microseconds; 0 where the system has no such clock. A software adapter's threads are
@@ -190,14 +190,8 @@ fn summed_up(engine: String, cells: usize, samples: &[MapRun]) -> WholeMap {
     let stages_ms: Vec<StageTimes> = samples.iter().map(|run| run.stages_ms.clone()).collect();
     let stages_ms = medians(&stages_ms);
     let sum = |names: &[&str]| names.iter().filter_map(|name| stages_ms.get(*name)).sum();
-    let for_devices: f64 = sum(&["guesses", "refinement"]);
-    let for_cpus: f64 = sum(&[
-        "sheets",
-        "base_points",
-        "expansions",
-        "classification",
-        "packing",
-    ]);
+    let for_devices: f64 = sum(&["cells", "guesses", "refinement"]);
+    let for_cpus: f64 = sum(&["sheets", "rows", "classification", "packing"]);
     WholeMap {
         engine,
         adapter: None,

@@ -44,7 +44,10 @@ pub fn chosen(
     }
     let list = reports.iter().enumerate();
     let list: Vec<String> = list
-        .map(|(i, report)| format!("{i} ({})", report.info.name))
+        .map(|(i, report)| match &report.info.device_pci_bus_id[..] {
+            "" => format!("{i} ({})", report.info.name),
+            address => format!("{i} ({}) at {address}", report.info.name),
+        })
         .collect();
     let allowed = match &list[..] {
         [] => "there is none".to_owned(),

@@ -4,7 +4,7 @@ use super::adapter::chosen;
 use super::failure::Failure;
 use std::io::Write;
 use whiskmap::engine::EngineDescription;
-use whiskmap::engine::gpu::{Precision, adapters};
+use whiskmap::engine::gpu::{Precision, adapters, missing};
 use whiskmap::terminal::StandardOutput;
 
 pub fn run() -> Result<(), Failure> {
@@ -13,7 +13,11 @@ pub fn run() -> Result<(), Failure> {
     let cpu = EngineDescription::of(None);
     let cpu = format!("{} on {}", cpu.engine, cpu.adapter);
     if reports.is_empty() {
-        writeln!(out, "no GPU adapter found\n--engine auto selects {cpu}")?;
+        let why = missing();
+        writeln!(
+            out,
+            "no GPU adapter found: {why}\n--engine auto selects {cpu}"
+        )?;
         return Ok(());
     }
     let selected = chosen(&reports, None, Precision::F32);
@@ -24,6 +28,9 @@ pub fn run() -> Result<(), Failure> {
         let has_f64 = if report.shader_f64 { "yes" } else { "no" };
         writeln!(out, "{mark} {i} {} ({kind}, {})", info.name, info.backend)?;
         writeln!(out, "    driver   {} {}", info.driver, info.driver_info)?;
+        if !info.device_pci_bus_id.is_empty() {
+            writeln!(out, "    PCI      {}", info.device_pci_bus_id)?;
+        }
         writeln!(out, "    f64      {has_f64}")?;
         writeln!(
             out,

@@ -106,10 +106,10 @@ pub fn estimate(
     }
 }
 
-/// Most push angles of a sample for an engine, whose base points cost the same for any number of cells in a row.
+/// Most push angles of a sample for an engine, whose expansions of a row cost the same for any number of cells in it.
 const WIDE: usize = 2048;
 
-/// Distances of the first sample of [`compare`]: more than a patch of expansions has rows.
+/// Distances of the first sample of [`compare`]: with this many rows of a wide grid, a net pays.
 const COMPARED_LINES: usize = 32;
 
 /// Timed rounds of [`compare`]: a single one may be disturbed.

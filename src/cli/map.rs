@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::accuracy::{Accuracy, BOUNDED, bound_deg};
-use whiskmap::engine::{Engine, EngineDescription, EngineInput};
+use whiskmap::engine::{Engine, EngineDescription};
 use whiskmap::numerics::ArithmeticClass;
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::refine::{GOAL, TOLERANCE};
@@ -87,13 +87,10 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         left_deg,
     } = args.plan(&scene, format)?;
     let mut engine = args.engine.open(&scene, &plan, left_deg)?;
-    let input = engine
-        .0
-        .as_ref()
-        .map(|own| own.input(plan.method.resolution));
-    match (input, left_deg) {
-        (Some(EngineInput::Nets(most)), Some(_)) => message(&format!(
-            "accuracy: residuals of at most {most:.1e} of the length"
+    match (&engine.0, left_deg) {
+        (Some(own), Some(_)) => message(&format!(
+            "accuracy: residuals of at most {:.1e} of the length",
+            own.residual_bound()
         )),
         _ => args.tolerance.report(accuracy),
     }

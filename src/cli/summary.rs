@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use whiskmap::classify::Regime;
 use whiskmap::engine::Engine;
-use whiskmap::map::{self, Panel, Stage, Summary};
+use whiskmap::map::{self, EngineCells, Panel, Stage, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 use whiskmap::store::StoreError;
@@ -69,15 +69,19 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
         summary.steps as f64 / summary.refined.max(1) as f64,
         summary.worst_residual
     )?;
+    let has_engine = summary.audit.cells > 0 || *engine != EngineCells::default();
+    if has_engine {
+        let name = &summary.engine.engine;
+        writeln!(out, "{:>12}  solved by the engine {name}", engine.solved)?;
+    }
     for (cells, what) in [
-        (engine.solved, "solved by the engine"),
         (
             engine.fallback(),
             "not certified by the engine, and refined in f64",
         ),
         (
-            engine.without_base_point,
-            "without a base point or an expansion, and refined in f64",
+            engine.without_row,
+            "without a row of a net, and refined in f64",
         ),
         (
             engine.on_cpu_instead,

@@ -1,65 +1,11 @@
 //! Row batches: the cells of some rows, as a request to an engine.
 
-use super::{Values, WhiskerSide};
-use crate::refine::base_points;
-use crate::rod::Rod;
+use super::{RowExpansion, WhiskerSide};
 use crate::sheet::Sheet;
-use crate::shooting::batch::{InitialCondition, Method, StepStart, step_starts};
-use crate::shooting::{FirstVariation, Resolution};
+use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Number of coefficients of a Taylor polynomial along a row.
-pub const POWERS: usize = 12;
-
-/// Maximum number of steps of the trajectory of a base point. Most take dozens; a row that needs more gets no base points.
-pub const MOST_TRAJECTORY_STEPS: u32 = 512;
-
-/// Base points per rayon task.
-const CHUNK: usize = 64;
-
-/// Seven numbers of a state that are expanded along a row. They are the push angle (radians), `tau`, a direction (radians), and the
-/// derivatives of `(ln D, phi)` by `tau` and by load. The direction is that of the resting whisker's point at the distance of the
-/// contact.
-pub type RowTerms = [f64; 7];
-
-/// Base point: an exact state of a row, with the Taylor expansion of the row around it.
-#[derive(Clone, Debug)]
-pub struct BasePoint {
-    /// Index of the base point's whisker side in the batch.
-    pub rod: u32,
-    /// Contact coordinate `tau` of the base point, dimensionless.
-    pub tau: f64,
-    /// Signed load `f/rho^2` of the base point, dimensionless.
-    pub load: f64,
-    /// Signed push angle of the base point since first touch, in radians.
-    pub push: f64,
-    /// State at the base point with its first derivatives, in the frame of the contact.
-    pub state: FirstVariation,
-    /// Derivative of the signed load `f/rho^2` by the row parameter `w` along a row. Here, `w` is `load tau^2` over its value at the end
-    /// of the row.
-    pub load_per_w: f64,
-    /// Taylor coefficients of the row in `w` around the base point: `[power][term]`.
-    pub row: [RowTerms; POWERS],
-    /// Cells of the base point: range of indices among the columns of all sides.
-    pub cells: Range<u32>,
-    /// Trajectory of the base point, and the index of its first cell.
-    pub trajectory: BaseTrajectory,
-}
-
-/// Trajectory of a base point, with the index of its first cell in the batch.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct BaseTrajectory {
-    /// Number of steps of the base point's trajectory.
-    pub steps: u32,
-    /// Angle by which bending turns the base along the base point's trajectory, in radians.
-    pub bent: f64,
-    /// Index of the first cell of the base point among the cells of the batch.
-    pub first_cell: usize,
-    /// Channel values at the base point, in map units: `[channel]`.
-    pub values: Values,
-}
 
 /// Row of a batch: the cells of one row to solve.
 #[derive(Clone, Debug)]
@@ -72,8 +18,6 @@ pub struct BatchRow {
     pub cells: Vec<Range<usize>>,
     /// Index of the row's first cell among the cells of the batch.
     pub first: usize,
-    /// Indices of the row's base points in the batch; empty where the row has none.
-    pub base_points: Range<usize>,
 }
 
 impl BatchRow {
@@ -86,6 +30,21 @@ impl BatchRow {
     /// Returns the cells of the row to solve, in order.
     pub fn each(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         self.cells.iter().flat_map(Range::clone)
+    }
+
+    /// Returns the cells of the row to solve whose push angles are before `push`, `[range]`. `magnitudes` are those of the side's columns, in
+    /// radians.
+    pub fn before(
+        &self,
+        push: f64,
+        magnitudes: &[f64],
+    ) -> impl Iterator<Item = Range<usize>> + use<'_> {
+        let end = magnitudes.partition_point(|own| *own < push);
+        let before = self
+            .cells
+            .iter()
+            .map(move |own| own.start..own.end.min(end));
+        before.take_while(|own| !own.is_empty())
     }
 }
 
@@ -104,11 +63,8 @@ pub struct RowBatch {
     pub has_values: bool,
     /// True if the engine is to return `(tau, load)` of the cells.
     pub has_points: bool,
-    /// Base points of all rows of the batch, `[base_point]`; none before [`RowBatch::with_base_points`].
-    pub base_points: Vec<BasePoint>,
-    /// States of the whisker at the starts of the integration steps of every base point's trajectory, one trajectory after the other,
-    /// `[step]`. [`BaseTrajectory::steps`] is the number of a trajectory's steps.
-    pub starts: Vec<StepStart>,
+    /// Expansions of the rows, `[row]`: `None` for a row without a net. Empty before [`RowBatch::with_expansions`].
+    pub expansions: Vec<Option<RowExpansion>>,
 }
 
 impl RowBatch {
@@ -129,7 +85,6 @@ impl RowBatch {
                 row,
                 cells: std::iter::once(0..columns).collect(),
                 first: first - columns,
-                base_points: 0..0,
             }
         });
         let rows = rows.collect();
@@ -140,12 +95,11 @@ impl RowBatch {
             sides,
             rows,
             pushes,
-            base_points: Vec::new(),
-            starts: Vec::new(),
+            expansions: Vec::new(),
         }
     }
 
-    /// Returns a batch of some `cells` of each row of this one, without base points.
+    /// Returns a batch of some `cells` of each row of this one, without expansions.
     #[must_use]
     pub fn only(&self, cells: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
         let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
@@ -155,7 +109,6 @@ impl RowBatch {
             part.rows.push(BatchRow {
                 cells,
                 first: part.cells(),
-                base_points: 0..0,
                 ..*row
             });
         }
@@ -168,65 +121,19 @@ impl RowBatch {
         rows.flat_map(|(whole, part)| part.each().map(|cell| whole.first + cell).zip(part.first..))
     }
 
-    /// Returns true if an engine can solve some cells of the batch: there are base points or nets.
+    /// Returns true if an engine can solve some cells of the batch: a row has expansions.
     #[must_use]
     pub fn is_for_engine(&self) -> bool {
-        let has_net = |row: &BatchRow| self.sides[row.side].net.is_some();
-        !self.base_points.is_empty() || self.rows.iter().any(has_net)
+        self.expansions.iter().any(Option::is_some)
     }
 
-    /// Returns the batch with base points for all rows that can have them, with trajectories in the steps of `resolution`.
+    /// Returns the batch with the expansions of all rows that nets of the sides have, with a residual of at most `most` whisker lengths.
     #[must_use]
-    pub fn with_base_points(mut self, resolution: Resolution) -> Self {
-        let found = base_points(&self);
-        let mut base_points = Vec::with_capacity(found.iter().map(Vec::len).sum());
-        for (row, found) in self.rows.iter_mut().zip(found) {
-            let from = base_points.len();
-            base_points.extend(found);
-            row.base_points = from..base_points.len();
-        }
-        self.set_base_points(base_points, resolution);
+    pub fn with_expansions(mut self, most: f64) -> Self {
+        let rows = self.rows.par_iter();
+        let expansions = rows.map(|row| RowExpansion::of(&self.sides[row.side], row.row, most));
+        self.expansions = expansions.collect();
         self
-    }
-
-    /// Replaces the base points of the batch, which are those of the rows in order, and integrates their trajectories.
-    pub fn set_base_points(&mut self, mut base_points: Vec<BasePoint>, resolution: Resolution) {
-        let rows = self.rows.iter();
-        let row_of = rows.flat_map(|row| std::iter::repeat_n(row, row.base_points.len()));
-        let mut pairs: Vec<(&BatchRow, &mut BasePoint)> = row_of.zip(&mut base_points).collect();
-        let parts = pairs.par_chunks_mut(CHUNK).map(|pairs| {
-            let conditions = pairs.iter().map(|(_, base)| InitialCondition {
-                rod: self.rod(base),
-                tau: base.tau,
-                load: base.load,
-            });
-            let conditions: Vec<InitialCondition> = conditions.collect();
-            let steps = conditions.iter().map(|at| {
-                let steps = resolution.steps(at.rod, at.tau, at.load);
-                // A NaN input would request thousands of steps.
-                steps.min(MOST_TRAJECTORY_STEPS)
-            });
-            let steps: Vec<u32> = steps.collect();
-            let (starts, bent) = step_starts(&conditions, &steps);
-            for ((row, base), (steps, bent)) in pairs.iter_mut().zip(steps.into_iter().zip(bent)) {
-                let side = &self.sides[row.side];
-                base.trajectory = BaseTrajectory {
-                    steps,
-                    bent,
-                    first_cell: row.first + (base.cells.start - side.columns.first) as usize,
-                    values: side.base_values(row.row, base),
-                };
-            }
-            starts
-        });
-        self.starts = parts.collect::<Vec<Vec<StepStart>>>().concat();
-        self.base_points = base_points;
-    }
-
-    /// Returns the rod of a base point.
-    #[must_use]
-    pub fn rod(&self, base: &BasePoint) -> &Rod {
-        &self.sides[base.rod as usize].sheet.rod
     }
 
     /// Returns the sheets of all sides of the batch: `[side]`.

@@ -24,14 +24,12 @@ pub enum Outcome {
     NotConverged,
     /// The cell is not certified: a number is not finite, or nothing was written.
     NotFinite,
-    /// The cell is not certified: it lies next to the fold or to the tip.
+    /// The cell is not certified: it lies next to the tip.
     NearEdge,
-    /// The cell is not certified: it lies outside the trust region of its base point.
-    OutsideTrust,
     /// The cell is not certified: the bound on the residual is too large.
     Missed,
-    /// The cell is not computed: its row has no base point there, or no expansion.
-    NoBasePoint,
+    /// The cell is not computed: its row has no expansions, or ends before it.
+    NoRow,
 }
 
 /// Result of an engine for one cell of [`Cells`].

@@ -1,4 +1,4 @@
-//! Engines solve the cells of row batches under one contract: by trajectories or expansions on the CPU, or on the GPU.
+//! Engines solve the cells of row batches under one contract: by trajectories on the CPU, or from expansions of rows on the CPU or the GPU.
 //!
 //! An [`Engine`] takes a [`RowBatch`] and returns [`Cells`]: for each cell channel values in map units, a bound on the residual, and an
 //! [`Outcome`]. Cells that an engine cannot certify fall back to the CPU engine, which also audits a sample of all others.
@@ -9,23 +9,22 @@ mod columns;
 mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod row;
 mod side;
 mod spectral;
 mod thread;
 mod worker;
 
-pub use batch::{
-    BasePoint, BaseTrajectory, BatchRow, MOST_TRAJECTORY_STEPS, POWERS, RowBatch, RowTerms,
-};
+pub use batch::{BatchRow, RowBatch};
 pub use cells::{Cell, CellRun, Cells, Outcome};
 pub use columns::{Column, SideColumns};
 pub use cpu::Cpu;
+pub use row::RowExpansion;
 pub use side::{FORCE, Values, WhiskerSide};
 pub use spectral::Spectral;
 pub use worker::Worker;
 
 use crate::rod::Effects;
-use crate::shooting::Resolution;
 use std::fmt;
 use std::sync::Arc;
 
@@ -66,16 +65,6 @@ impl EngineDescription {
     }
 }
 
-/// Kind of the data that row batches carry for an engine.
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EngineInput {
-    /// Base points with trajectories in the steps of this resolution. The engine works on a thread of its own.
-    BasePoints(Resolution),
-    /// The nets of whisker sides, with at most this residual, in whisker lengths. The engine works on the threads of the current pool.
-    Nets(f64),
-}
-
 /// Engine: solves the cells of row batches, on any thread.
 pub trait Engine: Send {
     /// Returns name and hardware of the engine.
@@ -84,9 +73,14 @@ pub trait Engine: Send {
     /// Returns the maximum residual bound of a solved cell, in whisker lengths.
     fn residual_bound(&self) -> f64;
 
-    /// Returns what batches carry for this engine where the CPU integrates with `resolution`.
-    fn input(&self, resolution: Resolution) -> EngineInput {
-        EngineInput::BasePoints(resolution)
+    /// Returns the maximum residual of the rows that this engine evaluates, in whisker lengths; by default all of the bound.
+    fn row_residual(&self) -> f64 {
+        self.residual_bound()
+    }
+
+    /// Returns true if the engine waits for a device, so that it works on a thread of its own.
+    fn has_device(&self) -> bool {
+        false
     }
 
     /// Submits a batch to the engine, which starts without waiting for a device.
@@ -102,17 +96,14 @@ pub trait Engine: Send {
     fn collect(&mut self) -> Result<Cells, EngineError>;
 }
 
-/// Returns `Ok` if the GPU's shaders integrate these effects.
+/// Returns `Ok` if the GPU evaluates rows of whiskers with these effects.
 ///
 /// # Errors
-/// The effect that only the CPU integrates.
+/// The effect with which only the CPU computes cells.
 pub const fn on_gpu(effects: Effects) -> Result<(), &'static str> {
-    if effects.profile {
-        Err("measured radii are integrated on the CPU")
-    } else if effects.gradient {
-        Err("a modulus gradient is integrated on the CPU")
-    } else {
-        Ok(())
+    match effects.profile {
+        true => Err("whiskers with measured radii have no net, and are integrated on the CPU"),
+        false => Ok(()),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Whisker sides: one side of one whisker, and the channel values of its states in map units.
 
-use super::{BasePoint, Cell, Outcome, SideColumns};
+use super::{Cell, Outcome, SideColumns};
 use crate::friction::FrictionState;
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
@@ -112,12 +112,6 @@ impl WhiskerSide {
         [
             arc, radian, force, force, force, moment, radian, arc, moment,
         ]
-    }
-
-    /// Returns the channel values `[channel]` at a base point of `row`.
-    #[must_use]
-    pub fn base_values(&self, row: usize, base: &BasePoint) -> Values {
-        self.values(row, base.tau, &base.state.full, base.push)
     }
 
     /// Returns the cell of `row` with a solution `state` at the signed `push`, in radians; NaN values unless `has_values`.

@@ -60,10 +60,6 @@ fn mixed(z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Largest ratio of the change of values by a miss of the pole to their change by the push: next to the tip of a cone, values change faster
-/// with the distance. Measured at most 1.5 on 2,000 random whiskers.
-const BY_DISTANCE: f64 = 4.0;
-
 /// Largest error of a value by expansions, as a part of its size, over the bound on the residual in whisker lengths: what their certificate
 /// allows.
 const VALUES_PER_MISS: f64 = 10.0;
@@ -75,11 +71,12 @@ const ROW_PARAMETER: f64 = 4.0;
 /// Relative error of a residual that is rounded to `f32`.
 const ROUNDED: f64 = f32::EPSILON as f64;
 
-/// Compares the solved `cells` of an engine with those of the `rest` that the CPU `found`. Returns the numbers of compared and of differing cells.
+/// Compares the solved `cells` of an engine with those of the `rest` that the CPU `found`. Residuals are at most `residual_bound`, and those of
+/// rows at most `row_residual`, both in whisker lengths. Returns the numbers of compared and of differing cells.
 pub fn compare(
     batch: &RowBatch,
     cells: &Cells,
-    residual_bound: f64,
+    (residual_bound, row_residual): (f64, f64),
     rest: &RowBatch,
     found: &Cells,
 ) -> Audit {
@@ -94,7 +91,7 @@ pub fn compare(
             (Outcome::Solved, ours) if ours != Outcome::OffSheet => {
                 let theirs = cells.get(index);
                 f64::from(theirs.residual) <= (1.0 + ROUNDED) * residual_bound
-                    && holds(batch, row, cell, &theirs, &found.get(from))
+                    && holds(batch, (row, cell), row_residual, &theirs, &found.get(from))
             }
             _ => continue,
         };
@@ -104,9 +101,15 @@ pub fn compare(
     audit
 }
 
-/// Returns true if the values `theirs` of the engine agree with `ours` of the CPU, or if the CPU has none. The bound on the residual is
+/// Returns true if the values `theirs` of the engine agree with `ours` of the CPU, or if the CPU has none. The bound on the residual of the row is
 /// allowed for: next to the tip of a cone the contact angle changes up to 200 times as much as the push.
-fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Cell) -> bool {
+fn holds(
+    batch: &RowBatch,
+    (row, cell): (&BatchRow, usize),
+    row_residual: f64,
+    theirs: &Cell,
+    ours: &Cell,
+) -> bool {
     match ours.outcome {
         Outcome::NotConverged => return true,
         Outcome::Solved | Outcome::AtTip => {}
@@ -116,39 +119,27 @@ fn holds(batch: &RowBatch, row: &BatchRow, cell: usize, theirs: &Cell, ours: &Ce
         return true;
     }
     let side = &batch.sides[row.side];
-    let push = side.columns.columns[cell].push;
-    let of_row = &batch.base_points[row.base_points.clone()];
+    let push = side.columns.columns[cell].push.abs();
     let ours = ours.values.map(f64::from);
-    let at_end = side.sheet.crossings[row.row]
-        .first()
-        .map(|end| side.sizes(end));
-    let values = of_row.iter().map(|base| base.trajectory.values);
-    let sizes = sizes(side, values.chain(at_end).chain([ours]));
-    let miss = f64::from(theirs.residual);
+    let Some(end) = side.sheet.crossings[row.row].first() else {
+        return false;
+    };
+    let miss = f64::from(theirs.residual).min(row_residual);
     let miss_angle = miss / side.sheet.rows[row.row].pole_distance;
-    let column = side.columns.first + cell as u32;
-    let base = of_row.iter().find(|base| base.cells.contains(&column));
-    let end = side.sheet.crossings[row.row].first();
-    let by_expansion = end.map_or(0.0, |end| {
-        // Next to a fold, the row parameter changes with the square root of the push angle.
-        let left = (end.push - push.abs()).max(miss_angle);
-        VALUES_PER_MISS * miss + ROW_PARAMETER * miss_angle / (end.push * left).sqrt()
-    });
-    (0..ours.len()).all(|i| {
-        let by_miss = base.map_or(by_expansion * sizes[i], |base| {
-            let part_of_turn = (miss_angle / (push - base.push).abs()).min(1.0);
-            BY_DISTANCE * part_of_turn * (ours[i] - base.trajectory.values[i]).abs()
-        });
-        (ours[i] - f64::from(theirs.values[i])).abs() <= TOLERANCE * sizes[i] + by_miss
-    })
+    // Next to a fold, the row parameter changes with the square root of the push angle.
+    let left = (end.push - push).max(miss_angle);
+    let by_miss = VALUES_PER_MISS * miss + ROW_PARAMETER * miss_angle / (end.push * left).sqrt();
+    let sizes = sizes(side, side.sizes(end), ours);
+    (0..ours.len())
+        .all(|i| (ours[i] - f64::from(theirs.values[i])).abs() <= (TOLERANCE + by_miss) * sizes[i])
 }
 
-/// Sizes of the values of a row ([`WhiskerSide::sizes`]): the largest of `row`, which are values or sizes.
-fn sizes(side: &WhiskerSide, row: impl Iterator<Item = Values>) -> Values {
+/// Sizes of the values of a row ([`WhiskerSide::sizes`]): the larger ones of those at its end and those of `ours`.
+fn sizes(side: &WhiskerSide, at_end: Values, ours: Values) -> Values {
     let largest = |[arc, _, force, .., distance, _]: Values| [arc, force, distance, force * arc];
-    let [arc, force, distance, moment] = row.map(largest).fold([0.0; 4], |largest, own| {
-        std::array::from_fn(|i| f64::max(largest[i], own[i].abs()))
-    });
+    let (at_end, ours) = (largest(at_end), largest(ours));
+    let [arc, force, distance, moment] =
+        std::array::from_fn(|i| f64::max(at_end[i].abs(), ours[i].abs()));
     let [_, radian, ..] = side.unit_values;
     [
         arc, radian, force, force, force, moment, radian, distance, moment,

@@ -7,19 +7,19 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Completes the `cells` of an engine on the CPU, or solves all cells there without an engine. It counts cells in `counts`; with a failed
-/// engine (`has_failed`), those without a base point count as solved by the CPU instead. Returns all cells and the result of the audit.
+/// engine (`has_failed`), those without a row count as solved by the CPU instead. Returns all cells and the result of the audit.
 pub fn complete(
     batch: &RowBatch,
-    cells: Option<(Cells, f64)>,
+    cells: Option<(Cells, (f64, f64))>,
     has_failed: bool,
     cpu: &mut Cpu,
     counts: &mut EngineCells,
 ) -> (Cells, Audit) {
     let mut audit = Audit::default();
-    if let Some((mut cells, residual_bound)) = cells {
+    if let Some((mut cells, bounds)) = cells {
         let rest = rest(batch, &cells);
         let found = cpu.solve(&rest);
-        audit = audit::compare(batch, &cells, residual_bound, &rest, &found);
+        audit = audit::compare(batch, &cells, bounds, &rest, &found);
         if audit.differing == 0 {
             for outcome in &cells.outcome {
                 counts.count(*outcome);
@@ -28,8 +28,9 @@ pub fn complete(
             for (index, from) in batch.places_in(&rest) {
                 let before = cells.outcome[index];
                 if !is_final(before) {
-                    let is_on_sheet = found.outcome[from] != Outcome::OffSheet;
-                    without += u64::from(before == Outcome::NoBasePoint && is_on_sheet);
+                    let is_row_missing =
+                        before == Outcome::NoRow && may_have_state(found.outcome[from]);
+                    without += u64::from(is_row_missing);
                     cells.set(index, &found.get(from));
                 }
             }
@@ -40,10 +41,15 @@ pub fn complete(
         audit.turned_over = solved.count() as u64;
     }
     let cells = cpu.solve(batch);
-    let is_on_sheet = |own: &&Outcome| **own != Outcome::OffSheet;
-    let on_sheet = cells.outcome.iter().filter(is_on_sheet).count();
-    counts.add_others(on_sheet as u64, has_failed || audit.differing > 0);
+    let outcomes = cells.outcome.iter();
+    let others = outcomes.filter(|own| may_have_state(**own)).count();
+    counts.add_others(others as u64, has_failed || audit.differing > 0);
     (cells, audit)
+}
+
+/// Returns false for a cell that is certainly beyond the tip or off the sheet: such cells count for no engine.
+const fn may_have_state(outcome: Outcome) -> bool {
+    !matches!(outcome, Outcome::BeyondTip | Outcome::OffSheet)
 }
 
 /// Returns true if the CPU only audits cells with this outcome of an engine.

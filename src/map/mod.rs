@@ -1,4 +1,4 @@
-//! Computation of maps, stage by stage: sheets, base points, an engine's cells, the CPU's cells, classification, panels.
+//! Computation of maps, stage by stage: sheets, rows, an engine's cells, the CPU's cells, classification, panels.
 
 mod audit;
 mod doubt;
@@ -11,7 +11,7 @@ mod sides;
 mod stages;
 mod summary;
 
-use crate::engine::{Engine, EngineDescription, EngineInput, Worker};
+use crate::engine::{Engine, EngineDescription, Worker};
 use crate::plan::Plan;
 pub use crate::plan::{Channels, STATE_CHANNELS};
 use crate::scene::Scene;
@@ -43,12 +43,11 @@ pub fn run<E: Send>(
 ) -> Result<Summary, E> {
     let description = EngineDescription::of(engine.as_deref());
     let (start, cpu_start) = (Stopwatch::start(), process_seconds());
-    let input = engine.as_ref();
-    let input = input.map(|own| own.input(plan.method.resolution));
-    let has_thread = !matches!(input, Some(EngineInput::Nets(_)));
+    let net = engine.as_ref().map(|own| own.row_residual());
+    let has_device = engine.as_ref().is_some_and(|own| own.has_device());
     let mut packing = StageTimes::default();
-    let mut summary = Worker::with(engine, has_thread, |worker| {
-        let mut pipeline = Pipeline::new(scene, plan, worker, input);
+    let mut summary = Worker::with(engine, has_device, |worker| {
+        let mut pipeline = Pipeline::new(scene, plan, worker, net);
         let mut finished: Vec<Panel> = Vec::new();
         let mut is_open = true;
         while is_open {

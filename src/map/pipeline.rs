@@ -10,7 +10,7 @@ use super::rows;
 use super::sides::{side_columns, whisker_sides};
 use super::stages::Stage;
 use super::summary::{EngineCells, Summary};
-use crate::engine::{Cells, Cpu, EngineInput, RowBatch, SideColumns, WhiskerSide, Worker, on_gpu};
+use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::Scene;
 use crate::shooting::batch::Method;
@@ -47,26 +47,24 @@ pub struct Pipeline<'a, 'e> {
     /// The batches made and not completed, each with whether it is the last one of its band.
     queue: VecDeque<(Arc<RowBatch>, bool)>,
     worker: Worker<'e>,
+    /// True if the engine has a thread of its own, beside the stages.
+    has_device: bool,
     cpu: Cpu,
-    /// Data that batches carry for the engine, if there is one.
-    input: Option<EngineInput>,
+    /// Maximum residual of the rows of an engine, in whisker lengths; `None` without an engine.
+    net: Option<f64>,
     summary: Summary,
 }
 
 impl<'a, 'e> Pipeline<'a, 'e> {
-    /// Creates the pipeline of a run; batches carry the `input` of the engine of `worker`.
-    pub fn new(
-        scene: &'a Scene,
-        plan: &'a Plan,
-        worker: Worker<'e>,
-        input: Option<EngineInput>,
-    ) -> Self {
+    /// Creates the pipeline of a run. With an engine, the residual of a `net` is at most this, in whisker lengths.
+    pub fn new(scene: &'a Scene, plan: &'a Plan, worker: Worker<'e>, net: Option<f64>) -> Self {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
         let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
         let (columns, pushes) = side_columns(push_angle_deg, &plan.sides);
+        let has_device = worker.has_thread();
         let mut method = plan.method;
-        if let Some(EngineInput::Nets(_)) = input {
+        if net.is_some() {
             // Coarser steps are so few that their number changes along a row: states would not be analytic.
             method.resolution = method.resolution.at_least_fine();
         }
@@ -74,9 +72,9 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             scene,
             plan,
             method,
-            rows_at_once: match input {
+            rows_at_once: match net {
                 // After a failed audit, the bytes depend on where a batch ends.
-                Some(EngineInput::Nets(_)) => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
+                Some(_) if !has_device => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
                 Some(_) => plan.rows_at_once,
                 None => rows(cells),
             },
@@ -88,7 +86,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             queue: VecDeque::new(),
             worker,
             cpu: Cpu::default(),
-            input,
+            net,
+            has_device,
             summary: Summary::default(),
         }
     }
@@ -117,25 +116,19 @@ impl<'a, 'e> Pipeline<'a, 'e> {
 
     /// Ends the run. Returns its counts and times.
     pub fn finish(self) -> Summary {
-        let is_stage = self.engine_is_stage();
         let mut summary = self.summary;
         summary.stages.0[Stage::Guesses as usize] = self.cpu.guesses;
         summary.stages.0[Stage::Refinement as usize] = self.cpu.refinement;
         let busy = self.worker.busy;
-        match is_stage {
-            true => summary.stages.0[Stage::Expansions as usize] = busy,
-            false => summary.device_seconds = busy.as_secs_f64(),
+        match self.has_device {
+            true => summary.device_seconds = busy.as_secs_f64(),
+            false => summary.stages.0[Stage::Cells as usize] = busy,
         }
         summary.engine_failure = self.worker.failure;
-        if self.input.is_none() {
+        if self.net.is_none() {
             summary.engine_cells = EngineCells::default();
         }
         summary
-    }
-
-    /// Returns true if the engine works on the threads of the pool, as a stage of its own.
-    fn engine_is_stage(&self) -> bool {
-        matches!(self.input, Some(EngineInput::Nets(_)))
     }
 
     /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether the `panels` are
@@ -155,21 +148,21 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let begun = Stopwatch::start();
         let is_submitted = batch.is_for_engine();
         let cells = is_submitted.then(|| self.worker.collect()).flatten();
-        if !self.engine_is_stage() {
+        if self.has_device {
             self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
         }
         self.complete(&batch, cells, panels);
         Some((batch.cells(), is_last))
     }
 
-    /// Makes the next batch, with base points if the engine may solve it. Returns it with whether it is the last one of its band.
+    /// Makes the next batch, with expansions of its rows if there is an engine. Returns it with whether it is the last one of its band.
     fn next_batch(&mut self) -> Option<(RowBatch, bool)> {
         let (sides, from) = match self.begun.take() {
             Some(begun) => begun,
             None => {
                 let whiskers = self.groups.next()?;
-                let input = self.input.filter(|_| self.worker.is_working());
-                let of_plan = (self.plan, self.method, input);
+                let net = self.net.filter(|_| self.worker.is_working());
+                let of_plan = (self.plan, self.method, net);
                 let sides = || whisker_sides(self.scene, of_plan, &self.columns, whiskers);
                 (self.summary.stages.time(Stage::Sheets, sides), 0)
             }
@@ -187,12 +180,11 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         });
         let mut batch = RowBatch::new(method, Arc::clone(&sides), Arc::clone(&self.pushes), rows);
         batch.has_values = self.plan.channels.has_state();
-        let is_for_engine = self.worker.is_working() && on_gpu(method.effects).is_ok();
-        if let Some(EngineInput::BasePoints(resolution)) = self.input
-            && is_for_engine
+        if let Some(most) = self.net
+            && self.worker.is_working()
         {
             let times = &mut self.summary.stages;
-            batch = times.time(Stage::BasePoints, || batch.with_base_points(resolution));
+            batch = times.time(Stage::Rows, || batch.with_expansions(most));
         }
         self.begun = (to < all).then_some((sides, to));
         Some((batch, to == end))
@@ -219,7 +211,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let summary = &mut self.summary;
         let has_failed = self.worker.failure.is_some();
         let counts = &mut summary.engine_cells;
-        let cells = cells.map(|cells| (cells, self.worker.residual_bound));
+        let bounds = (self.worker.residual_bound, self.net.unwrap_or(0.0));
+        let cells = cells.map(|cells| (cells, bounds));
         let (cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;
         let fill = || rows::fill(batch, &cells, sides, [width, band.start], panels);

@@ -57,9 +57,8 @@ const fn status(outcome: Outcome, is_on_span: bool) -> Status {
         Outcome::NotConverged
         | Outcome::NotFinite
         | Outcome::NearEdge
-        | Outcome::OutsideTrust
         | Outcome::Missed
-        | Outcome::NoBasePoint => Status::NotConverged,
+        | Outcome::NoRow => Status::NotConverged,
     }
 }
 

@@ -1,6 +1,6 @@
-//! Whisker sides of a map: columns, sheets, derivatives and expansions.
+//! Whisker sides of a map: columns, sheets, derivatives and nets.
 
-use crate::engine::{EngineInput, SideColumns, WhiskerSide};
+use crate::engine::{SideColumns, WhiskerSide};
 use crate::plan::Plan;
 use crate::rod::Side;
 use crate::scene::{Parameter, Scene, SweptWhisker};
@@ -23,11 +23,11 @@ pub fn side_columns(push_angle_deg: &[f64], sides: &[Side]) -> (Vec<Arc<SideColu
     (columns.collect(), pushes.into())
 }
 
-/// Computes every side of some of the `whiskers` of `scene`, whisker by whisker, with the channels of the plan and the data that the
-/// engine needs.
+/// Computes every side of some of the `whiskers` of `scene`, whisker by whisker, with the channels of the plan. If an engine evaluates
+/// rows, each side gets a `net` with this residual, in whisker lengths.
 pub fn whisker_sides(
     scene: &Scene,
-    (plan, method, input): (&Plan, Method, Option<EngineInput>),
+    (plan, method, net): (&Plan, Method, Option<f64>),
     columns: &[Arc<SideColumns>],
     whiskers: Range<usize>,
 ) -> Arc<[WhiskerSide]> {
@@ -48,9 +48,9 @@ pub fn whisker_sides(
             side.push_derivatives =
                 of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
         }
-        match input {
-            Some(EngineInput::Nets(most)) => side.with_net(most),
-            _ => side,
+        match net {
+            Some(most) => side.with_net(most),
+            None => side,
         }
     });
     sides.collect::<Vec<_>>().into()

@@ -7,12 +7,12 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Stage of the sheets: folds, lattices, exact row boundaries, and the expansions of a spectral engine.
+    /// Stage of the sheets: folds, lattices, exact row boundaries, and the nets of an engine.
     Sheets,
-    /// Stage of the base points of rows and the trajectories that an engine gets with them.
-    BasePoints,
-    /// Stage in which the spectral engine solves cells.
-    Expansions,
+    /// Stage of the expansions of rows for an engine.
+    Rows,
+    /// Stage in which an engine on the CPU evaluates rows.
+    Cells,
     /// Stage in which the lattice provides guesses.
     Guesses,
     /// Stage of Newton's method in `f64`.
@@ -27,8 +27,8 @@ impl Stage {
     /// All stages of a run with their names, in order.
     pub const ALL: [(Self, &str); 7] = [
         (Self::Sheets, "sheets"),
-        (Self::BasePoints, "base points"),
-        (Self::Expansions, "expansions"),
+        (Self::Rows, "rows"),
+        (Self::Cells, "cells"),
         (Self::Guesses, "guesses"),
         (Self::Refinement, "refinement"),
         (Self::Classification, "classification"),

@@ -12,18 +12,15 @@ use serde::{Deserialize, Serialize};
 pub struct EngineCells {
     /// Number of cells that the engine solved.
     pub solved: u64,
-    /// Number of cells that fell back to the CPU because they lie next to the fold or to the tip.
+    /// Number of cells that fell back to the CPU because they lie next to the tip.
     pub near_edge: u64,
-    /// Number of cells that fell back to the CPU because they lie outside the trust region of the base point.
-    #[serde(rename = "far")]
-    pub outside_trust: u64,
     /// Number of cells that fell back to the CPU because the bound on the residual was too large.
     pub missed: u64,
     /// Number of cells that fell back to the CPU because of numbers that are not finite.
     pub not_finite: u64,
-    /// Number of cells that the engine did not get: their row has no base point there, or no expansion.
+    /// Number of cells that the engine did not get: their row has no expansions, or ends before them.
     #[serde(rename = "without_reference")]
-    pub without_base_point: u64,
+    pub without_row: u64,
     /// Number of cells that the CPU solved because the engine had failed.
     pub on_cpu_instead: u64,
 }
@@ -32,27 +29,26 @@ impl EngineCells {
     /// Returns the number of cells that fell back to the CPU because the engine could not certify them.
     #[must_use]
     pub const fn fallback(&self) -> u64 {
-        self.near_edge + self.outside_trust + self.missed + self.not_finite
+        self.near_edge + self.missed + self.not_finite
     }
 
     /// Counts one cell that the engine returned with this `outcome`. [`EngineCells::add_others`] counts the cells without
-    /// a base point.
+    /// a row.
     pub(super) fn count(&mut self, outcome: Outcome) {
         match outcome {
             Outcome::Solved => self.solved += 1,
             Outcome::NearEdge => self.near_edge += 1,
-            Outcome::OutsideTrust => self.outside_trust += 1,
             Outcome::Missed => self.missed += 1,
-            Outcome::NoBasePoint | Outcome::BeyondTip | Outcome::OffSheet => {}
+            Outcome::NoRow | Outcome::BeyondTip | Outcome::OffSheet => {}
             _ => self.not_finite += 1,
         }
     }
 
-    /// Counts cells that the engine did not get, because it had failed or they had no base point.
+    /// Counts cells that the engine did not get, because it had failed or they had no row.
     pub(super) const fn add_others(&mut self, cells: u64, has_failed: bool) {
         match has_failed {
             true => self.on_cpu_instead += cells,
-            false => self.without_base_point += cells,
+            false => self.without_row += cells,
         }
     }
 }

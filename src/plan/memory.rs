@@ -15,7 +15,7 @@ pub const BYTES_PER_CELL: u64 = 14 * BYTES_PER_VALUE;
 /// Bytes per cell of a packed panel. The shipped scenes take 21 to 32.
 pub const PACKED_BYTES_PER_CELL: u64 = 32;
 
-/// Bytes of a whisker side: its sheet, and the expansions of a spectral engine.
+/// Bytes of a whisker side: its sheet, and the net of an engine.
 const SIDE_BYTES: u64 = 256 << 10;
 
 /// Bytes of the cells in flight on a thread: targets, states and results.
@@ -24,7 +24,7 @@ pub const BYTES_PER_THREAD: u64 = 4 << 20;
 /// Threads beyond which cells in flight take no more memory: [`CELLS_IN_FLIGHT`](super::CELLS_IN_FLIGHT) are shared by all.
 const THREADS_IN_FLIGHT: u64 = 16;
 
-/// Bytes per cell in flight with a GPU: the base points of three row batches.
+/// Bytes per cell in flight with a GPU: the expansions and cells of three row batches.
 pub const BYTES_ON_GPU: u64 = 1536;
 
 /// Returns true if a run with `bytes` for panels and `gpu_bytes` for a GPU takes at most [`MEMORY_LIMIT`], on any number of threads.

@@ -25,7 +25,7 @@ use std::ops::Range;
 /// Maximum number of cells of a row batch: enough for every lane of a GPU, in little memory.
 pub const CELLS_IN_FLIGHT: usize = 1 << 17;
 
-/// Rows of a row batch for an engine: the base points of each take about 40 KiB, however few its cells are.
+/// Rows of a row batch for an engine: the expansions of each take memory, however few its cells are.
 const ROWS_IN_FLIGHT: usize = 1 << 10;
 
 /// Cells of the panels computed and packed together: enough for several threads, in little memory.
@@ -85,7 +85,7 @@ pub struct Plan {
     pub cells_at_once: usize,
     /// Memory of panels, computed and packed, and of sheets, in bytes. Each thread adds [`BYTES_PER_THREAD`].
     pub bytes: u64,
-    /// Memory of a GPU's base points, in bytes.
+    /// Memory of the row batches in flight with a GPU, in bytes.
     pub gpu_bytes: u64,
 }
 

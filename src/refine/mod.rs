@@ -3,12 +3,8 @@
 //! A converged solution counts only on the stable sheet. Where Newton's method fails, the fold at the same distance decides: either the
 //! target direction lies beyond it, or the fold's normal form gives a better start.
 
-mod base_points;
 mod near_fold;
 mod newton;
-mod row_states;
-
-pub use base_points::base_points;
 
 use crate::sheet::{Guess, Sheet};
 use crate::shooting::FullState;
@@ -16,7 +12,6 @@ use crate::shooting::batch::{Method, chunk_size};
 use glam::DVec2;
 use near_fold::FoldVerdict;
 use newton::newton;
-pub use newton::{LARGEST_Q, LEFT_BY_STEP, ROUNDING};
 use rayon::prelude::*;
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.

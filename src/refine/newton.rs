@@ -15,13 +15,13 @@ const EXTRAPOLATED_STEP: f64 = 1.5e-7;
 /// arclength and `D` the pole's distance. Measured on 400,000 random states: at most 16.3, for 99 % of them at most 4.6. Their ranges:
 /// taper up to 0.995, `A*` up to 1.5, poles up to a tenth of the length, friction up to 1, moduli from a tenth to ten times, loads up to
 /// [`LARGEST_Q`].
-pub const LEFT_BY_STEP: f64 = 20.0;
+const LEFT_BY_STEP: f64 = 20.0;
 
 /// Largest `|load| s^2` for which [`LEFT_BY_STEP`] is measured, with measured radii times their softness. Beyond it, a whisker coils up.
-pub const LARGEST_Q: f64 = 12.0;
+const LARGEST_Q: f64 = 12.0;
 
 /// Bound on the rounding error of the residual, in whisker lengths; on the shipped scenes it is at most 3.1e-14 (`tests/variations.rs`).
-pub const ROUNDING: f64 = 6e-14;
+const ROUNDING: f64 = 6e-14;
 
 /// Jacobian determinant, relative to the lengths of its columns, above which an extrapolated step cannot cross the fold.
 const CLEAR_OF_FOLD: f64 = 1e-5;

@@ -25,7 +25,7 @@ pub use continuation::{Continuation, NODE_MISS, continuations};
 pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
 pub use fold::FoldPoint;
 pub use row::{Crossing, Edge, Row};
-pub use span::{Guess, RowSpan, SpanNode};
+pub use span::{Guess, PUSH_MARGIN, RowSpan, SpanNode};
 
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
@@ -180,7 +180,13 @@ impl Sheet {
     #[must_use]
     pub fn is_at_tip(&self, tau: f64, residual: f64) -> bool {
         let [tip, radius] = self.tip;
-        (tau - tip).abs() <= TIP_TIE * tip + residual / radius + self.tip_blur()
+        (tau - tip).abs() <= self.tip_tie() + residual / radius
+    }
+
+    /// Returns the distance from the tip, in `tau`, within which a contact without a residual counts as at the tip.
+    #[must_use]
+    pub fn tip_tie(&self) -> f64 {
+        TIP_TIE * self.tip[0] + self.tip_blur()
     }
 
     /// Returns the stable pieces of `row`: from the certified lattice, or else from the row's continuation.

@@ -115,10 +115,9 @@ pub(super) fn counts_width() -> usize {
         engine_cells: EngineCells {
             solved: u64::MAX,
             near_edge: u64::MAX,
-            outside_trust: u64::MAX,
             missed: u64::MAX,
             not_finite: u64::MAX,
-            without_base_point: u64::MAX,
+            without_row: u64::MAX,
             on_cpu_instead: u64::MAX,
         },
         audit: Audit {

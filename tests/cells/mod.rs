@@ -6,13 +6,12 @@ use crate::random_rods::{Random, rod};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-use whiskmap::engine::{Cells, Engine, EngineInput, RowBatch, SideColumns, Spectral, WhiskerSide};
+use whiskmap::engine::{Cells, Engine, RowBatch, SideColumns, Spectral, WhiskerSide};
 use whiskmap::rod::{Effects, Rod, Side, Units};
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::Method;
 
-/// Rows of a whisker, and columns of each side.
-pub const ROWS: usize = 4;
+/// Columns of each side.
 const COLUMNS: usize = 64;
 
 /// The largest push angle, in radians.
@@ -36,16 +35,6 @@ pub struct RandomRows {
 }
 
 impl RandomRows {
-    /// Some rows of `count` random whiskers, which are `changed` first.
-    pub fn new(
-        effects: Effects,
-        count: usize,
-        seed: u64,
-        changed: impl Fn(&mut Rod, &mut Random),
-    ) -> Self {
-        Self::many(ROWS, effects, count, seed, changed)
-    }
-
     /// So many rows of each of `count` random whiskers, which are `changed` first.
     pub fn many(
         rows: usize,
@@ -95,16 +84,13 @@ impl RandomRows {
         self.rows * self.sides.len()
     }
 
-    /// Some of the rows, with the input of `engine`, values and points.
+    /// Some of the rows, with expansions for `engine`, values and points.
     pub fn part(&self, engine: &dyn Engine, rows: Range<usize>) -> RowBatch {
         let rows = rows.map(|i| (i / self.rows, i % self.rows));
         let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
         let mut batch = RowBatch::new(self.method, sides, pushes, rows);
         batch.has_points = true;
-        match engine.input(self.method.resolution) {
-            EngineInput::BasePoints(accuracy) => batch.with_base_points(accuracy),
-            _ => batch,
-        }
+        batch.with_expansions(engine.row_residual())
     }
 
     /// All rows.
@@ -119,17 +105,11 @@ pub fn solve(engine: &mut dyn Engine, batch: &RowBatch) -> Cells {
     engine.collect().unwrap()
 }
 
-/// For each cell of a batch of whole rows: its side, its row, its push angle in radians, and its base point.
-pub fn places(batch: &RowBatch) -> Vec<(usize, usize, f64, Option<usize>)> {
-    let mut places = Vec::new();
-    for row in &batch.rows {
-        let columns = &batch.sides[row.side].columns;
-        for (cell, column) in columns.columns.iter().enumerate() {
-            let index = columns.first + cell as u32;
-            let mut bases = row.base_points.clone();
-            let base = bases.find(|base| batch.base_points[*base].cells.contains(&index));
-            places.push((row.side, row.row, column.push, base));
-        }
-    }
-    places
+/// For each cell of a batch of whole rows: its side, its row, and its push angle in radians.
+pub fn places(batch: &RowBatch) -> Vec<(usize, usize, f64)> {
+    let places = batch.rows.iter().flat_map(|row| {
+        let columns = batch.sides[row.side].columns.columns.iter();
+        columns.map(|column| (row.side, row.row, column.push))
+    });
+    places.collect()
 }

@@ -11,7 +11,7 @@ fn numbers(rows: &[Value], key: &str) -> Vec<f64> {
 
 #[test]
 fn errors_fall_from_rung_to_rung() {
-    // Rows with few cells have no base points and no expansions, so a GPU and the spectral engine would solve no cell.
+    // A few cells have no net, so a GPU and the spectral engine would solve no cell.
     let place = Place::with(
         &SCENE
             .replace("to = 70, count = 24", "to = 70, count = 512")
@@ -32,15 +32,15 @@ fn errors_fall_from_rung_to_rung() {
             .collect();
         let is_cpu = engine["name"].as_str().unwrap().starts_with("cpu");
         let errors = numbers(&own, "/errors/angle_deg/worst");
-        // The last two rungs of the CPU are at the rounding error. A GPU has no such rung: measured 3e-6 in `f32`. Small bounds of the
+        // The last two rungs of the CPU are at the rounding error. A GPU has no such rung: measured 2.3e-5 in `f32`. Small bounds of the
         // spectral engine can take the same number of states.
         let (rungs, falling, exact) = match engine["name"].as_str().unwrap() {
             "spectral" => (5, 4, 1e-9),
             _ if is_cpu => (8, 6, 1e-9),
-            _ => (1, 1, 1e-5),
+            _ => (1, 1, 1e-4),
         };
         assert_eq!(errors.len(), rungs, "{engine}: {errors:?}");
-        // One size of patches may keep two bounds.
+        // One size of nets may keep two bounds.
         let is_spectral = engine["name"] == "spectral";
         assert!(
             errors[..falling].is_sorted_by(|a, b| a > b || is_spectral && a == b),
@@ -51,15 +51,7 @@ fn errors_fall_from_rung_to_rung() {
             "{engine}: {errors:?}"
         );
         assert!(errors[rungs - 1] < exact, "{engine}: {errors:?}");
-        let counted = if is_cpu {
-            &["/gflops", "/of_peak"][..]
-        } else {
-            &[]
-        };
-        for key in ["/us_per_state", "/trajectories_per_s"]
-            .iter()
-            .chain(counted)
-        {
+        for key in ["/us_per_state", "/trajectories_per_s"] {
             assert!(numbers(&own, key).iter().all(|number| *number > 0.0));
         }
         let p99 = numbers(&own, "/errors/angle_deg/p99");
@@ -95,18 +87,23 @@ fn errors_fall_from_rung_to_rung() {
     let gpus = engines.iter().filter(|engine| engine["threads"].is_null());
     let gpus = gpus.count();
     assert_eq!(maps.len(), 2 + gpus);
+    let trajectories = report["trajectories"].as_array().unwrap();
+    assert_eq!(trajectories.len(), 1 + gpus);
+    assert!(
+        numbers(trajectories, "/per_s")
+            .iter()
+            .all(|rate| *rate > 0.0)
+    );
+    for row in trajectories {
+        let most = match row["engine"].as_str().unwrap() {
+            engine if engine.ends_with("f32") => 2e-5,
+            engine if engine.ends_with("f64") => 1e-12,
+            _ => 0.0,
+        };
+        assert!(row["apart"].as_f64().unwrap() <= most, "{row}");
+    }
     maps_hang_together(maps, report["verdicts"].as_array().unwrap());
     expansions_hang_together(&report);
-    let computed = report["computed"].as_array().unwrap();
-    assert_eq!(computed.len(), 3 * (1 + gpus), "{computed:?}");
-    for map in computed {
-        let parts = map["parts"].as_object().unwrap().values();
-        let longest = parts.map(|part| part.as_f64().unwrap()).fold(0.0, f64::max);
-        assert!(
-            longest > 0.0 && map["seconds"].as_f64().unwrap() >= longest,
-            "{map}"
-        );
-    }
 }
 
 /// Checks the one-time cost of expansions against the rows of the spectral engine and of trajectories on one thread.
@@ -196,11 +193,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     let widest = rows.map(|line| line.chars().count()).max();
     assert!(widest <= Some(80), "{}", run.out);
     assert!(run.out.contains("\n* "), "{}", run.out);
-    for line in [
-        "for devices: ",
-        "waiting: ",
-        "seconds for 1e9 cells, COMPUTED",
-    ] {
+    for line in ["for devices: ", "waiting: "] {
         let start = format!("\n{line}");
         assert_eq!(run.out.matches(&start).count(), 1, "{}", run.out);
     }

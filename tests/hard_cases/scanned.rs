@@ -59,9 +59,9 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
 
 #[test]
 fn measured_radii_hold() {
-    let seen = scan(200, &measured());
+    let seen = scan(100, &measured());
     // Nearly half of these sheets need continuation: radii that swell and thin make their edges too steep to be certified.
-    assert!(seen.states > 1000, "{seen:?}");
+    assert!(seen.states > 500, "{seen:?}");
     holds(&seen);
 }
 

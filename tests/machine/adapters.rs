@@ -49,6 +49,10 @@ fn a_part_of_a_name_is_enough_whatever_the_case() {
     assert_eq!(named(&reports, "IRIS", Precision::F32), Some(1));
     assert_eq!(named(&reports, "pipe", Precision::F32), Some(0));
     assert_eq!(named(&reports, "abacus", Precision::F32), None);
+    // Equal cards have equal names, but no address is that of two.
+    "0000:C1:00.0".clone_into(&mut reports[2].info.device_pci_bus_id);
+    assert_eq!(named(&reports, "0000:c1:00.0", Precision::F32), Some(2));
+    assert_eq!(named(&reports, "0000:c1", Precision::F32), None);
     // Without `f64` anywhere the name decides, and opening it says what is missing.
     assert_eq!(named(&reports, "pipe", Precision::F64), Some(0));
     reports[2].shader_f64 = true;

@@ -8,7 +8,8 @@ tests! {
     Adapter:
         auto_times_the_engines_for_a_large_map,
         adapters_are_taken_by_number_and_name,
-        a_file_states_the_tolerances_of_its_engine;
+        a_file_states_the_tolerances_of_its_engine,
+        a_missing_driver_is_named;
 }
 
 /// So many cells that every processor takes longer for them than a GPU takes to start.
@@ -99,6 +100,30 @@ fn adapters_are_taken_by_number_and_name() {
     );
 }
 
+/// Without a driver, the message says which part of Vulkan is missing.
+#[cfg(target_os = "linux")]
+fn a_missing_driver_is_named() {
+    let place = Place::with(SCENE);
+    let without = |arguments: &[&str]| {
+        let mut command = place.command(arguments);
+        Run::of(
+            &command
+                .env("VK_DRIVER_FILES", "none.json")
+                .output()
+                .unwrap(),
+        )
+    };
+    let what = "no Vulkan driver is installed: no file in VK_DRIVER_FILES=none.json";
+    let run = without(&["map", "scene.toml", "--engine", "gpu"]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(run.err.contains(what), "{run:?}");
+    let devices = without(&["devices"]);
+    assert!(devices.out.contains(what), "{devices:?}");
+}
+
+#[cfg(not(target_os = "linux"))]
+fn a_missing_driver_is_named() {}
+
 /// The file says what the engine that solved leaves, and no cell leaves more.
 fn a_file_states_the_tolerances_of_its_engine() {
     let place = Place::with(&SCENE.replace("count = 24", "count = 64"));
@@ -120,10 +145,10 @@ fn a_file_states_the_tolerances_of_its_engine() {
     let tolerance = ["--tolerance", "1e-3deg"];
     let on = |engine: &str| tolerances(&[&tolerance[..], &["--engine", engine]].concat());
     let (cpu, gpu) = (on("cpu"), on("gpu"));
-    assert_eq!((goal(&cpu), goal(&gpu)), (Some(1e-12), Some(1e-7)));
+    assert_eq!((goal(&cpu), goal(&gpu)), (Some(1e-12), Some(1e-6)));
     // The nearest pole is at 2 of 20 mm.
     let more = estimate(&gpu).unwrap() - estimate(&cpu).unwrap();
-    assert!((more - 1e-6_f64.to_degrees()).abs() < 1e-12, "{more:e}");
+    assert!((more - 1e-5_f64.to_degrees()).abs() < 1e-11, "{more:e}");
     assert!(estimate(&gpu).unwrap() <= 1e-3);
     // A tolerance that shaders do not meet is met by the CPU.
     let handed = tolerances(&["--tolerance", "1e-6deg", "--engine", "gpu"]);

@@ -1,13 +1,12 @@
 //! The contract that every engine passes.
 
 use crate::cells::{RandomRows, places, solve};
-use crate::compute::{compute, open};
+use crate::compute::open;
 use crate::random_rods::USUAL;
 use std::sync::Arc;
-use whiskmap::engine::gpu::{Gpu, Precision, adapters, preferred};
-use whiskmap::engine::{BasePoint, Cells, Cpu, Engine, Outcome, RowBatch};
+use whiskmap::engine::gpu::{Precision, adapters, preferred};
+use whiskmap::engine::{Cells, Cpu, Engine, Outcome, RowExpansion};
 use whiskmap::plan::STATE_CHANNELS;
-use whiskmap::scene::Scene;
 use whiskmap::shooting::ShootingMap;
 use whiskmap::shooting::batch::{Batch, InitialCondition};
 
@@ -20,13 +19,12 @@ tests! {
         residuals_are_below_the_bound,
         nothing_in_nothing_out;
     Precision:
-        effects_that_a_whisker_lacks_do_no_harm,
-        a_nan_hurts_only_the_cells_of_its_base_point;
+        a_nan_hurts_only_the_cells_of_its_row;
     Adapter:
         the_engine_runs_on_the_preferred_adapter;
 }
 
-/// Rows of two whiskers: so many that a patch has fewer states than their cells.
+/// Rows of two whiskers: so many that a net takes less time than their cells.
 fn some() -> RandomRows {
     RandomRows::many(160, USUAL, 2, 9, |_, _| ())
 }
@@ -75,7 +73,7 @@ fn a_response_does_not_depend_on_the_batch(engine: &mut dyn Engine) {
 /// Batches that are submitted before the ones before them are collected, one of them empty, another with other push angles.
 fn a_response_does_not_depend_on_what_else_is_submitted(engine: &mut dyn Engine) {
     let rows = some();
-    let other = RandomRows::new(USUAL, 3, 2, |_, _| ());
+    let other = RandomRows::many(90, USUAL, 3, 2, |_, _| ());
     let few = rows.len() / 5;
     let batches = [
         rows.part(engine, 0..few),
@@ -137,13 +135,12 @@ fn residuals_are_below_the_bound(engine: &mut dyn Engine) {
     });
     let conditions: Vec<InitialCondition> = conditions.collect();
     let maps = Batch::new(batch.method).shoot::<ShootingMap>(&conditions);
-    for (((side, row, push, _), i), map) in solved.into_iter().zip(maps) {
+    for (((side, row, push), i), map) in solved.into_iter().zip(maps) {
         let residual = f64::from(cells.residual[i]);
         assert!(residual <= engine.residual_bound(), "{residual:e}");
         let pole = batch.sides[side].sheet.rows[row].pole(push);
-        // Points are base points plus differences in `f32`.
         let miss = map.pole.distance(pole);
-        assert!(miss <= 1e-7, "{miss:e}");
+        assert!(miss <= residual.max(1e-11), "{miss:e} {residual:e}");
     }
 }
 
@@ -152,52 +149,36 @@ fn nothing_in_nothing_out(engine: &mut dyn Engine) {
     assert!(solve(engine, &batch).is_empty());
 }
 
-/// Sweeps share kernels: a cylinder is integrated as a cone that does not taper, a straight whisker as one that hardly bends.
-fn effects_that_a_whisker_lacks_do_no_harm(precision: Precision) {
-    let text = "title = \"sweep\"\nwhisker.length_mm = 20\nwhisker.base_radius_um = 30\nwhisker.youngs_modulus_gpa = 3\n\
-        pole.radius_mm = 0.25\n[grid]\npush_angle_deg = { from = -60, to = 60, count = 64 }\n\
-        distance_mm = { from = 4, to = 18, count = 8 }\ntaper = [0, 0.5]\ncurvature_per_mm = [0, 0.02]\n";
-    let scene = Scene::parse(text, "sweep").unwrap();
-    let mut gpu = open(precision);
-    let cells = compute(&scene, Some(&mut gpu)).0.engine_cells;
-    assert_eq!(cells.not_finite, 0);
-    assert!(cells.solved > 20 * cells.fallback());
-}
-
-/// The batch with one base point changed.
-fn spoilt(batch: &RowBatch, gpu: &Gpu, number: usize, spoil: fn(&mut BasePoint)) -> RowBatch {
-    let mut batch = batch.clone();
-    let mut base_points = batch.base_points.clone();
-    spoil(&mut base_points[number]);
-    let resolution = gpu.resolution(batch.method.resolution);
-    batch.set_base_points(base_points, resolution);
-    batch
-}
-
-fn a_nan_hurts_only_the_cells_of_its_base_point(precision: Precision) {
+fn a_nan_hurts_only_the_cells_of_its_row(precision: Precision) {
     let mut gpu = open(precision);
     let batch = some().batch(&gpu);
-    let number = batch.base_points.len() / 2;
+    let number = (0..batch.rows.len())
+        .filter(|row| batch.expansions[*row].is_some())
+        .nth(40)
+        .unwrap();
     let sound = bits(&solve(&mut gpu, &batch));
-    type Spoil = fn(&mut BasePoint);
-    let spoils: [(&str, Spoil); 8] = [
-        ("tau", |base| base.tau = f64::NAN),
-        ("load", |base| base.load = f64::INFINITY),
-        ("push angle", |base| base.push = f64::NAN),
-        ("row parameter", |base| base.load_per_w = f64::NAN),
-        ("row", |base| base.row[3][1] = f64::NAN),
-        ("position", |base| base.state.full.position.y = f64::NAN),
-        ("derivative", |base| {
-            base.state.by_tau.position.x = f64::INFINITY
+    type Spoil = fn(&mut RowExpansion);
+    let spoils: [(&str, Spoil); 4] = [
+        ("push angle", |row| {
+            row.inverse.functions.coefficients[3][0] = f64::NAN
         }),
-        ("energy", |base| base.state.full.energy = f64::NAN),
+        ("tau", |row| {
+            row.inverse.functions.coefficients[2][1] = f64::INFINITY
+        }),
+        ("channel", |row| {
+            row.inverse.functions.coefficients[1][7] = f64::NAN
+        }),
+        ("residual", |row| row.residual = f64::NAN),
     ];
     for (what, spoil) in spoils {
-        let spoilt = spoilt(&batch, &gpu, number, spoil);
+        let mut spoilt = batch.clone();
+        spoil(spoilt.expansions[number].as_mut().unwrap());
         let cells = bits(&solve(&mut gpu, &spoilt));
-        for ((cell, sound), (.., base)) in cells.iter().zip(&sound).zip(places(&batch)) {
-            match base == Some(number) {
-                true => assert_eq!(cell.0, Outcome::NotFinite, "{what}"),
+        let own = &batch.rows[number];
+        let own = own.first..own.first + own.count();
+        for (index, (cell, sound)) in cells.iter().zip(&sound).enumerate() {
+            match own.contains(&index) {
+                true => assert!(cell.1.is_none(), "{what}"),
                 false => assert_eq!(cell, sound, "{what}"),
             }
         }

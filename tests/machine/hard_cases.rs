@@ -51,19 +51,17 @@ impl Seen {
         let EngineCells {
             solved,
             near_edge,
-            outside_trust,
             missed,
             not_finite,
-            without_base_point,
+            without_row,
             on_cpu_instead,
         } = more.cells;
         let sum = &mut self.cells;
         sum.solved += solved;
         sum.near_edge += near_edge;
-        sum.outside_trust += outside_trust;
         sum.missed += missed;
         sum.not_finite += not_finite;
-        sum.without_base_point += without_base_point;
+        sum.without_row += without_row;
         sum.on_cpu_instead += on_cpu_instead;
         for (sum, more) in self.apart.iter_mut().zip(more.apart) {
             sum.extend(more);
@@ -91,13 +89,8 @@ impl Seen {
         let cells = &self.cells;
         let (median, worst) = self.medians_and_worst();
         format!(
-            "{name:36} {:6} {:9} {:5} {:6} {:10} {:12}  {median:7.1e} {worst:7.1e}\n",
-            cells.solved,
-            cells.near_edge,
-            cells.outside_trust,
-            cells.missed,
-            cells.not_finite,
-            cells.without_base_point,
+            "{name:36} {:6} {:9} {:6} {:10} {:12}  {median:7.1e} {worst:7.1e}\n",
+            cells.solved, cells.near_edge, cells.missed, cells.not_finite, cells.without_row,
         )
     }
 }
@@ -107,11 +100,11 @@ fn named_cases_are_solved_or_fall_back(precision: Precision) {
     let mut table = format!(
         "What {} makes of hard cases in {precision}, against f64 on the CPU.\n\
          WHISKMAP_WRITE_TABLES=1 cargo test --profile checked --test machine named_cases_are_solved\n\n\
-         solved: by the GPU; fallback to the CPU: next to the fold or to the tip, outside the trust region, too large a\n\
-         bound, numbers that are not finite; none: cells without a base point\n\
+         solved: by the GPU; fallback to the CPU: next to the tip, too large a\n\
+         bound, numbers that are not finite; no row: cells of rows that no net has\n\
          apart: how far the states that the GPU solved are from those of the CPU, in parts of a channel's largest value along\n\
          the whisker; the largest median of a channel, and the worst of all\n\n\
-         {:36} solved near edge   far missed not finite no reference   median   worst\n",
+         {:36} solved near edge missed not finite       no row   median   worst\n",
         gpu.describe().adapter,
         "case",
     );
@@ -127,11 +120,11 @@ fn named_cases_are_solved_or_fall_back(precision: Precision) {
     table += &all.line("all");
     let _ = writeln!(
         table,
-        "\n{:36}                                                        median   worst",
+        "\n{:36}                                                  median   worst",
         "channel"
     );
     for (channel, (median, worst)) in STATE_CHANNELS.iter().zip(all.of_channels()) {
-        let _ = writeln!(table, "{channel:36} {:54} {median:7.1e} {worst:7.1e}", "");
+        let _ = writeln!(table, "{channel:36} {:48} {median:7.1e} {worst:7.1e}", "");
     }
     let to_write = std::env::var_os("WHISKMAP_WRITE_TABLES").is_some_and(|x| x == "1");
     if to_write && precision == Precision::F32 {
@@ -139,8 +132,8 @@ fn named_cases_are_solved_or_fall_back(precision: Precision) {
     }
 }
 
-/// Whiskers that the GPU has kernels for: the two thousand of `random`, of one modulus each.
-const RANDOM: u32 = 2000;
+/// Number of random whiskers.
+const RANDOM: u32 = 500;
 
 /// How far their states may be from those of the CPU, in parts of a channel's largest value. Measured 1.9e-6; beyond 1e-6 in 7 whiskers:
 /// next to the tip of a cone the contact angle turns up to 200 times as much as the base, and near the base forces are large.
@@ -148,13 +141,7 @@ const WORST_OF_RANDOM: f32 = 3e-6;
 
 fn engines_agree_on_random_whiskers(precision: Precision) {
     let gpu = RefCell::new(open(precision));
-    let whiskers = cases().prop_map(|case| {
-        Case {
-            tip_to_base: 1.0,
-            ..case
-        }
-        .dense()
-    });
+    let whiskers = cases().prop_map(|case| case.dense());
     let holds = |case: Case| {
         let cpu = compute(&case.scene(), None);
         let seen = Seen::of(&cpu, &case, &mut gpu.borrow_mut(), WORST_OF_RANDOM);

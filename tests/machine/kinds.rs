@@ -1,6 +1,6 @@
 //! Random whiskers of every kind.
 
-use crate::cells::{self, RandomRows};
+use crate::cells::RandomRows;
 use crate::effect_sets;
 use crate::random_rods::Random;
 use whiskmap::rod::{Effects, Rod};
@@ -51,11 +51,6 @@ fn kinds() -> Vec<Kind> {
 /// Cones down to the thousandth, and the millionth, part of the radius at the base.
 fn slender(rod: &mut Rod, random: &mut Random) {
     rod.taper = 1.0 - 10_f64.powf(random.between(-6.0, -2.0));
-}
-
-/// Some rows of `count` whiskers of every kind.
-pub fn every_kind(count: usize) -> impl Iterator<Item = (String, RandomRows)> {
-    rows_of_every_kind(cells::ROWS, count)
 }
 
 /// So many rows of each of `count` whiskers of every kind.

@@ -42,6 +42,7 @@ mod program;
 mod random;
 #[path = "../random_rods/mod.rs"]
 mod random_rods;
+mod shoot;
 mod spectral;
 mod states;
 #[cfg(unix)]
@@ -86,6 +87,7 @@ fn main() -> ExitCode {
         hard_cases::TESTS,
         maps::TESTS,
         pipeline::TESTS,
+        shoot::TESTS,
         spectral::TESTS,
         states::TESTS,
         #[cfg(unix)]

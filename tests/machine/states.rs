@@ -2,7 +2,7 @@
 
 use crate::cells::{RandomRows, places, solve};
 use crate::compute::{open, open_with};
-use crate::kinds::every_kind;
+use crate::kinds::rows_of_every_kind;
 use crate::random_rods::USUAL;
 
 use whiskmap::engine::gpu::{Gpu, Precision, shaders};
@@ -16,13 +16,17 @@ tests! {
         a_wrong_number_shows;
 }
 
-/// The part of the cells that is solved at least. Measured 97 % in `f32`, and 79 % in `f64`, with the most friction.
-const SOLVED: f64 = 0.78;
+/// How far numbers may be off, `[median, worst]`, in parts of the largest along the whisker. Measured 4.5e-8 and 7e-7 in `f32`, and 0 and 6.3e-8,
+/// the rounding of stored numbers, in `f64`.
+const fn allowed(precision: Precision) -> [f64; 2] {
+    match precision {
+        Precision::F32 => [1e-7, 2e-6],
+        _ => [1e-12, 1e-7],
+    }
+}
 
-/// How far numbers may be off, in parts of the largest along the whisker. Measured 1.4e-9 in the median, and at worst 1.1e-6 at the tip
-/// of a sharp cone.
-const MEDIAN: f64 = 3e-9;
-const WORST: f64 = 2e-6;
+/// Difference of a number that shows a wrong shader.
+const WRONG: f64 = 6e-6;
 
 /// What was seen of cells that the engine solved.
 #[derive(Debug)]
@@ -49,7 +53,9 @@ fn compare(rows: &RandomRows, gpu: &mut Gpu) -> Seen {
     let mut differences: Vec<(usize, Values)> = Vec::new();
     let (mut asked, mut solved, mut contradicted) = (0, 0, 0);
     for (index, (side, ..)) in places(&batch).into_iter().enumerate() {
-        asked += usize::from(cells.outcome[index] != Outcome::NoBasePoint);
+        let is_asked = cells.outcome[index] != Outcome::NoRow
+            && matches!(wanted.outcome[index], Outcome::Solved | Outcome::AtTip);
+        asked += usize::from(is_asked);
         if cells.outcome[index] != Outcome::Solved {
             continue;
         }
@@ -72,7 +78,10 @@ fn compare(rows: &RandomRows, gpu: &mut Gpu) -> Seen {
             .map(|(side, apart)| apart[i] / largest[*side][i]);
         let mut parts: Vec<f64> = parts.filter(|part| !part.is_nan()).collect();
         parts.sort_by(f64::total_cmp);
-        (parts[parts.len() / 2], parts[parts.len() - 1])
+        (
+            parts.get(parts.len() / 2).copied().unwrap_or(0.0),
+            parts.last().copied().unwrap_or(0.0),
+        )
     };
     Seen {
         asked,
@@ -83,52 +92,42 @@ fn compare(rows: &RandomRows, gpu: &mut Gpu) -> Seen {
 }
 
 fn cells_are_those_of_the_refinement(precision: Precision) {
-    let mut gpu = open(precision);
-    for (name, rows) in every_kind(100) {
+    let (mut gpu, [most_median, most_worst]) = (open(precision), allowed(precision));
+    let (mut asked, mut solved) = (0, 0);
+    for (name, rows) in rows_of_every_kind(160, 4) {
         let seen = compare(&rows, &mut gpu);
         let most = |pick: fn(&(f64, f64)) -> f64| seen.apart.iter().map(pick).fold(0.0, f64::max);
         let (median, worst) = (most(|apart| apart.0), most(|apart| apart.1));
-        let solved = seen.solved as f64 / seen.asked as f64;
+        (asked, solved) = (asked + seen.asked, solved + seen.solved);
         assert!(
-            solved > SOLVED && seen.contradicted == 0 && median < MEDIAN && worst < WORST,
+            seen.contradicted == 0 && median < most_median && worst < most_worst,
             "{name}: {seen:?}"
         );
     }
+    // Others are at the tip.
+    assert!(
+        solved > 500_000 && solved > asked * 99 / 100,
+        "{solved} of {asked}"
+    );
 }
 
 /// A wrong constant in any of the numbers shows.
 fn a_wrong_number_shows() {
-    let rows = RandomRows::new(USUAL, 40, 3, |_, _| ());
+    let rows = RandomRows::many(160, USUAL, 3, 3, |_, _| ());
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
+        ("f32(state.w)", "f32(1.001 * state.w)"),
         (
-            "cell.numbers[0] = f32(radius * end.x",
-            "cell.numbers[0] = f32(1.001 * radius * end.x",
+            "f32(middle.x), f32(middle.y)",
+            "f32(middle.y), f32(middle.x)",
         ),
-        ("f32(push - angle_of", "f32(push + 1e-5 - angle_of"),
-        ("f32(end_force.y)", "f32(1.0001 * end_force.y)"),
-        (
-            "product(end_force, tangent.sin)",
-            "product(end_force, -tangent.sin)",
-        ),
-        (
-            "product(end_force, tangent.cos)",
-            "product(end_force, 1.0001 * tangent.cos)",
-        ),
-        ("Both(position.x, shift.x)", "Both(position.x, shift.y)"),
-        (
-            "angle_of(moved_contact) - theta",
-            "angle_of(moved_contact) - 1.001 * theta",
-        ),
-        ("2.0 * position + shift", "2.0 * position - shift"),
-        (
-            "0.5 * product(force, energy).y",
-            "0.5001 * product(force, energy).y",
-        ),
+        ("f32(last.w)", "f32(last.z)"),
+        ("end.middle - left", "end.middle - 1.0001 * left"),
+        ("end.last - left", "end.last + left"),
     ] {
         assert_eq!(text.matches(good).count(), 1, "{good}");
         let mut gpu = open_with(Precision::F32, text.replace(good, bad));
         let seen = compare(&rows, &mut gpu);
-        assert!(seen.worst() > 3.0 * WORST, "{bad}: {:.1e}", seen.worst());
+        assert!(seen.worst() > WRONG, "{bad}: {:.1e}", seen.worst());
     }
 }

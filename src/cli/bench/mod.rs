@@ -24,20 +24,20 @@ Examples:
 Every engine solves a sample of the scene's states: at most 512 push angles, 128 distances (--quick: 256 and 64) and two values per sweep \
 axis. The CPU computes scalars, vectors on one thread and vectors on all threads, with 3 to 30 steps of order 8 at the fold, fewer \
 below. The spectral engine evaluates expansions with five bounds on the residual. Their one-time cost has a table of its own, with the number \
-of states per whisker side from which on it pays. Each GPU adapter computes in f32 and, if supported, in f64, as differences from exact base points along each row. The time for base \
-points, and cells that an engine cannot certify, do not count. Errors are differences from four times the default steps: of the \
+of states per whisker side from which on it pays. Each GPU adapter evaluates expansions of rows in f32 and, if supported, in f64. The time for \
+nets, and cells that an engine cannot certify, do not count. Errors are differences from four times the default steps: of the \
 push angle, of the contact's arclength in whisker lengths, and of its force. * marks rows that no other row beats in time and \
 worst push-angle error. Times are medians of at least 5 runs after one that does not count. The spread is the difference \
 of the slowest and the fastest run over the median, in percent or from 10 times on as a multiple; ! marks rows in which it is more than 20 %.
 
+Plain trajectories are integrated by the CPU on all threads and by each GPU adapter, at the default steps: their rate with transfers, and the \
+largest distance of a pole from that of the CPU, in whisker lengths.
+
 Then the CPU engine, the spectral engine and the GPUs compute whole maps in turn, packed but not written: at most 1024 x 1024 cells (--quick: 256 x 256) and two \
 values per sweep axis. host is the CPU time per cell of all threads, including those of a software adapter. for devices is the \
-part of the stages, guesses and refinement, that a device could still compute. Stages are wall milliseconds. points are the base \
-points of rows, which only a GPU engine needs. device and packing overlap the other stages; waiting is for the device. The \
-verdicts compare the two engines on the CPU, and each GPU with the faster one of them.
-
-The last table has seconds for 10^9 cells: computed for machines that are not here, from counted operations and bytes, published peak rates, \
-and this machine's time for the host's stages; and as the whole maps took here. Parts overlap, but host and packing share the cores.")]
+part of the stages, guesses and refinement, that a device could still compute. Stages are wall milliseconds. rows are the \
+expansions of rows, which the spectral engine and a GPU need. device and packing overlap the other stages; waiting is for the device. The \
+verdicts compare the two engines on the CPU, and each GPU with the faster one of them.")]
 pub struct BenchArgs {
     /// Scene file; - is standard input
     scene: PathBuf,

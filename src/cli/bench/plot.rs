@@ -116,8 +116,6 @@ mod tests {
             us_per_state: 1.0,
             states_per_s: 1.0,
             trajectories_per_s: 1.0,
-            gflops: None,
-            of_peak: None,
             errors: Errors {
                 states: 1,
                 angle_deg: EXACT,

@@ -1,7 +1,7 @@
 //! Tables of the command `whiskmap bench`.
 
 use std::io::{self, Write};
-use whiskmap::bench::{CELLS, NOISY, Report, Timing, named};
+use whiskmap::bench::{NOISY, Report, Timing, named};
 use whiskmap::terminal::StandardOutput;
 
 /// Prints all measurements in at most 80 columns, except the names of adapters.
@@ -12,8 +12,8 @@ pub fn tables(report: &Report) -> io::Result<()> {
         let name = named(&engine.name, engine.threads);
         writeln!(
             out,
-            "{name:20} peak {:.1} GFLOP/s, first result after {:.1e} s",
-            engine.peak_gflops, engine.first_result_s
+            "{name:20} first result after {:.1e} s",
+            engine.first_result_s
         )?;
         if engine.threads.is_none() {
             writeln!(out, "{:20} {}", "", engine.adapter)?;
@@ -21,18 +21,15 @@ pub fn tables(report: &Report) -> io::Result<()> {
     }
     writeln!(
         out,
-        "\n{:47}angle, deg     arc  force   of\n  \
-         engine          steps               us spread  worst   99 %  worst  worst peak",
+        "\n{:47}angle, deg     arc  force\n  \
+         engine          steps               us spread  worst   99 %  worst  worst",
         ""
     )?;
     for row in &report.rows {
         let errors = &row.errors;
-        let of_peak = row
-            .of_peak
-            .map_or_else(|| "-".to_owned(), |part| format!("{:.0}%", 100.0 * part));
         writeln!(
             out,
-            "{} {:15} {:16} {:5.2} {} {:>5} {:>6} {:>6} {:>6} {of_peak:>4}",
+            "{} {:15} {:16} {:5.2} {} {:>5} {:>6} {:>6} {:>6}",
             if row.pareto { "*" } else { " " },
             named(&row.engine, row.threads),
             row.rung.to_string(),
@@ -70,6 +67,20 @@ pub fn tables(report: &Report) -> io::Result<()> {
     }
     writeln!(
         out,
+        "\ntrajectories, with transfers      million/s spread   pole off, lengths"
+    )?;
+    for row in &report.trajectories {
+        writeln!(
+            out,
+            "{:32} {:10.3} {:>6} {:>19}",
+            row.engine,
+            1e-6 * row.per_s,
+            spread(&row.seconds),
+            error(row.apart)
+        )?;
+    }
+    writeln!(
+        out,
         "\ndetachments, all threads    us a point spread   angle, deg: worst    99 %"
     )?;
     for row in &report.detachments {
@@ -84,7 +95,6 @@ pub fn tables(report: &Report) -> io::Result<()> {
         )?;
     }
     maps(&mut out, report)?;
-    computed(&mut out, report)?;
     let rows = report.rows.iter().map(|row| &row.seconds);
     let ends = report.detachments.iter().map(|row| &row.seconds);
     let maps = report.maps.iter().map(|map| &map.seconds);
@@ -129,41 +139,6 @@ fn expansions(out: &mut impl Write, report: &Report) -> io::Result<()> {
     )
 }
 
-/// Prints computed seconds of large maps beside those of the whole maps here.
-fn computed(out: &mut impl Write, report: &Report) -> io::Result<()> {
-    writeln!(
-        out,
-        "\nseconds for {CELLS:.0e} cells, COMPUTED, not measured\n{:25} compute memory   bus  host  pack  disk   all bound by",
-        ""
-    )?;
-    for map in &report.computed {
-        let parts = &map.parts;
-        let machine = format!("{}, {}", map.machine, map.engine);
-        write!(out, "{machine:26}")?;
-        for seconds in [
-            parts.compute,
-            parts.memory,
-            parts.bus,
-            parts.host,
-            parts.packing,
-            parts.disk,
-            map.seconds,
-        ] {
-            write!(out, "{seconds:6.1}")?;
-        }
-        writeln!(out, " {}", map.bound_by)?;
-    }
-    for map in &report.maps {
-        let seconds = map.seconds.median * CELLS / report.map_cells as f64;
-        writeln!(
-            out,
-            "{:62}{seconds:6.1} MEASURED",
-            format!("this machine, {}", map.engine)
-        )?;
-    }
-    Ok(())
-}
-
 /// Prints the table of whole maps, and the verdicts.
 fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     writeln!(
@@ -186,7 +161,7 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
     }
     writeln!(
         out,
-        "\nms               sheets  points  device waiting guesses refining classes packing"
+        "\nms               sheets    rows  device waiting guesses refining classes packing"
     )?;
     for map in &report.maps {
         let stages = &map.stages_ms;
@@ -195,7 +170,7 @@ fn maps(out: &mut impl Write, report: &Report) -> io::Result<()> {
             "{:16} {:6.1} {:7.1} {:7.1} {:7.1} {:7.1} {:8.1} {:7.1} {:7.1}",
             map.engine,
             stages["sheets"],
-            stages["base_points"],
+            stages["rows"],
             stages["device"],
             stages["waiting"],
             stages["guesses"],

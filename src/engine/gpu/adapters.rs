@@ -81,12 +81,19 @@ pub fn preferred(reports: &[AdapterReport], precision: Precision) -> Option<usiz
     best(reports, |report| report.computes_in(precision))
 }
 
-/// Returns the index of the adapter with `part` in its name, ignoring case: the first of the best kind, with this precision if there is
-/// one. `None` without one.
+/// Returns the index of the adapter with `part` in its name or at this PCI address, ignoring case: the first of the best kind, with this precision
+/// if there is one. `None` without one.
 #[must_use]
 pub fn named(reports: &[AdapterReport], part: &str, precision: Precision) -> Option<usize> {
     let part = part.to_lowercase();
-    let is_named = |report: &AdapterReport| report.info.name.to_lowercase().contains(&part);
+    let is_named = |report: &AdapterReport| {
+        let AdapterInfo {
+            name,
+            device_pci_bus_id,
+            ..
+        } = &report.info;
+        name.to_lowercase().contains(&part) || device_pci_bus_id.to_lowercase() == part
+    };
     best(reports, |report| {
         is_named(report) && report.computes_in(precision)
     })

@@ -1,80 +1,110 @@
-//! Cells as the shaders write them: differences from their base points.
+//! Cells as the shaders write them: one plane for each number of a cell.
 
-use crate::engine::{BasePoint, Cell, Cells, FORCE, Outcome, RowBatch};
+use super::packing::CellsOfRow;
+use crate::engine::{Cells, Outcome, RowBatch};
 use crate::plan::STATE_CHANNELS;
-use crate::rod::{Rod, arclength};
-use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
-use std::ops::Range;
 
-/// Size in bytes of a cell as the shaders write it.
-pub const CELL_BYTES: usize = size_of::<GpuCell>();
-
-/// Outcomes by the codes that the shaders write, from 0, `[code]`. A kernel that writes nothing leaves zeros, which are no solution.
-pub const OUTCOMES: [(&str, Outcome); 5] = [
-    ("NOT_FINITE", Outcome::NotFinite),
-    ("SOLVED", Outcome::Solved),
-    ("NEAR_EDGE", Outcome::NearEdge),
-    ("OUTSIDE_TRUST", Outcome::OutsideTrust),
-    ("MISSED", Outcome::Missed),
+/// Outcomes by the negative number that the shaders write in place of a residual. A kernel that writes nothing leaves zeros, which are no
+/// solution.
+pub const OUTCOMES: [(&str, f32, Outcome); 2] = [
+    ("NEAR_EDGE", -1.0, Outcome::NearEdge),
+    ("MISSED", -2.0, Outcome::Missed),
 ];
 
-#[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct GpuCell {
-    /// Differences from the base point, in the order of [`STATE_CHANNELS`], in whisker lengths, radians and `E I_base/L_w^2`.
-    numbers: [f32; STATE_CHANNELS.len()],
-    residual: f32,
-    outcome: u32,
-    /// Shaders write four numbers at a time.
-    unused: u32,
+/// Planes that a batch asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Planes {
+    /// True for the channel values.
+    pub has_values: bool,
+    /// True for contact and load.
+    pub has_points: bool,
 }
 
-impl GpuCell {
-    /// The outcome; a cell with a number that is not finite is no solution.
-    fn outcome(&self) -> Outcome {
-        let is_finite = self.numbers.iter().all(|x| x.is_finite()) && self.residual.is_finite();
-        let coded = OUTCOMES.get(self.outcome as usize).filter(|_| is_finite);
-        coded.map_or(Outcome::NotFinite, |&(_, outcome)| outcome)
-    }
-
-    /// `(tau, load)` on `rod`, beside the base point `base`.
-    fn point(&self, rod: &Rod, base: &BasePoint) -> DVec2 {
-        let [arc, _, force, ..] = self.numbers.map(f64::from);
-        let tau = rod.tau(arclength(rod, base.tau) + arc);
-        let force = base.state.full.force + force;
-        DVec2::new(tau, force / rod.radius(tau).powi(2))
-    }
-}
-
-/// Writes the cells of some base points of `batch`, which are in `bytes`, into `cells`.
-pub fn read_cells(bytes: &[u8], batch: &RowBatch, base_points: Range<usize>, cells: &mut Cells) {
-    let bytes = bytes.chunks_exact(CELL_BYTES);
-    let mut read = bytes.map(bytemuck::pod_read_unaligned::<GpuCell>);
-    for index in base_points {
-        let base = &batch.base_points[index];
-        let unit_values = &batch.sides[base.rod as usize].unit_values;
-        let first = base.trajectory.first_cell;
-        for (index, cell) in (first..first + base.cells.len()).zip(&mut read) {
-            let mut values = base.trajectory.values;
-            for ((value, unit), number) in values.iter_mut().zip(unit_values).zip(cell.numbers) {
-                *value += unit * f64::from(number);
-            }
-            // The force at first touch is 0 up to rounding.
-            values[FORCE] = values[FORCE].max(0.0);
-            let point = match batch.has_points {
-                true => cell.point(batch.rod(base), base),
-                false => DVec2::NAN,
-            };
-            let cell = Cell {
-                outcome: cell.outcome(),
-                steps: 1,
-                residual: cell.residual,
-                values: values.map(|value| value as f32),
-                point,
-            };
-            cells.set(index, &cell);
+impl Planes {
+    /// Returns the planes that `batch` asks for.
+    pub const fn of(batch: &RowBatch) -> Self {
+        Self {
+            has_values: batch.has_values,
+            has_points: batch.has_points,
         }
+    }
+
+    /// Returns the number of planes: residuals, channel values, and contact and load as two numbers each.
+    pub const fn count(self) -> usize {
+        let values = if self.has_values {
+            STATE_CHANNELS.len()
+        } else {
+            0
+        };
+        1 + values + if self.has_points { 4 } else { 0 }
+    }
+
+    /// Returns the bytes of a cell in all planes.
+    pub const fn cell_bytes(self) -> usize {
+        self.count() * size_of::<f32>()
+    }
+}
+
+/// The outcome of a cell with this `residual`; a cell with a number that is not finite is no solution.
+fn outcome(residual: f32, is_finite: bool) -> Outcome {
+    if residual > 0.0 && is_finite {
+        return Outcome::Solved;
+    }
+    let mut coded = OUTCOMES.iter().filter(|(_, code, _)| *code == residual);
+    coded
+        .next()
+        .map_or(Outcome::NotFinite, |(.., outcome)| *outcome)
+}
+
+/// Writes the cells of some `runs` of `batch`, whose planes are in `bytes`, into `cells`.
+pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[CellsOfRow], cells: &mut Cells) {
+    let planes = Planes::of(batch);
+    let size = bytes.len() / planes.count();
+    let mut from = 0;
+    for run in runs {
+        let place = run.cells.clone();
+        let to = from + place.len() * size_of::<f32>();
+        let mut parts = bytes
+            .chunks_exact(size.max(1))
+            .map(|plane| &plane[from..to]);
+        let mut copy = |column: &mut [f32]| {
+            if let Some(part) = parts.next() {
+                bytemuck::cast_slice_mut(column).copy_from_slice(part);
+            }
+        };
+        let residuals = &mut cells.residual[place.clone()];
+        copy(residuals);
+        let mut is_finite = residuals.iter().all(|own| own.is_finite());
+        let columns = cells
+            .values
+            .iter_mut()
+            .filter_map(|own| own.get_mut(place.clone()));
+        for column in columns {
+            copy(column);
+            is_finite &= column.iter().all(|value| value.is_finite());
+        }
+        if let Some(points) = cells.points.get_mut(place.clone()) {
+            let mut numbers = [(); 4].map(|()| vec![0.0_f32; points.len()]);
+            numbers.iter_mut().for_each(|own| copy(own));
+            for (i, point) in points.iter_mut().enumerate() {
+                let [tau, tau_rest, load, load_rest] =
+                    numbers.each_ref().map(|own| f64::from(own[i]));
+                *point = DVec2::new(tau + tau_rest, load + load_rest);
+            }
+        }
+        for index in place {
+            let residual = cells.residual[index];
+            let values = cells.values.iter().filter_map(|own| own.get(index));
+            let is_finite =
+                is_finite || residual.is_finite() && values.into_iter().all(|own| own.is_finite());
+            let outcome = outcome(residual, is_finite);
+            cells.outcome[index] = outcome;
+            if outcome != Outcome::Solved {
+                cells.residual[index] = f32::NAN;
+            }
+        }
+        from = to;
     }
 }
 
@@ -83,44 +113,28 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, base_points: Range<usize>, cel
 mod tests {
     use super::*;
     use crate::engine::gpu::Precision;
-    use crate::engine::gpu::base_point::{GpuStart, Scalar};
+    use crate::engine::gpu::packing::{GpuRow, Scalar};
     use crate::engine::gpu::shaders;
     use naga::TypeInner;
     use std::mem::offset_of;
 
-    /// Name, size, and members with their offsets.
-    type Struct = (String, usize, Vec<(String, usize)>);
-
-    fn in_shader(precision: Precision) -> Vec<Struct> {
-        let module = naga::front::wgsl::parse_str(&shaders::cells(precision)).unwrap();
-        let structs = module.types.iter().filter_map(|(_, found)| {
-            let TypeInner::Struct { members, span } = &found.inner else {
-                return None;
-            };
-            let members = members.iter();
-            let members = members.map(|m| (m.name.clone().unwrap(), m.offset as usize));
-            Some((found.name.clone()?, *span as usize, members.collect()))
-        });
-        structs.collect()
-    }
-
     fn agrees<T: Scalar>(precision: Precision) {
-        let shader = in_shader(precision);
-        let members = [
-            ("place", offset_of!(GpuStart<T>, place)),
-            ("tangents", offset_of!(GpuStart<T>, tangents)),
-        ];
-        let members = members.map(|(name, offset)| (name.to_owned(), offset));
-        let start = (
-            "StepStart".to_owned(),
-            size_of::<GpuStart<T>>(),
-            members.into(),
-        );
-        assert_eq!(shader.iter().find(|s| s.0 == start.0), Some(&start));
-        // The shader writes one number more, which is unused.
-        let numbers = shader.iter().find(|s| s.0 == "Cell").unwrap().1;
-        assert_eq!(numbers + size_of::<u32>(), CELL_BYTES);
-        assert_eq!(offset_of!(GpuCell, unused), numbers);
+        let module = naga::front::wgsl::parse_str(&shaders::cells(precision)).unwrap();
+        let is_row = |found: &&naga::Type| found.name.as_deref() == Some("Row");
+        let row = module.types.iter().map(|(_, found)| found).find(is_row);
+        let Some(TypeInner::Struct { members, span }) = row.map(|own| &own.inner) else {
+            panic!("no struct Row");
+        };
+        let offsets = members
+            .iter()
+            .map(|own| (own.name.as_deref().unwrap(), own.offset as usize));
+        macro_rules! offsets {
+            ($($member:ident)+) => { [$((stringify!($member), offset_of!(GpuRow<T>, $member))),+] };
+        }
+        let wanted =
+            offsets!(end place distance slope curvature residual to_tip tip_tie tip_radius);
+        assert!(offsets.eq(wanted));
+        assert_eq!(*span as usize, size_of::<GpuRow<T>>());
     }
 
     #[test]
@@ -131,19 +145,16 @@ mod tests {
 
     #[test]
     fn a_cell_that_is_not_finite_or_not_written_is_no_solution() {
-        for (first, code, outcome) in [
-            (1.0, 1, Outcome::Solved),
-            (f32::NAN, 1, Outcome::NotFinite),
-            (1.0, 9, Outcome::NotFinite),
-            (0.0, 0, Outcome::NotFinite),
+        for (residual, is_finite, wanted) in [
+            (1e-8, true, Outcome::Solved),
+            (1e-8, false, Outcome::NotFinite),
+            (f32::NAN, false, Outcome::NotFinite),
+            (0.0, true, Outcome::NotFinite),
+            (-9.0, true, Outcome::NotFinite),
+            (-1.0, true, Outcome::NearEdge),
+            (-2.0, false, Outcome::Missed),
         ] {
-            let cell = GpuCell {
-                numbers: [first; STATE_CHANNELS.len()],
-                residual: 0.0,
-                outcome: code,
-                unused: 0,
-            };
-            assert_eq!(cell.outcome(), outcome);
+            assert_eq!(outcome(residual, is_finite), wanted);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::adapters::{AdapterReport, enumerate, preferred};
 use super::guard::guarded;
+use super::missing::missing;
 use super::{EngineError, Precision};
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
@@ -33,7 +34,7 @@ impl Device {
         let adapter = index.and_then(|index| found.get(index)).ok_or_else(|| {
             EngineError::NoAdapter(match index {
                 Some(index) => format!("there are {}, not one at {index}", found.len()),
-                None => "no driver of Vulkan, Metal or DirectX 12 was found".to_owned(),
+                None => missing(),
             })
         })?;
         let features = adapter.features();

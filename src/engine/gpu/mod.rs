@@ -1,34 +1,36 @@
-//! The GPU engine: WGSL compute shaders through wgpu, one cell per invocation.
+//! The GPU engine: WGSL compute shaders through wgpu. One solves cells from the expansions of rows, one per invocation; another integrates
+//! trajectories ([`Gpu::shoot`]).
 //!
-//! The shaders are joined from whole pieces ([`shaders`]), in `f32` or `f64` by a type alias. Each set of effects has a pipeline of its own,
-//! made from `override` constants. Work is sent in submissions short enough for driver watchdogs, at most two in flight. A device that
+//! The shaders are in `f32` or `f64` by a type alias ([`shaders`]). Each choice of planes has a pipeline of its own, made from `override`
+//! constants. Work is sent in submissions short enough for driver watchdogs, at most two in flight. A device that
 //! fails is an error.
 //!
 //! Deliberately absent: a second attempt on a lost device. [`Worker`](super::Worker) continues without it.
 
 mod adapters;
-mod base_point;
 mod cells;
 mod device;
 mod flight;
 mod guard;
+mod missing;
 mod pace;
 mod packing;
-mod peak;
 mod pending;
 mod precision;
 pub mod shaders;
+mod shoot;
 mod stamps;
 
 pub use super::Precision;
 pub use adapters::{AdapterReport, adapters, named, preferred};
+pub use cells::Planes;
 pub use flight::Times;
 pub use guard::DRIVER_CALL;
+pub use missing::missing;
+pub use shoot::shoots;
 
-use super::{Cells, Engine, EngineDescription, EngineError, EngineInput, RowBatch};
+use super::{Cells, Engine, EngineDescription, EngineError, RowBatch};
 use crate::rod::Effects;
-use crate::shooting::Resolution;
-use cells::CELL_BYTES;
 use device::Device;
 use flight::{Buffers, Flight};
 use pace::Pace;
@@ -53,8 +55,10 @@ pub struct Gpu {
     pushes: Option<wgpu::Buffer>,
     /// Buffers that no flight uses.
     buffers: Vec<Buffers>,
-    /// For each set of effects, the compiled shader and its pace.
-    pipelines: HashMap<Effects, (wgpu::ComputePipeline, Pace)>,
+    /// For each choice of planes, the compiled shader and its pace.
+    pipelines: HashMap<Planes, (wgpu::ComputePipeline, Pace)>,
+    /// For each set of effects, the compiled shader of trajectories.
+    shooters: HashMap<Effects, wgpu::ComputePipeline>,
     /// The batches submitted and not collected.
     pending: VecDeque<PendingBatch>,
     /// The submissions in flight, in order, each with whether it has the last cells of its batch.
@@ -67,9 +71,6 @@ pub struct Gpu {
 
 /// Submissions in flight: one runs while the cells of the other are read.
 const IN_FLIGHT: usize = 2;
-
-/// Approximate maximum number of dispatches of a submission: 4 MiB for starts of steps.
-const MOST_DISPATCHES: usize = 64;
 
 impl Gpu {
     /// Opens the GPU engine on the adapter at `index` of [`adapters`], or on the [`preferred`] one.
@@ -87,6 +88,7 @@ impl Gpu {
             pushes: None,
             buffers: Vec::new(),
             pipelines: HashMap::new(),
+            shooters: HashMap::new(),
             pending: VecDeque::new(),
             flights: VecDeque::new(),
             idle_since: Instant::now(),
@@ -121,23 +123,26 @@ impl Gpu {
             let batch = Arc::clone(&pending.batch);
             let pushes = packing::pushes(precision, &batch.pushes);
             let pushes = device.upload("push angles", &mut self.pushes, &pushes)?;
-            let effects = batch.method.effects;
-            let (pipeline, pace) = match self.pipelines.entry(effects) {
+            let planes = Planes::of(&batch);
+            let (pipeline, pace) = match self.pipelines.entry(planes) {
                 Entry::Occupied(known) => known.into_mut(),
                 Entry::Vacant(new) => {
-                    let constants = shaders::overrides(effects);
+                    let constants = shaders::overrides(planes);
                     let pipeline = device.pipeline("solve_cells", &self.shader, &constants)?;
-                    // The last group of each base point may have one cell, and each base point has a step at least.
                     let groups = device.handle.limits().max_compute_workgroups_per_dimension;
-                    let groups = groups.saturating_sub(precision.most_steps() as u32).max(1);
-                    let pace = Pace::new(device.most_bytes(), CELL_BYTES, groups, WORKGROUP);
+                    let bytes = planes.cell_bytes();
+                    let pace = Pace::new(device.most_bytes(), bytes, groups, WORKGROUP);
                     new.insert((pipeline, pace))
                 }
             };
-            let part = pending.next(pace.cells, MOST_DISPATCHES * precision.most_steps());
-            let packed = Packed::new(precision, &batch, part);
+            let packed = Packed::new(precision, &batch, pending.next(pace.cells));
+            if packed.cells == 0 {
+                continue;
+            }
             let buffers = self.buffers.pop().unwrap_or_default();
-            let flight = Flight::submit(device, pipeline, pushes, self.is_timed, buffers, &packed)?;
+            let part = (packed, planes);
+            let flight = Flight::submit(device, pipeline, pushes, self.is_timed, buffers, part)?;
+            pending.in_flight += 1;
             self.flights.push_back((flight, !pending.is_waiting()));
             self.times.upload += begun.elapsed();
         }
@@ -146,7 +151,7 @@ impl Gpu {
 
     /// Waits for the oldest submission.
     fn receive(&mut self) -> Result<(), EngineError> {
-        let pending = self.pending.iter_mut().find(|own| !own.is_done());
+        let pending = self.pending.iter_mut().find(|own| own.in_flight > 0);
         let (Some(pending), Some((flight, is_last))) = (pending, self.flights.pop_front()) else {
             let lost = "a batch has no submission in flight";
             return Err(EngineError::Device(lost.to_owned()));
@@ -155,7 +160,7 @@ impl Gpu {
         let buffers = flight.finish(&self.device, pending, &mut self.times)?;
         self.buffers.push(buffers);
         self.idle_since = Instant::now();
-        if let Some((_, pace)) = self.pipelines.get_mut(&pending.batch.method.effects) {
+        if let Some((_, pace)) = self.pipelines.get_mut(&Planes::of(&pending.batch)) {
             pace.learn(count, is_last, self.idle_since - started);
         }
         Ok(())
@@ -165,12 +170,6 @@ impl Gpu {
     #[must_use]
     pub const fn device(&self) -> &wgpu::Device {
         &self.device.handle
-    }
-
-    /// Returns the resolution of the trajectories of base points where the CPU integrates with `resolution`.
-    #[must_use]
-    pub fn resolution(&self, resolution: Resolution) -> Resolution {
-        self.precision.resolution(resolution)
     }
 }
 
@@ -190,8 +189,12 @@ impl Engine for Gpu {
         self.precision.goal()
     }
 
-    fn input(&self, resolution: Resolution) -> EngineInput {
-        EngineInput::BasePoints(self.resolution(resolution))
+    fn row_residual(&self) -> f64 {
+        self.precision.row_residual()
+    }
+
+    fn has_device(&self) -> bool {
+        true
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {

@@ -1,50 +1,39 @@
-//! Text of the shaders: whole pieces in order, after one that Rust writes.
+//! Text of the shaders, after constants that Rust writes.
 
 use super::Precision;
-use super::base_point::QUADS;
-use super::cells::OUTCOMES;
+use super::cells::{OUTCOMES, Planes};
 use super::packing::WORKGROUP;
+use crate::engine::row::FUNCTIONS;
 use crate::plan::STATE_CHANNELS;
-use crate::rod::Effects;
+use crate::rod::{CURVATURE_TERMS, Effects};
 use crate::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
 
-/// Pieces of the shader that solves cells of rows as differences from base points.
-const CELLS: [&str; 7] = [
-    include_str!("../../../shaders/numbers.wgsl"),
-    include_str!("../../../shaders/difference.wgsl"),
-    include_str!("../../../shaders/path.wgsl"),
-    include_str!("../../../shaders/intrinsic.wgsl"),
-    include_str!("../../../shaders/nystrom8.wgsl"),
-    include_str!("../../../shaders/row.wgsl"),
-    include_str!("../../../shaders/cells.wgsl"),
-];
+const _: () = assert!(CURVATURE_TERMS == 7, "shaders/shoot.wgsl writes them out");
 
-/// The numbers and names that the pieces share with Rust.
+const _: () = assert!(
+    FUNCTIONS == 12 && STATE_CHANNELS.len() == 9,
+    "shaders/cells.wgsl writes them out"
+);
+
+/// The numbers and names that the shader of cells shares with Rust.
 fn constants(precision: Precision) -> String {
-    let channels = STATE_CHANNELS.len();
-    let most_steps = precision.most_steps();
     let mut text = format!(
         "alias real = {precision};\n\
-         const DOUBLE = {};\n\
-         const WORKGROUP = {WORKGROUP}u;\n\
-         const MOST_STEPS = {most_steps};\n\
-         const REST_TERMS = {REST_TERMS};\n\
-         const CHANNELS = {channels};\n",
-        precision == Precision::F64,
+         const WORKGROUP = {WORKGROUP}u;\n",
     );
-    for (name, quad) in QUADS {
-        text += &format!("const {name} = {quad}u;\n");
-    }
     for (name, value) in precision.limits() {
         text += &format!("const {name} = real({value:e});\n");
     }
-    for (name, _) in overrides(Effects::default()) {
+    for (name, code, _) in OUTCOMES {
+        text += &format!("const {name} = f32({code:e});\n");
+    }
+    for (name, _) in overrides(Planes {
+        has_values: true,
+        has_points: true,
+    }) {
         text += &format!("override {name}: bool;\n");
     }
-    for (code, (name, _)) in OUTCOMES.iter().enumerate() {
-        text += &format!("const {name} = {code}u;\n");
-    }
-    text + &tableau() + &rest_terms()
+    text
 }
 
 /// The coefficients of [`Nystrom8`] that are not 0: `NODE_i`, `STAGE_i_j`, `POSITION_j` and `SPEED_j`, counted from 1.
@@ -88,19 +77,38 @@ fn rest_terms() -> String {
 /// Returns the text of the engine's shader; its entry point is `solve_cells`.
 #[must_use]
 pub fn cells(precision: Precision) -> String {
-    constants(precision) + &CELLS.concat()
-}
-
-/// Returns the text of kernels that only multiply and add; their entry points are `peak_of_8` and `peak_of_16`, by accumulators.
-#[must_use]
-pub fn peak(precision: Precision) -> String {
-    format!("alias real = {precision};\nconst WORKGROUP = {WORKGROUP}u;\n")
-        + include_str!("../../../shaders/peak.wgsl")
+    constants(precision) + include_str!("../../../shaders/cells.wgsl")
 }
 
 /// Returns the values of the shaders' `override` constants, by name.
 #[must_use]
-pub fn overrides(effects: Effects) -> [(&'static str, f64); 4] {
+pub fn overrides(planes: Planes) -> [(&'static str, f64); 2] {
+    let flag = |on: bool| f64::from(u8::from(on));
+    [
+        ("HAS_VALUES", flag(planes.has_values)),
+        ("HAS_POINTS", flag(planes.has_points)),
+    ]
+}
+
+/// Returns the text of the shader of trajectories; its entry point is `shoot`.
+#[must_use]
+pub fn shoot(precision: Precision) -> String {
+    let mut text = format!(
+        "alias real = {precision};\n\
+         const DOUBLE = {};\n\
+         const WORKGROUP = {WORKGROUP}u;\n\
+         const REST_TERMS = {REST_TERMS};\n",
+        precision == Precision::F64,
+    );
+    for (name, _) in effects(Effects::default()) {
+        text += &format!("override {name}: bool;\n");
+    }
+    text + &tableau() + &rest_terms() + include_str!("../../../shaders/shoot.wgsl")
+}
+
+/// Returns the values of the `override` constants of [`shoot`], by name.
+#[must_use]
+pub fn effects(effects: Effects) -> [(&'static str, f64); 4] {
     let flag = |on: bool| f64::from(u8::from(on));
     [
         ("TAPER", flag(effects.taper)),

@@ -1,6 +1,6 @@
 //! The net of a whisker side: its stable sheet as tensors of trajectories.
 //!
-//! Coordinates are the contact `u` ([`u_of`]) and the part `p` of the load, `|load| tau^2 = p exp(ln q(u))`. The scale `ln q` is a
+//! Coordinates are the contact `u = ln tau + tau` and the part `p` of the load, `|load| tau^2 = p exp(ln q(u))`. The scale `ln q` is a
 //! polynomial near the logarithm of the fold's `|load| tau^2`. At a fixed contact every number of a state is an analytic function of the
 //! load, through the fold and beyond, so a few plain trajectories at Chebyshev points of both coordinates represent the sheet, with
 //! rows that end at the fold and rows that end at the tip alike. Nothing is solved: no trajectory belongs to a row.

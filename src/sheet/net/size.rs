@@ -78,7 +78,9 @@ impl NetSize {
     /// Returns the size that is expected to keep the bound `most`, where a panel of this size has these tails in both coordinates; `None` if
     /// there is none.
     pub fn enough(self, [in_u, in_p]: [NetTail; 2], most: f64) -> Option<Self> {
-        if !(larger(in_u.last, in_p.last) <= HOPELESS) {
+        // NaN is not below any bound.
+        let falls = larger(in_u.last, in_p.last) <= HOPELESS;
+        if !falls {
             return None;
         }
         Some(Self {

@@ -6,7 +6,6 @@
 
 mod cells;
 
-use crate::numerics::WIDTH;
 use crate::numerics::newton_form::{Polynomial, stencil, through_nodes};
 
 /// Guess for one cell: the start of Newton's method.
@@ -55,10 +54,6 @@ pub struct RowSpan {
 
 /// Number of nodes of a polynomial through unevenly spaced nodes.
 const AROUND: usize = 7;
-
-/// Maximum relative error of the row parameter at the end of a lattice's span. The largest seen is 7.5e-4, on rows of random whiskers and
-/// of a cone that end at the fold.
-const END_ERROR: f64 = 2e-3;
 
 /// Distance beyond the detachment angle of a lattice, in radians, up to which cells get guesses. On most whiskers it is many times the
 /// interpolation error; a row with a missed cell is followed by continuation.
@@ -143,37 +138,5 @@ impl RowSpan {
     pub fn last_push(&self) -> f64 {
         let ends = self.ends.first().into_iter().chain(self.ends.last());
         ends.map(|end| end.push).fold(f64::NEG_INFINITY, f64::max) + self.margin
-    }
-
-    /// Returns true if the row span begins at first touch, where the load is 0.
-    pub fn begins_at_touch(&self) -> bool {
-        self.nodes.first().is_some_and(|node| node.w == 0.0)
-    }
-
-    /// Returns true if the row span goes to the row parameter `w_end`, up to the error of interpolation.
-    pub fn reaches(&self, w_end: f64) -> bool {
-        let reaches = |end: &IntervalEnd| end.w >= (1.0 - END_ERROR) * w_end;
-        self.ends.iter().any(reaches)
-    }
-
-    /// Returns `[push angle in radians, tau]` at each of the row parameters `ws` of a span that begins at first touch.
-    pub fn at(&self, ws: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
-        if self.nodes.len() == WIDTH {
-            let whole = self.polynomials::<WIDTH>(0);
-            return ws
-                .map(|w| whole.each_ref().map(|own| own.at(w).0))
-                .collect();
-        }
-        let mut used: Option<(usize, [Polynomial<AROUND>; 2])> = None;
-        let values = ws.map(|w| {
-            let after = self.nodes.partition_point(|node| node.w <= w);
-            let from = stencil(after.saturating_sub(1), AROUND, self.nodes.len());
-            let (_, polynomials) = match &used {
-                Some(used) if used.0 == from => used,
-                _ => used.insert((from, self.polynomials(from))),
-            };
-            polynomials.each_ref().map(|own| own.at(w).0)
-        });
-        values.collect()
     }
 }

@@ -20,10 +20,10 @@ tests! {
         lost_with_batches_submitted;
 }
 
-/// A plan of 16 calls of 8 rows each.
+/// A plan of 16 calls of 16 rows each.
 fn in_batches(scene: &Scene) -> Plan {
     let mut plan = Plan::new(scene).unwrap();
-    plan.rows_at_once = 8;
+    plan.rows_at_once = 16;
     plan
 }
 
@@ -35,7 +35,7 @@ fn sound_cells(scene: &Scene, plan: &Plan) -> u64 {
 }
 
 fn lost_between_two_calls() {
-    let scene = cone(64);
+    let scene = cone(128);
     let plan = in_batches(&scene);
     let all = sound_cells(&scene, &plan);
     let (_, cpu) = compute_as(&scene, &plan, None);
@@ -113,7 +113,7 @@ fn lost_within_a_call() {
 
 /// Whenever the other thread comes, all cells are counted once, as the engine's or not.
 fn lost_to_another_thread() {
-    let scene = cone(64);
+    let scene = cone(128);
     let plan = in_batches(&scene);
     let all = sound_cells(&scene, &plan);
     let (_, cpu) = compute_as(&scene, &plan, None);
@@ -135,7 +135,7 @@ fn lost_to_another_thread() {
 
 /// Whatever is submitted when a device is lost: a response is right, or it is an error, and so are all after it.
 fn lost_with_batches_submitted(precision: Precision) {
-    let rows = RandomRows::new(USUAL, 24, 2, |_, _| ());
+    let rows = RandomRows::many(120, USUAL, 4, 2, |_, _| ());
     let mut gpu = open(precision);
     let part = rows.len() / 4;
     let batches = (0..4).map(|i| rows.part(&gpu, i * part..(i + 1) * part));

@@ -5,12 +5,16 @@
 //! Theory and Approximation Practice*, SIAM 2013, chapters 3 and 8). Clenshaw's recurrence evaluates it. On the interval it is as stable
 //! as the barycentric formula (J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 501, 2004), and gives derivatives as well.
 
-use crate::numerics::{Lanes, Real, SimdTask, Unit};
+use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
+use crate::numerics::{Lanes, Real, SimdTask, Unit, WIDTH};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::OnceLock;
 
 /// The largest number of points of an expansion.
 pub const MOST_POINTS: usize = 40;
+
+/// Groups of coefficients in SIMD lanes.
+const GROUPS: usize = MOST_POINTS.div_ceil(WIDTH);
 
 /// Number of coefficients in a group of [`Chebyshev::tails`]: an odd or even function has every other coefficient 0.
 pub const TAIL: usize = 3;
@@ -18,8 +22,8 @@ pub const TAIL: usize = 3;
 /// Points and transform for one number of points.
 struct ChebyshevGrid {
     points: Vec<f64>,
-    /// `[j][k]`: weight of the value at the point `j` in the coefficient `k`.
-    transform: Vec<[f64; MOST_POINTS]>,
+    /// `[j][k / WIDTH][k % WIDTH]`: weight of the value at the point `j` in the coefficient `k`.
+    transform: Vec<[LaneNumbers; GROUPS]>,
 }
 
 /// Grids of 1, 2, ... points, each computed at its first use.
@@ -40,7 +44,9 @@ impl ChebyshevGrid {
             let each = if k == 0 { 1.0 } else { 2.0 };
             sign * each * cos / count as f64
         };
-        let row = |j| std::array::from_fn(|k| if k < count { weight(j, k) } else { 0.0 });
+        let known = |j, k| if k < count { weight(j, k) } else { 0.0 };
+        let group = |j, from: usize| std::array::from_fn(|lane| known(j, from + lane));
+        let row = |j| std::array::from_fn(|own| group(j, own * WIDTH));
         Self {
             points: (0..count).map(point).collect(),
             transform: (0..count).map(row).collect(),
@@ -74,8 +80,7 @@ impl<const D: usize> Chebyshev<D> {
     #[must_use]
     pub fn through(values: &[[f64; D]]) -> Self {
         let transform = &ChebyshevGrid::of(values.len()).transform;
-        let mut coefficients = Unit::detect().run(Transform { values, transform });
-        coefficients.truncate(values.len());
+        let coefficients = Unit::detect().run(Transform { values, transform });
         Self { coefficients }
     }
 
@@ -108,6 +113,28 @@ impl<const D: usize> Chebyshev<D> {
     pub fn slope(&self, function: usize, x: f64) -> f64 {
         let [_, slope] = self.series(function, x);
         slope
+    }
+
+    /// Returns the values at `end` and the expansion of the quotient `(f(x) - f(end))/(x - end)`: its coefficients are Clenshaw's sums at `end`.
+    #[must_use]
+    pub fn quotient(&self, end: f64) -> ([f64; D], Self) {
+        let y = 2.0 * end - 1.0;
+        let mut coefficients = vec![[0.0; D]; self.coefficients.len().max(2) - 1];
+        let (mut later, mut latest) = ([0.0; D], [0.0; D]);
+        for (power, terms) in self.coefficients.iter().enumerate().rev() {
+            let factor = if power == 0 { y } else { y + y };
+            for (i, term) in terms.iter().enumerate() {
+                let sum = factor * later[i] + (term - latest[i]);
+                latest[i] = later[i];
+                later[i] = sum;
+            }
+            if power > 0 {
+                // `x - end` is half of the change of `y`.
+                let twice = if power == 1 { 2.0 } else { 4.0 };
+                coefficients[power - 1] = later.map(|sum| twice * sum);
+            }
+        }
+        (later, Self { coefficients })
     }
 
     /// Values of up to `N` functions from `first` on at `x`, by Clenshaw's recurrence; 0 beyond the last function.
@@ -158,13 +185,13 @@ impl<const D: usize> Chebyshev<D> {
     }
 }
 
-/// Numbers of the widest register: [`MOST_POINTS`] is a multiple of it.
-const REGISTER: usize = 8;
+/// Functions that are transformed together: as many as registers hold.
+const TOGETHER: usize = 4;
 
-/// Coefficients from values: plain loops, which a compiler turns into vectors of any unit, without fused products.
+/// Coefficients from values, side by side in SIMD lanes.
 struct Transform<'a, const D: usize> {
     values: &'a [[f64; D]],
-    transform: &'a [[f64; MOST_POINTS]],
+    transform: &'a [[LaneNumbers; GROUPS]],
 }
 
 impl<const D: usize> SimdTask for Transform<'_, D> {
@@ -172,20 +199,29 @@ impl<const D: usize> SimdTask for Transform<'_, D> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Vec<[f64; D]> {
-        let mut columns = [[0.0; MOST_POINTS]; D];
-        // Whole registers, but not all of the columns.
-        let count = self.values.len().next_multiple_of(REGISTER);
-        for (values, weights) in self.values.iter().zip(self.transform) {
-            for (column, value) in columns.iter_mut().zip(values) {
-                for (coefficient, weight) in column[..count].iter_mut().zip(&weights[..count]) {
-                    *coefficient += weight * value;
+        let count = self.values.len();
+        let mut coefficients = vec![[0.0; D]; count];
+        for (group, into) in coefficients.chunks_mut(WIDTH).enumerate() {
+            for first in (0..D).step_by(TOGETHER) {
+                // Parts of the group in lanes, as many as there are.
+                let mut sums = [[T::of(0.0); WIDTH]; TOGETHER];
+                for (values, weights) in self.values.iter().zip(self.transform) {
+                    for (part, from) in (0..WIDTH).step_by(T::LANES).enumerate() {
+                        let weight: T = pack(&weights[group], from);
+                        for (sums, value) in sums.iter_mut().zip(&values[first..]) {
+                            sums[part] = T::of(*value).mul_add(weight, sums[part]);
+                        }
+                    }
                 }
-            }
-        }
-        let mut coefficients = vec![[0.0; D]; MOST_POINTS];
-        for (k, row) in coefficients.iter_mut().enumerate() {
-            for (coefficient, column) in row.iter_mut().zip(&columns) {
-                *coefficient = column[k];
+                for (i, sums) in sums.iter().enumerate().take(D - first) {
+                    let mut own = [0.0; WIDTH];
+                    for (sum, from) in sums.iter().zip((0..WIDTH).step_by(T::LANES)) {
+                        keep(&mut own, from, *sum);
+                    }
+                    for (coefficients, own) in into.iter_mut().zip(own) {
+                        coefficients[first + i] = own;
+                    }
+                }
             }
         }
         coefficients

@@ -5,7 +5,7 @@
 //! problem is left. A trajectory yields the pole's position in the frame of the base with its derivatives.
 //!
 //! The code is generic over the scalar ([`Real`](crate::numerics::Real)): it serves `f64` and the SIMD lanes of [`batch`]. Its
-//! twin `shaders/nystrom8.wgsl` integrates two trajectories side by side.
+//! twin `shaders/shoot.wgsl` integrates trajectories without derivatives on a GPU, one per invocation.
 
 pub mod batch;
 pub mod contact;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use whiskmap_mechanics::numerics::Unit;
 use whiskmap_mechanics::rod::{CurvaturePolynomial, Effects, RadiusProfile, Rod};
-use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method, flops_of_nystrom8};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{SecondVariation, ShootingMap};
 
 /// A rod with each effect, one with none, and two with radii measured in different places.
@@ -98,21 +98,4 @@ fn additional_effects_change_rounding_alone() {
         let apart = own.map.pole.distance(with_all.map.pole);
         assert!(apart < 1e-11, "{apart:e} {condition:?}");
     }
-}
-
-/// Operations grow with the steps in proportion, and each effect adds to them.
-#[test]
-fn operations_are_counted() {
-    let rods = rods();
-    let all = conditions(&rods);
-    let first_on = |rod: usize| &all[3 * rod];
-    let count = |rod, steps| flops_of_nystrom8(Effects::default(), steps, first_on(rod));
-    assert_eq!(count(1, 20), 2 * count(1, 10));
-    // Taper 0, 0.9, curvature, spiral, gradient; then measured radii of two and five pieces, and polynomial curvature.
-    let [cylinder, cone, bent, spiral, graded, two, five, polynomial] =
-        [0, 1, 2, 3, 4, 5, 6, 7].map(|rod| count(rod, 20));
-    assert!(cylinder > 20 * 8 * 20, "{cylinder}");
-    assert!(cylinder < cone && cone < spiral && spiral < bent && cone < graded);
-    assert!(spiral < polynomial && polynomial < bent, "{polynomial}");
-    assert!(0 < two && two <= five, "{two} {five}");
 }

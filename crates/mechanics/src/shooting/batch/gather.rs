@@ -136,12 +136,6 @@ pub trait Gather<T: Lanes>: Intrinsic<T> {
     /// Gathers the rest shape of the rods. Returns the shape, its state at the arclengths `s` (whisker lengths), and `[curvature, slope]` there: the
     /// slope is by the arclength.
     fn gather(conditions: &Conditions, s: T) -> (Self, Self::State, [T; 2]);
-
-    /// Returns the unit tangent at rest in the frame of a parabola; the first axis for other rest shapes.
-    #[inline(always)]
-    fn tangent(_: Self::State) -> [T; 2] {
-        [T::of(1.0), T::of(0.0)]
-    }
 }
 
 impl<T: Lanes> Gather<T> for Straight {
@@ -164,11 +158,6 @@ impl<T: Lanes> Gather<T> for Bent<T> {
             arc(lanes(conditions, |condition| condition.rod.slope))
         };
         Self::at(bend, at_base, s)
-    }
-
-    #[inline(always)]
-    fn tangent(tangent: [T; 2]) -> [T; 2] {
-        tangent
     }
 }
 

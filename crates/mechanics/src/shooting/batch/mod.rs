@@ -5,20 +5,16 @@
 
 mod block;
 mod block_key;
-mod flops;
 mod gather;
 mod kernel;
 mod measured;
 mod output_set;
 mod padded;
 mod pole;
-mod steps;
 mod stream;
 
-pub use flops::flops_of_nystrom8;
 pub use output_set::OutputSet;
 pub(super) use pole::{Complex, PoleCentre};
-pub use steps::{StepStart, step_starts};
 
 use super::Resolution;
 use crate::numerics::Unit;

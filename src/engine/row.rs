@@ -1,13 +1,13 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row's part of the load.
 
-use crate::engine::{Values, WhiskerSide};
+use super::{BatchRow, Outcome, Values, WhiskerSide};
 use crate::numerics::expansion::Chebyshev;
 use crate::numerics::inverse::Inverse;
 use crate::numerics::newton_form_simd::{LaneNumbers, keep};
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 use crate::plan::STATE_CHANNELS;
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
-use crate::sheet::{Crossing, Edge, Sheet};
+use crate::sheet::{Crossing, Edge, PUSH_MARGIN, RowSpan, Sheet};
 use crate::shooting::Reader;
 
 /// Number of functions that are expanded along a row.
@@ -92,6 +92,9 @@ impl SimdTask for ChannelValues<'_> {
     }
 }
 
+/// Push angle beyond the end of a row at the tip, in radians, up to which the CPU engine decides at which side of the tip a cell is.
+const NEAR_TIP: f64 = 1e-3;
+
 /// A certified row.
 #[derive(Clone, Debug)]
 pub struct RowExpansion {
@@ -99,6 +102,11 @@ pub struct RowExpansion {
     pub inverse: Inverse<FUNCTIONS>,
     /// Bound on the residual of a state of the row, in whisker lengths.
     pub residual: f64,
+    /// Magnitude of the push angle at the row's end, which is computed apart, in radians.
+    pub end: f64,
+    /// Magnitudes of push angles beyond which the contact is beyond the tip, and beyond which the sheet has no state, in radians. Cells between
+    /// the end and the first of them are left to the CPU engine.
+    pub beyond: [f64; 2],
 }
 
 /// Largest slope of the push angle at a fold, over its value there: where the expansions end a thousandth of the row before the fold, the
@@ -148,7 +156,38 @@ impl RowExpansion {
         };
         let off = (push - crossing.push).abs() * sheet.rows[row].pole_distance;
         let inverse = Inverse::new(functions, end)?;
-        (off <= residual && is_at_edge).then_some(Self { inverse, residual })
+        let beyond = match crossing.edge {
+            Edge::Fold => [crossing.push + PUSH_MARGIN; 2],
+            Edge::Tip => {
+                let last = |span: &RowSpan| span.last_push();
+                let last = sheet.spans(row).first().map_or(f64::INFINITY, last);
+                [crossing.push + NEAR_TIP, last]
+            }
+        };
+        (off <= residual && is_at_edge).then_some(Self {
+            inverse,
+            residual,
+            end: crossing.push,
+            beyond,
+        })
+    }
+
+    /// Writes the outcomes of the cells of `row` that have no state, beyond its end. `magnitudes` are the push angles of the side's columns, in
+    /// radians.
+    pub(super) fn write_beyond(
+        &self,
+        row: &BatchRow,
+        magnitudes: &[f64],
+        outcomes: &mut [Outcome],
+    ) {
+        let up_to = |push: f64| {
+            row.before(push.next_up(), magnitudes)
+                .map(|own| own.len())
+                .sum()
+        };
+        let [tip, last]: [usize; 2] = self.beyond.map(up_to);
+        outcomes[last..].fill(Outcome::OffSheet);
+        outcomes[tip.min(last)..last].fill(Outcome::BeyondTip);
     }
 }
 
@@ -165,7 +204,7 @@ mod tests {
 
     /// The cone of the paper with more rows at the tip than its map has.
     fn cone() -> WhiskerSide {
-        let scene = Scene::parse(include_str!("../../../scenes/cone.toml"), "cone.toml").unwrap();
+        let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
         let swept = scene.whisker(0);
         let pushes: Vec<f64> = (1..60).map(f64::from).collect();
         let columns = Arc::new(SideColumns::new(&pushes, Side::Cb, 0));

@@ -1,28 +1,20 @@
 //! The spectral engine: cells from the nets of whisker sides ([`Net`](crate::sheet::net::Net)), without trajectories of their own.
 
-mod row;
-
 use super::cells::CellsMut;
+use super::row::{FUNCTIONS, RowExpansion};
 use super::{
-    BatchRow, Cells, Engine, EngineDescription, EngineError, EngineInput, Outcome, RowBatch,
-    WhiskerSide,
+    BatchRow, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch, WhiskerSide,
 };
 use crate::numerics::Unit;
 use crate::numerics::inverse::InverseBlock;
-use crate::sheet::Edge;
 use crate::sheet::net::NET_RESIDUAL;
-use crate::shooting::Resolution;
 use glam::DVec2;
 use rayon::prelude::*;
-use row::{FUNCTIONS, RowExpansion};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Distance beyond the ends of a row, in parts of its end's row parameter, that rounding explains.
 const OUTSIDE: f64 = 1e-6;
-
-/// Push angle beyond the end of a row at the tip, in radians, up to which the CPU engine decides at which side of the tip a cell is.
-const NEAR_TIP: f64 = 1e-3;
 
 /// Spectral engine. It works where it is called, on the threads of the current pool: [`Engine::submit`] keeps a batch,
 /// [`Engine::collect`] solves it.
@@ -50,15 +42,15 @@ impl Spectral {
         }
     }
 
-    /// Solves the cells of `batch` whose side has a net with their row.
+    /// Solves the cells of `batch` whose rows have expansions.
     #[must_use]
     pub fn solve(&self, batch: &RowBatch) -> Cells {
-        let mut cells = Cells::new(batch, Outcome::NoBasePoint);
-        let rows: Vec<_> = batch.rows.iter().zip(cells.rows_mut(batch)).collect();
-        rows.into_par_iter().for_each(|(row, into)| {
-            let side = &batch.sides[row.side];
-            if let Some(expansion) = RowExpansion::of(side, row.row, self.most) {
-                write(side, row, &expansion, self.most, into);
+        let mut cells = Cells::new(batch, Outcome::NoRow);
+        let rows = batch.rows.iter().zip(&batch.expansions);
+        let rows: Vec<_> = rows.zip(cells.rows_mut(batch)).collect();
+        rows.into_par_iter().for_each(|((row, expansion), into)| {
+            if let Some(expansion) = expansion {
+                write(&batch.sides[row.side], row, expansion, self.most, into);
             }
         });
         cells
@@ -68,10 +60,13 @@ impl Spectral {
 /// Writes the cells of `row` before its end, and those without a state.
 fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64, into: CellsMut) {
     let sheet = &side.sheet;
-    let end = sheet.crossings[row.row][0].push;
     let distance = sheet.rows[row.row].pole_distance;
-    let pushes = row.each().map(|cell| side.columns.magnitudes[cell]);
-    let pushes: Vec<f64> = pushes.take_while(|push| *push < end).collect();
+    let magnitudes = &side.columns.magnitudes;
+    let before = row.before(expansion.end, magnitudes);
+    let pushes: Vec<f64> = before
+        .flat_map(|cells| &magnitudes[cells])
+        .copied()
+        .collect();
     let CellsMut {
         outcome,
         residual,
@@ -79,26 +74,7 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64
         points,
         ..
     } = into;
-    // Beyond the tip and beyond the sheet, cells have no state. Others beyond the end fall back to the CPU engine.
-    // A row with more pieces may have states there.
-    let is_one = sheet.crossings[row.row].len() == 1;
-    let last = match &sheet.spans(row.row)[..] {
-        [span] if is_one => span.last_push(),
-        _ => f64::INFINITY,
-    };
-    let tip = match sheet.crossings[row.row][0].edge {
-        Edge::Tip if is_one => end + NEAR_TIP,
-        _ => last,
-    };
-    let beyond = row.each().zip(outcome.iter_mut()).skip(pushes.len());
-    for (cell, outcome) in beyond {
-        let push = side.columns.magnitudes[cell];
-        if push > last {
-            *outcome = Outcome::OffSheet;
-        } else if push > tip {
-            *outcome = Outcome::BeyondTip;
-        }
-    }
+    expansion.write_beyond(row, magnitudes, outcome);
     expansion
         .inverse
         .solve(&pushes, |from, count, block: &InverseBlock<FUNCTIONS>| {
@@ -139,10 +115,6 @@ impl Engine for Spectral {
 
     fn residual_bound(&self) -> f64 {
         self.most
-    }
-
-    fn input(&self, _: Resolution) -> EngineInput {
-        EngineInput::Nets(self.most)
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {

@@ -1,0 +1,214 @@
+//! Trajectories on the device: any list of rods, contacts and loads, thousands at once.
+
+use super::device::{Device, copy_back};
+use super::flight::binding;
+use super::packing::{Scalar, WORKGROUP};
+use super::{EngineError, Gpu, Precision, shaders};
+use crate::rod::{Effects, Rest, Rod, arclength};
+use crate::shooting::PlainState;
+use crate::shooting::batch::{InitialCondition, Method};
+use bytemuck::{Pod, Zeroable};
+use glam::DVec2;
+use rayon::prelude::*;
+use wgpu::BufferUsages as Usage;
+
+/// Maximum number of trajectories of a submission: enough for every lane of a device, within milliseconds.
+const AT_ONCE: usize = 1 << 17;
+
+/// Rod in the layout of the shaders.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C, packed)]
+struct GpuRod<T> {
+    taper: T,
+    twice_bend: T,
+    spiral: [T; 2],
+    curvature: [T; 8],
+    tangent: [T; 2],
+    unused: [T; 2],
+}
+
+/// Contact of a trajectory in the layout of the shaders: `tau`, force, radius, arclength, and the unit tangent of a parabola at rest.
+type GpuContact<T> = [T; 8];
+
+/// Numbers of a state as the shaders write them: tangent, position, energy, and three others.
+const NUMBERS: usize = 8;
+
+impl<T: Scalar> GpuRod<T> {
+    fn new(rod: &Rod) -> Self {
+        let mut curvature = [T::of(0.0); 8];
+        let polynomial = rod.polynomial.iter().flat_map(|own| own.centred());
+        for (own, term) in curvature.iter_mut().zip(polynomial) {
+            *own = T::of(*term);
+        }
+        Self {
+            taper: T::of(rod.taper),
+            twice_bend: T::of(2.0 * rod.bend),
+            spiral: rod.spiral.unwrap_or_default().map(T::of),
+            curvature,
+            tangent: rod.contact_tangent().to_array().map(T::of),
+            unused: [T::of(0.0); 2],
+        }
+    }
+}
+
+/// The contact of a trajectory.
+fn contact<T: Scalar>(condition: &InitialCondition) -> GpuContact<T> {
+    let InitialCondition { rod, tau, load } = *condition;
+    let (radius, s) = (rod.radius(tau), arclength(rod, tau));
+    let rest = Rest::parabola_tangent(rod, s);
+    [
+        tau,
+        load * radius * radius,
+        radius,
+        s,
+        rest.x,
+        rest.y,
+        0.0,
+        0.0,
+    ]
+    .map(T::of)
+}
+
+/// Returns `Ok` if the device integrates trajectories of whiskers with these effects.
+///
+/// # Errors
+/// The effect that only the CPU integrates.
+pub const fn shoots(effects: Effects) -> Result<(), &'static str> {
+    if effects.profile {
+        Err("trajectories along measured radii are integrated on the CPU")
+    } else if effects.gradient {
+        Err("trajectories along a modulus gradient are integrated on the CPU")
+    } else {
+        Ok(())
+    }
+}
+
+impl Gpu {
+    /// Integrates trajectories on the device, in the engine's precision, and returns their states: `[trajectory]`.
+    ///
+    /// # Errors
+    /// [`EngineError::Unsupported`] if the method has effects that the shader lacks ([`shoots`]); [`EngineError::Device`] when the device fails.
+    pub fn shoot(
+        &mut self,
+        method: Method,
+        conditions: &[InitialCondition],
+    ) -> Result<Vec<PlainState>, EngineError> {
+        shoots(method.effects).map_err(|why| EngineError::Unsupported {
+            adapter: self.device.info.name.clone(),
+            what: format!("shoot: {why}"),
+        })?;
+        self.working(|gpu| match gpu.precision {
+            Precision::F32 => gpu.shoot_in::<f32>(method, conditions),
+            Precision::F64 => gpu.shoot_in::<f64>(method, conditions),
+        })
+    }
+
+    fn shoot_in<T: Scalar>(
+        &mut self,
+        method: Method,
+        conditions: &[InitialCondition],
+    ) -> Result<Vec<PlainState>, EngineError> {
+        let device = &self.device;
+        let pipeline = match self.shooters.get(&method.effects) {
+            Some(known) => known,
+            None => {
+                let text = shaders::shoot(self.precision);
+                let constants = shaders::effects(method.effects);
+                let new = device.pipeline("shoot", &text, &constants)?;
+                self.shooters.entry(method.effects).or_insert(new)
+            }
+        };
+        let steps = |own: &InitialCondition| method.resolution.steps(own.rod, own.tau, own.load);
+        let steps: Vec<u32> = conditions.par_iter().map(steps).collect();
+        // Neighbours take equal numbers of steps.
+        let mut order: Vec<usize> = (0..conditions.len()).collect();
+        order.par_sort_by_key(|index| steps[*index]);
+        let mut states = vec![PlainState::default(); conditions.len()];
+        for part in order.chunks(AT_ONCE) {
+            let mut rods: Vec<(&Rod, GpuRod<T>)> = Vec::new();
+            let mut heads = Vec::with_capacity(part.len());
+            for index in part {
+                let rod = conditions[*index].rod;
+                if rods
+                    .last()
+                    .is_none_or(|(last, _)| !std::ptr::eq(*last, rod))
+                {
+                    rods.push((rod, GpuRod::new(rod)));
+                }
+                // A submission has fewer rods than `u32` can count.
+                heads.push([rods.len() as u32 - 1, steps[*index]]);
+            }
+            let rods: Vec<GpuRod<T>> = rods.into_iter().map(|(_, rod)| rod).collect();
+            let contacts = part
+                .par_iter()
+                .map(|index| contact::<T>(&conditions[*index]));
+            let contacts: Vec<GpuContact<T>> = contacts.collect();
+            let found: Vec<[T; NUMBERS]> = submit(
+                device,
+                pipeline,
+                [
+                    bytemuck::cast_slice(&rods),
+                    bytemuck::cast_slice(&heads),
+                    bytemuck::cast_slice(&contacts),
+                ],
+                part.len(),
+            )?;
+            let read = part.par_iter().zip(&contacts).zip(&found);
+            let read = read.map(|((index, contact), found)| {
+                let [cos, sin, x, y, energy, ..] = found.map(Into::into);
+                let (tangent, position) = (DVec2::new(cos, sin), DVec2::new(x, y));
+                let to_pole = conditions[*index].rod.to_pole() - position;
+                PlainState {
+                    pole: DVec2::new(cos, -sin).rotate(to_pole),
+                    tangent,
+                    position,
+                    force: contact[1].into(),
+                    energy,
+                }
+            });
+            for (index, state) in part.iter().zip(read.collect::<Vec<_>>()) {
+                states[*index] = state;
+            }
+        }
+        Ok(states)
+    }
+}
+
+/// Runs `pipeline` on `count` invocations with these `inputs`, and returns what it writes for each.
+fn submit<O: Pod>(
+    device: &Device,
+    pipeline: &wgpu::ComputePipeline,
+    inputs: [&[u8]; 3],
+    count: usize,
+) -> Result<Vec<O>, EngineError> {
+    let size = (count * size_of::<O>()) as u64;
+    let mut buffers = [None, None, None];
+    let mut entries = Vec::with_capacity(4);
+    for (own, bytes) in buffers.iter_mut().zip(inputs) {
+        device.upload("trajectories", own, bytes)?;
+    }
+    let states = device.buffer("states", size, Usage::STORAGE | Usage::COPY_SRC)?;
+    let readback = device.buffer("readback", size, Usage::MAP_READ | Usage::COPY_DST)?;
+    for (index, (own, bytes)) in (0..).zip(buffers.iter().flatten().zip(inputs)) {
+        entries.push(binding(index, own, Some(bytes.len() as u64)));
+    }
+    entries.push(binding(3, &states, Some(size)));
+    let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("shoot"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &entries,
+    });
+    let mut commands = device.handle.create_command_encoder(&Default::default());
+    {
+        let mut pass = commands.begin_compute_pass(&Default::default());
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &bindings, &[]);
+        // A submission has fewer groups than `u32` can count.
+        pass.dispatch_workgroups(count.div_ceil(WORKGROUP as usize) as u32, 1, 1);
+    }
+    copy_back(&mut commands, &states, &readback, size);
+    let index = device.queue.submit([commands.finish()]);
+    device.check()?;
+    device.wait(index)?;
+    Device::read(&readback, size, bytemuck::pod_collect_to_vec)
+}
