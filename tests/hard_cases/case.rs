@@ -73,13 +73,21 @@ impl Case {
         text
     }
 
-    /// The case with enough cells in a row that an engine computes them.
+    /// The case with so many rows and cells that a net takes less time, and an engine computes them.
     pub fn dense(mut self) -> Self {
-        const COUNT: i32 = 40;
-        let more = (1..=COUNT).map(|i| 70.0 * (f64::from(i) / f64::from(COUNT)).powi(2));
+        const PUSHES: i32 = 120;
+        const ROWS: i32 = 24;
+        let more = (1..=PUSHES).map(|i| 70.0 * (f64::from(i) / f64::from(PUSHES)).powi(2));
         self.pushes_deg.extend(more.flat_map(|push| [-push, push]));
-        self.pushes_deg.sort_by(f64::total_cmp);
-        self.pushes_deg.dedup();
+        let own = self.distances.iter().copied();
+        let [nearest, farthest] = [own.clone().fold(1.0, f64::min), own.fold(0.0, f64::max)];
+        let more = (1..ROWS).map(|i| f64::from(i) / f64::from(ROWS));
+        let more = more.map(|part| nearest + part * (farthest - nearest));
+        self.distances.extend(more);
+        for values in [&mut self.pushes_deg, &mut self.distances] {
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+        }
         self
     }
 

@@ -1,7 +1,7 @@
 //! What the GPU makes of hard cases, in rows of many cells: the map is the CPU's, and most cells are the GPU's.
 
 use crate::case::{Case, compute};
-use crate::compute::{WORST, differences, median_and_worst, open};
+use crate::compute::{differences, median_and_worst, open};
 use crate::named::named;
 use crate::random::{always_the_same, cases};
 use proptest::prelude::*;
@@ -112,11 +112,18 @@ fn named_cases_are_solved_or_fall_back(precision: Precision) {
     for (name, case) in named() {
         let case = case.dense();
         let cpu = compute(&case.scene(), None);
-        let seen =
-            Seen::of(&cpu, &case, &mut gpu, WORST).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let seen = Seen::of(&cpu, &case, &mut gpu, WORST_OF_HARD)
+            .unwrap_or_else(|why| panic!("{name}: {why}"));
         table += &seen.line(name);
         all.add(seen);
     }
+    let EngineCells {
+        solved,
+        without_row,
+        ..
+    } = all.cells;
+    // Sheets with several folds have no net.
+    assert!(2 * solved > without_row, "{:?}", all.cells);
     table += &all.line("all");
     let _ = writeln!(
         table,
@@ -133,19 +140,22 @@ fn named_cases_are_solved_or_fall_back(precision: Precision) {
 }
 
 /// Number of random whiskers.
-const RANDOM: u32 = 500;
+const RANDOM: u32 = 100;
 
-/// How far their states may be from those of the CPU, in parts of a channel's largest value. Measured 1.9e-6; beyond 1e-6 in 7 whiskers:
-/// next to the tip of a cone the contact angle turns up to 200 times as much as the base, and near the base forces are large.
-const WORST_OF_RANDOM: f32 = 3e-6;
+/// How far states of hard cases may be from those of the CPU, in parts of a channel's largest value. Measured 1.3e-6 in `f32`.
+const WORST_OF_HARD: f32 = 3e-6;
 
 fn engines_agree_on_random_whiskers(precision: Precision) {
-    let gpu = RefCell::new(open(precision));
+    let (gpu, all) = (RefCell::new(open(precision)), RefCell::new(Seen::default()));
     let whiskers = cases().prop_map(|case| case.dense());
     let holds = |case: Case| {
         let cpu = compute(&case.scene(), None);
-        let seen = Seen::of(&cpu, &case, &mut gpu.borrow_mut(), WORST_OF_RANDOM);
-        seen.map(|_| ()).map_err(TestCaseError::fail)
+        let seen = Seen::of(&cpu, &case, &mut gpu.borrow_mut(), WORST_OF_HARD);
+        let seen = seen.map_err(TestCaseError::fail)?;
+        all.borrow_mut().add(seen);
+        Ok(())
     };
     always_the_same(RANDOM).run(&whiskers, holds).unwrap();
+    let cells = all.into_inner().cells;
+    assert!(2 * cells.solved > cells.without_row, "{cells:?}");
 }
