@@ -1,6 +1,5 @@
 // Cells of rows, one per invocation. A row comes as Chebyshev expansions of the differences from its end, divided by the difference of their
-// argument: f(x) = f(end) - left q(end - left), with left = end - x. The push angle that is left to the end is inverted for `left`. The
-// twin of `numerics/inverse.rs` in `crates/mechanics/src/`.
+// argument: f(x) = f(end) - left q(end - left), with left = end - x. The push angle that is left to the end is inverted for `left`.
 
 // Run of cells of one row: its first cell, its first push angle, its first coefficients, and their number.
 alias Head = vec4<u32>;
@@ -113,7 +112,8 @@ const STEPS = 4;
 // Solves the cell of `row` at `push` before the end of the row, whose quotients have `count` coefficients from `first` on.
 fn solve(row: Row, push: vec2<real>, first: u32, count: u32) -> Cell {
     var cell = Cell();
-    let to_end = max((row.end.x - push.x) + (row.end.y - push.y), real(0.0));
+    let rest = (row.end.x - push.x) + (row.end.y - push.y);
+    let to_end = max(rest, real(0.0));
     var left = quadratic_root(to_end, row.slope, row.curvature);
     for (var step = 0; step < STEPS; step++) {
         // In `left`, odd powers have the other sign.
@@ -130,7 +130,7 @@ fn solve(row: Row, push: vec2<real>, first: u32, count: u32) -> Cell {
         f32(last.x), f32(last.y), f32(last.z), f32(last.w),
     );
     cell.point = state.yz;
-    let missed = abs(left * quotient.state.x - to_end);
+    let missed = abs(left * quotient.state.x - rest);
     let exact = row.residual + missed * row.distance;
     let residual = exact + ROUNDING;
     let clear = abs(row.to_tip - left * quotient.state.y) - row.tip_tie - CLEAR_OF_TIP * state.y;
@@ -138,7 +138,7 @@ fn solve(row: Row, push: vec2<real>, first: u32, count: u32) -> Cell {
     if !(clear * row.tip_radius > exact) {
         cell.residual = NEAR_EDGE;
     }
-    // Comparisons with a number that is not finite are false.
+    // The host refuses numbers that are not finite.
     if !(residual <= GOAL && left >= -OUTSIDE && left <= row.place + OUTSIDE) {
         cell.residual = MISSED;
     }

@@ -1,6 +1,6 @@
 //! Measurements of every GPU adapter, in `f32` and, if supported, in `f64`.
 
-use super::request::{Points, Request, states};
+use super::request::{Points, Request, loads};
 use super::task::Task;
 use super::timing::{median, timed};
 use super::{BenchEngine, Measurement, Report, Rung};
@@ -124,7 +124,7 @@ fn measure_one(
     let stages = of_runs.map(|ms| median(ms.into_iter().skip(2)));
     let rung = Rung {
         integrator: "chebyshev",
-        steps: states(&requests) as u32,
+        steps: loads(&requests) as u32,
     };
     let errors = task.only(&targets).errors(&points);
     let row = Measurement::new(&engine, rung, seconds, stages, None, errors);

@@ -29,8 +29,8 @@ pub struct Measurement {
     pub us_per_state: f64,
     /// Rate of the engine in states per second.
     pub states_per_s: f64,
-    /// Rate of the engine in trajectories per second.
-    pub trajectories_per_s: f64,
+    /// Rate of the engine in trajectories per second; `None` for expansions.
+    pub trajectories_per_s: Option<f64>,
     /// Errors of the states that the engine found.
     pub errors: Errors,
     /// True if no other measurement is both faster and more accurate.
@@ -47,7 +47,6 @@ impl Measurement {
         errors: Errors,
     ) -> Self {
         let states = errors.states as f64;
-        let trajectories = trajectories.unwrap_or(states);
         Self {
             engine: engine.name.clone(),
             threads: engine.threads,
@@ -60,7 +59,7 @@ impl Measurement {
                 .collect(),
             us_per_state: 1e6 * seconds.median / states,
             states_per_s: states / seconds.median,
-            trajectories_per_s: trajectories / seconds.median,
+            trajectories_per_s: trajectories.map(|count| count / seconds.median),
             errors,
             pareto: false,
         }
@@ -75,7 +74,7 @@ const STAGES: [&str; 4] = ["upload", "dispatch", "waiting", "readback"];
 pub struct Rung {
     /// The integrator of the engine; `chebyshev` for expansions of rows.
     pub integrator: &'static str,
-    /// Steps of a trajectory at the fold of a cylinder, fewer under less load; of expansions, states along a row.
+    /// Steps of a trajectory at the fold of a cylinder, fewer under less load; of expansions, loads at each contact of a net.
     pub steps: u32,
 }
 

@@ -57,9 +57,9 @@ impl Request {
     }
 }
 
-/// Returns the largest number of states along a row of a net of the `requests`.
-pub fn states(requests: &[Request]) -> usize {
+/// Returns the largest number of loads of a net of the `requests`.
+pub fn loads(requests: &[Request]) -> usize {
     let sides = requests.iter().flat_map(|own| own.batch.sides.iter());
     let nets = sides.filter_map(|side| side.net.as_ref());
-    nets.map(Net::states).max().unwrap_or(0)
+    nets.map(Net::loads).max().unwrap_or(0)
 }

@@ -1,6 +1,6 @@
 //! Measurements of the spectral engine at several bounds: cells of expanded rows, and the one-time cost of the expansions.
 
-use super::request::{Points, Request, states};
+use super::request::{Points, Request, loads};
 use super::task::Task;
 use super::timing::{Timing, timed};
 use super::{BenchEngine, Measurement, Report, Rung, pool};
@@ -23,7 +23,7 @@ const BOUNDS: [f64; 5] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
 pub struct Expansions {
     /// Maximum bound on the residual of a state, in whisker lengths.
     pub bound: f64,
-    /// Number of states along each row of a net.
+    /// Number of loads at each contact of a net.
     pub states: usize,
     /// Part of the sample's states that are certified, from 0 to 1.
     pub certified: f64,
@@ -119,7 +119,7 @@ fn row(
     let (targets, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
     let rung = Rung {
         integrator: "chebyshev",
-        steps: states(&requests) as u32,
+        steps: loads(&requests) as u32,
     };
     let stages = [0.0, 1e3 * seconds.median, 0.0, 0.0];
     let errors = task.only(&targets).errors(&points);

@@ -7,6 +7,7 @@ use super::{Report, named};
 use crate::engine::gpu::{Gpu, shoots};
 use crate::engine::{Engine as _, EngineError};
 use crate::numerics::Unit;
+use crate::sheet::net::larger;
 use crate::shooting::PlainState;
 use crate::shooting::batch::{Batch, InitialCondition, Method};
 use serde::Serialize;
@@ -65,7 +66,7 @@ pub fn measure(task: &Task, runs: usize, report: &mut Report, on_step: &mut dyn 
             let (seconds, found) = timed(runs, || gpu.shoot(method, &conditions))?;
             let apart = found.iter().zip(&wanted);
             let apart = apart.map(|(own, other)| own.pole.distance(other.pole));
-            let apart = apart.fold(0.0, f64::max);
+            let apart = apart.fold(0.0, larger);
             Ok::<_, EngineError>(row(&one.name, Some(gpu.describe().adapter), seconds, apart))
         });
         match measured {

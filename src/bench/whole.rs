@@ -34,7 +34,7 @@ pub struct WholeMap {
     /// CPU seconds of the host's own stages over those of the CPU engine: one thread, from the sheets to the classification, without packing
     /// and without the engine; 0 where the system has no such clock.
     pub host_share: f64,
-    /// Stage times of guesses and refinement over the sum of all stage times, from 0 to 1: the part that an engine can take over.
+    /// Stage times of cells, guesses and refinement over the sum of all stage times, from 0 to 1: the part that an engine can take over.
     pub device_can_take: f64,
     /// Number of cells of the map that fell back to the CPU.
     pub fallback: u64,
@@ -178,9 +178,7 @@ fn run(scene: &Scene, plan: &Plan, engine: Option<&mut dyn Engine>) -> Result<Ma
         seconds: summary.wall_seconds,
         host: summary.cpu_seconds.unwrap_or_default(),
         own: 0.0,
-        stages_ms: stages
-            .map(|(name, s)| (name.replace(' ', "_"), 1e3 * s))
-            .collect(),
+        stages_ms: stages.map(|(name, s)| (name.to_owned(), 1e3 * s)).collect(),
         fallback: summary.engine_cells.fallback(),
         packed_bytes,
     })

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Distance beyond the ends of a row, in parts of its end's row parameter, that rounding explains.
+/// Distance beyond the ends of a row, in parts of the argument at its end, that rounding explains.
 const OUTSIDE: f64 = 1e-6;
 
 /// Spectral engine. It works where it is called, on the threads of the current pool: [`Engine::submit`] keeps a batch,

@@ -64,9 +64,9 @@ fn mixed(z: u64) -> u64 {
 /// allows.
 const VALUES_PER_MISS: f64 = 10.0;
 
-/// Largest change of a value, as a part of its size, over that of the row parameter, as a part of its end: values are smooth functions of the
-/// row parameter.
-const ROW_PARAMETER: f64 = 4.0;
+/// Largest change of a value, as a part of its size, over that of the argument of its row, as a part of its end: values are smooth functions
+/// of the argument.
+const BY_ARGUMENT: f64 = 4.0;
 
 /// Relative error of a residual that is rounded to `f32`.
 const ROUNDED: f64 = f32::EPSILON as f64;
@@ -126,9 +126,9 @@ fn holds(
     };
     let miss = f64::from(theirs.residual).min(row_residual);
     let miss_angle = miss / side.sheet.rows[row.row].pole_distance;
-    // Next to a fold, the row parameter changes with the square root of the push angle.
+    // Next to a fold, the argument changes with the square root of the push angle.
     let left = (end.push - push).max(miss_angle);
-    let by_miss = VALUES_PER_MISS * miss + ROW_PARAMETER * miss_angle / (end.push * left).sqrt();
+    let by_miss = VALUES_PER_MISS * miss + BY_ARGUMENT * miss_angle / (end.push * left).sqrt();
     let sizes = sizes(side, side.sizes(end), ours);
     (0..ours.len())
         .all(|i| (ours[i] - f64::from(theirs.values[i])).abs() <= (TOLERANCE + by_miss) * sizes[i])

@@ -7,7 +7,8 @@
 //! other.
 //!
 //! `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, and `edges/` computes where a row leaves the sheet. `net/`
-//! represents the states of rows by few trajectories, for an engine. `continuation/` follows a row from state to state where the lattice or the edges are not certified.
+//! represents the states of rows by few trajectories, for an engine. `continuation/` follows a row from state to state where the lattice
+//! or the edges are not certified.
 
 mod case;
 mod certificate;

@@ -17,7 +17,8 @@ tests! {
         a_response_has_the_columns_wanted,
         solved_cells_are_those_of_the_cpu,
         residuals_are_below_the_bound,
-        nothing_in_nothing_out;
+        nothing_in_nothing_out,
+        a_batch_without_expansions_is_no_failure;
     Precision:
         a_nan_hurts_only_the_cells_of_its_row;
     Adapter:
@@ -108,6 +109,7 @@ fn a_response_has_the_columns_wanted(engine: &mut dyn Engine) {
 fn solved_cells_are_those_of_the_cpu(engine: &mut dyn Engine) {
     let batch = some().batch(engine);
     let (cells, wanted) = (solve(engine, &batch), Cpu::default().solve(&batch));
+    assert!(solved(&cells) > 1000);
     for (values, wanted_values) in cells.values.iter().zip(&wanted.values) {
         let places = (0..cells.len()).filter(|i| cells.outcome[*i] == Outcome::Solved);
         let places: Vec<usize> = places.collect();
@@ -125,6 +127,7 @@ fn solved_cells_are_those_of_the_cpu(engine: &mut dyn Engine) {
 fn residuals_are_below_the_bound(engine: &mut dyn Engine) {
     let batch = some().batch(engine);
     let cells = solve(engine, &batch);
+    assert!(solved(&cells) > 1000);
     let solved = places(&batch).into_iter().zip(0..);
     let solved = solved.filter(|(_, i)| cells.outcome[*i] == Outcome::Solved);
     let solved: Vec<_> = solved.collect();
@@ -147,6 +150,16 @@ fn residuals_are_below_the_bound(engine: &mut dyn Engine) {
 fn nothing_in_nothing_out(engine: &mut dyn Engine) {
     let batch = some().part(engine, 0..0);
     assert!(solve(engine, &batch).is_empty());
+}
+
+/// Only the CPU engine computes cells without expansions of their rows.
+fn a_batch_without_expansions_is_no_failure(engine: &mut dyn Engine) {
+    let is_cpu = engine.describe().engine.starts_with("cpu");
+    let mut batch = some().part(engine, 0..16);
+    batch.expansions.clear();
+    let cells = solve(engine, &batch);
+    assert!(cells.fit(&batch));
+    assert_eq!(solved(&cells) > 0, is_cpu);
 }
 
 fn a_nan_hurts_only_the_cells_of_its_row(precision: Precision) {

@@ -35,16 +35,21 @@ const fn allowed(precision: Precision) -> f64 {
     }
 }
 
-/// Every effect that the shader has, and more trajectories than a submission holds.
+/// Every effect that the shader has, by the method and by the rods alone.
 fn trajectories_are_those_of_the_cpu(precision: Precision) {
     let mut gpu = open(precision);
     for effects in effect_sets::all().filter(|own| shoots(*own).is_ok()) {
         let method = Method::fine().with_effects(effects);
         let conditions = conditions(effects, 2000, 6.0, 7);
         let found = gpu.shoot(method, &conditions).unwrap();
+        let by_rods = gpu.shoot(Method::fine(), &conditions).unwrap();
         let wanted = Batch::new(method).shoot::<PlainState>(&conditions);
         assert_eq!(found.len(), conditions.len());
-        for (found, wanted) in found.iter().zip(&wanted) {
+        for (found, wanted) in found
+            .iter()
+            .chain(&by_rods)
+            .zip(wanted.iter().chain(&wanted))
+        {
             let apart = apart(found, wanted);
             assert!(
                 apart.iter().all(|own| *own < allowed(precision)),
@@ -77,11 +82,16 @@ fn effects_that_a_whisker_lacks_change_rounding_alone(precision: Precision) {
     }
 }
 
+/// The effects of any rod count, also beside others.
 fn a_modulus_gradient_is_refused(precision: Precision) {
-    let effects = Effects {
+    let gradient = Effects {
         gradient: true,
         ..Effects::default()
     };
-    let refused = open(precision).shoot(Method::fine().with_effects(effects), &[]);
+    let mut mixed = conditions(Effects::default(), 8, 6.0, 3);
+    let mut gpu = open(precision);
+    assert!(gpu.shoot(Method::fine(), &mixed).is_ok());
+    mixed.extend(conditions(gradient, 8, 6.0, 3));
+    let refused = gpu.shoot(Method::fine(), &mixed);
     assert!(matches!(refused, Err(EngineError::Unsupported { .. })));
 }

@@ -25,7 +25,8 @@ tests! {
         measured_radii_fall_back;
 }
 
-/// At the contact and load of each solved cell, a trajectory meets the pole to its residual. Channel values differ from those of the CPU engine by at most 1e-9 of their size along the row, beside the rounding to `f32`.
+/// At the contact and load of each solved cell, a trajectory meets the pole to its residual. Channel values differ from those of the CPU engine
+/// by at most 1e-9 of their size along the row, beside the rounding to `f32`.
 fn states_and_values_are_within_their_bounds() {
     for (rows, count) in [(160, 4), (240, 2)] {
         let (mut solved, mut all) = (0, 0);

@@ -115,7 +115,7 @@ mod tests {
             stages_ms: StageTimes::new(),
             us_per_state: 1.0,
             states_per_s: 1.0,
-            trajectories_per_s: 1.0,
+            trajectories_per_s: Some(1.0),
             errors: Errors {
                 states: 1,
                 angle_deg: EXACT,

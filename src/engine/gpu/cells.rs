@@ -91,13 +91,16 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[CellsOfRow], cells: &m
                 let [tau, tau_rest, load, load_rest] =
                     numbers.each_ref().map(|own| f64::from(own[i]));
                 *point = DVec2::new(tau + tau_rest, load + load_rest);
+                is_finite &= point.is_finite();
             }
         }
         for index in place {
             let residual = cells.residual[index];
             let values = cells.values.iter().filter_map(|own| own.get(index));
-            let is_finite =
-                is_finite || residual.is_finite() && values.into_iter().all(|own| own.is_finite());
+            let is_finite = is_finite
+                || residual.is_finite()
+                    && values.into_iter().all(|own| own.is_finite())
+                    && cells.points.get(index).is_none_or(|own| own.is_finite());
             let outcome = outcome(residual, is_finite);
             cells.outcome[index] = outcome;
             if outcome != Outcome::Solved {

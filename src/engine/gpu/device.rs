@@ -161,7 +161,7 @@ impl Device {
         kept: &'a mut Option<wgpu::Buffer>,
         bytes: &[u8],
     ) -> Result<&'a wgpu::Buffer, EngineError> {
-        let usage = Usage::STORAGE | Usage::UNIFORM | Usage::COPY_DST;
+        let usage = Usage::STORAGE | Usage::COPY_DST;
         let buffer = self.grown(what, kept, bytes.len() as u64, usage)?;
         self.queue.write_buffer(buffer, 0, bytes);
         Ok(buffer)

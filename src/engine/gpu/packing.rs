@@ -121,7 +121,8 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
     let mut packed = Packed::default();
     let mut terms: Vec<[T; FUNCTIONS]> = Vec::new();
     for index in rows {
-        let (row, Some(expansion)) = (&batch.rows[index], &batch.expansions[index]) else {
+        let row = &batch.rows[index];
+        let Some(Some(expansion)) = batch.expansions.get(index) else {
             continue;
         };
         let side = &batch.sides[row.side];

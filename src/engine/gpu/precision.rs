@@ -25,7 +25,8 @@ impl Precision {
     /// Returns the limits of the shaders' certificate as pairs of the name in WGSL and the value.
     ///
     /// `ROUNDING` bounds what rounding adds to the residual, in whisker lengths: measured at most 3.4e-7 in `f32` on whiskers of every kind
-    /// (`tests/machine/bound.rs`), and below 1e-13 in `f64`. Contacts within the part `CLEAR_OF_TIP` of the tip's `tau` are left to the CPU. `OUTSIDE` is the argument beyond the ends of a row that rounding explains, and `TINY` keeps a quotient of zeros 0.
+    /// (`tests/machine/bound.rs`), and below 1e-13 in `f64`. Contacts within the part `CLEAR_OF_TIP` of the tip's `tau` are left to the CPU.
+    /// `OUTSIDE` is the argument beyond the ends of a row that rounding explains, and `TINY` keeps a quotient of zeros 0.
     #[must_use]
     pub(super) const fn limits(self) -> [(&'static str, f64); 5] {
         let [rounding, clear_of_tip, outside] = match self {

@@ -8,7 +8,10 @@ use crate::plan::STATE_CHANNELS;
 use crate::rod::{CURVATURE_TERMS, Effects};
 use crate::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
 
-const _: () = assert!(CURVATURE_TERMS == 7, "shaders/shoot.wgsl writes them out");
+const _: () = assert!(
+    CURVATURE_TERMS == 7 && REST_TERMS == 12,
+    "shaders/shoot.wgsl writes them out"
+);
 
 const _: () = assert!(
     FUNCTIONS == 12 && STATE_CHANNELS.len() == 9,

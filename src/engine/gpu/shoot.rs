@@ -10,10 +10,12 @@ use crate::shooting::batch::{InitialCondition, Method};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use rayon::prelude::*;
+use std::collections::hash_map::Entry;
+use std::ops::Range;
 use wgpu::BufferUsages as Usage;
 
-/// Maximum number of trajectories of a submission: enough for every lane of a device, within milliseconds.
-const AT_ONCE: usize = 1 << 17;
+/// Maximum number of steps of all trajectories of a submission: tens of milliseconds where `f64` is slow, and enough for every lane elsewhere.
+const MOST_STEPS: u64 = 1 << 21;
 
 /// Rod in the layout of the shaders.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -84,94 +86,119 @@ pub const fn shoots(effects: Effects) -> Result<(), &'static str> {
 }
 
 impl Gpu {
-    /// Integrates trajectories on the device, in the engine's precision, and returns their states: `[trajectory]`.
+    /// Integrates trajectories on the device, in the engine's precision, and returns their states: `[trajectory]`. The effects are those of the
+    /// rods and of the method.
     ///
     /// # Errors
-    /// [`EngineError::Unsupported`] if the method has effects that the shader lacks ([`shoots`]); [`EngineError::Device`] when the device fails.
+    /// [`EngineError::Unsupported`] if a rod has effects that the shader lacks ([`shoots`]); [`EngineError::Device`] when the device fails.
     pub fn shoot(
         &mut self,
         method: Method,
         conditions: &[InitialCondition],
     ) -> Result<Vec<PlainState>, EngineError> {
-        shoots(method.effects).map_err(|why| EngineError::Unsupported {
-            adapter: self.device.info.name.clone(),
-            what: format!("shoot: {why}"),
-        })?;
-        self.working(|gpu| match gpu.precision {
-            Precision::F32 => gpu.shoot_in::<f32>(method, conditions),
-            Precision::F64 => gpu.shoot_in::<f64>(method, conditions),
+        let keys = conditions.par_iter().map(|own| {
+            let steps = method.resolution.steps(own.rod, own.tau, own.load);
+            (method.effects.and(own.rod), steps)
+        });
+        let keys: Vec<(Effects, u32)> = keys.collect();
+        for (effects, _) in &keys {
+            shoots(*effects).map_err(|why| EngineError::Unsupported {
+                adapter: self.device.info.name.clone(),
+                what: format!("shoot: {why}"),
+            })?;
+        }
+        // Neighbours share a kernel, and take equal numbers of steps.
+        let mut order: Vec<usize> = (0..conditions.len()).collect();
+        order.par_sort_by_key(|index| keys[*index]);
+        let mut states = vec![PlainState::default(); conditions.len()];
+        self.working(|gpu| {
+            for group in order.chunk_by(|a, b| keys[*a].0 == keys[*b].0) {
+                let steps: Vec<u32> = group.iter().map(|index| keys[*index].1).collect();
+                for part in submissions(&steps) {
+                    let (part, steps) = (&group[part.clone()], &steps[part]);
+                    let effects = keys[part[0]].0;
+                    let found = match gpu.precision {
+                        Precision::F32 => gpu.shoot_in::<f32>(effects, conditions, part, steps),
+                        Precision::F64 => gpu.shoot_in::<f64>(effects, conditions, part, steps),
+                    };
+                    for (index, state) in part.iter().zip(found?) {
+                        states[*index] = state;
+                    }
+                }
+            }
+            Ok(states)
         })
     }
 
+    /// Integrates `part` of the `conditions` in one submission, each in so many `steps`.
     fn shoot_in<T: Scalar>(
         &mut self,
-        method: Method,
+        effects: Effects,
         conditions: &[InitialCondition],
+        part: &[usize],
+        steps: &[u32],
     ) -> Result<Vec<PlainState>, EngineError> {
         let device = &self.device;
-        let pipeline = match self.shooters.get(&method.effects) {
-            Some(known) => known,
-            None => {
+        let pipeline = match self.shooters.entry(effects) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
                 let text = shaders::shoot(self.precision);
-                let constants = shaders::effects(method.effects);
-                let new = device.pipeline("shoot", &text, &constants)?;
-                self.shooters.entry(method.effects).or_insert(new)
+                let constants = shaders::effects(effects);
+                new.insert(device.pipeline("shoot", &text, &constants)?)
             }
         };
-        let steps = |own: &InitialCondition| method.resolution.steps(own.rod, own.tau, own.load);
-        let steps: Vec<u32> = conditions.par_iter().map(steps).collect();
-        // Neighbours take equal numbers of steps.
-        let mut order: Vec<usize> = (0..conditions.len()).collect();
-        order.par_sort_by_key(|index| steps[*index]);
-        let mut states = vec![PlainState::default(); conditions.len()];
-        for part in order.chunks(AT_ONCE) {
-            let mut rods: Vec<(&Rod, GpuRod<T>)> = Vec::new();
-            let mut heads = Vec::with_capacity(part.len());
-            for index in part {
-                let rod = conditions[*index].rod;
-                if rods
-                    .last()
-                    .is_none_or(|(last, _)| !std::ptr::eq(*last, rod))
-                {
-                    rods.push((rod, GpuRod::new(rod)));
-                }
-                // A submission has fewer rods than `u32` can count.
-                heads.push([rods.len() as u32 - 1, steps[*index]]);
+        let mut rods: Vec<(&Rod, GpuRod<T>)> = Vec::new();
+        let mut heads = Vec::with_capacity(part.len());
+        for (index, steps) in part.iter().zip(steps) {
+            let rod = conditions[*index].rod;
+            let is_last = |(last, _): &(&Rod, _)| std::ptr::eq(*last, rod);
+            if !rods.last().is_some_and(is_last) {
+                rods.push((rod, GpuRod::new(rod)));
             }
-            let rods: Vec<GpuRod<T>> = rods.into_iter().map(|(_, rod)| rod).collect();
-            let contacts = part
-                .par_iter()
-                .map(|index| contact::<T>(&conditions[*index]));
-            let contacts: Vec<GpuContact<T>> = contacts.collect();
-            let found: Vec<[T; NUMBERS]> = submit(
-                device,
-                pipeline,
-                [
-                    bytemuck::cast_slice(&rods),
-                    bytemuck::cast_slice(&heads),
-                    bytemuck::cast_slice(&contacts),
-                ],
-                part.len(),
-            )?;
-            let read = part.par_iter().zip(&contacts).zip(&found);
-            let read = read.map(|((index, contact), found)| {
-                let [cos, sin, x, y, energy, ..] = found.map(Into::into);
-                let (tangent, position) = (DVec2::new(cos, sin), DVec2::new(x, y));
-                let to_pole = conditions[*index].rod.to_pole() - position;
-                PlainState {
-                    pole: DVec2::new(cos, -sin).rotate(to_pole),
-                    tangent,
-                    position,
-                    force: contact[1].into(),
-                    energy,
-                }
-            });
-            for (index, state) in part.iter().zip(read.collect::<Vec<_>>()) {
-                states[*index] = state;
-            }
+            // A submission has fewer rods than `u32` can count.
+            heads.push([rods.len() as u32 - 1, *steps]);
         }
-        Ok(states)
+        let rods: Vec<GpuRod<T>> = rods.into_iter().map(|(_, rod)| rod).collect();
+        let contacts = part.par_iter();
+        let contacts = contacts.map(|index| contact::<T>(&conditions[*index]));
+        let contacts: Vec<GpuContact<T>> = contacts.collect();
+        let inputs = [
+            bytemuck::cast_slice(&rods),
+            bytemuck::cast_slice(&heads),
+            bytemuck::cast_slice(&contacts),
+        ];
+        let found: Vec<[T; NUMBERS]> = submit(device, pipeline, inputs, part.len())?;
+        let read = part.par_iter().zip(&contacts).zip(&found);
+        let read = read.map(|((index, contact), found)| {
+            let [cos, sin, x, y, energy, ..] = found.map(Into::into);
+            let (tangent, position) = (DVec2::new(cos, sin), DVec2::new(x, y));
+            let to_pole = conditions[*index].rod.to_pole() - position;
+            PlainState {
+                pole: DVec2::new(cos, -sin).rotate(to_pole),
+                tangent,
+                position,
+                force: contact[1].into(),
+                energy,
+            }
+        });
+        Ok(read.collect())
     }
+}
+
+/// Splits trajectories with these `steps` into submissions of at most [`MOST_STEPS`], or of a single trajectory: ranges of their indices.
+fn submissions(steps: &[u32]) -> Vec<Range<usize>> {
+    let (mut parts, mut from, mut sum) = (Vec::new(), 0, 0);
+    for (index, steps) in steps.iter().enumerate() {
+        sum += u64::from(*steps);
+        if sum > MOST_STEPS && index > from {
+            parts.push(from..index);
+            (from, sum) = (index, u64::from(*steps));
+        }
+    }
+    if from < steps.len() {
+        parts.push(from..steps.len());
+    }
+    parts
 }
 
 /// Runs `pipeline` on `count` invocations with these `inputs`, and returns what it writes for each.
@@ -211,4 +238,18 @@ fn submit<O: Pod>(
     device.check()?;
     device.wait(index)?;
     Device::read(&readback, size, bytemuck::pod_collect_to_vec)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_submission_has_few_steps_or_one_trajectory() {
+        let most = MOST_STEPS as u32;
+        assert_eq!(submissions(&[]), []);
+        assert_eq!(submissions(&[1, 2, 3]), [0..3]);
+        let parts = submissions(&[most - 1, 1, 1, most, most + 9, 5, most - 5, 1]);
+        assert_eq!(parts, [0..2, 2..3, 3..4, 4..5, 5..7, 7..8]);
+    }
 }

@@ -145,9 +145,9 @@ impl Net {
         }
     }
 
-    /// Returns the largest number of states along a row.
+    /// Returns the largest number of loads of a panel.
     #[must_use]
-    pub fn states(&self) -> usize {
+    pub fn loads(&self) -> usize {
         let loads = self.panels.iter().map(|panel| panel.size.loads);
         loads.max().unwrap_or(0)
     }

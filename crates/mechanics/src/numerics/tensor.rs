@@ -47,7 +47,11 @@ impl<const D: usize> ChebyshevTensor<D> {
     #[must_use]
     pub fn tails(&self) -> [[[f64; D]; 2]; 2] {
         let in_x = |power: usize| Chebyshev {
-            coefficients: self.coefficients.iter().map(|in_y| in_y[power]).collect(),
+            coefficients: self
+                .coefficients
+                .iter()
+                .map(|in_y| in_y.get(power).copied().unwrap_or([0.0; D]))
+                .collect(),
         };
         let in_y = |terms: &Vec<[f64; D]>| Chebyshev {
             coefficients: terms.clone(),
@@ -57,8 +61,9 @@ impl<const D: usize> ChebyshevTensor<D> {
             std::array::from_fn(|group| std::array::from_fn(|i| sum[group][i] + tails[group][i]))
         };
         let zero = [[0.0; D]; 2];
+        let longest = self.coefficients.iter().map(Vec::len).max().unwrap_or(0);
         [
-            (0..self.coefficients[0].len()).map(in_x).fold(zero, sum),
+            (0..longest).map(in_x).fold(zero, sum),
             self.coefficients.iter().map(in_y).fold(zero, sum),
         ]
     }

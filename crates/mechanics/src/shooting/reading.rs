@@ -226,11 +226,4 @@ impl Reader {
             numbers.energy * T::of(moment_nnm),
         ]
     }
-
-    /// Returns the base's unit tangent `[cos, sin]` in the frame of [`FullState`] for a contact angle, in radians.
-    #[must_use]
-    #[inline(always)]
-    pub fn tangent<T: Real>(&self, contact_angle: T) -> [T; 2] {
-        direction(T::of(self.tilt) - contact_angle)
-    }
 }
