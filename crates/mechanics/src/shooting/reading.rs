@@ -1,6 +1,5 @@
 //! Readings: states of the whisker in physical units.
 
-use super::contact::direction;
 use super::{FullState, PlainState};
 use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
 use crate::numerics::{Lanes, Real, nearest_turn};
