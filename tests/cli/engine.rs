@@ -30,9 +30,9 @@ fn auto_takes_the_net_where_the_counts_say_so() {
     let run = place.run(&["map", "scene.toml", "--no-png"]);
     let said = said(&run);
     assert!(said.starts_with("spectral f64 on "), "{said}");
-    let counts =
-        "(auto: at most 6144 cells a side, expansions cost 1248; a GPU is not timed below 0.1 s)";
-    assert!(said.ends_with(counts), "{said}");
+    // What follows depends on how busy the machine is.
+    let counts = "(auto: at most 6144 cells a side, expansions cost 1248; ";
+    assert!(said.contains(counts), "{said}");
     let plan = place.run(&["plan", "scene.toml"]);
     let line = "engine        spectral f64: at most 6144 cells a side, expansions cost 1248";
     assert!(plan.out.contains(line), "{plan:?}");
