@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn a_submission_has_few_steps_or_one_trajectory() {
         let most = MOST_STEPS as u32;
-        assert_eq!(submissions(&[]), []);
+        assert!(submissions(&[]).is_empty());
         assert_eq!(submissions(&[1, most]), [0..1, 1..2]);
         let parts = submissions(&[most - 1, 1, 1, most, most + 9, 5, most - 5, 1]);
         assert_eq!(parts, [0..2, 2..3, 3..4, 4..5, 5..7, 7..8]);

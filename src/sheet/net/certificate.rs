@@ -1,7 +1,9 @@
 //! Certificate of panels: trajectories at places of rows between the nodes.
 
+use super::bound::{MARGIN, VALUE_WEIGHT, larger, largest};
 use super::panel::NetPanel;
 use super::row::NetRow;
+use super::size::NetSize;
 use super::{PanelRow, SMALLEST_RESIDUAL};
 use crate::numerics::WIDTH;
 use crate::numerics::expansion::Chebyshev;
@@ -9,29 +11,8 @@ use crate::sheet::case::SheetCase;
 use crate::sheet::{Row, Sheet};
 use crate::shooting::{PlainState, Reader};
 
-/// Factor by which a bound exceeds the largest error seen: the error between a few places may be larger than there.
-pub const MARGIN: f64 = 4.0;
-
-/// Error in whisker lengths that an error as large as the value's size along the row counts as: values may be ten times less accurate
-/// than states.
-pub const VALUE_WEIGHT: f64 = 0.1;
-
 /// Number of rows of a panel, and of places along each, at which states are checked.
 const CHECKS: usize = 8;
-
-/// Returns the larger of two errors in one unit; NaN if either is.
-#[must_use]
-pub fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
-}
-
-/// Returns the largest of the weighted `errors`, in whisker lengths; NaN if one is.
-#[must_use]
-pub fn largest<const N: usize>(errors: &[f64; N], weights: &[f64; N]) -> f64 {
-    let weighted = errors.iter().zip(weights);
-    let weighted = weighted.map(|(error, weight)| error.abs() * weight);
-    weighted.fold(0.0, larger)
-}
 
 /// Number of checked functions of a state.
 const CHECKED: usize = 8;
@@ -84,10 +65,39 @@ impl CheckedRow {
     }
 }
 
+/// Returns the panel of `size` over the range of `contacts`, with the bound on its residual for `rows` of `sheet`.
+///
+/// # Errors
+/// If the bound exceeds `most`, in whisker lengths, the size that is expected to be accurate enough; `None` if there is none.
+pub fn certified_panel(
+    sheet: &Sheet,
+    rows: &[PanelRow],
+    contacts: [f64; 2],
+    size: NetSize,
+    most: f64,
+) -> Result<NetPanel, Option<NetSize>> {
+    let mut panel = NetPanel::new(sheet, rows, contacts, size).ok_or(None)?;
+    let tails = panel.tails();
+    let error = larger(tails[0].last, tails[1].last);
+    // NaN is not below any bound.
+    let has_converged = MARGIN * error <= most;
+    if !has_converged {
+        return Err(size.enough(tails, most));
+    }
+    panel.shorten();
+    panel.residual = certified(sheet, &panel.reader, &panel, rows, error);
+    if panel.residual <= most {
+        Ok(panel)
+    } else {
+        // Between the nodes, the error is larger than the last coefficients.
+        Err(size.larger())
+    }
+}
+
 /// Returns a bound on the errors of the states of `panel`, in whisker lengths. It follows from trajectories at places of some of its `rows`,
 /// and from the error `by_decay` that the coefficients left out are expected to make. It is at least
 /// [`SMALLEST_RESIDUAL`]; NaN if a number is, or if no row has states.
-pub fn certified(
+fn certified(
     sheet: &Sheet,
     reader: &Reader,
     panel: &NetPanel,
@@ -137,4 +147,161 @@ pub fn certified(
         larger(miss, largest(&errors, &own.weights))
     });
     larger(MARGIN * misses.fold(by_decay, larger), SMALLEST_RESIDUAL)
+}
+
+#[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+mod tests {
+    use super::super::panel::tensor;
+    use super::super::row::FUNCTIONS;
+    use super::*;
+    use crate::numerics::expansion::chebyshev_points;
+    use crate::numerics::tensor::ChebyshevTensor;
+    use crate::rod::{Rod, Side};
+    use crate::sheet::Edge;
+    use crate::sheet::net::NET_RESIDUAL as MOST;
+    use crate::shooting::batch::Method;
+
+    /// Error of a coefficient, as a part of the largest coefficient of its function.
+    const SPOIL: f64 = 1e-6;
+
+    /// Coefficients between two spoiled ones: coprime to the sizes, so that all functions and all powers are among them.
+    const STRIDE: usize = 11;
+
+    /// The cone of the paper, with rows that end at the fold and at the tip.
+    fn cone() -> (Sheet, Vec<PanelRow>) {
+        let rod = Rod {
+            taper: 0.95,
+            bend: 0.4,
+            pole: 0.0125,
+            ..Rod::default()
+        };
+        let distances: Vec<f64> = (0..60).map(|i| 0.4 + 0.01 * f64::from(i)).collect();
+        let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &distances);
+        let rows = (0..60).filter_map(|row| PanelRow::new(&sheet, row));
+        let rows = rows.collect();
+        (sheet, rows)
+    }
+
+    fn panel(sheet: &Sheet, rows: &[PanelRow]) -> NetPanel {
+        let last = rows.iter().map(|own| own.contacts[1]);
+        let contacts = [rows[0].contacts[0], last.fold(0.0, f64::max)];
+        let size = NetSize {
+            contacts: 28,
+            loads: 24,
+        };
+        let panel = certified_panel(sheet, rows, contacts, size, MOST);
+        panel.unwrap_or_else(|_| panic!("refused"))
+    }
+
+    fn bound(sheet: &Sheet, rows: &[PanelRow], panel: &NetPanel) -> f64 {
+        certified(sheet, &panel.reader, panel, rows, 0.0)
+    }
+
+    /// The tensor of a panel with all its coefficients.
+    fn whole(sheet: &Sheet, panel: &NetPanel) -> ChebyshevTensor<FUNCTIONS> {
+        tensor(sheet, &panel.reader, panel.size, &panel.along, panel.top)
+    }
+
+    fn with_tensor(panel: &NetPanel, tensor: ChebyshevTensor<FUNCTIONS>) -> NetPanel {
+        NetPanel {
+            columns: tensor.columns(chebyshev_points(panel.size.columns())),
+            tensor,
+            ..panel.clone()
+        }
+    }
+
+    /// A single wrong coefficient of any power of any function exceeds the bound, although all others decay. With NaN there is no bound.
+    #[test]
+    fn a_spoiled_coefficient_is_refused() {
+        let (sheet, rows) = cone();
+        let edge = |row: &PanelRow| sheet.crossings[row.row][0].edge;
+        assert!(
+            [Edge::Fold, Edge::Tip]
+                .iter()
+                .all(|own| rows.iter().any(|row| edge(row) == *own))
+        );
+        let sound = panel(&sheet, &rows);
+        assert!(bound(&sheet, &rows, &sound) <= sound.residual);
+        let NetSize { contacts, loads } = sound.size;
+        let whole = whole(&sheet, &sound);
+        let largest = whole.coefficients.iter().flatten();
+        let largest = largest.fold([0.0; FUNCTIONS], |most, own| {
+            std::array::from_fn(|i| f64::max(most[i], own[i].abs()))
+        });
+        for place in (0..contacts * loads * FUNCTIONS).step_by(STRIDE) {
+            let (power, function) = (place / FUNCTIONS, place % FUNCTIONS);
+            let (in_u, in_p) = (power / loads, power % loads);
+            let spoiled = |change: &dyn Fn(&mut f64)| {
+                let mut tensor = whole.clone();
+                change(&mut tensor.coefficients[in_u][in_p][function]);
+                bound(&sheet, &rows, &with_tensor(&sound, tensor))
+            };
+            let wrong = spoiled(&|own| *own += SPOIL * largest[function]);
+            let without = spoiled(&|own| *own = f64::NAN);
+            assert!(
+                (wrong > MOST || wrong.is_nan()) && without.is_nan(),
+                "function {function}, powers {in_u} and {in_p}: {wrong:e} {without:e}"
+            );
+        }
+    }
+
+    /// A wrong node, or a wrong scale of the load, is found by the decay of the coefficients or by the trajectories.
+    #[test]
+    fn a_spoiled_node_is_refused() {
+        let (sheet, rows) = cone();
+        let sound = panel(&sheet, &rows);
+        let whole = whole(&sheet, &sound);
+        let NetSize { contacts, loads } = sound.size;
+        for node in (0..contacts * loads).step_by(29) {
+            let (in_u, in_p) = (node / loads, node % loads);
+            let weight = |count: usize, node: usize| {
+                let mut values = vec![[0.0; 1]; count];
+                values[node] = [1.0];
+                Chebyshev::through(&values).coefficients
+            };
+            let (by_u, by_p) = (weight(contacts, in_u), weight(loads, in_p));
+            for function in 0..FUNCTIONS {
+                let mut tensor = whole.clone();
+                for (terms, [by_u]) in tensor.coefficients.iter_mut().zip(&by_u) {
+                    for (term, [by_p]) in terms.iter_mut().zip(&by_p) {
+                        term[function] += 1e-6 * by_u * by_p;
+                    }
+                }
+                let spoiled = with_tensor(&sound, tensor);
+                let [in_u, in_p] = spoiled.tails().map(|tail| tail.last);
+                let error = certified(&sheet, &sound.reader, &spoiled, &rows, larger(in_u, in_p));
+                assert!(
+                    error > MOST || error.is_nan(),
+                    "node {node}, function {function}: {error:e}"
+                );
+            }
+        }
+    }
+
+    /// States of the net at random contacts and loads of a row are those of trajectories.
+    #[test]
+    fn a_bound_is_four_times_the_largest_error() {
+        let (sheet, rows) = cone();
+        let sound = panel(&sheet, &rows);
+        let by_decay = |error: f64| certified(&sheet, &sound.reader, &sound, &rows, error);
+        assert_eq!(by_decay(1e-6), 4e-6);
+        let own = by_decay(0.0);
+        assert!((1e-12..1e-10).contains(&own), "{own:e}");
+        let spoiled = |function: usize, change: f64| {
+            let mut tensor = sound.tensor.clone();
+            tensor.coefficients[0][0][function] += change;
+            bound(&sheet, &rows, &with_tensor(&sound, tensor))
+        };
+        // The direction of the pole: the pole is missed by its distance times the change.
+        let farthest = sheet.rows[rows[rows.len() - 1].row].pole_distance;
+        let by_phi = spoiled(1, SPOIL) / (MARGIN * SPOIL);
+        assert!((by_phi / farthest - 1.0).abs() < 1e-3, "{by_phi}");
+        let by_angle = spoiled(2, SPOIL) / (MARGIN * SPOIL * VALUE_WEIGHT);
+        assert!((by_angle - 1.0).abs() < 1e-3, "{by_angle}");
+    }
 }

@@ -9,17 +9,19 @@
 //! both coordinates, trajectories at places of its rows between the nodes, and the end of every row, which is computed apart
 //! ([`Crossing`](crate::sheet::Crossing)).
 
+mod bound;
 mod certificate;
 mod panel;
 mod row;
 mod size;
 
-pub use certificate::{MARGIN, VALUE_WEIGHT, larger, largest};
+pub use bound::{MARGIN, VALUE_WEIGHT, larger, largest};
 pub use row::{NetBlock, NetRow};
 
 use crate::plan::net_cost;
 use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::{Crossing, Sheet};
+use certificate::certified_panel;
 use panel::NetPanel;
 use size::NetSize;
 
@@ -170,7 +172,7 @@ fn smallest_panel(
 ) -> Option<NetPanel> {
     let mut size = Some(NetSize::first(most, contacts[1] - contacts[0]));
     for _ in 0..TRIES {
-        match NetPanel::new(sheet, rows, contacts, size.filter(|own| pays(*own))?, most) {
+        match certified_panel(sheet, rows, contacts, size.filter(|own| pays(*own))?, most) {
             Ok(panel) => return Some(panel),
             Err(enough) => size = enough,
         }

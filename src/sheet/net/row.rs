@@ -1,12 +1,14 @@
 //! Rows of a net: the states of one row at Chebyshev points of its part of the load.
 
-use super::panel::FUNCTIONS;
 use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
 use crate::numerics::tensor::LevelBlock;
 use crate::numerics::{Lanes, SimdTask, Unit, WIDTH, nearest_turn};
 use crate::sheet::{Row, Sheet};
 use crate::shooting::StateNumbers;
 use crate::shooting::contact::{direction, exp, radius_and_arclength};
+
+/// Number of functions of a tensor.
+pub const FUNCTIONS: usize = 7;
 
 /// States of a row side by side in SIMD lanes.
 #[derive(Clone, Copy, Debug)]
