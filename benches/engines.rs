@@ -1,14 +1,15 @@
 //! Cost of each stage of a map: `cargo bench --bench engines -- [filter]`. `whiskmap bench` measures whole maps and their accuracy.
-#![allow(missing_docs, reason = "criterion's macros make public functions")]
+#![allow(clippy::print_stdout, reason = "the program prints a table")]
 #![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
 #[path = "../tests/cells/mod.rs"]
 mod cells;
+mod measure;
 #[path = "../tests/random_rods/mod.rs"]
 mod random_rods;
 
 use cells::{RandomRows, solve};
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use measure::Group;
 use random_rods::{USUAL, conditions};
 use std::convert::Infallible;
 use std::hint::black_box;
@@ -31,41 +32,44 @@ use whiskmap::store::{
 
 const TRAJECTORIES: usize = 16_384;
 
+fn main() {
+    integrators();
+    engines();
+    sheets();
+    files();
+}
+
 /// Trajectories by number of steps and by derivatives, scalar and in SIMD vectors.
-fn integrators(criterion: &mut Criterion) {
+fn integrators() {
     let conditions: Vec<InitialCondition> = conditions(USUAL, TRAJECTORIES, 6.5, 1);
-    let mut group = criterion.benchmark_group("integrators");
-    group.throughput(Throughput::Elements(TRAJECTORIES as u64));
+    let group = Group::new("integrators");
     for resolution in Resolution::LADDER {
         let method = Method::new(resolution).with_effects(USUAL);
         let steps = resolution.least;
-        group.bench_function(
-            BenchmarkId::new("nystrom8, first derivatives", steps),
-            |b| {
-                b.iter(|| Batch::new(method).shoot::<ShootingMap>(black_box(&conditions)));
-            },
-        );
+        let name = format!("nystrom8, first derivatives, {steps} steps");
+        group.rate(name, TRAJECTORIES, || {
+            Batch::new(method).shoot::<ShootingMap>(black_box(&conditions))
+        });
     }
     let fine = Method::fine().with_effects(USUAL);
-    group.bench_function("nystrom8, first derivatives and energy", |b| {
-        b.iter(|| Batch::new(fine).shoot::<FirstVariation>(black_box(&conditions)));
+    group.rate(
+        "nystrom8, first derivatives and energy",
+        TRAJECTORIES,
+        || Batch::new(fine).shoot::<FirstVariation>(black_box(&conditions)),
+    );
+    group.rate("nystrom8, second derivatives", TRAJECTORIES, || {
+        Batch::new(fine).shoot::<SecondVariation>(black_box(&conditions))
     });
-    group.bench_function("nystrom8, second derivatives", |b| {
-        b.iter(|| Batch::new(fine).shoot::<SecondVariation>(black_box(&conditions)));
+    group.rate("nystrom8, first derivatives, scalar", TRAJECTORIES, || {
+        Batch::new(fine)
+            .on(Unit::scalar())
+            .shoot::<ShootingMap>(black_box(&conditions))
     });
-    group.bench_function("nystrom8, first derivatives, scalar", |b| {
-        b.iter(|| {
-            Batch::new(fine)
-                .on(Unit::scalar())
-                .shoot::<ShootingMap>(black_box(&conditions))
-        });
-    });
-    group.finish();
 }
 
 /// Engines by number of cells in a batch.
-fn engines(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("engines");
+fn engines() {
+    let group = Group::new("engines");
     let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Cpu::default())];
     for precision in [Precision::F32, Precision::F64] {
         // Without a GPU driver only the CPU is measured.
@@ -75,14 +79,11 @@ fn engines(criterion: &mut Criterion) {
         let rows = RandomRows::many(96, USUAL, whiskers, 2, |_, _| ());
         for engine in &mut engines {
             let batch = rows.batch(engine.as_ref());
-            group.throughput(Throughput::Elements(batch.cells() as u64));
-            let name = engine.describe().engine;
-            group.bench_function(BenchmarkId::new(name, batch.cells()), |b| {
-                b.iter(|| solve(engine.as_mut(), black_box(&batch)));
-            });
+            let cells = batch.cells();
+            let name = format!("{}, {cells} cells", engine.describe().engine);
+            group.rate(name, cells, || solve(engine.as_mut(), black_box(&batch)));
         }
     }
-    group.finish();
 }
 
 fn scene() -> Scene {
@@ -91,20 +92,20 @@ fn scene() -> Scene {
 }
 
 /// Folds, lattice and crossings of a sheet, and refinement of its cells from the guesses of the lattice.
-fn sheets(criterion: &mut Criterion) {
+fn sheets() {
     let scene = scene();
     let rod = scene.whisker.rod(&scene.pole, Side::Cb);
     let method = Method::fine();
     let length = scene.whisker.length_mm;
     let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
-    let mut group = criterion.benchmark_group("sheets");
-    group.bench_function("fold at the tip", |b| {
-        b.iter(|| Sheet::fold_at_tip(method, black_box(&rod), Side::Cb));
+    let group = Group::new("sheets");
+    group.time("fold at the tip", || {
+        Sheet::fold_at_tip(method, black_box(&rod), Side::Cb)
     });
     for rows in [1, 32, 512] {
         let distances: Vec<f64> = distances.iter().copied().step_by(512 / rows).collect();
-        group.bench_function(BenchmarkId::new("folds and crossings, rows", rows), |b| {
-            b.iter(|| Sheet::new(method, black_box(&rod), Side::Cb, &distances));
+        group.time(format!("folds and crossings, {rows} rows"), || {
+            Sheet::new(method, black_box(&rod), Side::Cb, &distances)
         });
     }
     let sheet = Sheet::new(method, &rod, Side::Cb, &distances);
@@ -121,15 +122,13 @@ fn sheets(criterion: &mut Criterion) {
             }));
         }
     }
-    group.throughput(Throughput::Elements(shots.len() as u64));
-    group.bench_function("refinement", |b| {
-        b.iter(|| refine(method, &[&sheet], black_box(&shots)));
+    group.rate("refinement", shots.len(), || {
+        refine(method, &[&sheet], black_box(&shots))
     });
-    group.finish();
 }
 
 /// Writing of a map file.
-fn files(criterion: &mut Criterion) {
+fn files() {
     let scene = scene();
     let plan = Plan::new(&scene).expect("the scene is small");
     let mut kept: Option<Panel> = None;
@@ -159,18 +158,8 @@ fn files(criterion: &mut Criterion) {
         writer.finish(EngineCells::default(), Audit::default())?;
         Ok(())
     };
-    let mut group = criterion.benchmark_group("files");
-    group.throughput(Throughput::Elements(panel.regime.len() as u64));
-    group.bench_function("exr, 512 x 512 cells", |b| {
-        let path = folder.path().join("map.exr");
-        b.iter(|| write(&path).expect("the folder can be written"));
+    let path = folder.path().join("map.exr");
+    Group::new("files").rate("exr, 512 x 512 cells", panel.regime.len(), || {
+        write(&path).expect("the folder can be written");
     });
-    group.finish();
 }
-
-criterion_group! {
-    name = benches;
-    config = Criterion::default().sample_size(20);
-    targets = integrators, engines, sheets, files
-}
-criterion_main!(benches);
