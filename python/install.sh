@@ -9,7 +9,7 @@ environment="$target/python-environment"
 "$environment/bin/pip" install -q --disable-pip-version-check \
     'maturin>=1.9.4,<2' 'dask[array]' ipykernel jupytext matplotlib mypy nbconvert numpy pandas pytest scipy tqdm types-tqdm xarray zarr >&2
 rm -rf "$target/wheels"
-# The profile of the other tests, so that their crates are not built again.
+# The profile of `tests/run.sh`, so that its crates are not built again.
 "$environment/bin/maturin" build -q -m Cargo.toml --profile checked --locked --out "$target/wheels" >&2
 "$environment/bin/pip" install -q --disable-pip-version-check --force-reinstall --no-deps "$target"/wheels/*.whl >&2
 echo "$environment"

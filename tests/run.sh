@@ -19,13 +19,18 @@ fi
 # Mesa prints an error if this is unset.
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 
+# The extension of the Python package has no tests. With it, dependencies have the features that the extension requires, so that its wheel
+# is built on the crates that the tests have built.
+packages=(-p whiskmap -p whiskmap-mechanics -p whiskmap-plot -p whiskmap-python)
+options=(--all-features --profile checked --locked)
+
 cargo fmt --check
-cargo clippy --all-targets --all-features --profile checked --locked -- -D warnings
+cargo clippy "${packages[@]}" --all-targets "${options[@]}" -- -D warnings
 cargo clippy --lib --no-default-features --profile checked --locked -- -D warnings
-RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --all-features --locked --profile checked
+RUSTDOCFLAGS="-D warnings" cargo doc --no-deps "${packages[@]}" "${options[@]}"
 log="$(mktemp)"
 trap 'rm -f "$log"' EXIT
-cargo test --all-features --profile checked --locked --no-fail-fast | tee "$log"
+cargo test "${packages[@]}" "${options[@]}" --no-fail-fast | tee "$log"
 # Another user may ignore the tests that only root can run.
 if grep -E '^test .* \.\.\. ignored' "$log" | grep -v 'only root can'; then
     echo "error: tests were ignored, for the reasons above; all tests must run" >&2
