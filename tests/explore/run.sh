@@ -3,8 +3,8 @@
 #
 #     tests/explore/run.sh [WHISKMAP [PART]]
 #
-# With PART, only tests whose names contain it run; `times` prints how long the page takes. Needs Chromium and Node.js; on Debian and
-# Ubuntu it installs them if they are missing. Screenshots stay in target/explore.
+# With PART, only tests whose names contain it run. `times` prints how long the page takes, which runs only by this name. Needs Chromium
+# and Node.js; on Debian and Ubuntu it installs them if they are missing. Screenshots stay in target/explore.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
