@@ -1,6 +1,6 @@
 //! Detachment curves of Figs. 3E, 3J, 4D and 5C, and measured ends over them.
 
-use super::{figure, last, plot};
+use super::{drawn, last, plot};
 use whiskmap::measured::MeasuredPoint;
 use whiskmap::paper::Measurements;
 use whiskmap::render::{Ink, Stroke};
@@ -67,8 +67,9 @@ fn measured_ends_are_circles_over_the_theory() {
         fig5c_left: both,
         fig5c_right: Vec::new(),
     };
+    let all = drawn(&measured);
     let dots = |name: &str, place: usize| {
-        let figure = figure(name, &measured);
+        let figure = all.iter().find(|figure| figure.name == name).unwrap();
         let dots = figure.chart.plots[place].dots.iter();
         dots.map(|dot| (dot.at, dot.ink, dot.open))
             .collect::<Vec<_>>()

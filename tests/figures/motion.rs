@@ -1,7 +1,6 @@
 //! Figures of courses: 4B, 5B, 6 and 7B.
 
 use super::{figure, last, named_lines, near, plot};
-use whiskmap::paper::Measurements;
 use whiskmap::render::{Ink, Line};
 
 /// The red line of Fig. 4B is in contact: the whisker slips off with its contact before the tip, the hair with its tip at the pole.
@@ -14,10 +13,10 @@ fn fig4b_shows_the_last_frame_before_the_detachment() {
         };
         let away = |at: &[f64; 2]| (at[0] - pole.centre[0]).hypot(at[1] - pole.centre[1]);
         let nearest = |line: &Line| line.points.iter().map(away).fold(f64::INFINITY, f64::min);
-        let [before] = named_lines(&plot, "last frame before detachment")[..] else {
+        let [before] = named_lines(plot, "last frame before detachment")[..] else {
             panic!("{letter}");
         };
-        let [after] = named_lines(&plot, "next frame")[..] else {
+        let [after] = named_lines(plot, "next frame")[..] else {
             panic!("{letter}");
         };
         assert!((nearest(before) - pole.radius).abs() < 1e-6, "{letter}");
@@ -35,14 +34,14 @@ fn fig4b_shows_the_last_frame_before_the_detachment() {
 #[test]
 fn fig5b_has_one_red_frame() {
     let plot = plot("fig5b", "B");
-    assert_eq!(named_lines(&plot, "last frame before detachment").len(), 1);
+    assert_eq!(named_lines(plot, "last frame before detachment").len(), 1);
     assert!(plot.lines.len() > 10);
 }
 
 /// The cone slips on at 0.33 and 1.5 mm and the hair is caught, as in the paper. The caption says where the model differs.
 #[test]
 fn fig6_says_where_the_model_differs() {
-    let fig6 = figure("fig6", &Measurements::default());
+    let fig6 = figure("fig6");
     let parts = |plot: usize, ink: Ink| {
         let lines = fig6.chart.plots[plot]
             .lines
@@ -72,13 +71,13 @@ fn fig6_says_where_the_model_differs() {
 #[test]
 fn fig7b_scatters_around_the_true_force() {
     let plot = plot("fig7b", "B");
-    let [lever] = named_lines(&plot, "moment over lever")[..] else {
+    let [lever] = named_lines(plot, "moment over lever")[..] else {
         panic!();
     };
-    let [model] = named_lines(&plot, "full model")[..] else {
+    let [model] = named_lines(plot, "full model")[..] else {
         panic!();
     };
-    let [truth] = named_lines(&plot, "true force")[..] else {
+    let [truth] = named_lines(plot, "true force")[..] else {
         panic!();
     };
     for line in [lever, model] {
