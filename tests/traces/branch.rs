@@ -1,48 +1,34 @@
 //! Properties of every branch.
 
-use super::{POLE, everything, whisker};
+use super::{EVERY_BRANCH, POLE, branches_at_9_mm, whisker};
 use whiskmap::rod::Side;
 use whiskmap::scene::Pole;
-use whiskmap::trace::{
-    Branch, BranchMark, BranchPoint, DetachmentKind, NoState, StableBranch, curve,
-};
-
-const DISTANCES: [f64; 4] = [0.5, 9.0, 17.5, 19.0];
+use whiskmap::trace::{Branch, BranchMark, BranchPoint, DetachmentKind, NoState, StableBranch};
 
 /// Runs `check` on the branch of every whisker that reaches its pole, with `count` points.
 fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)) {
     let mut followed = 0;
-    for (whisker, pole) in everything() {
-        for distance in DISTANCES.into_iter().filter(|d| *d > pole.radius_mm) {
-            for side in Side::BOTH {
-                let case = format!("{whisker:?} {pole:?} {side:?} at {distance}");
-                match Branch::new(&whisker, &pole, side, distance) {
-                    Ok(branch) => {
-                        let points = branch.points(count).unwrap();
-                        let end = curve(&whisker, &pole, side, &[distance])[0];
-                        check(
-                            &case,
-                            &branch,
-                            &points,
-                            side.sign() * end.push_angle_deg.unwrap(),
-                        );
-                        let kind = match points
-                            .iter()
-                            .find(|point| point.mark == Some(BranchMark::SlipOff))
-                        {
-                            Some(_) => DetachmentKind::SlipOff,
-                            None => DetachmentKind::PullOff,
-                        };
-                        assert_eq!(kind, end.kind, "{case}");
-                        followed += 1;
-                    }
-                    Err(NoState::OutOfReach { .. }) => {
-                        let end = curve(&whisker, &pole, side, &[distance])[0];
-                        assert_eq!(end.kind, DetachmentKind::OutOfReach, "{case}");
-                    }
-                    Err(why) => panic!("{case}: {why}"),
-                }
+    for own in EVERY_BRANCH.iter() {
+        let (case, end) = (own.case(), own.end);
+        match &own.branch {
+            Ok(branch) => {
+                let points = branch.points(count).unwrap();
+                let push = own.side.sign() * end.push_angle_deg.unwrap();
+                check(&case, branch, &points, push);
+                let kind = match points
+                    .iter()
+                    .find(|point| point.mark == Some(BranchMark::SlipOff))
+                {
+                    Some(_) => DetachmentKind::SlipOff,
+                    None => DetachmentKind::PullOff,
+                };
+                assert_eq!(kind, end.kind, "{case}");
+                followed += 1;
             }
+            Err(NoState::OutOfReach { .. }) => {
+                assert_eq!(end.kind, DetachmentKind::OutOfReach, "{case}");
+            }
+            Err(why) => panic!("{case}: {why}"),
         }
     }
     assert!(followed > 450, "{followed}");
@@ -52,18 +38,15 @@ fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)
 #[test]
 fn the_stable_part_has_the_states_of_the_branch() {
     let mut compared = 0;
-    for (whisker, pole) in everything() {
-        for side in Side::BOTH {
-            let case = format!("{whisker:?} {pole:?} {side:?}");
-            let branch = Branch::new(&whisker, &pole, side, 9.0).unwrap();
-            let part = StableBranch::new(&whisker, &pole, side, 9.0).unwrap();
-            let end = branch.stable_end_deg();
-            assert_eq!(part.end_deg(), end, "{case}");
-            for share in [-0.1, 0.01, 0.3, 0.7, 0.99, 1.1] {
-                let push = (share * end).to_radians();
-                assert_eq!(part.state(push), branch.state(push, true), "{case}");
-                compared += 1;
-            }
+    for (own, branch) in branches_at_9_mm() {
+        let case = own.case();
+        let part = StableBranch::new(&own.whisker, &own.pole, own.side, 9.0).unwrap();
+        let end = branch.stable_end_deg();
+        assert_eq!(part.end_deg(), end, "{case}");
+        for share in [-0.1, 0.01, 0.3, 0.7, 0.99, 1.1] {
+            let push = (share * end).to_radians();
+            assert_eq!(part.state(push), branch.state(push, true), "{case}");
+            compared += 1;
         }
     }
     assert!(compared > 600, "{compared}");

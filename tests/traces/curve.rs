@@ -109,9 +109,13 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
             });
             let distances: Vec<f64> = (1..20).map(|i| 0.7 * f64::from(i)).collect();
             for side in Side::BOTH {
-                for (distance, end) in distances
+                let places: Vec<f64> = distances.iter().map(|own| own / 20.0).collect();
+                let rod = whisker.rod(&POLE, side);
+                let sheet = Sheet::new(Method::fine(), &rod, side, &places);
+                for ((distance, end), crossings) in distances
                     .iter()
                     .zip(curve(&whisker, &POLE, side, &distances))
+                    .zip(&sheet.crossings)
                 {
                     let Ok(branch) = Branch::new(&whisker, &POLE, side, *distance) else {
                         continue;
@@ -128,9 +132,7 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
                         "{case}: {push} {last:?}"
                     );
                     compared += 1;
-                    let rod = whisker.rod(&POLE, side);
-                    let sheet = Sheet::new(Method::fine(), &rod, side, &[distance / 20.0]);
-                    several += usize::from(sheet.crossings[0].len() > 1);
+                    several += usize::from(crossings.len() > 1);
                 }
             }
         }

@@ -6,7 +6,11 @@ mod closed_form;
 mod curve;
 mod shape;
 
+use rayon::prelude::*;
+use std::sync::LazyLock;
+use whiskmap::rod::Side;
 use whiskmap::scene::{Curvature, Pole, Whisker};
+use whiskmap::trace::{Branch, Detachment, NoState, curve};
 
 /// Whisker of 20 mm length with a base radius of 30 um.
 fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
@@ -54,3 +58,56 @@ const ROUGH: Pole = Pole {
 /// Pole of the paper, and a point contact.
 const POLE: Pole = Pole::smooth(0.25);
 const POINT: Pole = Pole::smooth(0.0);
+
+/// Distances of first touch of [`EVERY_BRANCH`], in mm.
+const DISTANCES: [f64; 4] = [0.5, 9.0, 17.5, 19.0];
+
+/// A branch of [`everything`], and the end of its push by [`curve`].
+struct TestBranch {
+    whisker: Whisker,
+    pole: Pole,
+    side: Side,
+    distance_mm: f64,
+    branch: Result<Branch, NoState>,
+    end: Detachment,
+}
+
+impl TestBranch {
+    /// Returns a description of the whisker and the pole.
+    fn case(&self) -> String {
+        let Self {
+            whisker,
+            pole,
+            side,
+            distance_mm,
+            ..
+        } = self;
+        format!("{whisker:?} {pole:?} {side:?} at {distance_mm}")
+    }
+}
+
+/// The branches of all whiskers and poles of [`everything`], on both sides, at [`DISTANCES`] beyond the radius of the pole. Several tests
+/// read them.
+static EVERY_BRANCH: LazyLock<Vec<TestBranch>> = LazyLock::new(|| {
+    let mut cases = Vec::new();
+    for (whisker, pole) in everything() {
+        for distance in DISTANCES.into_iter().filter(|d| *d > pole.radius_mm) {
+            cases.extend(Side::BOTH.map(|side| (whisker.clone(), pole, side, distance)));
+        }
+    }
+    let of_case = |(whisker, pole, side, distance_mm)| TestBranch {
+        branch: Branch::new(&whisker, &pole, side, distance_mm),
+        end: curve(&whisker, &pole, side, &[distance_mm])[0],
+        whisker,
+        pole,
+        side,
+        distance_mm,
+    };
+    cases.into_par_iter().map(of_case).collect()
+});
+
+/// Returns the branches of [`EVERY_BRANCH`] at 9 mm, which every whisker reaches.
+fn branches_at_9_mm() -> impl Iterator<Item = (&'static TestBranch, &'static Branch)> {
+    let near = EVERY_BRANCH.iter().filter(|own| own.distance_mm == 9.0);
+    near.map(|own| (own, own.branch.as_ref().unwrap()))
+}

@@ -1,6 +1,6 @@
 //! Shapes: geometry, statics and limit at rest.
 
-use super::{POLE, everything, whisker};
+use super::{POLE, branches_at_9_mm, everything, whisker};
 use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, WhiskerPart, WhiskerShape};
 
@@ -8,22 +8,16 @@ use whiskmap::trace::{Branch, WhiskerPart, WhiskerShape};
 /// equals that of the pole's force.
 #[test]
 fn a_shape_fits_its_state() {
-    for (whisker, pole) in everything() {
-        for (side, stable) in [
-            (Side::Cb, true),
-            (Side::Cf, true),
-            (Side::Cb, false),
-            (Side::Cf, false),
-        ] {
-            let case = format!("{whisker:?} {pole:?} {side:?} {stable}");
-            let branch = Branch::new(&whisker, &pole, side, 9.0).unwrap();
-            let points = branch.points(41).unwrap();
+    for (own, branch) in branches_at_9_mm() {
+        let points = branch.points(41).unwrap();
+        for stable in [true, false] {
+            let case = format!("{}, {stable}", own.case());
             let mut part = points.iter().filter(|point| point.stable == stable);
             let Some(push) = part.nth(3).map(|point| point.push_angle_deg) else {
                 continue;
             };
             let state = branch.state(push.to_radians(), stable).unwrap();
-            let shape = WhiskerShape::new(&branch, &state, 100);
+            let shape = WhiskerShape::new(branch, &state, 100);
             let base = shape.points[0];
             assert!(base.x_mm.hypot(base.y_mm) < 2e-10, "{case}: {base:?}");
             assert!((base.angle_deg + push).abs() < 2e-9, "{case}: {base:?}");
@@ -31,7 +25,11 @@ fn a_shape_fits_its_state() {
             let miss = (base.moment_nnm / reading.base_moment_nnm - 1.0).abs();
             assert!(miss < 1e-9, "{case}: {base:?}");
             // The curvature of the base changes by the strain over the radius, 30 um.
-            let at_rest = 2.0 * whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+            let at_rest = 2.0
+                * own
+                    .whisker
+                    .curvature
+                    .map_or(0.0, |bend| bend.parabola_per_mm);
             let strain = 0.03 * (base.curvature_per_mm - at_rest).abs();
             assert!((strain - base.strain).abs() < 1e-12, "{case}: {base:?}");
             let strains = shape.points.iter().map(|point| point.strain);
@@ -50,7 +48,7 @@ fn a_shape_fits_its_state() {
                 .unwrap();
             let [x, y] = shape.pole_mm;
             let (dx, dy) = (x - contact.x_mm, y - contact.y_mm);
-            assert!((dx.hypot(dy) - pole.radius_mm).abs() < 1e-11, "{case}");
+            assert!((dx.hypot(dy) - own.pole.radius_mm).abs() < 1e-11, "{case}");
             let (sin, cos) = contact.angle_deg.to_radians().sin_cos();
             assert!(
                 (dx * cos + dy * sin).abs() < 1e-10,
@@ -104,18 +102,17 @@ fn a_shape_is_a_curve() {
 
 #[test]
 fn without_a_push_the_whisker_is_at_rest() {
-    for (whisker, pole) in everything() {
-        let branch = Branch::new(&whisker, &pole, Side::Cf, 9.0).unwrap();
+    for (own, branch) in branches_at_9_mm().filter(|(own, _)| own.side == Side::Cf) {
         let state = branch.state(0.0, true).unwrap();
         // The contact is an additional point.
-        let shape = WhiskerShape::new(&branch, &state, 50);
+        let shape = WhiskerShape::new(branch, &state, 50);
         let places = shape
             .points
             .iter()
             .filter(|point| point.part != WhiskerPart::Contact);
-        for (point, [x, y]) in places.zip(WhiskerShape::at_rest(&branch, 50)) {
+        for (point, [x, y]) in places.zip(WhiskerShape::at_rest(branch, 50)) {
             let miss = (point.x_mm - x).hypot(point.y_mm - y);
-            assert!(miss < 1e-10, "{whisker:?} {pole:?}: {point:?} {x} {y}");
+            assert!(miss < 1e-10, "{}: {point:?} {x} {y}", own.case());
         }
     }
 }
