@@ -1,5 +1,6 @@
 //! What the GPU makes of hard cases, in rows of many cells: the map is the CPU's, and most cells are the GPU's.
 
+use crate::by_cpu::by_cpu;
 use crate::case::{Case, compute};
 use crate::compute::{differences, median_and_worst, open};
 use crate::named::named;
@@ -9,7 +10,7 @@ use std::cell::RefCell;
 use std::fmt::Write;
 use whiskmap::engine::Engine;
 use whiskmap::engine::gpu::{Gpu, Precision};
-use whiskmap::map::{EngineCells, Panel, STATE_CHANNELS, Summary};
+use whiskmap::map::{EngineCells, STATE_CHANNELS};
 
 tests! {
     Precision:
@@ -26,15 +27,17 @@ struct Seen {
 
 impl Seen {
     /// Of the map of `case` by `gpu`; why it is not that of the CPU, from which states may be as far as `most`.
-    fn of(cpu: &(Summary, Panel), case: &Case, gpu: &mut Gpu, most: f32) -> Result<Self, String> {
-        let (summary, panel) = compute(&case.scene(), Some(gpu));
-        if panel.regime != cpu.1.regime || summary.disagreements != cpu.0.disagreements {
+    fn of(case: &Case, gpu: &mut Gpu, most: f32) -> Result<Self, String> {
+        let scene = case.scene();
+        let (of_cpu, by_cpu) = by_cpu(&scene);
+        let (summary, panel) = compute(&scene, Some(gpu));
+        if panel.regime != by_cpu[0].regime || summary.disagreements != of_cpu.disagreements {
             return Err(format!("other regimes: {summary:?}"));
         }
         if summary.audit.differing > 0 {
             return Err(format!("a false alarm: {:?}", summary.audit));
         }
-        let apart = differences(&cpu.1, &panel);
+        let apart = differences(&by_cpu[0], &panel);
         for (channel, apart) in STATE_CHANNELS.iter().zip(&apart) {
             let (_, worst) = median_and_worst(apart);
             if worst > most {
@@ -111,9 +114,8 @@ fn named_cases_are_solved_or_fall_back(precision: Precision) {
     let mut all = Seen::default();
     for (name, case) in named() {
         let case = case.dense();
-        let cpu = compute(&case.scene(), None);
-        let seen = Seen::of(&cpu, &case, &mut gpu, WORST_OF_HARD)
-            .unwrap_or_else(|why| panic!("{name}: {why}"));
+        let seen =
+            Seen::of(&case, &mut gpu, WORST_OF_HARD).unwrap_or_else(|why| panic!("{name}: {why}"));
         table += &seen.line(name);
         all.add(seen);
     }
@@ -149,8 +151,7 @@ fn engines_agree_on_random_whiskers(precision: Precision) {
     let (gpu, all) = (RefCell::new(open(precision)), RefCell::new(Seen::default()));
     let whiskers = cases().prop_map(|case| case.dense());
     let holds = |case: Case| {
-        let cpu = compute(&case.scene(), None);
-        let seen = Seen::of(&cpu, &case, &mut gpu.borrow_mut(), WORST_OF_HARD);
+        let seen = Seen::of(&case, &mut gpu.borrow_mut(), WORST_OF_HARD);
         let seen = seen.map_err(TestCaseError::fail)?;
         all.borrow_mut().add(seen);
         Ok(())

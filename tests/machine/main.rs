@@ -19,6 +19,7 @@ macro_rules! tests {
 
 mod adapters;
 mod bound;
+mod by_cpu;
 #[path = "../hard_cases/case.rs"]
 mod case;
 #[path = "../cells/mod.rs"]
