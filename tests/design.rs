@@ -260,15 +260,18 @@ fn the_largest_load_of_a_push_reaches_the_target() {
         (&robot(), 95.0, Side::Cb),
         (&cylinder, 6.0, Side::Cf),
     ] {
+        let states = |scene: &Scene| {
+            let branch = Branch::new(&scene.whisker, &scene.pole, side, distance_mm).unwrap();
+            branch.points(4000).unwrap()
+        };
+        let own_states = states(scene);
         for (goal, load) in goals {
-            let most = |scene: &Scene| {
-                let branch = Branch::new(&scene.whisker, &scene.pole, side, distance_mm).unwrap();
-                let points = branch.points(4000).unwrap();
-                let stable: Vec<f64> = points.iter().filter(|p| p.stable).map(load).collect();
+            let most = |states: &[BranchPoint]| {
+                let stable: Vec<f64> = states.iter().filter(|p| p.stable).map(load).collect();
                 let most = stable.iter().copied().fold(0.0, f64::max);
                 (most, most > stable[stable.len() - 1])
             };
-            let (value, is_before) = most(scene);
+            let (value, is_before) = most(&own_states);
             before_the_end += u32::from(is_before);
             let target = DesignTarget {
                 distance_mm,
@@ -284,7 +287,7 @@ fn the_largest_load_of_a_push_reaches_the_target() {
             let values = &design.values;
             assert!(off < 2e-6, "{goal:?} {side:?} at {distance_mm}: {values:?}");
             for found in &design.values {
-                let (reached, _) = most(&scene.with(parameter, *found).unwrap());
+                let (reached, _) = most(&states(&scene.with(parameter, *found).unwrap()));
                 let off = reached / value - 1.0;
                 assert!(
                     (-1e-5..2e-6).contains(&off),

@@ -11,7 +11,7 @@ use whiskmap::rod::{Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::shooting::batch::Method;
-use whiskmap::trace::{Detachment, DetachmentKind, NoState};
+use whiskmap::trace::{Detachment, DetachmentKind, NoState, WhiskerShape};
 
 /// Distance before and after an end at which shapes and maps are computed, in degrees.
 const BESIDE: f64 = 1e-6;
@@ -24,21 +24,27 @@ const MOST_PUSH: f64 = 360.0;
 
 /// Checks that shapes, branch and map agree with `end` at the only distance of `scene`.
 pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
+    let branch = whiskmap::branch(scene, end.distance_mm, end.side);
     let Some(push) = end.push_angle_deg else {
         prop_assert_eq!(end.kind, DetachmentKind::OutOfReach);
-        let branch = whiskmap::branch(scene, end.distance_mm, end.side);
         let is_out = matches!(branch, Err(NoState::OutOfReach { .. }));
         prop_assert!(is_out);
         return Ok(());
     };
+    // As `whiskmap::shape`, with one branch for both push angles.
+    let shape = |push: f64| {
+        let branch = branch.as_ref().map_err(|why| *why)?;
+        let state = branch.state(push.to_radians(), true)?;
+        Ok(WhiskerShape::new(branch, &state, 200))
+    };
     let beside = BESIDE * end.side.sign();
     let pulled_at_touch = push.abs() < BESIDE;
     if !pulled_at_touch {
-        let before = whiskmap::shape(scene, end.distance_mm, push - beside);
+        let before = shape(push - beside);
         let is_lost = matches!(before, Err(NoState::NoCourse { .. }));
         prop_assert!(before.is_ok() || is_lost, "{end:?}: {:?}", before.err());
     }
-    let after = whiskmap::shape(scene, end.distance_mm, push + beside).err();
+    let after = shape(push + beside).err();
     let (kind, at_deg) = match after {
         Some(NoState::SlippedOff { at_deg }) => (DetachmentKind::SlipOff, at_deg),
         Some(NoState::PulledOff { at_deg }) => (DetachmentKind::PullOff, at_deg),

@@ -45,7 +45,8 @@ fn map(case: &Case, gpa: &str) -> Panel {
 fn lengths_and_moduli_scale() {
     for (name, case) in named() {
         let reference = map(&case, "youngs_modulus_gpa = 3");
-        for length_mm in [0.1, 20.0, 1000.0] {
+        assert_eq!(case.length_mm, 20.0, "{name}");
+        for length_mm in [0.1, 1000.0] {
             let scaled = Case {
                 length_mm,
                 ..case.clone()
