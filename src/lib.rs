@@ -32,8 +32,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) compute in memory; the modules below are the
-//! topics around them. All features are on by default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders,
+//! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) compute in memory, and [`lazy_map`] computes
+//! whiskers when they are read; the modules below are the topics around them. All features are on by default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders,
 //! `render` the pictures, `zarr` the stores that many processes fill. `ndarray`, which is off by default, adds views of channels as
 //! arrays.
 
@@ -123,7 +123,7 @@ pub use engine::Precision;
 #[cfg(feature = "fit")]
 pub use front::fit;
 pub use front::{
-    Error, Map, MapCell, MapEngine, Options, branch, curve, for_each_panel, map, shape,
+    Error, Map, MapCell, MapEngine, Options, branch, curve, for_each_panel, lazy_map, map, shape,
 };
 pub use map::{Panel, Summary};
 pub use plan::{Channel, Channels};

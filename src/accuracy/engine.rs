@@ -1,10 +1,11 @@
-//! Share of a tolerance that is left to the engine, and the engines that keep it.
+//! Share of a tolerance that is left to the engine, the engines that keep it, and the bounds that a map describes.
 
-use super::{Accuracy, bound_deg};
+use super::{Accuracy, BOUNDED, bound_deg};
 use crate::engine::{Engine, Spectral};
 use crate::plan::Plan;
-use crate::refine::GOAL;
+use crate::refine::{GOAL, TOLERANCE};
 use crate::scene::Scene;
+use serde_json::{Value, json};
 
 /// Largest bound on the residual of the spectral engine, in whisker lengths.
 const LARGEST_BOUND: f64 = 1e-5;
@@ -45,4 +46,25 @@ pub fn excess_deg(scene: &Scene, residual_bound: f64, left_deg: Option<f64>) -> 
     left_deg
         .is_some_and(|left| bound > left * (1.0 + ROUNDING))
         .then_some(bound)
+}
+
+/// Returns the attribute `tolerances` of a map of `scene`: residuals of the CPU or the engine, and the estimated push-angle error of steps
+/// with an `accuracy`.
+#[must_use]
+pub fn tolerances(
+    scene: &Scene,
+    accuracy: Option<&Accuracy>,
+    engine: Option<&dyn Engine>,
+) -> Value {
+    let of_engine = engine.map_or(0.0, Engine::residual_bound);
+    let mut tolerances = json!({
+        "residual_goal_whisker_lengths": GOAL.max(of_engine),
+        "residual_accepted_whisker_lengths": TOLERANCE.max(of_engine),
+    });
+    if let Some(accuracy) = accuracy {
+        let error_deg = accuracy.error_deg + bound_deg(scene, of_engine);
+        tolerances["push_angle_error_estimated_deg"] = error_deg.into();
+        tolerances["bounded"] = BOUNDED.into();
+    }
+    tolerances
 }

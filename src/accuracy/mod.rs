@@ -5,7 +5,7 @@
 mod engine;
 mod sample;
 
-pub use engine::{cheaper, excess_deg, spectral};
+pub use engine::{cheaper, excess_deg, spectral, tolerances};
 
 use crate::refine::GOAL;
 use crate::rod::Side;

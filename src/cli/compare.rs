@@ -3,13 +3,15 @@
 use super::failure::Failure;
 use super::files::Files;
 use super::output_file::STDOUT;
+use super::solver::SolverArgs;
+use super::source::{channel_names, computed, is_scene, stored, warn};
 use clap::Args;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use whiskmap::compare::{MapComparison, QuantityComparison, Within, compare};
-use whiskmap::plan::Digits;
+use whiskmap::plan::{Channels, Digits};
 use whiskmap::store::{MapSource, StoreError};
 use whiskmap::terminal::StandardOutput;
 
@@ -20,18 +22,19 @@ Examples:
   whiskmap compare cpu/cone.exr gpu/cone.exr --within 1e-5 --json difference.json
   whiskmap compare exact.zarr rounded.zarr --within force_un=0.1,regime=0
   whiskmap compare outputs/cone.exr outputs/cone.zarr --within 0
+  whiskmap compare outputs/cone.exr scenes/cone.toml --engine spectral
 
 Both maps need the same scene and grid; engines, tolerances, channels, digits and formats may differ. Channels that only one \
-map has are named.
+map has are named. The map of a scene is computed, with the channels of the other map.
 
 The exit code is 1 if a difference exceeds --within. N is the allowed difference of channels of states and of margin_deg, as \
 a fraction of the channel's largest value; then no regime may differ. NAME=VALUE is the allowed difference of one channel, in \
 its unit, and of regime or status the number of cells that may differ. What rounding by --digits explains is not a \
 difference.")]
 pub struct CompareArgs {
-    /// First map or store
+    /// First map: a map or store written by `whiskmap map`, or a scene file (.toml); - is a scene on standard input
     first: PathBuf,
-    /// Second map or store
+    /// Second map, as the first
     second: PathBuf,
     /// Largest allowed differences: N relative for all states, NAME=VALUE for one channel; separated by commas
     #[arg(long, value_name = "LIST", value_parser = Within::from_str, allow_hyphen_values = true)]
@@ -39,20 +42,20 @@ pub struct CompareArgs {
     /// Write the comparison to FILE, as JSON; - is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Options for a scene")]
+    solver: SolverArgs,
 }
 
 pub fn run(args: &CompareArgs, files: &mut Files) -> Result<(), Failure> {
     let paths = [&args.first, &args.second];
-    let maps = [MapSource::open(paths[0])?, MapSource::open(paths[1])?];
-    for path in paths {
-        files.input(path);
-    }
+    let maps = open(args, files)?;
     let json = args.json.as_deref();
     let json = json.map(|path| files.output("--json", path)).transpose()?;
     if let Some(within) = &args.within {
         check(within, paths, &maps)?;
     }
     let comparison = compare(maps.each_ref())?;
+    maps.iter().for_each(warn);
     let within = args.within.as_ref();
     let exceeded = within.map_or_else(Vec::new, |within| within.exceeded(&comparison));
     if args.json.as_deref() != Some(Path::new(STDOUT)) {
@@ -66,6 +69,51 @@ pub fn run(args: &CompareArgs, files: &mut Files) -> Result<(), Failure> {
         [] => Ok(()),
         channels => Err(Failure::Different(channels.join(", "))),
     }
+}
+
+/// Opens both maps. Of a scene, the channels that the other map has are computed.
+fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure> {
+    let CompareArgs {
+        first,
+        second,
+        solver,
+        ..
+    } = args;
+    if [first, second].map(|path| path.as_path()) == [Path::new(STDOUT); 2] {
+        let why = "- and -: standard input is one scene, and can be read once; name a file";
+        return Err(Failure::Input(why.to_owned()));
+    }
+    let of_scene = |files: &mut Files, path: &Path, other: Option<&MapSource>| {
+        let scene = files.scene(path)?;
+        let known = channel_names(&scene);
+        let channels = other.map_or(Channels::STANDARD, |other| {
+            let others = other.channels();
+            Channels::those(|name| known.contains(&name) && others.contains(&name))
+        });
+        let whiskers = scene.whisker_count();
+        computed(scene, solver, channels, whiskers).map(MapSource::from)
+    };
+    // Options of the solver are for the scene, if there is one.
+    let unused = SolverArgs::default();
+    Ok(match [first, second].map(|path| is_scene(path)) {
+        [false, false] => [
+            stored(files, first, solver)?,
+            stored(files, second, solver)?,
+        ],
+        [false, true] => {
+            let own = stored(files, first, &unused)?;
+            let other = of_scene(files, second, Some(&own))?;
+            [own, other]
+        }
+        [true, false] => {
+            let other = stored(files, second, &unused)?;
+            [of_scene(files, first, Some(&other))?, other]
+        }
+        [true, true] => [
+            of_scene(files, first, None)?,
+            of_scene(files, second, None)?,
+        ],
+    })
 }
 
 /// Returns an error if a map lacks a channel that --within names.

@@ -22,7 +22,7 @@ enum EngineChoice {
     Gpu,
 }
 
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub struct EngineArgs {
     /// Engine that solves the cells [default: auto]
     #[arg(long, value_enum)]
@@ -99,6 +99,15 @@ impl EngineArgs {
             engine: self.engine.or(Some(EngineChoice::Cpu)),
             ..self.clone()
         }
+    }
+
+    /// Returns the name of the first option that is given; `None` without one.
+    pub fn given(&self) -> Option<&'static str> {
+        let engine = self.engine.map(|_| "--engine");
+        let precision = self.precision.map(|_| "--precision");
+        engine
+            .or(precision)
+            .or(self.adapter.as_ref().map(|_| "--adapter"))
     }
 
     /// Returns true if the options name an engine.

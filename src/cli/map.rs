@@ -3,24 +3,21 @@
 use super::arguments::{THREADS, whole};
 use super::digits::DigitsArgs;
 use super::disk;
-use super::engine::EngineArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::map_format::MapFormat;
 use super::output_file::{OutputFile, unwritten};
 use super::outputs::PictureFile;
 use super::sharded::{self, RunArgs};
+use super::solver::{PlannedMap, SolverArgs};
 use super::summary::{compute, report};
-use super::tolerance::ToleranceArgs;
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
-use whiskmap::accuracy::{Accuracy, BOUNDED, bound_deg};
-use whiskmap::engine::{Engine, EngineDescription};
+use whiskmap::engine::EngineDescription;
 use whiskmap::numerics::ArithmeticClass;
-use whiskmap::plan::{Channels, Plan};
-use whiskmap::refine::{GOAL, TOLERANCE};
+use whiskmap::plan::Channels;
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::scene::Scene;
 use whiskmap::store::{MapDescription, MapWriter, Output};
@@ -47,12 +44,10 @@ pub struct MapArgs {
     #[arg(short, long, value_name = "DIR", default_value = "outputs")]
     output: PathBuf,
     #[command(flatten)]
-    pub engine: EngineArgs,
+    pub solver: SolverArgs,
     /// Number of CPU threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = whole(THREADS))]
     pub threads: Option<u32>,
-    #[command(flatten)]
-    tolerance: ToleranceArgs,
     /// Compute and store only these channels, separated by commas
     /// [default: all but derivatives, such as d_push_d_taper]
     #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
@@ -69,36 +64,17 @@ pub struct MapArgs {
     no_png: bool,
 }
 
-/// Plan of a map, and the accuracy of its steps.
-pub struct PlannedMap {
-    pub plan: Plan,
-    /// Accuracy of the steps that --tolerance selects.
-    accuracy: Option<Accuracy>,
-    /// Part of the tolerance that the steps leave to the engine, in degrees; `None` without a tolerance.
-    pub left_deg: Option<f64>,
-}
-
 pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&args.scene)?;
     let format = args.format.unwrap_or(MapFormat::Exr);
-    let PlannedMap {
-        plan,
-        accuracy,
-        left_deg,
-    } = args.plan(&scene, format)?;
-    let mut engine = args.engine.open(&scene, &plan, left_deg)?;
-    match (&engine.0, left_deg) {
-        (Some(own), Some(_)) => message(&format!(
-            "accuracy: residuals of at most {:.1e} of the length",
-            own.residual_bound()
-        )),
-        _ => args.tolerance.report(accuracy),
-    }
+    let planned = args.plan(&scene, format)?;
+    let (mut engine, tolerances) = args.solver.open(&scene, &planned)?;
+    let plan = planned.plan;
     let solver = EngineDescription::of(engine.0.as_deref());
     let about = MapDescription {
         scene: &scene,
         engine: &solver,
-        tolerances: &tolerances(&scene, accuracy, engine.0.as_deref()),
+        tolerances: &tolerances,
         channels: plan.channels,
         digits: plan.digits,
         arithmetic: ArithmeticClass::detect().name(),
@@ -159,20 +135,10 @@ impl MapArgs {
     /// If the options contradict each other, the scene or the format.
     pub fn plan(&self, scene: &Scene, format: MapFormat) -> Result<PlannedMap, Failure> {
         self.check(scene, format)?;
-        let mut plan = format.plan(scene)?;
-        let accuracy = self.tolerance.find(scene, &plan.sides)?;
-        if let Some(accuracy) = &accuracy {
-            plan.method.resolution = accuracy.resolution;
-        }
-        let left_deg = self.tolerance.degrees().zip(accuracy.as_ref());
-        let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));
-        plan = plan.with_channels(self.channels.unwrap_or(Channels::STANDARD), scene)?;
-        plan.digits = self.digits.of(plan.channels)?;
-        Ok(PlannedMap {
-            plan,
-            accuracy,
-            left_deg,
-        })
+        let channels = self.channels.unwrap_or(Channels::STANDARD);
+        let mut map = self.solver.plan(scene, format.plan(scene)?, channels)?;
+        map.plan.digits = self.digits.of(channels)?;
+        Ok(map)
     }
 
     /// Returns an error if the format does not support the options.
@@ -202,23 +168,4 @@ impl MapArgs {
         }
         Ok(())
     }
-}
-
-/// Returns the attribute `tolerances` of the file: residuals of the CPU or the engine, and the estimated push-angle error.
-fn tolerances(
-    scene: &Scene,
-    accuracy: Option<Accuracy>,
-    engine: Option<&dyn Engine>,
-) -> serde_json::Value {
-    let of_engine = engine.map_or(0.0, Engine::residual_bound);
-    let mut tolerances = serde_json::json!({
-        "residual_goal_whisker_lengths": GOAL.max(of_engine),
-        "residual_accepted_whisker_lengths": TOLERANCE.max(of_engine),
-    });
-    if let Some(accuracy) = accuracy {
-        let error_deg = accuracy.error_deg + bound_deg(scene, of_engine);
-        tolerances["push_angle_error_estimated_deg"] = error_deg.into();
-        tolerances["bounded"] = BOUNDED.into();
-    }
-    tolerances
 }

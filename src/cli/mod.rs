@@ -41,6 +41,8 @@ mod sharded;
 mod signals;
 mod size;
 mod slurm;
+mod solver;
+mod source;
 mod status;
 mod stdout;
 mod submit;

@@ -7,12 +7,14 @@ use super::output_file::STDOUT;
 use super::outputs::PictureFile;
 use super::selection::{SelectionArgs, channels};
 use super::size::SizeArgs;
+use super::solver::SolverArgs;
+use super::source::warn;
 use clap::Args;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
-use whiskmap::store::MapSlice;
+use whiskmap::store::{MapSlice, MapSource};
 use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
@@ -25,13 +27,15 @@ Examples:
   whiskmap render outputs/cone.exr --channel force_un --log --range 1,1000
   whiskmap render outputs/cone.exr -o - | display
   whiskmap render outputs/sweep.zarr --at pole_radius_mm=0.25 --at friction=0.2
+  whiskmap render scenes/morphology.toml --at taper=0.95 --channel force_un
+  whiskmap render - -o map.png --engine cpu < my_whisker.toml
 
 A picture has at most two sweep axes; give a value of each other axis with --at. A slice of one distance is drawn as a line chart \
-of the channel. An SVG or PDF contains the cells as pixels, and text and lines as vectors.
+of the channel. Of a scene, only the whiskers of the picture are computed. An SVG or PDF contains the cells as pixels, and text and lines as vectors.
 
 The ends of --range have the unit in the channel's name, or a given unit, such as 5mm,1cm. The colour bar selects its own unit.")]
 pub struct RenderArgs {
-    /// Map or store written by `whiskmap map`
+    /// Map or store written by `whiskmap map`, or a scene file (.toml), which is computed; - is a scene on standard input
     file: PathBuf,
     #[command(flatten)]
     selection: SelectionArgs,
@@ -58,10 +62,12 @@ pub struct RenderArgs {
     width: Option<u32>,
     #[command(flatten)]
     size: SizeArgs,
-    /// Write the picture to FILE; the ending selects PNG, SVG or PDF; - is PNG on standard output [default: beside the map, named
-    /// by the map, --at and the channel]
+    /// Write the picture to FILE; the ending selects PNG, SVG or PDF; - is PNG on standard output [default: beside the map, or in
+    /// outputs for a scene; named by the map, --at and the channel]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Options for a scene")]
+    solver: SolverArgs,
 }
 
 /// Parses two numbers that are separated by a comma, in the unit of `channel` or with a unit.
@@ -78,14 +84,19 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
 }
 
 pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
-    let mut map = args.selection.open(files, &args.file)?;
+    let channel = args.channel.as_deref();
+    let wanted = ["regime", "status", "margin_deg"]
+        .into_iter()
+        .chain(channel);
+    let wanted: Vec<&str> = wanted.collect();
+    let (file, solver) = (&args.file, &args.solver);
+    let mut map = args.selection.open(files, file, solver, &wanted)?;
     if map.grid().sweep.len() > 2 {
         map.fix_single_axes();
     }
     let missing = map.blank_missing()?;
-    let channel = args.channel.as_deref();
-    if let Some(name) = &args.channel {
-        channels(&map, std::slice::from_ref(name))?;
+    if let Some(name) = channel {
+        channels(&map.channels(), &[name])?;
     }
     let ends = args.range.as_deref().zip(channel);
     let range = ends
@@ -107,6 +118,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     )?;
     let path = target.file.path.clone();
     target.write(&picture)?;
+    warn(map.source());
     if missing > 0 {
         message(&format!(
             "warning: {} is not finished: {missing} of {} panels are not computed and are drawn without values; `whiskmap status` lists \
@@ -131,13 +143,16 @@ fn target(
     map: &MapSlice,
     files: &mut Files,
 ) -> Result<PictureFile, Failure> {
-    let path = args.output.clone().unwrap_or_else(|| {
-        let chosen = map.readable();
-        let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
-        let parts = chosen.chain(args.channel.clone());
-        let parts: Vec<String> = parts.chain(["png".to_owned()]).collect();
-        args.file.with_extension(parts.join("."))
-    });
+    let path = match &args.output {
+        Some(path) => path.clone(),
+        None => {
+            let chosen = map.readable();
+            let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
+            let parts = chosen.chain(args.channel.clone());
+            let parts: Vec<String> = parts.chain(["png".to_owned()]).collect();
+            beside(args, map, files)?.with_extension(parts.join("."))
+        }
+    };
     let refuse = |why: &str| {
         let path = path.display();
         Err(Failure::Input(format!("--output {path}: {why}")))
@@ -151,4 +166,14 @@ fn target(
         Some(format) => Ok(PictureFile { file, format, size }),
         None => refuse("must end in .png, .svg or .pdf, or be - for PNG on standard output"),
     }
+}
+
+/// Returns the path of the map beside which a picture without a name is written; of a scene, the path that `map` gives its map.
+fn beside(args: &RenderArgs, map: &MapSlice, files: &Files) -> Result<PathBuf, Failure> {
+    let MapSource::Computed(map) = map.source() else {
+        return Ok(args.file.clone());
+    };
+    let folder = Path::new("outputs");
+    files.folder("--output", folder)?;
+    Ok(folder.join(format!("{}.exr", map.scene.name)))
 }

@@ -1,13 +1,16 @@
-//! Options `--at` and `--channel`: the selected part of a map, a store or a sweep.
+//! Options `--at` and `--channel`: the selected part of a map or a sweep.
 
 use super::failure::{Failure, message};
 use super::files::Files;
+use super::solver::SolverArgs;
+use super::source::{channel_names, computed, is_scene, stored};
 use clap::Args;
 use std::path::Path;
 use std::str::FromStr;
 use whiskmap::input::did_you_mean;
-use whiskmap::scene::{Scene, digits};
-use whiskmap::store::{AxisValue, InvalidAxisValue, MapSlice, MapSource, scene_at};
+use whiskmap::plan::Channels;
+use whiskmap::scene::{Grid, Scene, digits};
+use whiskmap::store::{AxisValue, GridPart, InvalidAxisValue, MapSlice, MapSource, scene_at};
 
 #[derive(Debug, Args)]
 pub struct SelectionArgs {
@@ -20,20 +23,47 @@ pub struct SelectionArgs {
 }
 
 impl SelectionArgs {
-    /// Opens the selected part of the input `source`, a map or a store, and prints the selected values.
-    pub fn open(&self, files: &mut Files, source: &Path) -> Result<MapSlice, Failure> {
-        let stored = MapSource::open(source)?;
-        files.input(source);
-        if let Some(version) = stored.foreign_version()? {
-            message(&format!(
-                "warning: {} was written by whiskmap {version}, not by {}; its channels may have another meaning",
-                source.display(),
-                env!("CARGO_PKG_VERSION")
-            ));
-        }
-        let slice = MapSlice::new(stored, &self.at, self.exact).map_err(refused)?;
+    /// Opens the selected part of the input `path`, a stored map or a scene, and prints the selected values. Of a scene, the `wanted` channels
+    /// are computed, or all but derivatives if there are none.
+    pub fn open(
+        &self,
+        files: &mut Files,
+        path: &Path,
+        solver: &SolverArgs,
+        wanted: &[&str],
+    ) -> Result<MapSlice, Failure> {
+        let (source, part) = match is_scene(path) {
+            true => {
+                let scene = files.scene(path)?;
+                let part = self.part(&scene.grid)?;
+                channels(&channel_names(&scene), wanted)?;
+                let channels = match wanted {
+                    [] => Channels::STANDARD,
+                    _ => Channels::those(|name| wanted.contains(&name)),
+                };
+                let map = computed(scene, solver, channels, part.grid.whisker_count())?;
+                (MapSource::from(map), part)
+            }
+            false => {
+                let map = stored(files, path, solver)?;
+                if let Some(version) = map.foreign_version()? {
+                    message(&format!(
+                        "warning: {} was written by whiskmap {version}, not by {}; its channels may have another meaning",
+                        path.display(),
+                        env!("CARGO_PKG_VERSION")
+                    ));
+                }
+                let part = self.part(map.grid())?;
+                (map, part)
+            }
+        };
+        let slice = MapSlice::of_part(source, part);
         name(slice.chosen());
         Ok(slice)
+    }
+
+    fn part(&self, whole: &Grid) -> Result<GridPart, Failure> {
+        GridPart::new(whole, &self.at, self.exact).map_err(refused)
     }
 
     /// Returns the selected part of the sweep of a scene, and prints the selected values.
@@ -61,16 +91,15 @@ fn name(chosen: &[(&'static str, f64)]) {
     }
 }
 
-/// Returns the names of the `wanted` channels, or of all if there are none.
-pub fn channels(slice: &MapSlice, wanted: &[String]) -> Result<Vec<&'static str>, Failure> {
-    let known = slice.channels();
-    if let Some(name) = wanted.iter().find(|name| !known.contains(&name.as_str())) {
+/// Returns the names of the `wanted` channels out of those `known`, or of all if there are none.
+pub fn channels(known: &[&'static str], wanted: &[&str]) -> Result<Vec<&'static str>, Failure> {
+    if let Some(name) = wanted.iter().find(|name| !known.contains(name)) {
         let hint = did_you_mean(name, known.iter().copied());
         let known = known.join(", ");
         return Err(Failure::Input(format!(
             "--channel {name}: must be one of {known}{hint}"
         )));
     }
-    let is_wanted = |name: &&str| wanted.is_empty() || wanted.iter().any(|own| own == name);
-    Ok(known.into_iter().filter(is_wanted).collect())
+    let is_wanted = |name: &&str| wanted.is_empty() || wanted.contains(name);
+    Ok(known.iter().copied().filter(is_wanted).collect())
 }

@@ -76,7 +76,7 @@ pub fn run(args: &SubmitArgs) -> Result<(), Failure> {
     let whiskers = shares.iter().map(|share| share.whiskers).max();
     let limits = || args.limits(&scene, &map, whiskers.unwrap_or_default());
     let script = args.script(&scene.name, &map, limits)?;
-    if map.engine.names_gpu() {
+    if map.solver.engine.names_gpu() {
         message(
             "note: with --engine gpu, add the line that requests a GPU on your cluster, such as `#SBATCH --gres=gpu:1`",
         );
@@ -126,7 +126,7 @@ impl SubmitArgs {
             return Ok([time.clone(), memory.clone()]);
         }
         let estimate =
-            PlanEstimate::measure(map, &map.engine.of_task(), scene, &[MapFormat::Zarr])?;
+            PlanEstimate::measure(map, &map.solver.engine.of_task(), scene, &[MapFormat::Zarr])?;
         let cpus = self.cpus_per_task.unwrap_or(1);
         let [cpu_seconds, _] = estimate.share(whiskers);
         let seconds = cpu_seconds / f64::from(cpus);
@@ -180,7 +180,7 @@ impl SubmitArgs {
         let partition = self.partition.as_ref();
         let partition = partition.map_or_else(String::new, |name| format!(" --partition={name}"));
         // `auto` may select different engines on different nodes.
-        let engine = if map.engine.is_named() {
+        let engine = if map.solver.engine.is_named() {
             ""
         } else {
             " --engine cpu"

@@ -7,7 +7,7 @@ use whiskmap::accuracy::{Accuracy, BOUNDED, cheapest};
 use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct ToleranceArgs {
     /// Maximum push-angle error, such as 1e-6deg; selects the cheapest steps or expansions that meet it
     /// [default: the finest steps, without an estimate]

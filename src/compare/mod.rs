@@ -1,6 +1,6 @@
-//! Comparison of two stored maps of the same scene and grid, channel by channel.
+//! Comparison of two maps of the same scene and grid, channel by channel.
 //!
-//! Maps are read block by block, so that memory does not grow with the number of whiskers.
+//! Maps are read block by block, so that memory does not grow with the number of whiskers, and no whisker is computed twice.
 
 mod agree;
 mod codes;
@@ -16,6 +16,7 @@ use crate::scene::{Grid, digits, rounded};
 use crate::store::{MapSource, StoreError, ZarrStore};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
+use std::ops::Range;
 
 /// Comparison of two maps, the first and the second one.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -79,7 +80,7 @@ impl Serialize for CellPlace {
     }
 }
 
-/// Compares two stored maps. Values that are rounded in a file may differ by what the rounding explains, see
+/// Compares two maps. Values that are rounded in a file may differ by what the rounding explains, see
 /// [`QuantityComparison::beyond_rounding`].
 ///
 /// # Errors
@@ -99,21 +100,28 @@ pub fn compare(maps: [&MapSource; 2]) -> Result<MapComparison, CompareError> {
     };
     let grid = maps[0].grid();
     comparison.cells = (cells_of_panel(grid) * grid.whisker_count()) as u64;
+    let (mut codes, mut quantities) = (Vec::new(), Vec::new());
+    let rounding = [maps[0].digits()?, maps[1].digits()?];
     for name in first.into_iter().filter(|name| second.contains(name)) {
         match maps[0].names(name) {
-            Some(names) => {
-                let mut codes = CodeComparison::new(name, names);
-                each_block(maps, name, |cell, values| codes.add(grid, cell, values))?;
-                comparison.codes.push(codes.finish());
-            }
-            None => {
-                let rounding = [maps[0].digits()?, maps[1].digits()?];
-                let mut quantity = QuantityComparison::new(name, rounding);
-                each_block(maps, name, |cell, values| quantity.add(cell, values))?;
-                comparison.quantities.push(quantity.finish(grid));
-            }
+            Some(names) => codes.push(CodeComparison::new(name, names)),
+            None => quantities.push(QuantityComparison::new(name, rounding)),
         }
     }
+    for whiskers in ZarrStore::blocks(grid) {
+        for own in &mut codes {
+            let (channel, add) = (own.channel, |cell, values| own.add(grid, cell, values));
+            each_cell(maps, channel, &whiskers, add)?;
+        }
+        for own in &mut quantities {
+            let (channel, add) = (own.channel, |cell, values| own.add(cell, values));
+            each_cell(maps, channel, &whiskers, add)?;
+        }
+    }
+    let codes = codes.into_iter().map(CodeComparison::finish);
+    comparison.codes = codes.collect();
+    let quantities = quantities.into_iter().map(|own| own.finish(grid));
+    comparison.quantities = quantities.collect();
     Ok(comparison)
 }
 
@@ -121,21 +129,19 @@ fn cells_of_panel(grid: &Grid) -> usize {
     grid.distance_mm.len() * grid.push_angle_deg.len()
 }
 
-/// Passes index and values of each cell of a channel, in order, to `add`.
-fn each_block(
+/// Passes index and values of each cell of a channel of consecutive `whiskers`, in order, to `add`.
+fn each_cell(
     maps: [&MapSource; 2],
     channel: &str,
+    whiskers: &Range<usize>,
     mut add: impl FnMut(usize, [f64; 2]),
 ) -> Result<(), StoreError> {
-    let grid = maps[0].grid();
-    for whiskers in ZarrStore::blocks(grid) {
-        let first = whiskers.start * cells_of_panel(grid);
-        let read = |map: &MapSource| map.read_panels(channel, whiskers.clone());
-        let (one, other) = rayon::join(|| read(maps[0]), || read(maps[1]));
-        let (one, other) = (one?, other?);
-        for (cell, values) in (first..).zip(one.values().zip(other.values())) {
-            add(cell, values.into());
-        }
+    let first = whiskers.start * cells_of_panel(maps[0].grid());
+    let read = |map: &MapSource| map.read_panels(channel, whiskers.clone());
+    let (one, other) = rayon::join(|| read(maps[0]), || read(maps[1]));
+    let (one, other) = (one?, other?);
+    for (cell, values) in (first..).zip(one.values().zip(other.values())) {
+        add(cell, values.into());
     }
     Ok(())
 }

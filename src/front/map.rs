@@ -1,13 +1,15 @@
-//! Computation of regime maps in memory, or panel by panel.
+//! Computation of regime maps in memory, panel by panel, or when they are read.
 
 use super::{Error, Map, MapEngine, Options, accuracy};
-use crate::accuracy::{cheaper, excess_deg, spectral};
+use crate::accuracy::{cheaper, excess_deg, spectral, tolerances};
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Precision};
 use crate::map::{self as stages, Panel, Summary};
 use crate::plan::Plan;
 use crate::scene::Scene;
+use crate::store::ComputedMap;
+use serde_json::Value;
 use std::ops::ControlFlow;
 
 /// Computes the regime map of `scene`, every cell with its state, on all cores.
@@ -73,40 +75,38 @@ pub fn for_each_panel<E: From<Error> + Send>(
     run(scene, plan, options, each)
 }
 
+/// Opens the regime map of `scene`, each whisker of which is computed when it is read. Progress and cancellation of `options` have no effect.
+///
+/// Memory and time do not grow with the number of whiskers. A [`MapSlice`](crate::store::MapSlice) selects values on the axes.
+///
+/// ```
+/// use whiskmap::{Options, scene::Scene, store::MapSlice};
+///
+/// let scene = Scene::parse(include_str!("../../scenes/morphology.toml"), "morphology.toml")?.thinned(8, 16);
+/// let map = whiskmap::lazy_map(&scene, Options::default())?;
+/// let cones = MapSlice::new(map.into(), &["taper=1".parse()?], true)?;
+/// assert_eq!(cones.grid().whisker_count(), 16);
+/// let force = cones.read_panel("force_un", 0)?; // computes one whisker
+/// assert_eq!(force.values().count(), 64);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When one panel takes more than [`MEMORY_LIMIT`](crate::plan::MEMORY_LIMIT), the tolerance cannot be kept, or there is no GPU where
+/// one is required.
+pub fn lazy_map(scene: &Scene, options: Options) -> Result<ComputedMap, Error> {
+    let (plan, engine, tolerances) = prepared(scene, Plan::new(scene)?, &options)?;
+    Ok(ComputedMap::new(scene.clone(), plan, engine, tolerances))
+}
+
 /// Runs `plan` with the steps and the engine of `options`.
 fn run<E: From<Error> + Send>(
     scene: &Scene,
-    mut plan: Plan,
+    plan: Plan,
     options: Options,
     mut each: impl FnMut(usize, Panel) -> Result<(), E> + Send,
 ) -> Result<Summary, E> {
-    let accuracy = accuracy(scene, &options, &plan.sides)?;
-    if let Some(accuracy) = &accuracy {
-        plan.method.resolution = accuracy.resolution;
-    }
-    if let Some(channels) = options.channels {
-        plan = plan.with_channels(channels, scene).map_err(Error::from)?;
-    }
-    let left_deg = options.tolerance_deg.zip(accuracy);
-    let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));
-    let mut engine: Option<Box<dyn Engine>> = match options.engine {
-        MapEngine::Cpu => None,
-        MapEngine::Spectral => Some(Box::new(spectral(scene, left_deg))),
-        MapEngine::Auto => cheaper(scene, &plan, left_deg).map(|own| Box::new(own) as _),
-        MapEngine::Gpu(precision) => Some(open(precision).map_err(Error::from)?),
-    };
-    let residual_bound = engine.as_ref().map(|engine| engine.residual_bound());
-    let excess = residual_bound.and_then(|bound| excess_deg(scene, bound, left_deg));
-    if let (Some(excess), Some(tolerance_deg), Some(left)) =
-        (excess, options.tolerance_deg, left_deg)
-    {
-        let least = tolerance_deg - left + excess;
-        return Err(Error::Tolerance {
-            tolerance_deg,
-            least,
-        }
-        .into());
-    }
+    let (plan, mut engine, _) = prepared(scene, plan, &options)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let (mut done, all) = (0, plan.cells);
     let mut on_progress = |cells| {
@@ -129,6 +129,41 @@ fn run<E: From<Error> + Send>(
         true => Err(Error::Cancelled.into()),
         false => Ok(summary),
     }
+}
+
+/// Plan of a map, its engine (`None` for the CPU engine alone), and the attribute `tolerances` of the map.
+type PreparedMap = (Plan, Option<Box<dyn Engine>>, Value);
+
+/// Returns `plan` with the steps and channels of `options`, and opens their engine.
+fn prepared(scene: &Scene, mut plan: Plan, options: &Options) -> Result<PreparedMap, Error> {
+    let accuracy = accuracy(scene, options, &plan.sides)?;
+    if let Some(accuracy) = &accuracy {
+        plan.method.resolution = accuracy.resolution;
+    }
+    if let Some(channels) = options.channels {
+        plan = plan.with_channels(channels, scene)?;
+    }
+    let left_deg = options.tolerance_deg.zip(accuracy);
+    let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));
+    let engine: Option<Box<dyn Engine>> = match options.engine {
+        MapEngine::Cpu => None,
+        MapEngine::Spectral => Some(Box::new(spectral(scene, left_deg))),
+        MapEngine::Auto => cheaper(scene, &plan, left_deg).map(|own| Box::new(own) as _),
+        MapEngine::Gpu(precision) => Some(open(precision)?),
+    };
+    let residual_bound = engine.as_ref().map(|engine| engine.residual_bound());
+    let excess = residual_bound.and_then(|bound| excess_deg(scene, bound, left_deg));
+    if let (Some(excess), Some(tolerance_deg), Some(left)) =
+        (excess, options.tolerance_deg, left_deg)
+    {
+        let least = tolerance_deg - left + excess;
+        return Err(Error::Tolerance {
+            tolerance_deg,
+            least,
+        });
+    }
+    let tolerances = tolerances(scene, accuracy.as_ref(), engine.as_deref());
+    Ok((plan, engine, tolerances))
 }
 
 /// Opens the preferred GPU.

@@ -1,10 +1,10 @@
-//! Functions of the library that compute in memory.
+//! Functions of the library that compute in memory, or when a map is read.
 
 mod map;
 mod regime_map;
 mod traces;
 
-pub use map::{for_each_panel, map};
+pub use map::{for_each_panel, lazy_map, map};
 pub use regime_map::{Map, MapCell};
 #[cfg(feature = "fit")]
 pub use traces::fit;

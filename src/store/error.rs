@@ -91,6 +91,12 @@ pub enum StoreError {
         /// Names of the channels that the file has, separated by commas.
         known: String,
     },
+    /// The map does not have the requested attribute, whose name is given.
+    #[error("there is no attribute `{0}`")]
+    NoAttribute(String),
+    /// The read of a computed map was cancelled.
+    #[error("the computation was cancelled")]
+    Cancelled,
     /// The map does not have the requested panel.
     #[error("there is no panel {index}; the map has {panels}")]
     NoSuchPanel {

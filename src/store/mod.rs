@@ -1,4 +1,4 @@
-//! Files: maps as EXR, sweeps as Zarr stores, tables as CSV.
+//! Files: maps as EXR, sweeps as Zarr stores, tables as CSV. Slices of maps that are stored, or computed when they are read.
 //!
 //! An EXR map is written and read panel by panel, so its memory does not grow with the number of whiskers. It has three parts:
 //! `regime`, `state` and `numerics`. Column 0 is the first push angle and row 0 the first distance. A sweep of whiskers is an atlas
@@ -13,6 +13,7 @@
 mod at;
 mod attributes;
 mod chunk;
+mod computed;
 mod error;
 mod file_id;
 mod header;
@@ -32,12 +33,13 @@ mod zip;
 
 pub use at::{AxisValue, ChosenValues, InvalidAxisValue, scene_at};
 pub use attributes::MapDescription;
+pub use computed::ComputedMap;
 pub use error::StoreError;
 pub use file_id::FileId;
 pub use layout::AtlasLayout;
 pub use output::Output;
 pub use reader::{ChannelValues, StoredMap};
-pub use slice::MapSlice;
+pub use slice::{GridPart, MapSlice};
 pub use stored::MapSource;
 pub use table::TableFile;
 pub use tally::{CellCounts, NOT_COMPUTED};

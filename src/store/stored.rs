@@ -1,16 +1,16 @@
-//! Stored maps: an EXR file or a Zarr store, both read panel by panel.
+//! Sources of maps: an EXR file, a Zarr store, or a scene whose map is computed. All are read panel by panel.
 
-use super::{ChannelValues, StoreError, StoredMap};
 #[cfg(feature = "zarr")]
-use super::{ZarrStore, tally};
+use super::ZarrStore;
+use super::{ChannelValues, ComputedMap, StoreError, StoredMap, tally};
 use crate::plan::Digits;
 use crate::scene::{Grid, Scene, SceneError};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 use std::path::Path;
 
-/// A stored map that is open for reading: an EXR file or a Zarr store.
+/// A map that is open for reading: an EXR file, a Zarr store, or a scene whose map is computed when it is read.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MapSource {
@@ -19,6 +19,14 @@ pub enum MapSource {
     /// The stored map is a Zarr store.
     #[cfg(feature = "zarr")]
     Zarr(Box<ZarrStore>),
+    /// The map is computed when it is read.
+    Computed(Box<ComputedMap>),
+}
+
+impl From<ComputedMap> for MapSource {
+    fn from(map: ComputedMap) -> Self {
+        Self::Computed(Box::new(map))
+    }
 }
 
 impl MapSource {
@@ -34,37 +42,40 @@ impl MapSource {
         Ok(Self::Exr(Box::new(StoredMap::open(path)?)))
     }
 
-    /// Returns the title of the scene of the stored map, one line.
+    /// Returns the title of the scene of the map, one line.
     #[must_use]
     pub fn title(&self) -> &str {
         match self {
             Self::Exr(map) => &map.title,
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => &store.scene.title,
+            Self::Computed(map) => &map.scene.title,
         }
     }
 
-    /// Returns the axes of the stored map: push angles in degrees, distances in mm, and the sweep.
+    /// Returns the axes of the map: push angles in degrees, distances in mm, and the sweep.
     #[must_use]
     pub fn grid(&self) -> &Grid {
         match self {
             Self::Exr(map) => &map.grid,
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => &store.scene.grid,
+            Self::Computed(map) => &map.scene.grid,
         }
     }
 
-    /// Returns the names of all channels of the stored map, `[channel]`.
+    /// Returns the names of all channels of the map, `[channel]`.
     #[must_use]
     pub fn channels(&self) -> Vec<&'static str> {
         match self {
             Self::Exr(map) => map.channels(),
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.channels.names().collect(),
+            Self::Computed(map) => map.channels(),
         }
     }
 
-    /// Returns the attribute `name` of the stored map, such as `scene`, `engine` or `tolerances`.
+    /// Returns the attribute `name` of the map, such as `scene`, `engine` or `tolerances`.
     ///
     /// # Errors
     /// There is no such attribute.
@@ -73,10 +84,11 @@ impl MapSource {
             Self::Exr(map) => map.attribute(name),
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.attribute(name),
+            Self::Computed(map) => map.attribute(name),
         }
     }
 
-    /// Returns the scene of the stored map, or why this version refuses it.
+    /// Returns the scene of the map, or why this version refuses it.
     ///
     /// # Errors
     /// The map or store has no scene.
@@ -97,10 +109,11 @@ impl MapSource {
             Self::Exr(map) => map.digits(),
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => Ok(store.digits),
+            Self::Computed(_) => Ok(Digits::ALL),
         }
     }
 
-    /// Returns the version that wrote the stored map, if it is not compatible with this version; otherwise `None`.
+    /// Returns the version that wrote the map, if it is not compatible with this version; otherwise `None`.
     ///
     /// # Errors
     /// There is no such attribute.
@@ -110,13 +123,12 @@ impl MapSource {
         Ok((!is_compatible(version)).then(|| version.to_owned()))
     }
 
-    /// Returns the names of the codes of `regime` or `status` of the stored map, by code; `None` for other channels.
+    /// Returns the names of the codes of `regime` or `status` of the map, by code; `None` for other channels.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
         let [regimes, statuses] = match self {
             Self::Exr(map) => [map.regime_names.clone(), map.status_names.clone()],
-            #[cfg(feature = "zarr")]
-            Self::Zarr(_) => [tally::regimes(), tally::statuses()].map(|names| {
+            _ => [tally::regimes(), tally::statuses()].map(|names| {
                 let names = names.into_iter();
                 names.map(|(code, name)| (code, name.to_owned())).collect()
             }),
@@ -134,13 +146,13 @@ impl MapSource {
     /// The file system refuses to look for a file.
     pub fn missing(&self) -> Result<Vec<Range<usize>>, StoreError> {
         match self {
-            Self::Exr(_) => Ok(Vec::new()),
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.missing(),
+            _ => Ok(Vec::new()),
         }
     }
 
-    /// Reads a channel of one whisker of the stored map: `[distance][push angle]`.
+    /// Reads a channel of one whisker of the map: `[distance][push angle]`.
     ///
     /// # Errors
     /// There is no such channel or whisker, or it is missing or damaged.
@@ -148,7 +160,7 @@ impl MapSource {
         self.read_panels(name, whisker..whisker + 1)
     }
 
-    /// Reads a channel of consecutive whiskers of the stored map: `[whisker][distance][push angle]`.
+    /// Reads a channel of consecutive whiskers of the map: `[whisker][distance][push angle]`.
     ///
     /// # Errors
     /// There is no such channel or whisker, or it is missing or damaged.
@@ -161,6 +173,19 @@ impl MapSource {
             Self::Exr(map) => map.read_panels(name, whiskers),
             #[cfg(feature = "zarr")]
             Self::Zarr(store) => store.read_panels(name, whiskers),
+            Self::Computed(map) => {
+                let whiskers: Vec<usize> = whiskers.collect();
+                map.read(name, &whiskers, &mut |_| ControlFlow::Continue(()))
+            }
+        }
+    }
+
+    /// Returns warnings about the whiskers that were computed since the last call, `[warning]`; none about a stored map.
+    #[must_use]
+    pub fn take_warnings(&self) -> Vec<String> {
+        match self {
+            Self::Computed(map) => map.take_warnings(),
+            _ => Vec::new(),
         }
     }
 }

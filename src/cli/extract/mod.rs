@@ -9,6 +9,8 @@ use super::failure::Failure;
 use super::files::Files;
 use super::output_file::unwritten;
 use super::selection::{SelectionArgs, channels};
+use super::solver::SolverArgs;
+use super::source::warn;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -27,13 +29,14 @@ Examples:
   whiskmap extract outputs/sweep.zarr --at friction=0.2 -o slice.zarr
   whiskmap extract outputs/sweep.zarr -o map.exr
   whiskmap extract outputs/cone.exr --at distance_mm=15.66 --channel regime --channel force_un -o row.csv
+  whiskmap extract scenes/morphology.toml --at taper=0.95 --at curvature_per_mm=0.02 -o slice.csv
 
 A table has one line per cell, with the values of all axes first; missing values are empty. The columns regime_name and \
 status_name have the names of the codes. An array has the remaining axes in \
 the order of the grid, then distance and push angle. A store keeps every axis; the axes of --at have one value. A map has at \
-most two sweep axes.")]
+most two sweep axes. Of a scene, only the whiskers of the part are computed: the result is that of `map` and `extract`.")]
 pub struct ExtractArgs {
-    /// Map or store written by `whiskmap map`
+    /// Map or store written by `whiskmap map`, or a scene file (.toml), which is computed; - is a scene on standard input
     source: PathBuf,
     #[command(flatten)]
     selection: SelectionArgs,
@@ -43,11 +46,18 @@ pub struct ExtractArgs {
     /// Write FILE; the ending selects a table (.csv), an array of one channel (.npy), a store (.zarr) or a map (.exr)
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    #[command(flatten, next_help_heading = "Options for a scene")]
+    solver: SolverArgs,
 }
 
 pub fn run(args: &ExtractArgs, files: &mut Files) -> Result<(), Failure> {
-    let slice = args.selection.open(files, &args.source)?;
-    let channels = channels(&slice, &args.channel)?;
+    let named: Vec<&str> = args.channel.iter().map(String::as_str).collect();
+    // A store has the regimes, whatever is named.
+    let regime = (!named.is_empty()).then_some("regime");
+    let wanted: Vec<&str> = named.iter().copied().chain(regime).collect();
+    let (source, solver) = (&args.source, &args.solver);
+    let slice = args.selection.open(files, source, solver, &wanted)?;
+    let channels = channels(&slice.channels(), &named)?;
     let path = &args.output;
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => table(&slice, &channels, path, files)?,
@@ -56,6 +66,7 @@ pub fn run(args: &ExtractArgs, files: &mut Files) -> Result<(), Failure> {
         Some("exr") => map(&slice, &channels, path, files)?,
         _ => return refuse(path, "must end in .csv, .npy, .zarr or .exr"),
     }
+    warn(slice.source());
     writeln!(StandardOutput::open(), "{}", path.display())?;
     Ok(())
 }
@@ -148,7 +159,7 @@ fn store(
 
 /// Returns the scene of the slice, in which each selected axis has one value.
 fn scene(slice: &MapSlice) -> Result<Scene, Failure> {
-    let text = slice.stored().attribute("scene")?;
+    let text = slice.source().attribute("scene")?;
     let text = text.as_str().unwrap_or_default();
     let scene = Scene::parse(text, "the scene of the map")?;
     // The selected values can extend a title beyond its limit.
@@ -176,7 +187,7 @@ struct MapOrigin {
 impl MapOrigin {
     fn of(slice: &MapSlice) -> Result<Self, Failure> {
         let text = |name: &str| {
-            let text = slice.stored().attribute(name)?;
+            let text = slice.source().attribute(name)?;
             Ok::<_, whiskmap::store::StoreError>(text.as_str().unwrap_or_default().to_owned())
         };
         let engine = engine::EngineDescription {
@@ -188,8 +199,8 @@ impl MapOrigin {
             engine,
             // Maps of older versions do not have it.
             arithmetic: text("arithmetic").unwrap_or_default(),
-            tolerances: slice.stored().attribute("tolerances")?,
-            digits: slice.stored().digits()?,
+            tolerances: slice.source().attribute("tolerances")?,
+            digits: slice.source().digits()?,
         })
     }
 

@@ -7,9 +7,10 @@ use super::engine::EngineArgs;
 use super::estimate::{FileCost, MapCost, estimate, files};
 use super::failure::Failure;
 use super::files::read_scene;
-use super::map::{MapArgs, PlannedMap};
+use super::map::MapArgs;
 use super::map_format::MapFormat;
 use super::sharded::shares;
+use super::solver::PlannedMap;
 use clap::Args;
 use print::{print, print_shards};
 use whiskmap::engine::EngineDescription;
@@ -105,7 +106,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
         let why = "--shards: an EXR file has one writer; give --format zarr";
         return Err(Failure::Input(why.to_owned()));
     }
-    let mut options = args.map.engine.clone();
+    let mut options = args.map.solver.engine.clone();
     let are_tasks = args.shards.is_some() && !options.is_named();
     if are_tasks {
         options = options.of_task();

@@ -13,7 +13,7 @@ impl MapSlice {
     /// # Errors
     /// There is no such channel or whisker, or it is missing or damaged.
     pub fn read_panel(&self, channel: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
-        let panels = self.grid.whisker_count();
+        let panels = self.part.grid.whisker_count();
         if whisker >= panels {
             return Err(StoreError::NoSuchPanel {
                 index: whisker,
@@ -21,17 +21,21 @@ impl MapSlice {
             });
         }
         if self.is_blank(self.in_whole(whisker)) {
-            let cells = self.rows.len() * self.columns.len();
-            return Ok(match self.stored.names(channel) {
+            let cells = self.part.rows.len() * self.part.columns.len();
+            return Ok(match self.source.names(channel) {
                 Some(_) => ChannelValues::U32(vec![NOT_COMPUTED.into(); cells]),
                 None => ChannelValues::F32(vec![f32::NAN; cells]),
             });
         }
-        let width = self.stored.grid().push_angle_deg.len();
-        let rows = self.rows.iter();
-        let cells =
-            rows.flat_map(|row| self.columns.iter().map(move |column| row * width + column));
-        let samples = self.stored.read_panel(channel, self.in_whole(whisker))?;
+        let width = self.source.grid().push_angle_deg.len();
+        let rows = self.part.rows.iter();
+        let cells = rows.flat_map(|row| {
+            self.part
+                .columns
+                .iter()
+                .map(move |column| row * width + column)
+        });
+        let samples = self.source.read_panel(channel, self.in_whole(whisker))?;
         Ok(match samples {
             ChannelValues::F32(values) => {
                 ChannelValues::F32(cells.map(|cell| values[cell]).collect())
@@ -48,7 +52,7 @@ impl MapSlice {
     /// # Errors
     /// An error of [`MapSlice::read_panel`].
     pub fn panel(&self, channels: Channels, whisker: usize) -> Result<Panel, StoreError> {
-        let mut panel = Panel::unresolved(self.rows.len() * self.columns.len(), channels);
+        let mut panel = Panel::unresolved(self.part.rows.len() * self.part.columns.len(), channels);
         for name in channels.names() {
             let state = STATE_CHANNELS.iter().position(|own| *own == name);
             match (self.read_panel(name, whisker)?, name, state) {
@@ -72,7 +76,7 @@ impl MapSlice {
     /// other channels.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
-        let mut names = self.stored.names(channel)?;
+        let mut names = self.source.names(channel)?;
         names.insert(NOT_COMPUTED.into(), "not computed".to_owned());
         Some(names)
     }
@@ -83,11 +87,11 @@ impl MapSlice {
     /// An error of [`MapSlice::read_panel`].
     pub fn codes(&self, channel: &str) -> Result<BTreeSet<u32>, StoreError> {
         // The header of a whole map has the counts.
-        if let (MapSource::Exr(map), []) = (&self.stored, &*self.chosen) {
+        if let (MapSource::Exr(map), []) = (&self.source, &*self.part.chosen) {
             return Ok(map.codes(channel));
         }
         let mut codes = BTreeSet::new();
-        for whisker in 0..self.grid.whisker_count() {
+        for whisker in 0..self.part.grid.whisker_count() {
             if let ChannelValues::U32(own) = self.read_panel(channel, whisker)? {
                 codes.extend(own);
             }

@@ -1,0 +1,61 @@
+//! Maps that commands read: stored maps, and maps of scenes, which are computed when they are read.
+
+use super::failure::{Failure, message};
+use super::files::Files;
+use super::output_file::STDOUT;
+use super::solver::SolverArgs;
+use std::path::Path;
+use whiskmap::plan::{Channels, Plan};
+use whiskmap::scene::{Parameter, Scene};
+use whiskmap::store::{ComputedMap, MapSource};
+
+/// Returns true if the input `path` is a scene: standard input, or a file whose name ends in `.toml`.
+pub fn is_scene(path: &Path) -> bool {
+    path == Path::new(STDOUT) || path.extension().is_some_and(|ending| ending == "toml")
+}
+
+/// Opens the stored map at `path`, for which options of a solver are refused.
+pub fn stored(files: &mut Files, path: &Path, solver: &SolverArgs) -> Result<MapSource, Failure> {
+    if let Some(option) = solver.given() {
+        let path = path.display();
+        let why = format!(
+            "{option}: {path} is a stored map, which is not computed; give the scene, or leave {option} out"
+        );
+        return Err(Failure::Input(why));
+    }
+    let map = MapSource::open(path)?;
+    files.input(path);
+    Ok(map)
+}
+
+/// Returns the names of all channels that a map of `scene` can have, derivatives last, `[channel]`.
+pub fn channel_names(scene: &Scene) -> Vec<&'static str> {
+    let derivatives = Parameter::ALL.into_iter();
+    let derivatives = derivatives.filter(|own| own.has_derivative(scene));
+    let derivatives = derivatives.map(Parameter::push_derivative);
+    Channels::STANDARD.names().chain(derivatives).collect()
+}
+
+/// Opens the map of `scene`, which is computed when it is read, and prints its engine. The engine is selected for a map of so many `whiskers`.
+pub fn computed(
+    scene: Scene,
+    solver: &SolverArgs,
+    channels: Channels,
+    whiskers: usize,
+) -> Result<ComputedMap, Failure> {
+    let mut map = solver.plan(&scene, Plan::new(&scene)?, channels)?;
+    map.plan.cells = map.plan.cells / map.plan.whiskers * whiskers;
+    map.plan.whiskers = whiskers;
+    let ((engine, why), tolerances) = solver.open(&scene, &map)?;
+    let map = ComputedMap::new(scene, map.plan, engine, tolerances);
+    let (name, adapter) = (&map.engine.engine, &map.engine.adapter);
+    message(&format!("engine: {name} on {adapter} ({why})"));
+    Ok(map)
+}
+
+/// Prints warnings about the cells of `map` that were computed.
+pub fn warn(map: &MapSource) {
+    for warning in map.take_warnings() {
+        message(&format!("warning: {warning}"));
+    }
+}
