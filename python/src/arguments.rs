@@ -1,4 +1,4 @@
-//! Arguments of functions: sides, parameters and engines by name.
+//! Arguments of functions: sides, parameters and engines by name, and options of maps.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -6,7 +6,7 @@ use whiskmap::input::did_you_mean;
 use whiskmap::rod::Side;
 use whiskmap::scene::Parameter;
 use whiskmap::whisk::CourseStart;
-use whiskmap::{Channels, MapEngine, Precision};
+use whiskmap::{Channels, MapEngine, Options, Precision};
 
 /// Returns the side with this name, in capitals or not.
 pub fn side(name: &str) -> PyResult<Side> {
@@ -39,8 +39,21 @@ pub fn parameter(argument: &str, name: &str) -> PyResult<Parameter> {
     })
 }
 
+/// Returns the options of a map: engine and channels by name, and the maximum push-angle error in degrees.
+pub fn options(
+    engine_name: &str,
+    tolerance_deg: Option<f64>,
+    names: Option<Vec<String>>,
+) -> PyResult<Options> {
+    let mut options = Options::default();
+    options.engine = engine(engine_name)?;
+    options.tolerance_deg = tolerance(tolerance_deg)?;
+    options.channels = names.map(|names| channels(&names)).transpose()?;
+    Ok(options)
+}
+
 /// Returns the engine with this name.
-pub fn engine(name: &str) -> PyResult<MapEngine> {
+fn engine(name: &str) -> PyResult<MapEngine> {
     match name {
         "auto" => Ok(MapEngine::Auto),
         "cpu" => Ok(MapEngine::Cpu),
@@ -55,7 +68,7 @@ pub fn engine(name: &str) -> PyResult<MapEngine> {
 }
 
 /// Returns the selection of these channels.
-pub fn channels(names: &[String]) -> PyResult<Channels> {
+fn channels(names: &[String]) -> PyResult<Channels> {
     let selected = names.join(",").parse();
     selected.map_err(|must: String| refused("channels", &names.join(", "), &must))
 }

@@ -9,6 +9,7 @@ mod command;
 mod detachment;
 mod errors;
 mod fits;
+mod lazy;
 mod maps;
 mod motion;
 mod plan;
@@ -33,6 +34,8 @@ mod _whiskmap {
     use super::errors::{SceneError, StateError};
     #[pymodule_export]
     use super::fits::{design, fit};
+    #[pymodule_export]
+    use super::lazy::ComputedMap;
     #[pymodule_export]
     use super::maps::map;
     #[pymodule_export]

@@ -42,21 +42,15 @@ pub fn map<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<MapArrays<'py>> {
     let scene = &scene.0;
-    let channels = channels
-        .map(|names| arguments::channels(&names))
-        .transpose()?;
-    let channels = channels.unwrap_or(Channels::STANDARD);
+    let mut options = arguments::options(engine, tolerance_deg, channels)?;
+    let channels = options.channels.unwrap_or(Channels::STANDARD);
     let done = Arc::new(AtomicUsize::new(0));
-    let mut options = Options::default();
-    options.engine = arguments::engine(engine)?;
-    options.tolerance_deg = arguments::tolerance(tolerance_deg)?;
-    options.channels = Some(channels);
     let cells = Arc::clone(&done);
     options.on_progress = Some(Arc::new(move |finished, _| {
         cells.store(finished, Ordering::Relaxed)
     }));
     let plan = Plan::in_memory(scene).map_err(|why| of_plan(&why))?;
-    let is_unexpanded = options.engine == MapEngine::Spectral && plan.method.effects.profile;
+    let spectral = spectral_warning(scene, options.engine);
     let all = plan.cells;
     let report = |finished: usize| match &progress {
         Some(progress) => progress.call1((finished, all)).map(drop),
@@ -73,7 +67,7 @@ pub fn map<'py>(
     )?
     .map_err(|why| of_front(&why))?;
     report(all)?;
-    let warnings = warnings(is_unexpanded, &summary);
+    let warnings = spectral.into_iter().chain(warnings(&summary)).collect();
     let arrays = arrays.into_iter().map(|(name, values)| {
         let array = match values {
             ChannelArray::Codes(codes) => PyArray1::from_vec(py, codes).into_any(),
@@ -90,19 +84,21 @@ pub fn map<'py>(
     ))
 }
 
-/// Returns the warnings about a map. `is_unexpanded` is true for the spectral engine with measured radii.
-fn warnings(is_unexpanded: bool, summary: &Summary) -> Vec<String> {
-    let spectral = "engine = 'spectral': a whisker with measured radii has no expansions; the CPU engine solves every cell";
+/// Returns the warning about the spectral engine with measured radii.
+pub fn spectral_warning(scene: &Scene, engine: MapEngine) -> Option<String> {
+    let is_unexpanded = engine == MapEngine::Spectral && scene.whisker.profile.is_some();
+    let why = "engine = 'spectral': a whisker with measured radii has no expansions; the CPU engine solves every cell";
+    is_unexpanded.then(|| why.to_owned())
+}
+
+/// Returns the warnings about the cells of a map.
+fn warnings(summary: &Summary) -> impl Iterator<Item = String> {
     let failure = summary.engine_failure.as_ref();
     let failure = failure.map(|why| format!("{why}; the CPU solved the remaining cells"));
     let (unresolved, all) = (summary.unresolved(), summary.cells());
     let unresolved = (unresolved > 0)
         .then(|| format!("{unresolved} of {all} cells are unresolved: see the variable `status`"));
-    let spectral = is_unexpanded.then(|| spectral.to_owned());
-    [spectral, failure, unresolved]
-        .into_iter()
-        .flatten()
-        .collect()
+    failure.into_iter().chain(unresolved)
 }
 
 /// Computes the panels of all whiskers, and gathers the channels.

@@ -3,7 +3,6 @@
 use crate::about;
 use crate::errors::of_store;
 use numpy::PyArray1;
-use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use whiskmap::store::{ChannelValues, MapSlice, MapSource};
@@ -22,8 +21,6 @@ const ATTRIBUTES: [&str; 5] = [
 pub struct StoredMap {
     path: PathBuf,
     map: MapSlice,
-    /// Index of each whisker in the file, in an order in which the last sweep axis varies fastest.
-    order: Vec<usize>,
 }
 
 #[pymethods]
@@ -39,8 +36,7 @@ impl StoredMap {
             Ok(map)
         });
         let map = opened.map_err(|why| of_store(&why))?;
-        let order = map.whiskers().collect();
-        Ok(Self { path, map, order })
+        Ok(Self { path, map })
     }
 
     /// Names of the channels of the map.
@@ -55,7 +51,7 @@ impl StoredMap {
 
     /// Title of the scene, and other attributes as JSON.
     fn attributes(&self) -> PyResult<Vec<(&'static str, String)>> {
-        let stored = self.map.stored();
+        let stored = self.map.source();
         let title = ("title", serde_json::Value::from(stored.title()).to_string());
         let others = ATTRIBUTES.into_iter().map(|name| {
             let value = stored.attribute(name).map_err(|why| of_store(&why))?;
@@ -66,7 +62,7 @@ impl StoredMap {
 
     /// Returns a warning about a map of another version; `None` about one of this version.
     fn warning(&self) -> PyResult<Option<String>> {
-        let version = self.map.stored().foreign_version();
+        let version = self.map.source().foreign_version();
         let version = version.map_err(|why| of_store(&why))?;
         Ok(version.map(|version| {
             let (path, own) = (self.path.display(), env!("CARGO_PKG_VERSION"));
@@ -74,7 +70,8 @@ impl StoredMap {
         }))
     }
 
-    /// Reads a channel of some whiskers, `[whisker, distance, push angle]` in one dimension. The last sweep axis varies fastest.
+    /// Reads a channel of some whiskers, `[whisker, distance, push angle]` in one dimension. The first sweep axis varies fastest in
+    /// the order of whiskers.
     fn read<'py>(
         &self,
         py: Python<'py>,
@@ -83,28 +80,34 @@ impl StoredMap {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (mut codes, mut quantities) = (Vec::new(), Vec::new());
         for whisker in whiskers {
-            let index = self.order.get(whisker);
-            let none = || PyIndexError::new_err(format!("there is no whisker {whisker}"));
-            let index = *index.ok_or_else(none)?;
-            let panel = py.detach(|| self.map.read_panel(channel, index));
+            let panel = py.detach(|| self.map.read_panel(channel, whisker));
             match panel.map_err(|why| of_store(&why))? {
                 ChannelValues::U32(own) => codes.extend(own),
                 ChannelValues::F32(own) => quantities.extend(own),
             }
             py.check_signals()?;
         }
-        Ok(match (channel, codes.is_empty()) {
-            (_, true) => PyArray1::from_vec(py, quantities).into_any(),
-            ("newton_steps", false) => PyArray1::from_vec(py, codes).into_any(),
-            (_, false) => {
-                let codes = codes.iter().map(|code: &u32| code.to_le_bytes()[0]);
-                PyArray1::from_iter(py, codes).into_any()
-            }
-        })
+        let values = match codes.is_empty() {
+            true => ChannelValues::F32(quantities),
+            false => ChannelValues::U32(codes),
+        };
+        Ok(array(py, channel, values))
     }
 
     /// A map is pickled as its path.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyAny>, (PathBuf,)) {
         (slf.get_type().into_any(), (slf.get().path.clone(),))
+    }
+}
+
+/// Returns the values of a channel as an array of one dimension; codes as `uint8`.
+pub fn array<'py>(py: Python<'py>, channel: &str, values: ChannelValues) -> Bound<'py, PyAny> {
+    match (channel, values) {
+        (_, ChannelValues::F32(quantities)) => PyArray1::from_vec(py, quantities).into_any(),
+        ("newton_steps", ChannelValues::U32(counts)) => PyArray1::from_vec(py, counts).into_any(),
+        (_, ChannelValues::U32(codes)) => {
+            let codes = codes.iter().map(|code| code.to_le_bytes()[0]);
+            PyArray1::from_iter(py, codes).into_any()
+        }
     }
 }

@@ -11,6 +11,7 @@ from conftest import ROOT
 # Statements that make the arguments `prepared`, and the call that is interrupted. Each call takes many seconds.
 CALLS = {
     "map": ("scene = cone.replace(taper=wm.Range(0, 1, 200))", "wm.map(scene, engine='cpu')"),
+    "lazy map": ("ds = wm.map(cone.replace(taper=wm.Range(0, 1, 200)), engine='cpu', lazy=True)", "ds.force_un.load()"),
     "curve of many whiskers": ("scene = cone.replace(taper=wm.Range(0, 1, 9000))", "wm.curve(scene)"),
     "curve of many distances": (
         "scene = cone.replace(distance_mm=wm.Range(2, 19.9, 65536), friction=0.3)",

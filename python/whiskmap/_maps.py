@@ -12,6 +12,7 @@ import xarray as xr
 
 from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, scene_coords
+from whiskmap._lazy import ComputedMap, SolverBackend
 from whiskmap._scene import Scene
 from whiskmap._warnings import require, warn
 
@@ -26,6 +27,8 @@ def map(
     channels: Sequence[str] | None = None,
     progress: bool | Progress = False,
     threads: int | None = None,
+    lazy: bool = False,
+    chunks: Any = None,
 ) -> xr.Dataset:
     """Compute the regime map of a scene: every cell with its state.
 
@@ -43,6 +46,11 @@ def map(
         True shows a progress bar of tqdm, the extra `progress`. A callable gets the number of finished cells and of all cells.
     threads : int, optional
         Number of threads; one for each core, or `RAYON_NUM_THREADS`, if left out.
+    lazy : bool
+        True computes values when they are used. Indexing computes the selected whiskers, each with all channels, and keeps the newest
+        256 MiB of them. Threads take turns. `progress` must be left out.
+    chunks : optional
+        With `lazy`, as in `xarray.open_dataset`: ``{}`` gives dask arrays with a chunk for each whisker.
 
     Returns
     -------
@@ -54,18 +62,24 @@ def map(
     Raises
     ------
     MemoryError
-        If the map takes more than 4 GiB.
+        If the map, or with `lazy` the map of one whisker, takes more than 4 GiB.
     ValueError
         If the tolerance cannot be kept, or an argument is not allowed.
     RuntimeError
         If there is no GPU although one is required.
     ImportError
-        If `progress` is True and tqdm is missing.
+        If `progress` is True and tqdm is missing, or `chunks` is given and dask, the extra `lazy`, is missing.
     KeyboardInterrupt
         On Ctrl-C.
     """
     if channels is not None and isinstance(channels, str):
         raise TypeError(f"channels = {channels!r}: must be a list of names")
+    if lazy:
+        if progress is not False:
+            raise ValueError(f"progress = {progress!r}: must be left out with lazy=True")
+        return _lazy(scene, chunks, engine, tolerance_deg, None if channels is None else tuple(channels), threads)
+    if chunks is not None:
+        raise ValueError(f"chunks = {chunks!r}: must be left out without lazy=True")
     names = None if channels is None else list(channels)
     with _progress(progress) as report:
         arrays, used, _, warnings = _whiskmap.map(_checked(scene), engine, tolerance_deg, names, threads, report)
@@ -78,6 +92,14 @@ def map(
         variables[name] = xr.Variable(tuple(coords), values.reshape(shape), about)
     about = attributes(scene, used)
     return xr.Dataset(variables, coords, about if tolerance_deg is None else about | {"tolerance_deg": tolerance_deg})
+
+
+def _lazy(scene: Scene, chunks: Any, *options: Any) -> xr.Dataset:
+    if chunks is not None:
+        require("dask", "lazy")
+    _checked(scene)
+    source: Any = ComputedMap(scene, *options)
+    return xr.open_dataset(source, engine=SolverBackend, chunks=chunks)
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,13 @@ import os
 from collections.abc import Iterable
 from typing import Any
 
-import numpy as np
 import xarray as xr
-from xarray.backends import BackendArray, BackendEntrypoint
-from xarray.core import indexing
+from xarray.backends import BackendEntrypoint
 
 from whiskmap import _whiskmap
 from whiskmap._datasets import coords
+from whiskmap._lazy import dataset
 from whiskmap._warnings import require, warn
-
-_TYPES = {"regime": np.uint8, "status": np.uint8, "newton_steps": np.uint32}
 
 
 def open(path: str | os.PathLike[str], *, chunks: Any = None) -> xr.Dataset:
@@ -63,41 +60,11 @@ class WhiskmapBackend(BackendEntrypoint):
         stored = _whiskmap.StoredMap(os.fspath(filename_or_obj))
         warn([stored.warning()])
         dropped = {drop_variables} if isinstance(drop_variables, str) else set(drop_variables or ())
-        own = coords(stored.coordinates())
-        shape = tuple(axis.size for axis in own.values())
-        # A chunk is a whisker.
-        chunks = dict.fromkeys(own, 1) | {name: own[name].size for name in ("distance_mm", "push_angle_deg")}
-        variables = {}
-        for name in stored.channels():
-            if name not in dropped:
-                array = indexing.LazilyIndexedArray(_Channel(stored, name, shape))
-                about = json.loads(_whiskmap.channel_attributes(name) or "{}")
-                variables[name] = xr.Variable(tuple(own), array, about, {"preferred_chunks": chunks})
-        return xr.Dataset(variables, own, {name: _attribute(text) for name, text in stored.attributes()})
+        about = {name: _attribute(text) for name, text in stored.attributes()}
+        return dataset(stored, coords(stored.coordinates()), about, dropped)
 
     def guess_can_open(self, filename_or_obj: Any) -> bool:
         return isinstance(filename_or_obj, (str, os.PathLike)) and os.fspath(filename_or_obj).endswith(".exr")
-
-
-class _Channel(BackendArray):
-    """A channel of a stored map, of which whole whiskers are read."""
-
-    def __init__(self, stored: _whiskmap.StoredMap, name: str, shape: tuple[int, ...]) -> None:
-        self.stored, self.name, self.shape = stored, name, shape
-        self.dtype = np.dtype(_TYPES.get(name, np.float32))
-
-    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
-        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.OUTER, self._read)
-
-    def _read(self, key: tuple[Any, ...]) -> Any:
-        sweep, panel = self.shape[:-2], self.shape[-2:]
-        whiskers = np.arange(int(np.prod(sweep))).reshape(sweep)
-        # As `numpy.ix_`, but a whole number drops its axis.
-        for axis in range(len(sweep))[::-1]:
-            whiskers = whiskers[(slice(None),) * axis + (key[axis],)]
-        rows = self.stored.read(self.name, np.ravel(whiskers).tolist()).reshape(np.shape(whiskers) + panel)
-        rows = rows[..., key[-2], :]
-        return rows[..., key[-1]]
 
 
 def _attribute(text: str) -> Any:

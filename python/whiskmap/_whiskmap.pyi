@@ -7,7 +7,7 @@ from numpy import bool_, float64, uint8
 from numpy.typing import NDArray
 
 __all__ = [
-    "CheckedScene", "SceneError", "StateError", "StoredMap", "arithmetic", "axis_title", "branch", "channel_attributes", "channels", "coordinates",
+    "CheckedScene", "ComputedMap", "SceneError", "StateError", "StoredMap", "arithmetic", "axis_title", "branch", "channel_attributes", "channels", "coordinates",
     "curve", "design", "detachment", "fit", "force", "inks", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "variables",
     "version", "whisk",
 ]
@@ -49,6 +49,21 @@ class CheckedScene:
     def warnings(self) -> list[str]: ...
     def rest_fit(self) -> tuple[int, float, bool] | None: ...
     def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class ComputedMap:
+    def __new__(
+        cls,
+        scene: CheckedScene,
+        engine: str,
+        tolerance_deg: float | None,
+        channels: Sequence[str] | None,
+        threads: int | None,
+    ) -> ComputedMap: ...
+    def channels(self) -> list[str]: ...
+    def engine(self) -> str: ...
+    def warning(self) -> str | None: ...
+    def read(self, channel: str, whiskers: Sequence[int]) -> tuple[NDArray[Any], list[str]]: ...
 
 @final
 class StoredMap:

@@ -7,6 +7,7 @@
 mod bench;
 mod branch;
 mod compare;
+mod computed;
 mod curve;
 mod damage;
 mod data;

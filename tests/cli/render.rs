@@ -182,8 +182,9 @@ fn render_refuses_what_is_no_map() {
     ];
     run.assert_refused(&known);
 
-    let run = place.run(&["render", "scene.toml"]);
-    run.assert_refused(&["scene.toml", "not an EXR file"]);
+    place.write("scene.txt", SCENE);
+    let run = place.run(&["render", "scene.txt"]);
+    run.assert_refused(&["scene.txt", "not an EXR file"]);
     let run = place.run(&["render", "nowhere.exr"]);
     run.assert_refused(&["nowhere.exr", &no_file()]);
     place

@@ -6,6 +6,7 @@
 )]
 
 mod comes_back;
+mod computed;
 mod damage;
 mod flipped_bits;
 mod identity;

@@ -68,6 +68,9 @@ impl MapSlice {
     /// The file system refuses to look for a file.
     pub fn blank_missing(&mut self) -> Result<usize, StoreError> {
         self.blank = self.source.missing()?;
+        if self.blank.is_empty() {
+            return Ok(0);
+        }
         let panels = 0..self.part.grid.whisker_count();
         let is_blank = |whisker: &usize| self.is_blank(self.in_whole(*whisker));
         let count = panels.filter(is_blank).count();
