@@ -52,9 +52,13 @@ pub fn of_front(why: &Error) -> PyErr {
     }
 }
 
-/// Returns the exception of a map that is too large.
+/// Returns the exception of a map that cannot be planned: a `ValueError` for a derivative that the scene does not have, a `MemoryError` for a
+/// map that is too large.
 pub fn of_plan(why: &PlanError) -> PyErr {
     let text = why.to_string();
+    if matches!(why, PlanError::NotGiven { .. }) {
+        return PyValueError::new_err(text);
+    }
     let hint = "; lower the counts of the axes, or write a store with `whiskmap map --format zarr` and open that";
     let text = text.split("; ").next().unwrap_or(&text);
     PyMemoryError::new_err(format!("{text}{hint}"))

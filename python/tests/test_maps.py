@@ -93,3 +93,9 @@ def test_plans_compute_nothing(cone):
     assert wm.plan(large).memory_bytes is None
     with pytest.raises(MemoryError, match="lower the counts of the axes"):
         wm.map(large)
+
+
+@pytest.mark.parametrize("lazy", [False, True])
+def test_a_derivative_that_the_scene_lacks_is_bad_input(small, lazy):
+    with pytest.raises(ValueError, match="d_push_d_friction has no values"):
+        wm.map(small, channels=["d_push_d_friction"], lazy=lazy)
