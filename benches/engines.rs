@@ -91,7 +91,7 @@ fn scene() -> Scene {
     Scene::parse(text, "cone.toml").expect("the scene is good")
 }
 
-/// Folds, lattice and crossings of a sheet, and refinement of its cells from the guesses of the lattice.
+/// Folds, net and crossings of a sheet, and refinement of its cells from the guesses of the net.
 fn sheets() {
     let scene = scene();
     let rod = scene.whisker.rod(&scene.pole, Side::Cb);
@@ -112,7 +112,7 @@ fn sheets() {
     let pushes: Vec<f64> = (0..64).map(|i| 0.01 * f64::from(i)).collect();
     let mut shots = Vec::new();
     for (row, place) in sheet.rows.iter().enumerate() {
-        let guesses = sheet.guesses(row, pushes.iter().copied());
+        let guesses = sheet.guesses(row, &pushes);
         for (guess, push) in guesses.iter().zip(&pushes) {
             shots.extend(guess.map(|guess| CellTarget {
                 rod: 0,

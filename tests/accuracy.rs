@@ -109,7 +109,7 @@ fn the_estimate_bounds_the_error_of_every_scene() {
     eprintln!("the estimate is at least {closest:.1} times the error");
 }
 
-/// A cylinder that a stiff tip and friction let coil up; its lattice has guesses that are no states.
+/// A cylinder that a stiff tip and friction let coil up; its net has guesses that are no states.
 #[test]
 fn whiskers_that_coil_up_have_an_estimate() {
     let text = "title = \"coiled\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 30\n\

@@ -4,7 +4,7 @@ use super::task::{Task, whisker_sides};
 use crate::engine::{Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
 use crate::scene::Scene;
 use crate::sheet::Sheet;
-use crate::sheet::net::Net;
+use crate::sheet::net::ValueNet;
 use crate::shooting::batch::Method;
 use std::sync::Arc;
 
@@ -60,6 +60,6 @@ impl Request {
 /// Returns the largest number of loads of a net of the `requests`.
 pub fn loads(requests: &[Request]) -> usize {
     let sides = requests.iter().flat_map(|own| own.batch.sides.iter());
-    let nets = sides.filter_map(|side| side.net.as_ref());
-    nets.map(Net::loads).max().unwrap_or(0)
+    let nets = sides.filter_map(|side| side.sheet.net());
+    nets.map(ValueNet::loads).max().unwrap_or(0)
 }

@@ -60,7 +60,7 @@ named! {
     pub enum Status {
         /// A state of the cell was found on the stable sheet.
         Solved = 0, "state found";
-        /// The lattice has no solution near the cell, so no trajectory was computed.
+        /// The sheet has no solution near the cell, so no trajectory was computed.
         Outside = 1, "outside the sheet";
         /// The cell has no state: the fold at this distance lies before the push angle.
         BeyondFold = 2, "beyond the fold";

@@ -1,4 +1,4 @@
-//! The CPU engine: guesses from the lattice, refined by Newton's method in `f64` on the threads of the current pool.
+//! The CPU engine: guesses from the net, refined by Newton's method in `f64` on the threads of the current pool.
 
 use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
 use crate::numerics::Unit;
@@ -66,8 +66,9 @@ fn targets(batch: &RowBatch, row: &BatchRow) -> Vec<Option<CellTarget>> {
     let side = &batch.sides[row.side];
     let at_touch = side.sheet.rows[row.row].pole(0.0);
     let magnitudes = row.each().map(|cell| side.columns.magnitudes[cell]);
-    let guesses = side.sheet.guesses(row.row, magnitudes).into_iter();
-    let targets = guesses.zip(row.each()).map(|(guess, cell)| {
+    let magnitudes: Vec<f64> = magnitudes.collect();
+    let guesses = side.sheet.guesses(row.row, &magnitudes);
+    let targets = guesses.into_iter().zip(row.each()).map(|(guess, cell)| {
         guess.map(|guess| CellTarget {
             // Sides of a group are few.
             rod: row.side as u32,

@@ -3,11 +3,10 @@
 use super::{BatchRow, Outcome, Values, WhiskerSide};
 use crate::numerics::expansion::Chebyshev;
 use crate::numerics::inverse::Inverse;
-use crate::numerics::newton_form_simd::{LaneNumbers, keep};
-use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
+use crate::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep};
 use crate::plan::STATE_CHANNELS;
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
-use crate::sheet::{Crossing, Edge, PUSH_MARGIN, RowSpan, Sheet};
+use crate::sheet::{Crossing, Edge, PUSH_MARGIN, Sheet};
 use crate::shooting::Reader;
 
 /// Number of functions that are expanded along a row.
@@ -92,9 +91,6 @@ impl SimdTask for ChannelValues<'_> {
     }
 }
 
-/// Push angle beyond the end of a row at the tip, in radians, up to which the CPU engine decides at which side of the tip a cell is.
-const NEAR_TIP: f64 = 1e-3;
-
 /// A certified row.
 #[derive(Clone, Debug)]
 pub struct RowExpansion {
@@ -104,9 +100,6 @@ pub struct RowExpansion {
     pub residual: f64,
     /// Magnitude of the push angle at the row's end, which is computed apart, in radians.
     pub end: f64,
-    /// Magnitudes of push angles beyond which the contact is beyond the tip, and beyond which the sheet has no state, in radians. Cells between
-    /// the end and the first of them are left to the CPU engine.
-    pub beyond: [f64; 2],
 }
 
 /// Largest slope of the push angle at a fold, over its value there: where the expansions end a thousandth of the row before the fold, the
@@ -117,7 +110,7 @@ impl RowExpansion {
     /// Returns the expansions of a `row` of `side` with a residual of at most `most` whisker lengths, from its net; `None` without them.
     #[must_use]
     pub fn of(side: &WhiskerSide, row: usize, most: f64) -> Option<Self> {
-        let (states, residual) = side.net.as_ref()?.row(&side.sheet, row)?;
+        let (states, residual) = side.sheet.net_row(row)?;
         let weights = weights(side, row);
         let functions = Chebyshev::through(&numbers(side.reader(), &states));
         let [last, _] = functions.tails();
@@ -156,19 +149,10 @@ impl RowExpansion {
         };
         let off = (push - crossing.push).abs() * sheet.rows[row].pole_distance;
         let inverse = Inverse::new(functions, end)?;
-        let beyond = match crossing.edge {
-            Edge::Fold => [crossing.push + PUSH_MARGIN; 2],
-            Edge::Tip => {
-                let last = |span: &RowSpan| span.last_push();
-                let last = sheet.spans(row).first().map_or(f64::INFINITY, last);
-                [crossing.push + NEAR_TIP, last]
-            }
-        };
         (off <= residual && is_at_edge).then_some(Self {
             inverse,
             residual,
             end: crossing.push,
-            beyond,
         })
     }
 
@@ -180,14 +164,10 @@ impl RowExpansion {
         magnitudes: &[f64],
         outcomes: &mut [Outcome],
     ) {
-        let up_to = |push: f64| {
-            row.before(push.next_up(), magnitudes)
-                .map(|own| own.len())
-                .sum()
-        };
-        let [tip, last]: [usize; 2] = self.beyond.map(up_to);
-        outcomes[last..].fill(Outcome::OffSheet);
-        outcomes[tip.min(last)..last].fill(Outcome::BeyondTip);
+        let last = self.end + PUSH_MARGIN;
+        let near = row.before(last.next_up(), magnitudes);
+        let near: usize = near.map(|own| own.len()).sum();
+        outcomes[near..].fill(Outcome::OffSheet);
     }
 }
 
@@ -232,7 +212,7 @@ mod tests {
         let sheet = &side.sheet;
         let mut compared = 0;
         for row in (0..sheet.rows.len()).step_by(20) {
-            let Some((states, _)) = side.net.as_ref().unwrap().row(sheet, row) else {
+            let Some((states, _)) = sheet.net_row(row) else {
                 continue;
             };
             let sizes = side.sizes(&sheet.crossings[row][0]);
@@ -259,7 +239,7 @@ mod tests {
             let row = rows
                 .find(|row| sheet.crossings[*row][0].edge == edge)
                 .unwrap();
-            let (states, _) = side.net.as_ref().unwrap().row(sheet, row).unwrap();
+            let (states, _) = sheet.net_row(row).unwrap();
             let weights = weights(&side, row);
             let sound = Chebyshev::through(&numbers(side.reader(), &states));
             let count = sound.coefficients.len();

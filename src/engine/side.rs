@@ -6,7 +6,7 @@ use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
 use crate::rod::{Units, arclength};
 use crate::scene::Parameter;
-use crate::sheet::net::Net;
+use crate::sheet::net::ValueNet;
 use crate::sheet::{Crossing, Sheet};
 use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
@@ -27,8 +27,6 @@ pub struct WhiskerSide {
     pub sheet: Sheet,
     /// Channel values `[channel]` of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
     pub unit_values: Values,
-    /// Net of the whisker side; `None` if no engine needs it, or it has no row.
-    pub net: Option<Net>,
     /// Derivatives of the push angle at the detachment of each row, in degrees per unit of the parameter: `[row][parameter]`. Empty
     /// without such channels.
     pub push_derivatives: Vec<Vec<(Parameter, f32)>>,
@@ -44,29 +42,29 @@ impl WhiskerSide {
             unit_values: values(&reader.of_one(sheet.side.sign())),
             columns,
             sheet,
-            net: None,
             push_derivatives: Vec::new(),
             reader,
         }
     }
 
-    /// Returns this whisker side with its net, whose states have a residual of at most `most` whisker lengths, for the rows whose cells take
+    /// Returns this whisker side with a net that has states with a residual of at most `most` whisker lengths, for the rows whose cells take
     /// more time by trajectories.
     #[must_use]
     pub fn with_net(self, most: f64) -> Self {
         let net = self.net(most);
-        Self { net, ..self }
+        let sheet = self.sheet.with_net(net);
+        Self { sheet, ..self }
     }
 
     /// Computes the net of this whisker side, as [`Self::with_net`] adds it.
     #[must_use]
-    pub fn net(&self, most: f64) -> Option<Net> {
+    pub fn net(&self, most: f64) -> Option<ValueNet> {
         let cells = |row: usize| {
             let end = self.sheet.crossings[row].first();
             let end = end.map_or(0.0, |end| end.push);
             self.columns.magnitudes.partition_point(|push| *push < end)
         };
-        Net::new(&self.sheet, cells, most)
+        ValueNet::new(&self.sheet, cells, most)
     }
 
     /// Returns the converter of the side's states to map units.

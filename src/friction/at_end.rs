@@ -56,7 +56,7 @@ fn points(sheet: &Sheet, row: usize, end: &Crossing) -> Option<Vec<DVec2>> {
         return None;
     }
     let pushes = (1..=BETWEEN).map(|i| end.push * f64::from(i) / f64::from(BETWEEN + 1));
-    let guesses = sheet.guesses(row, pushes).into_iter();
+    let guesses = sheet.guesses(row, &pushes.collect::<Vec<_>>()).into_iter();
     let between = guesses.map(|guess| guess.map(|own| DVec2::new(own.tau, own.load)));
     let end = Some(DVec2::new(end.tau, end.load));
     between.chain([end]).collect()

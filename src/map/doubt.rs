@@ -1,6 +1,6 @@
 //! Cells in doubt, solved once more by continuation along the level curve of their row.
 //!
-//! The lattice follows a row from load to load, and its guesses can miss in two places. One is where a level curve runs almost along a
+//! A line of the net has one contact at each load, and its guesses can miss in two places. One is where a level curve runs almost along a
 //! line of constant load, as near the tip of a perfect cone. The other is where it turns back, as with friction. Continuation needs no
 //! guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 

@@ -7,13 +7,13 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Stage of the sheets: folds, lattices, exact row boundaries, and the nets of an engine.
+    /// Stage of the sheets: folds, nets and exact row boundaries.
     Sheets,
     /// Stage of the expansions of rows for an engine.
     Rows,
     /// Stage in which an engine on the CPU evaluates rows.
     Cells,
-    /// Stage in which the lattice provides guesses.
+    /// Stage in which the net provides guesses.
     Guesses,
     /// Stage of Newton's method in `f64`.
     Refinement,

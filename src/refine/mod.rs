@@ -167,7 +167,7 @@ pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarg
     pushes.sort_by(f64::total_cmp);
     let mut targets = Vec::new();
     for (row, place) in sheet.rows.iter().enumerate() {
-        let guesses = sheet.guesses(row, pushes.iter().copied());
+        let guesses = sheet.guesses(row, &pushes);
         for (guess, push) in guesses.iter().zip(&pushes) {
             targets.extend(guess.map(|guess| CellTarget {
                 rod,

@@ -21,6 +21,16 @@ impl SheetCase<'_> {
         Self { method, ..self }
     }
 
+    /// Returns this case of a sheet at the fine resolution, or its own if that is finer.
+    pub const fn finely(self) -> Self {
+        let resolution = self.method.resolution.at_least_fine();
+        let method = Method {
+            resolution,
+            ..self.method
+        };
+        Self { method, ..self }
+    }
+
     /// Computes the outputs of trajectories at `points` `(tau, load)`, `[point]`, in padded blocks ([`Batch::padded`]).
     pub fn shoot<O: OutputSet>(
         &self,

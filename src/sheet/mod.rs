@@ -2,20 +2,16 @@
 //!
 //! In the plane of contact and load, the stable states form a rectangle. Its edges are touch (no load), tip, fold (first singular
 //! Jacobian) and base. The image of the rectangle in (distance, direction of the pole) does not overlap itself. So the edges alone give
-//! the exact boundary of a regime map ([`Sheet::crossings`]). A lattice of trajectories over the rectangle gives each cell of the map a
-//! Newton start, or shows that the cell has no solution ([`Sheet::guesses`]). Crossings and guesses are computed independently of each
-//! other.
+//! the exact boundary of a regime map ([`Sheet::crossings`]). A net of trajectories over the rectangle gives each cell of the map a
+//! Newton start ([`Sheet::guesses`]), and the cells of an engine their values. Crossings and net are computed independently of each other.
 //!
-//! `fold/` finds the first folds of sampled contacts, `lattice/` makes guesses, and `edges/` computes where a row leaves the sheet. `net/`
-//! represents the states of rows by few trajectories, for an engine. `continuation/` follows a row from state to state where the lattice
-//! or the edges are not certified.
+//! `fold/` finds the first folds of sampled contacts, `net/` represents the states and shows that there are no other folds, and `edges/`
+//! computes where a row leaves the sheet. `continuation/` follows a row from state to state where these are not certified.
 
 mod case;
-mod certificate;
 mod continuation;
 mod edges;
 mod fold;
-mod lattice;
 pub mod net;
 mod row;
 mod samples;
@@ -25,8 +21,9 @@ pub use continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 pub use continuation::{Continuation, NODE_MISS, continuations};
 pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
 pub use fold::FoldPoint;
+pub use net::{NetRow, PUSH_MARGIN};
 pub use row::{Crossing, Edge, Row};
-pub use span::{Guess, PUSH_MARGIN, RowSpan, SpanNode};
+pub use span::{Guess, RowSpan, SpanNode};
 
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
@@ -34,9 +31,9 @@ use crate::shooting::batch::Method;
 use case::SheetCase;
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
+use net::{FOLD_ERROR, GUESS_ERROR, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Returns the number of rows, of `rows` in total, that one batch of continuations follows: 32 to 128. Each thread gets a batch, and
@@ -66,21 +63,34 @@ pub struct Sheet {
     method: Method,
     /// Samples of the whole sheet, if they are certified.
     samples: Option<Arc<SheetSamples>>,
-    /// Spans made by continuation, `[row][piece]`: the source of guesses without samples. Empty with samples, so that they take no memory.
+    /// Spans of the rows that continuation has followed: `[row][piece]`.
     continued: Vec<Vec<RowSpan>>,
+    /// Panels with the values of states for the rows of an engine; `None` without one.
+    net: Option<ValueNet>,
 }
 
 impl Sheet {
     /// Computes the sheet of `rod` by `method` for rows at `distances` (at first touch, in whisker lengths).
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
+        Self::with_error(GUESS_ERROR, method, rod, side, distances)
+    }
+
+    /// Computes the sheet as [`Sheet::new`] does, for the crossings of its rows alone: [`Sheet::guesses`] are only near the states.
+    #[must_use]
+    pub fn of_ends(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
+        Self::with_error(FOLD_ERROR, method, rod, side, distances)
+    }
+
+    /// Computes the sheet with this `error` of its panels.
+    fn with_error(error: f64, method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
         let rest = Rest::new(rod);
         let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
         let case = SheetCase { method, rod, side };
-        let samples = nearest.and_then(|nearest| SheetSamples::new(case, nearest));
+        let samples = nearest.and_then(|nearest| SheetSamples::new(case, nearest, &rows, error));
         let is_certified = samples.as_ref().is_some_and(|samples| samples.is_certified);
         let mut crossings = match &samples {
             Some(samples) => crossings(case, &samples.edges, &rows),
@@ -94,7 +104,8 @@ impl Sheet {
             let is_pair = usize::from(touches) + crossings.len() == 2;
             let is_simple = crossings.is_empty() && !touches
                 || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
-            !(is_certified && is_simple)
+            let is_inside = row.pole_distance <= rod.pole.abs();
+            !(is_certified && is_simple) || is_inside
         };
         let follow = |(rows, crossings): (&[Row], &mut [Vec<Crossing>])| {
             let continued: Vec<usize> = (0..rows.len())
@@ -137,11 +148,9 @@ impl Sheet {
             rows,
             crossings,
             method,
-            continued: match samples {
-                Some(_) => Vec::new(),
-                None => continued,
-            },
+            continued,
             samples: samples.map(Arc::new),
+            net: None,
         }
     }
 
@@ -190,32 +199,71 @@ impl Sheet {
         TIP_TIE * self.tip[0] + self.tip_blur()
     }
 
-    /// Returns the stable pieces of `row`: from the certified lattice, or else from the row's continuation.
-    #[must_use]
-    pub fn spans(&self, row: usize) -> Cow<'_, [RowSpan]> {
-        match self.samples.as_deref() {
-            Some(SheetSamples {
-                lattice, contacts, ..
-            }) => Cow::Owned(vec![lattice.span(contacts, &self.rows[row])]),
-            None => Cow::Borrowed(&self.continued[row]),
+    /// Returns the whisker side of the sheet.
+    const fn case(&self) -> SheetCase<'_> {
+        SheetCase {
+            method: self.method,
+            rod: &self.rod,
+            side: self.side,
         }
+    }
+
+    /// Returns the end of a `row` on a certified sheet; `None` unless first touch is its only other end.
+    #[must_use]
+    pub fn simple_end(&self, row: usize) -> Option<&Crossing> {
+        let [end] = &self.crossings[row][..] else {
+            return None;
+        };
+        let is_simple = self.touches(row) && end.is_sound() && !end.is_at_touch();
+        (is_simple && !self.is_continued()).then_some(end)
+    }
+
+    /// Returns this sheet with its `net` for an engine.
+    #[must_use]
+    pub fn with_net(self, net: Option<ValueNet>) -> Self {
+        Self { net, ..self }
+    }
+
+    /// Returns the net for an engine; `None` without one.
+    #[must_use]
+    pub const fn net(&self) -> Option<&ValueNet> {
+        self.net.as_ref()
+    }
+
+    /// Returns the states of a `row` by the sheet's net, from first touch to its only other end, with the bound on their residual in whisker
+    /// lengths. `None` if the row has other ends, or is not in the net.
+    #[must_use]
+    pub fn net_row(&self, row: usize) -> Option<(NetRow, f64)> {
+        self.net.as_ref()?.row(self, row)
+    }
+
+    /// Returns the ends of the stable pieces of `row`, `[piece]`; without the first one, a piece begins at first touch.
+    fn pieces(&self, row: usize) -> impl Iterator<Item = [Option<&Crossing>; 2]> {
+        let touch = self.touches(row).then_some(None);
+        let ends = touch
+            .into_iter()
+            .chain(self.crossings[row].iter().map(Some));
+        let ends: Vec<Option<&Crossing>> = ends.collect();
+        (0..ends.len() / 2).map(move |i| [ends[2 * i], ends[2 * i + 1]])
     }
 
     /// Returns a Newton start for each cell of `row`, `[push_angle]`, one for each of the growing `pushes` (magnitudes, in radians). An entry is
     /// `None` outside the sheet.
-    pub fn guesses(
-        &self,
-        row: usize,
-        pushes: impl Iterator<Item = f64> + Clone,
-    ) -> Vec<Option<Guess>> {
-        let spans = self.spans(row);
-        let found = spans.iter().map(|span| span.guesses(pushes.clone()));
-        let join = |first: Vec<Option<Guess>>, second: Vec<Option<Guess>>| {
-            let pairs = first.into_iter().zip(second);
-            pairs.map(|(first, second)| first.or(second)).collect()
-        };
-        let none = || pushes.clone().map(|_| None).collect();
-        found.reduce(join).unwrap_or_else(none)
+    #[must_use]
+    pub fn guesses(&self, row: usize, pushes: &[f64]) -> Vec<Option<Guess>> {
+        let mut guesses = vec![None; pushes.len()];
+        if pushes.is_empty() {
+            return guesses;
+        }
+        for span in &self.continued[row] {
+            span.write_guesses(pushes, &mut guesses);
+        }
+        if let Some(panel) = self.samples.as_ref().and_then(|own| own.panels.of(row)) {
+            for ends in self.pieces(row) {
+                panel.write_guesses(self.case(), &self.rows[row], ends, pushes, &mut guesses);
+            }
+        }
+        guesses
     }
 
     /// Returns true if a state is on the sheet: loaded toward the pole, and on the stable side of the Jacobian's first singularity.

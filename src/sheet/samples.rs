@@ -1,43 +1,55 @@
-//! Samples of a sheet: contact nodes, lattice and edges, with their certificate.
+//! Samples of a sheet: contact nodes, edges and net, with their certificate.
 
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::Edges;
 use crate::sheet::fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
-use crate::sheet::lattice::Lattice;
+use crate::sheet::net::{GuessPanel, Panels};
 use crate::sheet::row::Row;
 
 /// Largest negative load, relative to the fold load, that counts as unloaded. At the soft tip of a strongly curved cone, rounding of
 /// first touch (1e-13 of the length) is a load of 1e-8.
 const UNLOADED: f64 = 1e-6;
 
-/// Samples of a sheet: contact nodes, lattice and edges.
+/// Samples of a sheet: contact nodes, edges and net.
 #[derive(Clone, Debug)]
 pub struct SheetSamples {
     pub contacts: ContactNodes,
-    pub lattice: Lattice,
     pub edges: Edges,
+    pub panels: Panels<GuessPanel>,
     /// True if the samples show the whole sheet: no fold and no crossing is hidden between them.
     pub is_certified: bool,
 }
 
 impl SheetSamples {
-    /// Samples the sheet from the tip down to the row `nearest` to the base. If the samples are not certified, it samples again at a
-    /// narrow spacing. Returns `None` if some contact has no fold, or no stable state at first touch.
-    pub fn new(case: SheetCase, nearest: &Row) -> Option<Self> {
-        let sampled = |spacing| {
-            let contacts = ContactNodes::new(case, nearest, spacing)?;
-            let lattice = Lattice::new(case.coarsely(), &contacts);
-            let edges = Edges::new(case, &contacts, &lattice);
-            Some(Self {
-                is_certified: lattice.is_certified() && edges.are_certified(),
+    /// Samples the sheet of `rows`, the `nearest` of which is nearest to the base, with this `error` of the panels. If the samples are not
+    /// certified, it samples again at a narrow spacing, with panels by fine trajectories. Returns `None` if some contact has no fold, or no stable
+    /// state at first touch.
+    pub fn new(case: SheetCase, nearest: &Row, rows: &[Row], error: f64) -> Option<Self> {
+        let nodes = |case, spacing| ContactNodes::new(case, nearest, spacing);
+        let sampled = |contacts: ContactNodes, by, folds: Option<ContactNodes>| {
+            let edges = Edges::new(case, &contacts);
+            let folds = folds.as_ref().unwrap_or(&contacts);
+            let panels = Panels::for_guesses(by, folds, rows, error);
+            let shows_folds = |panel: &GuessPanel| panel.shows_folds(case.rod, folds);
+            let all = panels.of_all_rows();
+            let shows_folds = all.is_some_and(|all| all.iter().all(shows_folds));
+            Self {
+                is_certified: edges.are_certified() && shows_folds,
                 contacts,
-                lattice,
                 edges,
-            })
+                panels,
+            }
         };
-        match sampled(SPACING) {
+        let contacts = nodes(case, SPACING);
+        match contacts.map(|contacts| sampled(contacts, case.coarsely(), None)) {
             Some(samples) if samples.is_certified => Some(samples),
-            samples => sampled(NARROW_SPACING).or(samples),
+            samples => {
+                // Near the tip of a perfect cone, coarse trajectories have other folds.
+                let fine = case.finely();
+                let both = nodes(case, NARROW_SPACING).zip(nodes(fine, NARROW_SPACING));
+                let again = both.map(|(contacts, folds)| sampled(contacts, fine, Some(folds)));
+                again.or(samples)
+            }
         }
     }
 

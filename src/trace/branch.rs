@@ -228,7 +228,7 @@ impl Branch {
             method, rod, side, ..
         } = &self.level;
         let distance = self.distance_mm / self.units.length_mm;
-        snaps_deg(&Sheet::new(*method, rod, *side, &[distance]), 0)
+        snaps_deg(&Sheet::of_ends(*method, rod, *side, &[distance]), 0)
     }
 
     /// Returns true if a push detaches at the end of the stable states. With friction, it does not if the contact sticks there.

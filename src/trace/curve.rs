@@ -128,7 +128,11 @@ pub(crate) fn detachments(
     let units = whisker.units();
     let reader = Reader::new(units, rod);
     let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
-    let sheet = Sheet::new(method, rod, side, &distances);
+    // The history of a contact that sticks needs states before the end.
+    let sheet = match has_strain && rod.friction != 0.0 {
+        true => Sheet::new(method, rod, side, &distances),
+        false => Sheet::of_ends(method, rod, side, &distances),
+    };
     let ends = crossings(&sheet);
     let points = ends.iter().flatten().map(|end| (end.tau, end.load));
     let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points);

@@ -164,7 +164,8 @@ impl SideStates {
         let (mut places, mut targets) = (Vec::new(), Vec::new());
         for same in order.chunk_by(|a, b| of(*a).0 == of(*b).0) {
             let row = of(same[0]).0;
-            let guesses = self.sheet.guesses(row, same.iter().map(|i| of(*i).1));
+            let pushes: Vec<f64> = same.iter().map(|i| of(*i).1).collect();
+            let guesses = self.sheet.guesses(row, &pushes);
             for (i, guess) in same.iter().zip(guesses) {
                 let Some(guess) = guess else { continue };
                 places.push(*i);

@@ -6,14 +6,11 @@ pub mod edge_newton;
 mod predictor;
 mod tip_edge;
 
-use crate::numerics::nearest_turn;
 use crate::rod::{Rest, arclength};
 use crate::sheet::case::SheetCase;
-use crate::sheet::certificate::is_as_steep_as;
 use crate::sheet::edges::predictor::{EdgeSample, FoldEdge, Prediction};
 use crate::sheet::edges::tip_edge::{SampledTipEdge, TipEdge};
 use crate::sheet::fold::contact_nodes::ContactNodes;
-use crate::sheet::lattice::Lattice;
 use crate::sheet::row::Edge;
 
 /// Sampled edges of a sheet.
@@ -35,23 +32,29 @@ pub struct Edges {
     pub tip_error: f64,
 }
 
+/// Largest difference between the change from one sample to the next and the slope at either of them.
+const SLOPE_TOLERANCE: f64 = 0.25;
+
+/// Returns true if the `change` of a function between two samples agrees with its `slopes` there.
+fn is_as_steep_as(change: f64, slopes: [f64; 2]) -> bool {
+    slopes
+        .iter()
+        .all(|slope| (change - slope).abs() < SLOPE_TOLERANCE)
+}
+
 impl Edges {
-    /// Samples both edges of the sheet; `lattice` provides the whole turns of the pole's direction.
-    pub fn new(case: SheetCase, contacts: &ContactNodes, lattice: &Lattice) -> Self {
+    /// Samples both edges of the sheet.
+    pub fn new(case: SheetCase, contacts: &ContactNodes) -> Self {
         let rod = case.rod;
         let fold: Vec<EdgeSample> = contacts.folds[..=contacts.tip]
             .iter()
-            .zip(lattice.phi_at_fold())
             .enumerate()
-            .map(|(i, (fold, phi))| {
-                let pole = fold.variation.map.pole;
-                EdgeSample {
-                    place: i as f64,
-                    tau: fold.tau,
-                    load: fold.load,
-                    ln_distance: libm::log(pole.length()),
-                    phi: nearest_turn(pole.to_angle(), phi),
-                }
+            .map(|(i, fold)| EdgeSample {
+                place: i as f64,
+                tau: fold.tau,
+                load: fold.load,
+                ln_distance: libm::log(fold.variation.map.pole.length()),
+                phi: fold.phi,
             })
             .collect();
         let corner = &contacts.folds[contacts.tip];
@@ -68,13 +71,12 @@ impl Edges {
             ..*corner
         }));
         let is_certified = |(i, pair): (usize, &[EdgeSample])| {
-            let slopes =
-                [i, i + 1].map(|i| contacts.slope(i, 1.0, &contacts.folds[i].variation.map));
+            let slopes = [i, i + 1].map(|i| contacts.slope(i));
             let [from, to] = [pair[0], pair[1]];
             is_as_steep_as(to.ln_distance - from.ln_distance, slopes.map(|by| by.x))
                 && is_as_steep_as(to.phi - from.phi, slopes.map(|by| by.y))
         };
-        let fold_edge = FoldEdge::new(contacts, lattice.phi_at_fold());
+        let fold_edge = FoldEdge::new(contacts);
         let grows = |i| contacts.grow_after(i) && fold_edge.grows_after(i);
         Self {
             fold_is_certified: fold.windows(2).enumerate().all(is_certified),
@@ -138,8 +140,7 @@ mod tests {
                 side,
             };
             let contacts = ContactNodes::new(case, &row, SPACING).unwrap();
-            let lattice = Lattice::new(case.coarsely(), &contacts);
-            let edges = Edges::new(case, &contacts, &lattice);
+            let edges = Edges::new(case, &contacts);
             let mut checked = 0;
             for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
                 for pair in samples.windows(2) {

@@ -103,19 +103,15 @@ pub struct FoldEdge {
 }
 
 impl FoldEdge {
-    /// Interpolates the folds of all contact nodes, with the directions `phis` of the pole in radians.
-    pub fn new(contacts: &ContactNodes, phis: impl Iterator<Item = f64>) -> Self {
+    /// Interpolates the folds of all contact nodes.
+    pub fn new(contacts: &ContactNodes) -> Self {
         let folds = &contacts.folds;
-        let maps = folds.iter().map(|fold| &fold.variation.map);
-        let values: Vec<[f64; 2]> = maps
-            .clone()
-            .zip(phis)
-            .map(|(map, phi)| [libm::log(map.pole.length()), phi])
+        let values: Vec<[f64; 2]> = folds
+            .iter()
+            .map(|fold| [libm::log(fold.variation.map.pole.length()), fold.phi])
             .collect();
-        let slopes: Vec<[f64; 2]> = maps
-            .enumerate()
-            .map(|(i, map)| contacts.slope(i, 1.0, map).to_array())
-            .collect();
+        let slopes = (0..folds.len()).map(|i| contacts.slope(i).to_array());
+        let slopes: Vec<[f64; 2]> = slopes.collect();
         let second: Vec<[f64; 6]> = folds
             .iter()
             .map(|fold| {

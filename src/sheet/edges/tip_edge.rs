@@ -8,8 +8,7 @@ use crate::numerics::newton_form::{Polynomial, RootProblem, through_nodes};
 use crate::numerics::{Bracket, nearest_turn};
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::predictor::{EdgeSample, LAST_STEP_ALONG_EDGE, Prediction, place_between};
-use crate::sheet::fold::FoldPoint;
-use crate::sheet::lattice::directions;
+use crate::sheet::fold::{FoldPoint, directions};
 use crate::shooting::batch::Batch;
 use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
@@ -137,8 +136,8 @@ impl<'a> TipLoads<'a> {
         let points = before_corner.map(|part| (corner.tau, part * corner.load));
         let mut maps: Vec<ShootingMap> = case.shoot(points);
         maps.push(corner.variation.map);
-        let mut phis = vec![0.0; parts.len()];
-        directions(corner.load, parts, maps.iter(), &mut phis);
+        let loads = parts.iter().map(|part| part * corner.load);
+        let phis = directions(0.0, loads.zip(&maps)).collect();
         Self {
             case,
             corner,

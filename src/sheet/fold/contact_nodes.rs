@@ -10,7 +10,6 @@ use crate::sheet::case::SheetCase;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL, slope_of_u, tau_of, u_of};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
-use crate::shooting::ShootingMap;
 use glam::DVec2;
 
 /// Spacing of the contact nodes in the contact coordinate `u`, dimensionless.
@@ -22,7 +21,7 @@ pub const NARROW_SPACING: f64 = SPACING / 4.0;
 /// Number of contact nodes beyond the tip.
 const BEYOND_TIP: usize = 1;
 
-/// Number of contact nodes between the contact nearest to the base of any row and the end of the lattice.
+/// Number of contact nodes between the contact nearest to the base of any row and the first node.
 const BEYOND_NEAREST: usize = 1;
 
 /// Largest distance in `u` from the tip to the last node. The smallest `tau` is then below 1e-12 of the tip's.
@@ -147,22 +146,21 @@ impl ContactNodes {
         load.abs() * tau * tau < SURELY_BELOW * self.least_q
     }
 
-    /// Returns the derivatives of `(ln D, phi)` by contact-node index along the line on which the load is this `part` of the fold's.
-    /// `map` is the map at the node `i`.
+    /// Returns the derivatives of `(ln D, phi)` by contact-node index along the fold, at the node `i`.
     #[must_use]
-    pub fn slope(&self, i: usize, part: f64, map: &ShootingMap) -> DVec2 {
+    pub fn slope(&self, i: usize) -> DVec2 {
+        let map = &self.folds[i].variation.map;
         let (fold, [ln_tau, ln_q]) = (&self.folds[i], self.slopes[i]);
         let ln_load = ln_q - 2.0 * ln_tau;
-        map.by_tau * (fold.tau * ln_tau) + map.by_load * (part * fold.load * ln_load)
+        map.by_tau * (fold.tau * ln_tau) + map.by_load * (fold.load * ln_load)
     }
 
     /// Returns true if the distance at the fold grows from the contact node `i` to the next one, and the fold does not jump.
     #[must_use]
     pub fn grow_after(&self, i: usize) -> bool {
         let ends = [i, i + 1];
-        let maps = ends.map(|i| &self.folds[i].variation.map);
-        let [here, next] = maps.map(|map| map.pole.length());
-        let grows = |end: usize| self.slope(ends[end], 1.0, maps[end]).x > -FLAT;
+        let [here, next] = ends.map(|i| self.folds[i].distance());
+        let grows = |end: usize| self.slope(ends[end]).x > -FLAT;
         let [from, to] = ends.map(|i| libm::log(self.folds[i].q()));
         let slopes = ends.map(|i| self.slopes[i][1]);
         here < next && grows(0) && grows(1) && !jumps(to - from, slopes)
@@ -237,14 +235,11 @@ mod tests {
         let [ln_tau, ln_q] = nodes.slopes[i];
         assert!((differ(folds.map(|fold| fold.tau.ln())) - ln_tau).abs() < 1e-5);
         assert!((differ(folds.map(|fold| fold.q().ln())) - ln_q).abs() < 1e-5);
-        for part in [0.0, 0.5, 1.0] {
-            let shot = |fold: FoldPoint| case.shoot([(fold.tau, part * fold.load)])[0];
-            let slope = nodes.slope(i, part, &shot(nodes.folds[i]));
-            let maps: [ShootingMap; 2] = folds.map(shot);
-            let ln_distance = differ(maps.map(|map| map.pole.length().ln()));
-            let phi = differ(maps.map(|map| map.pole.to_angle()));
-            assert!((ln_distance - slope.x).abs() < 1e-5, "{i} {part}");
-            assert!((phi - slope.y).abs() < 1e-5, "{i} {part}");
-        }
+        let slope = nodes.slope(i);
+        let maps = folds.map(|fold| fold.variation.map);
+        let ln_distance = differ(maps.map(|map| map.pole.length().ln()));
+        let phi = differ(maps.map(|map| map.pole.to_angle()));
+        assert!((ln_distance - slope.x).abs() < 1e-5, "{i}");
+        assert!((phi - slope.y).abs() < 1e-5, "{i}");
     }
 }

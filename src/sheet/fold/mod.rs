@@ -4,8 +4,8 @@ pub mod contact_nodes;
 pub mod coordinate;
 
 use crate::newton::{BatchNewton, LaneSharing, NewtonProblem, NewtonStep};
-use crate::numerics::Bracket;
 use crate::numerics::newton_form::{RootProblem, stencil, through_nodes};
+use crate::numerics::{Bracket, nearest_turn};
 use crate::rod::{Rod, arclength};
 use crate::sheet::case::SheetCase;
 use crate::shooting::{SecondVariation, ShootingMap};
@@ -20,9 +20,16 @@ pub struct FoldPoint {
     pub load: f64,
     /// Pole and its first and second derivatives at the fold point.
     pub variation: SecondVariation,
+    /// Direction of the pole at the fold point in radians, continuous from first touch.
+    pub phi: f64,
 }
 
 impl FoldPoint {
+    /// Returns the distance of the pole at the fold point, in whisker lengths.
+    pub fn distance(&self) -> f64 {
+        self.variation.map.pole.length()
+    }
+
     /// Returns the row parameter `|load| tau^2` of the fold point, dimensionless.
     pub fn q(&self) -> f64 {
         self.load.abs() * self.tau * self.tau
@@ -46,6 +53,15 @@ const BRACKET_SLACK: f64 = 1e-2;
 /// its square.
 const LAST_STEP_BETWEEN_SAMPLES: f64 = 1e-4;
 
+/// Returns the value of `q = |load| s^2` up to which every state of `rod` is stable; 0 if it is not known.
+pub fn surely_stable(rod: &Rod) -> f64 {
+    if rod.profile.is_none() && rod.gradient >= 0.0 {
+        SURELY_STABLE
+    } else {
+        0.0
+    }
+}
+
 /// Value of `q` beyond which the spacing of the samples grows. The largest first fold known of a cone lies at 24.15: the limit at the tip
 /// of a perfect cone that is slender against the pole.
 const EVEN_UP_TO: f64 = 64.0;
@@ -66,13 +82,7 @@ const POLISH_TRAJECTORIES: u32 = 60;
 /// Returns the first folds of `rod` at the contacts `taus`, in the same order, `[contact]`. An entry is `None` where there is no fold up
 /// to [`MARCH_END`], or no stable state at first touch.
 pub fn first_folds(case: SheetCase, taus: &[f64]) -> Vec<Option<FoldPoint>> {
-    let rod = case.rod;
-    let begin = if rod.profile.is_none() && rod.gradient >= 0.0 {
-        SURELY_STABLE
-    } else {
-        0.0
-    };
-    let mut folds = polish(case, march(case.coarsely(), taus, begin));
+    let mut folds = polish(case, march(case.coarsely(), taus, surely_stable(case.rod)));
     // With friction and a stiff tip, the first fold can lie at `q` of 1000, where the coarse resolution fails.
     let failed: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
     let again: Vec<f64> = failed.iter().map(|&i| taus[i]).collect();
@@ -90,6 +100,8 @@ struct FoldBracket {
     /// Loads that bracket the root of `-det`.
     loads: Bracket,
     guess: f64,
+    /// Direction of the pole at the load before the fold in radians, continuous from first touch.
+    phi: f64,
 }
 
 /// Samples the loads of every contact from `q = begin` outward until `det` changes its sign. An entry is `None` also where the first
@@ -99,14 +111,18 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
         index: usize,
         scale: f64,
         dets: Vec<f64>,
+        /// Maps at first touch, and at the samples.
+        maps: Vec<ShootingMap>,
     }
     let SheetCase { rod, side, .. } = case;
     let mut found = vec![None; taus.len()];
+    let at_touch: Vec<ShootingMap> = case.shoot(taus.iter().map(|tau| (*tau, 0.0)));
     let mut open: Vec<ContactMarch> = (0..taus.len())
         .map(|index| ContactMarch {
             index,
             scale: side.sign() / (arclength(rod, taus[index]).powi(2) * rod.softness(taus[index])),
             dets: Vec::new(),
+            maps: vec![at_touch[index]],
         })
         .collect();
     let (mut samples, mut step) = (Vec::new(), FIRST_SPACING);
@@ -124,6 +140,7 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
         open.retain_mut(|march| {
             let shot = maps.next().unwrap_or_default();
             march.dets.extend(shot.iter().map(ShootingMap::det));
+            march.maps.extend(shot);
             if march.dets.first().is_none_or(|det| *det <= 0.0) {
                 return false;
             }
@@ -134,6 +151,7 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
                 return true;
             };
             let slack = BRACKET_SLACK * (samples[at + 1] - samples[at]);
+            let loads = std::iter::once(0.0).chain(samples[..=at].iter().map(|q| q * march.scale));
             found[march.index] = Some(FoldBracket {
                 tau: taus[march.index],
                 loads: Bracket {
@@ -141,6 +159,9 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
                     above: (samples[at + 1] + slack) * march.scale,
                 },
                 guess: root(&samples, &march.dets, at) * march.scale,
+                phi: directions(0.0, loads.zip(&march.maps))
+                    .last()
+                    .unwrap_or_default(),
             });
             false
         });
@@ -149,6 +170,24 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
         }
     }
     found
+}
+
+/// Returns the directions of the pole in radians for maps of one contact with their growing loads, `[load]`. They are continuous; the first one
+/// is near `first`, which is 0 at first touch.
+pub fn directions<'a>(
+    first: f64,
+    maps: impl IntoIterator<Item = (f64, &'a ShootingMap)>,
+) -> impl Iterator<Item = f64> {
+    let mut before: Option<(f64, &ShootingMap, f64)> = None;
+    maps.into_iter().map(move |(load, map)| {
+        let near = before.map_or(first, |(load_there, there, phi)| {
+            let slopes = there.by_load.y + map.by_load.y;
+            0.5f64.mul_add(slopes * (load - load_there), phi)
+        });
+        let phi = nearest_turn(map.pole.to_angle(), near);
+        before = Some((load, map, phi));
+        phi
+    })
 }
 
 /// Number of samples of the polynomial whose root is the zero of `det`.
@@ -221,7 +260,7 @@ fn polish(case: SheetCase, marched: Vec<Option<FoldBracket>>) -> Vec<Option<Fold
     let mut problems: Vec<FoldProblem> = found.iter().map(problem).collect();
     let starts = found.iter().map(|fold| DVec2::new(fold.tau, fold.guess));
     let mut iterates = newton.solve(&mut problems, starts).into_iter();
-    let mut fold = |_: FoldBracket| {
+    let mut fold = |marched: FoldBracket| {
         let iterate = iterates.next()?;
         let variation = iterate.state;
         // A bracket that has not closed, or has closed on something other than a root, is no fold.
@@ -231,6 +270,7 @@ fn polish(case: SheetCase, marched: Vec<Option<FoldBracket>>) -> Vec<Option<Fold
             tau: iterate.point.x,
             load: iterate.point.y,
             variation,
+            phi: nearest_turn(variation.map.pole.to_angle(), marched.phi),
         })
     };
     marched

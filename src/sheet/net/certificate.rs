@@ -1,15 +1,13 @@
 //! Certificate of panels: trajectories at places of rows between the nodes.
 
+use super::PanelRow;
 use super::bound::{MARGIN, VALUE_WEIGHT, larger, largest};
-use super::panel::NetPanel;
 use super::row::NetRow;
-use super::size::NetSize;
-use super::{PanelRow, SMALLEST_RESIDUAL};
+use super::values::{SMALLEST_RESIDUAL, ValuePanel};
 use crate::numerics::WIDTH;
 use crate::numerics::expansion::Chebyshev;
-use crate::sheet::case::SheetCase;
 use crate::sheet::{Row, Sheet};
-use crate::shooting::{PlainState, Reader};
+use crate::shooting::PlainState;
 
 /// Number of rows of a panel, and of places along each, at which states are checked.
 const CHECKS: usize = 8;
@@ -65,42 +63,12 @@ impl CheckedRow {
     }
 }
 
-/// Returns the panel of `size` over the range of `contacts`, with the bound on its residual for `rows` of `sheet`.
-///
-/// # Errors
-/// If the bound exceeds `most`, in whisker lengths, the size that is expected to be accurate enough; `None` if there is none.
-pub fn certified_panel(
-    sheet: &Sheet,
-    rows: &[PanelRow],
-    contacts: [f64; 2],
-    size: NetSize,
-    most: f64,
-) -> Result<NetPanel, Option<NetSize>> {
-    let mut panel = NetPanel::new(sheet, rows, contacts, size).ok_or(None)?;
-    let tails = panel.tails();
-    let error = larger(tails[0].last, tails[1].last);
-    // NaN is not below any bound.
-    let has_converged = MARGIN * error <= most;
-    if !has_converged {
-        return Err(size.enough(tails, most));
-    }
-    panel.shorten();
-    panel.residual = certified(sheet, &panel.reader, &panel, rows, error);
-    if panel.residual <= most {
-        Ok(panel)
-    } else {
-        // Between the nodes, the error is larger than the last coefficients.
-        Err(size.larger())
-    }
-}
-
 /// Returns a bound on the errors of the states of `panel`, in whisker lengths. It follows from trajectories at places of some of its `rows`,
 /// and from the error `by_decay` that the coefficients left out are expected to make. It is at least
 /// [`SMALLEST_RESIDUAL`]; NaN if a number is, or if no row has states.
-fn certified(
+pub(super) fn certified(
     sheet: &Sheet,
-    reader: &Reader,
-    panel: &NetPanel,
+    panel: &ValuePanel,
     rows: &[PanelRow],
     by_decay: f64,
 ) -> f64 {
@@ -123,18 +91,15 @@ fn certified(
         .iter()
         .flat_map(|own| (0..CHECKS).map(move |i| (own, own.functions.at(place(i) * own.end))));
     let expanded: Vec<(&CheckedRow, Checked)> = expanded.collect();
-    let case = SheetCase {
-        method: sheet.method,
-        rod: &sheet.rod,
-        side: sheet.side,
-    };
     let points = expanded.iter().map(|(_, own)| (own[1], own[2]));
-    let exact: Vec<PlainState> = case.shoot(points);
+    let exact: Vec<PlainState> = sheet.case().shoot(points);
     let sign = sheet.side.sign();
     let misses = expanded.iter().zip(&exact).map(|((own, found), exact)| {
         let [push, tau, _, angle, x, y, chord, energy] = *found;
         let push = sign * push;
-        let numbers = reader.numbers(tau, exact, own.row.touch + push, chord);
+        let numbers = panel
+            .reader
+            .numbers(tau, exact, own.row.touch + push, chord);
         let [exact_x, exact_y] = numbers.position;
         let errors = [
             angle - numbers.contact_angle,
@@ -156,10 +121,11 @@ fn certified(
     reason = "a test fails by panicking"
 )]
 mod tests {
-    use super::super::panel::tensor;
+    use super::super::panel::{NetPanel, along};
     use super::super::row::FUNCTIONS;
+    use super::super::size::NetSize;
+    use super::super::values::{ALONG, tensor};
     use super::*;
-    use crate::numerics::expansion::chebyshev_points;
     use crate::numerics::tensor::ChebyshevTensor;
     use crate::rod::{Rod, Side};
     use crate::sheet::Edge;
@@ -182,35 +148,44 @@ mod tests {
         };
         let distances: Vec<f64> = (0..60).map(|i| 0.4 + 0.01 * f64::from(i)).collect();
         let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &distances);
-        let rows = (0..60).filter_map(|row| PanelRow::new(&sheet, row));
+        let rows = sheet.rows.iter().enumerate();
+        let rows = rows.filter_map(|(row, place)| {
+            let end = sheet.simple_end(row)?;
+            PanelRow::new(&rod, row, place, end.tau)
+        });
         let rows = rows.collect();
         (sheet, rows)
     }
 
-    fn panel(sheet: &Sheet, rows: &[PanelRow]) -> NetPanel {
+    const SIZE: NetSize = NetSize {
+        contacts: 28,
+        loads: 24,
+    };
+
+    fn panel(sheet: &Sheet, rows: &[PanelRow]) -> ValuePanel {
         let last = rows.iter().map(|own| own.contacts[1]);
         let contacts = [rows[0].contacts[0], last.fold(0.0, f64::max)];
-        let size = NetSize {
-            contacts: 28,
-            loads: 24,
-        };
-        let panel = certified_panel(sheet, rows, contacts, size, MOST);
+        let samples = sheet.samples.as_ref().unwrap();
+        let along = along(&sheet.rod, &samples.contacts, contacts, ALONG);
+        let panel = ValuePanel::new(sheet, rows, contacts, along, SIZE, MOST);
         panel.unwrap_or_else(|_| panic!("refused"))
     }
 
-    fn bound(sheet: &Sheet, rows: &[PanelRow], panel: &NetPanel) -> f64 {
-        certified(sheet, &panel.reader, panel, rows, 0.0)
+    fn bound(sheet: &Sheet, rows: &[PanelRow], panel: &ValuePanel) -> f64 {
+        certified(sheet, panel, rows, 0.0)
     }
 
     /// The tensor of a panel with all its coefficients.
-    fn whole(sheet: &Sheet, panel: &NetPanel) -> ChebyshevTensor<FUNCTIONS> {
-        tensor(sheet, &panel.reader, panel.size, &panel.along, panel.top)
+    fn whole(sheet: &Sheet, panel: &ValuePanel) -> ChebyshevTensor<FUNCTIONS> {
+        tensor(sheet.case(), &panel.reader, SIZE, &panel.panel.along)
     }
 
-    fn with_tensor(panel: &NetPanel, tensor: ChebyshevTensor<FUNCTIONS>) -> NetPanel {
-        NetPanel {
-            columns: tensor.columns(chebyshev_points(panel.size.columns())),
-            tensor,
+    fn with_tensor(panel: &ValuePanel, tensor: ChebyshevTensor<FUNCTIONS>) -> ValuePanel {
+        let NetPanel {
+            contacts, along, ..
+        } = &panel.panel;
+        ValuePanel {
+            panel: NetPanel::new(*contacts, along.clone(), SIZE, tensor, SIZE.columns()),
             ..panel.clone()
         }
     }
@@ -227,7 +202,7 @@ mod tests {
         );
         let sound = panel(&sheet, &rows);
         assert!(bound(&sheet, &rows, &sound) <= sound.residual);
-        let NetSize { contacts, loads } = sound.size;
+        let NetSize { contacts, loads } = SIZE;
         let whole = whole(&sheet, &sound);
         let largest = whole.coefficients.iter().flatten();
         let largest = largest.fold([0.0; FUNCTIONS], |most, own| {
@@ -256,7 +231,7 @@ mod tests {
         let (sheet, rows) = cone();
         let sound = panel(&sheet, &rows);
         let whole = whole(&sheet, &sound);
-        let NetSize { contacts, loads } = sound.size;
+        let NetSize { contacts, loads } = SIZE;
         for node in (0..contacts * loads).step_by(29) {
             let (in_u, in_p) = (node / loads, node % loads);
             let weight = |count: usize, node: usize| {
@@ -273,8 +248,7 @@ mod tests {
                     }
                 }
                 let spoiled = with_tensor(&sound, tensor);
-                let [in_u, in_p] = spoiled.tails().map(|tail| tail.last);
-                let error = certified(&sheet, &sound.reader, &spoiled, &rows, larger(in_u, in_p));
+                let error = certified(&sheet, &spoiled, &rows, spoiled.error());
                 assert!(
                     error > MOST || error.is_nan(),
                     "node {node}, function {function}: {error:e}"
@@ -288,12 +262,12 @@ mod tests {
     fn a_bound_is_four_times_the_largest_error() {
         let (sheet, rows) = cone();
         let sound = panel(&sheet, &rows);
-        let by_decay = |error: f64| certified(&sheet, &sound.reader, &sound, &rows, error);
+        let by_decay = |error: f64| certified(&sheet, &sound, &rows, error);
         assert_eq!(by_decay(1e-6), 4e-6);
         let own = by_decay(0.0);
         assert!((1e-12..1e-10).contains(&own), "{own:e}");
         let spoiled = |function: usize, change: f64| {
-            let mut tensor = sound.tensor.clone();
+            let mut tensor = sound.panel.tensor.clone();
             tensor.coefficients[0][0][function] += change;
             bound(&sheet, &rows, &with_tensor(&sound, tensor))
         };

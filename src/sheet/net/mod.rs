@@ -2,180 +2,169 @@
 //!
 //! Coordinates are the contact `u = ln tau + tau` and the part `p` of the load, `|load| tau^2 = p exp(ln q(u))`. The scale `ln q` is a
 //! polynomial near the logarithm of the fold's `|load| tau^2`. At a fixed contact every number of a state is an analytic function of the
-//! load, through the fold and beyond, so a few plain trajectories at Chebyshev points of both coordinates represent the sheet, with
+//! load, through the fold and beyond, so a few trajectories at Chebyshev points of both coordinates represent the sheet, with
 //! rows that end at the fold and rows that end at the tip alike. Nothing is solved: no trajectory belongs to a row.
 //!
-//! A panel is one tensor over the contacts of neighbouring rows. Its certificate has three parts: the decay of the last coefficients in
-//! both coordinates, trajectories at places of its rows between the nodes, and the end of every row, which is computed apart
-//! ([`Crossing`](crate::sheet::Crossing)).
+//! A panel is one tensor over the contacts of neighbouring rows. Guesses come from panels with the place of the pole and the Jacobian
+//! (`guesses.rs`), which also show all folds. The values of cells come from panels of an engine's accuracy (`values.rs`). Their certificate
+//! has three parts: the decay of the last coefficients in both coordinates, trajectories at places of their rows between the nodes, and the end
+//! of every row, which is computed apart ([`Crossing`](crate::sheet::Crossing)).
 
 mod bound;
 mod certificate;
+mod guesses;
 mod panel;
 mod row;
 mod size;
+mod values;
 
 pub use bound::{MARGIN, VALUE_WEIGHT, larger, largest};
 pub use row::{NetBlock, NetRow};
+pub use values::ValueNet;
 
-use crate::plan::net_cost;
+use crate::rod::Rod;
+use crate::sheet::Row;
 use crate::sheet::fold::coordinate::u_of;
-use crate::sheet::{Crossing, Sheet};
-use certificate::certified_panel;
-use panel::NetPanel;
+use crate::sheet::row::REACH_SLACK;
+pub use guesses::PUSH_MARGIN;
+pub(super) use guesses::{FOLD_ERROR, GUESS_ERROR, GuessPanel};
 use size::NetSize;
 
 /// Maximum bound on the residual of a state of a net, in whisker lengths, where no tolerance is given.
 pub const NET_RESIDUAL: f64 = 1e-10;
 
-/// Smallest bound on the residual that trajectories of the finest steps allow, in whisker lengths: that of refined states.
-const SMALLEST_RESIDUAL: f64 = 1e-12;
-
-/// Largest range of contacts of a panel in `u`.
+/// Largest range of contacts in `u` of a panel, and of a row that does not count as long.
 const WIDEST: f64 = 7.0;
 
-/// Number of times that the rows of a panel without a certificate are halved.
+/// Number of times that the rows of a panel that is not accurate enough are halved.
 const HALVINGS: u32 = 2;
 
 /// Sizes that are tried for a panel: the first, and two that are expected to be enough.
 const TRIES: usize = 3;
 
-/// Net of a whisker side: certified panels, and the panel of each row.
-#[derive(Clone, Debug)]
-pub struct Net {
-    panels: Vec<NetPanel>,
-    /// Index of each row's panel; `None` for a row that the net does not have.
-    panel_of: Vec<Option<usize>>,
-}
+/// Range in `u` by which a panel extends beyond the contacts of its rows.
+const BEYOND: f64 = 0.06;
 
 /// A row of a panel.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::sheet) struct PanelRow {
+struct PanelRow {
     /// Index of the row in its sheet.
     row: usize,
     /// Smallest and largest coordinate `u` of the contacts of the row.
     contacts: [f64; 2],
 }
 
-/// Range in `u` by which a panel extends beyond the contacts of its rows.
-const BEYOND: f64 = 0.06;
-
 impl PanelRow {
-    /// Returns the range of contacts of a `row` of `sheet`; `None` if it has no simple span from first touch.
+    /// Returns the range of contacts of the `row` at `place`; `None` if it has none, as the pole is out of reach, or if the base may be inside the
+    /// pole.
     ///
-    /// The contact is at least as far along the whisker as it is from the base, and that is at least the pole's distance without its radius.
-    fn new(sheet: &Sheet, row: usize) -> Option<Self> {
-        let rod = &sheet.rod;
-        let (end, place) = (simple_end(sheet, row)?, &sheet.rows[row]);
-        let nearest = (place.pole_distance - rod.pole.abs()).min(place.contact);
-        let touch = u_of(rod, rod.tau(place.contact.min(place.end)));
-        let last = touch.max(u_of(rod, end.tau)) + BEYOND;
-        let is_apart = nearest > 0.0;
-        is_apart.then(|| Self {
+    /// The contact is at least as far along the whisker as it is from the base, and that is at least the pole's distance without its radius. It
+    /// is at most that of first touch, or the `last`.
+    fn new(rod: &Rod, row: usize, place: &Row, last: f64) -> Option<Self> {
+        let reach = place.contact.min(place.end);
+        let nearest = place.pole_distance - rod.pole.abs();
+        let has_contacts = nearest > 0.0 && nearest <= place.end + REACH_SLACK;
+        let nearest = nearest.min(reach);
+        let last = last.max(rod.tau(reach));
+        has_contacts.then(|| Self {
             row,
-            contacts: [u_of(rod, rod.tau(nearest)), last],
+            contacts: [u_of(rod, rod.tau(nearest)), u_of(rod, last) + BEYOND],
         })
     }
 }
 
-/// Returns the end of a `row` of `sheet`; `None` if it has no simple span from first touch.
-#[must_use]
-pub fn simple_end(sheet: &Sheet, row: usize) -> Option<&Crossing> {
-    let [end] = &sheet.crossings[row][..] else {
-        return None;
-    };
-    let is_simple = sheet.touches(row) && end.is_sound() && !end.is_at_touch();
-    (is_simple && !sheet.is_continued()).then_some(end)
+/// Panels of a sheet, and the panel of each row.
+#[derive(Clone, Debug)]
+pub struct Panels<P> {
+    panels: Vec<P>,
+    /// Index of each row's panel; `None` for a row without one.
+    panel_of: Vec<Option<usize>>,
+    /// True if every row with contacts that a panel was made for has one.
+    are_complete: bool,
 }
 
-impl Net {
-    /// Computes the net of `sheet` for rows with `cells(row)` cells, up to a residual of `most` whisker lengths, where that takes less time
-    /// than the trajectories of the cells.
+/// Rows of a sheet that panels are made for.
+struct PanelRows<'a> {
+    rod: &'a Rod,
+    /// All rows of the sheet.
+    rows: &'a [Row],
+    /// Error that the first size of a panel is chosen for, in whisker lengths.
+    aim: f64,
+}
+
+impl PanelRows<'_> {
+    /// Makes panels for those rows to which `last` gives the `tau` of a last contact.
     ///
-    /// A sheet with measured radii has none: states are not analytic where the contact passes from one radius to the next. `None` without a
-    /// row, and where `most` is below the residual of refined states.
-    #[must_use]
-    pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
-        if sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {
-            return None;
-        }
-        let rows = (0..sheet.rows.len()).filter_map(|row| PanelRow::new(sheet, row));
-        let mut rows: Vec<PanelRow> = rows.collect();
-        rows.sort_by(|a, b| a.contacts[0].total_cmp(&b.contacts[0]));
-        let mut net = Self {
-            panels: Vec::new(),
-            panel_of: vec![None; sheet.rows.len()],
-        };
-        net.cover(sheet, &rows, &cells, most, HALVINGS);
-        (!net.panels.is_empty()).then_some(net)
-    }
-
-    /// Covers neighbouring rows with panels.
-    fn cover(
-        &mut self,
-        sheet: &Sheet,
-        rows: &[PanelRow],
-        cells: &impl Fn(usize) -> usize,
-        most: f64,
-        halvings: u32,
-    ) {
-        let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
-            return;
-        };
-        let contacts = rows.iter().fold(first.contacts, |[from, to], own| {
-            [from, to.max(own.contacts[1])]
+    /// `make` computes the panel of a size for neighbouring rows over their range of contacts. If that is not accurate enough, it returns the size
+    /// that is expected to be, if any. Sizes that do not pay are left out. Rows without a panel are halved and tried again.
+    fn panels<P>(
+        &self,
+        last: impl Fn(usize, &Row) -> Option<f64>,
+        pays: impl Fn(NetSize, &[PanelRow]) -> bool,
+        make: impl Fn(&[PanelRow], [f64; 2], NetSize) -> Result<P, Option<NetSize>>,
+    ) -> Panels<P> {
+        let places = self.rows.iter().enumerate().filter_map(|(row, place)| {
+            let last = last(row, place)?;
+            PanelRow::new(self.rod, row, place, last)
         });
-        let middle = first.contacts[0].midpoint(last.contacts[0]);
-        let (near, far) = rows.split_at(rows.partition_point(|own| own.contacts[0] < middle));
-        let may_halve = !near.is_empty() && !far.is_empty();
-        if may_halve && contacts[1] - contacts[0] > WIDEST {
-            self.cover(sheet, near, cells, most, halvings);
-            self.cover(sheet, far, cells, most, halvings);
-            return;
+        // The contacts of a long row go to the tip of a perfect cone.
+        let (mut long, mut places): (Vec<PanelRow>, Vec<PanelRow>) =
+            places.partition(|own| own.contacts[1] - own.contacts[0] > WIDEST);
+        for places in [&mut long, &mut places] {
+            places.sort_by(|a, b| a.contacts[0].total_cmp(&b.contacts[0]));
         }
-        let count: usize = rows.iter().map(|own| cells(own.row)).sum();
-        let pays = |size: NetSize| net_cost(size.states(), rows.len()) < count;
-        if let Some(panel) = smallest_panel(sheet, rows, contacts, most, pays) {
-            for own in rows {
-                self.panel_of[own.row] = Some(self.panels.len());
+        let mut found = Panels {
+            panels: Vec::new(),
+            panel_of: vec![None; self.rows.len()],
+            are_complete: true,
+        };
+        let mut open = vec![(&long[..], 0), (&places[..], HALVINGS)];
+        while let Some((rows, halvings)) = open.pop() {
+            let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
+                continue;
+            };
+            let contacts = rows.iter().fold(first.contacts, |[from, to], own| {
+                [from, to.max(own.contacts[1])]
+            });
+            let middle = first.contacts[0].midpoint(last.contacts[0]);
+            let (near, far) = rows.split_at(rows.partition_point(|own| own.contacts[0] < middle));
+            let range = contacts[1] - contacts[0];
+            let may_halve = halvings > 0 && !near.is_empty() && !far.is_empty();
+            if may_halve && range > WIDEST {
+                open.extend([(near, halvings), (far, halvings)]);
+                continue;
             }
-            self.panels.push(panel);
-        } else if may_halve && halvings > 0 && pays(NetSize::first(most, contacts[1] - contacts[0]))
-        {
-            self.cover(sheet, near, cells, most, halvings - 1);
-            self.cover(sheet, far, cells, most, halvings - 1);
+            let first_size = NetSize::first(self.aim, range);
+            let mut size = Some(first_size);
+            let made = (0..TRIES).find_map(|_| {
+                let next = size.filter(|own| pays(*own, rows))?;
+                make(rows, contacts, next)
+                    .map_err(|enough| size = enough)
+                    .ok()
+            });
+            if let Some(panel) = made {
+                for own in rows {
+                    found.panel_of[own.row] = Some(found.panels.len());
+                }
+                found.panels.push(panel);
+            } else if may_halve && pays(first_size, rows) {
+                open.extend([(near, halvings - 1), (far, halvings - 1)]);
+            } else {
+                found.are_complete = false;
+            }
         }
-    }
-
-    /// Returns the largest number of loads of a panel.
-    #[must_use]
-    pub fn loads(&self) -> usize {
-        let loads = self.panels.iter().map(|panel| panel.size.loads);
-        loads.max().unwrap_or(0)
-    }
-
-    /// Returns the states of `row` of `sheet`, with the bound on their residual in whisker lengths; `None` if the net does not have the row.
-    #[must_use]
-    pub fn row(&self, sheet: &Sheet, row: usize) -> Option<(NetRow, f64)> {
-        let panel = &self.panels[self.panel_of[row]?];
-        Some((panel.row(sheet, row)?, panel.residual))
+        found
     }
 }
 
-/// A certified panel over `contacts` with as few states as possible, found from small to large while the next size `pays`.
-fn smallest_panel(
-    sheet: &Sheet,
-    rows: &[PanelRow],
-    contacts: [f64; 2],
-    most: f64,
-    pays: impl Fn(NetSize) -> bool,
-) -> Option<NetPanel> {
-    let mut size = Some(NetSize::first(most, contacts[1] - contacts[0]));
-    for _ in 0..TRIES {
-        match certified_panel(sheet, rows, contacts, size.filter(|own| pays(*own))?, most) {
-            Ok(panel) => return Some(panel),
-            Err(enough) => size = enough,
-        }
+impl<P> Panels<P> {
+    /// Returns the panel of `row`; `None` if it has none.
+    pub(super) fn of(&self, row: usize) -> Option<&P> {
+        Some(&self.panels[self.panel_of[row]?])
     }
-    None
+
+    /// Returns all panels if every row with contacts has one.
+    pub(super) fn of_all_rows(&self) -> Option<&[P]> {
+        self.are_complete.then_some(&self.panels[..])
+    }
 }

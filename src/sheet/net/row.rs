@@ -1,9 +1,10 @@
 //! Rows of a net: the states of one row at Chebyshev points of its part of the load.
 
-use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
+use super::panel::PanelLine;
 use crate::numerics::tensor::LevelBlock;
-use crate::numerics::{Lanes, SimdTask, Unit, WIDTH, nearest_turn};
-use crate::sheet::{Row, Sheet};
+use crate::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep, nearest_turn, pack};
+use crate::sheet::Row;
+use crate::sheet::case::SheetCase;
 use crate::shooting::StateNumbers;
 use crate::shooting::contact::{direction, exp, radius_and_arclength};
 
@@ -34,40 +35,44 @@ pub struct NetRow {
     pub end: f64,
 }
 
-/// Parameters of a row that its numbers need.
+/// Points of a row, with the parameters that its numbers need.
 pub(super) struct RowLine<'a> {
-    pub sheet: &'a Sheet,
-    pub row: &'a Row,
-    /// Angle of the contact's tangent from the normal of the force, in radians.
-    pub tilt: f64,
-    /// Parts `p` of the load at the columns: `[column]`.
-    pub parts: &'a [f64],
-    /// Points of the level line, in blocks of columns.
-    pub points: &'a [LevelBlock<FUNCTIONS, 2>],
+    case: SheetCase<'a>,
+    row: &'a Row,
+    line: &'a PanelLine<FUNCTIONS>,
 }
 
-impl RowLine<'_> {
+impl<'a> RowLine<'a> {
+    pub const fn new(case: SheetCase<'a>, row: &'a Row, line: &'a PanelLine<FUNCTIONS>) -> Self {
+        Self { case, row, line }
+    }
+
     /// Returns the states of the row.
-    pub fn blocks(&self) -> Vec<NetBlock> {
+    pub fn row(&self) -> NetRow {
         let unit = Unit::detect();
-        let touch = self.row.touch;
+        let (touch, points) = (self.row.touch, &self.line.points);
+        // Angle of the contact's tangent from the normal of the force.
+        let tilt = self.case.rod.contact_tangent().to_angle();
         // The first state is next to first touch.
-        let turned = nearest_turn(touch, self.points[0].values[1][0]);
-        let parts = self.parts.chunks(WIDTH);
-        let blocks = self.points.iter().zip(parts).map(|(points, parts)| {
+        let turned = nearest_turn(touch, points[0].values[1][0]);
+        let parts = self.line.parts.chunks(WIDTH);
+        let blocks = points.iter().zip(parts).map(|(points, parts)| {
             let mut own = [0.0; WIDTH];
             own[..parts.len()].copy_from_slice(parts);
             unit.run(States {
                 points,
                 parts: &own,
-                taper: self.sheet.rod.taper,
-                sign: self.sheet.side.sign(),
-                tilt: self.tilt,
+                taper: self.case.rod.taper,
+                sign: self.case.side.sign(),
+                tilt,
                 turned,
                 turns: turned - touch,
             })
         });
-        blocks.collect()
+        NetRow {
+            blocks: blocks.collect(),
+            end: self.line.end,
+        }
     }
 }
 

@@ -5,8 +5,7 @@
 //! Theory and Approximation Practice*, SIAM 2013, chapters 3 and 8). Clenshaw's recurrence evaluates it. On the interval it is as stable
 //! as the barycentric formula (J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 501, 2004), and gives derivatives as well.
 
-use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
-use crate::numerics::{Lanes, Real, SimdTask, Unit, WIDTH};
+use crate::numerics::{LaneNumbers, Lanes, Real, SimdTask, Unit, WIDTH, keep, pack};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::OnceLock;
 

@@ -8,7 +8,6 @@ pub mod gauss;
 mod golden;
 pub mod inverse;
 pub mod newton_form;
-pub mod newton_form_simd;
 mod real;
 mod simd;
 pub mod tensor;
@@ -19,7 +18,7 @@ pub use dual::{Dual, Scalar};
 pub use golden::least_between;
 pub(crate) use real::horner;
 pub use real::{Real, expm1_over_small, hyperbolic_small, rotated_by_small};
-pub use simd::{ArithmeticClass, Lanes, LanesTask, SimdTask, Unit, WIDTH};
+pub use simd::{ArithmeticClass, LaneNumbers, Lanes, LanesTask, SimdTask, Unit, WIDTH, keep, pack};
 pub use vector::Vector;
 
 use std::f64::consts::TAU;

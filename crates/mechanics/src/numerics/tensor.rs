@@ -6,8 +6,7 @@
 //! [`chebyshev_points`]: crate::numerics::expansion::chebyshev_points
 
 use crate::numerics::expansion::{Chebyshev, MOST_POINTS};
-use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
-use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
+use crate::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep, pack};
 
 /// Expansion of `D` functions of `(x, y)` on `[0, 1]^2`.
 #[derive(Clone, Debug)]
@@ -77,15 +76,33 @@ impl<const D: usize> ChebyshevTensor<D> {
         }
     }
 
+    /// Returns the numbers of polynomials of `x` and of `y` with a coefficient.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 2] {
+        let lengths = self.coefficients.iter().map(Vec::len);
+        let in_x = lengths.clone().rposition(|length| length > 0);
+        [in_x.map_or(0, |last| last + 1), lengths.max().unwrap_or(0)]
+    }
+
+    /// Returns the expansion of one `function` with `x` and `y` exchanged.
+    #[must_use]
+    pub fn transposed(&self, function: usize) -> ChebyshevTensor<1> {
+        let [_, length] = self.counts();
+        let of = |power: usize| {
+            let terms = self.coefficients.iter().map(move |in_y| in_y.get(power));
+            let terms = terms.map(|term| [term.map_or(0.0, |term| term[function])]);
+            terms.collect()
+        };
+        ChebyshevTensor {
+            coefficients: (0..length).map(of).collect(),
+        }
+    }
+
     /// Returns the columns of the tensor at each `y` of `places`.
-    ///
-    /// # Panics
-    ///
-    /// If there are more places than [`MOST_POINTS`].
     #[must_use]
     pub fn columns(&self, places: &[f64]) -> TensorColumns<D> {
-        assert!(places.len() <= MOST_POINTS, "too many columns");
         let unit = Unit::detect();
+        let even: [f64; INTERVALS + 1] = std::array::from_fn(|i| i as f64 / INTERVALS as f64);
         let blocks = places.chunks(WIDTH).map(|places| {
             let mut at = [places[0]; WIDTH];
             at[..places.len()].copy_from_slice(places);
@@ -93,7 +110,10 @@ impl<const D: usize> ChebyshevTensor<D> {
                 coefficients: &self.coefficients,
                 places: &at,
             });
-            let starts = unit.run(Starts(&terms));
+            let starts = unit.run(AtPlaces {
+                terms: &terms,
+                places: &even,
+            });
             ColumnBlock {
                 count: places.len(),
                 terms,
@@ -163,7 +183,7 @@ struct ColumnBlock<const D: usize> {
     /// Coefficients of the columns: `[polynomial of x][function][column]`.
     terms: Vec<[LaneNumbers; D]>,
     /// The first function at even parts of `x`: `[start][column]`.
-    starts: [LaneNumbers; INTERVALS + 1],
+    starts: Vec<LaneNumbers>,
 }
 
 /// Columns of a tensor: expansions in `x` at some places of `y`.
@@ -184,10 +204,17 @@ pub struct LevelBlock<const D: usize, const L: usize> {
 }
 
 impl<const D: usize> TensorColumns<D> {
+    /// Returns the number of columns.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.blocks.iter().map(|block| block.count).sum()
+    }
+
     /// Returns the points at which the first function is `level`, with the values of `along` there: functions of `x` alone. There is one point
     /// for each column, in blocks of [`WIDTH`].
     ///
-    /// Returns `None` if the first function does not grow along some column, does not have the level there, or if Newton's method fails.
+    /// A point is the first at which the first function grows beyond the level. Returns `None` if there is none in some column, or if Newton's
+    /// method fails.
     #[must_use]
     pub fn level<const L: usize>(
         &self,
@@ -196,8 +223,9 @@ impl<const D: usize> TensorColumns<D> {
     ) -> Option<Vec<LevelBlock<D, L>>> {
         let unit = Unit::detect();
         let blocks = self.blocks.iter().map(|block| {
-            let mut starts = [0.0; WIDTH];
-            for (lane, start) in starts[..block.count].iter_mut().enumerate() {
+            // Columns beyond the count are as the first one.
+            let mut starts = [block.start(0, level)?; WIDTH];
+            for (lane, start) in starts[..block.count].iter_mut().enumerate().skip(1) {
                 *start = block.start(lane, level)?;
             }
             let found = unit.run(LevelPoints {
@@ -212,19 +240,30 @@ impl<const D: usize> TensorColumns<D> {
         });
         blocks.collect()
     }
+
+    /// Returns the quotients `(f(x) - f(end))/(x - end)` of the first function with the `ends` of the columns, `[block][column]`, at each `x` of
+    /// `places`: `[block][place][column]`. Columns beyond the count of a block are as its first one, if their ends are.
+    #[must_use]
+    pub fn quotients(&self, ends: &[LaneNumbers], places: &[f64]) -> Vec<Vec<LaneNumbers>> {
+        let unit = Unit::detect();
+        let blocks = self.blocks.iter().zip(ends);
+        let quotients = blocks.map(|(block, ends)| {
+            let terms = unit.run(QuotientTerms { block, ends });
+            unit.run(AtPlaces {
+                terms: &terms,
+                places,
+            })
+        });
+        quotients.collect()
+    }
 }
 
 impl<const D: usize> ColumnBlock<D> {
-    /// Returns the approximate `x` at which the first function is `level` in the column `lane`.
+    /// Returns the approximate smallest `x` at which the first function grows beyond `level` in the column `lane`.
     fn start(&self, lane: usize, level: f64) -> Option<f64> {
         let value = |i: usize| self.starts[i][lane];
-        let mut pairs = 0..INTERVALS;
-        let grows = pairs.all(|i| value(i) < value(i + 1));
-        let is_inside = grows && value(0) <= level && level <= value(INTERVALS);
-        if !is_inside {
-            return None;
-        }
-        let after = (1..INTERVALS).take_while(|i| value(*i) <= level).count();
+        let is_before = |i: usize| value(i) <= level;
+        let after = (0..INTERVALS).find(|i| is_before(*i) && !is_before(i + 1))?;
         let [from, to] = [value(after), value(after + 1)];
         Some((after as f64 + (level - from) / (to - from)) / INTERVALS as f64)
     }
@@ -273,21 +312,25 @@ fn value_and_slope<T: Lanes, const D: usize>(
     later
 }
 
-/// Values of the first function of columns at even parts of `x`.
-struct Starts<'a, const D: usize>(&'a [[LaneNumbers; D]]);
+/// Values of the first function of columns with these `terms` at some `places` of `x`.
+struct AtPlaces<'a, const D: usize> {
+    terms: &'a [[LaneNumbers; D]],
+    places: &'a [f64],
+}
 
-impl<const D: usize> SimdTask for Starts<'_, D> {
-    type Output = [LaneNumbers; INTERVALS + 1];
+impl<const D: usize> SimdTask for AtPlaces<'_, D> {
+    type Output = Vec<LaneNumbers>;
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
-        let mut starts = [[0.0; WIDTH]; INTERVALS + 1];
+        let mut all = vec![[0.0; WIDTH]; self.places.len()];
         for from in (0..WIDTH).step_by(T::LANES) {
-            for (group, starts) in starts.chunks_mut(TOGETHER).enumerate() {
-                let place = |i: usize| (group * TOGETHER + i) as f64 / INTERVALS as f64;
-                let ys: [T; TOGETHER] = std::array::from_fn(|i| T::of(2.0 * place(i) - 1.0));
+            let groups = self.places.chunks(TOGETHER);
+            for (places, found) in groups.zip(all.chunks_mut(TOGETHER)) {
+                let ys: [T; TOGETHER] =
+                    std::array::from_fn(|i| T::of(2.0 * places.get(i).unwrap_or(&0.0) - 1.0));
                 let (mut later, mut latest) = ([T::of(0.0); TOGETHER], [T::of(0.0); TOGETHER]);
-                for (power, terms) in self.0.iter().enumerate().rev() {
+                for (power, terms) in self.terms.iter().enumerate().rev() {
                     let term = pack::<T>(&terms[0], from);
                     for (i, y) in ys.into_iter().enumerate() {
                         let factor = if power == 0 { y } else { y + y };
@@ -296,12 +339,41 @@ impl<const D: usize> SimdTask for Starts<'_, D> {
                         later[i] = factor.mul_add(latest[i], rest);
                     }
                 }
-                for (start, value) in starts.iter_mut().zip(later) {
-                    keep(start, from, value);
+                for (into, value) in found.iter_mut().zip(later) {
+                    keep(into, from, value);
                 }
             }
         }
-        starts
+        all
+    }
+}
+
+/// Coefficients of the quotients `(f(x) - f(end))/(x - end)` of the first function of columns: Clenshaw's sums at their `ends`.
+struct QuotientTerms<'a, const D: usize> {
+    block: &'a ColumnBlock<D>,
+    ends: &'a LaneNumbers,
+}
+
+impl<const D: usize> SimdTask for QuotientTerms<'_, D> {
+    type Output = Vec<[LaneNumbers; 1]>;
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Self::Output {
+        let terms = &self.block.terms;
+        let mut quotients = vec![[[0.0; WIDTH]]; terms.len().max(2) - 1];
+        for from in (0..WIDTH).step_by(T::LANES) {
+            let y = T::of(2.0).mul_add(pack(self.ends, from), T::of(-1.0));
+            let (mut later, mut latest) = (T::of(0.0), T::of(0.0));
+            for power in (1..terms.len()).rev() {
+                let rest = pack::<T>(&terms[power][0], from) - latest;
+                latest = later;
+                later = (y + y).mul_add(latest, rest);
+                // `x - end` is half of the change of `y`.
+                let twice = if power == 1 { 2.0 } else { 4.0 };
+                keep(&mut quotients[power - 1][0], from, T::of(twice) * later);
+            }
+        }
+        quotients
     }
 }
 
@@ -392,12 +464,39 @@ mod tests {
         );
     }
 
+    /// Along columns of an expansion with exchanged variables, quotients with places of each column are those of its functions.
     #[test]
-    fn a_function_that_falls_has_no_level_line() {
-        let tensor = tensor(|x, y| [x * (0.9 - x) + y, 0.0, 0.0]);
+    fn quotients_are_those_of_columns() {
+        let function = |x: f64, y: f64| (x + 2.0 * y).sin();
+        let columns = tensor(|x, y| [0.0, function(y, x), 0.0]).transposed(1);
+        let at: Vec<f64> = (0..=10).map(|i| 0.1 * f64::from(i)).collect();
+        let ends: Vec<LaneNumbers> = at
+            .chunks(WIDTH)
+            .map(|places| std::array::from_fn(|i| places.get(i).map_or(0.5, |y| 0.2 + 0.7 * y)))
+            .collect();
+        let places = [0.0, 0.11, 0.43, 0.52, 0.93, 1.0];
+        let quotients = columns.columns(&at).quotients(&ends, &places);
+        for (m, y) in at.iter().enumerate() {
+            let (block, lane) = (m / WIDTH, m % WIDTH);
+            let end = ends[block][lane];
+            for (i, x) in places.into_iter().enumerate() {
+                let wanted = (function(x, *y) - function(end, *y)) / (x - end);
+                let off = quotients[block][i][lane] - wanted;
+                assert!(off.abs() < 1e-12, "{x} {y}: {off}");
+            }
+        }
+    }
+
+    /// Two places of a column can have the value of the level: the line has the one where the function grows. Above the largest value there is none.
+    #[test]
+    fn a_level_line_is_where_the_function_grows() {
+        let tensor = tensor(|x, y| [x * (0.9 - x) + y, x, 0.0]);
         let along = Chebyshev {
             coefficients: vec![[1.0]],
         };
-        assert!(tensor.columns(&[0.5]).level(0.55, &along).is_none());
+        let columns = tensor.columns(&[0.5]);
+        let found = columns.level(0.64, &along).unwrap();
+        assert!((found[0].values[1][0] - 0.2).abs() < 1e-12);
+        assert!(columns.level(0.75, &along).is_none());
     }
 }

@@ -1,8 +1,7 @@
 //! Readings: states of the whisker in physical units.
 
 use super::{FullState, PlainState};
-use crate::numerics::newton_form_simd::{LaneNumbers, keep, pack};
-use crate::numerics::{Lanes, Real, nearest_turn};
+use crate::numerics::{LaneNumbers, Lanes, Real, keep, nearest_turn, pack};
 use crate::rod::{Rest, Rod, Units, arclength_at};
 use glam::DVec2;
 

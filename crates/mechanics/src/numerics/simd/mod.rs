@@ -54,6 +54,24 @@ pub trait Lanes: Real {
     }
 }
 
+/// Numbers of all SIMD lanes: `[lane]`.
+pub type LaneNumbers = [f64; WIDTH];
+
+/// Returns lanes with the numbers of an array from the index `from` on.
+#[inline(always)]
+pub fn pack<T: Lanes>(numbers: &LaneNumbers, from: usize) -> T {
+    let mut lanes = [0.0; WIDTH];
+    // A constant length makes one load of the copy.
+    lanes[..T::LANES].copy_from_slice(&numbers[from..from + T::LANES]);
+    T::pack(lanes)
+}
+
+/// Stores lanes in an array of numbers, from index `from` on.
+#[inline(always)]
+pub fn keep<T: Lanes>(numbers: &mut LaneNumbers, from: usize, lanes: T) {
+    numbers[from..from + T::LANES].copy_from_slice(&lanes.unpack()[..T::LANES]);
+}
+
 /// Function object that computes in lanes of type `T`: its fields are the arguments, and [`LanesTask::run`] is the body. It is compiled
 /// once for each instruction set.
 pub trait LanesTask<T: Lanes> {

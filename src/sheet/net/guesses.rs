@@ -1,0 +1,403 @@
+//! Panels for guesses: tensors of `ln D`, `phi` and the determinant, by coarse trajectories. They give the Newton starts of cells, and show all
+//! folds.
+//!
+//! `det J D^2` over its value at a load between first touch and the first fold is a smooth function of contact and load. Divided by the part of
+//! the load that is left to the first fold, it is the clearance, which is positive where there is no other fold.
+
+use super::bound::{MARGIN, larger};
+use super::panel::{NetPanel, TOP, along, contacts_of};
+use super::size::NetSize;
+use super::{PanelRow, PanelRows, Panels};
+use crate::numerics::expansion::{Chebyshev, chebyshev_points};
+use crate::numerics::inverse::Inverse;
+use crate::numerics::tensor::ChebyshevTensor;
+use crate::numerics::{LaneNumbers, WIDTH, nearest_turn};
+use crate::rod::{Rod, arclength};
+use crate::sheet::case::SheetCase;
+use crate::sheet::fold::contact_nodes::ContactNodes;
+use crate::sheet::fold::{directions, surely_stable};
+use crate::sheet::{Crossing, Guess, Row};
+use crate::shooting::ShootingMap;
+use std::f64::consts::FRAC_PI_2;
+
+/// Largest error of `ln D` and `phi` of a guess, by the last coefficients. The error is mostly much smaller, and one step of Newton's method from
+/// there is exact. The steps of coarse trajectories change with the load, which leaves up to 6e-6.
+pub const GUESS_ERROR: f64 = 1e-5;
+
+/// Largest error of `ln D` and `phi`, by the last coefficients, where the panels only show the folds.
+pub const FOLD_ERROR: f64 = 1e-3;
+
+/// Smallest number of points of contact and scale of the load as functions of `u`.
+const ALONG: usize = 16;
+
+/// Functions of a state, `[function]`: `ln D`, direction `phi` of the pole in radians, and minus the determinant `det J D^2` over the magnitude of its
+/// value at a load between.
+type Functions = [f64; 3];
+
+/// Index of the determinant in [`Functions`].
+const DETERMINANT: usize = 2;
+
+/// Weights that convert errors of the functions to whisker lengths. The error of the determinant is a part of its certificate.
+const WEIGHTS: Functions = [1.0, 1.0, 0.0];
+
+/// Coefficient up to which the determinant is cut.
+const CUT: f64 = 1e-5;
+
+/// Samples for each polynomial in both variables that are tried one after the other, with the smallest clearance, in parts of the largest, that
+/// counts as positive between them: `(samples, clearance)`. A polynomial of degree `n` whose values at `m n` Chebyshev points are in `[-1, 1]` is
+/// at most `1/cos(pi/(2 m))` between them (H. Ehlich and K. Zeller, Math. Z. 86, 41, 1964). So deviations of a polynomial of two variables from
+/// the middle grow by at most 1.334 and 1.072. The clearance is nearly one: the fold divides it, and coefficients below [`CUT`] are left out.
+/// This is a margin, not a proof.
+const SAMPLES: [(usize, f64); 2] = [(3, 0.143), (6, 0.035)];
+
+/// Part of the smallest load that is surely stable at which samples begin: between the contacts of samples, it may be smaller.
+const BELOW: f64 = 0.9;
+
+/// Largest difference between the load of a fold by the panel and by the contact nodes, relative to the load.
+const FOLD_OFF: f64 = 1e-2;
+
+/// Push angle beyond the ends of a row, in radians, up to which cells get guesses. It is many times the error of a guess; a row with a missed
+/// cell is followed by continuation.
+pub const PUSH_MARGIN: f64 = 1e-4;
+
+/// Panel for guesses.
+#[derive(Clone, Debug)]
+pub struct GuessPanel(NetPanel<3>);
+
+impl Panels<GuessPanel> {
+    /// Returns the panels of `rows` between `contacts`, with this `error` of `ln D` and `phi`.
+    pub fn for_guesses(case: SheetCase, contacts: &ContactNodes, rows: &[Row], error: f64) -> Self {
+        let rows = PanelRows {
+            rod: case.rod,
+            rows,
+            aim: error,
+        };
+        let make = |_: &[PanelRow], range: [f64; 2], size: NetSize| {
+            let along = along(case.rod, contacts, range, size.contacts.max(ALONG));
+            GuessPanel::new(case, range, along, size, error)
+        };
+        // The first contact node whose fold is farther than a row is beyond the row's last contact.
+        let last = |_, row: &Row| {
+            let mut folds = contacts.folds[..contacts.tip].iter();
+            let fold = folds.find(|fold| fold.distance() > row.pole_distance);
+            Some(fold.map_or(case.rod.tau_tip(), |fold| fold.tau))
+        };
+        rows.panels(last, |_, _| true, make)
+    }
+}
+
+impl GuessPanel {
+    /// Computes the panel of `size` over the `range` of contacts.
+    ///
+    /// # Errors
+    /// If its error exceeds the largest one, the size whose error is expected not to; `None` if there is none.
+    fn new(
+        case: SheetCase,
+        range: [f64; 2],
+        along: Chebyshev<2>,
+        size: NetSize,
+        largest: f64,
+    ) -> Result<Self, Option<NetSize>> {
+        let tensor = tensor(case, size, &along);
+        let panel = NetPanel::new(range, along, size, tensor, size.loads);
+        let tails = panel.tails(&WEIGHTS);
+        // NaN is not below any bound.
+        let has_converged = larger(tails[0].last, tails[1].last) <= largest;
+        if has_converged {
+            Ok(Self(panel))
+        } else {
+            Err(size.enough(tails, MARGIN * largest))
+        }
+    }
+
+    /// Writes guesses for those of the growing `pushes` (magnitudes, in radians) that are near `row` between its `ends` into `guesses`, where there
+    /// are none: `[push_angle]`. Without its first end, the row begins at first touch.
+    ///
+    /// Writes none if the row is not in the panel, if its push angle does not grow throughout, or if it contradicts the ends, which are computed
+    /// apart.
+    pub fn write_guesses(
+        &self,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+        pushes: &[f64],
+        guesses: &mut [Option<Guess>],
+    ) {
+        let part = |end: Option<&Crossing>| end.map_or(0.0, |end| self.0.part(case.rod, end));
+        let Some(line) = self.0.line(row, ends.map(part)) else {
+            return;
+        };
+        let sign = case.side.sign();
+        let known = ends.map(|end| end.map_or(0.0, |end| end.push));
+        // The first state is next to the first end.
+        let near = row.touch + sign * known[0];
+        let turned = row.touch + nearest_turn(near, line.points[0].values[1][0]) - near;
+        let points = line.points.iter().flat_map(|block| {
+            (0..block.count).map(|lane| {
+                let [ln_tau, ln_q] = block.along.map(|own| own[lane]);
+                (block.values[1][lane], ln_tau, ln_q)
+            })
+        });
+        let states = points.zip(&line.parts).map(|((phi, ln_tau, ln_q), part)| {
+            let load = sign * part * libm::exp(ln_q - 2.0 * ln_tau);
+            [sign * (phi - turned), libm::exp(ln_tau), load]
+        });
+        let functions: Chebyshev<3> = Chebyshev::through(&states.collect::<Vec<_>>());
+        let [[first, ..], [last, ..]] = [functions.at(0.0), functions.at(line.end)];
+        let off = (first - known[0]).abs().max((last - known[1]).abs());
+        let fits = off <= PUSH_MARGIN;
+        let Some(inverse) = fits.then(|| Inverse::new(functions, line.end)).flatten() else {
+            return;
+        };
+        let from = pushes.partition_point(|push| *push < first - PUSH_MARGIN);
+        let to = pushes.partition_point(|push| *push <= last + PUSH_MARGIN);
+        let targets: Vec<f64> = pushes[from..to]
+            .iter()
+            .map(|push| push.max(first))
+            .collect();
+        inverse.solve(&targets, |index, count, block| {
+            for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
+                let [_, tau, load] = block.values.map(|values| values[lane]);
+                guess.get_or_insert(Guess { tau, load });
+            }
+        });
+    }
+
+    /// Returns true if the panel shows that the first folds of `contacts` are all folds up to them: at no other place does the determinant
+    /// vanish, at the contact nodes or between them.
+    pub fn shows_folds(&self, rod: &Rod, contacts: &ContactNodes) -> bool {
+        let [in_contact, in_load] = self.0.tensor.tails().map(|[last, _]| last[DETERMINANT]);
+        let error = MARGIN * larger(in_contact, in_load);
+        let mut determinant = self.0.tensor.transposed(DETERMINANT);
+        determinant.shorten(|[term]| term.abs() < CUT);
+        SAMPLES.iter().any(|(over, smallest)| {
+            let clearances = self.clearances(&determinant, *over, rod, contacts);
+            clearances.is_some_and(|[least, largest]| least > smallest * largest + error)
+        })
+    }
+
+    /// Returns the smallest and the largest clearance of a `determinant` over the parts of the ranges of loads and contacts at `over` samples for each
+    /// polynomial. `None` if its zero next to first touch is not the fold of `contacts`.
+    fn clearances(
+        &self,
+        determinant: &ChebyshevTensor<1>,
+        over: usize,
+        rod: &Rod,
+        contacts: &ContactNodes,
+    ) -> Option<[f64; 2]> {
+        let [in_p, in_u] = determinant.counts();
+        let places: Vec<f64> = points(over * in_u).collect();
+        let columns = determinant.columns(&places);
+        // The place in the range of loads itself is found along with the zeros of the determinant.
+        let place = Chebyshev {
+            coefficients: vec![[0.5], [0.5]],
+        };
+        let zeros = columns.level(0.0, &place)?;
+        let folds: Vec<LaneNumbers> = zeros.iter().map(|own| own.along[0]).collect();
+        let mut stable = 1.0;
+        for (place, fold) in places.iter().zip(folds.as_flattened()) {
+            let [surely_stable, known] = self.loads_at(rod, contacts, *place);
+            // NaN is not near any load.
+            let is_known = (fold - known).abs() <= FOLD_OFF * known;
+            if !is_known {
+                return None;
+            }
+            stable = f64::min(stable, BELOW * surely_stable);
+        }
+        let samples = points(over * in_p).map(|part| stable + part * (1.0 - stable));
+        let (mut least, mut largest) = ([f64::INFINITY; WIDTH], [-f64::INFINITY; WIDTH]);
+        let mut sums = [0.0; WIDTH];
+        let clearances = columns.quotients(&folds, &samples.collect::<Vec<_>>());
+        for clearances in clearances.iter().flatten() {
+            for (lane, clearance) in clearances.iter().enumerate() {
+                least[lane] = least[lane].min(*clearance);
+                largest[lane] = largest[lane].max(*clearance);
+                sums[lane] += clearance;
+            }
+        }
+        // A clearance that is NaN is in a sum, though not in a range.
+        let are_known = sums.iter().all(|sum| sum.is_finite());
+        let least = least.into_iter().fold(f64::INFINITY, f64::min);
+        let largest = largest.into_iter().fold(-f64::INFINITY, f64::max);
+        are_known.then_some([least, largest])
+    }
+
+    /// Returns places in the range of loads of the contact at `place`: up to which it is surely stable, and that of the first fold of `contacts`.
+    fn loads_at(&self, rod: &Rod, contacts: &ContactNodes, place: f64) -> [f64; 2] {
+        let [ln_tau, ln_q] = self.0.along.at(place);
+        let tau = libm::exp(ln_tau);
+        let scale = tau * tau * libm::exp(-ln_q) / TOP;
+        let surely_stable = surely_stable(rod) / arclength(rod, tau).powi(2);
+        [surely_stable, contacts.fold_load(tau)].map(|load| load * scale)
+    }
+}
+
+/// Returns `count` Chebyshev points of the first kind on `[0, 1]`.
+fn points(count: usize) -> impl Iterator<Item = f64> {
+    (0..count).map(move |i| {
+        let angle = (2 * i + 1) as f64 / (2 * count) as f64 * FRAC_PI_2;
+        libm::sin(angle).powi(2)
+    })
+}
+
+/// Returns the tensor of the functions of states.
+fn tensor(case: SheetCase, size: NetSize, along: &Chebyshev<2>) -> ChebyshevTensor<3> {
+    let loads = chebyshev_points(size.loads);
+    let contacts = contacts_of(case, size, along);
+    let nodes = contacts
+        .iter()
+        .flat_map(|(tau, most)| loads.iter().map(move |part| (*tau, part * most)));
+    let maps: Vec<ShootingMap> = case.shoot(nodes);
+    let determinant = |map: &ShootingMap| -map.det() * map.pole.length_squared();
+    let mut first = 0.0;
+    let mut values: Vec<Functions> = Vec::with_capacity(size.loads);
+    let rows = contacts
+        .iter()
+        .zip(maps.chunks(size.loads))
+        .map(|((_, most), maps)| {
+            let between = determinant(&maps[size.loads / 2]).abs();
+            let states = loads.iter().map(|part| part * most).zip(maps);
+            values.clear();
+            values.extend(directions(first, states).zip(maps).map(|(phi, map)| {
+                let ln_distance = libm::log(map.pole.length());
+                [ln_distance, phi, determinant(map) / between]
+            }));
+            // Directions are continuous from contact to contact at the smallest load, too.
+            first = values[0][1];
+            Chebyshev::through(&values)
+        });
+    ChebyshevTensor::through(&rows.collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use crate::rod::{Rest, Side};
+    use crate::sheet::fold::contact_nodes::SPACING;
+    use crate::sheet::{Edge, Sheet};
+    use crate::shooting::batch::Method;
+
+    fn cone(side: Side) -> Rod {
+        Rod {
+            taper: 0.95,
+            bend: 0.4,
+            pole: 0.0125 * side.sign(),
+            ..Rod::default()
+        }
+    }
+
+    /// Along rows that end at either edge, and between two ends of rows out of reach, the pole of a guess is where it is wanted.
+    #[test]
+    fn guesses_are_next_to_states() {
+        let (mut ends, mut detached) = ([0; 2], 0);
+        for side in Side::BOTH {
+            let rod = cone(side);
+            let distances: Vec<f64> = (0..184).map(|i| 0.1 + 0.005 * f64::from(i)).collect();
+            let sheet = Sheet::new(Method::fine(), &rod, side, &distances);
+            for (row, place) in sheet.rows.iter().enumerate() {
+                for [first, last] in sheet.pieces(row) {
+                    let end = last.filter(|end| !end.is_at_touch()).unwrap();
+                    let from = first.map_or(0.0, |first| first.push);
+                    ends[usize::from(end.edge == Edge::Tip)] += 1;
+                    detached += usize::from(first.is_some());
+                    let part = |i| f64::from(i) / 40.0;
+                    let pushes = (0..=40).map(|i| from + part(i) * (end.push - from));
+                    let pushes: Vec<f64> = pushes.collect();
+                    let guesses = sheet.guesses(row, &pushes);
+                    let points = guesses.iter().map(|own| own.map(|own| (own.tau, own.load)));
+                    let points: Option<Vec<(f64, f64)>> = points.collect();
+                    let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
+                    for (map, push) in maps.iter().zip(&pushes) {
+                        let off = map.pole.distance(place.pole(side.sign() * push));
+                        assert!(off < 1e-6, "{row} {push}: {off:e}");
+                    }
+                    let beyond = [end.push + 2.0 * PUSH_MARGIN];
+                    assert_eq!(sheet.guesses(row, &beyond), [None]);
+                }
+            }
+        }
+        let is_each = ends.iter().all(|count| *count > 2) && detached > 2;
+        assert!(is_each, "{ends:?} {detached}");
+    }
+
+    /// Ends need no accurate panel: they are the same without guesses.
+    #[test]
+    fn ends_do_not_depend_on_guesses() {
+        let rod = cone(Side::Cf);
+        let distances = [0.3, 0.8, 0.99, 1.2];
+        let [with, without] = [Sheet::new, Sheet::of_ends].map(|sheet| {
+            let sheet = sheet(Method::fine(), &rod, Side::Cf, &distances);
+            assert!(!sheet.is_continued());
+            sheet.crossings
+        });
+        assert_eq!(with, without);
+    }
+
+    /// A pole out of reach leaves the rows within reach their panel, where the rod is continued to no radius or no modulus as well.
+    #[test]
+    fn rows_out_of_reach_need_no_panel() {
+        for (taper, gradient) in [(0.95, 0.0), (1.0, 0.0), (0.3, -0.9)] {
+            let rod = Rod {
+                taper,
+                gradient,
+                ..cone(Side::Cb)
+            };
+            let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &[0.5, 1.2, 5.0, 10.0]);
+            assert!(!sheet.is_continued(), "{taper} {gradient}");
+            let found = |row| sheet.guesses(row, &[0.1])[0].is_some();
+            assert_eq!([0, 1, 2, 3].map(found), [true, false, false, false]);
+        }
+    }
+
+    /// A pair of folds between the nodes is found, however near to each other; another first fold than that of the contact nodes is refused.
+    #[test]
+    fn folds_that_nodes_do_not_show_are_found() {
+        let rod = cone(Side::Cb);
+        let case = SheetCase {
+            method: Method::fine(),
+            rod: &rod,
+            side: Side::Cb,
+        };
+        let rest = Rest::new(&rod);
+        let rows: Vec<Row> = [0.3, 0.5, 0.7].map(|d| Row::new(&rest, d)).into();
+        let contacts = ContactNodes::new(case, &rows[0], SPACING).unwrap();
+        let panels = Panels::for_guesses(case, &contacts, &rows, GUESS_ERROR);
+        let panel = &panels.of_all_rows().unwrap()[0];
+        assert!(panel.shows_folds(&rod, &contacts));
+        let value = |x: f64, y: f64| {
+            let in_y = |terms: &Vec<[f64; 1]>| Chebyshev {
+                coefficients: terms.clone(),
+            };
+            let determinant = panel.0.tensor.transposed(DETERMINANT);
+            let terms = determinant.coefficients.iter();
+            let terms = terms.map(|terms| in_y(terms).at(x)).collect();
+            in_y(&terms).at(y)[0]
+        };
+        let changed = |change: &dyn Fn(f64, f64) -> f64| {
+            let rows = chebyshev_points(30).iter().map(|x| {
+                let values = chebyshev_points(30).iter();
+                let values = values.map(|y| [0.0, 0.0, change(*x, *y)]);
+                Chebyshev::through(&values.collect::<Vec<_>>())
+            });
+            let mut panel = panel.clone();
+            panel.0.tensor = ChebyshevTensor::through(&rows.collect::<Vec<_>>());
+            panel.shows_folds(&rod, &contacts)
+        };
+        assert!(changed(&value));
+        for [x, y] in [[0.5, 0.7], [0.31, 0.83], [0.9, 0.62], [0.07, 0.9]] {
+            let away = |at_x: f64, at_y: f64| (at_x - x).powi(2) + (at_y - y).powi(2);
+            for depth in [1e-2, 1e-4, 1e-6] {
+                let hidden = |x, y| value(x, y) * (away(x, y) - depth);
+                assert!(!changed(&hidden), "{x} {y} {depth}");
+            }
+            let none = |x, y| value(x, y) * (0.3 + away(x, y));
+            assert!(changed(&none), "{x} {y}");
+        }
+        assert!(!changed(&|_, _| f64::NAN));
+        for part in [-0.03, 0.03] {
+            let elsewhere = |x, y| value(x, y * (1.0 + part));
+            assert!(!changed(&elsewhere), "{part}");
+        }
+    }
+}
