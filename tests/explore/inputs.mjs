@@ -233,6 +233,36 @@ export const inputs = {
         await page.context().close();
     },
 
+    async 'a map that takes long begins with a draft'() {
+        const onStart = () => {
+            const { addEventListener } = Worker.prototype;
+            Worker.prototype.addEventListener = function (kind, receive) {
+                addEventListener.call(this, kind, (event) => {
+                    if (window.takes && event.data?.ms) event.data.ms = window.takes;
+                    receive(event);
+                });
+            };
+        };
+        const page = await open(built, { onStart });
+        const change = async (ms, length) => {
+            await page.evaluate((ms) => {
+                window.takes = ms;
+                window.drawn = [];
+                const observer = new MutationObserver(() => window.drawn.push(document.getElementById('engine').dataset.drawn));
+                observer.observe(document.getElementById('engine'), { attributes: true });
+            }, ms);
+            await enter(page, 'field-length_mm', length);
+            await finished(page, (values) => values.length_mm === length);
+            return page.evaluate(() => window.drawn.some((own) => JSON.parse(own)[0]));
+        };
+        // The time of one map decides whether the next one has a draft.
+        await change(10, 16);
+        assert(!(await change(100, 17)), 'a quick map');
+        assert(await change(10, 18), 'a slow map');
+        assert(!(await change(10, 19)), 'a map that is quick again');
+        await page.context().close();
+    },
+
     async 'the force over time passes through the events'() {
         const page = await open(address({ whisker, pointer: { push: 5, distance: 15.66 } }));
         await until('events', () => page.locator('#whisk-force .dot.end').count(), (count) => count > 0);

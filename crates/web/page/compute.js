@@ -1,4 +1,4 @@
-// Computation of what is shown: drafts of maps while something moves, then the exact map, curves and states.
+// Computation of what is shown: maps, curves and states. Where a map takes long, drafts are shown while something moves.
 
 import { debounced, find } from './dom.js';
 import { Solver, Superseded, compiled } from './solver.js';
@@ -8,7 +8,7 @@ import { change, known, on, placed, request, state } from './state.js';
 const CELLS = 256;
 const DRAFTS = [256, 128, 64, 32];
 
-// A draft may take this long, in ms, and differ this much from the exact boundary, in degrees.
+// A map without a draft, or a draft, may take this long, in ms. A draft may differ this much from the exact boundary, in degrees.
 const DRAFT_MS = 45;
 const DRAFT_DEG = 0.01;
 
@@ -22,6 +22,7 @@ const QUIET = 80;
 
 let scenes, maps, traces, rows, courses, shown;
 let draft = 2;
+let isQuick = false;
 
 // Starts the solvers. `show` has a function for each result, and for errors.
 export async function start(show) {
@@ -115,13 +116,16 @@ async function computeMap() {
     const take = (isDraft) => (map) => {
         known.map = { ...map, channel, isDraft, whisker };
         shown.map();
+        if (!isDraft) isQuick = map.ms <= DRAFT_MS;
         if (isDraft && map.ms > DRAFT_MS) draft = Math.min(draft + 1, DRAFTS.length - 1);
         if (isDraft && map.ms < DRAFT_MS / 2.5) draft = Math.max(draft - 1, 0);
     };
+    const finish = () => responded(maps, 'map', task(CELLS, null), take(false));
+    if (isQuick) return finish();
     const isDrawn = await responded(maps, 'map', task(DRAFTS[draft], DRAFT_DEG), take(true));
     await new Promise((resolve) => setTimeout(resolve, QUIET));
     const isLast = whisker === state.whisker && view === state.view && channel === state.channel;
-    return isDrawn && isLast && responded(maps, 'map', task(CELLS, null), take(false));
+    return isDrawn && isLast && finish();
 }
 
 function curve(whisker) {
