@@ -46,7 +46,7 @@ impl SceneSample {
             .map(|(rod, side, length_mm)| {
                 let method = Method::fine().with_effects(effects);
                 let distances: Vec<f64> = distances_mm.iter().map(|d| d / length_mm).collect();
-                let sheet = Sheet::of_ends(method.coarsely(), &rod, side, &distances);
+                let sheet = Sheet::new(method.coarsely(), &rod, side, &distances);
                 let solved = states(method.coarsely(), &sheet, &pushes).into_iter();
                 let solved = solved.map(|(_, state)| Point {
                     tau: state.tau,

@@ -1,4 +1,4 @@
-//! The spectral engine: cells from the nets of whisker sides ([`Net`](crate::sheet::net::Net)), without trajectories of their own.
+//! The spectral engine: cells from the nets of whisker sides ([`ValueNet`](crate::sheet::net::ValueNet)), without trajectories of their own.
 
 use super::cells::CellsMut;
 use super::row::{FUNCTIONS, RowExpansion};

@@ -10,6 +10,9 @@ use crate::shooting::Resolution;
 use crate::shooting::batch::Method;
 use glam::DVec2;
 
+/// Number of intervals between the rows of a sheet.
+const ROWS: u32 = 16;
+
 /// Model of the whisker, with the pole on each side.
 pub struct Model {
     sides: [(Rod, Sheet); 2],
@@ -20,10 +23,13 @@ impl Model {
     /// Creates the model; contacts are at least `nearest_mm` from the base.
     pub fn new(whisker: &Whisker, pole: &Pole, nearest_mm: f64) -> Self {
         let method = Method::new(Resolution::FINE);
-        let nearest = [nearest_mm / whisker.length_mm];
+        // A sheet is certified at the contacts of its rows: those from the nearest to the tip.
+        let nearest = (nearest_mm / whisker.length_mm).min(1.0);
+        let distance = |i| nearest * libm::pow(1.0 / nearest, f64::from(i) / f64::from(ROWS));
+        let distances: Vec<f64> = (0..=ROWS).map(distance).collect();
         let sides = [Side::Cb, Side::Cf].map(|side| {
             let rod = whisker.rod(&Pole::smooth(pole.radius_mm), side);
-            let sheet = Sheet::new(method, &rod, side, &nearest);
+            let sheet = Sheet::of_ends(method, &rod, side, &distances);
             (rod, sheet)
         });
         Self {

@@ -1,6 +1,6 @@
 //! Slid distance of a contact that slides all along a push, toward the tip or toward the base, as a piecewise polynomial.
 //!
-//! A row whose parameter `w` turns back has no [`RowSpan`](crate::sheet::RowSpan), so the variable is the push angle, which grows along
+//! A row whose parameter `w` turns back has no row span (`src/sheet/span.rs`), so the variable is the push angle, which grows along
 //! every stable row.
 
 use super::segment::{LimitPlace, LimitSegment, SlidingKnot};

@@ -23,7 +23,8 @@ pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
 pub use fold::FoldPoint;
 pub use net::{NetRow, PUSH_MARGIN};
 pub use row::{Crossing, Edge, Row};
-pub use span::{Guess, RowSpan, SpanNode};
+pub use span::Guess;
+pub(crate) use span::RowSpan;
 
 use crate::rod::{Rest, Rod, Side};
 use crate::shooting::ShootingMap;
@@ -76,7 +77,7 @@ impl Sheet {
         Self::with_error(GUESS_ERROR, method, rod, side, distances)
     }
 
-    /// Computes the sheet as [`Sheet::new`] does, for the crossings of its rows alone: [`Sheet::guesses`] are only near the states.
+    /// Computes the sheet as [`Sheet::new`] does, for the crossings of its rows alone: rows may have no [`Sheet::guesses`].
     #[must_use]
     pub fn of_ends(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
         Self::with_error(FOLD_ERROR, method, rod, side, distances)

@@ -16,7 +16,7 @@ pub struct SheetSamples {
     pub contacts: ContactNodes,
     pub edges: Edges,
     pub panels: Panels<GuessPanel>,
-    /// True if the samples show the whole sheet: no fold and no crossing is hidden between them.
+    /// True if the samples show the sheet at the contacts of its rows: no fold and no crossing is hidden between them.
     pub is_certified: bool,
 }
 
@@ -44,7 +44,7 @@ impl SheetSamples {
         match contacts.map(|contacts| sampled(contacts, case.coarsely(), None)) {
             Some(samples) if samples.is_certified => Some(samples),
             samples => {
-                // Near the tip of a perfect cone, coarse trajectories have other folds.
+                // Near the tip of a perfect cone, coarse trajectories have other folds: which ones are first is shown by fine ones.
                 let fine = case.finely();
                 let both = nodes(case, NARROW_SPACING).zip(nodes(fine, NARROW_SPACING));
                 let again = both.map(|(contacts, folds)| sampled(contacts, fine, Some(folds)));

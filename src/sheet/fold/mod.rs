@@ -100,7 +100,8 @@ struct FoldBracket {
     /// Loads that bracket the root of `-det`.
     loads: Bracket,
     guess: f64,
-    /// Direction of the pole at the load before the fold in radians, continuous from first touch.
+    /// Load before the fold with its map, and the direction of the pole there in radians, continuous from first touch.
+    before: (f64, ShootingMap),
     phi: f64,
 }
 
@@ -159,6 +160,8 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
                     above: (samples[at + 1] + slack) * march.scale,
                 },
                 guess: root(&samples, &march.dets, at) * march.scale,
+                // The first map is that at first touch.
+                before: (samples[at] * march.scale, march.maps[at + 1]),
                 phi: directions(0.0, loads.zip(&march.maps))
                     .last()
                     .unwrap_or_default(),
@@ -263,6 +266,7 @@ fn polish(case: SheetCase, marched: Vec<Option<FoldBracket>>) -> Vec<Option<Fold
     let mut fold = |marched: FoldBracket| {
         let iterate = iterates.next()?;
         let variation = iterate.state;
+        let (before, map) = marched.before;
         // A bracket that has not closed, or has closed on something other than a root, is no fold.
         let step = variation.map.det() / variation.det_gradient().y;
         let is_fold = step.abs() <= STEP_LEFT * iterate.point.y.abs();
@@ -270,7 +274,12 @@ fn polish(case: SheetCase, marched: Vec<Option<FoldBracket>>) -> Vec<Option<Fold
             tau: iterate.point.x,
             load: iterate.point.y,
             variation,
-            phi: nearest_turn(variation.map.pole.to_angle(), marched.phi),
+            phi: directions(
+                marched.phi,
+                [(before, &map), (iterate.point.y, &variation.map)],
+            )
+            .last()
+            .unwrap_or_default(),
         })
     };
     marched

@@ -15,6 +15,7 @@ use crate::numerics::{LaneNumbers, WIDTH, nearest_turn};
 use crate::rod::{Rod, arclength};
 use crate::sheet::case::SheetCase;
 use crate::sheet::fold::contact_nodes::ContactNodes;
+use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::fold::{directions, surely_stable};
 use crate::sheet::{Crossing, Guess, Row};
 use crate::shooting::ShootingMap;
@@ -149,8 +150,8 @@ impl GuessPanel {
         let Some(inverse) = fits.then(|| Inverse::new(functions, line.end)).flatten() else {
             return;
         };
-        let from = pushes.partition_point(|push| *push < first - PUSH_MARGIN);
-        let to = pushes.partition_point(|push| *push <= last + PUSH_MARGIN);
+        let from = pushes.partition_point(|push| *push < known[0] - PUSH_MARGIN);
+        let to = pushes.partition_point(|push| *push <= known[1] + PUSH_MARGIN);
         let targets: Vec<f64> = pushes[from..to]
             .iter()
             .map(|push| push.max(first))
@@ -186,7 +187,15 @@ impl GuessPanel {
         contacts: &ContactNodes,
     ) -> Option<[f64; 2]> {
         let [in_p, in_u] = determinant.counts();
-        let places: Vec<f64> = points(over * in_u).collect();
+        if in_u == 0 || in_p < 2 {
+            return None;
+        }
+        // Between the Chebyshev points are the contact nodes, where folds are exact.
+        let [from, to] = self.0.contacts;
+        let nodes = contacts.folds.iter();
+        let nodes = nodes.map(|fold| (u_of(rod, fold.tau) - from) / (to - from));
+        let nodes = nodes.filter(|place| (0.0..=1.0).contains(place));
+        let places: Vec<f64> = points(over * in_u).chain(nodes).collect();
         let columns = determinant.columns(&places);
         // The place in the range of loads itself is found along with the zeros of the determinant.
         let place = Chebyshev {

@@ -1,4 +1,4 @@
-//! Interpolating polynomials in Newton's form: the only polynomials that are evaluated or solved. A node may count twice, with a value
+//! Interpolating polynomials in Newton's form, through nodes at any places. A node may count twice, with a value
 //! and a slope (Hermite interpolation): the derivatives that a trajectory carries replace other trajectories.
 
 use crate::numerics::Bracket;

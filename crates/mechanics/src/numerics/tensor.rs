@@ -197,7 +197,7 @@ pub struct TensorColumns<const D: usize> {
 pub struct LevelBlock<const D: usize, const L: usize> {
     /// Number of columns of the block.
     pub count: usize,
-    /// Functions of the tensor on the level line: `[function][column]`.
+    /// Functions of the tensor on the level line, `[function][column]`; columns beyond the count are as the first one.
     pub values: [LaneNumbers; D],
     /// Functions of `x` alone on the level line: `[function][column]`.
     pub along: [LaneNumbers; L],
@@ -412,6 +412,11 @@ impl<const D: usize, const L: usize> SimdTask for LevelPoints<'_, D, L> {
                 keep(into, from, own);
             }
         }
+        // Columns beyond the count are as the first one, for every number of lanes.
+        for own in found.values.iter_mut().chain(&mut found.along) {
+            let first = own[0];
+            own[*count..].fill(first);
+        }
         found
     }
 }
@@ -443,6 +448,11 @@ mod tests {
         for level in [0.17, 0.5, 0.99] {
             let blocks = columns.level(level, &along).unwrap();
             assert_eq!(blocks.iter().map(|own| own.count).sum::<usize>(), 21);
+            for block in &blocks {
+                let mut all = block.values.iter().chain(&block.along);
+                let is_first = |own: &LaneNumbers| own[block.count..].iter().all(|x| *x == own[0]);
+                assert!(all.all(is_first));
+            }
             for (m, y) in places.iter().enumerate() {
                 let (block, lane) = (&blocks[m / WIDTH], m % WIDTH);
                 let x = level - 0.25 * y * y;
