@@ -257,7 +257,7 @@ export const inputs = {
         };
         // The time of one map decides whether the next one has a draft.
         await change(10, 16);
-        assert(!(await change(100, 17)), 'a quick map');
+        assert(!(await change(200, 17)), 'a quick map');
         assert(await change(10, 18), 'a slow map');
         assert(!(await change(10, 19)), 'a map that is quick again');
         await page.context().close();

@@ -4,13 +4,13 @@ import { debounced, find } from './dom.js';
 import { Solver, Superseded, compiled } from './solver.js';
 import { change, known, on, placed, request, state } from './state.js';
 
-// Cells of a finished map, and of drafts along each axis.
+// Cells of a finished map, and of a draft, along each axis. A draft may differ this much from the exact boundary, in degrees.
 const CELLS = 256;
-const DRAFTS = [256, 128, 64, 32];
-
-// A map without a draft, or a draft, may take this long, in ms. A draft may differ this much from the exact boundary, in degrees.
-const DRAFT_MS = 45;
+const DRAFT = 64;
 const DRAFT_DEG = 0.01;
+
+// A map after one that took longer than this, in ms, begins with a draft.
+const QUICK_MS = 100;
 
 // Distances of a detachment curve, and points of a branch.
 const CURVE = 160;
@@ -21,7 +21,6 @@ const REST = 150;
 const QUIET = 80;
 
 let scenes, maps, traces, rows, courses, shown;
-let draft = 2;
 let isQuick = false;
 
 // Starts the solvers. `show` has a function for each result, and for errors.
@@ -116,13 +115,11 @@ async function computeMap() {
     const take = (isDraft) => (map) => {
         known.map = { ...map, channel, isDraft, whisker };
         shown.map();
-        if (!isDraft) isQuick = map.ms <= DRAFT_MS;
-        if (isDraft && map.ms > DRAFT_MS) draft = Math.min(draft + 1, DRAFTS.length - 1);
-        if (isDraft && map.ms < DRAFT_MS / 2.5) draft = Math.max(draft - 1, 0);
+        if (!isDraft) isQuick = map.ms <= QUICK_MS;
     };
     const finish = () => responded(maps, 'map', task(CELLS, null), take(false));
     if (isQuick) return finish();
-    const isDrawn = await responded(maps, 'map', task(DRAFTS[draft], DRAFT_DEG), take(true));
+    const isDrawn = await responded(maps, 'map', task(DRAFT, DRAFT_DEG), take(true));
     await new Promise((resolve) => setTimeout(resolve, QUIET));
     const isLast = whisker === state.whisker && view === state.view && channel === state.channel;
     return isDrawn && isLast && finish();
