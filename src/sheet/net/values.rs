@@ -1,6 +1,6 @@
 //! Panels with the values of states, by plain trajectories, for the rows of an engine.
 
-use super::bound::{MARGIN, VALUE_WEIGHT, larger};
+use super::bound::{MARGIN, SMALLEST_RESIDUAL, VALUE_WEIGHT, larger};
 use super::certificate::certified;
 use super::panel::{NetPanel, along, contacts_of};
 use super::row::{FUNCTIONS, NetRow, RowLine};
@@ -14,9 +14,6 @@ use crate::rod::Units;
 use crate::sheet::case::SheetCase;
 use crate::sheet::{Row, Sheet};
 use crate::shooting::{PlainState, Reader};
-
-/// Smallest bound on the residual that trajectories of the finest steps allow, in whisker lengths: that of refined states.
-pub const SMALLEST_RESIDUAL: f64 = 1e-12;
 
 /// Functions of a state, `[function]`: `ln D`, direction `phi` of the pole in radians, contact angle in radians, position `[x, y]` of the base
 /// from the contact in whisker lengths, chord angle in radians, and energy over force times arclength.
@@ -116,13 +113,19 @@ impl ValuePanel {
             return Err(size.enough(own.panel.tails(&own.weights()), most));
         }
         own.panel.shorten(&own.weights());
-        own.residual = certified(sheet, &own, rows, error);
+        own.residual = own.certified(sheet, rows, error);
         if own.residual <= most {
             Ok(own)
         } else {
             // Between the nodes, the error is larger than the last coefficients.
             Err(size.larger())
         }
+    }
+
+    /// Returns the bound on the errors of its states, in whisker lengths, where the coefficients left out are expected to make this error.
+    fn certified(&self, sheet: &Sheet, rows: &[PanelRow], by_decay: f64) -> f64 {
+        let states = |row| self.row(sheet, row);
+        certified(sheet, &self.reader, rows, states, by_decay)
     }
 
     /// Returns the error that the coefficients left out are expected to make, in whisker lengths.
@@ -193,4 +196,165 @@ pub(super) fn tensor(
             Chebyshev::through(&values)
         });
     ChebyshevTensor::through(&rows.collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+mod tests {
+    use super::*;
+    use crate::rod::{Rod, Side};
+    use crate::sheet::Edge;
+    use crate::sheet::net::NET_RESIDUAL as MOST;
+    use crate::shooting::batch::Method;
+
+    /// Error of a coefficient, as a part of the largest coefficient of its function.
+    const SPOIL: f64 = 1e-6;
+
+    /// Coefficients between two spoiled ones: coprime to the sizes, so that all functions and all powers are among them.
+    const STRIDE: usize = 11;
+
+    /// The cone of the paper, with rows that end at the fold and at the tip.
+    fn cone() -> (Sheet, Vec<PanelRow>) {
+        let rod = Rod {
+            taper: 0.95,
+            bend: 0.4,
+            pole: 0.0125,
+            ..Rod::default()
+        };
+        let distances: Vec<f64> = (0..60).map(|i| 0.4 + 0.01 * f64::from(i)).collect();
+        let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &distances);
+        let rows = sheet.rows.iter().enumerate();
+        let rows = rows.filter_map(|(row, place)| {
+            let end = sheet.simple_end(row)?;
+            PanelRow::new(&rod, row, place, end.tau)
+        });
+        let rows = rows.collect();
+        (sheet, rows)
+    }
+
+    const SIZE: NetSize = NetSize {
+        contacts: 28,
+        loads: 24,
+    };
+
+    fn panel(sheet: &Sheet, rows: &[PanelRow]) -> ValuePanel {
+        let last = rows.iter().map(|own| own.contacts[1]);
+        let contacts = [rows[0].contacts[0], last.fold(0.0, f64::max)];
+        let samples = sheet.samples.as_ref().unwrap();
+        let along = along(&sheet.rod, &samples.contacts, contacts, ALONG);
+        let panel = ValuePanel::new(sheet, rows, contacts, along, SIZE, MOST);
+        panel.unwrap_or_else(|_| panic!("refused"))
+    }
+
+    fn bound(sheet: &Sheet, rows: &[PanelRow], panel: &ValuePanel) -> f64 {
+        panel.certified(sheet, rows, 0.0)
+    }
+
+    /// The tensor of a panel with all its coefficients.
+    fn whole(sheet: &Sheet, panel: &ValuePanel) -> ChebyshevTensor<FUNCTIONS> {
+        tensor(sheet.case(), &panel.reader, SIZE, &panel.panel.along)
+    }
+
+    fn with_tensor(panel: &ValuePanel, tensor: ChebyshevTensor<FUNCTIONS>) -> ValuePanel {
+        let NetPanel {
+            contacts, along, ..
+        } = &panel.panel;
+        ValuePanel {
+            panel: NetPanel::new(*contacts, along.clone(), SIZE, tensor, SIZE.columns()),
+            ..panel.clone()
+        }
+    }
+
+    /// A single wrong coefficient of any power of any function exceeds the bound, although all others decay. With NaN there is no bound.
+    #[test]
+    fn a_spoiled_coefficient_is_refused() {
+        let (sheet, rows) = cone();
+        let edge = |row: &PanelRow| sheet.crossings[row.row][0].edge;
+        assert!(
+            [Edge::Fold, Edge::Tip]
+                .iter()
+                .all(|own| rows.iter().any(|row| edge(row) == *own))
+        );
+        let sound = panel(&sheet, &rows);
+        assert!(bound(&sheet, &rows, &sound) <= sound.residual);
+        let NetSize { contacts, loads } = SIZE;
+        let whole = whole(&sheet, &sound);
+        let largest = whole.coefficients.iter().flatten();
+        let largest = largest.fold([0.0; FUNCTIONS], |most, own| {
+            std::array::from_fn(|i| f64::max(most[i], own[i].abs()))
+        });
+        for place in (0..contacts * loads * FUNCTIONS).step_by(STRIDE) {
+            let (power, function) = (place / FUNCTIONS, place % FUNCTIONS);
+            let (in_u, in_p) = (power / loads, power % loads);
+            let spoiled = |change: &dyn Fn(&mut f64)| {
+                let mut tensor = whole.clone();
+                change(&mut tensor.coefficients[in_u][in_p][function]);
+                bound(&sheet, &rows, &with_tensor(&sound, tensor))
+            };
+            let wrong = spoiled(&|own| *own += SPOIL * largest[function]);
+            let without = spoiled(&|own| *own = f64::NAN);
+            assert!(
+                (wrong > MOST || wrong.is_nan()) && without.is_nan(),
+                "function {function}, powers {in_u} and {in_p}: {wrong:e} {without:e}"
+            );
+        }
+    }
+
+    /// A wrong node, or a wrong scale of the load, is found by the decay of the coefficients or by the trajectories.
+    #[test]
+    fn a_spoiled_node_is_refused() {
+        let (sheet, rows) = cone();
+        let sound = panel(&sheet, &rows);
+        let whole = whole(&sheet, &sound);
+        let NetSize { contacts, loads } = SIZE;
+        for node in (0..contacts * loads).step_by(29) {
+            let (in_u, in_p) = (node / loads, node % loads);
+            let weight = |count: usize, node: usize| {
+                let mut values = vec![[0.0; 1]; count];
+                values[node] = [1.0];
+                Chebyshev::through(&values).coefficients
+            };
+            let (by_u, by_p) = (weight(contacts, in_u), weight(loads, in_p));
+            for function in 0..FUNCTIONS {
+                let mut tensor = whole.clone();
+                for (terms, [by_u]) in tensor.coefficients.iter_mut().zip(&by_u) {
+                    for (term, [by_p]) in terms.iter_mut().zip(&by_p) {
+                        term[function] += 1e-6 * by_u * by_p;
+                    }
+                }
+                let spoiled = with_tensor(&sound, tensor);
+                let error = spoiled.certified(&sheet, &rows, spoiled.error());
+                assert!(
+                    error > MOST || error.is_nan(),
+                    "node {node}, function {function}: {error:e}"
+                );
+            }
+        }
+    }
+
+    /// States of the net at random contacts and loads of a row are those of trajectories.
+    #[test]
+    fn a_bound_is_four_times_the_largest_error() {
+        let (sheet, rows) = cone();
+        let sound = panel(&sheet, &rows);
+        let by_decay = |error: f64| sound.certified(&sheet, &rows, error);
+        assert_eq!(by_decay(1e-6), 4e-6);
+        let own = by_decay(0.0);
+        assert!((1e-12..1e-10).contains(&own), "{own:e}");
+        let spoiled = |function: usize, change: f64| {
+            let mut tensor = sound.panel.tensor.clone();
+            tensor.coefficients[0][0][function] += change;
+            bound(&sheet, &rows, &with_tensor(&sound, tensor))
+        };
+        // The direction of the pole: the pole is missed by its distance times the change.
+        let farthest = sheet.rows[rows[rows.len() - 1].row].pole_distance;
+        let by_phi = spoiled(1, SPOIL) / (MARGIN * SPOIL);
+        assert!((by_phi / farthest - 1.0).abs() < 1e-3, "{by_phi}");
+        let by_angle = spoiled(2, SPOIL) / (MARGIN * SPOIL * VALUE_WEIGHT);
+        assert!((by_angle - 1.0).abs() < 1e-3, "{by_angle}");
+    }
 }
