@@ -6,9 +6,9 @@
 #![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
 use std::time::Instant;
-use whiskmap::rod::Effects;
-use whiskmap::shooting::ShootingMap;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::mechanics::rod::Effects;
+use whiskmap::mechanics::shooting::ShootingMap;
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
 
 #[path = "../tests/effect_sets/mod.rs"]
 mod effect_sets;

@@ -15,17 +15,17 @@ use std::convert::Infallible;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::path::Path;
+use whiskmap::Side;
 use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::engine::{Cpu, Engine};
 use whiskmap::map;
-use whiskmap::numerics::Unit;
+use whiskmap::mechanics::numerics::Unit;
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::mechanics::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 use whiskmap::plan::Plan;
 use whiskmap::refine::{CellTarget, refine};
-use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 use whiskmap::store::{
     Audit, EngineCells, MapDescription, MapWriter, Panel, StoreError, TemporaryFiles,
 };

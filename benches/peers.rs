@@ -20,12 +20,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 use whiskmap::accuracy;
 use whiskmap::map::{self, Stage};
-use whiskmap::numerics::Unit;
+use whiskmap::mechanics::numerics::Unit;
+use whiskmap::mechanics::rod::{Effects, Rod, Side, arclength};
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::mechanics::shooting::{Resolution, ShootingMap};
 use whiskmap::plan::Plan;
-use whiskmap::rod::{Effects, Rod, Side, arclength};
 use whiskmap::scene::Scene;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{Resolution, ShootingMap};
 use whiskmap::trace::curve_at;
 
 const TRAJECTORIES: usize = 20_000;

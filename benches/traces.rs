@@ -6,7 +6,7 @@ mod measure;
 
 use measure::Group;
 use std::hint::black_box;
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Scene, Whisker};
 use whiskmap::sensitivity::{Variable, detachments};
 use whiskmap::trace::{Branch, WhiskerShape, corner, curve};

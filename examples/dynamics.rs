@@ -5,9 +5,9 @@
 use std::error::Error;
 use std::fs;
 use std::path::Path;
+use whiskmap::Side;
 use whiskmap::input::CsvTable;
 use whiskmap::render::{Band, Chart, Dot, Ink, Line, PictureFormat, PictureSize, Plot, Stroke};
-use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::BranchPoint;
 

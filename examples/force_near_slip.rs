@@ -3,8 +3,8 @@
 //! `cargo run --release --example force_near_slip`
 #![allow(clippy::print_stdout, reason = "an example shows what it finds")]
 
+use whiskmap::Side;
 use whiskmap::branch;
-use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -115,8 +115,6 @@ pub mod sheet;
 mod stopwatch;
 #[doc(hidden)]
 pub mod terminal;
-#[doc(hidden)]
-pub use whiskmap_mechanics::{numerics, rod, shooting};
 
 pub use classify::{Regime, Status};
 pub use engine::Precision;
@@ -127,7 +125,8 @@ pub use front::{
 };
 pub use map::{Panel, Summary};
 pub use plan::{Channel, Channels};
-pub use rod::Side;
+pub use whiskmap_mechanics as mechanics;
+pub use whiskmap_mechanics::rod::Side;
 
 /// README's code compiles.
 #[cfg(doctest)]

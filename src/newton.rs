@@ -4,10 +4,10 @@
 //! gathers the initial conditions, stores the iterates, extrapolates short last steps, limits the number of trajectories and returns the
 //! outcome.
 
-use crate::rod::Rod;
-use crate::shooting::batch::{Batch, InitialCondition, Method, OutputSet};
-use crate::shooting::{FirstVariation, FullState, SecondVariation};
 use glam::DVec2;
+use whiskmap_mechanics::rod::Rod;
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method, OutputSet};
+use whiskmap_mechanics::shooting::{FirstVariation, FullState, SecondVariation};
 
 /// Step of a Newton iteration: what follows from the trajectory at an iterate.
 #[derive(Clone, Copy, Debug)]

@@ -7,12 +7,12 @@
 
 use std::path::PathBuf;
 use whiskmap::accuracy::cheapest;
+use whiskmap::mechanics::rod::{Effects, Side};
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::mechanics::shooting::{Resolution, ShootingMap};
 use whiskmap::refine::states;
-use whiskmap::rod::{Effects, Side};
 use whiskmap::scene::{Scene, Whisker};
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{Resolution, ShootingMap};
 use whiskmap::trace::curve_at;
 
 /// Its own error, 1e-11 degrees at most, is far below every tolerance here.

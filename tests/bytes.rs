@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 use whiskmap::map::Panel;
-use whiskmap::numerics::ArithmeticClass;
+use whiskmap::mechanics::numerics::ArithmeticClass;
 use whiskmap::scene::Scene;
 use whiskmap::{Error, Options, for_each_panel};
 

@@ -1,8 +1,8 @@
 //! The values that make a whisker detach where it should: known ones come back, none is missed, none is made up.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use whiskmap::Side;
 use whiskmap::design::{Design, DesignError, DesignGoal, DesignTarget, design};
-use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Branch, BranchPoint, Detachment, DetachmentKind, curve};
 

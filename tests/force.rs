@@ -1,7 +1,7 @@
 //! Forces from curvature against the states that have it.
 
 use whiskmap::force::{CurvatureFrame, ForceMethod, FrameContact, FrameForce, NoForce, forces};
-use whiskmap::rod::{Rest, Side};
+use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::Scene;
 use whiskmap::trace::{Branch, BranchPoint, NoState, WhiskerPart, WhiskerShape};
 

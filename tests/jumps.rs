@@ -2,10 +2,10 @@
 
 use crate::random_rods::Random;
 use std::sync::Arc;
-use whiskmap::rod::{CurvaturePolynomial, RadiusProfile, Rest, Rod, Side};
+use whiskmap::mechanics::rod::{CurvaturePolynomial, RadiusProfile, Rest, Rod, Side};
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::{Edge, LevelCurve, Row, Sheet, Stretch};
-use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, BranchMark, DetachmentKind, curve};
 use whiskmap::whisk::{AngleCourse, WhiskEventKind, whisk};
 use whiskmap::{Options, Regime};

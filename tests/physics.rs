@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use whiskmap::classify::{PushSpan, RowBoundary};
-use whiskmap::rod::{Rest, Rod, Side, arclength};
+use whiskmap::mechanics::rod::{Rest, Rod, Side, arclength};
+use whiskmap::mechanics::shooting::ShootingMap;
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::sheet::{Crossing, Edge, Sheet};
-use whiskmap::shooting::ShootingMap;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 
 /// The detachment of `whisker` at `distance_mm` from a pole: push angle in degrees, signed, and the crossing.
 fn detachment(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> (f64, Crossing) {

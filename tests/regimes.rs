@@ -8,13 +8,13 @@
 use crate::compute;
 
 use compute::compute_as;
+use whiskmap::Side;
 use whiskmap::accuracy::cheapest;
 use whiskmap::classify::{Regime, RowBoundary, Status, TIE};
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::plan::Plan;
-use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweptWhisker, Whisker};
 use whiskmap::sheet::{Crossing, Edge};
-use whiskmap::shooting::Resolution;
 use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
 
 const LENGTH_MM: f64 = 20.0;

@@ -1,10 +1,10 @@
 //! Distances within which two results count as equal: each case lies at half or at twice the documented distance.
 
 use whiskmap::classify::{Regime, RowBoundary, Status};
-use whiskmap::rod::{Rod, Side};
+use whiskmap::mechanics::rod::{Rod, Side};
+use whiskmap::mechanics::shooting::ShootingMap;
+use whiskmap::mechanics::shooting::batch::{Batch, Method};
 use whiskmap::sheet::{Crossing, Edge, Row, Sheet};
-use whiskmap::shooting::ShootingMap;
-use whiskmap::shooting::batch::{Batch, Method};
 
 /// Row that touches and slips off at a push angle of 0.5.
 fn slips_off(residual: f64) -> RowBoundary {

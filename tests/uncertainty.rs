@@ -1,9 +1,9 @@
 //! Whiskers drawn from the uncertainty of a scene: the same ones everywhere, spread as derivatives foretell.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use whiskmap::rod::Side;
+use whiskmap::Side;
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::{Parameter, Scene};
-use whiskmap::shooting::Resolution;
 use whiskmap::trace::{DetachmentKind, curve};
 use whiskmap::uncertainty::{DrawError, Draws, EndSpread};
 

@@ -9,14 +9,14 @@ use crate::effect_sets;
 use crate::random_rods;
 
 use glam::DVec2;
-use whiskmap::refine::{TOLERANCE, states};
-use whiskmap::rod::{Effects, Rod, Side, arclength};
-use whiskmap::scene::Scene;
-use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{
+use whiskmap::mechanics::rod::{Effects, Rod, Side, arclength};
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::mechanics::shooting::{
     FirstVariation, FullState, Resolution, SecondVariation, ShootingMap, StateDerivative,
 };
+use whiskmap::refine::{TOLERANCE, states};
+use whiskmap::scene::Scene;
+use whiskmap::sheet::Sheet;
 
 /// Random states on random rods with these effects, those of the engines' tests.
 fn conditions(effects: Effects) -> Vec<InitialCondition<'static>> {

@@ -1,6 +1,6 @@
 //! Courses of whisking against closed forms, branches and the balance of energy.
 
-use whiskmap::rod::{Rest, Side};
+use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Branch, DetachmentKind, curve};
 use whiskmap::whisk::{

@@ -5,7 +5,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use whiskmap::input::Quantity;
-use whiskmap::numerics::ArithmeticClass;
+use whiskmap::mechanics::numerics::ArithmeticClass;
 use whiskmap::render::{self, Ink, regime_fill};
 use whiskmap::scene::Parameter;
 use whiskmap::sensitivity::Variable;

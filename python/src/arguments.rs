@@ -2,8 +2,8 @@
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use whiskmap::Side;
 use whiskmap::input::did_you_mean;
-use whiskmap::rod::Side;
 use whiskmap::scene::Parameter;
 use whiskmap::whisk::CourseStart;
 use whiskmap::{Channels, MapEngine, Options, Precision};

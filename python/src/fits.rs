@@ -10,10 +10,10 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use whiskmap::Side;
 use whiskmap::design::{DesignError, DesignGoal, DesignTarget, design_until};
 use whiskmap::fit::{FitError, fit_until};
 use whiskmap::measured::{ComparedPoint, MeasuredPoints};
-use whiskmap::rod::Side;
 use whiskmap::scene::Parameter;
 
 /// Name, unit, value, standard error, and whether the value is at a limit, of a fitted parameter.

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::{BranchPoint, Detachment, ShapePoint, WhiskerShape};
 use whiskmap::{Options, branch as branch_of};

@@ -8,10 +8,10 @@ mod sample;
 pub use engine::{cheaper, excess_deg, spectral, tolerances};
 
 use crate::refine::GOAL;
-use crate::rod::Side;
 use crate::scene::Scene;
-use crate::shooting::Resolution;
 use sample::SceneSample;
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Accuracy of a resolution: its estimated error for a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]

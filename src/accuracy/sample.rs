@@ -1,13 +1,13 @@
 //! Sample of the states and detachments of a scene, with its corners.
 
 use crate::refine::states;
-use crate::rod::{Effects, Rod, Side};
 use crate::scene::{Scene, SceneData, SweptWhisker};
 use crate::sheet::{Edge, Sheet};
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{Resolution, ShootingMap};
 use glam::DVec2;
 use rayon::prelude::*;
+use whiskmap_mechanics::rod::{Effects, Rod, Side};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap_mechanics::shooting::{Resolution, ShootingMap};
 
 /// Maximum number of values of each axis: its ends, and some between. Detachments need more distances, above all near the reach of the
 /// whisker.

@@ -5,10 +5,10 @@ use super::task::{Task, places};
 use super::timing::timed;
 use super::{BenchEngine, Measurement, Report, Rung, pool};
 use crate::engine::EngineError;
-use crate::numerics::Unit;
-use crate::shooting::Resolution;
 use std::convert::Infallible;
 use std::time::Instant;
+use whiskmap_mechanics::numerics::Unit;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Residual, in whisker lengths, below which one more Newton step reaches rounding.
 const TOLERANCE: f64 = 1e-7;

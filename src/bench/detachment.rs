@@ -3,11 +3,11 @@
 use super::task::{EXACT, Spread, whisker_sides};
 use super::timing::{Timing, timed};
 use crate::scene::Scene;
-use crate::shooting::Resolution;
 use crate::trace::{Detachment, curve_at};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::convert::Infallible;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Measurement of the detachments of a scene at one resolution, on all threads.
 #[derive(Clone, Copy, Debug, Serialize)]

@@ -5,8 +5,8 @@ use crate::engine::{Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
 use crate::scene::Scene;
 use crate::sheet::Sheet;
 use crate::sheet::net::ValueNet;
-use crate::shooting::batch::Method;
 use std::sync::Arc;
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Request to an engine for all cells of one whisker side.
 pub struct Request {

@@ -1,11 +1,11 @@
 //! Solver of the benchmarks: Newton's method alone, in `f64` on the CPU, on any SIMD unit, at any resolution.
 
-use crate::numerics::Unit;
 use crate::refine::CellTarget;
-use crate::rod::{Effects, Rod, arclength};
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{Resolution, ShootingMap};
 use rayon::prelude::*;
+use whiskmap_mechanics::numerics::Unit;
+use whiskmap_mechanics::rod::{Effects, Rod, arclength};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap_mechanics::shooting::{Resolution, ShootingMap};
 
 /// Targets of a batch: enough for full lanes, few enough to stay in the inner cache.
 const BATCH: usize = 1024;

@@ -5,12 +5,12 @@ use super::task::Task;
 use super::timing::{Timing, timed};
 use super::{BenchEngine, Measurement, Report, Rung, pool};
 use crate::engine::{EngineError, Spectral, WhiskerSide};
-use crate::numerics::Unit;
 use crate::scene::Scene;
 use serde::Serialize;
 use std::convert::Infallible;
 use std::hint::black_box;
 use std::time::Instant;
+use whiskmap_mechanics::numerics::Unit;
 
 /// Name of the spectral engine in measurements and maps.
 pub const SPECTRAL: &str = "spectral";

@@ -1,18 +1,18 @@
 //! Tasks of the benchmarks: the states of a scene, with exact solutions.
 
 use super::solver::{Hit, Solver};
-use crate::numerics::Unit;
 use crate::plan::Plan;
 use crate::refine::{CellTarget, states};
-use crate::rod::{Effects, Rod, Side, arclength};
 use crate::scene::{Scene, SweptWhisker};
 use crate::sheet::Sheet;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
-use crate::shooting::{Resolution, ShootingMap};
 use glam::DVec2;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::HashMap;
+use whiskmap_mechanics::numerics::Unit;
+use whiskmap_mechanics::rod::{Effects, Rod, Side, arclength};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap_mechanics::shooting::{Resolution, ShootingMap};
 
 /// Resolution of exact states: four times the steps of [`Resolution::FINE`], so that errors of order 8 are 65,536 times smaller.
 pub const EXACT: Resolution = Resolution::FINE.doubled().doubled();

@@ -6,12 +6,12 @@ use super::timing::{Timing, timed};
 use super::{Report, named};
 use crate::engine::gpu::{Gpu, shoots};
 use crate::engine::{Engine as _, EngineError};
-use crate::numerics::Unit;
 use crate::sheet::net::larger;
-use crate::shooting::PlainState;
-use crate::shooting::batch::{Batch, InitialCondition, Method};
 use serde::Serialize;
 use std::convert::Infallible;
+use whiskmap_mechanics::numerics::Unit;
+use whiskmap_mechanics::shooting::PlainState;
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 
 /// Smallest number of trajectories of a run: enough to fill every lane of a device.
 const AT_LEAST: usize = 1 << 17;

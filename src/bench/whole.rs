@@ -8,13 +8,13 @@ use super::{Report, StageTimes, named, pool};
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Spectral, on_gpu};
 use crate::map::{self, Panel, Stage};
-use crate::numerics::Unit;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::store::MapWriter;
 use serde::Serialize;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
+use whiskmap_mechanics::numerics::Unit;
 
 /// Measurement of a whole map by one engine, packed but not written.
 #[derive(Clone, Debug, Serialize)]

@@ -3,8 +3,8 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::fmt::Write;
 use std::ops::RangeInclusive;
+use whiskmap::Side;
 use whiskmap::input::Quantity;
-use whiskmap::rod::Side;
 use whiskmap::scene::Parameter;
 
 /// Parses a length in millimetres, or with a unit.

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 use whiskmap::engine::EngineDescription;
-use whiskmap::numerics::ArithmeticClass;
+use whiskmap::mechanics::numerics::ArithmeticClass;
 use whiskmap::plan::Channels;
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::scene::Scene;

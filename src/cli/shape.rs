@@ -7,8 +7,8 @@ use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use whiskmap::Side;
 use whiskmap::render::{Chart, Dot, DrawnShape, Ink, Line, Stroke, shapes};
-use whiskmap::rod::Side;
 use whiskmap::scene::digits;
 use whiskmap::trace::{Branch, NoState, ShapePoint, WhiskerShape};
 

@@ -3,8 +3,8 @@
 use super::arguments;
 use super::failure::{Failure, message};
 use clap::Args;
+use whiskmap::Side;
 use whiskmap::accuracy::{Accuracy, BOUNDED, cheapest};
-use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 
 #[derive(Debug, Default, Args)]

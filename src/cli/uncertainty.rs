@@ -4,9 +4,9 @@ use super::arguments::whole;
 use super::failure::{Failure, check_resolved, message};
 use super::progress::Progress;
 use clap::Args;
-use whiskmap::rod::Side;
+use whiskmap::Side;
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::Scene;
-use whiskmap::shooting::Resolution;
 use whiskmap::uncertainty::{DrawError, Draws, EndSpread};
 
 #[derive(Debug, Args)]

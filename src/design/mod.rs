@@ -105,7 +105,7 @@ impl Design {
 ///
 /// ```
 /// use whiskmap::design::{DesignGoal, DesignTarget, design};
-/// use whiskmap::rod::Side;
+/// use whiskmap::Side;
 /// use whiskmap::scene::{Parameter, Scene};
 ///
 /// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;

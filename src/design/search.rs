@@ -2,12 +2,12 @@
 
 use super::samples::samples;
 use super::{DesignEnd, DesignTarget, turn};
-use crate::numerics::Bracket;
 use crate::scene::{Parameter, Scene};
 use crate::trace::DetachmentKind;
 use rayon::prelude::*;
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::numerics::Bracket;
 
 /// Width of the interval of a change of kind, in parts of the interval between two samples: 50 halvings.
 const CHANGE_WIDTH: f64 = 1e-15;

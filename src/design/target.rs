@@ -1,11 +1,11 @@
 //! Targets of designs: push angles of detachments, and the largest loads of pushes.
 
 use crate::input::Quantity;
-use crate::rod::Side;
 use crate::scene::{Parameter, Scene};
 use crate::sensitivity::detachments;
-use crate::shooting::Resolution;
 use crate::trace::{Branch, BranchPoint, DetachmentKind, curve_without_strain};
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Largest difference of the push angles of a solution and the target, in degrees: exact ends are known to 1e-11.
 const TOLERANCE_DEG: f64 = 1e-9;

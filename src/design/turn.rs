@@ -1,7 +1,7 @@
 //! Extremum of a function near zero, between samples. The function has no sign change to bracket, so the golden section brackets its
 //! extremum by three values.
 
-use crate::numerics::least_between;
+use whiskmap_mechanics::numerics::least_between;
 
 /// Returns `[argument, value]` of an extremum toward zero between three neighbouring `[argument, value]`, or of the first argument found beyond zero.
 /// `None` without such an extremum, or if it is too far from zero for a smooth function.

@@ -2,10 +2,10 @@
 
 use super::{RowExpansion, WhiskerSide};
 use crate::sheet::Sheet;
-use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Row of a batch: the cells of one row to solve.
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! Columns of a map on one side of the pole: its push angles.
 
-use crate::rod::Side;
 use glam::DVec2;
 use std::ops::Range;
+use whiskmap_mechanics::rod::Side;
 
 /// Column of a map: a push angle on one side.
 #[derive(Clone, Copy, Debug)]

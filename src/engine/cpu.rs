@@ -1,13 +1,13 @@
 //! The CPU engine: guesses from the net, refined by Newton's method in `f64` on the threads of the current pool.
 
 use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
-use crate::numerics::Unit;
 use crate::refine::{CellTarget, RefineOutcome, Refined, TOLERANCE, refine_into};
 use crate::stopwatch::Stopwatch;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
+use whiskmap_mechanics::numerics::Unit;
 
 /// The CPU engine. It works where it is called: [`Engine::submit`] keeps a batch, [`Engine::collect`] solves it.
 #[derive(Debug, Default)]

@@ -24,9 +24,9 @@ pub use side::{FORCE, Values, WhiskerSide};
 pub use spectral::Spectral;
 pub use worker::Worker;
 
-use crate::rod::Effects;
 use std::fmt;
 use std::sync::Arc;
+use whiskmap_mechanics::rod::Effects;
 
 /// Floating-point type of the GPU engine's shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,13 +1,13 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row's part of the load.
 
 use super::{BatchRow, Outcome, Values, WhiskerSide};
-use crate::numerics::expansion::Chebyshev;
-use crate::numerics::inverse::Inverse;
-use crate::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep};
 use crate::plan::STATE_CHANNELS;
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
 use crate::sheet::{Crossing, Edge, PUSH_MARGIN, Sheet};
-use crate::shooting::Reader;
+use whiskmap_mechanics::numerics::expansion::Chebyshev;
+use whiskmap_mechanics::numerics::inverse::Inverse;
+use whiskmap_mechanics::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep};
+use whiskmap_mechanics::shooting::Reader;
 
 /// Number of functions that are expanded along a row.
 pub const FUNCTIONS: usize = 3 + STATE_CHANNELS.len();
@@ -176,11 +176,11 @@ impl RowExpansion {
 mod tests {
     use super::*;
     use crate::engine::SideColumns;
-    use crate::rod::Side;
     use crate::scene::Scene;
     use crate::sheet::net::NET_RESIDUAL as MOST;
-    use crate::shooting::batch::Method;
     use std::sync::Arc;
+    use whiskmap_mechanics::rod::Side;
+    use whiskmap_mechanics::shooting::batch::Method;
 
     /// The cone of the paper with more rows at the tip than its map has.
     fn cone() -> WhiskerSide {
@@ -206,8 +206,8 @@ mod tests {
     /// Channel values in SIMD lanes are those of the converter of single states.
     #[test]
     fn values_of_a_net_are_those_of_a_trajectory() {
-        use crate::shooting::FirstVariation;
-        use crate::shooting::batch::Batch;
+        use whiskmap_mechanics::shooting::FirstVariation;
+        use whiskmap_mechanics::shooting::batch::Batch;
         let side = cone();
         let sheet = &side.sheet;
         let mut compared = 0;

@@ -4,13 +4,13 @@ use super::{Cell, Outcome, SideColumns};
 use crate::friction::FrictionState;
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
-use crate::rod::{Units, arclength};
 use crate::scene::Parameter;
 use crate::sheet::net::ValueNet;
 use crate::sheet::{Crossing, Sheet};
-use crate::shooting::{FullState, Reader, Reading};
 use glam::DVec2;
 use std::sync::Arc;
+use whiskmap_mechanics::rod::{Units, arclength};
+use whiskmap_mechanics::shooting::{FullState, Reader, Reading};
 
 /// Channel values of a state in map units, `[channel]`, in the order of [`STATE_CHANNELS`].
 pub type Values = [f64; STATE_CHANNELS.len()];

@@ -5,13 +5,13 @@ use super::row::{FUNCTIONS, RowExpansion};
 use super::{
     BatchRow, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch, WhiskerSide,
 };
-use crate::numerics::Unit;
-use crate::numerics::inverse::InverseBlock;
 use crate::sheet::net::NET_RESIDUAL;
 use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
+use whiskmap_mechanics::numerics::Unit;
+use whiskmap_mechanics::numerics::inverse::InverseBlock;
 
 /// Distance beyond the ends of a row, in parts of the argument at its end, that rounding explains.
 const OUTSIDE: f64 = 1e-6;

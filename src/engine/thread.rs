@@ -58,8 +58,8 @@ pub fn serve(
 mod tests {
     use super::*;
     use crate::engine::{EngineDescription, Worker};
-    use crate::shooting::batch::Method;
     use std::sync::mpsc::channel;
+    use whiskmap_mechanics::shooting::batch::Method;
 
     /// Fails, or panics, after `most` batches.
     struct Counting {

@@ -1,9 +1,9 @@
 //! Moment over lever.
 
 use super::{CurvatureFrame, FrameContact, FrameForce, NoForce};
-use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use glam::DVec2;
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Bending of the whisker at the measured point of a film's frame.
 #[derive(Clone, Copy, Debug)]

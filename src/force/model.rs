@@ -3,12 +3,12 @@
 use super::lever::Bending;
 use super::state_curve::{Measured, ModelState, StateCurve};
 use super::{CurvatureFrame, FrameContact, FrameForce, NoForce};
-use crate::rod::{Rest, Rod, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
-use crate::shooting::Resolution;
-use crate::shooting::batch::Method;
 use glam::DVec2;
+use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
+use whiskmap_mechanics::shooting::Resolution;
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Number of intervals between the rows of a sheet.
 const ROWS: u32 = 16;

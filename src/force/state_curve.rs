@@ -3,13 +3,13 @@
 //! Along these states the row parameter `w = |load| tau^2` grows from first touch on. The curvature first grows, too, and may then fall again,
 //! so that several states can have it. They are bracketed between samples of `w`, and on both sides of an extremum.
 
-use crate::numerics::illinois;
-use crate::rod::{Rod, arclength};
 use crate::sheet::Sheet;
-use crate::shooting::batch::{Batch, Method};
-use crate::shooting::shape::{RodPoint, profile};
-use crate::shooting::{FirstVariation, Resolution};
 use glam::DVec2;
+use whiskmap_mechanics::numerics::illinois;
+use whiskmap_mechanics::rod::{Rod, arclength};
+use whiskmap_mechanics::shooting::batch::{Batch, Method};
+use whiskmap_mechanics::shooting::shape::{RodPoint, profile};
+use whiskmap_mechanics::shooting::{FirstVariation, Resolution};
 
 /// Resolution of the states.
 const FINE: Resolution = Resolution::FINE;

@@ -2,10 +2,10 @@
 
 use super::limit::{LimitPart, SlidingLimit, through};
 use crate::sheet::{Crossing, Edge, LevelCurve, Sheet};
-use crate::shooting::FirstVariation;
-use crate::shooting::batch::Batch;
 use glam::DVec2;
 use std::f64::consts::PI;
+use whiskmap_mechanics::shooting::FirstVariation;
+use whiskmap_mechanics::shooting::batch::Batch;
 
 /// Number of states between first touch and the end of the push.
 const BETWEEN: u32 = 12;

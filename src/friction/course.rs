@@ -13,8 +13,8 @@ use super::history::{ContactHistory, ContactPhase, HistoryKnot, SlidingEnd};
 use super::limit::SlidingLimit;
 use super::sliding::Sliding;
 use super::states::held;
-use crate::numerics::Bracket;
 use crate::sheet::LevelCurve;
+use whiskmap_mechanics::numerics::Bracket;
 
 /// Limits of sliding of one contact, with the energy that friction dissipates along them.
 #[derive(Clone, Debug)]

@@ -4,10 +4,10 @@ use super::limit::SlidingLimit;
 use super::sliding::ContactRate;
 use super::state::FrictionPoint;
 use super::states::at_limits;
-use crate::numerics::gauss::QUADRATURE;
-use crate::numerics::newton_form::{Polynomial, through_nodes};
-use crate::shooting::FirstVariation;
-use crate::shooting::batch::{Batch, InitialCondition};
+use whiskmap_mechanics::numerics::gauss::QUADRATURE;
+use whiskmap_mechanics::numerics::newton_form::{Polynomial, through_nodes};
+use whiskmap_mechanics::shooting::FirstVariation;
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
 
 /// Dissipated energy along one limit, in `E I_base/L_w`, as a polynomial on each segment of the limit.
 #[derive(Clone, Debug)]

@@ -6,9 +6,9 @@
 
 use super::Sliding;
 use super::limit::SlidingLimit;
-use crate::rod::Rod;
 use crate::sheet::LevelCurve;
 use std::collections::BTreeSet;
+use whiskmap_mechanics::rod::Rod;
 
 /// Sliding history of the contact of one row, along a push from first touch.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ use super::segment::{LimitPlace, LimitSegment, SlidingKnot};
 use super::sliding::{ContactRate, slid};
 use super::state::FrictionPoint;
 use crate::sheet::{Continuation, CurveNode, LevelCurve, NODE_MISS, Stretch, continuations};
-use crate::shooting::FirstVariation;
-use crate::shooting::batch::{Batch, InitialCondition};
 use glam::DVec2;
+use whiskmap_mechanics::shooting::FirstVariation;
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
 
 /// Slid distance of one row's contact by push angle, from first touch to the end of its stable states. It is the arclength of the contact
 /// minus the distance rolled around the pole, in whisker lengths.

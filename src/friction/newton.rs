@@ -8,11 +8,11 @@ use super::sliding::{Sliding, slid};
 use super::state::{FrictionPoint, FrictionState};
 use super::target::FrictionTarget;
 use crate::refine::TOLERANCE;
-use crate::rod::arclength;
 use crate::sheet::LevelCurve;
-use crate::shooting::batch::{Batch, InitialCondition};
-use crate::shooting::{FirstVariation, LONGEST_STEP, limited};
 use glam::{DMat3, DVec2, DVec3};
+use whiskmap_mechanics::rod::arclength;
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
+use whiskmap_mechanics::shooting::{FirstVariation, LONGEST_STEP, limited};
 
 /// Relative difference of `tau` from the tip's within which a contact counts as on the whisker.
 const TIP_SLACK: f64 = 1e-9;

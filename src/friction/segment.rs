@@ -1,8 +1,8 @@
 //! Segment of a limit: the slid distance between two states as a polynomial.
 
 use super::sliding::ContactRate;
-use crate::numerics::newton_form::{Polynomial, through_runs};
 use crate::sheet::CurveNode;
+use whiskmap_mechanics::numerics::newton_form::{Polynomial, through_runs};
 
 /// State at which a limit is interpolated.
 #[derive(Clone, Copy, Debug)]
@@ -158,8 +158,8 @@ impl LimitSegment {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shooting::FullState;
     use glam::DVec2;
+    use whiskmap_mechanics::shooting::FullState;
 
     fn knot(push: f64, slid: f64, by_push: f64) -> SlidingKnot {
         SlidingKnot {

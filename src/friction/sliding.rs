@@ -1,11 +1,11 @@
 //! Sliding direction of the contact along the whisker.
 
-use crate::rod::{Rod, arclength};
 use crate::sheet::CurveNode;
-use crate::shooting::FirstVariation;
-use crate::shooting::batch::{Batch, Method};
 use glam::DVec2;
 use serde::Serialize;
+use whiskmap_mechanics::rod::{Rod, arclength};
+use whiskmap_mechanics::shooting::FirstVariation;
+use whiskmap_mechanics::shooting::batch::{Batch, Method};
 
 /// Sliding direction of the contact along the whisker as the push grows; on unstable states, in the direction of continuation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -1,10 +1,10 @@
 //! State of a contact with friction.
 
 use super::sliding::Sliding;
-use crate::rod::Rod;
 use crate::sheet::{CurveNode, LevelCurve};
-use crate::shooting::FullState;
 use glam::DVec2;
+use whiskmap_mechanics::rod::Rod;
+use whiskmap_mechanics::shooting::FullState;
 
 /// Contact, load and force ratio of a state with friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

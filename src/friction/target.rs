@@ -2,8 +2,8 @@
 
 use super::limit::SlidingLimit;
 use super::state::FrictionPoint;
-use crate::rod::Rod;
 use crate::sheet::LevelCurve;
+use whiskmap_mechanics::rod::Rod;
 
 /// Target of Newton's method for one state.
 #[derive(Clone, Copy, Debug)]

@@ -13,11 +13,11 @@ pub use traces::{branch, curve, shape};
 use crate::accuracy::{Accuracy, cheapest};
 use crate::engine::{EngineError, Precision};
 use crate::plan::{Channels, PlanError};
-use crate::rod::Side;
 use crate::scene::Scene;
-use crate::shooting::Resolution;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Accuracy, engine, progress and cancellation of a computation.
 ///

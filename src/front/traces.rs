@@ -5,11 +5,11 @@ use super::{Error, Options, resolution};
 use crate::fit::{self, Fit};
 #[cfg(feature = "fit")]
 use crate::measured::MeasuredPoints;
-use crate::rod::Side;
 #[cfg(feature = "fit")]
 use crate::scene::Parameter;
 use crate::scene::{Scene, SweepPlace, SweptWhisker};
 use crate::trace::{Branch, Detachment, NoState, WhiskerShape, curve_at, sides, whiskers_at_once};
+use whiskmap_mechanics::rod::Side;
 
 /// Maximum number of distances between two looks at the flag that cancels.
 const DISTANCES_AT_ONCE: usize = 4096;
@@ -55,7 +55,7 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
 /// Computes the branch of the scene's first whisker at one pole, from first touch at `distance_mm` through the fold.
 ///
 /// ```
-/// use whiskmap::{rod::Side, scene::Scene};
+/// use whiskmap::{Side, scene::Scene};
 ///
 /// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
 /// let points = whiskmap::branch(&cone, 15.66, Side::Cb)?.points(50)?;

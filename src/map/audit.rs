@@ -149,8 +149,8 @@ fn sizes(side: &WhiskerSide, at_end: Values, ours: Values) -> Values {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rod::{Rod, Side};
-    use crate::shooting::batch::Method;
+    use whiskmap_mechanics::rod::{Rod, Side};
+    use whiskmap_mechanics::shooting::batch::Method;
 
     /// One cell of each part of a row, whatever the ranges; other cells in other rows.
     #[test]

@@ -13,11 +13,11 @@ use super::summary::{EngineCells, Summary};
 use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::Scene;
-use crate::shooting::batch::Method;
 use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Cells per thread in a batch for the CPU alone: nearly all blocks of the refinement are full, and little memory is new.
 const CELLS_PER_THREAD: usize = 8192;

@@ -188,11 +188,11 @@ mod tests {
     use super::*;
     use crate::engine::Cpu;
     use crate::plan::Channels;
-    use crate::rod::Side;
     use crate::scene::Scene;
     use crate::sheet::Sheet;
-    use crate::shooting::batch::Method;
     use std::sync::Arc;
+    use whiskmap_mechanics::rod::Side;
+    use whiskmap_mechanics::shooting::batch::Method;
 
     /// Cells with a state beyond the end of their row contradict it, although they follow cells in contact.
     #[test]

@@ -2,14 +2,14 @@
 
 use crate::engine::{SideColumns, WhiskerSide};
 use crate::plan::Plan;
-use crate::rod::Side;
 use crate::scene::{Parameter, Scene, SweptWhisker};
 use crate::sensitivity::of_rows;
 use crate::sheet::Sheet;
-use crate::shooting::batch::Method;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Returns the columns of each of `sides`, `[side]`, and the signed push angles of all of them, in radians.
 pub fn side_columns(push_angle_deg: &[f64], sides: &[Side]) -> (Vec<Arc<SideColumns>>, Arc<[f64]>) {

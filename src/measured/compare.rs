@@ -1,13 +1,13 @@
 //! Comparison of measured points with theory.
 
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
-use crate::rod::Side;
 use crate::scene::{Pole, Whisker, digits};
 use crate::sensitivity::{Derivatives, Variable, detachments};
-use crate::shooting::Resolution;
 use crate::trace::row;
 use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 row! {
     /// A measured detachment and the one that the theory predicts.

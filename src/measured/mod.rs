@@ -5,8 +5,8 @@ mod read;
 
 pub use compare::{ComparedPoint, Comparison};
 
-use crate::rod::Side;
 use crate::trace::DetachmentKind;
+use whiskmap_mechanics::rod::Side;
 
 /// Measured detachments, in the order of their file. Every value is in its range.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,11 +2,11 @@
 
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::input::{CsvError, CsvTable};
-use crate::rod::{Rest, Side};
 use crate::scene::{NEAREST, Pole, Whisker, digits};
 use crate::sheet::Row;
 use crate::trace::DetachmentKind;
 use std::path::Path;
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Required columns of a file: one of each group.
 const NEEDED: [&[&str]; 3] = [

@@ -1,8 +1,8 @@
 //! Checks: comparisons of computed numbers with independently verified values.
 
-use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::trace::{Detachment, curve};
+use whiskmap_mechanics::rod::Side;
 
 /// Check of a computed number against an independently verified value.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,8 +5,8 @@
 //! psi)` both integrals are lemniscatic, here in Carlson's symmetric forms (B. C. Carlson, "Numerical computation of real or complex
 //! elliptic integrals", Numer. Algorithms 10, 1995).
 
-use crate::numerics::Bracket;
 use std::f64::consts::{FRAC_PI_2, PI};
+use whiskmap_mechanics::numerics::Bracket;
 
 /// State of a straight cylinder pushed by a point.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,10 +3,10 @@
 use super::check::{CLOSED, Check, EXACT, end, near};
 use super::elastica::{elastica, fold};
 use super::whiskers::{CONE, CYLINDER, POLE, whisker};
-use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
-use crate::shooting::Reading;
 use crate::trace::{Branch, DetachmentKind, NoState, StateAtPush, corner, curve};
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Reading;
 
 pub fn checks() -> Vec<Check> {
     [straight_cylinder(), straight_cone(), symmetries()].concat()

@@ -2,10 +2,10 @@
 
 use super::check::{AUTO, Check, ExpectedNumber, FORWARD, PAPER, end, near};
 use super::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
-use crate::rod::Side;
 use crate::scene::Pole;
 use crate::trace::DetachmentKind::{self, PullOff, SlipOff};
 use crate::trace::{Detachment, corner};
+use whiskmap_mechanics::rod::Side;
 
 /// Distance of the pole of Fig. 2 at first touch of the cone, in mm.
 const TOUCH_MM: f64 = 15.660_459_763_365_8;

@@ -2,10 +2,10 @@
 
 use super::check::{AUTO, Check, near};
 use super::whiskers::whisker;
-use crate::rod::Side;
 use crate::scene::Pole;
 use crate::trace::{DetachmentKind, curve};
 use serde::Deserialize;
+use whiskmap_mechanics::rod::Side;
 
 const POINTS: &str = include_str!("../../tests/data/detachment.csv");
 

@@ -1,7 +1,7 @@
 //! Whiskers of the paper, and of the closed forms.
 
-use crate::rod::{Rest, Side};
 use crate::scene::{Curvature, Pole, Whisker};
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Pole of the paper: radius 0.25 mm, without friction.
 pub const POLE: Pole = Pole::smooth(0.25);

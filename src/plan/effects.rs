@@ -1,7 +1,7 @@
 //! List of the mechanical effects by name: whether each is on, and which line of the scene decides it.
 
-use crate::rod::Effects;
 use crate::scene::{Parameter, Scene, SceneData, SweptWhisker, Whisker};
+use whiskmap_mechanics::rod::Effects;
 
 /// Mechanical effect of a scene: its name, reason and cost.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -16,11 +16,11 @@ pub use error::PlanError;
 pub use expansions::{ExpansionCount, USUAL_NET, net_cost};
 pub use memory::{BYTES_PER_THREAD, MEMORY_LIMIT};
 
-use crate::rod::{Effects, Rod, Side};
 use crate::scene::Scene;
-use crate::shooting::batch::Method;
 use memory::{BYTES_ON_GPU, BYTES_PER_CELL, PACKED_BYTES_PER_CELL, bytes_of_sheets, fits};
 use std::ops::Range;
+use whiskmap_mechanics::rod::{Effects, Rod, Side};
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Maximum number of cells of a row batch: enough for every lane of a GPU, in little memory.
 pub const CELLS_IN_FLIGHT: usize = 1 << 17;

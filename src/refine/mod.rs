@@ -7,12 +7,12 @@ mod near_fold;
 mod newton;
 
 use crate::sheet::{Guess, Sheet};
-use crate::shooting::FullState;
-use crate::shooting::batch::{Method, chunk_size};
 use glam::DVec2;
 use near_fold::FoldVerdict;
 use newton::newton;
 use rayon::prelude::*;
+use whiskmap_mechanics::shooting::FullState;
+use whiskmap_mechanics::shooting::batch::{Method, chunk_size};
 
 /// Residual, in whisker lengths, at which a state is accepted without another step.
 pub const GOAL: f64 = 1e-12;

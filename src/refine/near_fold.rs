@@ -4,11 +4,11 @@
 //! target distance decides whether the target direction has a solution, and gives its `eta`.
 
 use super::CellTarget;
-use crate::numerics::nearest_turn;
 use crate::sheet::{Edge, EdgeProblem, EdgeStart, Sheet, edge_newton};
-use crate::shooting::SecondVariation;
-use crate::shooting::batch::Method;
 use glam::DVec2;
+use whiskmap_mechanics::numerics::nearest_turn;
+use whiskmap_mechanics::shooting::SecondVariation;
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Decision of the fold about a cell that Newton's method did not solve.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,11 +2,11 @@
 
 use super::{CellTarget, ContactState, GOAL, RefineOutcome, Refined, TOLERANCE};
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
-use crate::rod::{Rod, arclength};
 use crate::sheet::{Guess, Sheet};
-use crate::shooting::batch::Method;
-use crate::shooting::{FirstVariation, limited};
 use glam::DVec2;
+use whiskmap_mechanics::rod::{Rod, arclength};
+use whiskmap_mechanics::shooting::batch::Method;
+use whiskmap_mechanics::shooting::{FirstVariation, limited};
 
 /// Longest Newton step, as [`limited`] measures it, at whose end the state is extrapolated instead of integrated.
 const EXTRAPOLATED_STEP: f64 = 1.5e-7;
@@ -26,7 +26,7 @@ const ROUNDING: f64 = 6e-14;
 /// Jacobian determinant, relative to the lengths of its columns, above which an extrapolated step cannot cross the fold.
 const CLEAR_OF_FOLD: f64 = 1e-5;
 
-/// Minimum [`Resolution::least`](crate::shooting::Resolution::least) at which derivatives are accurate enough for extrapolation.
+/// Minimum [`Resolution::least`](whiskmap_mechanics::shooting::Resolution::least) at which derivatives are accurate enough for extrapolation.
 const LEAST_STEPS: u32 = 5;
 
 /// Newton problem of a cell: the state whose pole is at the target.

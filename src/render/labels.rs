@@ -1,7 +1,7 @@
 //! Labels of axes, channels and regions in words, with their units.
 
-use crate::rod::Side;
 use crate::scene::Parameter;
+use whiskmap_mechanics::rod::Side;
 use whiskmap_plot::Region;
 
 /// Label of the axis of push angles.

@@ -1,8 +1,8 @@
 //! Sensitivities of detachments as bars: what a change of 1 % of each variable does to the push angle.
 
 use super::labels;
-use crate::rod::Side;
 use crate::sensitivity::{Variable, VariableEffect};
+use whiskmap_mechanics::rod::Side;
 use whiskmap_plot::{Band, Plot, Shade};
 
 /// Half the height of a bar, where the distance of two variables is 1.

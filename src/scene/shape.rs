@@ -9,8 +9,8 @@ use super::error::{SceneError, SceneFault};
 use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
 use super::whisker::{Curvature, EulerSpiral};
-use crate::rod::CurvaturePolynomial;
 use crate::traced::TracedError;
+use whiskmap_mechanics::rod::CurvaturePolynomial;
 
 /// Key of the points of a traced shape in a scene file.
 pub(super) const POINTS_KEY: &str = "whisker.rest.points";

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::grid::SweepPlace;
-use crate::rod::{CurvaturePolynomial, RadiusProfile, Rod, Side, Units};
+use whiskmap_mechanics::rod::{CurvaturePolynomial, RadiusProfile, Rod, Side, Units};
 
 /// One whisker of a sweep, in front of its pole.
 #[derive(Clone, Debug, PartialEq)]

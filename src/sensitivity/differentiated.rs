@@ -4,10 +4,10 @@ use super::linearised::{Equations, Linearised, RodAxes};
 use super::whisker::WhiskerDerivative;
 use super::{Derivatives, NoDerivative, Variable};
 use crate::friction::Sliding;
-use crate::rod::{Rest, Rod, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge};
-use crate::shooting::Resolution;
+use whiskmap_mechanics::rod::{Rest, Rod, Side};
+use whiskmap_mechanics::shooting::Resolution;
 
 /// A whisker with its derivatives by some variables.
 pub struct Differentiated<'a> {

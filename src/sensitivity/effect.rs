@@ -1,10 +1,10 @@
 //! Effects of single variables on the push angle at detachment, as rows of a table.
 
 use super::{NoDerivative, Variable, detachments};
-use crate::rod::Side;
 use crate::scene::Scene;
 use crate::trace::{DetachmentKind, row};
 use serde::{Serialize, Serializer};
+use whiskmap_mechanics::rod::Side;
 
 row! {
     /// Effect of one variable on a detachment.

@@ -6,12 +6,12 @@
 
 use super::NoDerivative;
 use super::whisker::WhiskerDerivative;
-use crate::rod::{Rest, Rod, RodDerivative, arclength};
-use crate::shooting::batch::InitialCondition;
-use crate::shooting::{
+use glam::DVec2;
+use whiskmap_mechanics::rod::{Rest, Rod, RodDerivative, arclength};
+use whiskmap_mechanics::shooting::batch::InitialCondition;
+use whiskmap_mechanics::shooting::{
     FullState, Resolution, StateDerivative, TrajectoryVariable, VariationDerivative, differentiate,
 };
-use glam::DVec2;
 
 /// Sine of the angle between the gradients of two equations, in scaled coordinates, below which they are singular. Errors of states of
 /// 1e-12 then change a derivative by at most 1e-6 of itself.

@@ -4,7 +4,7 @@
 //! differenced, and no sheet is computed. Parameters that only scale are differentiated in closed form.
 //!
 //! ```
-//! use whiskmap::rod::Side;
+//! use whiskmap::Side;
 //! use whiskmap::scene::{Parameter, Scene};
 //! use whiskmap::sensitivity::{Variable, detachments};
 //!
@@ -27,15 +27,15 @@ pub use effect::{VariableEffect, effects};
 pub use quantities::Derivatives;
 pub use variable::Variable;
 
-use crate::rod::Side;
 use crate::scene::{Parameter, Pole, Whisker};
 use crate::sheet::{Crossing, Sheet};
-use crate::shooting::Resolution;
 use crate::trace::{
     Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, crossings, detachments as ends,
 };
 use differentiated::Differentiated;
 use std::sync::atomic::AtomicBool;
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// A detachment with its derivatives.
 #[derive(Clone, Debug, PartialEq)]

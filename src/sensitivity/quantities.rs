@@ -2,9 +2,9 @@
 
 use super::linearised::{Linearised, Moved};
 use super::whisker::WhiskerDerivative;
-use crate::rod::{Rest, Side, Units, arclength};
 use glam::DVec2;
 use serde::Serialize;
+use whiskmap_mechanics::rod::{Rest, Side, Units, arclength};
 
 /// Derivatives of the quantities of a detachment or a state by one variable: each in the unit of its name, per unit of the variable.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -1,9 +1,9 @@
 //! Derivatives of a whisker's rod, units and push by a variable, in closed form.
 
 use super::{NoDerivative, Variable};
-use crate::numerics::Dual;
-use crate::rod::{RadiusProfile, RodDerivative, Side};
 use crate::scene::{Parameter, Pole, Whisker};
+use whiskmap_mechanics::numerics::Dual;
+use whiskmap_mechanics::rod::{RadiusProfile, RodDerivative, Side};
 
 /// Change of a whisker in front of its pole per unit of a variable.
 #[derive(Clone, Debug, Default)]

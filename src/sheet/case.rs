@@ -1,7 +1,7 @@
 //! The whisker side that a sheet is computed for.
 
-use crate::rod::{Rod, Side};
-use crate::shooting::batch::{Batch, Method, OutputSet};
+use whiskmap_mechanics::rod::{Rod, Side};
+use whiskmap_mechanics::shooting::batch::{Batch, Method, OutputSet};
 
 /// Description of the sheet to sample: method of integration, rod, and side.
 #[derive(Clone, Copy, Debug)]

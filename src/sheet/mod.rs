@@ -26,9 +26,6 @@ pub use row::{Crossing, Edge, Row};
 pub use span::Guess;
 pub(crate) use span::RowSpan;
 
-use crate::rod::{Rest, Rod, Side};
-use crate::shooting::ShootingMap;
-use crate::shooting::batch::Method;
 use case::SheetCase;
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
@@ -36,6 +33,9 @@ use net::{FOLD_ERROR, GUESS_ERROR, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
 use std::sync::Arc;
+use whiskmap_mechanics::rod::{Rest, Rod, Side};
+use whiskmap_mechanics::shooting::ShootingMap;
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Returns the number of rows, of `rows` in total, that one batch of continuations follows: 32 to 128. Each thread gets a batch, and
 /// lanes stay full although continuations end at different times. Results do not depend on it.

@@ -1,8 +1,8 @@
 //! Rows of a map, each at one distance, and the crossings at which they leave the stable sheet.
 
-use crate::rod::{Rest, Rod};
-use crate::shooting::ShootingMap;
 use glam::DVec2;
+use whiskmap_mechanics::rod::{Rest, Rod};
+use whiskmap_mechanics::shooting::ShootingMap;
 
 /// Distance beyond the tip, in whisker lengths, within which first touch counts as at the tip. Rounding of a distance in millimetres, of
 /// its division by the length and of the rest shape is a hundred times smaller.

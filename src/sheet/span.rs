@@ -4,8 +4,8 @@
 //! is flat. So polynomials through the nodes of the continuation represent the piece. To find a cell, solve `push(w)` for `w`; its
 //! contact is `tau(w)`, and its load `w/tau^2`.
 
-use crate::numerics::Bracket;
-use crate::numerics::newton_form::{Polynomial, RootProblem, stencil, through_nodes};
+use whiskmap_mechanics::numerics::Bracket;
+use whiskmap_mechanics::numerics::newton_form::{Polynomial, RootProblem, stencil, through_nodes};
 
 /// Guess for one cell: the start of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -24,7 +24,7 @@ pub struct MapDescription<'a> {
     pub channels: Channels,
     /// Digits to which the channels of the map are rounded.
     pub digits: Digits,
-    /// Rounding of the CPU of the run: the [name](crate::numerics::ArithmeticClass::name) of an arithmetic class.
+    /// Rounding of the CPU of the run: the [name](whiskmap_mechanics::numerics::ArithmeticClass::name) of an arithmetic class.
     pub arithmetic: &'a str,
 }
 

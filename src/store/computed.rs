@@ -8,7 +8,6 @@ use super::{ChannelValues, StoreError};
 use crate::classify::Regime;
 use crate::engine::{Engine, EngineDescription};
 use crate::map::{self, Panel};
-use crate::numerics::ArithmeticClass;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use exr::meta::attribute::SampleType;
@@ -19,6 +18,7 @@ use std::fmt;
 use std::ops::{ControlFlow, Range};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
+use whiskmap_mechanics::numerics::ArithmeticClass;
 
 /// Most bytes of the whiskers that a map keeps for further reads: all channels of 18 whiskers of 512 x 512 cells.
 const KEPT_BYTES: usize = 256 << 20;

@@ -2,11 +2,11 @@
 
 use super::TextureError;
 use super::tip::TipFrame;
-use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Surface, Whisker};
 use crate::sheet::Row;
 use crate::whisk::phase::{Obstacles, Phase, ROUNDING};
 use crate::whisk::states::{BothSides, SideStates};
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Asperities that the resting whisker reaches, from left to right. The number of an obstacle is the index of its asperity here.
 pub struct Asperities {

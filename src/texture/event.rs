@@ -2,10 +2,10 @@
 
 use super::rows::TextureEvent;
 use super::sample::{Crossing, Held};
-use crate::rod::Side;
-use crate::shooting::Reading;
 use crate::whisk::phase::Passage;
 use crate::whisk::{WhiskEventKind, signed_deg};
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Reading;
 
 /// Returns the events of a course up to the first crossing, `[event]`.
 pub fn events(

@@ -20,7 +20,6 @@ pub use rows::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
 pub use shape::shape;
 pub use stays::{AsperityStay, TipBin, histogram};
 
-use crate::rod::Side;
 use crate::scene::{SceneError, Surface, Whisker};
 use crate::whisk::phase::{Obstacles, Phase};
 use crate::whisk::states::{BothSides, RowPush};
@@ -29,6 +28,7 @@ use asperities::Asperities;
 use sample::{Crossing, Held};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tip::TipFrame;
+use whiskmap_mechanics::rod::Side;
 
 /// Course of a whisker behind a rough surface.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! Rows of the tables of courses behind surfaces.
 
-use crate::rod::Side;
 use crate::trace::row;
 use crate::whisk::WhiskEventKind;
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
 
 /// Phase of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -2,10 +2,10 @@
 
 use super::rows::{NoTextureState, TexturePhase, TextureSample};
 use super::tip::{TipFrame, TipPlace};
-use crate::rod::Side;
-use crate::shooting::Reading;
 use crate::whisk::phase::{Passage, Phase};
 use crate::whisk::{AngleCourse, Undecided, signed_deg};
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Reading;
 
 /// State in contact with an asperity.
 #[derive(Clone, Copy)]

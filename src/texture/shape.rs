@@ -2,10 +2,10 @@
 
 use super::TextureSample;
 use super::tip::TipFrame;
-use crate::rod::Rest;
 use crate::scene::{Pole, Surface, Whisker};
 use crate::trace::{Branch, NoState, WhiskerShape};
 use glam::DVec2;
+use whiskmap_mechanics::rod::Rest;
 
 /// Returns the shape of `whisker` behind `surface` in a sample: at least `count` points `[x, y]` in mm from the base, along the surface
 /// and toward it. An undecided sample has no points.

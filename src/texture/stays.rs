@@ -1,10 +1,10 @@
 //! Stays on asperities with their dwell times, and histograms.
 
 use super::Texture;
-use crate::rod::Side;
 use crate::trace::row;
 use crate::whisk::WhiskEventKind;
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
 
 row! {
     /// Stay of the whisker on one asperity, from the touch until the whisker leaves it.

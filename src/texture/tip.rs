@@ -1,10 +1,10 @@
 //! Position of the tip: the whisker beyond the contact is not bent, so that it has its shape at rest.
 
-use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Surface, Whisker};
-use crate::shooting::Reading;
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
+use whiskmap_mechanics::rod::{Rest, Side};
+use whiskmap_mechanics::shooting::Reading;
 
 /// Whisker over a surface, with its shape at rest. Positions are in mm from the base: along the surface, and toward it.
 pub struct TipFrame {

@@ -6,14 +6,14 @@ use super::curve::snaps_deg;
 use super::resample::{interpolate, targets};
 use super::{BranchMark, FINER, NoState};
 use crate::friction::{ContactHistory, Sliding};
-use crate::rod::{Rest, Side, Units};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row, Sheet, Stretch};
-use crate::shooting::batch::Method;
-use crate::shooting::{PeakStrain, Reader, Reading};
 use glam::DVec2;
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::{Rest, Side, Units};
+use whiskmap_mechanics::shooting::batch::Method;
+use whiskmap_mechanics::shooting::{PeakStrain, Reader, Reading};
 
 /// Number of points that are computed between two looks at the flag that cancels.
 const POINTS_AT_ONCE: usize = 1 << 10;

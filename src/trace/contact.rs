@@ -2,10 +2,10 @@
 
 use super::{Branch, NoState};
 use crate::friction::{ContactPhase, ContactQuery, FrictionState, Sliding, states};
-use crate::rod::Rod;
 use crate::sheet::CurveNode;
 use glam::DVec2;
 use std::borrow::Cow;
+use whiskmap_mechanics::rod::Rod;
 
 /// State of a branch with the friction of its contact.
 #[derive(Clone, Copy, Debug)]

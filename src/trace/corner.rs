@@ -2,13 +2,13 @@
 
 use super::columns::row;
 use super::curve::{Detachment, DetachmentKind, curve_without_strain};
-use crate::numerics::Bracket;
-use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
-use crate::shooting::Resolution;
-use crate::shooting::batch::Method;
 use serde::Serialize;
+use whiskmap_mechanics::numerics::Bracket;
+use whiskmap_mechanics::rod::{Rest, Side};
+use whiskmap_mechanics::shooting::Resolution;
+use whiskmap_mechanics::shooting::batch::Method;
 
 row! {
     /// Corner of a detachment curve: the end at which slip-off turns into pull-off, the fold with the contact at the tip.

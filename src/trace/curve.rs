@@ -3,12 +3,12 @@
 use super::columns::row;
 use crate::classify::{RowBoundary, TIE};
 use crate::friction::{ContactHistory, Sliding, surely_slides_to_end};
-use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
-use crate::shooting::batch::{Batch, Method};
-use crate::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 use serde::{Deserialize, Serialize};
+use whiskmap_mechanics::rod::{Rest, Side};
+use whiskmap_mechanics::shooting::batch::{Batch, Method};
+use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 
 /// Kind of the end of a push from first touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -24,11 +24,11 @@ pub use state::StateAtPush;
 
 pub(crate) use columns::row;
 
-use crate::rod::Side;
 use crate::scene::{SweepPlace, SweptWhisker};
-use crate::shooting::Resolution;
 use rayon::prelude::*;
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Resolution of branches and shapes, twice as fine as [`Resolution::FINE`]: unstable states have larger loads.
 pub(crate) const FINER: Resolution = Resolution::FINE.doubled();

@@ -2,8 +2,8 @@
 
 use super::resample::interpolate;
 use super::{Branch, BranchPoint};
-use crate::numerics::least_between;
 use crate::sheet::{CurveNode, ON_CURVE};
+use whiskmap_mechanics::numerics::least_between;
 
 impl Branch {
     /// Returns the largest `size` of the states of a push from first touch to its detachment. The nodes of the continuation enclose the

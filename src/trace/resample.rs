@@ -1,8 +1,8 @@
 //! Resampling of a branch at uniform distances along it.
 
-use crate::numerics::newton_form::{Polynomial, stencil, through_nodes};
 use crate::sheet::CurveNode;
 use glam::DVec2;
+use whiskmap_mechanics::numerics::newton_form::{Polynomial, stencil, through_nodes};
 
 /// Returns positions of `count` points along a curve, `[point]`, and the index of the fold among them, `None` without one. `lengths` and the
 /// positions are lengths along the curve, as in [`LevelCurve::length`](crate::sheet::LevelCurve::length). The parts before and after the fold each

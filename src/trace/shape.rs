@@ -2,11 +2,11 @@
 
 use super::columns::row;
 use super::{Branch, BranchPoint, FINER, StateAtPush};
-use crate::rod::{Rest, arclength};
-use crate::shooting::bending_strain;
-use crate::shooting::shape::{RodPoint, profile};
 use glam::DVec2;
 use serde::Serialize;
+use whiskmap_mechanics::rod::{Rest, arclength};
+use whiskmap_mechanics::shooting::bending_strain;
+use whiskmap_mechanics::shooting::shape::{RodPoint, profile};
 
 /// Shape of a whisker at its pole, in mm in the frame of the pole: the origin is at the base, the first axis along the base's tangent at
 /// first touch. A push rotates the base and leaves the pole.
@@ -81,7 +81,8 @@ impl WhiskerShape {
                 position, tangent, ..
             } = *place;
             let at = turn.rotate(position - base.position) * length;
-            angle = crate::numerics::nearest_turn(turn.rotate(tangent).to_angle(), angle);
+            angle =
+                whiskmap_mechanics::numerics::nearest_turn(turn.rotate(tangent).to_angle(), angle);
             ShapePoint {
                 arc_length_mm: place.arclength * length,
                 x_mm: at.x,

@@ -1,10 +1,10 @@
 //! Stable part of a branch, where nothing is needed of the unstable states.
 
 use super::{Branch, NoState, StateAtPush, WhiskerShape};
-use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Stretch;
-use crate::shooting::Reading;
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Reading;
 
 /// Stable part of a [`Branch`]: the states from first touch to the fold or the tip. The continuation ends there, which saves most of the
 /// time.

@@ -4,8 +4,8 @@ use super::contact::BranchState;
 use super::{Branch, BranchPoint, NoState};
 use crate::friction::Sliding;
 use crate::sheet::{Continuation, CurveNode};
-use crate::shooting::{FullState, Reading};
 use glam::DVec2;
+use whiskmap_mechanics::shooting::{FullState, Reading};
 
 /// State of a branch at a push angle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Plane curves of polynomial curvature, tabulated with their derivatives by the coefficients, and distances of points from them.
 
-use crate::numerics::gauss::QUADRATURE;
-use crate::rod::{CURVATURE_TERMS, CurvaturePolynomial};
 use glam::DVec2;
+use whiskmap_mechanics::numerics::gauss::QUADRATURE;
+use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial};
 
 /// Number of knots of the table per curve length. With the interpolation of order 6, errors are at the level of rounding.
 const KNOTS_PER_LENGTH: i32 = 200;

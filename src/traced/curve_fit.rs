@@ -6,9 +6,9 @@
 
 use super::curve::{CurvePose, CurveTable, CurveTerms, Foot};
 use crate::least_squares::minimise;
-use crate::rod::CURVATURE_TERMS;
 use glam::DVec2;
 use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::CURVATURE_TERMS;
 
 /// Largest degree of the curvature of a fitted curve, as a polynomial of the arclength.
 pub const MOST_DEGREE: usize = CURVATURE_TERMS - 1;

@@ -8,11 +8,11 @@
 mod curve;
 mod curve_fit;
 
-use crate::rod::{CURVATURE_TERMS, CurvaturePolynomial};
 pub use curve_fit::MOST_DEGREE;
 use curve_fit::{CurveFit, TracedPoints};
 use glam::DVec2;
 use std::sync::atomic::AtomicBool;
+use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial};
 
 /// Points more than the degree that a fit needs: three for length and pose, and one to have a distance left.
 const MORE_POINTS: usize = 4;

@@ -1,10 +1,10 @@
 //! The spread of push angles to first order: `sd^2 = sum (d push/d value x sd of the value)^2`.
 
 use super::varying::Varying;
-use crate::rod::Side;
 use crate::scene::Scene;
 use crate::sensitivity::{DetachmentDerivatives, Variable, detachments_at};
-use crate::shooting::Resolution;
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Returns the standard deviation of the push angle in degrees, to first order, `[distance]`; `None` without a detachment or its
 /// derivatives.

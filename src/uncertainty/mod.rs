@@ -10,12 +10,12 @@ mod varying;
 pub use spread::{EndSpread, PointSpread};
 
 use crate::random::RandomStream;
-use crate::rod::Side;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
-use crate::shooting::Resolution;
 use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Most ends on one side; an end takes 40 bytes.
 const MOST_ENDS: usize = 1 << 24;

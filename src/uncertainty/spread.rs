@@ -1,9 +1,9 @@
 //! Spread of many ends of pushes: percentiles, mean and standard deviation.
 
 use super::PushEnd;
-use crate::rod::Side;
 use crate::trace::{DetachmentKind, row};
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
 
 row! {
     /// Spread of the ends of pushes at one distance. Percentiles are those of the detachments, of either kind.

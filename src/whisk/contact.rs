@@ -1,7 +1,7 @@
 //! Contact of a course.
 
 use crate::friction::ContactPhase;
-use crate::rod::Side;
+use whiskmap_mechanics::rod::Side;
 
 /// Contact of the whisker at one time: side, push and, with friction, the phase of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]

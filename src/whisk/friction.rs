@@ -3,7 +3,7 @@
 use super::contact::CourseContact;
 use super::states::SideStates;
 use crate::friction::{ContactCourse, ContactPhase, CourseLimits, Sliding};
-use crate::rod::Side;
+use whiskmap_mechanics::rod::Side;
 
 /// Change of a contact between its touch and its end.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@ use super::phase::{Obstacles, Passage, Phase};
 use super::states::SideStates;
 use super::turns::Turns;
 use super::{Undecided, WhiskEventKind};
-use crate::rod::Side;
+use whiskmap_mechanics::rod::Side;
 
 /// Sample of a course, before its state is computed.
 #[derive(Clone, Copy, Debug)]

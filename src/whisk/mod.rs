@@ -21,7 +21,6 @@ pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 pub use start::{CourseStart, WhiskOptions};
 
-use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker, digits};
 use crate::sheet::Row;
 use crate::trace::NoState;
@@ -30,6 +29,7 @@ use phase::{Phase, ROUNDING};
 use readings::Found;
 use states::SideStates;
 use turns::Turns;
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Course of a whisker in front of one pole.
 #[derive(Clone, Debug, PartialEq)]

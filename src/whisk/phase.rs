@@ -1,8 +1,8 @@
 //! Phases of a course: which obstacle holds the whisker on which side, or free, and the angles at which that changes.
 
 use super::{AngleCourse, Undecided, WhiskEventKind};
-use crate::rod::Side;
 use std::f64::consts::TAU;
+use whiskmap_mechanics::rod::Side;
 
 /// Phase of a course: what the angle of the base alone does not determine.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,9 +6,9 @@ use super::phase::Phase;
 use super::rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 use super::states::{SideStates, SolveContacts};
 use crate::friction::{ContactPhase, Sliding, held, states};
-use crate::rod::Side;
-use crate::shooting::Reading;
 use crate::trace::DetachmentKind;
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Reading;
 
 /// Stable states of the whisker on both sides, CB and CF.
 pub struct Found<'a> {

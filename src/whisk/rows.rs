@@ -1,9 +1,9 @@
 //! Rows of a course: samples and events.
 
 use crate::friction::Sliding;
-use crate::rod::Side;
 use crate::trace::row;
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
 
 /// Regime of a sample: whether the whisker touches the pole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -2,10 +2,10 @@
 
 use super::phase::{Obstacles, Phase};
 use super::turns::Turns;
-use crate::rod::Side;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::Side;
 
 /// State in which a course begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,12 +3,12 @@
 use super::contact::CourseContact;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, RefineOutcome, refine};
-use crate::rod::Side;
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
-use crate::shooting::batch::{Batch, Method};
-use crate::shooting::{FirstVariation, Reader, Reading, Resolution};
 use crate::trace::{Branch, DetachmentKind, crossings, snaps_deg};
+use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::batch::{Batch, Method};
+use whiskmap_mechanics::shooting::{FirstVariation, Reader, Reading, Resolution};
 
 /// Stable states on one side of poles at several distances, from first touch to the end of the push.
 pub struct SideStates {

@@ -1,8 +1,8 @@
 //! One pole in front of a base that can turn around it: the same obstacle after each turn.
 
 use super::phase::{Obstacles, Phase, ROUNDING};
-use crate::rod::Side;
 use std::f64::consts::TAU;
+use whiskmap_mechanics::rod::Side;
 
 /// Angles of one turn at which the phase of a course changes, in radians. The number of an obstacle counts whole turns of the base.
 #[derive(Clone, Copy, Debug)]

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 use whiskmap::engine::{Cells, Engine, RowBatch, SideColumns, Spectral, WhiskerSide};
-use whiskmap::rod::{Effects, Rod, Side, Units};
+use whiskmap::mechanics::rod::{Effects, Rod, Side, Units};
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::Method;
 
 /// Columns of each side.
 const COLUMNS: usize = 64;

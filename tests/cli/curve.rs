@@ -2,7 +2,7 @@
 
 use super::traces::{CURVE, cells, good};
 use super::{Place, SCENE};
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::curve;
 

@@ -2,7 +2,7 @@
 
 use super::traces::{BRANCH, CURVE, SHAPE, cells, good};
 use super::{Place, SCENE, names};
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::Branch;
 

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test program uses its own share")]
 
 use whiskmap::engine;
-use whiskmap::rod::Effects;
+use whiskmap::mechanics::rod::Effects;
 
 /// Every set of effects. A profile tapers, whatever `taper` says.
 pub fn all() -> impl Iterator<Item = Effects> {

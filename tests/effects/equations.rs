@@ -4,10 +4,10 @@ use super::{conditions, with};
 use crate::effect_sets;
 use crate::random_rods::ROWS;
 use glam::DVec2;
-use whiskmap::rod::{Side, arclength};
+use whiskmap::mechanics::rod::{Side, arclength};
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::mechanics::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 use whiskmap::scene::Scene;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
 
 /// The pole as the base sees it, by the classical Runge-Kutta method on the equations as they are usually written: by
 /// arclength, from the contact to the base, with angles. Steps end at the rows of the profile.

@@ -4,9 +4,9 @@ use super::{conditions, with};
 use crate::effect_sets;
 use crate::random_rods::ROWS;
 use std::sync::Arc;
-use whiskmap::rod::{RadiusProfile, Rod, arclength};
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{Resolution, ShootingMap};
+use whiskmap::mechanics::rod::{RadiusProfile, Rod, arclength};
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::mechanics::shooting::{Resolution, ShootingMap};
 
 /// Errors fall with the steps to the 7th power, as those of two iterations from levers off by the third, though the profile has jumps
 /// in its second derivative. Measured 6.50 to 6.79: what is left after 12 is 1e-14 to 3e-14, hardly more than rounding.

@@ -6,9 +6,9 @@ mod measured_radii;
 mod neutral;
 
 use crate::random_rods::{Random, condition, rod};
-use whiskmap::rod::{Effects, Rod};
-use whiskmap::shooting::Resolution;
-use whiskmap::shooting::batch::{InitialCondition, Method};
+use whiskmap::mechanics::rod::{Effects, Rod};
+use whiskmap::mechanics::shooting::Resolution;
+use whiskmap::mechanics::shooting::batch::{InitialCondition, Method};
 
 fn with(effects: Effects, resolution: Resolution) -> Method {
     Method::new(resolution).with_effects(effects)

@@ -2,9 +2,9 @@
 
 use super::{conditions, kept, with};
 use std::sync::Arc;
-use whiskmap::rod::{Effects, RadiusProfile, Rod};
-use whiskmap::shooting::batch::{Batch, InitialCondition};
-use whiskmap::shooting::{FirstVariation, Resolution};
+use whiskmap::mechanics::rod::{Effects, RadiusProfile, Rod};
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition};
+use whiskmap::mechanics::shooting::{FirstVariation, Resolution};
 
 /// A state on two rods.
 type Pair = (InitialCondition<'static>, InitialCondition<'static>);

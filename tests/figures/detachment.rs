@@ -1,10 +1,10 @@
 //! Detachment curves of Figs. 3E, 3J, 4D and 5C, and measured ends over them.
 
 use super::{drawn, last, plot};
+use whiskmap::Side;
 use whiskmap::measured::MeasuredPoint;
 use whiskmap::paper::Measurements;
 use whiskmap::render::{Ink, Stroke};
-use whiskmap::rod::Side;
 use whiskmap::trace::DetachmentKind;
 
 /// Captions of Figs. 3E, 3J, 4D and 5C: the push angle across, the distance upwards, black slip-off, blue pull-off, and

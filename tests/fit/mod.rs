@@ -9,8 +9,8 @@ mod refused;
 mod start;
 mod verdict;
 
+use whiskmap::Side;
 use whiskmap::measured::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
-use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::curve;
 

@@ -2,8 +2,8 @@
 
 use super::cone;
 use crate::program::no_file;
+use whiskmap::Side;
 use whiskmap::measured::{MeasuredAngle, MeasuredPoints};
-use whiskmap::rod::Side;
 use whiskmap::trace::DetachmentKind;
 
 const GOOD: &str =

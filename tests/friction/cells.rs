@@ -4,11 +4,11 @@ use super::cone;
 use crate::compute::compute;
 use std::sync::LazyLock;
 use whiskmap::Channel;
+use whiskmap::Side;
 use whiskmap::classify::{Regime, Status};
 use whiskmap::engine::Spectral;
 use whiskmap::friction::Sliding;
 use whiskmap::map::{Panel, Summary};
-use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, WhiskerShape};
 
 fn map(friction: f64) -> (Summary, Panel) {

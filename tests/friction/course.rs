@@ -3,7 +3,7 @@
 use super::cone;
 use super::stepped::SteppedWhisker;
 use whiskmap::friction::Sliding;
-use whiskmap::rod::{Rest, Side};
+use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::Scene;
 use whiskmap::trace::Branch;
 

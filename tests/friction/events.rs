@@ -2,7 +2,7 @@
 
 use crate::random_rods::Random;
 use std::collections::BTreeMap;
-use whiskmap::rod::CurvaturePolynomial;
+use whiskmap::mechanics::rod::CurvaturePolynomial;
 use whiskmap::scene::{Parameter, Pole, Scene, Whisker};
 use whiskmap::whisk::{AngleCourse, Whisk, WhiskEvent, WhiskEventKind, WhiskSample, whisk};
 

@@ -10,7 +10,7 @@ mod sliding;
 mod stepped;
 mod whisk;
 
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::Scene;
 use whiskmap::sensitivity::{NoDerivative, Variable, detachments, state};
 

@@ -5,9 +5,9 @@ use whiskmap::friction::{
     ContactHistory, ContactPhase, ContactQuery, FrictionState, Sliding, states,
     surely_slides_to_end,
 };
-use whiskmap::rod::{Effects, Rod, Side};
+use whiskmap::mechanics::rod::{Effects, Rod, Side};
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::sheet::{LevelCurve, Sheet};
-use whiskmap::shooting::batch::Method;
 
 /// Row of a random whisker with the end of its push.
 struct RandomRow {

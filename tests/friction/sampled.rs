@@ -3,13 +3,13 @@
 use super::cone;
 use super::sliding::Frictions;
 use crate::random_rods::Random;
+use whiskmap::Side;
 use whiskmap::friction::{
     ContactHistory, ContactPhase, ContactQuery, CourseLimits, Sliding, states,
 };
-use whiskmap::rod::Side;
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::LevelCurve;
-use whiskmap::shooting::batch::Method;
 use whiskmap::whisk::{AngleCourse, Whisk, whisk};
 
 /// Random cone at a random pole with friction, and the distance of first touch on CB in mm.

@@ -2,10 +2,10 @@
 
 use super::cone;
 use whiskmap::friction::Sliding;
-use whiskmap::rod::{Rest, Rod, Side, arclength};
+use whiskmap::mechanics::rod::{Rest, Rod, Side, arclength};
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::{CurveNode, LevelCurve, Row, Stretch};
-use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, WhiskerShape};
 
 /// Half the push angle between the states of a central difference, in radians; the error is proportional to its square.

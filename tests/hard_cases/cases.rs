@@ -2,10 +2,10 @@
 
 use super::case::{Case, compute};
 use super::named::named;
+use whiskmap::Side;
 use whiskmap::classify::{Regime, Status};
 use whiskmap::map::Panel;
 use whiskmap::refine::TOLERANCE;
-use whiskmap::rod::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::{DetachmentKind, corner, curve};
 

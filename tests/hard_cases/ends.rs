@@ -7,10 +7,10 @@ use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::Cell;
 use whiskmap::Options;
 use whiskmap::classify::Regime;
-use whiskmap::rod::{Rod, Side};
+use whiskmap::mechanics::rod::{Rod, Side};
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Detachment, DetachmentKind, NoState, WhiskerShape};
 
 /// Distance before and after an end at which shapes and maps are computed, in degrees.

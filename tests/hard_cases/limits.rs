@@ -1,6 +1,6 @@
 //! Order of convergence of the detachment angle as one parameter tends to a limit.
 
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::trace::{Detachment, DetachmentKind, corner, curve};
 

@@ -4,11 +4,11 @@ use super::case::{Case, compute};
 use super::ends::agree;
 use whiskmap::Options;
 use whiskmap::classify::Regime;
-use whiskmap::rod::{Rest, Rod, Side};
+use whiskmap::mechanics::rod::{Rest, Rod, Side};
+use whiskmap::mechanics::shooting::ShootingMap;
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::scene::Parameter;
 use whiskmap::sheet::{Row, Sheet};
-use whiskmap::shooting::ShootingMap;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::trace::DetachmentKind;
 
 /// Cylinder at a point contact with friction.

@@ -6,9 +6,9 @@ use super::random::{always_the_same, cases, measured};
 use super::states::{Shots, halving};
 use proptest::prelude::*;
 use std::cell::RefCell;
-use whiskmap::rod::arclength;
-use whiskmap::shooting::Resolution;
-use whiskmap::shooting::batch::InitialCondition;
+use whiskmap::mechanics::rod::arclength;
+use whiskmap::mechanics::shooting::Resolution;
+use whiskmap::mechanics::shooting::batch::InitialCondition;
 
 /// Half as many steps as [`Resolution::FINE`].
 const HALF: Resolution = Resolution::of(10);

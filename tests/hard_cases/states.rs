@@ -1,12 +1,12 @@
 //! States of a map in `f64`, and their difference from states with halved steps.
 
 use rayon::prelude::*;
+use whiskmap::mechanics::rod::{Effects, Rod, Side};
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap::mechanics::shooting::{Resolution, ShootingMap};
 use whiskmap::refine::{self, CellTarget, RefineOutcome, Refined};
-use whiskmap::rod::{Effects, Rod, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap::shooting::{Resolution, ShootingMap};
 
 /// Cells of one whisker that have a guess, on both sides.
 pub struct Shots {

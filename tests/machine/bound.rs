@@ -6,8 +6,8 @@ use crate::kinds::rows_of_every_kind;
 use crate::random_rods::USUAL;
 use whiskmap::engine::Outcome;
 use whiskmap::engine::gpu::{Gpu, Precision, shaders};
-use whiskmap::shooting::ShootingMap;
-use whiskmap::shooting::batch::{Batch, InitialCondition};
+use whiskmap::mechanics::shooting::ShootingMap;
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition};
 
 tests! {
     Precision:

@@ -6,9 +6,9 @@ use crate::random_rods::USUAL;
 use std::sync::Arc;
 use whiskmap::engine::gpu::{Precision, adapters, preferred};
 use whiskmap::engine::{Cells, Cpu, Engine, Outcome, RowExpansion};
+use whiskmap::mechanics::shooting::ShootingMap;
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition};
 use whiskmap::plan::STATE_CHANNELS;
-use whiskmap::shooting::ShootingMap;
-use whiskmap::shooting::batch::{Batch, InitialCondition};
 
 tests! {
     Engine:

@@ -3,7 +3,7 @@
 use crate::cells::RandomRows;
 use crate::effect_sets;
 use crate::random_rods::Random;
-use whiskmap::rod::{Effects, Rod};
+use whiskmap::mechanics::rod::{Effects, Rod};
 
 /// What is made of random whiskers, and the set of effects that it is made with.
 type Kind = (&'static str, Effects, fn(&mut Rod, &mut Random));

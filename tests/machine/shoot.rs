@@ -5,9 +5,9 @@ use crate::effect_sets;
 use crate::random_rods::conditions;
 use whiskmap::engine::EngineError;
 use whiskmap::engine::gpu::{Precision, shoots};
-use whiskmap::rod::Effects;
-use whiskmap::shooting::PlainState;
-use whiskmap::shooting::batch::{Batch, Method};
+use whiskmap::mechanics::rod::Effects;
+use whiskmap::mechanics::shooting::PlainState;
+use whiskmap::mechanics::shooting::batch::{Batch, Method};
 
 tests! {
     Precision:

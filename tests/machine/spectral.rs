@@ -8,13 +8,13 @@ use std::sync::Arc;
 use whiskmap::classify::Status;
 use whiskmap::engine::{Cpu, FORCE, Outcome, SideColumns, Spectral, WhiskerSide};
 use whiskmap::map::{EngineCells, Panel};
+use whiskmap::mechanics::rod::{Rest, Side};
+use whiskmap::mechanics::shooting::ShootingMap;
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition};
 use whiskmap::plan::Plan;
 use whiskmap::refine::GOAL;
-use whiskmap::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::ShootingMap;
-use whiskmap::shooting::batch::{Batch, InitialCondition};
 
 tests! {
     Nothing:

@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test program uses a part of this module")]
 
 use std::sync::{Arc, LazyLock};
-use whiskmap::rod::{CurvaturePolynomial, Effects, RadiusProfile, Rod, arclength};
-use whiskmap::shooting::batch::InitialCondition;
+use whiskmap::mechanics::rod::{CurvaturePolynomial, Effects, RadiusProfile, Rod, arclength};
+use whiskmap::mechanics::shooting::batch::InitialCondition;
 
 /// Reproducible stream of numbers in `[0, 1)` (splitmix64).
 pub struct Random(pub u64);

@@ -1,6 +1,6 @@
 //! Axes along which whiskers and poles differ.
 
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Parameter, Scene};
 
 use super::parse;

@@ -17,7 +17,7 @@ mod warnings;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Curvature, Parameter, Scene};
 
 /// A valid scene with every table and all axes but one, to be spoilt line by line. Lines are counted from 1.

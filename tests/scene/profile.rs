@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Detachment, curve};
 

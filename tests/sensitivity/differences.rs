@@ -1,9 +1,9 @@
 //! Exact derivatives of detachments against central differences of ends that are computed independently, in twice the steps.
 
 use super::random_whiskers::{Push, push};
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::Parameter;
 use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable, detachments};
-use whiskmap::shooting::Resolution;
 use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
 
 /// Result of the comparison of one push.

@@ -1,8 +1,8 @@
 //! Derivatives as channels of maps.
 
+use whiskmap::Side;
 use whiskmap::classify::Regime;
 use whiskmap::plan::{Plan, PlanError};
-use whiskmap::rod::Side;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sensitivity::{Variable, detachments};
 use whiskmap::{MapEngine, Options};

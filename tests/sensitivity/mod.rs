@@ -6,7 +6,7 @@ mod random_whiskers;
 
 use differences::{Compared, compare};
 use rayon::prelude::*;
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Curvature, EulerSpiral, Parameter, Scene};
 use whiskmap::sensitivity::{NoDerivative, Variable, detachments};
 use whiskmap::trace::{corner, reach_mm};

@@ -1,7 +1,7 @@
 //! Random whiskers with poles and distances, of every rest shape and material.
 
 use crate::random_rods::Random;
-use whiskmap::rod::{CurvaturePolynomial, Side};
+use whiskmap::mechanics::rod::{CurvaturePolynomial, Side};
 use whiskmap::scene::{Curvature, EulerSpiral, Parameter, Pole, Whisker};
 use whiskmap::sensitivity::Variable;
 

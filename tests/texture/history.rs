@@ -1,7 +1,7 @@
 //! History of a course: the asperity on which a detached whisker lies, and the way back.
 
 use super::{course, scene};
-use whiskmap::rod::{Rest, Side};
+use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{Pole, Scene, Surface};
 use whiskmap::texture::texture;
 use whiskmap::trace::curve;

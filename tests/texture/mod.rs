@@ -6,7 +6,7 @@ mod poles;
 mod tables;
 mod undecided;
 
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Scene, Surface};
 use whiskmap::texture::Texture;
 use whiskmap::whisk::{AngleCourse, WhiskEventKind};

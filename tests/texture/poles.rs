@@ -1,7 +1,7 @@
 //! Surfaces of one asperity, or of asperities far apart, against single poles and closed forms.
 
 use super::{SINGLE, course, kinds, scene};
-use whiskmap::rod::{Rest, Side};
+use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Pole, Surface};
 use whiskmap::texture::{TexturePhase, texture};
 use whiskmap::trace::reach_mm;

@@ -1,7 +1,7 @@
 //! Surfaces, shapes, stays and histograms.
 
 use super::{SHIPPED, scene};
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::Surface;
 use whiskmap::texture::{TextureSample, histogram, shape, texture};
 use whiskmap::whisk::{AngleCourse, WhiskEventKind};

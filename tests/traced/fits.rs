@@ -3,7 +3,7 @@
 use super::{bent, points};
 use crate::random_rods::Random;
 use glam::DVec2;
-use whiskmap::rod::{Rest, Rod};
+use whiskmap::mechanics::rod::{Rest, Rod};
 use whiskmap::traced::TracedShape;
 
 const SHAPES: [[f64; 7]; 5] = [

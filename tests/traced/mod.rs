@@ -5,7 +5,7 @@ mod pushes;
 mod refused;
 
 use glam::DVec2;
-use whiskmap::rod::{CurvaturePolynomial, Rest, Rod, Side};
+use whiskmap::mechanics::rod::{CurvaturePolynomial, Rest, Rod, Side};
 use whiskmap::scene::{Pole, Whisker};
 
 use crate::random_rods::Random;

@@ -2,7 +2,7 @@
 
 use super::{points, resting};
 use crate::random_rods::Random;
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Curvature, EulerSpiral, Parameter, Scene, Whisker};
 use whiskmap::trace::curve;
 use whiskmap::traced::TracedShape;

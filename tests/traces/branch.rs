@@ -1,7 +1,7 @@
 //! Properties of every branch.
 
 use super::{EVERY_BRANCH, POLE, branches_at_9_mm, whisker};
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::Pole;
 use whiskmap::trace::{Branch, BranchMark, BranchPoint, DetachmentKind, NoState, StableBranch};
 

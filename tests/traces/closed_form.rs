@@ -1,9 +1,9 @@
 //! Comparison with closed forms.
 
 use super::{POINT, whisker};
+use whiskmap::Side;
 use whiskmap::paper::elastica::{elastica, fold};
 use whiskmap::paper::{CheckVerdict, checks};
-use whiskmap::rod::Side;
 use whiskmap::trace::{Branch, DetachmentKind, curve};
 
 /// Ten turning angles of the straight cylinder at a point contact, up to the fold at 119 degrees.

@@ -1,10 +1,10 @@
 //! Detachment curves and their corners.
 
 use super::{POLE, everything, whisker};
-use whiskmap::rod::Side;
+use whiskmap::Side;
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::Curvature;
 use whiskmap::sheet::Sheet;
-use whiskmap::shooting::batch::Method;
 use whiskmap::trace::{Branch, DetachmentKind, NoCorner, corner, curve};
 
 /// A push ends at the fold 1e-8 mm before the corner, and at the tip 1e-8 mm beyond it.

@@ -8,7 +8,7 @@ mod shape;
 
 use rayon::prelude::*;
 use std::sync::LazyLock;
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Curvature, Pole, Whisker};
 use whiskmap::trace::{Branch, Detachment, NoState, curve};
 

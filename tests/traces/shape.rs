@@ -1,7 +1,7 @@
 //! Shapes: geometry, statics and limit at rest.
 
 use super::{POLE, branches_at_9_mm, everything, whisker};
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::trace::{Branch, WhiskerPart, WhiskerShape};
 
 /// The base is at the origin and rotated by the push angle, the contact touches the pole, and the moment at the base

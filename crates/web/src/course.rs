@@ -3,7 +3,7 @@
 use crate::response::Response;
 use serde::Deserialize;
 use serde_json::json;
-use whiskmap::rod::{Rest, Side};
+use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Row;
 use whiskmap::trace::{Branch, ShapePoint, WhiskerPart, WhiskerShape};

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use whiskmap::friction::Sliding;
-use whiskmap::rod::{Rest, Side};
+use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{AxisValues, Scene};
 use whiskmap::trace::{Detachment, NoState, StableBranch, WhiskerPart, WhiskerShape};
 use whiskmap::{Channel, Options, Regime, Status};

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use whiskmap::rod::Side;
+use whiskmap::Side;
 use whiskmap::scene::{Parameter, Scene, SceneBuilder};
 use whiskmap::sensitivity::{Derivatives, DetachmentDerivatives, Variable, detachments};
 use whiskmap::trace::Detachment;

@@ -18,12 +18,12 @@ use clap::Args;
 use plot::{CurveColumn, scene_curve};
 use serde::Serialize;
 use std::path::PathBuf;
+use whiskmap::Side;
 use whiskmap::measured::ComparedPoint;
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{Plot, bands};
-use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
 use whiskmap::sensitivity::{DetachmentDerivatives, detachments_at};
-use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 use whiskmap::uncertainty::{EndSpread, PointSpread};
 

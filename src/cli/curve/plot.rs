@@ -1,13 +1,13 @@
 //! Plots of detachment curves: the push angle or a load to the right, the distance upward.
 
 use clap::ValueEnum;
+use whiskmap::Side;
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{
     CurveAxis, DISTANCE, DrawnCurve, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, Plot, Stroke,
     curves, regions,
 };
-use whiskmap::rod::Side;
 use whiskmap::scene::{Scene, SweptWhisker};
-use whiskmap::shooting::Resolution;
 use whiskmap::trace::{self, Detachment};
 use whiskmap::uncertainty::EndSpread;
 

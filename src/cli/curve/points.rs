@@ -9,9 +9,9 @@ use super::CurveArgs;
 use super::plot::{CHORD, CurveColumn, covering, scene_curve};
 use std::path::Path;
 use whiskmap::measured::{ComparedPoint, MeasuredAngle};
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{bands, error_bars, measured};
 use whiskmap::scene::{Scene, SweptWhisker};
-use whiskmap::shooting::Resolution;
 use whiskmap::uncertainty::{EndSpread, PointSpread};
 
 /// Compares the measured points of the file at `path` with the curve. With --samples, table and plot have the percentiles, too.

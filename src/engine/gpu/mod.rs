@@ -30,7 +30,6 @@ pub use missing::missing;
 pub use shoot::shoots;
 
 use super::{Cells, Engine, EngineDescription, EngineError, RowBatch};
-use crate::rod::Effects;
 use device::Device;
 use flight::{Buffers, Flight};
 use pace::Pace;
@@ -40,6 +39,7 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
+use whiskmap_mechanics::rod::Effects;
 
 /// GPU engine on one adapter.
 #[derive(Debug)]

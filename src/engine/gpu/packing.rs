@@ -3,10 +3,10 @@
 use super::Precision;
 use crate::engine::row::{FUNCTIONS, Numbers};
 use crate::engine::{RowBatch, RowExpansion};
-use crate::numerics::Real;
-use crate::numerics::expansion::Chebyshev;
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
+use whiskmap_mechanics::numerics::Real;
+use whiskmap_mechanics::numerics::expansion::Chebyshev;
 
 /// Number of shader invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 64;

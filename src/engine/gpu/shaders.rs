@@ -5,8 +5,8 @@ use super::cells::{OUTCOMES, Planes};
 use super::packing::WORKGROUP;
 use crate::engine::row::FUNCTIONS;
 use crate::plan::STATE_CHANNELS;
-use crate::rod::{CURVATURE_TERMS, Effects};
-use crate::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
+use whiskmap_mechanics::rod::{CURVATURE_TERMS, Effects};
+use whiskmap_mechanics::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
 
 const _: () = assert!(
     CURVATURE_TERMS == 7 && REST_TERMS == 12,

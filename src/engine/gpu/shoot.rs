@@ -4,15 +4,15 @@ use super::device::{Device, copy_back};
 use super::flight::binding;
 use super::packing::{Scalar, WORKGROUP};
 use super::{EngineError, Gpu, Precision, shaders};
-use crate::rod::{Effects, Rest, Rod, arclength};
-use crate::shooting::PlainState;
-use crate::shooting::batch::{InitialCondition, Method};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::hash_map::Entry;
 use std::ops::Range;
 use wgpu::BufferUsages as Usage;
+use whiskmap_mechanics::rod::{Effects, Rest, Rod, arclength};
+use whiskmap_mechanics::shooting::PlainState;
+use whiskmap_mechanics::shooting::batch::{InitialCondition, Method};
 
 /// Maximum number of steps of all trajectories of a submission: tens of milliseconds where `f64` is slow, and enough for every lane elsewhere.
 const MOST_STEPS: u64 = 1 << 21;

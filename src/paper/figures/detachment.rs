@@ -4,10 +4,10 @@ use super::{Figure, FigurePanel, PUSH, figure};
 use crate::measured::MeasuredPoint;
 use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, POLE, cylinder_of};
 use crate::render::{CurveAxis, Dot, DrawnCurve, Ink, Stroke, curves, regions};
-use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Detachment, DetachmentKind, curve, reach_mm};
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
 
 /// Measured detachments, by push angle, for the panels of the paper that show them; each list may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,10 +1,10 @@
 //! Elements of schematics: outlines, arcs and dimension lines.
 
 use crate::render::{Ink, Note};
-use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Whisker};
 use glam::DVec2;
 use serde::Serialize;
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Magnification of radii relative to lengths in schematics, dimensionless.
 pub const MAGNIFIED: f64 = 50.0;

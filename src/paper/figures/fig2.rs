@@ -3,10 +3,10 @@
 use super::{Figure, FigurePanel, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{DrawnShape, Ink, Inset, Plot, Stroke, shapes};
-use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Branch, BranchMark, BranchPoint, NoState, WhiskerShape};
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
 
 /// Points along a whisker.
 const POINTS: usize = 200;

@@ -5,11 +5,11 @@ use super::fig2::{self, PUSH_DEG};
 use super::{Figure, FigurePanel, PUSH, detachment, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{BranchAxis, DrawnBranch, Ink, Line, Note, Plot, Stroke, branches, regions};
-use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Branch, BranchPoint, NoState};
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
+use whiskmap_mechanics::rod::Side;
 
 /// Points per branch.
 const POINTS: usize = 160;

@@ -3,11 +3,11 @@
 use super::{Figure, FigureError, FigurePanel, figure};
 use crate::paper::whiskers::{FIG4_HAIR, FIG6_WHISKER};
 use crate::render::{Ink, Line, Plot, STUCK, Stroke, TIP, tip_histogram, tip_lines};
-use crate::rod::{Rest, Side};
 use crate::scene::{Pole, Surface, Whisker};
 use crate::texture::{Texture, TexturePhase, TextureSample, shape, texture};
 use crate::whisk::AngleCourse;
 use serde::Serialize;
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Frames per second, as in the paper.
 const RATE: f64 = 32.0;

@@ -6,13 +6,13 @@ use crate::force::{CurvatureFrame, ForceMethod, FrameContact, FrameForce, forces
 use crate::paper::whiskers::{FIG4_WHISKER, POLE};
 use crate::random::RandomStream;
 use crate::render::{Ink, Line, Plot, Stroke};
-use crate::rod::{Rest, Side};
 use crate::scene::Pole;
 use crate::trace::WhiskerPart;
 use crate::whisk::{AngleCourse, WhiskSample};
 use glam::DVec2;
 use serde::Serialize;
 use std::f64::consts::TAU;
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Distance of the pole at first touch, in mm.
 const DISTANCE_MM: f64 = 12.0;

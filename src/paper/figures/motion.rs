@@ -3,13 +3,13 @@
 use super::{Figure, FigureError, FigurePanel, figure};
 use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_RIGHT, POLE};
 use crate::render::{Disc, Ink, Line, Plot, STUCK, Stroke};
-use crate::rod::{Rest, Side};
 use crate::scene::Whisker;
 use crate::trace::{Branch, WhiskerShape};
 use crate::whisk::{AngleCourse, Whisk, WhiskEventKind, WhiskRegime, WhiskSample, whisk};
 use glam::DVec2;
 use serde::Serialize;
 use std::f64::consts::TAU;
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Points along a whisker.
 const POINTS: usize = 60;

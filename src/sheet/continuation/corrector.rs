@@ -1,11 +1,11 @@
 //! The corrector: moves points onto their level curves by Newton's method along the gradient.
 
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
-use crate::rod::Rod;
 use crate::sheet::continuation::NODE_MISS;
 use crate::sheet::continuation::level_curve::LevelCurve;
-use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
+use whiskmap_mechanics::rod::Rod;
+use whiskmap_mechanics::shooting::{FirstVariation, FullState};
 
 /// Maximum number of the corrector's trajectories for each point.
 pub const CORRECTOR_TRAJECTORIES: u32 = 12;

@@ -5,12 +5,12 @@
 //! step of pseudo-arclength continuation predicts along the tangent, with the curvature of the previous steps, and corrects along the
 //! gradient. Lengths are measured in push angle, contact angle (both in radians) and arclength of the contact (in whisker lengths).
 
-use crate::numerics::nearest_turn;
-use crate::rod::{Rod, Side, arclength};
 use crate::sheet::row::Row;
-use crate::shooting::FullState;
-use crate::shooting::batch::Method;
 use glam::{DVec2, DVec3};
+use whiskmap_mechanics::numerics::nearest_turn;
+use whiskmap_mechanics::rod::{Rod, Side, arclength};
+use whiskmap_mechanics::shooting::FullState;
+use whiskmap_mechanics::shooting::batch::Method;
 
 /// Largest miss in `ln D` of a point on a level curve, due to rounding.
 pub const ON_CURVE: f64 = 1e-14;

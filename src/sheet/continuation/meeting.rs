@@ -1,12 +1,12 @@
 //! Points at which level curves meet the edges of the sheet, between two of their nodes.
 
-use crate::rod::arclength;
 use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
 use crate::sheet::row::Edge;
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_3;
+use whiskmap_mechanics::rod::arclength;
 
 /// Largest miss in `ln D` at the tip, where moving the contact would cause a larger error.
 const TIP_MISS: f64 = 1e-11;

@@ -158,9 +158,9 @@ fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Cont
 )]
 mod tests {
     use super::*;
-    use crate::rod::{Rest, Rod, Side};
     use crate::sheet::row::Row;
-    use crate::shooting::batch::Method;
+    use whiskmap_mechanics::rod::{Rest, Rod, Side};
+    use whiskmap_mechanics::shooting::batch::Method;
 
     /// Stable and unstable states of branches, up to their folds, where the push angle is flat.
     #[test]

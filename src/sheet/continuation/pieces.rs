@@ -1,7 +1,6 @@
 //! Stable pieces of a row: the crossings that belong together. With friction or strong curvature, `D` can have a saddle on the edge of
 //! the sheet. Then the level curve of a row is in several pieces, whose push angles may overlap.
 
-use crate::rod::Side;
 use crate::sheet::case::SheetCase;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, Stretch};
 use crate::sheet::continuation::stepper::MOST_PUSH;
@@ -9,6 +8,7 @@ use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::{Crossing, Edge};
 use crate::sheet::span::{RowSpan, SpanNode};
+use whiskmap_mechanics::rod::Side;
 
 /// Largest relative difference in contact and load of two crossings that are the same.
 const SAME_CROSSING: f64 = 1e-5;

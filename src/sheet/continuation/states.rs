@@ -1,13 +1,13 @@
 //! States on a level curve: at first touch, at a crossing, at a push angle, and the nearest states to given points.
 
-use crate::numerics::{Root, illinois};
-use crate::rod::arclength;
 use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
 use crate::sheet::row::Crossing;
-use crate::shooting::batch::Batch;
-use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
+use whiskmap_mechanics::numerics::{Root, illinois};
+use whiskmap_mechanics::rod::arclength;
+use whiskmap_mechanics::shooting::batch::Batch;
+use whiskmap_mechanics::shooting::{FirstVariation, FullState};
 
 /// Rounding error near states of a scaled load `q`, in parts of [`ON_CURVE`] for each unit of `q`. 1.4e-14 at `q` = 38 was too little,
 /// for 800 states on branches of cones up to there.

@@ -1,14 +1,14 @@
 //! The stepper of a continuation: predictor and corrector, from node to node.
 
 use crate::newton::{NewtonProblem, NewtonStep};
-use crate::rod::Rod;
 use crate::sheet::continuation::corrector::{CORRECTOR_TRAJECTORIES, Corrector};
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 use crate::sheet::continuation::meeting::{Chord, MOST_TURN};
 use crate::sheet::row::Edge;
-use crate::shooting::{FirstVariation, FullState};
 use glam::DVec2;
 use std::f64::consts::TAU;
+use whiskmap_mechanics::rod::Rod;
+use whiskmap_mechanics::shooting::{FirstVariation, FullState};
 
 /// Approximate distance between neighbouring nodes, as [`LevelCurve::length`] measures it.
 const NODE_DISTANCE: f64 = 0.05;

@@ -2,15 +2,15 @@
 //!
 //! The trials of all intervals share batches. So each interval halves its [`Bracket`] here, and not in [`Bracket::bisect`].
 
-use crate::numerics::Bracket;
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::edge_newton::EdgeIterate;
 use crate::sheet::edges::predictor::EdgeSample;
 use crate::sheet::fold::first_folds;
 use crate::sheet::row::Edge;
-use crate::shooting::SecondVariation;
-use crate::shooting::batch::Batch;
 use glam::DVec2;
+use whiskmap_mechanics::numerics::Bracket;
+use whiskmap_mechanics::shooting::SecondVariation;
+use whiskmap_mechanics::shooting::batch::Batch;
 
 /// Number of halvings: more than the bits of a mantissa.
 const MOST_EDGE_HALVINGS: usize = 64;

@@ -4,7 +4,6 @@
 //! two samples if exactly one of them is at most at the row's distance. So the number of crossings has the right parity whatever the
 //! rounding. Each crossing is predicted and then corrected.
 
-use crate::numerics::nearest_turn;
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::Edges;
 use crate::sheet::edges::bisection::{EdgeBisection, bisect};
@@ -14,6 +13,7 @@ use crate::sheet::edges::edge_newton::{
 use crate::sheet::edges::predictor::{EdgeSample, Prediction};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
 use glam::DVec2;
+use whiskmap_mechanics::numerics::nearest_turn;
 
 /// Row with two samples of an edge between which it crosses.
 struct CrossingCandidate {

@@ -2,12 +2,12 @@
 //! equations, for `D` and `det = 0`, determine contact and load. On the tip edge `D` alone determines the load.
 
 use crate::newton::{BatchNewton, LaneSharing, NewtonOutcome, NewtonProblem, NewtonStep};
-use crate::rod::{Rod, arclength};
 use crate::sheet::edges::predictor::SecondDerivatives;
 use crate::sheet::row::Edge;
-use crate::shooting::batch::{Batch, Method};
-use crate::shooting::{SecondVariation, ShootingMap, limited};
 use glam::DVec2;
+use whiskmap_mechanics::rod::{Rod, arclength};
+use whiskmap_mechanics::shooting::batch::{Batch, Method};
+use whiskmap_mechanics::shooting::{SecondVariation, ShootingMap, limited};
 
 /// Newton problem for one point of an edge.
 #[derive(Clone, Copy, Debug)]

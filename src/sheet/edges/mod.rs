@@ -6,12 +6,12 @@ pub mod edge_newton;
 mod predictor;
 mod tip_edge;
 
-use crate::rod::{Rest, arclength};
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::predictor::{EdgeSample, FoldEdge, Prediction};
 use crate::sheet::edges::tip_edge::{SampledTipEdge, TipEdge};
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::row::Edge;
+use whiskmap_mechanics::rod::{Rest, arclength};
 
 /// Sampled edges of a sheet.
 #[derive(Clone, Debug)]
@@ -113,14 +113,14 @@ impl Edges {
 )]
 mod tests {
     use super::*;
-    use crate::numerics::chebyshev::CHEBYSHEV_COUNT;
-    use crate::rod::{Rest, Rod, Side};
     use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
     use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;
-    use crate::shooting::batch::Method;
     use glam::DVec2;
+    use whiskmap_mechanics::numerics::chebyshev::CHEBYSHEV_COUNT;
+    use whiskmap_mechanics::rod::{Rest, Rod, Side};
+    use whiskmap_mechanics::shooting::batch::Method;
 
     /// Compares predictions in the middle between samples with the results of Newton's method from there.
     #[test]

@@ -1,10 +1,10 @@
 //! The predictor of crossings: points of an edge between its samples, usually so accurate that one trajectory confirms them.
 
-use crate::numerics::Bracket;
-use crate::numerics::newton_form::{Polynomial, RootProblem, stencil, through_runs};
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL};
 use glam::DVec2;
+use whiskmap_mechanics::numerics::Bracket;
+use whiskmap_mechanics::numerics::newton_form::{Polynomial, RootProblem, stencil, through_runs};
 
 /// Sample of an edge of the sheet: a computed point.
 #[derive(Clone, Copy, Debug)]

@@ -3,16 +3,16 @@
 //! It is sampled at Chebyshev-Lobatto points of the load, and at the extrema of the distance. Between two samples the distance then grows
 //! or falls throughout.
 
-use crate::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
-use crate::numerics::newton_form::{Polynomial, RootProblem, through_nodes};
-use crate::numerics::{Bracket, nearest_turn};
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::predictor::{EdgeSample, LAST_STEP_ALONG_EDGE, Prediction, place_between};
 use crate::sheet::fold::{FoldPoint, directions};
-use crate::shooting::batch::Batch;
-use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
+use whiskmap_mechanics::numerics::chebyshev::{CHEBYSHEV_COUNT, LOBATTO_NODES};
+use whiskmap_mechanics::numerics::newton_form::{Polynomial, RootProblem, through_nodes};
+use whiskmap_mechanics::numerics::{Bracket, nearest_turn};
+use whiskmap_mechanics::shooting::batch::Batch;
+use whiskmap_mechanics::shooting::{SecondVariation, ShootingMap};
 
 /// Tip edge between its samples, as polynomials of the part of the load at the corner.
 #[derive(Clone, Debug)]

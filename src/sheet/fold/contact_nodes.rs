@@ -4,13 +4,13 @@
 //! on where the whisker ends. So interpolation is nearly as accurate at the tip as elsewhere. Each trajectory provides derivatives, so
 //! Hermite interpolation gives the values between nodes.
 
-use crate::numerics::newton_form::{stencil, through_runs};
-use crate::rod::Rod;
 use crate::sheet::case::SheetCase;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL, slope_of_u, tau_of, u_of};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
 use glam::DVec2;
+use whiskmap_mechanics::numerics::newton_form::{stencil, through_runs};
+use whiskmap_mechanics::rod::Rod;
 
 /// Spacing of the contact nodes in the contact coordinate `u`, dimensionless.
 pub const SPACING: f64 = 0.68;
@@ -180,8 +180,8 @@ impl ContactNodes {
 #[allow(clippy::unwrap_used, reason = "a failure fails the test")]
 mod tests {
     use super::*;
-    use crate::rod::{Rest, Side};
-    use crate::shooting::batch::Method;
+    use whiskmap_mechanics::rod::{Rest, Side};
+    use whiskmap_mechanics::shooting::batch::Method;
 
     /// Right after a jump down, a fold that changes like a square root is as steep as the jump.
     #[test]

@@ -1,8 +1,8 @@
 //! The coordinate `u` along the whisker, in which contact nodes are evenly spaced, and polynomials from node to node.
 
-use crate::numerics::Bracket;
-use crate::numerics::newton_form::Polynomial;
-use crate::rod::{Rod, arclength};
+use whiskmap_mechanics::numerics::Bracket;
+use whiskmap_mechanics::numerics::newton_form::Polynomial;
+use whiskmap_mechanics::rod::{Rod, arclength};
 
 /// Returns the coordinate `u = ln tau + tau` of a contact, dimensionless. Toward the base the sheet depends on the contact through its
 /// logarithm, because everything scales; toward a slender tip it depends on `tau`. Where the modulus falls toward the tip, its logarithm

@@ -4,12 +4,12 @@ pub mod contact_nodes;
 pub mod coordinate;
 
 use crate::newton::{BatchNewton, LaneSharing, NewtonProblem, NewtonStep};
-use crate::numerics::newton_form::{RootProblem, stencil, through_nodes};
-use crate::numerics::{Bracket, nearest_turn};
-use crate::rod::{Rod, arclength};
 use crate::sheet::case::SheetCase;
-use crate::shooting::{SecondVariation, ShootingMap};
 use glam::DVec2;
+use whiskmap_mechanics::numerics::newton_form::{RootProblem, stencil, through_nodes};
+use whiskmap_mechanics::numerics::{Bracket, nearest_turn};
+use whiskmap_mechanics::rod::{Rod, arclength};
+use whiskmap_mechanics::shooting::{SecondVariation, ShootingMap};
 
 /// Point of the fold edge.
 #[derive(Clone, Copy, Debug)]

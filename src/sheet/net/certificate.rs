@@ -3,10 +3,10 @@
 use super::PanelRow;
 use super::bound::{MARGIN, SMALLEST_RESIDUAL, VALUE_WEIGHT, larger, largest};
 use super::row::NetRow;
-use crate::numerics::WIDTH;
-use crate::numerics::expansion::Chebyshev;
 use crate::sheet::{Row, Sheet};
-use crate::shooting::{PlainState, Reader};
+use whiskmap_mechanics::numerics::WIDTH;
+use whiskmap_mechanics::numerics::expansion::Chebyshev;
+use whiskmap_mechanics::shooting::{PlainState, Reader};
 
 /// Number of rows of a panel, and of places along each, at which states are checked.
 const CHECKS: usize = 8;
@@ -49,7 +49,7 @@ impl CheckedRow {
         let values: Vec<Checked> = values.collect();
         let end = sheet.crossings[index].first()?;
         let rod = &sheet.rod;
-        let arc = crate::rod::arclength(rod, end.tau);
+        let arc = whiskmap_mechanics::rod::arclength(rod, end.tau);
         let force = (end.load * rod.radius(end.tau).powi(2)).abs();
         let push = end.push.min(1.0);
         let sizes = [1.0, arc, arc, push, push * force * arc];

@@ -8,18 +8,18 @@ use super::bound::{MARGIN, larger};
 use super::panel::{NetPanel, TOP, along, contacts_of};
 use super::size::NetSize;
 use super::{PanelRow, PanelRows, Panels};
-use crate::numerics::expansion::{Chebyshev, chebyshev_points};
-use crate::numerics::inverse::Inverse;
-use crate::numerics::tensor::ChebyshevTensor;
-use crate::numerics::{LaneNumbers, WIDTH, nearest_turn};
-use crate::rod::{Rod, arclength};
 use crate::sheet::case::SheetCase;
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::fold::{directions, surely_stable};
 use crate::sheet::{Crossing, Guess, Row};
-use crate::shooting::ShootingMap;
 use std::f64::consts::FRAC_PI_2;
+use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
+use whiskmap_mechanics::numerics::inverse::Inverse;
+use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
+use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
+use whiskmap_mechanics::rod::{Rod, arclength};
+use whiskmap_mechanics::shooting::ShootingMap;
 
 /// Largest error of `ln D` and `phi` of a guess, by the last coefficients. The error is mostly much smaller, and one step of Newton's method from
 /// there is exact. The steps of coarse trajectories change with the load, which leaves up to 6e-6.
@@ -282,10 +282,10 @@ fn tensor(case: SheetCase, size: NetSize, along: &Chebyshev<2>) -> ChebyshevTens
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
-    use crate::rod::{Rest, Side};
     use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::{Edge, Sheet};
-    use crate::shooting::batch::Method;
+    use whiskmap_mechanics::rod::{Rest, Side};
+    use whiskmap_mechanics::shooting::batch::Method;
 
     fn cone(side: Side) -> Rod {
         Rod {

@@ -22,13 +22,13 @@ pub use bound::{MARGIN, VALUE_WEIGHT, larger, largest};
 pub use row::{NetBlock, NetRow};
 pub use values::ValueNet;
 
-use crate::rod::Rod;
 use crate::sheet::Row;
 use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::row::REACH_SLACK;
 pub use guesses::PUSH_MARGIN;
 pub(super) use guesses::{FOLD_ERROR, GUESS_ERROR, GuessPanel};
 use size::NetSize;
+use whiskmap_mechanics::rod::Rod;
 
 /// Maximum bound on the residual of a state of a net, in whisker lengths, where no tolerance is given.
 pub const NET_RESIDUAL: f64 = 1e-10;

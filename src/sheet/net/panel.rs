@@ -2,13 +2,13 @@
 
 use super::bound::largest;
 use super::size::{NetSize, NetTail};
-use crate::numerics::expansion::{Chebyshev, chebyshev_points};
-use crate::numerics::tensor::{ChebyshevTensor, LevelBlock, TensorColumns};
-use crate::rod::Rod;
 use crate::sheet::case::SheetCase;
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::{tau_of, u_of};
 use crate::sheet::{Crossing, Row};
+use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
+use whiskmap_mechanics::numerics::tensor::{ChebyshevTensor, LevelBlock, TensorColumns};
+use whiskmap_mechanics::rod::Rod;
 
 /// Number of points of `ln q` as a function of `u`: the scale of the load need only be smooth.
 const SCALE: usize = 9;

@@ -1,12 +1,14 @@
 //! Rows of a net: the states of one row at Chebyshev points of its part of the load.
 
 use super::panel::PanelLine;
-use crate::numerics::tensor::LevelBlock;
-use crate::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep, nearest_turn, pack};
 use crate::sheet::Row;
 use crate::sheet::case::SheetCase;
-use crate::shooting::StateNumbers;
-use crate::shooting::contact::{direction, exp, radius_and_arclength};
+use whiskmap_mechanics::numerics::tensor::LevelBlock;
+use whiskmap_mechanics::numerics::{
+    LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep, nearest_turn, pack,
+};
+use whiskmap_mechanics::shooting::StateNumbers;
+use whiskmap_mechanics::shooting::contact::{direction, exp, radius_and_arclength};
 
 /// Number of functions of a tensor.
 pub const FUNCTIONS: usize = 7;

@@ -1,7 +1,7 @@
 //! Sizes of panels: the first one for a bound, and those that the decay of coefficients calls for.
 
 use super::bound::{MARGIN, larger};
-use crate::numerics::expansion::{MOST_POINTS, TAIL};
+use whiskmap_mechanics::numerics::expansion::{MOST_POINTS, TAIL};
 
 /// Part of the bound that the coefficients left out are expected to take. At most `1 / MARGIN` is allowed.
 const LEFT_OUT: f64 = 0.5 / MARGIN;

@@ -6,14 +6,14 @@ use super::panel::{NetPanel, along, contacts_of};
 use super::row::{FUNCTIONS, NetRow, RowLine};
 use super::size::NetSize;
 use super::{PanelRow, PanelRows, Panels};
-use crate::numerics::expansion::{Chebyshev, chebyshev_points};
-use crate::numerics::nearest_turn;
-use crate::numerics::tensor::ChebyshevTensor;
 use crate::plan::net_cost;
-use crate::rod::Units;
 use crate::sheet::case::SheetCase;
 use crate::sheet::{Row, Sheet};
-use crate::shooting::{PlainState, Reader};
+use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
+use whiskmap_mechanics::numerics::nearest_turn;
+use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
+use whiskmap_mechanics::rod::Units;
+use whiskmap_mechanics::shooting::{PlainState, Reader};
 
 /// Functions of a state, `[function]`: `ln D`, direction `phi` of the pole in radians, contact angle in radians, position `[x, y]` of the base
 /// from the contact in whisker lengths, chord angle in radians, and energy over force times arclength.
@@ -206,10 +206,10 @@ pub(super) fn tensor(
 )]
 mod tests {
     use super::*;
-    use crate::rod::{Rod, Side};
     use crate::sheet::Edge;
     use crate::sheet::net::NET_RESIDUAL as MOST;
-    use crate::shooting::batch::Method;
+    use whiskmap_mechanics::rod::{Rod, Side};
+    use whiskmap_mechanics::shooting::batch::Method;
 
     /// Error of a coefficient, as a part of the largest coefficient of its function.
     const SPOIL: f64 = 1e-6;

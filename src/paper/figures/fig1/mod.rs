@@ -6,11 +6,11 @@ use super::drawing::{MAGNIFIED, arc, extent, outline, sections};
 use super::{Figure, FigurePanel, lettered};
 use crate::paper::whiskers::{CONE, FIG5_LEFT, POLE};
 use crate::render::{Disc, Ink, Line, Note, Plot, Stroke};
-use crate::rod::Side;
 use crate::scene::Whisker;
 use crate::trace::{Branch, NoState, WhiskerShape};
 use glam::DVec2;
 use serde::Serialize;
+use whiskmap_mechanics::rod::Side;
 
 /// Distance of the pole of panels B to D at first touch.
 const TOUCH_MM: f64 = 10.0;

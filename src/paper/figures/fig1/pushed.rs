@@ -5,9 +5,9 @@ use crate::paper::figures::FigurePanel;
 use crate::paper::figures::drawing::arc;
 use crate::paper::whiskers::{CONE, POLE};
 use crate::render::{Disc, Dot, Ink, Inset, Line, Note, Stroke};
-use crate::rod::{Rest, Side};
 use crate::trace::{Branch, NoState, ShapePoint, WhiskerPart, WhiskerShape};
 use glam::DVec2;
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Push angle of both panels, in degrees.
 const PUSH_DEG: f64 = 30.0;
