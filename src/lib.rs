@@ -33,15 +33,13 @@
 //! ```
 //!
 //! [`map`](fn@map), [`for_each_panel`], [`curve`], [`branch`], [`shape`] and [`fit`](fn@fit) compute in memory, and [`lazy_map`] computes
-//! whiskers when they are read; the modules below are the topics around them. All features are on by default: `cli` is the command `whiskmap`, `fit` least squares, `gpu` the compute shaders,
-//! `render` the pictures, `zarr` the stores that many processes fill. `ndarray`, which is off by default, adds views of channels as
-//! arrays.
+//! whiskers when they are read. The modules below are the topics around them, and the stages of their computation, such as [`sheet`] and
+//! [`engine`]. [`mechanics`] is the crate of rods and trajectories. All features but one are on by default: `fit` is least squares, `gpu` the
+//! compute shaders, `render` the pictures, `zarr` the stores that many processes fill. `ndarray` adds views of channels as arrays.
+//!
+//! The crate `whiskmap-cli` is the program `whiskmap`.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
-
-// The command line uses the library by the same paths as every other program.
-#[cfg(feature = "cli")]
-extern crate self as whiskmap;
 
 // Topics for users.
 #[cfg(feature = "zarr")]
@@ -70,32 +68,16 @@ pub mod traced;
 pub mod uncertainty;
 pub mod whisk;
 
-/// The command line: `main` of the program and of the Python package.
-#[cfg(feature = "cli")]
-#[allow(
-    clippy::disallowed_methods,
-    reason = "messages and pictures need not have the same bits on every machine"
-)]
-#[doc(hidden)]
-pub mod cli;
-
-// Internals, public for the command, the tests and the benches.
-#[doc(hidden)]
+// Stages of a computation.
 pub mod accuracy;
 #[cfg(feature = "gpu")]
-#[doc(hidden)]
 pub mod bench;
-#[doc(hidden)]
 pub mod classify;
-#[doc(hidden)]
 pub mod engine;
-#[doc(hidden)]
 pub mod friction;
 mod front;
-#[doc(hidden)]
 pub mod input;
 mod least_squares;
-#[doc(hidden)]
 pub mod map;
 mod newton;
 #[cfg(feature = "render")]
@@ -103,17 +85,12 @@ mod newton;
     clippy::disallowed_methods,
     reason = "pictures and comparisons need not have the same bits on every machine"
 )]
-#[doc(hidden)]
 pub mod paper;
-#[doc(hidden)]
 pub mod plan;
 mod random;
-#[doc(hidden)]
 pub mod refine;
-#[doc(hidden)]
 pub mod sheet;
 mod stopwatch;
-#[doc(hidden)]
 pub mod terminal;
 
 pub use classify::{Regime, Status};

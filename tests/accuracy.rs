@@ -5,7 +5,7 @@
     reason = "a test fails by panicking, and says aloud what it measured"
 )]
 
-use std::path::PathBuf;
+use crate::shipped;
 use whiskmap::accuracy::cheapest;
 use whiskmap::mechanics::rod::{Effects, Side};
 use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
@@ -17,17 +17,6 @@ use whiskmap::trace::curve_at;
 
 /// Its own error, 1e-11 degrees at most, is far below every tolerance here.
 const EXACT: Resolution = Resolution::FINE.doubled();
-
-fn scenes() -> Vec<PathBuf> {
-    let files = std::fs::read_dir("scenes").unwrap();
-    let files = files.map(|file| file.unwrap().path());
-    let mut scenes: Vec<PathBuf> = files
-        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
-        .collect();
-    scenes.sort();
-    assert!(scenes.len() >= 9);
-    scenes
-}
 
 /// The largest error of detachment angles, in degrees.
 fn ends(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -> f64 {
@@ -77,7 +66,7 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
 #[test]
 fn the_estimate_bounds_the_error_of_every_scene() {
     let mut closest = f64::INFINITY;
-    for path in scenes() {
+    for path in shipped::scene_paths() {
         let whole = Scene::read(&path).unwrap();
         let scene = whole.thinned(36, 4);
         let mut last = 0;
@@ -131,7 +120,7 @@ fn whiskers_that_coil_up_have_an_estimate() {
 
 #[test]
 fn what_no_steps_reach_is_said() {
-    let scene = Scene::read("scenes/cone.toml").unwrap();
+    let scene = shipped::scene("cone");
     let finest = cheapest(&scene, &Side::BOTH, 1e-15).unwrap_err();
     assert!(finest.error_deg < 1e-9 && finest.error_deg > 1e-15);
     assert_eq!(finest.resolution, Resolution::LADDER[7]);

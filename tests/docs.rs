@@ -1,6 +1,7 @@
 //! Documentation: commands run, links and paths exist, every column is described, every summary stands alone.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
+use crate::shipped::root;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,10 +12,6 @@ use whiskmap::texture::{AsperityStay, TextureEvent, TextureSample, TipBin};
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::uncertainty::{EndSpread, PointSpread};
 use whiskmap::whisk::{WhiskEvent, WhiskSample};
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// Returns all files below `folder` with this extension, in order.
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {

@@ -1,5 +1,6 @@
 //! The built page of `whiskmap explore`: it is not older than its sources. `tests/explore/run.sh` uses it in a browser.
 
+use crate::shipped::root;
 use std::fs;
 use std::path::{Path, PathBuf};
 use whiskmap::render::{DISTANCE, PUSH_ANGLE, axis_title};
@@ -33,14 +34,14 @@ fn sources(root: &Path) -> String {
 
 #[test]
 fn the_page_is_built_from_its_sources() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let page = fs::read_to_string(root.join("outputs/explore.html")).unwrap();
+    let root = root();
+    let page = fs::read_to_string(root.join("crates/cli/explore.html")).unwrap();
     let of = |name: &str| {
         let tag = format!("=\"{name}\" content=\"");
         let (_, rest) = page.split_once(&tag).unwrap();
         rest.split('"').next().unwrap().to_owned()
     };
-    let advice = "outputs/explore.html is stale: run crates/web/build.sh";
+    let advice = "crates/cli/explore.html is stale: run crates/web/build.sh";
     assert_eq!(of("whiskmap-sources"), sources(root), "{advice}");
     let version = format!("whiskmap {}. Mechanics", env!("CARGO_PKG_VERSION"));
     assert!(page.contains(&version), "{advice}");
@@ -59,7 +60,7 @@ fn the_page_is_built_from_its_sources() {
 /// The size of the page's code that the project allows.
 #[test]
 fn the_page_stays_small() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/web/page");
+    let folder = root().join("crates/web/page");
     let files = fs::read_dir(folder).unwrap();
     let lines = files.map(|file| {
         let text = fs::read_to_string(file.unwrap().path()).unwrap();
@@ -72,7 +73,7 @@ fn the_page_stays_small() {
 /// Quantities have the words with which the program names their axes, with a capital.
 #[test]
 fn quantities_of_the_page_are_named_as_by_the_program() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/web/page");
+    let folder = root().join("crates/web/page");
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     let words = |title: &str| {
         let (first, rest) = title.split(" (").next().unwrap().split_at(1);

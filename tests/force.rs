@@ -1,5 +1,6 @@
 //! Forces from curvature against the states that have it.
 
+use crate::shipped;
 use whiskmap::force::{CurvatureFrame, ForceMethod, FrameContact, FrameForce, NoForce, forces};
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::Scene;
@@ -80,7 +81,7 @@ fn forces_of_states_come_back() {
         ("traced", 12.0, &[-39.9, -10.0, -1.0, 1.0, 10.0, 28.9]),
     ];
     for (name, distance, pushes) in ends {
-        let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();
+        let scene = shipped::scene(name);
         for &push in pushes {
             for part in [0.0, 0.05, 0.3] {
                 let (frame, state) = frame(&scene, distance, push, part);
@@ -117,7 +118,7 @@ fn forces_of_states_come_back() {
 /// What has no force says why.
 #[test]
 fn frames_without_a_force_have_a_reason() {
-    let scene = Scene::read("scenes/cone.toml").unwrap();
+    let scene = shipped::scene("cone");
     let (good, _) = frame(&scene, 15.66, 10.0, 0.3);
     let contact = good.contact.unwrap();
     let with = |change: fn(&mut FrameContact)| {
@@ -171,7 +172,7 @@ fn frames_without_a_force_have_a_reason() {
 /// Without its position the measured point is that of the resting whisker.
 #[test]
 fn a_point_without_a_position_is_at_rest() {
-    let scene = Scene::read("scenes/cone.toml").unwrap();
+    let scene = shipped::scene("cone");
     let (given, _) = frame(&scene, 15.66, 10.0, 0.3);
     let rest = Rest::new(&scene.whisker.rod(&scene.pole, Side::Cb));
     let length = scene.whisker.length_mm;
@@ -186,7 +187,7 @@ fn a_point_without_a_position_is_at_rest() {
 /// The model returns no unstable state, although it has the measured curvature and distance.
 #[test]
 fn unstable_states_are_not_returned() {
-    let scene = Scene::read("scenes/cone.toml").unwrap();
+    let scene = shipped::scene("cone");
     let branch = branch(&scene, 6.0, Side::Cf);
     let mut stable = 0;
     for part in [0.9975, 0.99, 0.975] {
@@ -216,7 +217,7 @@ fn states_beside_the_largest_curvature_come_back() {
         ("traced", Side::Cf, 0.7, 0.0),
     ];
     for (name, side, distance, part) in states {
-        let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();
+        let scene = shipped::scene(name);
         let branch = branch(&scene, distance * scene.whisker.length_mm, side);
         for i in 1..100 {
             let push = 0.01 * f64::from(i) * branch.stable_end_deg();

@@ -1,6 +1,7 @@
 //! Ends of pushes next to jumps of the detachment curve, where the push passes a shallow pair of folds.
 
 use crate::random_rods::Random;
+use crate::shipped;
 use std::sync::Arc;
 use whiskmap::mechanics::rod::{CurvaturePolynomial, RadiusProfile, Rest, Rod, Side};
 use whiskmap::mechanics::shooting::batch::Method;
@@ -22,11 +23,12 @@ struct Reference {
 }
 
 fn references() -> Vec<Reference> {
-    let text = std::fs::read_to_string("tests/data/jumps/reference.csv").unwrap();
+    let folder = shipped::root().join("tests/data/jumps");
+    let text = std::fs::read_to_string(folder.join("reference.csv")).unwrap();
     let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
     let reference = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
-        let scene = Scene::read(format!("tests/data/jumps/{}.toml", cells[0])).unwrap();
+        let scene = Scene::read(folder.join(format!("{}.toml", cells[0]))).unwrap();
         let side = if cells[1] == "cb" { Side::Cb } else { Side::Cf };
         // The table has some distances in few digits; the scene has the exact one.
         let distance_mm = scene.grid.distance_mm[0];

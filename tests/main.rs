@@ -29,6 +29,7 @@ mod scene;
 mod sealed;
 mod sensitivity;
 mod shaders;
+mod shipped;
 mod store;
 mod texture;
 mod ties;

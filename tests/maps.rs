@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::compute;
+use crate::shipped;
 
-use compute::{compute, shipped};
+use compute::compute;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use whiskmap::{Channel, Error, MapEngine, Options};
 
 #[test]
 fn shipped_scenes_have_no_doubtful_cell() {
-    let scenes = shipped();
+    let scenes = shipped::scenes();
     assert!(scenes.len() >= 7);
     for scene in scenes {
         let (summary, panels) = compute(&scene, None);
@@ -58,7 +59,7 @@ fn append(panel: &mut Panel, more: &Panel) {
 #[test]
 fn bands_are_the_rows_of_a_panel() {
     for (name, is_spectral) in [("cone", false), ("cone", true), ("robot", false)] {
-        let mut text = std::fs::read_to_string(format!("scenes/{name}.toml")).unwrap();
+        let mut text = shipped::scene(name).to_toml();
         text += if name == "robot" {
             "[contact]\nfriction = 0.3\n"
         } else {
@@ -103,7 +104,7 @@ fn bands_are_the_rows_of_a_panel() {
 /// Along a row, push angle and margin add up to the push angle of detachment, up to the rounding of `f32` below 90 degrees.
 #[test]
 fn push_and_margin_add_up() {
-    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(64, 1);
+    let scene = shipped::scene("cone").thinned(64, 1);
     let panel = compute(&scene, None).1.remove(0);
     let pushes = &scene.grid.push_angle_deg;
     let rows = panel.regime.chunks(pushes.len());
@@ -139,7 +140,7 @@ fn row(scene: &Scene, push_angle_deg: &[f64], distance_mm: f64) -> Panel {
 
 /// One row of the paper's cone at touch 15.66 mm, with these push angles.
 fn fig2_row(push_angle_deg: &[f64]) -> Panel {
-    let cone = Scene::read("scenes/cone.toml").unwrap();
+    let cone = shipped::scene("cone");
     row(&cone, push_angle_deg, 15.660_459_763_365_8)
 }
 
@@ -187,7 +188,7 @@ fn the_base_moment_is_the_slope_of_the_energy() {
 /// whose very tip touches: the contact is past the tip by a few roundings only.
 #[test]
 fn first_touch_and_the_tip_are_decided() {
-    let cone = Scene::read("scenes/cone.toml").unwrap();
+    let cone = shipped::scene("cone");
     let bend = Parameter::ParabolaPerMm;
     let bent = cone.with(bend, 0.075).unwrap();
     assert_eq!(row(&bent, &[0.0], 18.5).regime, [1]);
@@ -207,7 +208,7 @@ fn first_touch_is_without_a_load() {
 #[test]
 fn progress_is_complete_and_cancelling_ends_a_map() {
     use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-    let scene = Scene::read("scenes/morphology.toml").unwrap();
+    let scene = shipped::scene("morphology");
     let scene = scene.thinned(48, 3);
     let count = Arc::new(AtomicUsize::new(0));
     let mut options = Options::default();
@@ -243,7 +244,7 @@ fn channels_have_the_names_of_files() {
             .iter()
             .all(|name| whiskmap::Channels::STANDARD.contains(name))
     );
-    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(8, 1);
+    let scene = shipped::scene("cone").thinned(8, 1);
     let map = whiskmap::map(&scene, Options::default()).unwrap();
     for (channel, values) in Channel::ALL.into_iter().zip(&map.panels[0].state) {
         let bits = |values: &[f32]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
@@ -255,7 +256,7 @@ fn channels_have_the_names_of_files() {
 /// The spectral engine solves most cells of a map in memory, with the regimes of the CPU engine.
 #[test]
 fn options_select_the_engine() {
-    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(256, 1);
+    let scene = shipped::scene("cone").thinned(256, 1);
     let mut options = Options::default();
     assert_eq!(options.engine, MapEngine::Cpu);
     let wanted = whiskmap::map(&scene, options.clone()).unwrap();
@@ -264,23 +265,4 @@ fn options_select_the_engine() {
     assert_eq!(wanted.summary.engine_cells.solved, 0);
     assert!(map.summary.engine_cells.solved * 10 > map.summary.refined * 8);
     assert!(map.panels[0].regimes().eq(wanted.panels[0].regimes()));
-}
-
-/// A view has the values of its channel at distance and push angle, in this order.
-#[cfg(feature = "ndarray")]
-#[test]
-fn views_have_the_values_at_distance_and_push_angle() {
-    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(8, 1);
-    let scene = scene.to_builder().distance_mm([5.0, 10.0, 15.0]).build();
-    let map = whiskmap::map(&scene.unwrap(), Options::default()).unwrap();
-    let [height, width] = map.shape();
-    for channel in Channel::ALL {
-        let view = map.view(0, channel).unwrap();
-        assert_eq!(view.dim(), (height, width));
-        for ((distance, push), value) in view.indexed_iter() {
-            let known = map.value(channel, 0, distance, push);
-            assert_eq!(value.is_finite().then_some(*value), known);
-        }
-    }
-    assert!(map.view(1, Channel::Force).is_none());
 }

@@ -21,12 +21,12 @@ export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 
 # The extension of the Python package has no tests. With it, dependencies have the features that the extension requires, so that its wheel
 # is built on the crates that the tests have built.
-packages=(-p whiskmap -p whiskmap-mechanics -p whiskmap-plot -p whiskmap-python)
+packages=(-p whiskmap -p whiskmap-cli -p whiskmap-mechanics -p whiskmap-plot -p whiskmap-python)
 options=(--all-features --profile checked --locked)
 
 cargo fmt --check
 cargo clippy "${packages[@]}" --all-targets "${options[@]}" -- -D warnings
-cargo clippy --lib --no-default-features --profile checked --locked -- -D warnings
+cargo clippy -p whiskmap --lib --no-default-features --profile checked --locked -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --no-deps "${packages[@]}" "${options[@]}"
 log="$(mktemp)"
 trap 'rm -f "$log"' EXIT

@@ -7,6 +7,7 @@
 
 use crate::effect_sets;
 use crate::random_rods;
+use crate::shipped;
 
 use glam::DVec2;
 use whiskmap::mechanics::rod::{Effects, Rod, Side, arclength};
@@ -164,7 +165,7 @@ fn residuals_are_bounds() {
         "fig4_whisker",
     ];
     let shipped = scenes.map(|name| {
-        let scene = Scene::read(format!("scenes/{name}.toml")).unwrap();
+        let scene = shipped::scene(name);
         (name, scene)
     });
     for (name, scene) in shipped

@@ -1,5 +1,6 @@
 //! Courses of whisking against closed forms, branches and the balance of energy.
 
+use crate::shipped;
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Branch, DetachmentKind, curve};
@@ -11,7 +12,7 @@ use whiskmap::whisk::{
 const DISTANCE: f64 = 15.66;
 
 fn scene(name: &str) -> Scene {
-    Scene::read(format!("scenes/{name}.toml")).unwrap()
+    shipped::scene(name)
 }
 
 /// The course of the scene's whisker through these angles in degrees, one a second.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the page of `whiskmap explore`, outputs/explore.html. It needs Python and Rust's target for WebAssembly:
+# Builds the page of `whiskmap explore`, crates/cli/explore.html. It needs Python and Rust's target for WebAssembly:
 #
 #     rustup target add wasm32-unknown-unknown
 #
@@ -12,4 +12,4 @@ target=wasm32-unknown-unknown
 export RUSTFLAGS="-C target-feature=+simd128"
 # shellcheck disable=SC2086
 cargo build --locked --profile web --target "$target" -p whiskmap-web ${CARGO_FLAGS:-}
-python3 crates/web/assemble.py "${CARGO_TARGET_DIR:-target}/$target/web/whiskmap_web.wasm" "${1:-outputs/explore.html}"
+python3 crates/web/assemble.py "${CARGO_TARGET_DIR:-target}/$target/web/whiskmap_web.wasm" "${1:-crates/cli/explore.html}"

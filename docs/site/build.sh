@@ -12,7 +12,7 @@ environment="$target/site-environment"
 export WHISKMAP_SITE_PAGES="$target/site-pages" WHISKMAP_SITE="$target/site"
 rm -rf "$WHISKMAP_SITE_PAGES"
 mkdir "$WHISKMAP_SITE_PAGES"
-cp --parents ./*.md docs/*.md docs/site/api.md scenes/*.toml outputs/*.{html,json,png,svg,txt} "$WHISKMAP_SITE_PAGES"
+cp --parents ./*.md docs/*.md docs/site/api.md scenes/*.toml outputs/*.{json,png,svg,txt} crates/cli/explore.html "$WHISKMAP_SITE_PAGES"
 # python/examples/run.sh leaves executed notebooks in the target folder. Other ones are shown without results.
 if [ -d python/examples ]; then
     cp --parents python/examples/*.py "$WHISKMAP_SITE_PAGES"

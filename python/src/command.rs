@@ -6,5 +6,5 @@ use std::ffi::OsString;
 /// Runs a command line, of which the first text is the name of the program, and returns the exit code.
 #[pyfunction]
 pub fn run_command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-    py.detach(|| whiskmap::cli::main(arguments))
+    py.detach(|| whiskmap_cli::main(arguments))
 }

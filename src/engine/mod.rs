@@ -30,7 +30,6 @@ use whiskmap_mechanics::rod::Effects;
 
 /// Floating-point type of the GPU engine's shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Precision {
     /// Single precision, which every adapter supports.

@@ -120,3 +120,28 @@ impl Map {
         (distance < height && push_angle < width).then_some(distance * width + push_angle)
     }
 }
+
+#[cfg(all(test, feature = "ndarray"))]
+mod tests {
+    use crate::{Channel, Options, map, scene::Scene};
+
+    #[test]
+    fn views_have_the_values_at_distance_and_push_angle() {
+        let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
+        let scene = scene
+            .thinned(8, 1)
+            .to_builder()
+            .distance_mm([5.0, 10.0, 15.0]);
+        let map = map(&scene.build().unwrap(), Options::default()).unwrap();
+        let [height, width] = map.shape();
+        for channel in Channel::ALL {
+            let view = map.view(0, channel).unwrap();
+            assert_eq!(view.dim(), (height, width));
+            for ((distance, push), value) in view.indexed_iter() {
+                let known = map.value(channel, 0, distance, push);
+                assert_eq!(value.is_finite().then_some(*value), known);
+            }
+        }
+        assert!(map.view(1, Channel::Force).is_none());
+    }
+}

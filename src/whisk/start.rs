@@ -9,7 +9,6 @@ use whiskmap_mechanics::rod::Side;
 
 /// State in which a course begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum CourseStart {
     /// The whisker is free. At an angle beyond first touch, it has passed the pole.
     Free,

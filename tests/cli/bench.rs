@@ -2,6 +2,7 @@
 
 use super::traces::good;
 use super::{Place, SCENE};
+use crate::shipped;
 use serde_json::Value;
 
 fn numbers(rows: &[Value], key: &str) -> Vec<f64> {
@@ -185,7 +186,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     // The link is kept.
     #[cfg(unix)]
     std::os::unix::fs::symlink("real.json", place.path("b.json")).unwrap();
-    let peers = std::path::absolute("outputs/peers.json").unwrap();
+    let peers = shipped::root().join("outputs/peers.json");
     let peers = peers.to_str().unwrap();
     let options = ["--json", "b.json", "--plot", "b.svg", "--peers", peers];
     let run = good(

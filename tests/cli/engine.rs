@@ -2,8 +2,8 @@
 
 use super::store::{SWEEP, assert_same};
 use super::{Place, Run, SCENE};
+use crate::shipped;
 use std::fs;
-use std::path::Path;
 use whiskmap::store::StoredMap;
 
 fn said(run: &Run) -> &str {
@@ -141,7 +141,7 @@ fn the_spectral_engine_has_no_adapter_and_no_other_precision() {
 #[test]
 fn measured_radii_warn_that_every_cell_falls_back() {
     let place = Place::with(SCENE);
-    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let scenes = shipped::root().join("scenes");
     let text = |name: &str| fs::read_to_string(scenes.join(name)).unwrap();
     place.write("measured.csv", &text("measured.csv"));
     let small = text("measured.toml").replace("count = 512", "count = 40");

@@ -1,6 +1,7 @@
 //! Errors of the system: the exit code is 1, and outputs stay as they were.
 
 use super::{Place, Run, SCENE, names};
+use crate::shipped;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
@@ -26,10 +27,7 @@ impl FaultyPlace {
         compiler
             .args(["-shared", "-fPIC", "-O1", "-o"])
             .arg(&preloaded);
-        compiler.arg(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/tests/program/faults.c"
-        ));
+        compiler.arg(shipped::root().join("tests/program/faults.c"));
         assert!(compiler.arg("-ldl").status().unwrap().success());
         Self { place, preloaded }
     }

@@ -2,6 +2,7 @@
 
 use super::store::{SWEEP, assert_same, good};
 use super::{Place, Run};
+use crate::shipped;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
@@ -193,7 +194,7 @@ fn time_and_memory_are_proposed() {
 /// The lines for GNU parallel and Kubernetes in the documentation run.
 #[test]
 fn other_schedulers_fill_the_store_as_documented() {
-    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/sweeps.md");
+    let page = shipped::root().join("docs/sweeps.md");
     let page = fs::read_to_string(page).unwrap();
     let block = |with: &str| {
         let mut blocks = page.split("```").skip(1).step_by(2);

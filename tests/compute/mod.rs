@@ -2,10 +2,10 @@
 #![allow(dead_code, reason = "each test program uses its own share")]
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
+use crate::shipped;
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::sync::Arc;
 use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, RowBatch};
@@ -35,21 +35,6 @@ pub fn compute_as(
         },
     );
     (summary, all)
-}
-
-/// Every shipped scene.
-pub fn shipped() -> Vec<Scene> {
-    let mut paths: Vec<_> = Path::new("scenes")
-        .read_dir()
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
-        .collect();
-    paths.sort();
-    paths
-        .iter()
-        .map(|path| Scene::read(path).unwrap())
-        .collect()
 }
 
 /// The GPU engine.
@@ -244,24 +229,18 @@ pub fn assert_same_states(wanted: &[Panel], found: &[Panel]) {
 
 /// Checks that maps by `solve` have no load at first touch: a logarithmic scale would show what rounding makes of it.
 pub fn assert_no_load_at_touch(mut solve: impl FnMut(&Scene) -> Panel) {
-    let cone = Scene::read("scenes/cone.toml").unwrap();
-    let scenes = [
+    let cone = shipped::scene("cone");
+    let changed = [
         cone.with(Parameter::ParabolaPerMm, 0.075),
         cone.with(Parameter::Friction, 0.3),
         cone.with(Parameter::TipRadiusUm, 0.0),
-        Scene::read("scenes/euler_spiral.toml"),
-        Scene::read("scenes/measured.toml"),
-        Scene::read("scenes/traced.toml"),
     ];
+    let others = ["euler_spiral", "measured", "traced"].map(shipped::scene);
+    let scenes = changed.map(Result::unwrap).into_iter().chain(others);
     let pushes = [-1e-3, -0.0, 1e-3, 2.0, 5.0];
     let distances = [4.0, 7.0, 11.0, 15.0];
     for scene in scenes {
-        let scene = scene
-            .unwrap()
-            .to_builder()
-            .push_angle_deg(pushes)
-            .build()
-            .unwrap();
+        let scene = scene.to_builder().push_angle_deg(pushes).build().unwrap();
         let scene = scene.to_builder().distance_mm(distances).build().unwrap();
         let panel = solve(&scene);
         for (name, values) in STATE_CHANNELS.iter().zip(&panel.state) {

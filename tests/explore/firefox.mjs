@@ -55,7 +55,7 @@ try {
     const send = session(await until('Firefox', connected, (own) => own instanceof net.Socket));
     const { capabilities } = await send('WebDriver:NewSession');
     const evaluate = async (script) => (await send('WebDriver:ExecuteScript', { script, args: [] })).value;
-    await send('WebDriver:Navigate', { url: `file://${root}/outputs/explore.html` });
+    await send('WebDriver:Navigate', { url: `file://${root}/crates/cli/explore.html` });
     const drawn = () => evaluate("return document.getElementById('engine').dataset.drawn ?? ''");
     await until('a finished map', drawn, (text) => text.startsWith('[false'));
     await until('a course', () => evaluate("return document.querySelectorAll('#whisk-force .dot').length"), (count) => count > 0);

@@ -6,7 +6,7 @@ import { chromium } from 'playwright-core';
 
 export const [whiskmap, executablePath, folder, root, only = ''] = process.argv.slice(2);
 
-export const built = `file://${root}/outputs/explore.html`;
+export const built = `file://${root}/crates/cli/explore.html`;
 export const cone = `${root}/scenes/cone.toml`;
 
 const FLAGS = ['--no-sandbox', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-quic'];

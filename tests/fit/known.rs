@@ -1,6 +1,7 @@
 //! Points without errors: the parameters that they were made with.
 
 use super::{DISTANCES_MM, cone, detachments, free};
+use crate::shipped;
 use whiskmap::fit::fit;
 use whiskmap::measured::MeasuredAngle;
 use whiskmap::scene::Parameter::{self, *};
@@ -74,11 +75,11 @@ fn from_far_away() {
 
 #[test]
 fn an_euler_spiral_and_measured_radii() {
-    let spiral = Scene::read("scenes/euler_spiral.toml").unwrap();
+    let spiral = shipped::scene("euler_spiral");
     let [per_mm, per_mm2] = [SpiralPerMm, SpiralPerMm2].map(|own| own.value(&spiral).unwrap());
     let truth = [(SpiralPerMm, 1.1 * per_mm), (SpiralPerMm2, 0.9 * per_mm2)];
     comes_back(&spiral, MeasuredAngle::Push, &truth);
-    let measured = Scene::read("scenes/measured.toml").unwrap();
+    let measured = shipped::scene("measured");
     comes_back(&measured, MeasuredAngle::Push, &[(ParabolaPerMm, 0.018)]);
     // The tip matters for pull-offs, far out.
     let rows = [[0.0, 30.0], [9.0, 21.0], [18.5, 11.5]];

@@ -1,6 +1,7 @@
 //! What a fit refuses.
 
 use super::{DISTANCES_MM, cone, detachments};
+use crate::shipped;
 use whiskmap::fit::fit;
 use whiskmap::measured::MeasuredAngle;
 use whiskmap::scene::Parameter::{self, *};
@@ -14,7 +15,7 @@ fn message(scene: &Scene, free: &[Parameter]) -> String {
 
 #[test]
 fn parameters_that_cannot_be_free() {
-    let cylinder = Scene::read("scenes/cylinder.toml").unwrap();
+    let cylinder = shipped::scene("cylinder");
     let said = message(&cylinder, &[TipRadiusUm, Friction]);
     assert!(said.starts_with(
         "friction: the scene has no contact.friction; give it a value to start from, or free some of length_mm, base_radius_um,"
@@ -24,7 +25,7 @@ fn parameters_that_cannot_be_free() {
         "tip_radius_um and taper: both are whisker.tip_radius_um; one of them may be free"
     );
     assert_eq!(message(&cone(), &[]), "no parameter is free");
-    let measured = Scene::read("scenes/measured.toml").unwrap();
+    let measured = shipped::scene("measured");
     let said = message(&measured, &[LengthMm]);
     assert!(
         said.starts_with("length_mm: the rest of the scene allows no values but 19.99"),

@@ -5,6 +5,7 @@ use crate::case::{Case, compute};
 use crate::compute::{differences, median_and_worst, open};
 use crate::named::named;
 use crate::random::{always_the_same, cases};
+use crate::shipped;
 use proptest::prelude::*;
 use std::cell::RefCell;
 use std::fmt::Write;
@@ -137,7 +138,7 @@ fn named_cases_are_solved_or_fall_back(precision: Precision) {
     }
     let to_write = std::env::var_os("WHISKMAP_WRITE_TABLES").is_some_and(|x| x == "1");
     if to_write && precision == Precision::F32 {
-        std::fs::write("outputs/f32_stability.txt", &table).unwrap();
+        std::fs::write(shipped::root().join("outputs/f32_stability.txt"), &table).unwrap();
     }
 }
 

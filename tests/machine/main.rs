@@ -43,6 +43,8 @@ mod program;
 mod random;
 #[path = "../random_rods/mod.rs"]
 mod random_rods;
+#[path = "../shipped/mod.rs"]
+mod shipped;
 mod shoot;
 mod spectral;
 mod states;

@@ -2,14 +2,14 @@
 
 use crate::by_cpu::by_cpu;
 use crate::compute::{
-    assert_close, assert_identical, assert_no_load_at_touch, compute, compute_as, open, shipped,
-    works,
+    assert_close, assert_identical, assert_no_load_at_touch, compute, compute_as, open, works,
 };
+use crate::shipped;
 use whiskmap::engine::gpu::Precision;
 use whiskmap::engine::{Engine, on_gpu};
 use whiskmap::map::EngineCells;
 use whiskmap::plan::Plan;
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::Parameter;
 
 tests! {
     Engine:
@@ -25,7 +25,7 @@ const SOLVED: f64 = 0.9;
 
 fn engines_agree_on_every_cell(precision: Precision) {
     let mut gpu = open(precision);
-    for scene in shipped() {
+    for scene in shipped::scenes() {
         let scene = scene.thinned(128, 4);
         let effects = Plan::new(&scene).unwrap().method.effects;
         let (_, cpu) = by_cpu(&scene);
@@ -54,7 +54,7 @@ fn first_touch_is_without_a_load(precision: Precision) {
 /// What has no net, the CPU does: every cell of the map.
 fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
     let mut gpu = open(precision);
-    let measured = Scene::read("scenes/measured.toml").unwrap().thinned(48, 1);
+    let measured = shipped::scene("measured").thinned(48, 1);
     let graded = measured.with(Parameter::ModulusTipToBase, 1.5).unwrap();
     for scene in [measured, graded] {
         let effects = Plan::new(&scene).unwrap().method.effects;
@@ -74,7 +74,7 @@ fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
 
 /// Without stored states an engine returns no values, and the audit compares outcomes alone.
 fn a_map_of_regimes_passes_its_audit(engine: &mut dyn Engine) {
-    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(256, 1);
+    let cone = shipped::scene("cone").thinned(256, 1);
     let mut plan = Plan::new(&cone).unwrap();
     plan.channels = "regime".parse().unwrap();
     let (summary, panels) = compute_as(&cone, &plan, Some(engine));

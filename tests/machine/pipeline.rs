@@ -1,6 +1,7 @@
 //! Row batches in order: an engine solves one while the previous one is completed, and results do not depend on threads.
 
 use crate::compute::{Response, Watched, assert_identical, compute_as, open};
+use crate::shipped;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::mpsc;
@@ -26,7 +27,7 @@ tests! {
 
 /// The paper's cone, and a plan that takes 16 of its rows at a time.
 fn in_batches() -> (Scene, Plan) {
-    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(128, 1);
+    let scene = shipped::scene("cone").thinned(128, 1);
     let mut plan = Plan::new(&scene).unwrap();
     plan.rows_at_once = 16;
     (scene, plan)
@@ -127,9 +128,7 @@ fn an_engine_goes_from_run_to_run() {
     let (scene, plan) = in_batches();
     let mut gpu = open(Precision::F32);
     let fresh = compute_as(&scene, &plan, Some(&mut gpu)).1;
-    let sweep = Scene::read("scenes/morphology.toml")
-        .unwrap()
-        .thinned(48, 1);
+    let sweep = shipped::scene("morphology").thinned(48, 1);
     let mut plan_of_sweep = Plan::new(&sweep).unwrap();
     plan_of_sweep.panels_at_once = 1;
     for _ in 0..3 {
@@ -161,7 +160,7 @@ fn stages_are_one_sequence_beside_an_engine() {
 
 /// The engine's seconds are those of its stage, not beside the others.
 fn the_spectral_engine_is_a_stage() {
-    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(256, 1);
+    let scene = shipped::scene("cone").thinned(256, 1);
     let plan = Plan::new(&scene).unwrap();
     let (summary, _) = compute_as(&scene, &plan, Some(&mut Spectral::default()));
     for stage in [Stage::Rows, Stage::Cells] {

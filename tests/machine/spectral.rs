@@ -1,9 +1,10 @@
 //! Cells and maps of the spectral engine beside trajectories and the CPU engine.
 
 use crate::cells::{places, solve};
-use crate::compute::{assert_identical, compute, shipped, works};
+use crate::compute::{assert_identical, compute, works};
 use crate::kinds::rows_of_every_kind;
 use crate::random_rods::Random;
+use crate::shipped;
 use std::sync::Arc;
 use whiskmap::classify::Status;
 use whiskmap::engine::{Cpu, FORCE, Outcome, SideColumns, Spectral, WhiskerSide};
@@ -160,7 +161,7 @@ fn compare(scene: &Scene) -> EngineCells {
 const SOLVED: f64 = 0.7;
 
 fn maps_of_shipped_scenes_are_those_of_the_cpu() {
-    for scene in shipped() {
+    for scene in shipped::scenes() {
         let scene = scene.thinned(192, 2);
         let cells = compare(&scene);
         // The cells of a small grid, or of a single row, may take less time than a net.
@@ -254,7 +255,7 @@ fn small_values_next_to_reach_are_exact() {
 
 /// Along a row, states are not analytic where the contact passes a measured radius: the CPU solves every cell, and the engine does not fail.
 fn measured_radii_fall_back() {
-    let measured = Scene::read("scenes/measured.toml").unwrap().thinned(96, 1);
+    let measured = shipped::scene("measured").thinned(96, 1);
     let graded = measured.with(Parameter::ModulusTipToBase, 1.5).unwrap();
     for scene in [measured, graded] {
         let (_, wanted) = compute(&scene, None);
@@ -269,7 +270,7 @@ fn measured_radii_fall_back() {
         assert!(summary.engine_failure.is_none() && summary.audit.cells == 0);
         assert_identical(&wanted, &found);
     }
-    let cone = Scene::read("scenes/cone.toml").unwrap().thinned(256, 1);
+    let cone = shipped::scene("cone").thinned(256, 1);
     let (summary, _) = compute(&cone, Some(&mut Spectral::default()));
     works(&summary, SOLVED).unwrap();
 }

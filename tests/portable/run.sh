@@ -39,7 +39,7 @@ for step in ${*:-mechanics physics windows macos web}; do
         cargo test -Z build-std --target aarch64-unknown-linux-gnu -p whiskmap-mechanics
         ;;
     physics)
-        cargo test -Z build-std --target aarch64-unknown-linux-gnu --no-default-features --test portable
+        cargo test -Z build-std --target aarch64-unknown-linux-gnu -p whiskmap --no-default-features --test portable
         ;;
     windows)
         wine_prefix
@@ -47,7 +47,7 @@ for step in ${*:-mechanics physics windows macos web}; do
         # Windows does from version 10 on: the first four tests need that. It sends no Ctrl-Break to a group of processes.
         # Wine has no GPU without a display, and the pages have commands for one.
         cargo test -Z build-std --target x86_64-pc-windows-gnu --profile checked --no-fail-fast \
-            --config profile.checked.package.whiskmap.opt-level=1 --lib --test portable --test suite -- \
+            --config profile.checked.package.whiskmap.opt-level=1 --config profile.checked.package.whiskmap-cli.opt-level=1 --lib --test portable --test suite -- \
             --skip a_file_that_is_being_read_is_replaced --skip readers_see_whole_files_only \
             --skip of_two_runs_that_create_a_store_differently_one_succeeds \
             --skip runs_at_once_write_the_same_files --skip windows::an_interrupted_run_cleans_up --skip every_command_of_the_pages_runs

@@ -70,7 +70,7 @@ proptest! {
         which in any::<prop::sample::Index>(),
         cuts in prop::collection::vec((any::<prop::sample::Index>(), 0..12_usize, prop::sample::select(&SHARDS[..])), 1..4),
     ) {
-        let mut chars: Vec<char> = fs::read_to_string(which.get(&shipped())).unwrap().chars().collect();
+        let mut chars: Vec<char> = fs::read_to_string(which.get(&shipped::scene_paths())).unwrap().chars().collect();
         for (place, length, shard) in cuts {
             let start = place.index(chars.len());
             let end = usize::min(start + length, chars.len());

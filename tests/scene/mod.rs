@@ -14,8 +14,8 @@ mod shape;
 mod tables;
 mod warnings;
 
+use crate::shipped;
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use whiskmap::Side;
 use whiskmap::scene::{Curvature, Parameter, Scene};
@@ -58,21 +58,10 @@ fn with_line(line: usize, replacement: &str) -> String {
     lines.join("\n")
 }
 
-fn shipped() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let mut paths: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
-        .collect();
-    paths.sort();
-    paths
-}
-
 #[test]
 fn every_shipped_scene_is_accepted() {
     let mut names = Vec::new();
-    for path in shipped() {
+    for path in shipped::scene_paths() {
         let scene = Scene::read(&path).unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(scene.name, path.file_stem().unwrap().to_str().unwrap());
         assert_eq!((scene.notes(), scene.warnings()), (&[][..], vec![]));

@@ -1,9 +1,10 @@
 //! Derivatives as channels of maps.
 
+use crate::shipped;
 use whiskmap::Side;
 use whiskmap::classify::Regime;
 use whiskmap::plan::{Plan, PlanError};
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::Parameter;
 use whiskmap::sensitivity::{Variable, detachments};
 use whiskmap::{MapEngine, Options};
 
@@ -17,7 +18,7 @@ fn options(channels: &str, engine: MapEngine) -> Options {
 /// Every cell in contact has the derivative of its row's detachment, on both sides and engines; every other cell has none.
 #[test]
 fn cells_have_the_derivatives_of_their_detachments() {
-    let scene = Scene::read("scenes/cone.toml").unwrap().thinned(16, 1);
+    let scene = shipped::scene("cone").thinned(16, 1);
     let parameters = [Parameter::Taper, Parameter::LengthMm];
     let variables = parameters.map(Variable::from);
     for engine in [MapEngine::Cpu, MapEngine::Spectral] {
@@ -57,7 +58,7 @@ fn cells_have_the_derivatives_of_their_detachments() {
 /// A derivative by a number that the scene does not give is refused, not empty.
 #[test]
 fn absent_parameters_are_refused() {
-    let scene = Scene::read("scenes/cone.toml").unwrap();
+    let scene = shipped::scene("cone");
     let channels = "d_push_d_spiral_per_mm".parse().unwrap();
     let refused = Plan::new(&scene).unwrap().with_channels(channels, &scene);
     let why = refused.unwrap_err();
@@ -68,7 +69,7 @@ fn absent_parameters_are_refused() {
 /// Each derivative takes 4 bytes a cell in memory.
 #[test]
 fn derivatives_take_memory() {
-    let scene = Scene::read("scenes/cone.toml").unwrap();
+    let scene = shipped::scene("cone");
     let plan = |channels: &str| {
         let plan = Plan::in_memory(&scene).unwrap();
         plan.with_channels(channels.parse().unwrap(), &scene)

@@ -4,10 +4,11 @@ mod differences;
 mod maps;
 mod random_whiskers;
 
+use crate::shipped;
 use differences::{Compared, compare};
 use rayon::prelude::*;
 use whiskmap::Side;
-use whiskmap::scene::{Curvature, EulerSpiral, Parameter, Scene};
+use whiskmap::scene::{Curvature, EulerSpiral, Parameter};
 use whiskmap::sensitivity::{NoDerivative, Variable, detachments};
 use whiskmap::trace::{corner, reach_mm};
 
@@ -28,7 +29,7 @@ fn detachments_of_random_whiskers_are_differentiated() {
 /// Where a derivative does not exist, the result is the reason.
 #[test]
 fn missing_derivatives_have_reasons() {
-    let cone = Scene::read("scenes/cone.toml").unwrap();
+    let cone = shipped::scene("cone");
     let (whisker, pole) = (&cone.whisker, &cone.pole);
     let taper = [Variable::from(Parameter::Taper)];
     let by = |distance: f64| detachments(whisker, pole, Side::Cb, &[distance], &taper)[0].by[0];
@@ -49,9 +50,9 @@ fn missing_derivatives_have_reasons() {
 /// A straight whisker has derivatives by the coefficients of the shapes that it can take, alone and together.
 #[test]
 fn a_straight_whisker_begins_to_bend() {
-    let mut straight = Scene::read("scenes/cone.toml").unwrap().whisker.clone();
+    let mut straight = shipped::scene("cone").whisker.clone();
     straight.curvature = None;
-    let pole = Scene::read("scenes/cone.toml").unwrap().pole;
+    let pole = shipped::scene("cone").pole;
     let push = |bend: f64, spiral: bool| {
         let mut bent = straight.clone();
         if spiral {

@@ -6,6 +6,7 @@ mod poles;
 mod tables;
 mod undecided;
 
+use crate::shipped;
 use whiskmap::Side;
 use whiskmap::scene::{Scene, Surface};
 use whiskmap::texture::Texture;
@@ -14,7 +15,7 @@ use whiskmap::whisk::{AngleCourse, WhiskEventKind};
 const SHIPPED: [&str; 2] = ["texture_cone", "texture_hair"];
 
 fn scene(name: &str) -> Scene {
-    Scene::read(format!("scenes/{name}.toml")).unwrap()
+    shipped::scene(name)
 }
 
 fn course(angles: &[f64]) -> AngleCourse {

@@ -2,6 +2,7 @@
 
 use super::{points, resting};
 use crate::random_rods::Random;
+use crate::shipped;
 use whiskmap::Side;
 use whiskmap::scene::{Curvature, EulerSpiral, Parameter, Scene, Whisker};
 use whiskmap::trace::curve;
@@ -10,7 +11,7 @@ use whiskmap::traced::TracedShape;
 const DISTANCES_MM: [f64; 6] = [3.0, 6.0, 9.0, 12.0, 15.0, 18.0];
 
 fn cone() -> Scene {
-    Scene::read("scenes/cone.toml").unwrap()
+    shipped::scene("cone")
 }
 
 /// The largest difference of the detachment angles of two whiskers, in degrees, over both sides and all distances.
@@ -85,7 +86,7 @@ fn a_traced_parabola_detaches_as_the_parabola() {
 /// Measured: no difference.
 #[test]
 fn a_longer_whisker_has_the_same_shape() {
-    let scene = Scene::read("scenes/traced.toml").unwrap();
+    let scene = shipped::scene("traced");
     let length_mm = scene.whisker.length_mm;
     let longer = scene
         .with_parameters(&[

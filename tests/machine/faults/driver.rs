@@ -2,9 +2,9 @@
 
 use super::cone;
 use crate::compute::all_cells;
+use crate::shipped;
 use assert_cmd::Command;
 use std::fs;
-use std::path::Path;
 use std::process::Output;
 use tempfile::TempDir;
 use whiskmap::map::{EngineCells, STATE_CHANNELS};
@@ -46,7 +46,10 @@ impl Place {
         let library = folder.path().join("libfaulty.so");
         Command::new("rustc")
             .args(["--edition", "2024", "--crate-type", "cdylib", "-o"])
-            .args([&library, Path::new("tests/machine/faults/icd.rs")])
+            .args([
+                &library,
+                &shipped::root().join("tests/machine/faults/icd.rs"),
+            ])
             .assert()
             .success();
         let manifest = serde_json::json!({

@@ -6,12 +6,13 @@ pub mod kernel;
 pub mod lost;
 
 use crate::compute::{assert_close, difference};
+use crate::shipped;
 use whiskmap::map::Panel;
 use whiskmap::scene::Scene;
 
 /// The paper's cone on a grid of `count` x `count`.
 fn cone(count: usize) -> Scene {
-    Scene::read("scenes/cone.toml").unwrap().thinned(count, 1)
+    shipped::scene("cone").thinned(count, 1)
 }
 
 /// Asserts that regimes, statuses and margins are equal, and states as far as an engine may be off.

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     quiet_wayland();
-    ExitCode::from(whiskmap::cli::main(std::env::args_os()))
+    ExitCode::from(whiskmap_cli::main(std::env::args_os()))
 }
 
 /// Sets `XDG_RUNTIME_DIR` to `/` unless it is an absolute path. This is the only environment variable that the program sets.

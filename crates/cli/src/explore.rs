@@ -16,7 +16,7 @@ use whiskmap::terminal::StandardOutput;
 use whiskmap::trace::DetachmentKind;
 
 /// The page with the solver and an example scene, which `crates/web/build.sh` builds.
-const PAGE: &str = include_str!("../../outputs/explore.html");
+const PAGE: &str = include_str!("../explore.html");
 
 /// Element of the page that has the scene and the points, as JSON.
 const START: [&str; 2] = [
@@ -90,17 +90,11 @@ fn name_of(file: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// Path of the page of a scene without `--output`, in a folder that is created. Of a scene with the name of this project's page, that
-/// page would be lost.
+/// Returns the path of the page of a scene without `--output`, and creates its folder.
 fn default_output(files: &Files, name: &str) -> Result<PathBuf, Failure> {
     let folder = Path::new("outputs");
-    let output = folder.join(format!("{name}.html"));
-    if output == Path::new("outputs/explore.html") {
-        let why = "--output: must be given for a scene named `explore`, because outputs/explore.html is a page of this project";
-        return Err(Failure::Input(why.to_owned()));
-    }
     files.folder("--output", folder)?;
-    Ok(output)
+    Ok(folder.join(format!("{name}.html")))
 }
 
 /// Measured points as CSV, in the format of `--data`.

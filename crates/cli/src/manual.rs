@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    const PAGE: &str = include_str!("../../docs/commands.md");
+    const PAGE: &str = include_str!("../../../docs/commands.md");
 
     /// Returns the options in a text: words such as `--plot`.
     fn mentioned(text: &str) -> BTreeSet<&str> {

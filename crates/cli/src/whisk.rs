@@ -6,7 +6,7 @@ use super::failure::{Failure, message};
 use super::files::Files;
 use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueEnum};
 use std::path::PathBuf;
 use whiskmap::render::courses;
 use whiskmap::scene::{digits, rounded};
@@ -24,6 +24,14 @@ detaches swings to the other side of the pole, and touches it there on the way b
 out. Between samples the angle changes along straight lines, on which events are exact. A course begins without contact unless --start \
 is contact. A first angle beyond first touch needs --start: the whisker may be free past the pole, or in contact.";
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum StartChoice {
+    /// The whisker is free. At an angle beyond first touch, it has passed the pole
+    Free,
+    /// The pole bends the whisker, as after a push from first touch to the first angle: on CB if that side holds it, otherwise on CF
+    Contact,
+}
+
 #[derive(Debug, Args)]
 #[command(
     group(ArgGroup::new("course").required(true).args(["angles", "sine"])),
@@ -37,7 +45,7 @@ pub struct WhiskArgs {
     course: CourseArgs,
     /// State of the whisker at the first angle
     #[arg(long, value_name = "STATE")]
-    start: Option<CourseStart>,
+    start: Option<StartChoice>,
     /// Write touches, releases, slip-offs, pull-offs and snaps to FILE, as CSV
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
@@ -54,10 +62,11 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let events = args.events.as_deref();
     let events = events.map(|path| args.outputs.table(files, "--events", path));
     let events = events.transpose()?;
-    let options = WhiskOptions {
-        start: args.start,
-        ..WhiskOptions::default()
-    };
+    let mut options = WhiskOptions::default();
+    options.start = args.start.map(|start| match start {
+        StartChoice::Free => CourseStart::Free,
+        StartChoice::Contact => CourseStart::Contact,
+    });
     let found = whisk::whisk_with(&whisker, &scene.pole, distance, &course, &options);
     let found = found.map_err(|why| match why {
         WhiskError::Pole(why) => refuse(distance, why),

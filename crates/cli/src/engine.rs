@@ -22,6 +22,14 @@ enum EngineChoice {
     Gpu,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum PrecisionChoice {
+    /// Single precision, which every adapter supports
+    F32,
+    /// Double precision, on Vulkan adapters with shaderFloat64
+    F64,
+}
+
 #[derive(Clone, Debug, Default, Args)]
 pub struct EngineArgs {
     /// Engine that solves the cells [default: auto]
@@ -29,7 +37,7 @@ pub struct EngineArgs {
     engine: Option<EngineChoice>,
     /// Floating-point type of the shaders [default: f32]
     #[arg(long, value_enum)]
-    precision: Option<Precision>,
+    precision: Option<PrecisionChoice>,
     /// GPU adapter, by its number or a part of its name in `whiskmap devices` [default: the one marked there]
     #[arg(long, value_name = "N|NAME")]
     adapter: Option<String>,
@@ -132,10 +140,10 @@ impl EngineArgs {
     /// Returns an error if the options contradict each other.
     fn check(&self) -> Result<(), Failure> {
         let why = match (self.choice(), self.precision, &self.adapter) {
-            (EngineChoice::Cpu | EngineChoice::Spectral, Some(Precision::F32), _) => {
+            (EngineChoice::Cpu | EngineChoice::Spectral, Some(PrecisionChoice::F32), _) => {
                 "--precision f32: the CPU computes in f64; allowed with --engine gpu".to_owned()
             }
-            (EngineChoice::Auto, Some(Precision::F32), _) => {
+            (EngineChoice::Auto, Some(PrecisionChoice::F32), _) => {
                 "--precision f32: --engine auto may select the CPU, which computes in f64; allowed with --engine gpu"
                     .to_owned()
             }
@@ -191,7 +199,10 @@ impl EngineArgs {
     }
 
     fn precision(&self) -> Precision {
-        self.precision.unwrap_or(Precision::F32)
+        match self.precision {
+            None | Some(PrecisionChoice::F32) => Precision::F32,
+            Some(PrecisionChoice::F64) => Precision::F64,
+        }
     }
 
     /// Returns index and description of the adapter of a GPU engine, if there is one.
