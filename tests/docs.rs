@@ -215,6 +215,44 @@ fn paths_on_pages_about_the_code_exist() {
     }
 }
 
+/// Checks that the modules of a source folder use only modules that come before them in `order`.
+fn check_order(folder: &str, order: &[&str]) {
+    let folder = root().join(folder);
+    for path in files(&folder, "rs") {
+        let inside = path.strip_prefix(&folder).expect("a file in the folder");
+        let first = inside.components().next().expect("a module");
+        let module = first.as_os_str().to_str().expect("a name");
+        let module = module.trim_end_matches(".rs");
+        if module == "lib" {
+            continue;
+        }
+        let place = order.iter().position(|name| *name == module);
+        assert!(place.is_some(), "{module}: not in the list of layers");
+        let text = fs::read_to_string(&path).expect("a source file");
+        let code = text
+            .lines()
+            .filter(|line| !line.trim_start().starts_with("//"));
+        for rest in code.flat_map(|line| line.split("crate::").skip(1)) {
+            let is_name = |c: char| c.is_alphanumeric() || c == '_';
+            let used = rest.split(|c| !is_name(c)).next().unwrap_or_default();
+            let found = order.iter().position(|name| *name == used);
+            let is_above = found.is_some() && found <= place;
+            assert!(is_above, "{}: uses `crate::{used}`", path.display());
+        }
+    }
+}
+
+/// Modules use only modules above them in the list of layers, so that there is no circle between them.
+#[test]
+fn modules_use_only_modules_above_them() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a page");
+    let layers = text.lines().filter(|line| line.starts_with("    "));
+    let words = layers.flat_map(|line| line.split([' ', ',']));
+    let order: Vec<&str> = words.filter_map(|word| word.strip_prefix("src/")).collect();
+    check_order("src", &order);
+    check_order("crates/mechanics/src", &["numerics", "rod", "shooting"]);
+}
+
 #[test]
 fn the_architecture_has_at_most_150_lines() {
     let text = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("a page");

@@ -123,7 +123,9 @@ impl Map {
 
 #[cfg(all(test, feature = "ndarray"))]
 mod tests {
-    use crate::{Channel, Options, map, scene::Scene};
+    use crate::front::{Options, map};
+    use crate::plan::Channel;
+    use crate::scene::Scene;
 
     #[test]
     fn views_have_the_values_at_distance_and_push_angle() {

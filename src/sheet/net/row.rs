@@ -7,8 +7,9 @@ use whiskmap_mechanics::numerics::tensor::LevelBlock;
 use whiskmap_mechanics::numerics::{
     LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep, nearest_turn, pack,
 };
+use whiskmap_mechanics::rod::radius_and_arclength;
 use whiskmap_mechanics::shooting::StateNumbers;
-use whiskmap_mechanics::shooting::contact::{direction, exp, radius_and_arclength};
+use whiskmap_mechanics::shooting::contact::{direction, exp};
 
 /// Number of functions of a tensor.
 pub const FUNCTIONS: usize = 7;

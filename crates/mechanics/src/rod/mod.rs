@@ -12,6 +12,7 @@ mod rest;
     reason = "the module is named after its main type"
 )]
 mod rod;
+mod taper;
 mod units;
 
 pub use curvature_polynomial::{CURVATURE_TERMS, CurvaturePolynomial};
@@ -22,4 +23,5 @@ pub use radius::{Piece, RadiusProfile};
 pub use rest::Rest;
 pub(crate) use rod::arclength_at;
 pub use rod::{PERFECT_CONE_CUT, Rod, Side, arclength};
+pub use taper::radius_and_arclength;
 pub use units::Units;

@@ -1,8 +1,7 @@
 //! A whisker and its pole in dimensionless form.
 
 use crate::numerics::{Dual, Real};
-use crate::rod::{CurvaturePolynomial, RadiusProfile};
-use crate::shooting::contact::radius_and_arclength;
+use crate::rod::{CurvaturePolynomial, RadiusProfile, radius_and_arclength};
 use glam::DVec2;
 use serde_core::{Serialize, Serializer};
 use std::sync::Arc;

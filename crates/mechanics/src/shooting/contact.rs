@@ -1,7 +1,8 @@
 //! Contacts, at which trajectories start, in SIMD lanes. Exponential and inverse functions are computed by algebra, so that a block of
 //! contacts costs about as much as one contact with library functions.
 
-use crate::numerics::{Real, expm1_over_small, rotated_by_small};
+use crate::numerics::{Real, rotated_by_small};
+use crate::rod::radius_and_arclength;
 
 /// Start of a trajectory: radius, force, tangent, stiffness and curvature at the contact.
 #[derive(Clone, Copy, Debug)]
@@ -18,26 +19,6 @@ pub struct Contact<T> {
     pub curvature: T,
     /// Derivative of the curvature at rest at the contact by the arclength, in radians per squared whisker length.
     pub curvature_slope: T,
-}
-
-/// Halvings of the exponent: `expm1_over_small` is valid up to 0.4, and `beta tau` of every whisker is at most 25.6.
-const HALVINGS: u32 = 6;
-
-/// Returns the radius over the base radius, `exp(-beta tau)`, and the arclength in whisker lengths, `(1 - exp(-beta tau))/beta`, at
-/// `tau`. Both are accurate to 32 times the rounding.
-#[inline(always)]
-pub fn radius_and_arclength<T: Real>(taper: T, tau: T) -> [T; 2] {
-    let (one, half) = (T::of(1.0), T::of(0.5));
-    let mut part = T::of(-1.0 / f64::from(1 << HALVINGS)) * taper * tau;
-    // (exp(part) - 1)/part, for twice the part in each turn.
-    let mut growth = expm1_over_small(part);
-    let mut radius = part.mul_add(growth, one);
-    for _ in 0..HALVINGS {
-        growth = growth * (half * part).mul_add(growth, one);
-        part = part + part;
-        radius = radius * radius;
-    }
-    [radius, tau * growth]
 }
 
 /// Returns the exponential of a number of magnitude 25.6 at most, to within 32 times the rounding.

@@ -1,9 +1,7 @@
 //! The contact in lanes against the standard library.
 
-use whiskmap_mechanics::rod::{Rest, Rod, arclength};
-use whiskmap_mechanics::shooting::contact::{
-    arc, direction, exp, parabola_tangent, radius_and_arclength,
-};
+use whiskmap_mechanics::rod::{Rest, Rod, arclength, radius_and_arclength};
+use whiskmap_mechanics::shooting::contact::{arc, direction, exp, parabola_tangent};
 
 #[test]
 fn algebra_is_as_good_as_the_library() {

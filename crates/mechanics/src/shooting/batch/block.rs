@@ -3,7 +3,7 @@
 use super::gather::{Conditions, numbers};
 use super::{InitialCondition, Method};
 use crate::numerics::{Lanes, SimdTask, WIDTH};
-use crate::shooting::contact::radius_and_arclength;
+use crate::rod::radius_and_arclength;
 
 /// Block of initial conditions of trajectories that are integrated together, at most as many as there are lanes.
 pub struct Block<'a> {

@@ -6,7 +6,8 @@ use super::gather::{Conditions, Contacts, Gather, GatherMaterial, lanes};
 use super::{FEW_KERNELS, Method, OutputSet};
 use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
-use crate::shooting::contact::{Contact, radius_and_arclength};
+use crate::rod::radius_and_arclength;
+use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
 use crate::shooting::{
     Bent, Graded, Integrator, Measured, Nystrom8, Polynomial, Spiral, Straight, Uniform,

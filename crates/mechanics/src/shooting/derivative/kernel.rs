@@ -7,9 +7,10 @@ use super::dual_rest::DualRest;
 use super::varied_condition::VariedCondition;
 use crate::numerics::gauss::Integrals;
 use crate::numerics::{Dual, Lanes, LanesTask, Real};
+use crate::rod::radius_and_arclength;
 use crate::rod::{Piece, RadiusProfile};
 use crate::shooting::batch::{FEW_KERNELS, InitialCondition, PoleCentre};
-use crate::shooting::contact::{Contact, radius_and_arclength};
+use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{Arrival, Energetic, GeneralFirst, SensitivitySet};
 use crate::shooting::{
     BackwardCompliance, Bent, Graded, Intrinsic, Measured, Nystrom8, Polynomial, Resolution,
