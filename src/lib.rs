@@ -73,9 +73,9 @@ pub mod accuracy;
 #[cfg(feature = "gpu")]
 pub mod bench;
 pub mod classify;
+pub mod compute;
 pub mod engine;
 pub mod friction;
-mod front;
 pub mod input;
 mod least_squares;
 pub mod map;
@@ -94,12 +94,12 @@ mod stopwatch;
 pub mod terminal;
 
 pub use classify::{Regime, Status};
-pub use engine::Precision;
 #[cfg(feature = "fit")]
-pub use front::fit;
-pub use front::{
+pub use compute::fit;
+pub use compute::{
     Error, Map, MapCell, MapEngine, Options, branch, curve, for_each_panel, lazy_map, map, shape,
 };
+pub use engine::Precision;
 pub use map::{Panel, Summary};
 pub use plan::{Channel, Channels};
 pub use whiskmap_mechanics as mechanics;

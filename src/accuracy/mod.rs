@@ -2,10 +2,7 @@
 //!
 //! Newton's method adds its largest residual, whose angle is largest at the nearest pole.
 
-mod engine;
 mod sample;
-
-pub use engine::{cheaper, excess_deg, spectral, tolerances};
 
 use crate::refine::GOAL;
 use crate::scene::Scene;

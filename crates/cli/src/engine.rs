@@ -4,11 +4,10 @@ use super::adapter::{chosen, is_named};
 use super::estimate::{compare, estimate};
 use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
-use whiskmap::accuracy::{cheaper, excess_deg, spectral};
+use whiskmap::compute::PlannedMap;
 use whiskmap::engine::gpu::{AdapterReport, Gpu, Precision, adapters};
 use whiskmap::engine::{Engine, EngineDescription, EngineError, on_gpu};
-use whiskmap::plan::{ExpansionCount, Plan};
-use whiskmap::scene::Scene;
+use whiskmap::plan::ExpansionCount;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum EngineChoice {
@@ -56,43 +55,33 @@ const COMPARISON: f64 = 0.04;
 const OPENING: f64 = 0.1;
 
 impl EngineArgs {
-    /// Opens the engine for a map of `scene` as in `plan`, whose push angles must be exact to `tolerance_deg`, if given.
-    pub fn open(
-        &self,
-        scene: &Scene,
-        plan: &Plan,
-        tolerance_deg: Option<f64>,
-    ) -> Result<OpenEngine, Failure> {
+    /// Opens the engine for a planned map.
+    pub fn open(&self, map: &PlannedMap<'_>) -> Result<OpenEngine, Failure> {
         self.check()?;
         if self.may_use_gpu() {
-            return self.open_gpu_or_auto(scene, plan, tolerance_deg);
+            return self.open_gpu_or_auto(map);
         }
-        if self.choice() == EngineChoice::Spectral && plan.method.effects.profile {
+        if self.choice() == EngineChoice::Spectral && map.plan.method.effects.profile {
             message(
                 "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell",
             );
         }
-        self.without_gpu(scene, plan, tolerance_deg)
+        self.without_gpu(map)
     }
 
     /// Returns the engine whose cost an estimate measures, and why: the one that [`Self::open`] selects if there is no GPU.
     ///
     /// # Errors
     /// If the options contradict each other.
-    pub fn without_gpu(
-        &self,
-        scene: &Scene,
-        plan: &Plan,
-        tolerance_deg: Option<f64>,
-    ) -> Result<OpenEngine, Failure> {
+    pub fn without_gpu(&self, map: &PlannedMap<'_>) -> Result<OpenEngine, Failure> {
         self.check()?;
         let selected = || "selected by --engine".to_owned();
         Ok(match self.choice() {
             EngineChoice::Auto => {
-                let (engine, _) = without_gpu(scene, plan, tolerance_deg);
-                (engine, expansions(scene, plan))
+                let (engine, _) = without_gpu(map);
+                (engine, expansions(map))
             }
-            EngineChoice::Spectral => (Some(Box::new(spectral(scene, tolerance_deg))), selected()),
+            EngineChoice::Spectral => (Some(Box::new(map.spectral())), selected()),
             EngineChoice::Cpu => (None, selected()),
             EngineChoice::Gpu => (
                 None,
@@ -158,19 +147,14 @@ impl EngineArgs {
         Err(Failure::Input(why))
     }
 
-    fn open_gpu_or_auto(
-        &self,
-        scene: &Scene,
-        plan: &Plan,
-        tolerance_deg: Option<f64>,
-    ) -> Result<OpenEngine, Failure> {
+    fn open_gpu_or_auto(&self, map: &PlannedMap<'_>) -> Result<OpenEngine, Failure> {
         // A named adapter that does not exist is an error, even if it would not be used.
         if is_named(self.adapter.as_deref()) {
             self.adapter()?;
         }
-        match (self.choice(), self.refusal(scene, plan, tolerance_deg)) {
-            (EngineChoice::Auto, Some(_)) => Ok(without_gpu(scene, plan, tolerance_deg)),
-            (EngineChoice::Auto, None) => self.faster(scene, plan, tolerance_deg),
+        match (self.choice(), self.refusal(map)) {
+            (EngineChoice::Auto, Some(_)) => Ok(without_gpu(map)),
+            (EngineChoice::Auto, None) => self.faster(map),
             (_, Some(why)) => Ok((None, format!("--engine gpu is not possible: {why}"))),
             (_, None) => {
                 let adapter = self.adapter()?.map(|(index, _)| index);
@@ -187,12 +171,12 @@ impl EngineArgs {
     }
 
     /// Returns the reason why the CPU solves every cell, on any GPU.
-    fn refusal(&self, scene: &Scene, plan: &Plan, tolerance_deg: Option<f64>) -> Option<String> {
-        if let Err(why) = on_gpu(plan.method.effects) {
+    fn refusal(&self, map: &PlannedMap<'_>) -> Option<String> {
+        if let Err(why) = on_gpu(map.plan.method.effects) {
             return Some(why.to_owned());
         }
         let precision = self.precision();
-        let bound_deg = excess_deg(scene, precision.goal(), tolerance_deg)?;
+        let bound_deg = map.excess_deg(precision.goal())?;
         Some(format!(
             "gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"
         ))
@@ -216,15 +200,10 @@ impl EngineArgs {
         Gpu::open(adapter, self.precision()).map(|gpu| Box::new(gpu) as _)
     }
 
-    /// Opens the engine that is faster for `plan`, as estimated from samples of `scene`.
-    fn faster(
-        &self,
-        scene: &Scene,
-        plan: &Plan,
-        tolerance_deg: Option<f64>,
-    ) -> Result<OpenEngine, Failure> {
-        let (mut host, why) = without_gpu(scene, plan, tolerance_deg);
-        if estimate(scene, plan, &mut None, FIRST_LOOK)?.seconds < OPENING {
+    /// Opens the engine that is faster for the map, as estimated from samples of its scene.
+    fn faster(&self, map: &PlannedMap<'_>) -> Result<OpenEngine, Failure> {
+        let (mut host, why) = without_gpu(map);
+        if estimate(map.scene, &map.plan, &mut None, FIRST_LOOK)?.seconds < OPENING {
             return Ok((host, format!("{why}; a GPU is not timed below {OPENING} s")));
         }
         let (index, report) = self.adapter()?.unzip();
@@ -239,7 +218,7 @@ impl EngineArgs {
         };
         let gpu_name = format!("{} on {name}", gpu.describe().engine);
         let mut gpu = Some(gpu);
-        match compare(scene, plan, [&mut host, &mut gpu], COMPARISON) {
+        match compare(map.scene, &map.plan, [&mut host, &mut gpu], COMPARISON) {
             Ok([on_host, on_gpu]) if on_gpu < on_host => {
                 let other = EngineDescription::of(host.as_deref());
                 let other = format!("{} on {}", other.engine, other.adapter);
@@ -255,16 +234,16 @@ impl EngineArgs {
     }
 }
 
-/// Returns the spectral engine, or the CPU engine where its trajectories take less time than expansions, as counted by `plan`.
-fn without_gpu(scene: &Scene, plan: &Plan, tolerance_deg: Option<f64>) -> OpenEngine {
-    let why = format!("auto: {}", expansions(scene, plan));
-    let spectral = cheaper(scene, plan, tolerance_deg);
+/// Returns the spectral engine, or the CPU engine where its trajectories take less time than expansions, as counted by the plan.
+fn without_gpu(map: &PlannedMap<'_>) -> OpenEngine {
+    let why = format!("auto: {}", expansions(map));
+    let spectral = map.cheaper();
     (spectral.map(|own| Box::new(own) as _), why)
 }
 
-/// Returns why expansions pay for `scene`, or why they do not, in one line.
-fn expansions(scene: &Scene, plan: &Plan) -> String {
-    let Some(count) = plan.expansions(scene) else {
+/// Returns why expansions pay for a map, or why they do not, in one line.
+fn expansions(map: &PlannedMap<'_>) -> String {
+    let Some(count) = map.plan.expansions(map.scene) else {
         return "measured radii have no expansions".to_owned();
     };
     let ExpansionCount { cells, cost } = count;

@@ -9,12 +9,13 @@ use super::map_format::MapFormat;
 use super::output_file::{OutputFile, unwritten};
 use super::outputs::PictureFile;
 use super::sharded::{self, RunArgs};
-use super::solver::{PlannedMap, SolverArgs};
+use super::solver::SolverArgs;
 use super::summary::{compute, report};
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
+use whiskmap::compute::PlannedMap;
 use whiskmap::engine::EngineDescription;
 use whiskmap::mechanics::numerics::ArithmeticClass;
 use whiskmap::plan::Channels;
@@ -68,7 +69,8 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&args.scene)?;
     let format = args.format.unwrap_or(MapFormat::Exr);
     let planned = args.plan(&scene, format)?;
-    let (mut engine, tolerances) = args.solver.open(&scene, &planned)?;
+    let mut engine = args.solver.open(&planned)?;
+    let tolerances = planned.tolerances(engine.0.as_deref());
     let plan = planned.plan;
     let solver = EngineDescription::of(engine.0.as_deref());
     let about = MapDescription {
@@ -133,7 +135,7 @@ impl MapArgs {
     ///
     /// # Errors
     /// If the options contradict each other, the scene or the format.
-    pub fn plan(&self, scene: &Scene, format: MapFormat) -> Result<PlannedMap, Failure> {
+    pub fn plan<'a>(&self, scene: &'a Scene, format: MapFormat) -> Result<PlannedMap<'a>, Failure> {
         self.check(scene, format)?;
         let channels = self.channels.unwrap_or(Channels::STANDARD);
         let mut map = self.solver.plan(scene, format.plan(scene)?, channels)?;

@@ -46,8 +46,10 @@ pub fn computed(
     let mut map = solver.plan(&scene, Plan::new(&scene)?, channels)?;
     map.plan.cells = map.plan.cells / map.plan.whiskers * whiskers;
     map.plan.whiskers = whiskers;
-    let ((engine, why), tolerances) = solver.open(&scene, &map)?;
-    let map = ComputedMap::new(scene, map.plan, engine, tolerances);
+    let (engine, why) = solver.open(&map)?;
+    let tolerances = map.tolerances(engine.as_deref());
+    let plan = map.plan;
+    let map = ComputedMap::new(scene, plan, engine, tolerances);
     let (name, adapter) = (&map.engine.engine, &map.engine.adapter);
     message(&format!("engine: {name} on {adapter} ({why})"));
     Ok(map)

@@ -4,7 +4,8 @@ use super::arguments;
 use super::failure::{Failure, message};
 use clap::Args;
 use whiskmap::Side;
-use whiskmap::accuracy::{Accuracy, BOUNDED, cheapest};
+use whiskmap::accuracy::{Accuracy, BOUNDED};
+use whiskmap::compute::{self, Error};
 use whiskmap::scene::Scene;
 
 #[derive(Debug, Default, Args)]
@@ -39,17 +40,7 @@ impl ToleranceArgs {
 
     /// Returns the accuracy that meets the tolerance on `sides` of the scene; `None` without a tolerance.
     pub fn find(&self, scene: &Scene, sides: &[Side]) -> Result<Option<Accuracy>, Failure> {
-        let Some(tolerance_deg) = self.tolerance else {
-            return Ok(None);
-        };
-        let found = cheapest(scene, sides, tolerance_deg).map_err(|finest| {
-            Failure::Input(format!(
-                "--tolerance {tolerance_deg:e}deg: must be at least {:.1e}deg, the estimated error of the finest steps and \
-                 of the residual of Newton's method",
-                ROUNDED_UP * finest.error_deg
-            ))
-        })?;
-        Ok(Some(found))
+        Ok(compute::accuracy(scene, self.tolerance, sides)?)
     }
 
     /// Prints the accuracy that was found.
@@ -60,6 +51,24 @@ impl ToleranceArgs {
                  allowed in {BOUNDED}",
                 found.resolution.least, found.error_deg
             ));
+        }
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Plan(error) => error.into(),
+            Error::Engine(error) => error.into(),
+            Error::Tolerance {
+                tolerance_deg,
+                least,
+            } => Self::Input(format!(
+                "--tolerance {tolerance_deg:e}deg: must be at least {:.1e}deg, the estimated error of the finest steps and \
+                 of the residual of Newton's method",
+                ROUNDED_UP * least
+            )),
+            error => Self::Input(error.to_string()),
         }
     }
 }

@@ -10,7 +10,6 @@ use super::files::read_scene;
 use super::map::MapArgs;
 use super::map_format::MapFormat;
 use super::sharded::shares;
-use super::solver::PlannedMap;
 use clap::Args;
 use print::{print, print_shards};
 use whiskmap::engine::EngineDescription;
@@ -68,8 +67,9 @@ impl PlanEstimate {
         formats: &[MapFormat],
     ) -> Result<Self, Failure> {
         let first = formats.first().copied().unwrap_or(MapFormat::Zarr);
-        let PlannedMap { plan, left_deg, .. } = args.plan(scene, first)?;
-        let (mut engine, why) = options.without_gpu(scene, &plan, left_deg)?;
+        let map = args.plan(scene, first)?;
+        let (mut engine, why) = options.without_gpu(&map)?;
+        let plan = map.plan;
         let description = EngineDescription::of(engine.as_deref()).engine;
         Ok(Self {
             cost: estimate(scene, &plan, &mut engine, SAMPLE_SECONDS)?,

@@ -1,7 +1,6 @@
 //! Computation of regime maps in memory, panel by panel, or when they are read.
 
-use super::{Error, Map, MapEngine, Options, accuracy};
-use crate::accuracy::{cheaper, excess_deg, spectral, tolerances};
+use super::{Error, Map, MapEngine, Options, PlannedMap};
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Precision};
@@ -9,7 +8,6 @@ use crate::map::{self as stages, Panel, Summary};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::store::ComputedMap;
-use serde_json::Value;
 use std::ops::ControlFlow;
 
 /// Computes the regime map of `scene`, every cell with its state, on all cores.
@@ -95,8 +93,14 @@ pub fn for_each_panel<E: From<Error> + Send>(
 /// When one panel takes more than [`MEMORY_LIMIT`](crate::plan::MEMORY_LIMIT), the tolerance cannot be kept, or there is no GPU where
 /// one is required.
 pub fn lazy_map(scene: &Scene, options: Options) -> Result<ComputedMap, Error> {
-    let (plan, engine, tolerances) = prepared(scene, Plan::new(scene)?, &options)?;
-    Ok(ComputedMap::new(scene.clone(), plan, engine, tolerances))
+    let (map, engine) = prepared(scene, Plan::new(scene)?, &options)?;
+    let tolerances = map.tolerances(engine.as_deref());
+    Ok(ComputedMap::new(
+        scene.clone(),
+        map.plan,
+        engine,
+        tolerances,
+    ))
 }
 
 /// Runs `plan` with the steps and the engine of `options`.
@@ -106,7 +110,7 @@ fn run<E: From<Error> + Send>(
     options: Options,
     mut each: impl FnMut(usize, Panel) -> Result<(), E> + Send,
 ) -> Result<Summary, E> {
-    let (plan, mut engine, _) = prepared(scene, plan, &options)?;
+    let (PlannedMap { plan, .. }, mut engine) = prepared(scene, plan, &options)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let (mut done, all) = (0, plan.cells);
     let mut on_progress = |cells| {
@@ -131,30 +135,22 @@ fn run<E: From<Error> + Send>(
     }
 }
 
-/// Plan of a map, its engine (`None` for the CPU engine alone), and the attribute `tolerances` of the map.
-type PreparedMap = (Plan, Option<Box<dyn Engine>>, Value);
+/// Planned map, and its engine; `None` for the CPU engine alone.
+type PreparedMap<'a> = (PlannedMap<'a>, Option<Box<dyn Engine>>);
 
 /// Returns `plan` with the steps and channels of `options`, and opens their engine.
-fn prepared(scene: &Scene, mut plan: Plan, options: &Options) -> Result<PreparedMap, Error> {
-    let accuracy = accuracy(scene, options, &plan.sides)?;
-    if let Some(accuracy) = &accuracy {
-        plan.method.resolution = accuracy.resolution;
-    }
-    if let Some(channels) = options.channels {
-        plan = plan.with_channels(channels, scene)?;
-    }
-    let left_deg = options.tolerance_deg.zip(accuracy);
-    let left_deg = left_deg.map(|(tolerance_deg, accuracy)| accuracy.left_deg(tolerance_deg));
+fn prepared<'a>(scene: &'a Scene, plan: Plan, options: &Options) -> Result<PreparedMap<'a>, Error> {
+    let map = PlannedMap::new(scene, plan, options.tolerance_deg, options.channels)?;
     let engine: Option<Box<dyn Engine>> = match options.engine {
         MapEngine::Cpu => None,
-        MapEngine::Spectral => Some(Box::new(spectral(scene, left_deg))),
-        MapEngine::Auto => cheaper(scene, &plan, left_deg).map(|own| Box::new(own) as _),
+        MapEngine::Spectral => Some(Box::new(map.spectral())),
+        MapEngine::Auto => map.cheaper().map(|spectral| Box::new(spectral) as _),
         MapEngine::Gpu(precision) => Some(open(precision)?),
     };
     let residual_bound = engine.as_ref().map(|engine| engine.residual_bound());
-    let excess = residual_bound.and_then(|bound| excess_deg(scene, bound, left_deg));
+    let excess = residual_bound.and_then(|bound| map.excess_deg(bound));
     if let (Some(excess), Some(tolerance_deg), Some(left)) =
-        (excess, options.tolerance_deg, left_deg)
+        (excess, options.tolerance_deg, map.left_deg)
     {
         let least = tolerance_deg - left + excess;
         return Err(Error::Tolerance {
@@ -162,8 +158,7 @@ fn prepared(scene: &Scene, mut plan: Plan, options: &Options) -> Result<Prepared
             least,
         });
     }
-    let tolerances = tolerances(scene, accuracy.as_ref(), engine.as_deref());
-    Ok((plan, engine, tolerances))
+    Ok((map, engine))
 }
 
 /// Opens the preferred GPU.

@@ -1,6 +1,6 @@
 //! Detachment curves, branches, shapes and fits, computed in memory.
 
-use super::{Error, Options, resolution};
+use super::{Error, Options, accuracy};
 #[cfg(feature = "fit")]
 use crate::fit::{self, Fit};
 #[cfg(feature = "fit")]
@@ -10,6 +10,7 @@ use crate::scene::Parameter;
 use crate::scene::{Scene, SweepPlace, SweptWhisker};
 use crate::trace::{Branch, Detachment, NoState, WhiskerShape, curve_at, sides, whiskers_at_once};
 use whiskmap_mechanics::rod::Side;
+use whiskmap_mechanics::shooting::Resolution;
 
 /// Maximum number of distances between two looks at the flag that cancels.
 const DISTANCES_AT_ONCE: usize = 4096;
@@ -31,7 +32,8 @@ const DISTANCES_AT_ONCE: usize = 4096;
 /// # Errors
 /// When the tolerance cannot be kept, or the computation is cancelled.
 pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachment)>, Error> {
-    let resolution = resolution(scene, &options, &Side::BOTH)?;
+    let accuracy = accuracy(scene, options.tolerance_deg, &Side::BOTH)?;
+    let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     let distances = &scene.grid.distance_mm;
     let curves = |group: Vec<_>| {
         sides(&group, |own: &SweptWhisker, side| {

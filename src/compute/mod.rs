@@ -1,10 +1,12 @@
-//! Functions of the library that compute in memory, or when a map is read.
+//! Computations of a scene by one call: maps, curves, branches, shapes and fits in memory, and maps that are computed when they are read.
 
 mod map;
+mod planned;
 mod regime_map;
 mod traces;
 
 pub use map::{for_each_panel, lazy_map, map};
+pub use planned::PlannedMap;
 pub use regime_map::{Map, MapCell};
 #[cfg(feature = "fit")]
 pub use traces::fit;
@@ -17,7 +19,6 @@ use crate::scene::Scene;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::Side;
-use whiskmap_mechanics::shooting::Resolution;
 
 /// Accuracy, engine, progress and cancellation of a computation.
 ///
@@ -92,19 +93,21 @@ pub enum Error {
     },
 }
 
-/// Returns the cheapest steps that keep the tolerance of `options`, with their estimated error; `None` without a tolerance.
-fn accuracy(scene: &Scene, options: &Options, sides: &[Side]) -> Result<Option<Accuracy>, Error> {
-    let accuracy = options.tolerance_deg.map(|tolerance_deg| {
+/// Returns the cheapest steps that keep push angles on `sides` of the scene within `tolerance_deg`, with their estimated error; `None`
+/// without a tolerance.
+///
+/// # Errors
+/// If no steps keep the tolerance.
+pub fn accuracy(
+    scene: &Scene,
+    tolerance_deg: Option<f64>,
+    sides: &[Side],
+) -> Result<Option<Accuracy>, Error> {
+    let accuracy = tolerance_deg.map(|tolerance_deg| {
         cheapest(scene, sides, tolerance_deg).map_err(|finest| Error::Tolerance {
             tolerance_deg,
             least: finest.error_deg,
         })
     });
     accuracy.transpose()
-}
-
-/// Returns the steps of trajectories that keep the tolerance of `options`: the finest without one.
-fn resolution(scene: &Scene, options: &Options, sides: &[Side]) -> Result<Resolution, Error> {
-    let accuracy = accuracy(scene, options, sides)?;
-    Ok(accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution))
 }

@@ -123,7 +123,7 @@ impl Map {
 
 #[cfg(all(test, feature = "ndarray"))]
 mod tests {
-    use crate::front::{Options, map};
+    use crate::compute::{Options, map};
     use crate::plan::Channel;
     use crate::scene::Scene;
 
