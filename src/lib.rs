@@ -94,12 +94,12 @@ mod stopwatch;
 pub mod terminal;
 
 pub use classify::{Regime, Status};
-#[cfg(feature = "fit")]
-pub use compute::fit;
 pub use compute::{
     Error, Map, MapCell, MapEngine, Options, branch, curve, for_each_panel, lazy_map, map, shape,
 };
 pub use engine::Precision;
+#[cfg(feature = "fit")]
+pub use fit::fit;
 pub use map::{Panel, Summary};
 pub use plan::{Channel, Channels};
 pub use whiskmap_mechanics as mechanics;

@@ -1,4 +1,4 @@
-//! Computations of a scene by one call: maps, curves, branches, shapes and fits in memory, and maps that are computed when they are read.
+//! Computations of a scene by one call: maps, curves, branches and shapes in memory, and maps that are computed when they are read.
 
 mod map;
 mod planned;
@@ -8,8 +8,6 @@ mod traces;
 pub use map::{for_each_panel, lazy_map, map};
 pub use planned::PlannedMap;
 pub use regime_map::{Map, MapCell};
-#[cfg(feature = "fit")]
-pub use traces::fit;
 pub use traces::{branch, curve, shape};
 
 use crate::accuracy::{Accuracy, cheapest};

@@ -1,12 +1,6 @@
-//! Detachment curves, branches, shapes and fits, computed in memory.
+//! Detachment curves, branches and shapes, computed in memory.
 
 use super::{Error, Options, accuracy};
-#[cfg(feature = "fit")]
-use crate::fit::{self, Fit};
-#[cfg(feature = "fit")]
-use crate::measured::MeasuredPoints;
-#[cfg(feature = "fit")]
-use crate::scene::Parameter;
 use crate::scene::{Scene, SweepPlace, SweptWhisker};
 use crate::trace::{Branch, Detachment, NoState, WhiskerShape, curve_at, sides, whiskers_at_once};
 use whiskmap_mechanics::rod::Side;
@@ -94,29 +88,4 @@ pub fn shape(
     let branch = branch(scene, distance_mm, Side::of_push(push_angle_deg))?;
     let state = branch.state(push_angle_deg.to_radians(), true)?;
     Ok(WhiskerShape::new(&branch, &state, 200))
-}
-
-/// Fits parameters of the scene's first whisker and of its pole to measured detachments, starting at the scene's values.
-///
-/// ```
-/// use whiskmap::measured::MeasuredPoints;
-/// use whiskmap::scene::{Parameter, Scene};
-///
-/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
-/// let points = MeasuredPoints::parse("side,distance_mm,push_angle_deg\ncb,15.6604597633658,15.60793\n", "points.csv")?;
-/// let start = cone.with(Parameter::TipRadiusUm, 3.0)?;
-/// let fit = whiskmap::fit(&start, &points, &[Parameter::TipRadiusUm])?;
-/// assert!((fit.estimates[0].value - 1.5).abs() < 1e-5);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// When a parameter cannot be free, a point is beyond the whisker, points are too few, or the iteration does not converge.
-#[cfg(feature = "fit")]
-pub fn fit(
-    scene: &Scene,
-    points: &MeasuredPoints,
-    free: &[Parameter],
-) -> Result<Fit, fit::FitError> {
-    fit::fit(scene, points, free)
 }

@@ -171,6 +171,18 @@ const NARROWEST: f64 = 1e-6;
 ///
 /// Points whose side never detaches at these values are left out; in [`Fit::comparison`] they have no residual.
 ///
+/// ```
+/// use whiskmap::measured::MeasuredPoints;
+/// use whiskmap::scene::{Parameter, Scene};
+///
+/// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
+/// let points = MeasuredPoints::parse("side,distance_mm,push_angle_deg\ncb,15.6604597633658,15.60793\n", "points.csv")?;
+/// let start = cone.with(Parameter::TipRadiusUm, 3.0)?;
+/// let fit = whiskmap::fit(&start, &points, &[Parameter::TipRadiusUm])?;
+/// assert!((fit.estimates[0].value - 1.5).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// If a parameter cannot be free, a point is beyond the whisker for every tried start, points are too few, or the iteration does not converge.
 pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<Fit, FitError> {
