@@ -1,5 +1,5 @@
 //! Tests that need something of the machine. A GPU: one contract in every precision, faults, row batches, whole maps and the
-//! program. Root: files of other users.
+//! program.
 //!
 //! A test that cannot run here is ignored with the reason, which needs a harness other than that of the standard library.
 #![allow(
@@ -46,8 +46,6 @@ mod random_rods;
 mod shoot;
 mod spectral;
 mod states;
-#[cfg(unix)]
-mod strangers;
 
 use libtest_mimic::{Arguments, Completion, Trial};
 use std::process::ExitCode;
@@ -68,9 +66,6 @@ pub enum MachineTest {
     /// The library of a Vulkan driver, which a driver that fails calls.
     #[cfg(target_os = "linux")]
     Driver(fn()),
-    /// Files of other users, which only root can make.
-    #[cfg(unix)]
-    Root(fn()),
 }
 
 fn main() -> ExitCode {
@@ -91,8 +86,6 @@ fn main() -> ExitCode {
         shoot::TESTS,
         spectral::TESTS,
         states::TESTS,
-        #[cfg(unix)]
-        strangers::TESTS,
     ];
     let tests = modules.concat().into_iter();
     let trials = tests.flat_map(|(path, test)| {
@@ -104,12 +97,6 @@ fn main() -> ExitCode {
             MachineTest::Driver(run) => {
                 let missing = faults::driver::real_driver().err();
                 vec![trial(&arguments, name, missing.as_deref(), run)]
-            }
-            #[cfg(unix)]
-            MachineTest::Root(run) => {
-                let is_root = rustix::process::geteuid().is_root();
-                let missing = (!is_root).then_some("only root can make files of other users");
-                vec![trial(&arguments, name, missing, run)]
             }
             MachineTest::Engine(run) => {
                 let on_cpu = [
