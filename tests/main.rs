@@ -1,6 +1,6 @@
 //! All tests that need no special machine, in one program: linking the library once saves most of the build.
 //!
-//! `cargo test --test suite MODULE::` runs one module. `machine` needs a GPU or root; `portable` needs no features.
+//! `cargo test --test suite MODULE::` runs one module. `machine` needs a GPU; `portable` needs no features.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod accuracy;

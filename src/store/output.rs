@@ -1,91 +1,100 @@
 //! Outputs: files being written. No other module opens files for writing.
 
-use super::file_id::{FileId, folder_of};
-use super::target::OutputTarget;
 use super::temporary::{TemporaryFile, TemporaryFiles};
 use crate::terminal::StandardOutput;
-use std::fs::File;
+use std::fs::{self, File, Metadata};
 use std::io::{self, Seek, SeekFrom, Write};
+#[cfg(unix)]
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 /// Output: a file being written.
 ///
-/// [`Output::finish`] replaces a regular file as a whole and keeps its owner, group and permissions. An output that is dropped
-/// before that leaves the file as it was. A device or a pipe is opened by `finish` and written to. Symbolic links are followed,
-/// and stay; a link of another user in a folder that others may write to is refused.
+/// [`Output::finish`] makes or replaces a regular file as a whole. A replaced file keeps its permissions; its owner is the user of this
+/// process. An output that is dropped before that leaves the file as it was. A device or a pipe is opened by `finish` and written to.
+/// Symbolic links are followed, and stay.
 #[derive(Debug)]
-pub struct Output(Destination);
+pub struct Output {
+    path: PathBuf,
+    place: OutputPlace,
+}
 
+/// Place of the bytes of an output until it is finished.
 #[derive(Debug)]
-enum Destination {
+enum OutputPlace {
+    /// Bytes are written at once.
     Stdout(StandardOutput),
+    /// The target is behind all symbolic links.
     Regular {
         file: TemporaryFile,
         target: PathBuf,
     },
-    /// The bytes are kept in a file without a name until the stream is opened.
-    Stream {
-        kept: File,
-        target: PathBuf,
-    },
+    /// A file without a name keeps the bytes until the device or the pipe is opened.
+    Device(File),
 }
 
 impl Output {
-    /// Creates an output that writes to standard output at once.
+    /// Creates an output that writes to standard output at once; its path is `-`.
     #[must_use]
     pub fn stdout() -> Self {
-        Self(Destination::Stdout(StandardOutput::open()))
+        Self {
+            path: PathBuf::from("-"),
+            place: OutputPlace::Stdout(StandardOutput::open()),
+        }
     }
 
     /// Creates an output for the file at `path`; until it is finished, its bytes are in one of the temporary `files`.
     ///
     /// # Errors
-    /// `path` leads to a folder, to a read-only file, or to a file whose owner cannot be kept. Or it leads through a link that must not
-    /// be followed, or its folder does not exist or is not writable.
+    /// `path` leads to a folder or to a read-only file, or its folder does not exist or is not writable.
     pub fn create(path: &Path, files: &TemporaryFiles) -> io::Result<Self> {
-        Ok(Self(match OutputTarget::of(path)? {
-            OutputTarget::Regular(target, replaced) => Destination::Regular {
-                file: TemporaryFile::create(folder_of(&target), replaced.as_ref(), files)?,
-                target,
-            },
-            OutputTarget::Stream(target) => Destination::Stream {
-                kept: tempfile::tempfile()?,
-                target,
-            },
-        }))
+        let place = if is_device(path) {
+            OutputPlace::Device(tempfile::tempfile()?)
+        } else {
+            let replaced = replaced(path)?;
+            let target = resolved(path)?;
+            let mut file = TemporaryFile::create(folder_of(&target), files)?;
+            if let Some(replaced) = replaced {
+                let permissions = replaced.permissions();
+                // Every write drops the set-user-ID and set-group-ID bits.
+                #[cfg(unix)]
+                let permissions = fs::Permissions::from_mode(permissions.mode() & 0o777);
+                file.file().set_permissions(permissions)?;
+            }
+            OutputPlace::Regular { file, target }
+        };
+        let path = path.to_owned();
+        Ok(Self { path, place })
     }
 
-    /// Removes the temporary files that interrupted processes of the same user left in the folder of a regular file: at once on the
-    /// same host, after a day on another one.
-    pub fn remove_leftovers(&self) {
-        if let Destination::Regular { file, .. } = &self.0 {
-            file.remove_leftovers();
-        }
-    }
-
-    /// Returns true if the output makes or replaces a regular file.
+    /// Returns the path with which the output was created.
     #[must_use]
-    pub fn is_regular(&self) -> bool {
-        matches!(self.0, Destination::Regular { .. })
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
-    /// Returns the path of the output's regular file behind all symbolic links; `None` for other outputs.
+    /// Returns the absolute path of a regular file, behind all symbolic links; `None` for other outputs.
     #[must_use]
     pub fn target(&self) -> Option<&Path> {
-        match &self.0 {
-            Destination::Regular { target, .. } => Some(target),
+        match &self.place {
+            OutputPlace::Regular { target, .. } => Some(target),
             _ => None,
         }
     }
 
-    /// Returns the identity of the output, equal for two outputs that are one file; `None` for devices and pipes.
+    /// Returns true if the output is standard output.
     #[must_use]
-    pub fn id(&self) -> Option<FileId> {
-        match &self.0 {
-            Destination::Stdout(_) => Some(FileId::of_stdout()),
-            Destination::Regular { target, .. } => FileId::of(target),
-            Destination::Stream { .. } => None,
-        }
+    pub fn is_stdout(&self) -> bool {
+        matches!(self.place, OutputPlace::Stdout(_))
+    }
+
+    /// Finishes the output. The bytes of a regular file are on the disk before its name, and its name before this returns: a crash of the
+    /// machine leaves the old file or the new one. It takes 1 to 5 ms.
+    ///
+    /// # Errors
+    /// The file cannot be brought to the disk or renamed, or the device takes no more.
+    pub fn finish(self) -> io::Result<()> {
+        self.complete(true).map(drop)
     }
 
     /// Finishes a regular file like [`Output::finish`], unless a file of its name is there: of several processes that
@@ -95,12 +104,7 @@ impl Output {
     /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), or an error of [`Output::finish`].
     #[cfg(feature = "zarr")]
     pub(super) fn finish_new(self) -> io::Result<()> {
-        match self.0 {
-            Destination::Regular { file, target } => {
-                named(file, &target, TemporaryFile::persist_new)
-            }
-            _ => Err(io::ErrorKind::AlreadyExists.into()),
-        }
+        self.complete(false).map(drop)
     }
 
     /// Finishes the output like [`Output::finish`], and returns its file. That is still the file of this output when another one has
@@ -108,91 +112,115 @@ impl Output {
     ///
     /// # Errors
     /// An error of [`Output::finish`], or the output is standard output.
-    pub(super) fn finish_open(mut self) -> io::Result<File> {
-        let file = self.file().map(|file| file.try_clone());
-        let file = file.ok_or(io::ErrorKind::NotSeekable)??;
-        self.finish()?;
-        Ok(file)
+    pub(super) fn finish_open(self) -> io::Result<File> {
+        self.complete(true)?
+            .ok_or(io::ErrorKind::NotSeekable.into())
     }
 
-    /// The file that has the bytes until the output is finished; `None` for standard output.
-    fn file(&mut self) -> Option<&mut File> {
-        match &mut self.0 {
-            Destination::Stdout(_) => None,
-            Destination::Regular { file, .. } => Some(file.file()),
-            Destination::Stream { kept, .. } => Some(kept),
-        }
-    }
-
-    /// Finishes the output. The bytes of a regular file are on the disk before its name, and its name before this returns: a crash of the
-    /// machine leaves the old file or the new one. It takes 1 to 5 ms.
-    ///
-    /// # Errors
-    /// The file cannot be brought to the disk or renamed, or the device takes no more.
-    pub fn finish(self) -> io::Result<()> {
-        match self.0 {
-            Destination::Stdout(mut stdout) => stdout.flush(),
-            Destination::Regular { file, target } => named(file, &target, TemporaryFile::persist),
-            Destination::Stream { mut kept, target } => {
+    /// Finishes the output, and returns the file that has its bytes; `None` for standard output.
+    fn complete(self, may_replace: bool) -> io::Result<Option<File>> {
+        match self.place {
+            OutputPlace::Stdout(mut stdout) => stdout.flush().map(|()| None),
+            OutputPlace::Regular { file, target } => {
+                let file = file.persist(&target, may_replace)?;
+                sync_folder(folder_of(&target))?;
+                Ok(Some(file))
+            }
+            OutputPlace::Device(mut kept) => {
                 // What is open for appending is never shortened or overwritten, even where it is a file.
-                let mut stream = File::options().append(true).open(target)?;
+                let mut device = File::options().append(true).open(&self.path)?;
                 kept.rewind()?;
-                io::copy(&mut kept, &mut stream).map(drop)
+                io::copy(&mut kept, &mut device)?;
+                Ok(Some(kept))
             }
         }
     }
 }
 
-/// Gives a file its name by `rename`, between its bytes and the entry of its folder on the disk.
-fn named(
-    mut file: TemporaryFile,
-    target: &Path,
-    rename: fn(TemporaryFile, &Path) -> io::Result<()>,
-) -> io::Result<()> {
-    file.file().sync_all()?;
-    rename(file, target)?;
-    sync_folder(folder_of(target))
-}
-
-/// Brings the names in a folder to the disk. Only Unix opens folders, some users may not, and some network file systems bring no
-/// folder to the disk: there, a crash of the machine can still take the new name back.
-pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
-    match File::open(folder).and_then(|folder| folder.sync_all()) {
-        Err(why)
-            if matches!(
-                why.kind(),
-                io::ErrorKind::PermissionDenied
-                    | io::ErrorKind::InvalidInput
-                    | io::ErrorKind::Unsupported
-            ) =>
-        {
-            Ok(())
-        }
-        synced => synced,
-    }
-}
-
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.0 {
-            Destination::Stdout(stdout) => stdout.write(bytes),
-            Destination::Regular { file, .. } => file.file().write(bytes),
-            Destination::Stream { kept, .. } => kept.write(bytes),
+        match &mut self.place {
+            OutputPlace::Stdout(stdout) => stdout.write(bytes),
+            OutputPlace::Regular { file, .. } => file.file().write(bytes),
+            OutputPlace::Device(kept) => kept.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match &mut self.0 {
-            Destination::Stdout(stdout) => stdout.flush(),
-            Destination::Regular { file, .. } => file.file().flush(),
-            Destination::Stream { kept, .. } => kept.flush(),
+        match &mut self.place {
+            OutputPlace::Stdout(stdout) => stdout.flush(),
+            // A file has no buffer.
+            _ => Ok(()),
         }
     }
 }
 
 impl Seek for Output {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let file = self.file();
-        file.map_or(Err(io::ErrorKind::NotSeekable.into()), |file| file.seek(to))
+        match &mut self.place {
+            OutputPlace::Stdout(_) => Err(io::ErrorKind::NotSeekable.into()),
+            OutputPlace::Regular { file, .. } => file.file().seek(to),
+            OutputPlace::Device(kept) => kept.seek(to),
+        }
+    }
+}
+
+/// Returns true if `path` leads to a device or a pipe.
+fn is_device(path: &Path) -> bool {
+    // Windows has no metadata of its null device.
+    let is_null = cfg!(windows) && path.as_os_str().eq_ignore_ascii_case("NUL");
+    is_null || fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
+}
+
+/// Returns the metadata of the file at `path`, which an output replaces; `None` if there is no file.
+fn replaced(path: &Path) -> io::Result<Option<Metadata>> {
+    let about = match fs::metadata(path) {
+        Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(None),
+        about => about?,
+    };
+    if about.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    // An administrator can open a read-only file, so its mode decides.
+    if about.permissions().readonly() {
+        let why = "the file there is read-only";
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, why));
+    }
+    File::options().write(true).open(path)?;
+    Ok(Some(about))
+}
+
+/// Returns the absolute path behind all symbolic links. Its last parts need not exist, not even behind a link.
+///
+/// # Errors
+/// The links are a circle, or a part is no folder or cannot be searched.
+pub fn resolved(path: &Path) -> io::Result<PathBuf> {
+    match path.canonicalize() {
+        Err(why) if why.kind() == io::ErrorKind::NotFound => {
+            match (path.read_link(), path.file_name()) {
+                (Ok(target), _) => resolved(&folder_of(path).join(target)),
+                (Err(_), Some(name)) => Ok(resolved(folder_of(path))?.join(name)),
+                (Err(_), None) => Err(why),
+            }
+        }
+        found => found,
+    }
+}
+
+/// Returns the folder that holds `path`.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Brings the names in a folder to the disk. Only Unix opens folders, some users may not, and some network file systems bring no
+/// folder to the disk: there, a crash of the machine can still take the new name back.
+pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
+    use io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        Err(why) if matches!(why.kind(), PermissionDenied | InvalidInput | Unsupported) => Ok(()),
+        synced => synced,
     }
 }

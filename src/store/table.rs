@@ -27,6 +27,12 @@ impl TableFile {
             .try_for_each(|row| self.0.serialize(row).map_err(unwrapped))
     }
 
+    /// Returns the output of the CSV table.
+    #[must_use]
+    pub fn output(&self) -> &Output {
+        &self.0.get_ref().output
+    }
+
     /// Flushes the CSV table and finishes the output.
     ///
     /// # Errors

@@ -157,11 +157,6 @@ fn links_stay_and_their_files_are_made_or_replaced() {
     place
         .run(&lost)
         .assert_refused(&["--csv lost.csv: No such file"]);
-    // A link and its target are one file.
-    symlink("p.svg", place.path("t.svg")).unwrap();
-    place
-        .run(&["curve", "scene.toml", "--csv=t.svg", "--plot=p.svg"])
-        .assert_refused(&["--csv t.svg and --plot p.svg: must be two files"]);
 }
 
 /// A limit on the file size simulates a full disk; the shell ignores its signal.

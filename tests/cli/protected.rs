@@ -114,6 +114,15 @@ fn redirected_standard_output_is_no_other_output() {
     Run::of(&both.stdout(stdout).output().unwrap()).assert_refused(&["must be two files"]);
     let parts = ["--output -: must be a folder, but - is standard output"];
     place.keeps(&["map", "scene.toml", "-o-"], &parts);
+
+    // The shell appends to the scene.
+    let stdout = fs::File::options()
+        .append(true)
+        .open(place.path("scene.toml"));
+    let mut appended = place.plain_command(&["curve", "scene.toml"]);
+    Run::of(&appended.stdout(stdout.unwrap()).output().unwrap())
+        .assert_refused(&["--csv -: is the input scene.toml"]);
+    assert_eq!(place.bytes("scene.toml"), SCENE.as_bytes());
 }
 
 #[test]
@@ -165,10 +174,6 @@ fn no_output_is_a_map_or_in_a_store() {
 #[test]
 fn no_output_is_another_output() {
     let place = Place::with(SCENE);
-    place.write("t.svg", "old");
-    fs::hard_link(place.path("t.svg"), place.path("p.svg")).unwrap();
-    let curve = ["curve", "scene.toml", "--csv=t.svg", "--plot=p.svg"];
-    place.keeps(&curve, &["--csv t.svg and --plot p.svg: must be two files"]);
     let spelt = ["curve", "scene.toml", "--csv=new.svg", "--plot=./new.svg"];
     place.keeps(&spelt, &["--csv new.svg and --plot ./new.svg: must be"]);
     place.write("scene.png", "old");

@@ -1,5 +1,5 @@
 //! Tests that need something of the machine. A GPU: one contract in every precision, faults, row batches, whole maps and the
-//! program. Root: files of other users.
+//! program.
 //!
 //! A test that cannot run here is ignored with the reason, which needs a harness other than that of the standard library.
 #![allow(
@@ -48,8 +48,6 @@ mod shipped;
 mod shoot;
 mod spectral;
 mod states;
-#[cfg(unix)]
-mod strangers;
 
 use libtest_mimic::{Arguments, Completion, Trial};
 use std::process::ExitCode;
@@ -70,9 +68,6 @@ pub enum MachineTest {
     /// The library of a Vulkan driver, which a driver that fails calls.
     #[cfg(target_os = "linux")]
     Driver(fn()),
-    /// Files of other users, which only root can make.
-    #[cfg(unix)]
-    Root(fn()),
 }
 
 fn main() -> ExitCode {
@@ -93,8 +88,6 @@ fn main() -> ExitCode {
         shoot::TESTS,
         spectral::TESTS,
         states::TESTS,
-        #[cfg(unix)]
-        strangers::TESTS,
     ];
     let tests = modules.concat().into_iter();
     let trials = tests.flat_map(|(path, test)| {
@@ -106,12 +99,6 @@ fn main() -> ExitCode {
             MachineTest::Driver(run) => {
                 let missing = faults::driver::real_driver().err();
                 vec![trial(&arguments, name, missing.as_deref(), run)]
-            }
-            #[cfg(unix)]
-            MachineTest::Root(run) => {
-                let is_root = rustix::process::geteuid().is_root();
-                let missing = (!is_root).then_some("only root can make files of other users");
-                vec![trial(&arguments, name, missing, run)]
             }
             MachineTest::Engine(run) => {
                 let on_cpu = [

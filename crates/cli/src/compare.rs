@@ -1,8 +1,8 @@
 //! Command `whiskmap compare`.
 
 use super::failure::Failure;
-use super::files::Files;
-use super::output_file::STDOUT;
+use super::files::{Files, STDOUT};
+use super::outputs::write;
 use super::solver::SolverArgs;
 use super::source::{channel_names, computed, is_scene, stored, warn};
 use clap::Args;
@@ -61,9 +61,9 @@ pub fn run(args: &CompareArgs, files: &mut Files) -> Result<(), Failure> {
     if args.json.as_deref() != Some(Path::new(STDOUT)) {
         print(paths, &maps, &comparison)?;
     }
-    if let Some(file) = json {
+    if let Some(output) = json {
         let document = document(paths, &comparison, &exceeded);
-        file.write(format!("{document:#}\n").as_bytes())?;
+        write(output, format!("{document:#}\n").as_bytes())?;
     }
     match &exceeded[..] {
         [] => Ok(()),

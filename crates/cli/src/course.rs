@@ -2,8 +2,7 @@
 
 use super::arguments::angle;
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::output_file::STDOUT;
+use super::files::{Files, STDOUT};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::digits;

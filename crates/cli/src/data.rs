@@ -1,8 +1,7 @@
 //! Option `--data`: measured detachments, and messages about them.
 
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::output_file::STDOUT;
+use super::files::{Files, STDOUT};
 use std::path::Path;
 use whiskmap::measured::{Comparison, MeasuredPoints};
 use whiskmap::scene::{digits, rounded};

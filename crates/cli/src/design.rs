@@ -3,12 +3,11 @@
 use super::arguments::{angle, parameter, side};
 use super::failure::Failure;
 use super::files::Files;
-use super::output_file::STDOUT;
-use super::outputs::{PlotArgs, open};
+use super::outputs::{PlotArgs, open, write};
 use super::pole::{self, PoleArgs, title};
 use clap::Args;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use whiskmap::Side;
 use whiskmap::design::{self, Design, DesignError, DesignGoal, DesignTarget};
 use whiskmap::input::Quantity;
@@ -156,7 +155,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let values = found.values.iter();
     let values = values.map(|value| written(&scene, args.parameter, *value, digits_of_goal));
     let values: Vec<f64> = values.collect();
-    if let Some(file) = better {
+    if let Some(output) = better {
         let own = args.parameter.value(&scene).unwrap_or(f64::NAN);
         let apart = |value: &f64| (value - own).abs();
         let nearest = values.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
@@ -169,8 +168,9 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
             }
             own => (own, *value),
         });
-        file.write(scene.to_toml_with(changes.as_slice())?.as_bytes())?;
-        if output == Some(Path::new(STDOUT)) {
+        let is_stdout = output.is_stdout();
+        write(output, scene.to_toml_with(changes.as_slice())?.as_bytes())?;
+        if is_stdout {
             return Ok(());
         }
     }

@@ -2,8 +2,8 @@
 
 use super::estimate::files;
 use super::failure::Failure;
+use super::files::unwritten;
 use super::map_format::MapFormat;
-use super::output_file::unwritten;
 use indicatif::DecimalBytes;
 use std::io;
 use std::path::Path;

@@ -3,7 +3,7 @@
 use super::data;
 use super::failure::{Failure, message};
 use super::files::Files;
-use super::output_file::STDOUT;
+use super::outputs::write;
 use clap::Args;
 use serde_json::json;
 use std::io::{IsTerminal, Write};
@@ -73,12 +73,12 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
         Some(output) => output.clone(),
         None => default_output(files, &scene.name)?,
     };
-    let file = files.output("--output", &output)?;
-    let Some(path) = file.write(page(&start.to_string()).as_bytes())? else {
+    let output = files.output("--output", &output)?;
+    let Some(path) = write(output, page(&start.to_string()).as_bytes())? else {
         return Ok(());
     };
     writeln!(StandardOutput::open(), "{}", path.display())?;
-    if !args.no_open && path != Path::new(STDOUT) && std::io::stdout().is_terminal() {
+    if !args.no_open && std::io::stdout().is_terminal() {
         open(&path);
     }
     Ok(())

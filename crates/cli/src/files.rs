@@ -1,20 +1,25 @@
 //! Inputs and outputs of a command. All are declared here, so that no output destroys an input or another output.
 
-use super::failure::{Failure, message};
-use super::output_file::{OutputFile, STDOUT, unwritten};
+use super::failure::Failure;
+use super::scene::read_scene;
+use same_file::Handle;
+use std::fs::Metadata;
 use std::io;
 use std::path::{Path, PathBuf};
-use whiskmap::scene::{Scene, digits, rounded};
-use whiskmap::store::{FileId, Output, TemporaryFiles};
-use whiskmap::traced::TracedShape;
+use whiskmap::scene::Scene;
+use whiskmap::store::{Output, TemporaryFiles, resolved};
+
+/// Path that stands for standard input or output.
+pub const STDOUT: &str = "-";
 
 /// Inputs and outputs of one command. Inputs are declared before outputs are opened.
 #[derive(Debug)]
 pub struct Files {
     temporary: TemporaryFiles,
-    inputs: Vec<(PathBuf, FileId)>,
-    /// Option and path of each output for messages, and the path.
-    outputs: Vec<(String, PathBuf, FileId)>,
+    /// Path of each input for messages, and the open file or folder.
+    inputs: Vec<(PathBuf, Handle)>,
+    /// Option and path of each output for messages, and the absolute path behind all links.
+    outputs: Vec<(String, PathBuf)>,
 }
 
 impl Files {
@@ -44,31 +49,32 @@ impl Files {
 
     /// Declares an input: a file, a store, or standard input.
     pub fn input(&mut self, path: &Path) {
-        let id = if path == Path::new(STDOUT) {
-            FileId::of_stdin()
-        } else {
-            FileId::of(path)
-        };
-        self.inputs.extend(id.map(|id| (path.to_owned(), id)));
+        let input = stored(path, Handle::stdin);
+        self.inputs
+            .extend(input.map(|input| (path.to_owned(), input)));
     }
 
-    /// Opens the output file of the command-line option `option`.
+    /// Opens the output file of the command-line option `option`. A file to which standard output is redirected is standard output.
     ///
     /// # Errors
     /// If the output is an input, is inside one, is another output, or cannot be written.
-    pub fn output(&mut self, option: &str, path: &Path) -> Result<OutputFile, Failure> {
-        let output = if path == Path::new(STDOUT) {
+    pub fn output(&mut self, option: &str, path: &Path) -> Result<Output, Failure> {
+        let stdout = Path::new(STDOUT);
+        let redirected = stored(stdout, Handle::stdout);
+        let is_redirected = redirected.is_some() && redirected == stored(path, Handle::stdout);
+        let output = if path == stdout || is_redirected {
             Output::stdout()
         } else {
             let advice = "name a file that can be written";
             let output = Output::create(path, &self.temporary);
             output.map_err(impossible(option, path, advice))?
         };
-        output.remove_leftovers();
-        let folders = output.target().map(FileId::of_folders);
-        self.claim(option, path, output.id(), &folders.unwrap_or_default())?;
-        let path = path.to_owned();
-        Ok(OutputFile { output, path })
+        let target = output.target().or(output.is_stdout().then_some(stdout));
+        target.map_or(Ok(()), |target| self.claim(option, path, target))?;
+        if let Some(folder) = output.target().and_then(Path::parent) {
+            TemporaryFiles::remove_leftovers(folder);
+        }
+        Ok(output)
     }
 
     /// Declares the store of `option`, a folder that need not exist.
@@ -77,7 +83,8 @@ impl Files {
     /// If the store is an input, is inside one, or is a file.
     pub fn store(&mut self, option: &str, path: &Path) -> Result<(), Failure> {
         check_folder(option, path)?;
-        self.claim(option, path, FileId::of(path), &FileId::of_folders(path))
+        let target = resolved(path).map_err(impossible(option, path, FOLDER_ADVICE))?;
+        self.claim(option, path, &target)
     }
 
     /// Creates the folder of `option`, and checks that files can be created in it.
@@ -87,83 +94,46 @@ impl Files {
         made.map_err(impossible(option, path, FOLDER_ADVICE))
     }
 
-    /// Adds an output, unless the output or one of its `folders` is an input, or the output is another output.
-    fn claim(
-        &mut self,
-        option: &str,
-        path: &Path,
-        id: Option<FileId>,
-        folders: &[FileId],
-    ) -> Result<(), Failure> {
-        let Some(id) = id else {
-            return Ok(());
-        };
-        let own = format!("{option} {}", path.display());
-        for (input, of_input) in &self.inputs {
-            let is = match of_input {
-                same if *same == id && FileId::is_confirmed(input, path) => "is",
-                folder if folders.contains(folder) => "is in",
-                _ => continue,
-            };
-            let input = input.display();
-            let why = format!("{own}: {is} the input {input}; name another file");
+    /// Adds an output, unless its `target` or one of the folders that hold it is an input, or another output has the target.
+    fn claim(&mut self, option: &str, path: &Path, target: &Path) -> Result<(), Failure> {
+        let output = format!("{option} {}", path.display());
+        for part in target.ancestors() {
+            let part_file = stored(part, Handle::stdout);
+            let is_part = |(_, input): &&(PathBuf, Handle)| Some(input) == part_file.as_ref();
+            if let Some((input, _)) = self.inputs.iter().find(is_part) {
+                let is = if part == target { "is" } else { "is in" };
+                let input = input.display();
+                let why = format!("{output}: {is} the input {input}; name another file");
+                return Err(Failure::Input(why));
+            }
+        }
+        let is_same = |(_, other): &&(String, PathBuf)| is_same_name(other, target);
+        if let Some((other, _)) = self.outputs.iter().find(is_same) {
+            let why = format!("{other} and {output}: must be two files");
             return Err(Failure::Input(why));
         }
-        let is_same = |(_, place, other): &&(String, PathBuf, FileId)| {
-            *other == id && FileId::is_confirmed(place, path)
-        };
-        if let Some((other, ..)) = self.outputs.iter().find(is_same) {
-            let why = format!("{other} and {own}: must be two files");
-            return Err(Failure::Input(why));
-        }
-        self.outputs.push((own, path.to_owned(), id));
+        self.outputs.push((output, target.to_owned()));
         Ok(())
     }
 }
 
-/// Reads a scene; prints notes about unused columns and warnings about values that look like another unit.
-pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
-    let scene = Scene::read(path)?;
-    for note in scene.notes() {
-        message(&format!("note: {note}"));
+/// Opens the file or the folder at `path`, or that of the `stream` at `-`, to compare it with others; returns `None` for a device or a pipe.
+fn stored(path: &Path, stream: fn() -> io::Result<Handle>) -> Option<Handle> {
+    let is_stored = |about: Metadata| about.is_file() || about.is_dir();
+    if path == Path::new(STDOUT) {
+        let stream = stream().ok()?;
+        let is_file = stream.as_file().metadata().is_ok_and(is_stored);
+        return is_file.then_some(stream);
     }
-    if let Some(traced) = scene.traced() {
-        let length_mm = scene.whisker.length_mm;
-        message(&format!(
-            "note: whisker.rest: {}",
-            fitted(traced, length_mm)
-        ));
-    }
-    for warning in scene.warnings() {
-        message(&format!("warning: {warning}"));
-    }
-    Ok(scene)
+    let is_file = path.metadata().is_ok_and(is_stored);
+    is_file.then(|| Handle::from_path(path).ok()).flatten()
 }
 
-/// Describes the fit to traced points of a whisker with this length.
-fn fitted(traced: &TracedShape, length_mm: f64) -> String {
-    let TracedShape {
-        degree,
-        rms_mm,
-        points_mm,
-        ..
-    } = traced;
-    let chosen = if traced.is_degree_chosen {
-        ", chosen by cross-validation"
-    } else {
-        ""
-    };
-    let own = rounded(traced.length_mm, 6);
-    let scaled = if length_mm == traced.length_mm {
-        String::new()
-    } else {
-        format!(", at the scale of length_mm = {}", digits(length_mm))
-    };
-    format!(
-        "curvature of degree {degree}{chosen}; {} points, rms distance {} mm, length {own} mm{scaled}",
-        points_mm.len(),
-        digits(rounded(*rms_mm, 3))
-    )
+/// Returns true if two absolute paths name one new file. On Windows and macOS, names that differ in case are usually one file.
+fn is_same_name(one: &Path, other: &Path) -> bool {
+    let differ_in_case = cfg!(any(windows, target_vendor = "apple"))
+        && one.as_os_str().eq_ignore_ascii_case(other.as_os_str());
+    one == other || differ_in_case
 }
 
 const FOLDER_ADVICE: &str = "give a folder that can be written";
@@ -175,13 +145,24 @@ pub fn check_folder(option: &str, path: &Path) -> Result<(), Failure> {
             format!("{option} -: must be a folder, but - is standard output; {FOLDER_ADVICE}");
         return Err(Failure::Input(why));
     }
-    match path.ancestors().find(|own| own.exists()) {
+    match path.ancestors().find(|part| part.exists()) {
         Some(file) if !file.is_dir() => Err(Failure::Input(format!(
             "{option} {}: must be a folder, but {} is not one; {FOLDER_ADVICE}",
             path.display(),
             file.display()
         ))),
         _ => Ok(()),
+    }
+}
+
+/// Returns a converter of errors from writing the file at `path`.
+pub fn unwritten(path: &Path) -> impl FnOnce(io::Error) -> Failure {
+    move |cause| {
+        if path == Path::new(STDOUT) {
+            return Failure::Output(cause);
+        }
+        let path = path.to_owned();
+        Failure::Write { path, cause }
     }
 }
 
@@ -196,39 +177,27 @@ fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error)
 /// Returns true for an error that another path would not have.
 fn is_of_path(error: &io::Error) -> bool {
     use io::ErrorKind::{
-        AlreadyExists, CrossesDevices, ExecutableFileBusy, InvalidFilename, InvalidInput,
-        IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem, Unsupported,
+        AlreadyExists, ExecutableFileBusy, InvalidFilename, InvalidInput, IsADirectory,
+        NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem, Unsupported,
     };
-    // Errors without a stable kind: a circle of links and, on Windows, a file that another program keeps for itself
-    // (ERROR_CANT_RESOLVE_FILENAME, ERROR_SHARING_VIOLATION, ERROR_LOCK_VIOLATION).
-    let others: &[i32] = &[
-        #[cfg(unix)]
-        libc::ELOOP,
-        #[cfg(windows)]
-        1921,
-        #[cfg(windows)]
-        32,
-        #[cfg(windows)]
-        33,
+    let kinds = [
+        AlreadyExists,
+        ExecutableFileBusy,
+        InvalidFilename,
+        InvalidInput,
+        IsADirectory,
+        NotADirectory,
+        NotFound,
+        PermissionDenied,
+        ReadOnlyFilesystem,
+        Unsupported,
     ];
-    if error
-        .raw_os_error()
-        .is_some_and(|code| others.contains(&code))
-    {
-        return true;
-    }
-    matches!(
-        error.kind(),
-        AlreadyExists
-            | CrossesDevices
-            | ExecutableFileBusy
-            | InvalidFilename
-            | InvalidInput
-            | IsADirectory
-            | NotADirectory
-            | NotFound
-            | PermissionDenied
-            | ReadOnlyFilesystem
-            | Unsupported
-    )
+    // Without a stable kind: a circle of links and, on Windows, a file that another program keeps for itself
+    // (ERROR_CANT_RESOLVE_FILENAME, ERROR_SHARING_VIOLATION, ERROR_LOCK_VIOLATION).
+    #[cfg(unix)]
+    let codes = [libc::ELOOP];
+    #[cfg(not(unix))]
+    let codes = [1921, 32, 33];
+    let code = error.raw_os_error();
+    kinds.contains(&error.kind()) || code.is_some_and(|code| codes.contains(&code))
 }

@@ -2,8 +2,7 @@
 
 use super::arguments::column_help;
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::output_file::STDOUT;
+use super::files::{Files, STDOUT};
 use super::outputs::OutputArgs;
 use super::pole::check_single;
 use clap::Args;

@@ -27,13 +27,13 @@ mod force;
 mod manual;
 mod map;
 mod map_format;
-mod output_file;
 mod outputs;
 mod plan;
 mod pole;
 mod progress;
 mod render;
 mod reproduce;
+mod scene;
 mod selection;
 mod sensitivity;
 mod shape;
@@ -44,7 +44,6 @@ mod slurm;
 mod solver;
 mod source;
 mod status;
-mod stdout;
 mod submit;
 mod summary;
 mod texture;
@@ -153,16 +152,12 @@ enum Command {
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let given: Vec<OsString> = arguments.into_iter().collect();
     let result = match Arguments::try_parse_from(&given) {
-        Ok(arguments) => stdout::check()
-            .map_err(Failure::Output)
-            .and_then(|()| start(&arguments.command)),
+        Ok(arguments) => start(&arguments.command),
         Err(wrong) if wrong.use_stderr() => {
             failure::refuse(&given, &wrong);
             return failure::INVALID_INPUT;
         }
-        Err(help) => stdout::check()
-            .and_then(|()| help.print())
-            .map_err(Failure::Output),
+        Err(help) => help.print().map_err(Failure::Output),
     };
     match result.and_then(|()| Ok(io::stdout().flush()?)) {
         Ok(()) => 0,

@@ -4,9 +4,8 @@ use super::arguments::{THREADS, whole};
 use super::digits::DigitsArgs;
 use super::disk;
 use super::failure::{Failure, message};
-use super::files::Files;
+use super::files::{Files, unwritten};
 use super::map_format::MapFormat;
-use super::output_file::{OutputFile, unwritten};
 use super::outputs::PictureFile;
 use super::sharded::{self, RunArgs};
 use super::solver::SolverArgs;
@@ -109,9 +108,9 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(path) = picture {
         let regimes = render::map(&map.into(), &MapOptions::default())?;
         let output = Output::create(&path, files.temporary()).map_err(unwritten(&path))?;
-        written.push(path.clone());
+        written.push(path);
         PictureFile {
-            file: OutputFile { output, path },
+            output,
             format: PictureFormat::Png,
             size: PictureSize::Natural,
         }

@@ -1,17 +1,88 @@
-//! Options `--csv` and `--plot`, and saving of pictures.
+//! Outputs of a command: texts, CSV tables and pictures; options `--csv` and `--plot`.
 
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::output_file::STDOUT;
-use super::output_file::{OutputFile, OutputTable};
+use super::files::{Files, STDOUT, unwritten};
 use super::size::SizeArgs;
 use super::units::ColumnUnits;
 use clap::Args;
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use whiskmap::paper::TableRows;
 use whiskmap::render::{Chart, Picture, PictureFormat, PictureSize, Plot};
+use whiskmap::store::{Output, TableFile};
 use whiskmap::terminal::StandardOutput;
+
+/// Writes `bytes` as the whole output. Returns the path of a regular file, `None` for another output.
+pub fn write(mut output: Output, bytes: &[u8]) -> Result<Option<PathBuf>, Failure> {
+    let (path, file) = (output.path().to_owned(), regular(&output));
+    let written = output.write_all(bytes).and_then(|()| output.finish());
+    written.map_err(unwritten(&path))?;
+    Ok(file)
+}
+
+/// Returns the path of a regular file; `None` for another output.
+fn regular(output: &Output) -> Option<PathBuf> {
+    output.target().map(|_| output.path().to_owned())
+}
+
+/// Open CSV table of a command's output.
+pub struct OutputTable {
+    table: TableFile,
+    units: ColumnUnits,
+    has_header: bool,
+}
+
+impl OutputTable {
+    /// Begins a CSV table in the output.
+    pub fn new(output: Output) -> Self {
+        Self {
+            table: TableFile::new(output),
+            units: ColumnUnits::default(),
+            has_header: false,
+        }
+    }
+
+    /// Sets the units of the table's columns.
+    pub fn in_units(self, units: ColumnUnits) -> Self {
+        Self { units, ..self }
+    }
+
+    /// Appends `rows` to the CSV table.
+    ///
+    /// # Errors
+    /// The output cannot be written; the message names the file.
+    pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), Failure> {
+        let written = if self.units.are_own() {
+            self.table.rows(rows)
+        } else {
+            let lines = self.units.converted(rows);
+            let skipped = usize::from(self.has_header);
+            self.has_header = true;
+            lines.and_then(|lines| self.table.rows(lines.iter().skip(skipped)))
+        };
+        written.map_err(unwritten(self.table.output().path()))
+    }
+
+    /// Appends to the CSV table the rows that `write` makes.
+    pub fn write(&mut self, write: &TableRows) -> Result<(), Failure> {
+        let written = write(&mut self.table);
+        written.map_err(unwritten(self.table.output().path()))
+    }
+
+    /// Returns true for a table on standard output.
+    pub fn is_stdout(&self) -> bool {
+        self.table.output().is_stdout()
+    }
+
+    /// Finishes the CSV table. Returns the path of a regular file, `None` for another output.
+    pub fn finish(self) -> Result<Option<PathBuf>, Failure> {
+        let output = self.table.output();
+        let (path, file) = (output.path().to_owned(), regular(output));
+        self.table.finish().map_err(unwritten(&path))?;
+        Ok(file)
+    }
+}
 
 #[derive(Debug, Args)]
 pub struct OutputArgs {
@@ -51,7 +122,7 @@ impl OutputArgs {
         let stdout = (!self.has_plot()).then(|| Path::new(STDOUT));
         let csv = self.csv.as_deref().or(stdout);
         let (table, plot) = open(files, "--csv", csv, &self.picture)?;
-        let table = table.map(|file| file.table().in_units(units));
+        let table = table.map(|output| OutputTable::new(output).in_units(units));
         Ok(OpenOutputs { table, plot })
     }
 
@@ -63,7 +134,8 @@ impl OutputArgs {
         path: &Path,
     ) -> Result<OutputTable, Failure> {
         let units = ColumnUnits::new(&self.units)?;
-        Ok(files.output(option, path)?.table().in_units(units))
+        let output = files.output(option, path)?;
+        Ok(OutputTable::new(output).in_units(units))
     }
 }
 
@@ -87,13 +159,16 @@ impl OpenOutputs {
     ) -> Result<(), Failure> {
         let is_alone = self.table.as_ref().is_some_and(OutputTable::is_stdout);
         let table = self.table.map(OutputTable::finish).transpose()?;
-        let plot = self.plot.map(|file| file.chart(&chart())).transpose()?;
+        let plot = self
+            .plot
+            .map(|picture| picture.chart(&chart()))
+            .transpose()?;
         if is_alone {
             return Ok(());
         }
         let mut out = StandardOutput::open();
-        let own = [table, plot].into_iter().flatten().flatten();
-        for path in own.chain(tables) {
+        let paths = [table, plot].into_iter().flatten().flatten();
+        for path in paths.chain(tables) {
             writeln!(out, "{}", path.display())?;
         }
         Ok(())
@@ -102,7 +177,7 @@ impl OpenOutputs {
 
 /// Open output file for a picture.
 pub struct PictureFile {
-    pub file: OutputFile,
+    pub output: Output,
     pub format: PictureFormat,
     pub size: PictureSize,
 }
@@ -127,7 +202,7 @@ impl PictureFile {
                 "warning: the built-in font lacks \u{201c}{missing}\u{201d}: the picture shows boxes; an SVG has the text itself"
             ));
         }
-        self.file.write(&picture.encode(self.format)?)
+        write(self.output, &picture.encode(self.format)?)
     }
 }
 
@@ -137,7 +212,7 @@ pub fn open(
     option: &str,
     data: Option<&Path>,
     PlotArgs { plot, size }: &PlotArgs,
-) -> Result<(Option<OutputFile>, Option<PictureFile>), Failure> {
+) -> Result<(Option<Output>, Option<PictureFile>), Failure> {
     let format = |path: &Path| {
         let must = || format!("--plot {}: must end in .png, .svg or .pdf", path.display());
         PictureFormat::of(path).ok_or_else(|| Failure::Input(must()))
@@ -148,9 +223,12 @@ pub fn open(
     if plot.is_none() && size != PictureSize::Natural {
         return Err(Failure::Input("--size: needs --plot".to_owned()));
     }
-    let output = data.map(|path| files.output(option, path)).transpose()?;
+    let data = data.map(|path| files.output(option, path)).transpose()?;
     let picture = plot.map(|path| files.output("--plot", path)).transpose()?;
-    let picture = picture.zip(format);
-    let picture = picture.map(|(file, format)| PictureFile { file, format, size });
-    Ok((output, picture))
+    let picture = picture.zip(format).map(|(output, format)| PictureFile {
+        output,
+        format,
+        size,
+    });
+    Ok((data, picture))
 }

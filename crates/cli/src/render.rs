@@ -2,8 +2,7 @@
 
 use super::arguments::whole;
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::output_file::STDOUT;
+use super::files::{Files, STDOUT};
 use super::outputs::PictureFile;
 use super::selection::{SelectionArgs, channels};
 use super::size::SizeArgs;
@@ -116,7 +115,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
             size,
         },
     )?;
-    let path = target.file.path.clone();
+    let path = target.output.path().to_owned();
     target.write(&picture)?;
     warn(map.source());
     if missing > 0 {
@@ -161,9 +160,13 @@ fn target(
     if is_stdout && std::io::stdout().is_terminal() {
         return refuse("standard output is a terminal; redirect it to a file or a program");
     }
-    let file = files.output("--output", &path)?;
+    let output = files.output("--output", &path)?;
     match PictureFormat::of(&path).or(is_stdout.then_some(PictureFormat::Png)) {
-        Some(format) => Ok(PictureFile { file, format, size }),
+        Some(format) => Ok(PictureFile {
+            output,
+            format,
+            size,
+        }),
         None => refuse("must end in .png, .svg or .pdf, or be - for PNG on standard output"),
     }
 }

@@ -3,7 +3,7 @@
 use super::data;
 use super::failure::Failure;
 use super::files::Files;
-use super::outputs::PictureFile;
+use super::outputs::{OutputTable, PictureFile};
 use super::size::SizeArgs;
 use clap::Args;
 use std::io::Write;
@@ -88,8 +88,12 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
         let tables = figure.tables.iter().map(|(name, _)| open(name, "csv"));
         let tables = tables.collect::<Result<Vec<_>, _>>()?;
         let mut picture = |ending, format| {
-            let file = open(figure.name, ending)?;
-            Ok::<_, Failure>(PictureFile { file, format, size })
+            let output = open(figure.name, ending)?;
+            Ok::<_, Failure>(PictureFile {
+                output,
+                format,
+                size,
+            })
         };
         let pictures = [
             picture("png", PictureFormat::Png)?,
@@ -101,13 +105,13 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
     let mut out = StandardOutput::open();
     for (figure, tables, pictures) in opened {
         for picture in pictures {
-            let path = picture.file.path.clone();
+            let path = picture.output.path().to_owned();
             picture.chart(&figure.chart)?;
             writeln!(out, "{}", path.display())?;
         }
-        for ((_, rows), file) in figure.tables.iter().zip(tables) {
-            let path = file.path.clone();
-            let mut table = file.table();
+        for ((_, rows), output) in figure.tables.iter().zip(tables) {
+            let path = output.path().to_owned();
+            let mut table = OutputTable::new(output);
             table.write(rows)?;
             table.finish()?;
             writeln!(out, "{}", path.display())?;

@@ -1,8 +1,7 @@
 //! Maps that commands read: stored maps, and maps of scenes, which are computed when they are read.
 
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::output_file::STDOUT;
+use super::files::{Files, STDOUT};
 use super::solver::SolverArgs;
 use std::path::Path;
 use whiskmap::plan::{Channels, Plan};

@@ -2,10 +2,11 @@
 
 use super::arguments::{THREADS, whole};
 use super::failure::{Failure, message};
-use super::files::{check_folder, read_scene};
+use super::files::check_folder;
 use super::map::MapArgs;
 use super::map_format::MapFormat;
 use super::plan::{PlanEstimate, memory};
+use super::scene::read_scene;
 use super::sharded::shares;
 use super::slurm;
 use clap::{Args, Parser};

@@ -6,7 +6,7 @@ use super::identity::FileIdentity;
 use super::metadata::CELLS;
 use super::read::open_regular;
 use crate::classify::Regime;
-use crate::store::{NOT_COMPUTED, StoreError, check_links};
+use crate::store::{NOT_COMPUTED, StoreError};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fs;
@@ -179,8 +179,7 @@ impl ZarrStore {
         // Without the last file the block counts as missing, whether or not the others are removed.
         for array in self.arrays.iter().rev() {
             let file = self.file(array, block);
-            let folder = self.path.join(&array.name);
-            match check_links(&folder).and_then(|()| fs::remove_file(&file)) {
+            match fs::remove_file(&file) {
                 Err(why) if why.kind() != io::ErrorKind::NotFound => {
                     return Err(StoreError::Write(file, why));
                 }

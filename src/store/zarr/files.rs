@@ -5,7 +5,7 @@ use super::check::metadata_fault;
 use super::metadata;
 use super::read::open_regular;
 use super::{METADATA, ZarrStore};
-use crate::store::{Output, StoreError, TemporaryFiles, check_links};
+use crate::store::{Output, StoreError, TemporaryFiles};
 use serde_json::{Map, Value};
 use std::fs;
 use std::io::{self, Read, Write};
@@ -23,7 +23,7 @@ impl ZarrStore {
     /// # Errors
     /// The existing store was created with other settings or must not exist, or one of its folders cannot be written.
     pub fn begin(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
-        let made = check_links(&self.path).and_then(|()| temporary.create_folders(&self.path));
+        let made = temporary.create_folders(&self.path);
         made.map_err(StoreError::at(&self.path, StoreError::Write))?;
         let root = self.path.join(METADATA);
         let created = finish(&root, &[self.root()], temporary, Output::finish_new);
@@ -33,7 +33,7 @@ impl ZarrStore {
         }
         for array in &self.arrays {
             let folder = self.path.join(&array.name);
-            let made = check_links(&folder).and_then(|()| temporary.create_folders(&folder));
+            let made = temporary.create_folders(&folder);
             made.map_err(StoreError::at(&folder, StoreError::Write))?;
         }
         let restored = self.restore_metadata(temporary)?;
@@ -153,7 +153,7 @@ fn finish(
     finish: fn(Output) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut output = Output::create(path, temporary)?;
-    if !output.is_regular() {
+    if output.target().is_none() {
         return Err(io::Error::other("it is no regular file"));
     }
     let mut pieces = pieces.iter();

@@ -4,9 +4,8 @@ mod plot;
 mod tables;
 
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::output_file::STDOUT;
-use super::outputs::{PlotArgs, open};
+use super::files::{Files, STDOUT};
+use super::outputs::{PlotArgs, open, write};
 use clap::Args;
 use plot::chart;
 use std::io::IsTerminal;
@@ -77,9 +76,9 @@ pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
             "grid: no cell of the sample has a state; give push angles and distances that keep the contact".to_owned(),
         )
     })?;
-    if let Some(file) = output {
+    if let Some(output) = output {
         let text = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-        file.write(text.as_bytes())?;
+        write(output, text.as_bytes())?;
     }
     if let Some(picture) = picture {
         let chart = chart(&report.scene, &report.rows, peers.as_ref());

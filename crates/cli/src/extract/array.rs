@@ -1,8 +1,7 @@
 //! Output of one channel of a slice as a NumPy array.
 
 use super::super::failure::Failure;
-use super::super::files::Files;
-use super::super::output_file::unwritten;
+use super::super::files::{Files, unwritten};
 use super::refuse;
 use std::io::{BufWriter, IntoInnerError, Write};
 use std::path::Path;
@@ -18,7 +17,7 @@ pub fn array(
     let [channel] = channels else {
         return refuse(path, "an array has one channel; give one --channel");
     };
-    let mut file = BufWriter::new(files.output("--output", path)?.output);
+    let mut file = BufWriter::new(files.output("--output", path)?);
     for (number, whisker) in slice.whiskers().enumerate() {
         let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
             ChannelValues::F32(values) => (

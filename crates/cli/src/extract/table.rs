@@ -2,6 +2,7 @@
 
 use super::super::failure::Failure;
 use super::super::files::Files;
+use super::super::outputs::OutputTable;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -54,7 +55,7 @@ pub fn table(
     path: &Path,
     files: &mut Files,
 ) -> Result<(), Failure> {
-    let mut table = files.output("--output", path)?.table();
+    let mut table = OutputTable::new(files.output("--output", path)?);
     let names = ["regime", "status"].map(|name| slice.names(name).unwrap_or_default());
     let grid = slice.grid();
     for whisker in slice.whiskers() {

@@ -5,9 +5,8 @@ mod table;
 use super::arguments::parameter;
 use super::data;
 use super::failure::{Failure, message};
-use super::files::Files;
-use super::output_file::OutputFile;
-use super::output_file::STDOUT;
+use super::files::{Files, STDOUT};
+use super::outputs::write;
 use super::pole::check_single;
 use clap::Args;
 use serde_json::{Map, Value, json};
@@ -16,6 +15,7 @@ use std::path::{Path, PathBuf};
 use table::table;
 use whiskmap::fit::{Fit, FitError, fit};
 use whiskmap::scene::Parameter;
+use whiskmap::store::Output;
 use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
@@ -76,10 +76,10 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
         message(&format!("warning: {warning}"));
     }
     let toml = toml.filter(|_| found.not_a_fit.is_none());
-    let json = json.map(|file| (file, format!("{:#}\n", document(&found))));
+    let json = json.map(|output| (output, format!("{:#}\n", document(&found))));
     let values = found.estimates.iter();
     let values: Vec<_> = values.map(|own| (own.parameter, own.value)).collect();
-    let toml = toml.map(|file| Ok::<_, Failure>((file, scene.to_toml_with(&values)?)));
+    let toml = toml.map(|output| Ok::<_, Failure>((output, scene.to_toml_with(&values)?)));
     let toml = toml.transpose()?;
     let outputs = [toml, json].into_iter().flatten().collect();
     let printed = print(&scene.title, &found, outputs);
@@ -98,14 +98,13 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
 }
 
 /// Writes the outputs with their texts. Prints the table and their names on standard output, unless an output is written there.
-fn print(title: &str, fit: &Fit, outputs: Vec<(OutputFile, String)>) -> Result<(), Failure> {
-    let mut paths = outputs.iter().map(|(file, _)| &file.path);
-    let is_streamed = paths.any(|path| path == Path::new(STDOUT));
+fn print(title: &str, fit: &Fit, outputs: Vec<(Output, String)>) -> Result<(), Failure> {
+    let is_streamed = outputs.iter().any(|(output, _)| output.is_stdout());
     if !is_streamed {
         table(title, fit)?;
     }
-    for (file, text) in outputs {
-        let regular = file.write(text.as_bytes())?;
+    for (output, text) in outputs {
+        let regular = write(output, text.as_bytes())?;
         if let Some(path) = regular.filter(|_| !is_streamed) {
             writeln!(StandardOutput::open(), "{}", path.display())?;
         }

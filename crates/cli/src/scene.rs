@@ -1,0 +1,51 @@
+//! Reading of scenes, with their notes and warnings.
+
+use super::failure::{Failure, message};
+use std::path::Path;
+use whiskmap::scene::{Scene, digits, rounded};
+use whiskmap::traced::TracedShape;
+
+/// Reads a scene; prints notes about unused columns and warnings about values that look like another unit.
+pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
+    let scene = Scene::read(path)?;
+    for note in scene.notes() {
+        message(&format!("note: {note}"));
+    }
+    if let Some(traced) = scene.traced() {
+        let length_mm = scene.whisker.length_mm;
+        message(&format!(
+            "note: whisker.rest: {}",
+            fitted(traced, length_mm)
+        ));
+    }
+    for warning in scene.warnings() {
+        message(&format!("warning: {warning}"));
+    }
+    Ok(scene)
+}
+
+/// Describes the fit to traced points of a whisker with this length.
+fn fitted(traced: &TracedShape, length_mm: f64) -> String {
+    let TracedShape {
+        degree,
+        rms_mm,
+        points_mm,
+        ..
+    } = traced;
+    let chosen = if traced.is_degree_chosen {
+        ", chosen by cross-validation"
+    } else {
+        ""
+    };
+    let length = rounded(traced.length_mm, 6);
+    let scaled = if length_mm == traced.length_mm {
+        String::new()
+    } else {
+        format!(", at the scale of length_mm = {}", digits(length_mm))
+    };
+    format!(
+        "curvature of degree {degree}{chosen}; {} points, rms distance {} mm, length {length} mm{scaled}",
+        points_mm.len(),
+        digits(rounded(*rms_mm, 3))
+    )
+}

@@ -1,0 +1,265 @@
+//! Temporary files and folders: unfinished outputs, which are removed when they are dropped and when the process is interrupted.
+//!
+//! A process that is killed leaves them. They are locked while their process runs, so that a later process can remove these leftovers.
+//! The locks in a shared folder may be visible on one host only, so names contain the host.
+
+use super::output::folder_of;
+use std::fs::{self, File, Metadata};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use tempfile::NamedTempFile;
+#[cfg(feature = "zarr")]
+use tempfile::TempDir;
+
+/// A file of another host counts as a leftover if nothing was written to it for so long.
+const ABANDONED: Duration = Duration::from_secs(24 * 3600);
+
+/// The name of a temporary file is this, the name of the host, [`DELIMITER`], and [`RANDOM`] letters and digits.
+const PREFIX: &str = ".whiskmap-";
+
+/// No name of a host has this character.
+const DELIMITER: char = '+';
+
+/// Length of the random end of a name.
+const RANDOM: usize = 12;
+
+/// List of the temporary files and folders of a process, shared by its outputs and its signal handler.
+#[derive(Clone, Debug, Default)]
+pub struct TemporaryFiles(Arc<Mutex<Vec<PathBuf>>>);
+
+impl TemporaryFiles {
+    /// Removes all temporary files and folders of a process that is about to end without unwinding. Threads that create a file or a folder
+    /// or finish a file after this wait forever.
+    pub fn abandon(&self) {
+        let list = self.list();
+        // The files in a folder are listed after it. Without them, no thread can add an entry to it.
+        for path in list.iter().rev() {
+            let _ = fs::remove_file(path);
+            let _ = fs::remove_dir_all(path);
+        }
+        std::mem::forget(list);
+    }
+
+    /// Creates a folder and those that hold it, if need be, with no interruption in between.
+    ///
+    /// # Errors
+    /// An error of [`fs::create_dir_all`].
+    pub fn create_folders(&self, path: &Path) -> io::Result<()> {
+        let _list = self.list();
+        fs::create_dir_all(path)
+    }
+
+    /// Checks that files can be made in `folder`, and removes leftovers there.
+    ///
+    /// # Errors
+    /// The folder does not exist or is not writable.
+    pub fn prepare(&self, folder: &Path) -> io::Result<()> {
+        TemporaryFile::create(folder, self)?;
+        Self::remove_leftovers(folder);
+        Ok(())
+    }
+
+    /// Removes leftovers in `folder` that this user may write to: those of this host at once, files of another host after a day. A folder of
+    /// another host stays: it may be old, and files in it new.
+    pub fn remove_leftovers(folder: &Path) {
+        let host_here = host();
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let name = entry.file_name();
+            let Some(host) = name.to_str().and_then(host_of) else {
+                continue;
+            };
+            let Ok(about) = entry.metadata() else {
+                continue;
+            };
+            let (is_here, is_folder) = (host == host_here, about.is_dir());
+            let is_gone = match is_folder {
+                true => is_here,
+                false => about.is_file() && (is_here || is_abandoned(&about)),
+            };
+            // No folder is opened for writing, and NFS locks no file that is not.
+            let mut options = File::options();
+            options.read(is_folder).write(!is_folder);
+            // It stays locked until it is removed.
+            if is_gone
+                && let Ok(file) = options.open(entry.path())
+                && file.try_lock().is_ok()
+            {
+                let _ = match is_folder {
+                    true => fs::remove_dir_all(entry.path()),
+                    false => fs::remove_file(entry.path()),
+                };
+            }
+        }
+    }
+
+    fn list(&self) -> MutexGuard<'_, Vec<PathBuf>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Makes a file or a folder, opens, locks and lists it, with no interruption in between.
+    fn make<T: AsRef<Path>>(
+        &self,
+        make: impl Fn() -> io::Result<T>,
+        open: impl Fn(&T) -> io::Result<File>,
+    ) -> io::Result<(T, ListedPath)> {
+        let mut list = self.list();
+        loop {
+            let made = make()?;
+            let path = made.as_ref().to_owned();
+            // What cannot be locked, such as a folder of Windows, stays if the process is killed.
+            let lock = open(&made).ok();
+            let _ = lock.as_ref().map(File::lock);
+            // Before it was locked, another process may have removed it as a leftover.
+            if matches!(path.try_exists(), Ok(false)) {
+                continue;
+            }
+            list.push(path.clone());
+            let files = self.clone();
+            return Ok((made, ListedPath { path, files, lock }));
+        }
+    }
+}
+
+/// A path in the list of [`TemporaryFiles`], until it is dropped.
+#[derive(Debug)]
+struct ListedPath {
+    path: PathBuf,
+    files: TemporaryFiles,
+    lock: Option<File>,
+}
+
+impl Drop for ListedPath {
+    fn drop(&mut self) {
+        self.files.list().retain(|path| *path != self.path);
+    }
+}
+
+/// Temporary file that gets its name when it is complete.
+#[derive(Debug)]
+pub(super) struct TemporaryFile {
+    file: NamedTempFile,
+    listed: ListedPath,
+}
+
+impl TemporaryFile {
+    /// Creates a temporary file in `folder`.
+    pub fn create(folder: &Path, files: &TemporaryFiles) -> io::Result<Self> {
+        let mut options = File::options();
+        options.read(true).write(true).create_new(true);
+        // `tempfile` itself makes private files, and its errors name them.
+        let make = || builder(&prefix()).make_in(folder, |path| options.open(path));
+        let (file, listed) = files.make(make, |file| file.as_file().try_clone())?;
+        Ok(Self { file, listed })
+    }
+
+    pub fn file(&mut self) -> &mut File {
+        self.file.as_file_mut()
+    }
+
+    /// Gives the file its `name` when its bytes are on the disk, and returns it, open. Without `may_replace`, no file may have the name; this
+    /// needs a file system with renames that replace nothing or, such as NFS, with hard links.
+    pub fn persist(self, name: &Path, may_replace: bool) -> io::Result<File> {
+        let Self { file, listed } = self;
+        file.as_file().sync_all()?;
+        if let Some(lock) = listed.lock.as_ref().filter(|_| cfg!(windows)) {
+            // Nobody can read a locked file of Windows.
+            let _ = lock.unlock();
+        }
+        if !may_replace {
+            return Ok(file.persist_noclobber(name)?);
+        }
+        let (file, path) = file.into_parts();
+        // On Windows, `tempfile` does not replace a file that is open.
+        fs::rename(path, name)?;
+        Ok(file)
+    }
+}
+
+/// Temporary folder that gets its name when it is complete.
+#[cfg(feature = "zarr")]
+#[derive(Debug)]
+pub struct TemporaryFolder {
+    folder: TempDir,
+    _listed: ListedPath,
+}
+
+#[cfg(feature = "zarr")]
+impl TemporaryFolder {
+    /// Creates an empty temporary folder beside `target`, and removes leftovers there.
+    ///
+    /// # Errors
+    /// The folder of `target` does not exist or is not writable.
+    pub fn create(target: &Path, files: &TemporaryFiles) -> io::Result<Self> {
+        let beside = folder_of(target);
+        files.prepare(beside)?;
+        let make = || {
+            let prefix = prefix();
+            let mut builder = builder(&prefix);
+            // `tempfile` itself makes private folders.
+            #[cfg(unix)]
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+            builder.tempdir_in(beside)
+        };
+        let (folder, _listed) = files.make(make, |folder| File::open(folder))?;
+        Ok(Self { folder, _listed })
+    }
+
+    /// Returns the path of the temporary folder until it is finished.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Gives the temporary folder the name `target`.
+    ///
+    /// # Errors
+    /// A file, or a folder that is not empty, has the name.
+    pub fn finish(self, target: &Path) -> io::Result<()> {
+        if cfg!(windows) {
+            // Windows replaces no folder, not even an empty one, and this removes no other.
+            let _ = fs::remove_dir(target);
+        }
+        fs::rename(self.folder.path(), target)?;
+        let _ = self.folder.keep();
+        super::output::sync_folder(folder_of(target))
+    }
+}
+
+/// Returns true if nothing was written to a file for so long that it counts as a leftover on every host.
+fn is_abandoned(about: &Metadata) -> bool {
+    let age = about.modified().ok().and_then(|then| then.elapsed().ok());
+    age.is_some_and(|age| age > ABANDONED)
+}
+
+/// Returns the host in the name of a temporary file or folder; `None` for any other name.
+pub(super) fn host_of(name: &str) -> Option<&str> {
+    let (host, random) = name.strip_prefix(PREFIX)?.split_once(DELIMITER)?;
+    let is_random = random.len() == RANDOM && random.chars().all(|c| c.is_ascii_alphanumeric());
+    is_random.then_some(host)
+}
+
+/// Returns the names of temporary files of this host, but for their random ends.
+fn prefix() -> String {
+    format!("{PREFIX}{}{DELIMITER}", host())
+}
+
+fn builder(prefix: &str) -> tempfile::Builder<'_, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(prefix).rand_bytes(RANDOM);
+    builder
+}
+
+/// Returns the name of this host.
+fn host() -> String {
+    #[cfg(unix)]
+    let host = rustix::system::uname()
+        .nodename()
+        .to_string_lossy()
+        .into_owned();
+    #[cfg(not(unix))]
+    let host = std::env::var("COMPUTERNAME").unwrap_or_default();
+    let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
+    host.chars().filter(is_plain).take(64).collect()
+}
