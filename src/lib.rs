@@ -55,6 +55,7 @@ pub mod design;
 pub mod fit;
 pub mod force;
 pub mod measured;
+pub mod random;
 #[cfg(feature = "render")]
 #[allow(
     clippy::disallowed_methods,
@@ -107,7 +108,6 @@ mod newton;
 pub mod paper;
 #[doc(hidden)]
 pub mod plan;
-mod random;
 #[doc(hidden)]
 pub mod refine;
 #[doc(hidden)]
