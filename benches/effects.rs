@@ -30,7 +30,7 @@ fn main() {
 
     let sets: Vec<(Effects, Vec<InitialCondition<'static>>)> = effect_sets::all()
         .map(|effects| {
-            let mut random = Random(31);
+            let mut random = Random::new(31);
             let conditions = (0..count).map(|_| {
                 let rod = Box::leak(Box::new(rod(effects, &mut random)));
                 condition(rod, 6.5, &mut random)

@@ -78,7 +78,7 @@ fn processor() -> String {
 /// Random trajectories: taper up to 0.95, contacts from 0.05 to 0.999 of the length, `q` up to 9. The first half of the rods is
 /// straight, the second half has `A*` of 0.4.
 fn ensemble() -> Vec<InitialCondition<'static>> {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     (0..TRAJECTORIES)
         .map(|i| {
             let rod = Rod {

@@ -53,6 +53,7 @@ pub mod design;
 pub mod fit;
 pub mod force;
 pub mod measured;
+pub mod random;
 #[cfg(feature = "render")]
 #[allow(
     clippy::disallowed_methods,
@@ -87,7 +88,6 @@ mod newton;
 )]
 pub mod paper;
 pub mod plan;
-mod random;
 pub mod refine;
 pub mod sheet;
 mod stopwatch;

@@ -1,4 +1,12 @@
 //! Reproducible random numbers: equal on every machine and for any number of threads.
+//!
+//! ```
+//! use whiskmap::random::RandomStream;
+//!
+//! let mut drawn = RandomStream::new(1, 0);
+//! let mut again = RandomStream::new(1, 0);
+//! assert_eq!(drawn.normal(), again.normal());
+//! ```
 
 use std::f64::consts::TAU;
 
@@ -10,10 +18,15 @@ pub struct RandomStream {
 
 impl RandomStream {
     /// Creates the stream of random numbers of a `seed` and a `sample`.
-    pub fn new(seed: u64, sample: u64) -> Self {
-        Self {
-            state: mixed(mixed(seed).wrapping_add(sample)),
-        }
+    #[must_use]
+    pub const fn new(seed: u64, sample: u64) -> Self {
+        Self::of_state(mixed(mixed(seed).wrapping_add(sample)))
+    }
+
+    /// Creates the stream of random numbers that SplitMix64 makes from a state.
+    #[must_use]
+    pub const fn of_state(state: u64) -> Self {
+        Self { state }
     }
 
     /// Returns a uniform random number of at least 0 and less than 1.
@@ -31,13 +44,22 @@ impl RandomStream {
 
     /// 53 random bits.
     fn bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        mixed(self.state) >> 11
+        let bits = hash(self.state);
+        self.state = self.state.wrapping_add(INCREMENT);
+        bits >> 11
     }
 }
 
+/// Increment of the state of SplitMix64: 2^64 over the golden ratio.
+const INCREMENT: u64 = 0x9e37_79b9_7f4a_7c15;
+
 /// Number of values of 53 bits.
 const STEPS: f64 = (1_u64 << 53) as f64;
+
+/// Returns the hash of a number: the bits that SplitMix64 makes from this state.
+pub(crate) const fn hash(state: u64) -> u64 {
+    mixed(state.wrapping_add(INCREMENT))
+}
 
 /// Mixes bits, so that each depends on all others.
 const fn mixed(bits: u64) -> u64 {
@@ -53,7 +75,7 @@ mod tests {
     /// Values of the published generator with the state 1234567.
     #[test]
     fn the_bits_are_those_of_splitmix64() {
-        let mut stream = RandomStream { state: 1_234_567 };
+        let mut stream = RandomStream::of_state(1_234_567);
         let expected = [6_457_827_717_110_365_317_u64, 3_203_168_211_198_807_973];
         assert_eq!(
             expected.map(|bits| bits >> 11),

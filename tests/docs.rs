@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use whiskmap::force::FrameForce;
 use whiskmap::measured::ComparedPoint;
+use whiskmap::scene::Parameter;
 use whiskmap::sensitivity::VariableEffect;
 use whiskmap::texture::{AsperityStay, TextureEvent, TextureSample, TipBin};
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
@@ -109,6 +110,40 @@ fn every_column_is_on_the_page_of_the_commands() {
         let line = format!("| `{name}` | {} |", meaning.trim());
         assert!(page.contains(&line), "{line}");
     }
+}
+
+/// Every number and every axis of a scene has a row with its unit, and with its limits where no other number narrows them.
+#[test]
+fn the_numbers_of_scenes_are_on_their_pages() {
+    let read = |page: &str| fs::read_to_string(root().join("docs").join(page)).expect("a page");
+    let [scenes, sweeps] = ["scenes.md", "sweeps.md"].map(read);
+    let row = |page: &str, key: &str| -> Vec<String> {
+        let rows = page.lines().map(|line| line.split('|').map(str::trim));
+        let mut rows = rows.map(|row| row.map(str::to_owned).collect::<Vec<String>>());
+        let key = format!("`{key}`");
+        let row = rows.find(|row| row.len() > 4 && row[1].contains(&key));
+        row.unwrap_or_else(|| panic!("no row of {key}"))
+    };
+    let mut compared = 0;
+    for parameter in Parameter::ALL {
+        let is_swept = Parameter::SWEPT.contains(&parameter);
+        let swept = is_swept.then(|| row(&sweeps, parameter.axis_key()));
+        let given = (parameter != Parameter::Taper).then(|| row(&scenes, parameter.key()));
+        for row in swept.iter().chain(&given) {
+            let unit = Some(parameter.unit()).filter(|unit| *unit != "1");
+            assert_eq!(row[2], unit.unwrap_or_default(), "{row:?}");
+            let allowed = row[3].replace([',', ':'], "");
+            let words: Vec<&str> = allowed.split(' ').collect();
+            if let [least, "to", most, rest @ ..] = &words[..]
+                && let (Ok(least), Ok(most)) = (least.parse::<f64>(), most.parse::<f64>())
+                && !rest.starts_with(&["divided"])
+            {
+                assert_eq!([least, most], parameter.limits(), "{row:?}");
+                compared += 1;
+            }
+        }
+    }
+    assert_eq!(compared, 11);
 }
 
 /// Returns the number of cells of a row of a table; pipes in cells are escaped.

@@ -187,7 +187,7 @@ fn rod(random: &mut Random, family: usize) -> (Rod, Side) {
 /// detachment curve does.
 #[test]
 fn branches_agree_with_curves_on_random_rows() {
-    let mut random = Random(17);
+    let mut random = Random::new(17);
     let mut compared = 0;
     for i in 0..48 {
         let (rod, side) = rod(&mut random, i % 4);

@@ -133,7 +133,7 @@ fn taylor_extrapolation_is_of_second_order() {
 /// rises.
 fn rough() -> [Scene; 2] {
     const LAST: u32 = 59;
-    let mut random = random_rods::Random(3);
+    let mut random = random_rods::Random::new(3);
     let row = |i: u32| {
         let s = f64::from(i) / f64::from(LAST);
         [20.0 * s, 30.0 * (1.0 - 0.95 * s) * random.between(0.7, 1.3)]

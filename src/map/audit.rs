@@ -2,6 +2,7 @@
 
 use super::summary::Audit;
 use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSide};
+use crate::random::hash;
 use crate::sheet::Sheet;
 use std::ops::Range;
 
@@ -36,7 +37,7 @@ impl AuditSample {
             .into_iter()
             .chain([distance.to_bits(), row as u64]);
         Self {
-            seed: numbers.fold(0, |seed, number| mixed(seed ^ mixed(number))),
+            seed: numbers.fold(0, |seed, number| hash(seed ^ hash(number))),
             one_in: (cells / AT_LEAST).clamp(1, ONE_IN),
         }
     }
@@ -46,18 +47,10 @@ impl AuditSample {
         let Self { seed, one_in } = *self;
         let all = cells.start as u64..cells.end as u64;
         let parts = all.start / one_in..all.end.div_ceil(one_in);
-        let chosen = parts.map(move |part| part * one_in + mixed(seed ^ mixed(part)) % one_in);
+        let chosen = parts.map(move |part| part * one_in + hash(seed ^ hash(part)) % one_in);
         let chosen = chosen.filter(move |cell| all.contains(cell));
         chosen.map(|cell| cell as usize)
     }
-}
-
-/// Hash of a number: one step of splitmix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014).
-fn mixed(z: u64) -> u64 {
-    let z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 /// Largest error of a value by expansions, as a part of its size, over the bound on the residual in whisker lengths: what their certificate
@@ -184,7 +177,7 @@ mod tests {
     #[test]
     fn short_rows_are_sampled_as_often() {
         let rows = (0..4096).map(|row| AuditSample {
-            seed: mixed(row),
+            seed: hash(row),
             one_in: 256,
         });
         let count = rows.map(|row| row.of(0..16).count()).sum::<usize>();

@@ -8,8 +8,8 @@ use super::data::SceneData;
 use super::deviations;
 use super::error::SceneFault;
 use super::grid::{FARTHEST, Grid, NEAREST};
-use super::limits::{MOST_STRETCH, NumberLimits, STIFFEST_TIP, digits, limits};
-use super::parameter::Parameter;
+use super::limits::{NumberLimits, digits, limits};
+use super::parameter::{MOST_STRETCH, Parameter, STIFFEST_TIP};
 use super::profile;
 use super::shape;
 use super::sweep;
@@ -70,32 +70,36 @@ fn check_title(title: &str) -> Result<(), SceneFault> {
     Err(SceneFault::new("title", must))
 }
 
+/// Returns the given number of a parameter, or else its neutral one, if it lies within the limits.
+fn check_number(
+    numbers: &Numbers,
+    parameter: Parameter,
+    limits: NumberLimits,
+) -> Result<f64, SceneFault> {
+    let absent = || SceneFault::new(parameter.key(), "is left out");
+    let value = numbers.get(parameter).or(parameter.neutral());
+    limits.check(parameter.key(), value.ok_or_else(absent)?)
+}
+
 fn whisker(
     numbers: &Numbers,
     rows: Option<&[[f64; 2]]>,
     traced: Option<&TracedShape>,
 ) -> Result<Whisker, SceneFault> {
-    let check = |limits: NumberLimits, parameter: Parameter| {
-        let absent = || SceneFault::new(parameter.key(), "is left out");
-        limits.check(parameter.key(), numbers.get(parameter).ok_or_else(absent)?)
-    };
-    let check_or_one = |limits: NumberLimits, parameter: Parameter| {
-        let value = numbers.get(parameter).unwrap_or(1.0);
-        limits.check(parameter.key(), value)
-    };
-    let length_mm = check(limits(Parameter::LengthMm), Parameter::LengthMm)?;
+    let check = |parameter, limits| check_number(numbers, parameter, limits);
+    let length_mm = check(Parameter::LengthMm, limits(Parameter::LengthMm))?;
     let radii = profile::radii(numbers, rows, length_mm)?;
     let length_mm = radii.length_mm;
     let modulus = numbers.get(Parameter::YoungsModulusGpa);
     let unit = modulus.and_then(|gpa| other_unit(gpa, MODULUS_GPA, &MODULUS_UNITS));
     let unit = unit.map(|unit| format!("is it in {unit}?"));
     let modulus = Parameter::YoungsModulusGpa;
-    let youngs_modulus_gpa = check(limits(modulus).remarks(unit), modulus)?;
+    let youngs_modulus_gpa = check(modulus, limits(modulus).remarks(unit))?;
     let (curvature, euler_spiral) = shape::shape(numbers, length_mm)?;
     let traced = traced.map(|own| shape::traced(numbers, &own.curvature));
     let traced = traced.transpose()?;
     let ratio = Parameter::ModulusTipToBase;
-    let modulus_tip_to_base = check_or_one(limits(ratio), ratio)?;
+    let modulus_tip_to_base = check(ratio, limits(ratio))?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
     let pointed = 1.0 / own_taper;
     let gradient = modulus_tip_to_base - 1.0;
@@ -116,7 +120,7 @@ fn whisker(
             end = other;
         }
     }
-    let arc_stretch = check_or_one(NumberLimits::between(1.0, end), Parameter::ArcStretch)?;
+    let arc_stretch = check(Parameter::ArcStretch, NumberLimits::between(1.0, end))?;
     Ok(Whisker {
         length_mm,
         base_radius_um: radii.base_radius_um,
@@ -172,13 +176,10 @@ fn pole(numbers: &Numbers, whisker: &Whisker, grid: &Grid) -> Result<Pole, Scene
     } else {
         ("the smallest distance", nearest)
     };
-    let check = |limits: NumberLimits, parameter: Parameter| match numbers.get(parameter) {
-        Some(value) => limits.check(parameter.key(), value),
-        None => Ok(0.0),
-    };
+    let check = |parameter, limits| check_number(numbers, parameter, limits);
     Ok(Pole {
-        radius_mm: check(NumberLimits::below(0.0, end), Parameter::PoleRadiusMm)?,
-        friction: check(limits(Parameter::Friction), Parameter::Friction)?,
+        radius_mm: check(Parameter::PoleRadiusMm, NumberLimits::below(0.0, end))?,
+        friction: check(Parameter::Friction, limits(Parameter::Friction))?,
     })
 }
 

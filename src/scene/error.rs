@@ -48,7 +48,6 @@ impl SceneError {
                 let expected = match expected {
                     "f64" => "a number",
                     "i64" => "a whole number",
-                    "an array of length 2" => "a list of 2 numbers",
                     kind if kind == "a map" || kind.starts_with("struct ") => "a table",
                     _ => expected,
                 };

@@ -5,29 +5,16 @@ use std::fmt;
 use super::error::SceneFault;
 use super::parameter::Parameter;
 
-/// Largest ratio of the moduli at tip and base, and of those at base and tip. Measured ratios lie between 0.7 and 1.4.
-pub(super) const STIFFEST_TIP: f64 = 20.0;
-
-/// Largest accepted arc stretch, a ratio.
-pub(super) const MOST_STRETCH: f64 = 2.0;
-
-/// Returns the limits of a parameter, whatever the other numbers are. Other numbers narrow some of them.
+/// Returns the limits of a parameter, whatever the other numbers are.
 ///
 /// Coulomb's coefficient is about 0.5 for whiskers of rats on steel. Up to 1, every end of 25,000 random whiskers was found
 /// (`benches/NOTES.md`).
 pub(super) fn limits(parameter: Parameter) -> NumberLimits {
-    match parameter {
-        Parameter::LengthMm | Parameter::BaseRadiusUm => NumberLimits::between(1e-3, 1e5),
-        Parameter::TipRadiusUm => NumberLimits::between(0.0, 1e5),
-        Parameter::Taper => NumberLimits::between(0.0, 1.0),
-        Parameter::YoungsModulusGpa => NumberLimits::between(1e-6, 1e4),
-        Parameter::ModulusTipToBase => NumberLimits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP),
-        Parameter::ArcStretch => NumberLimits::between(1.0, MOST_STRETCH),
-        Parameter::Friction => NumberLimits::between(0.0, 1.0).remarks([
-            "with more, whiskers coil around the pole for turns on end, and not all ends are known",
-        ]),
-        _ => NumberLimits::between(-1e6, 1e6),
-    }
+    let [least, most] = parameter.limits();
+    let remark =
+        "with more, whiskers coil around the pole for turns on end, and not all ends are known";
+    let remark = Some(remark).filter(|_| parameter == Parameter::Friction);
+    NumberLimits::between(least, most).remarks(remark)
 }
 
 /// Limits of a number: a range, in the number's unit. NaN is in none, and no range here reaches infinity.

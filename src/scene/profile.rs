@@ -29,9 +29,6 @@ const SHARPEST_TIP: f64 = 1000.0;
 /// unresolved after 20 s.
 const DEEPEST_WAIST: f64 = 4.0;
 
-/// Limits of the factor of all radii.
-const SCALES: [f64; 2] = [1e-3, 1e3];
-
 /// Checked radii of a whisker: base and tip, or a measured profile.
 pub(super) struct Radii {
     /// Arclength of the whisker from base to tip, in millimetres: with the cone beyond the last row.
@@ -211,7 +208,7 @@ fn scale_limits(rows: &[[f64; 2]]) -> NumberLimits {
     let radii = rows.iter().map(|row| row[1]);
     let thickest = radii.clone().fold(0.0, f64::max);
     let thinnest = radii.fold(f64::INFINITY, f64::min);
-    let [least, most] = SCALES;
+    let [least, most] = Parameter::ProfileScale.limits();
     NumberLimits::between(
         least.max(THINNEST_UM / thinnest).min(1.0),
         most.min(THICKEST_UM / thickest),

@@ -77,6 +77,7 @@ fn take_differences(bytes: &mut [u8]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::hash;
     use miniz_oxide::inflate::decompress_to_vec_zlib;
 
     /// Lines of samples as a rule makes them.
@@ -106,8 +107,7 @@ mod tests {
     }
 
     fn noise(x: u32) -> u32 {
-        let mixed = |x: u32| (x ^ x >> 16).wrapping_mul(0x85eb_ca6b);
-        mixed(mixed(mixed(x + 1)))
+        hash(x.into()) as u32
     }
 
     #[test]

@@ -43,7 +43,7 @@ impl RandomRows {
         seed: u64,
         changed: impl Fn(&mut Rod, &mut Random),
     ) -> Self {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let whiskers = (0..count).map(|_| {
             let mut rod = rod(effects, &mut random);
             changed(&mut rod, &mut random);

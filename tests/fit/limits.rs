@@ -1,9 +1,9 @@
 //! Parameters that points do not determine, limits of the scene, and points without a prediction.
 
-use super::noisy::Random;
 use super::{DISTANCES_MM, cone, detachments};
 use whiskmap::fit::{Fit, FitError, fit};
 use whiskmap::measured::{MeasuredAngle, MeasuredPoints};
+use whiskmap::random::RandomStream;
 use whiskmap::scene::Parameter::{self, *};
 use whiskmap::scene::Scene;
 
@@ -153,7 +153,7 @@ fn the_whisker_keeps_reaching_its_points() {
     let truth = cone().with_parameters(&[(LengthMm, 21.0)]).unwrap();
     let start = cone().with_parameters(&[(LengthMm, 26.0)]).unwrap();
     let distances = [10.0, 14.0, 19.0, 20.0, 20.6];
-    let mut random = Random(1);
+    let mut random = RandomStream::of_state(1);
     let mut points = detachments(&truth, MeasuredAngle::Push, &distances);
     for point in &mut points.points {
         point.angle_deg += 0.01 * random.normal();

@@ -1,31 +1,10 @@
 //! Points with normal errors, always the same: standard errors say how far off a fit is.
 
 use super::{DISTANCES_MM, cone, detachments, free};
-use std::f64::consts::TAU;
 use whiskmap::fit::fit;
 use whiskmap::measured::MeasuredAngle;
+use whiskmap::random::RandomStream;
 use whiskmap::scene::Parameter::{ParabolaPerMm, PoleRadiusMm, TipRadiusUm};
-
-/// Uniform numbers (splitmix64), and normal ones by pairs of them (Box and Muller).
-pub struct Random(pub u64);
-
-impl Random {
-    /// Between 0, which it never is, and 1.
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        bits ^= bits >> 31;
-        ((bits >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    /// Normal number of mean 0 and variance 1.
-    pub fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        radius * (TAU * self.uniform()).cos()
-    }
-}
 
 /// Number of 100 trials with every parameter within 3 standard errors, and the mean square of all errors over
 /// standard errors.
@@ -43,7 +22,7 @@ fn trials(have_deviations: bool) -> (usize, f64) {
     );
     let (mut within, mut squares) = (0, 0.0);
     for seed in 0..100 {
-        let mut random = Random(seed);
+        let mut random = RandomStream::of_state(seed);
         let mut points = exact.clone();
         points.have_deviations = have_deviations;
         for (i, point) in points.points.iter_mut().enumerate() {

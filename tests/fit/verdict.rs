@@ -1,9 +1,9 @@
 //! What is not a fit, and what stays one.
 
-use super::noisy::Random;
 use super::{DISTANCES_MM, cone, detachments};
 use whiskmap::fit::{Fit, LikelyCause, fit};
 use whiskmap::measured::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
+use whiskmap::random::RandomStream;
 use whiskmap::scene::Parameter::{ParabolaPerMm, TipRadiusUm};
 
 /// The detachments of another cone, each changed by `change`, and fitted.
@@ -56,7 +56,7 @@ fn noisy_points_stay_a_fit() {
     for (noise_deg, sd_deg, is_explained) in
         [(3.0, 3.0, true), (1.0, 0.1, false), (12.0, 12.0, true)]
     {
-        let random = std::cell::RefCell::new(Random(7));
+        let random = std::cell::RefCell::new(RandomStream::of_state(7));
         let found = changed(true, |point| {
             point.angle_deg += noise_deg * random.borrow_mut().normal();
             point.sd_deg = sd_deg;
@@ -74,7 +74,7 @@ fn absurd_deviations_are_not_a_fit() {
         (3.0_f64.to_radians(), Some(LikelyCause::RadianDeviations)),
         (0.001, None),
     ] {
-        let random = std::cell::RefCell::new(Random(7));
+        let random = std::cell::RefCell::new(RandomStream::of_state(7));
         let found = changed(true, |point| {
             point.angle_deg += 3.0 * random.borrow_mut().normal();
             point.sd_deg = sd_deg;

@@ -23,7 +23,7 @@ impl RoughCourse {
     /// Cones, nearly cylindrical whiskers and traced shapes in turn, with friction between 0.3 and 1. The course begins and turns back on
     /// both sides, also beyond detachments.
     fn random(seed: u64) -> Option<Self> {
-        let random = &mut Random(seed);
+        let random = &mut Random::new(seed);
         let taper = match seed % 3 {
             0 => 0.95,
             1 => 0.05 * random.unit(),

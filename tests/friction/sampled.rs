@@ -72,7 +72,7 @@ fn turns([cb, cf, touch]: [f64; 3], is_cb: bool, random: &mut Random) -> Vec<f64
 fn a_course_does_not_depend_on_its_samples() {
     let mut counts = [0; 3];
     for seed in 0..20 {
-        let random = &mut Random(seed);
+        let random = &mut Random::new(seed);
         let (scene, distance) = random_scene(random);
         let Some(reach) = reach(&scene, distance) else {
             continue;
@@ -108,7 +108,7 @@ fn a_course_does_not_depend_on_its_samples() {
 fn a_first_push_has_the_states_of_the_course() {
     let (mut worst, mut count) = (0.0_f64, 0);
     for seed in 0..20 {
-        let random = &mut Random(seed);
+        let random = &mut Random::new(seed);
         let (scene, distance) = random_scene(random);
         let Frictions { rod, side, row } = Frictions::new(&scene, Side::Cf, distance);
         let level = LevelCurve::new(Method::fine(), &rod, side, &row);

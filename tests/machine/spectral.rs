@@ -180,7 +180,7 @@ fn maps_of_shipped_scenes_are_those_of_the_cpu() {
 
 /// A sweep over two tapers and two curvatures with random other parameters: many rows, or a few long ones.
 fn random_sweep(seed: u64) -> Scene {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut between = |low: f64, high: f64| random.between(low, high);
     let length = between(5.0, 60.0);
     let base_um = length * between(0.8, 3.0);

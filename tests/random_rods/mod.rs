@@ -4,17 +4,20 @@
 use std::sync::{Arc, LazyLock};
 use whiskmap::mechanics::rod::{CurvaturePolynomial, Effects, RadiusProfile, Rod, arclength};
 use whiskmap::mechanics::shooting::batch::InitialCondition;
+use whiskmap::random::RandomStream;
 
-/// Reproducible stream of numbers in `[0, 1)` (splitmix64).
-pub struct Random(pub u64);
+/// Random numbers of 24 bits, which `f32` represents exactly.
+pub struct Random(RandomStream);
 
 impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(RandomStream::of_state(seed))
+    }
+
+    /// Uniform number of at least 0 and less than 1.
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z >> 40) as f64 / 16_777_216.0
+        const STEPS: f64 = 16_777_216.0;
+        (STEPS * self.0.uniform()).floor() / STEPS
     }
 
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
@@ -100,7 +103,7 @@ pub fn conditions(
     most_q: f64,
     seed: u64,
 ) -> Vec<InitialCondition<'static>> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let rods = (0..count.div_ceil(8)).map(|_| rod(effects, &mut random));
     let rods: &'static [Rod] = rods.collect::<Vec<_>>().leak();
     let state = |i: usize| condition(&rods[i / 8], most_q, &mut random);

@@ -91,6 +91,14 @@ fn axes_are_in_the_order_of_the_file_and_the_first_varies_fastest() {
         Some(0.02)
     );
 
+    // An axis may be a list, a table in one line, keys with dots, or a table.
+    let lines = "pole_radius_mm.from = 0.1\npole_radius_mm.count = 1\nfriction = { from = 0, count = 1 }\n\
+                 arc_stretch = [1]\n[grid.length_mm]\nfrom = 20\ncount = 1";
+    assert_eq!(
+        swept(lines).unwrap().grid.sweep_names(),
+        "pole_radius_mm, friction, arc_stretch, length_mm"
+    );
+
     // In an atlas a curvature lies upwards, as ever.
     let scene = swept("curvature_per_mm = [0, 0.01, 0.02]\ntaper = [0, 1]").unwrap();
     assert_eq!(scene.grid.sweep[0].parameter, Parameter::Taper);
@@ -151,7 +159,7 @@ fn every_combination_must_be_a_whisker() {
         ),
         (
             "pole_radius_mm = [-0.1, 2]",
-            "grid.pole_radius_mm: must be at least 0",
+            "grid.pole_radius_mm[0] = -0.1: must be between 0 and",
         ),
         (
             "vertex_mm = [0, 80]",

@@ -1,5 +1,6 @@
 //! Scenes with other values, by key and by parameter.
 
+use std::collections::HashSet;
 use whiskmap::scene::{AxisScale, AxisValues, Parameter, Scene, SceneBuilder, SceneData};
 
 use super::{BASE, parse, shipped, sweep};
@@ -120,6 +121,36 @@ fn parameters_are_read_and_replaced() {
     }
     let given = Parameter::ALL.map(|parameter| parameter.value(&scene).is_some());
     assert_eq!(given.iter().filter(|given| **given).count(), 8);
+}
+
+/// Neutral values of all parameters, in scenes that leave them out: shipped ones, and one without a curvature.
+#[test]
+fn neutral_values_change_nothing() {
+    let scenes = shipped().into_iter().map(|path| Scene::read(path).unwrap());
+    let straight = Scene::builder("straight")
+        .set(Parameter::LengthMm, 20.0)
+        .set(Parameter::BaseRadiusUm, 30.0)
+        .set(Parameter::TipRadiusUm, 3.0)
+        .set(Parameter::YoungsModulusGpa, 3.0)
+        .push_angle_deg([1.0])
+        .distance_mm([5.0]);
+    let scenes = scenes.chain([straight.build().unwrap()]);
+    let mut seen = HashSet::new();
+    for scene in scenes.filter(|scene| !scene.is_sweep()) {
+        for parameter in Parameter::ALL {
+            if parameter.value(&scene).is_none()
+                && let Some(value) = parameter.neutral()
+                && let Ok(other) = scene.with(parameter, value)
+            {
+                let both = [&scene, &other].map(|scene| (&scene.whisker, scene.pole));
+                assert_eq!(both[0], both[1], "{}", parameter.name());
+                seen.insert(parameter);
+            }
+        }
+    }
+    let neutral = Parameter::ALL.into_iter();
+    let neutral = neutral.filter(|parameter| parameter.neutral().is_some());
+    assert_eq!(seen, neutral.collect());
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub struct Push {
 /// and every tenth one with a traced shape. Friction, modulus and
 /// stretch vary.
 pub fn push(index: u64) -> Push {
-    let mut random = Random(index.wrapping_mul(0x9e37_79b9));
+    let mut random = Random::new(index.wrapping_mul(0x9e37_79b9));
     let mut between = |low: f64, high: f64| random.between(low, high);
     let length_mm = between(8.0, 60.0);
     let base_radius_um = between(20.0, 120.0);

@@ -41,13 +41,11 @@ fn files_that_are_cut_or_grown_are_damaged_without_reading_them() {
     flipped[100] ^= 4;
     fs::write(&file, flipped).unwrap();
     assert!(damaged(&store, CheckDepth::Structure).is_empty());
-    for depth in [CheckDepth::Checksums, CheckDepth::Values] {
-        let faults = damaged(&store, depth);
-        assert!(
-            faults[0].contains("chunk 0 does not have its checksum"),
-            "{faults:?}"
-        );
-    }
+    let faults = damaged(&store, CheckDepth::Values);
+    assert!(
+        faults[0].contains("chunk 0 does not have its checksum"),
+        "{faults:?}"
+    );
 }
 
 /// A writer with a fault: the index has its checksum, but not the places and sizes of the chunks.

@@ -4,6 +4,7 @@ use super::made_up::{SCENE, is_sound, store};
 use super::map::{self, write};
 use std::fs;
 use std::path::{Path, PathBuf};
+use whiskmap::random::RandomStream;
 use whiskmap::store::{ChannelValues, StoreError, StoredMap, ZarrStore};
 
 fn files(folder: &Path) -> Vec<PathBuf> {
@@ -43,27 +44,15 @@ fn all_of_store(path: &Path) -> Result<Vec<u64>, StoreError> {
     Ok(all)
 }
 
-/// Numbers that look random, always the same.
-struct Mixed(u64);
-
-impl Mixed {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % end
-    }
-}
-
 /// Flips a bit of one of `files` in each of `times` trials, and gives the file to `check`.
 fn flip_bits(files: &[PathBuf], times: usize, mut check: impl FnMut(&Path)) {
-    let mut mixed = Mixed(1);
+    let mut random = RandomStream::of_state(1);
+    let mut below = |end: usize| (random.uniform() * end as f64) as usize;
     for _ in 0..times {
-        let file = &files[mixed.below(files.len())];
+        let file = &files[below(files.len())];
         let whole = fs::read(file).unwrap();
         let mut flipped = whole.clone();
-        flipped[mixed.below(whole.len())] ^= 1 << mixed.below(8);
+        flipped[below(whole.len())] ^= 1 << below(8);
         fs::write(file, flipped).unwrap();
         check(file);
         fs::write(file, whole).unwrap();

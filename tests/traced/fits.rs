@@ -22,7 +22,7 @@ fn exact_points_give_the_curve_back() {
     for shape in SHAPES {
         let rod = bent(shape);
         for count in [12, 200] {
-            let points = points(&rod, 20.0, count, 0.0, &mut Random(1));
+            let points = points(&rod, 20.0, count, 0.0, &mut Random::new(1));
             let found = TracedShape::fit(points, Some(6)).unwrap();
             for (own, expected) in found.coefficients().iter().zip(shape) {
                 worst[0] = worst[0].max((own - expected).abs());
@@ -60,7 +60,7 @@ fn noisy_points_give_the_degree_back() {
     {
         let rod = bent(shape);
         for seed in 0..10 {
-            let points = points(&rod, 20.0, 120, 0.03, &mut Random(seed));
+            let points = points(&rod, 20.0, 120, 0.03, &mut Random::new(seed));
             let shape = TracedShape::fit(points, None).unwrap();
             assert!(
                 shape.is_degree_chosen && shape.degree >= degree,
@@ -80,7 +80,7 @@ fn noisy_points_give_the_degree_back() {
 #[test]
 fn only_the_shape_counts() {
     let rod = bent(SHAPES[3]);
-    let points = points(&rod, 20.0, 60, 0.05, &mut Random(5));
+    let points = points(&rod, 20.0, 60, 0.05, &mut Random::new(5));
     let fit = TracedShape::fit(points.clone(), Some(3)).unwrap();
     let moved = points
         .iter()
@@ -98,7 +98,7 @@ fn only_the_shape_counts() {
 #[test]
 fn more_terms_leave_smaller_distances() {
     let rod = bent(SHAPES[4]);
-    let points = points(&rod, 20.0, 80, 0.1, &mut Random(9));
+    let points = points(&rod, 20.0, 80, 0.1, &mut Random::new(9));
     let mut before = f64::INFINITY;
     for degree in 0..=6 {
         let fit = TracedShape::fit(points.clone(), Some(degree)).unwrap();
@@ -113,7 +113,7 @@ fn more_terms_leave_smaller_distances() {
 /// fitted base.
 #[test]
 fn distances_are_those_from_the_curve() {
-    let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random(3));
+    let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random::new(3));
     let shape = TracedShape::fit(points, Some(3)).unwrap();
     let rod = Rod {
         polynomial: Some(shape.curvature.into()),
@@ -152,7 +152,7 @@ fn distances_are_those_from_the_curve() {
 /// A reflection of the points reflects the curve. The frame of a longer whisker scales the points.
 #[test]
 fn reflected_and_longer_shapes_have_the_same_distances() {
-    let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random(3));
+    let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random::new(3));
     let reflected = points.iter().map(|[x, y]| [*x, -y]).collect();
     let [own, other] = [points, reflected].map(|all| TracedShape::fit(all, Some(3)).unwrap());
     // Measured: below 1e-13.
@@ -167,7 +167,7 @@ fn reflected_and_longer_shapes_have_the_same_distances() {
 /// Coefficients of another machine may differ by 1e-6 radians, and have the same number.
 #[test]
 fn coefficients_of_an_equal_fit_are_accepted() {
-    let points = points(&bent(SHAPES[1]), 20.0, 12, 0.0, &mut Random(1));
+    let points = points(&bent(SHAPES[1]), 20.0, 12, 0.0, &mut Random::new(1));
     let shape = TracedShape::fit(points, Some(0)).unwrap();
     let [own] = shape.coefficients()[..] else {
         panic!("{shape:?}");

@@ -34,7 +34,7 @@ fn traced(whisker: &Whisker, degree: usize) -> Whisker {
         whisker.length_mm,
         100,
         0.0,
-        &mut Random(1),
+        &mut Random::new(1),
     );
     let shape = TracedShape::fit(points, Some(degree)).unwrap();
     Whisker {

@@ -187,7 +187,7 @@ pub fn fill(
 fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Result<Vec<usize>, Failure> {
     let states: Vec<BlockState> = blocks
         .par_iter()
-        .map(|block| store.state(*block, CheckDepth::Checksums))
+        .map(|block| store.state(*block, CheckDepth::Values))
         .collect();
     let mut unfinished = Vec::new();
     for (block, state) in blocks.into_iter().zip(states) {

@@ -43,18 +43,14 @@ pub fn description(scene: &Scene, is_of_sweep: bool) -> Result<Value, String> {
     }))
 }
 
-/// Returns the number of `parameter`: the scene's own, or else the one that changes nothing. `None` if the scene cannot have the parameter.
+/// Returns the number of `parameter`: the scene's own, or else the neutral one. `None` if the scene cannot have the parameter.
 fn number(scene: &Scene, parameter: Parameter) -> Option<f64> {
-    let neutral = match parameter {
-        Parameter::ParabolaPerMm
-        | Parameter::VertexMm
-        | Parameter::PoleRadiusMm
-        | Parameter::Friction => 0.0,
-        Parameter::ModulusTipToBase | Parameter::ArcStretch => 1.0,
-        _ => return parameter.value(scene),
-    };
-    let added = || scene.with(parameter, neutral).ok().map(|_| neutral);
-    parameter.value(scene).or_else(added)
+    let own = parameter.value(scene);
+    own.or_else(|| {
+        parameter
+            .neutral()
+            .filter(|value| scene.with(parameter, *value).is_ok())
+    })
 }
 
 /// Returns the TOML text of `scene` with other `values` of parameters, in their units; its comments stay.

@@ -1,9 +1,34 @@
 //! TOML files of scenes: reading, writing and editing of the text.
 
-mod place;
+mod pairs;
 mod read;
-mod rows;
 mod tables;
 mod write;
 
+pub(in crate::scene) use tables::SceneFile;
 pub use write::SceneText;
+
+use crate::input::shortened;
+use std::ops::Range;
+use toml_edit::{Document, Item};
+
+/// Returns the place of the value of `key` in the text of a scene, such as `grid.distance_mm[1]` or `grid.friction.from`.
+fn place_in(text: &str, key: &str) -> Option<Range<usize>> {
+    place(Document::parse(text).ok()?.as_item(), key)
+}
+
+fn place(item: &Item, key: &str) -> Option<Range<usize>> {
+    if key.is_empty() {
+        return item.span();
+    }
+    if let Some((index, rest)) = key.strip_prefix('[').and_then(|key| key.split_once(']')) {
+        let value = item.as_array()?.get(index.parse().ok()?)?;
+        return value.span().filter(|_| rest.is_empty());
+    }
+    let key = key.strip_prefix('.').unwrap_or(key);
+    item.as_table_like()?.iter().find_map(|(name, inner)| {
+        let rest = key.strip_prefix(&*shortened(name))?;
+        let is_whole = rest.is_empty() || rest.starts_with(['.', '[']);
+        is_whole.then(|| place(inner, rest))?
+    })
+}

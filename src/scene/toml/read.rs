@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Read};
+use std::iter;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,8 +11,8 @@ use toml_edit::Document;
 use toml_edit::de::Deserializer;
 
 use crate::input::{TEXT_MIB, bounded, did_you_mean, open, shortened};
-use crate::scene::axis::NOT_GROWING;
-use crate::scene::builder::Deviations;
+use crate::scene::axis::{AxisValues, NOT_GROWING};
+use crate::scene::builder::{Deviations, Numbers};
 use crate::scene::deviations;
 use crate::scene::error::{DECIMAL_POINTS, SceneError, SceneFault, has_tight_comma};
 use crate::scene::limits::digits;
@@ -20,10 +21,8 @@ use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY};
 use crate::scene::{Scene, SceneBuilder};
 use crate::traced::{MOST_DEGREE, TracedShape};
 
-use super::place::place_in;
-use super::rows::{GivenPairs, PairKind, PairList, PairsCsv};
-use super::tables::SceneTable;
-use super::write::SceneText;
+use super::pairs::PairsCsv;
+use super::{SceneFile, SceneText, place_in};
 
 impl Scene {
     /// Reads and checks a scene file; `-` is standard input. Where the file does not name its output, the
@@ -81,9 +80,9 @@ fn checked(
 ) -> Result<Scene, SceneError> {
     let refused = |why: toml_edit::de::Error| SceneError::of_toml(origin, text, &why);
     let document = Document::parse(text).map_err(|why| refused(why.into()))?;
-    let table = SceneTable::deserialize(Deserializer::from(document)).map_err(refused)?;
+    let file = SceneFile::deserialize(Deserializer::from(document)).map_err(refused)?;
     let mut files = Vec::new();
-    let built = build(table, text, folder, &mut files);
+    let built = build(file, text, folder, &mut files);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     built
         .and_then(|mut builder| {
@@ -99,61 +98,65 @@ fn checked(
         .map_err(|fault| located(fault, &files, origin, text))
 }
 
-/// The description that the tables of `text` give. The CSV files that it names are added to `files`.
+/// The description that a scene file gives. The CSV files that it names are added to `files`.
 fn build(
-    table: SceneTable,
+    mut file: SceneFile,
     text: &str,
     folder: Option<&Path>,
     files: &mut Vec<PairsCsv>,
 ) -> Result<SceneBuilder, SceneFault> {
-    let SceneTable {
-        mut builder,
-        rows,
-        rest,
-        rest_degree,
-        rest_curvature,
-        deviations,
-    } = table;
+    let mut numbers = Numbers::default();
+    // A taper has only an axis: its key is that of the radius at the tip.
+    let parameters = Parameter::ALL.into_iter();
+    for parameter in parameters.filter(|parameter| *parameter != Parameter::Taper) {
+        if let Some(number) = parameter.number_in(&file) {
+            numbers.set(parameter, number);
+        }
+    }
+    let swept = Parameter::SWEPT.into_iter();
+    let axes = swept.filter_map(|parameter| Some((parameter, parameter.axis_in(&mut file)?)));
+    let mut sweep: Vec<(Parameter, AxisValues)> = axes.collect();
+    // The derived tables have no order; the scene has that of the text.
+    sweep.sort_by_cached_key(|(parameter, _)| Some(place_in(text, parameter.axis_key())?.start));
+    let mut builder = SceneBuilder {
+        title: file.title,
+        numbers,
+        push_angle_deg: file.grid.push_angle_deg,
+        distance_mm: file.grid.distance_mm,
+        sweep,
+        surface: file.surface,
+        name: file.output.name,
+        ..SceneBuilder::default()
+    };
     let mut bends = [
         Parameter::ParabolaPerMm,
         Parameter::VertexMm,
         Parameter::SpiralPerMm,
     ]
     .into_iter();
-    let is_bent = bends.any(|own| builder.numbers.get(own).is_some() || builder.sweeps(own));
+    let is_bent = bends.any(|bend| numbers.get(bend).is_some() || builder.sweeps(bend));
     if !is_bent && place_in(text, "whisker.curvature").is_some() {
         let must = "must have either parabola_per_mm, and vertex_mm if need be, or euler_spiral";
         return Err(SceneFault::new("whisker.curvature", must));
     }
-    if let Some(rows) = rows {
-        builder.rows = Some(pairs(rows, folder, files)?);
+    if let Some(rows) = file.whisker.profile.rows {
+        builder.rows = Some(rows.read(folder, files)?);
     }
-    if let Some(points) = rest {
-        let points = pairs(points, folder, files)?;
-        let degree = rest_degree.map(degree).transpose()?;
+    let rest = file.whisker.rest;
+    if let Some(points) = rest.points {
+        let points = points.read(folder, files)?;
+        let degree = rest.degree.map(degree).transpose()?;
         let traced = TracedShape::fit(points, degree).map_err(SceneFault::of_traced)?;
-        let traced = match rest_curvature {
+        let traced = match rest.curvature {
             None => traced,
-            Some(own) => traced
-                .with_coefficients(&own)
+            Some(coefficients) => traced
+                .with_coefficients(&coefficients)
                 .map_err(|why| SceneFault::new(CURVATURE_KEY, why.must))?,
         };
         builder = builder.traced(traced);
     }
-    builder.uncertainty = deviations.as_ref().map(uncertainty).transpose()?;
+    builder.uncertainty = file.uncertainty.as_ref().map(uncertainty).transpose()?;
     Ok(builder)
-}
-
-/// The pairs of a list of the scene. Its CSV file is added to `files`.
-fn pairs<K: PairKind>(
-    list: PairList<K>,
-    folder: Option<&Path>,
-    files: &mut Vec<PairsCsv>,
-) -> Result<Vec<[f64; 2]>, SceneFault> {
-    let read = list.read(folder);
-    let GivenPairs { values, csv } = read.map_err(|must| SceneFault::new(K::KEY, must))?;
-    files.extend(csv);
-    Ok(values)
 }
 
 /// The checked degree of a traced curvature.
@@ -211,6 +214,10 @@ fn located(mut fault: SceneFault, files: &[PairsCsv], origin: &str, text: &str) 
         // `10,5` was meant as one number.
         fault.must.push_str(DECIMAL_POINTS);
     }
+    // A missing value has the place of its table.
+    let table = |key: &String| Some(key.rsplit_once('.')?.0.to_owned());
+    let tables = iter::successors(table(&fault.key), table);
+    let span = span.or_else(|| tables.into_iter().find_map(|table| place_in(text, &table)));
     SceneError::of_fault(origin, text, fault).with_span(span)
 }
 

@@ -1,203 +1,147 @@
-//! Keys of a scene file, and a reader that accepts these and no others.
+//! Tables of a scene file. Their values are right in type, but not yet checked.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
-use super::rows::{PairList, ProfileRows, RestPoints};
-use crate::scene::SceneBuilder;
+use super::pairs::{Pairs, points, rows};
+use crate::scene::Surface;
 use crate::scene::axis::{AxisScale, AxisValues};
-use crate::scene::parameter::Parameter;
-use crate::scene::profile;
-use crate::scene::shape;
 
-/// The value of a key: its kind, and its place in the description.
-#[derive(Clone, Copy, PartialEq)]
-enum KeyValue {
-    Title,
-    Number(Parameter),
-    Rows,
-    RestPoints,
-    RestDegree,
-    RestCurvature,
-    PushAngles,
-    Distances,
-    Sweep(Parameter),
-    OutputName,
-    Deviations,
-    Surface,
-    Table,
+/// Scene file. Of its fields, numbers and sweep axes belong to parameters, whose table (`src/scene/parameter.rs`) names them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct SceneFile {
+    pub title: String,
+    pub whisker: WhiskerTable,
+    #[serde(default)]
+    pub pole: PoleTable,
+    #[serde(default)]
+    pub contact: ContactTable,
+    pub grid: GridTable,
+    #[serde(default)]
+    pub output: OutputTable,
+    /// Standard deviations of the scene's numbers by name, each in its unit.
+    pub uncertainty: Option<BTreeMap<String, f64>>,
+    pub surface: Option<Surface>,
 }
 
-/// Keys that may be left out, also in a table that is given; the axes of the sweep may be left out, too.
-const OPTIONAL: [&str; 20] = [
-    Parameter::BaseRadiusUm.key(),
-    Parameter::TipRadiusUm.key(),
-    "whisker.profile",
-    "whisker.rest",
-    shape::DEGREE_KEY,
-    shape::CURVATURE_KEY,
-    Parameter::ProfileScale.key(),
-    Parameter::TipExtensionMm.key(),
-    "whisker.curvature",
-    Parameter::ParabolaPerMm.key(),
-    Parameter::VertexMm.key(),
-    "whisker.curvature.euler_spiral",
-    "whisker.projection",
-    "whisker.modulus_gradient",
-    "pole",
-    "contact",
-    "output",
-    "output.name",
-    "uncertainty",
-    "surface",
-];
-
-/// Every key of a scene file that is no table of keys.
-fn keys() -> impl Iterator<Item = (&'static str, KeyValue)> {
-    let numbers = Parameter::ALL
-        .into_iter()
-        .filter(|own| *own != Parameter::Taper)
-        .map(|own| (own.key(), KeyValue::Number(own)));
-    let axes = Parameter::SWEPT.map(|own| (own.axis_key(), KeyValue::Sweep(own)));
-    let before = [("title", KeyValue::Title)];
-    let between = [
-        (profile::KEY, KeyValue::Rows),
-        (shape::POINTS_KEY, KeyValue::RestPoints),
-        (shape::DEGREE_KEY, KeyValue::RestDegree),
-        (shape::CURVATURE_KEY, KeyValue::RestCurvature),
-        ("grid.push_angle_deg", KeyValue::PushAngles),
-        ("grid.distance_mm", KeyValue::Distances),
-    ];
-    let after = [
-        ("output.name", KeyValue::OutputName),
-        ("uncertainty", KeyValue::Deviations),
-        ("surface", KeyValue::Surface),
-    ];
-    let all = before.into_iter().chain(numbers).chain(between);
-    all.chain(axes).chain(after)
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct WhiskerTable {
+    pub length_mm: Option<f64>,
+    pub base_radius_um: Option<f64>,
+    pub tip_radius_um: Option<f64>,
+    pub youngs_modulus_gpa: Option<f64>,
+    #[serde(default)]
+    pub profile: ProfileTable,
+    #[serde(default)]
+    pub curvature: CurvatureTable,
+    #[serde(default)]
+    pub rest: RestTable,
+    #[serde(default)]
+    pub modulus_gradient: GradientTable,
+    #[serde(default)]
+    pub projection: ProjectionTable,
 }
 
-/// Names and values of the keys of the table at `path`, which is empty or ends in a dot.
-fn keys_in(path: &str) -> Vec<(&'static str, KeyValue)> {
-    let mut inside: Vec<(&str, KeyValue)> = Vec::new();
-    for (key, value) in keys() {
-        let (name, value) = match key.strip_prefix(path).map(|key| (key, key.split_once('.'))) {
-            None => continue,
-            Some((_, Some((table, _)))) => (table, KeyValue::Table),
-            Some((name, None)) => (name, value),
-        };
-        if inside.iter().all(|(other, _)| *other != name) {
-            inside.push((name, value));
-        }
-    }
-    inside
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct ProfileTable {
+    /// Measured rows of arclength in mm and radius in um.
+    #[serde(deserialize_with = "rows")]
+    pub rows: Option<Pairs>,
+    pub profile_scale: Option<f64>,
+    pub tip_extension_mm: Option<f64>,
 }
 
-/// Values of a scene file: right in type, not yet checked. The axes of the sweep are in the order of the file.
-#[derive(Default)]
-pub(super) struct SceneTable {
-    pub builder: SceneBuilder,
-    pub rows: Option<PairList<ProfileRows>>,
-    pub rest: Option<PairList<RestPoints>>,
-    /// Degree of the traced curvature; `None` if cross-validation chooses it.
-    pub rest_degree: Option<i64>,
-    /// Coefficients of the traced curvature; `None` if they are those of the fit.
-    pub rest_curvature: Option<Vec<f64>>,
-    /// Standard deviations of the scene's numbers by name, each in its unit; `None` without the table.
-    pub deviations: Option<BTreeMap<String, f64>>,
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct CurvatureTable {
+    pub parabola_per_mm: Option<f64>,
+    pub vertex_mm: Option<f64>,
+    #[serde(default)]
+    pub euler_spiral: SpiralTable,
 }
 
-impl<'de> Deserialize<'de> for SceneTable {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let mut scene = Self::default();
-        let path = String::new();
-        let reader = TableReader(path, &mut scene);
-        reader.deserialize(deserializer).map(|()| scene)
-    }
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct SpiralTable {
+    #[serde(deserialize_with = "required")]
+    pub per_mm: Option<f64>,
+    #[serde(deserialize_with = "required")]
+    pub per_mm2: Option<f64>,
 }
 
-/// Reads the table at a path, which is empty or ends in a dot, into a scene.
-struct TableReader<'a>(String, &'a mut SceneTable);
-
-impl<'de> DeserializeSeed<'de> for TableReader<'_> {
-    type Value = ();
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        deserializer.deserialize_map(self)
-    }
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct RestTable {
+    /// Traced points, in mm.
+    #[serde(deserialize_with = "points")]
+    pub points: Option<Pairs>,
+    /// Degree of the traced curvature; cross-validation chooses it if it is left out.
+    pub degree: Option<i64>,
+    /// Coefficients of the traced curvature; those of the fit if they are left out.
+    pub curvature: Option<Vec<f64>>,
 }
 
-impl<'de> Visitor<'de> for TableReader<'_> {
-    type Value = ();
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a table")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<(), A::Error> {
-        let Self(path, scene) = self;
-        let keys = keys_in(&path);
-        let mut missing = keys.clone();
-        missing.retain(|(name, value)| {
-            let is_axis = matches!(value, KeyValue::Sweep(_));
-            !is_axis && !OPTIONAL.contains(&&*format!("{path}{name}"))
-        });
-        while let Some(key @ (name, value)) = table.next_key_seed(KeyReader(&keys))? {
-            missing.retain(|other| *other != key);
-            let builder = &mut scene.builder;
-            match value {
-                KeyValue::Title => builder.title = table.next_value()?,
-                KeyValue::Number(parameter) => builder.numbers.set(parameter, table.next_value()?),
-                KeyValue::Rows => scene.rows = Some(table.next_value()?),
-                KeyValue::RestPoints => scene.rest = Some(table.next_value()?),
-                KeyValue::RestDegree => scene.rest_degree = Some(table.next_value()?),
-                KeyValue::RestCurvature => scene.rest_curvature = Some(table.next_value()?),
-                KeyValue::PushAngles => builder.push_angle_deg = table.next_value()?,
-                KeyValue::Distances => builder.distance_mm = table.next_value()?,
-                KeyValue::Sweep(parameter) => {
-                    builder.sweep.push((parameter, table.next_value()?));
-                }
-                KeyValue::OutputName => builder.name = Some(table.next_value()?),
-                KeyValue::Surface => builder.surface = Some(table.next_value()?),
-                KeyValue::Deviations => scene.deviations = Some(table.next_value()?),
-                KeyValue::Table => {
-                    table.next_value_seed(TableReader(format!("{path}{name}."), scene))?;
-                }
-            }
-        }
-        // Traced points have a length.
-        let is_traced = scene.rest.is_some();
-        missing
-            .retain(|(name, _)| !is_traced || format!("{path}{name}") != Parameter::LengthMm.key());
-        let absent = missing.first();
-        absent.map_or(Ok(()), |(name, _)| Err(A::Error::missing_field(name)))
-    }
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct GradientTable {
+    #[serde(deserialize_with = "required")]
+    pub tip_to_base: Option<f64>,
 }
 
-/// Reads one of these keys.
-struct KeyReader<'a>(&'a [(&'static str, KeyValue)]);
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct ProjectionTable {
+    #[serde(deserialize_with = "required")]
+    pub arc_stretch: Option<f64>,
+}
 
-impl<'de> DeserializeSeed<'de> for KeyReader<'_> {
-    type Value = (&'static str, KeyValue);
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct PoleTable {
+    #[serde(deserialize_with = "required")]
+    pub radius_mm: Option<f64>,
+}
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        let known = self.0.iter().find(|(own, _)| *own == name);
-        known.copied().ok_or_else(|| {
-            let names = self.0.iter().map(|(own, _)| format!("`{own}`"));
-            let names: Vec<String> = names.collect();
-            let expected = match &names[..] {
-                [only] => only.clone(),
-                [one, other] => format!("{one} or {other}"),
-                _ => format!("one of {}", names.join(", ")),
-            };
-            D::Error::custom(format!("unknown field `{name}`, expected {expected}"))
-        })
-    }
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct ContactTable {
+    #[serde(deserialize_with = "required")]
+    pub friction: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct GridTable {
+    pub push_angle_deg: AxisValues,
+    pub distance_mm: AxisValues,
+    pub taper: Option<AxisValues>,
+    pub tip_radius_um: Option<AxisValues>,
+    pub base_radius_um: Option<AxisValues>,
+    pub length_mm: Option<AxisValues>,
+    pub curvature_per_mm: Option<AxisValues>,
+    pub vertex_mm: Option<AxisValues>,
+    pub pole_radius_mm: Option<AxisValues>,
+    pub friction: Option<AxisValues>,
+    pub modulus_tip_to_base: Option<AxisValues>,
+    pub arc_stretch: Option<AxisValues>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct OutputTable {
+    pub name: Option<String>,
+}
+
+/// Reads a number that its table must have. It is missing only with the table.
+fn required<'de, D: Deserializer<'de>>(number: D) -> Result<Option<f64>, D::Error> {
+    f64::deserialize(number).map(Some)
 }
 
 /// `{ from, to, count, scale }`
@@ -212,8 +156,8 @@ struct RangeTable {
 }
 
 impl<'de> Deserialize<'de> for AxisValues {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(AxisVisitor)
+    fn deserialize<D: Deserializer<'de>>(values: D) -> Result<Self, D::Error> {
+        values.deserialize_any(AxisVisitor)
     }
 }
 

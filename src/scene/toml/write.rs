@@ -15,8 +15,8 @@ use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY, POINTS_KEY};
 use crate::scene::{Scene, SceneBuilder};
 use crate::traced::TracedShape;
 
-use super::place::place_in;
-use super::rows::PairsCsv;
+use super::pairs::PairsCsv;
+use super::place_in;
 
 /// Significant digits with which every `f64` is parsed exactly, and of a number that follows from others: the last ones would be rounding.
 const EXACT_DIGITS: usize = 17;

@@ -143,21 +143,14 @@ fn header(codec: Codec, [values, size, length]: [usize; 3], is_copied: bool) -> 
 mod tests {
     use super::super::planes::planes;
     use super::*;
+    use crate::random::hash;
 
     /// `count` values of `size` bytes: smooth, or noise that cannot be packed.
     fn values(count: usize, size: usize, is_noise: bool) -> Vec<u8> {
-        let mut state = 1_u32;
         let value = |i: usize| {
-            // Xorshift (G. Marsaglia, 2003): all of its bits are noise.
-            for shift in [13, -17, 5] {
-                state ^= match shift {
-                    ..0 => state >> -shift,
-                    _ => state << shift,
-                };
-            }
             let smooth = (i as u32 / 7).to_be_bytes().map(|byte| byte ^ 0x5a);
             let value = if is_noise {
-                state.to_be_bytes()
+                (hash(i as u64) as u32).to_be_bytes()
             } else {
                 smooth
             };

@@ -1,9 +1,9 @@
 //! Metadata and coordinates of a store, which follow from the scene and the settings.
 
 use super::array::ZarrArray;
-use super::check::metadata_fault;
 use super::metadata;
 use super::read::open_regular;
+use super::verification::metadata_fault;
 use super::{METADATA, ZarrStore};
 use crate::store::{Output, StoreError, TemporaryFiles};
 use serde_json::{Map, Value};

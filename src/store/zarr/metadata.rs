@@ -5,7 +5,7 @@ use super::blocks::Blocks;
 use super::channels::{CHANNELS, channel, with_flags};
 use super::encoding::ChunkEncoding;
 use super::encoding::ValueKind::{Code, Coordinate, Count};
-use super::identity::{AGREED, StoreIdentity};
+use super::verification::{AGREED, StoreIdentity};
 use crate::classify::Regime;
 use crate::plan::{Digits, STATE_CHANNELS};
 use crate::scene::{Grid, SceneData};

@@ -7,29 +7,27 @@
 //!
 //! Invariant: a computed block is stored with its fill values, and its file of the regimes is written last.
 
-mod agreement;
 mod array;
 mod blocks;
 mod blosc;
 mod channels;
-mod check;
 mod encoding;
 mod files;
-mod identity;
 mod metadata;
 mod pack;
 mod planes;
 mod read;
 mod shard;
+mod verification;
 
 pub use self::channels::channel_attributes;
-pub use self::check::{BlockState, CheckDepth};
 pub use self::metadata::{AxisCoordinate, coordinates};
 pub use self::pack::PackedPanel;
+pub use self::verification::{BlockState, CheckDepth};
 
 use self::array::ZarrArray;
 use self::blocks::Blocks;
-use self::identity::StoreIdentity;
+use self::verification::StoreIdentity;
 use super::attributes::DIGITS;
 use super::stored::is_compatible;
 use super::{Channels, MapDescription, StoreError};
@@ -118,7 +116,7 @@ impl ZarrStore {
             ));
         }
         if text(metadata::IDENTITY)? != StoreIdentity::of(&attributes).text() {
-            let names = identity::AGREED.join(", ");
+            let names = verification::AGREED.join(", ");
             let why = format!(
                 "its `identity` does not fit its attributes {names}: one of them was changed"
             );
