@@ -117,6 +117,11 @@ fn whisker(
         }
     }
     let arc_stretch = check_or_one(NumberLimits::between(1.0, end), Parameter::ArcStretch)?;
+    let stiffness = Parameter::FollicleStiffness;
+    let given = numbers.get(stiffness);
+    let follicle_stiffness_nnm_per_rad = given
+        .map(|own| limits(stiffness).check(stiffness.key(), own))
+        .transpose()?;
     Ok(Whisker {
         length_mm,
         base_radius_um: radii.base_radius_um,
@@ -129,6 +134,7 @@ fn whisker(
         profile_scale: numbers.get(Parameter::ProfileScale).unwrap_or(1.0),
         modulus_tip_to_base,
         arc_stretch,
+        follicle_stiffness_nnm_per_rad,
     })
 }
 

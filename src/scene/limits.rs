@@ -23,6 +23,7 @@ pub(super) fn limits(parameter: Parameter) -> NumberLimits {
         Parameter::YoungsModulusGpa => NumberLimits::between(1e-6, 1e4),
         Parameter::ModulusTipToBase => NumberLimits::between(1.0 / STIFFEST_TIP, STIFFEST_TIP),
         Parameter::ArcStretch => NumberLimits::between(1.0, MOST_STRETCH),
+        Parameter::FollicleStiffness => NumberLimits::between(1e-6, 1e15),
         Parameter::Friction => NumberLimits::between(0.0, 1.0).remarks([
             "with more, whiskers coil around the pole for turns on end, and not all ends are known",
         ]),

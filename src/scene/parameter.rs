@@ -94,11 +94,11 @@ parameters! {
         TipRadiusUm = "tip_radius_um", "um", "whisker.tip_radius_um", "radius at the tip";
         /// Taper of the whisker, `1 - tip/base radius`, dimensionless; it determines the radius at the tip.
         Taper = "taper", "1", "whisker.tip_radius_um", "taper (1 \u{2212} tip/base radius)";
-        /// Factor of all measured radii, dimensionless; no detachment depends on it.
+        /// Factor of all measured radii, dimensionless; no detachment of a clamped whisker depends on it.
         ProfileScale = "profile_scale", "1", "whisker.profile.profile_scale", "factor of the measured radii";
         /// Length of the cone that continues the last two measured rows to the tip, in mm.
         TipExtensionMm = "tip_extension_mm", "mm", "whisker.profile.tip_extension_mm", "cone beyond the last row";
-        /// Young's modulus of the whisker at the base, in GPa; no detachment depends on it.
+        /// Young's modulus of the whisker at the base, in GPa; no detachment of a clamped whisker depends on it.
         YoungsModulusGpa = "youngs_modulus_gpa", "GPa", "whisker.youngs_modulus_gpa", "Young's modulus";
         /// Coefficient of the parabola of the resting whisker, in 1/mm.
         ParabolaPerMm = "parabola_per_mm", "1/mm", "whisker.curvature.parabola_per_mm", "curvature";
@@ -112,6 +112,8 @@ parameters! {
         ModulusTipToBase = "modulus_tip_to_base", "1", "whisker.modulus_gradient.tip_to_base", "modulus, tip over base";
         /// Real arclength of the whisker over its arclength in the plane of contact, dimensionless.
         ArcStretch = "arc_stretch", "1", "whisker.projection.arc_stretch", "arc stretch";
+        /// Stiffness of the follicle that holds the base, in nN m/rad: the moment that turns the base by one radian.
+        FollicleStiffness = "follicle_stiffness_nnm_per_rad", "nN m/rad", "whisker.follicle.stiffness_nnm_per_rad", "stiffness of the follicle";
         /// Radius of the pole, in mm.
         PoleRadiusMm = "pole_radius_mm", "mm", "pole.radius_mm", "pole radius";
         /// Coulomb's coefficient of friction between whisker and pole, dimensionless.
@@ -142,7 +144,7 @@ impl Parameter {
     }
 
     /// Parameters that a sweep axis can vary.
-    pub const SWEPT: [Self; 10] = [
+    pub const SWEPT: [Self; 11] = [
         Self::Taper,
         Self::TipRadiusUm,
         Self::BaseRadiusUm,
@@ -153,6 +155,7 @@ impl Parameter {
         Self::Friction,
         Self::ModulusTipToBase,
         Self::ArcStretch,
+        Self::FollicleStiffness,
     ];
 
     /// Returns the name of the parameter's sweep axis: the parameter's name, but `curvature_per_mm` for a parabola.

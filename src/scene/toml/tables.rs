@@ -33,7 +33,7 @@ enum KeyValue {
 }
 
 /// Keys that may be left out, also in a table that is given; the axes of the sweep may be left out, too.
-const OPTIONAL: [&str; 20] = [
+const OPTIONAL: [&str; 21] = [
     Parameter::BaseRadiusUm.key(),
     Parameter::TipRadiusUm.key(),
     "whisker.profile",
@@ -47,6 +47,7 @@ const OPTIONAL: [&str; 20] = [
     Parameter::VertexMm.key(),
     "whisker.curvature.euler_spiral",
     "whisker.projection",
+    "whisker.follicle",
     "whisker.modulus_gradient",
     "pole",
     "contact",
