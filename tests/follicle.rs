@@ -77,7 +77,7 @@ fn a_push_is_that_of_a_clamp_and_the_turn_of_the_follicle() {
             let branch = Branch::new(&clamped, &pole, side, distance_mm).unwrap();
             let points = branch.points(4001).unwrap();
             let pushes = points.iter().map(|point| {
-                let turn = (-side.sign() * point.base_moment_nnm / stiffness).to_degrees();
+                let turn = (side.sign() * point.base_moment_nnm / stiffness).to_degrees();
                 side.sign() * point.push_angle_deg + turn
             });
             let pushes: Vec<f64> = pushes.collect();
@@ -140,7 +140,7 @@ fn the_base_turns_and_the_spring_stores_energy() {
     let state = branch.state(40f64.to_radians(), true).unwrap();
     let shape = WhiskerShape::new(&branch, &state, 200);
     let turn = (shape.state.base_moment_nnm / stiffness).to_degrees();
-    assert!(turn < -5.0, "{turn}");
+    assert!(turn > 5.0, "{turn}");
     assert!((shape.points[0].angle_deg - (turn - 40.0)).abs() < 1e-9);
     let moment = shape.points[0].moment_nnm;
     assert!((moment.abs() - shape.state.base_moment_nnm.abs()).abs() < 1e-9 * moment.abs());
@@ -149,7 +149,7 @@ fn the_base_turns_and_the_spring_stores_energy() {
 /// A sweep from nearly a hinge to nearly a clamp.
 const SCENE: &str = "title = 'Follicle'\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 1.5\nyoungs_modulus_gpa = 3\n\
     curvature.parabola_per_mm = 0.02\n[pole]\nradius_mm = 0.25\n[grid]\n\
-    push_angle_deg = { from = -120, to = 120, count = 61 }\ndistance_mm = { from = 4, to = 20, count = 33 }\n\
+    push_angle_deg = { from = -120, to = 120, count = 241 }\ndistance_mm = { from = 4, to = 20, count = 65 }\n\
     follicle_stiffness_nnm_per_rad = [20, 300, 5000, 1e6]\n";
 
 /// Cells are in the regimes that their boundaries say, by trajectories and by nets, and nothing is left open.
@@ -162,7 +162,7 @@ fn engines_agree_from_hinge_to_clamp() {
         map(&scene, options).unwrap()
     });
     let [trajectories, nets] = &maps;
-    let engine = &nets.summary.engine;
+    let engine = &nets.summary.engine_cells;
     assert!(engine.solved > nets.summary.refined / 2, "{engine:?}");
     for (own, other) in trajectories.cells().zip(nets.cells()) {
         assert_eq!(own.regime, other.regime, "{own:?}");
