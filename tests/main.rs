@@ -13,6 +13,7 @@ mod effects;
 mod explore;
 mod figures;
 mod fit;
+mod follicle;
 mod force;
 mod friction;
 mod hard_cases;

@@ -161,6 +161,7 @@ fn nothing_is_on_that_no_line_asks_for() {
             "-modulus gradient: tip_to_base is 1 or left out",
             "-pole radius: radius_mm is 0 or left out",
             "-friction: friction is 0 or left out",
+            "-elastic follicle: no whisker.follicle: the base is clamped",
             "-projection: arc_stretch is 1 or left out",
         ];
         assert_eq!(listed(30.0, more), expected);
@@ -193,8 +194,13 @@ fn every_line_turns_its_own_effect_on() {
         ("pole.radius_mm = 0.25", 6, "radius_mm 0.25"),
         ("contact.friction = 0.2", 7, "friction 0.2"),
         (
-            "whisker.projection.arc_stretch = 1.03",
+            "whisker.follicle.stiffness_nnm_per_rad = 5000",
             8,
+            "stiffness_nnm_per_rad 5000",
+        ),
+        (
+            "whisker.projection.arc_stretch = 1.03",
+            9,
             "arc_stretch 1.03",
         ),
     ];
@@ -227,7 +233,7 @@ fn axes_stand_in_for_the_whiskers_own_values() {
 fn a_projected_cylinder_is_a_cylinder() {
     let projection = "-projection: arc_stretch 1.03 does nothing without taper or modulus gradient";
     assert_eq!(
-        listed(30.0, "whisker.projection.arc_stretch = 1.03")[8],
+        listed(30.0, "whisker.projection.arc_stretch = 1.03")[9],
         projection
     );
 }

@@ -60,7 +60,7 @@ class Whisker(_Parts):
     length_mm : float, optional
         Arclength from base to tip; needed without `rest_points`. With them, it is that of the fitted curve if left out.
     youngs_modulus_gpa : float
-        Young's modulus at the base. It scales forces, moments and energies, never an angle.
+        Young's modulus at the base. It scales forces, moments and energies, and no angle unless the follicle turns.
     base_radius_um, tip_radius_um : float, optional
         Radii at base and tip; needed without `profile`.
     taper : float, optional
@@ -82,6 +82,8 @@ class Whisker(_Parts):
         Degree of the curvature, 0 to 6; cross-validation chooses it if left out.
     modulus_tip_to_base, arc_stretch : float, optional
         Modulus at the tip over that at the base; real arclength over that in the plane of contact. Both are 1 if left out.
+    follicle_stiffness_nnm_per_rad : float, optional
+        Stiffness of the follicle, in which the base turns by the moment over the stiffness. The base is clamped if left out.
     """
 
     youngs_modulus_gpa: float
@@ -100,6 +102,7 @@ class Whisker(_Parts):
     rest_degree: int | None = None
     modulus_tip_to_base: float | None = None
     arc_stretch: float | None = None
+    follicle_stiffness_nnm_per_rad: float | None = None
 
     def __post_init__(self) -> None:
         for own in fields(self):

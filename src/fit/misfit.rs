@@ -158,6 +158,7 @@ fn size(parameter: Parameter, whisker: &Whisker) -> f64 {
         | Parameter::PoleRadiusMm => length,
         Parameter::BaseRadiusUm | Parameter::TipRadiusUm => whisker.base_radius_um,
         Parameter::YoungsModulusGpa => whisker.youngs_modulus_gpa,
+        Parameter::FollicleStiffness => whisker.units().moment_nnm,
         Parameter::ParabolaPerMm | Parameter::SpiralPerMm => 1.0 / length,
         Parameter::SpiralPerMm2 => 1.0 / (length * length),
         Parameter::Taper

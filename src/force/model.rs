@@ -20,7 +20,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// Creates the model; contacts are at least `nearest_mm` from the base.
+    /// Creates the model; contacts are at least `nearest_mm` from the base. Frames show the whisker from its base on, so that it does not
+    /// matter how the follicle holds the base.
     pub fn new(whisker: &Whisker, pole: &Pole, nearest_mm: f64) -> Self {
         let method = Method::new(Resolution::FINE);
         // A sheet is certified at the contacts of its rows: those from the nearest to the tip.
@@ -28,7 +29,10 @@ impl Model {
         let distance = |i| nearest * libm::pow(1.0 / nearest, f64::from(i) / f64::from(ROWS));
         let distances: Vec<f64> = (0..=ROWS).map(distance).collect();
         let sides = [Side::Cb, Side::Cf].map(|side| {
-            let rod = whisker.rod(&Pole::smooth(pole.radius_mm), side);
+            let rod = Rod {
+                mount: 0.0,
+                ..whisker.rod(&Pole::smooth(pole.radius_mm), side)
+            };
             let sheet = Sheet::of_ends(method, &rod, side, &distances);
             (rod, sheet)
         });

@@ -60,6 +60,7 @@ pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm:
         profile_scale: 1.0,
         modulus_tip_to_base: 1.0,
         arc_stretch: 1.0,
+        follicle_stiffness_nnm_per_rad: None,
     }
 }
 

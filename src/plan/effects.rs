@@ -21,7 +21,7 @@ pub struct Effect {
 pub enum Cost {
     /// The effect costs work at every step: sets of such effects have kernels of their own.
     Kernel,
-    /// The effect costs nothing: it only changes the start of a trajectory.
+    /// The effect costs nothing: it only changes the start of a trajectory, or its end.
     Start,
     /// The effect costs nothing: it is a faster taper and a steeper modulus gradient.
     Taper,
@@ -67,6 +67,10 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let gradient = number(Parameter::ModulusTipToBase, "tip_to_base", ratio, 1.0);
     let radius = number(Parameter::PoleRadiusMm, "radius_mm", pole.radius_mm, 0.0);
     let friction = number(Parameter::Friction, "friction", pole.friction, 0.0);
+    let clamped = || "no whisker.follicle: the base is clamped".to_owned();
+    let stiffness = whisker.follicle_stiffness_nnm_per_rad;
+    let follicle = stiffness.map_or_else(clamped, |own| format!("stiffness_nnm_per_rad {own}"));
+    let follicle = why(Parameter::FollicleStiffness, follicle);
     let corners: Vec<SweptWhisker> = scene.corner_whiskers().collect();
     let any = |differs: fn(&SweptWhisker) -> bool| corners.iter().any(differs);
     let stretched = any(|own| own.whisker.arc_stretch != 1.0);
@@ -76,6 +80,7 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     if stretched && !varies {
         stretch += " does nothing without taper or modulus gradient";
     }
+    let turns = any(|own| own.whisker.follicle_stiffness_nnm_per_rad.is_some());
     let is_disc = any(|own| own.pole.radius_mm != 0.0);
     let effect = |name, on, cost, why| Effect {
         name,
@@ -93,6 +98,7 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         effect("modulus gradient", kernels.gradient, Cost::Kernel, gradient),
         effect("pole radius", is_disc, Cost::Start, radius),
         effect("friction", scene.has_friction(), Cost::Start, friction),
+        effect("elastic follicle", turns, Cost::Start, follicle),
         effect("projection", stretched && varies, Cost::Taper, stretch),
     ];
     effects

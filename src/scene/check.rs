@@ -121,6 +121,11 @@ fn whisker(
         }
     }
     let arc_stretch = check(Parameter::ArcStretch, NumberLimits::between(1.0, end))?;
+    let stiffness = Parameter::FollicleStiffness;
+    let given = numbers.get(stiffness);
+    let follicle_stiffness_nnm_per_rad = given
+        .map(|own| limits(stiffness).check(stiffness.key(), own))
+        .transpose()?;
     Ok(Whisker {
         length_mm,
         base_radius_um: radii.base_radius_um,
@@ -133,6 +138,7 @@ fn whisker(
         profile_scale: numbers.get(Parameter::ProfileScale).unwrap_or(1.0),
         modulus_tip_to_base,
         arc_stretch,
+        follicle_stiffness_nnm_per_rad,
     })
 }
 

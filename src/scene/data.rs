@@ -44,6 +44,9 @@ impl SceneData {
                 Parameter::VertexMm => curvature.vertex_mm = value,
                 Parameter::ModulusTipToBase => whisker.modulus_tip_to_base = value,
                 Parameter::ArcStretch => whisker.arc_stretch = value,
+                Parameter::FollicleStiffness => {
+                    whisker.follicle_stiffness_nnm_per_rad = Some(value);
+                }
                 Parameter::PoleRadiusMm => pole.radius_mm = value,
                 Parameter::Friction => pole.friction = value,
                 // It needs both radii.

@@ -152,11 +152,11 @@ parameters! {
         TipRadiusUm = "tip_radius_um", "um", whisker.tip_radius_um, "radius at the tip", [0.0, 1e5], axis tip_radius_um;
         /// Taper of the whisker, `1 - tip/base radius`, dimensionless; it determines the radius at the tip.
         Taper = "taper", "1", whisker.tip_radius_um, "taper (1 \u{2212} tip/base radius)", [0.0, 1.0], axis taper;
-        /// Factor of all measured radii, dimensionless; no detachment depends on it.
+        /// Factor of all measured radii, dimensionless; no detachment of a clamped whisker depends on it.
         ProfileScale = "profile_scale", "1", whisker.profile.profile_scale, "factor of the measured radii", [1e-3, 1e3], or 1.0;
         /// Length of the cone that continues the last two measured rows to the tip, in mm.
         TipExtensionMm = "tip_extension_mm", "mm", whisker.profile.tip_extension_mm, "cone beyond the last row", [0.0, 1e5], or 0.0;
-        /// Young's modulus of the whisker at the base, in GPa; no detachment depends on it.
+        /// Young's modulus of the whisker at the base, in GPa; no detachment of a clamped whisker depends on it.
         YoungsModulusGpa = "youngs_modulus_gpa", "GPa", whisker.youngs_modulus_gpa, "Young's modulus", [1e-6, 1e4];
         /// Coefficient of the parabola of the resting whisker, in 1/mm.
         ParabolaPerMm = "parabola_per_mm", "1/mm", whisker.curvature.parabola_per_mm, "curvature", [0.0, 1e6], or 0.0, axis curvature_per_mm;
@@ -171,6 +171,9 @@ parameters! {
             [1.0 / STIFFEST_TIP, STIFFEST_TIP], or 1.0, axis modulus_tip_to_base;
         /// Real arclength of the whisker over its arclength in the plane of contact, dimensionless.
         ArcStretch = "arc_stretch", "1", whisker.projection.arc_stretch, "arc stretch", [1.0, MOST_STRETCH], or 1.0, axis arc_stretch;
+        /// Stiffness of the follicle that holds the base, in nN m/rad: the moment that turns the base by one radian.
+        FollicleStiffness = "follicle_stiffness_nnm_per_rad", "nN m/rad", whisker.follicle.stiffness_nnm_per_rad,
+            "stiffness of the follicle", [1e-6, 1e15], axis follicle_stiffness_nnm_per_rad;
         /// Radius of the pole, in mm.
         PoleRadiusMm = "pole_radius_mm", "mm", pole.radius_mm, "pole radius", [0.0, 1e6], or 0.0, axis pole_radius_mm;
         /// Coulomb's coefficient of friction between whisker and pole, dimensionless.

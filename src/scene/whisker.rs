@@ -25,7 +25,7 @@ pub struct Whisker {
     pub base_radius_um: f64,
     /// Radius of the whisker at the tip, in micrometres; 0 is a perfect cone.
     pub tip_radius_um: f64,
-    /// Young's modulus at the base, in GPa; it scales forces, moments and energies, never an angle.
+    /// Young's modulus at the base, in GPa; it scales forces, moments and energies, and no angle unless the follicle turns.
     pub youngs_modulus_gpa: f64,
     /// Shape of the whisker at rest as a parabola; `None` for a straight whisker.
     pub curvature: Option<Curvature>,
@@ -43,6 +43,9 @@ pub struct Whisker {
     /// Real arclength over the arclength in the plane of contact, dimensionless: more than 1 if the whisker droops out of the plane.
     /// Radius and modulus are read at the real arclength.
     pub arc_stretch: f64,
+    /// Stiffness of the follicle that holds the base, in nN m/rad: the base turns in it by the moment over the stiffness, and a push turns
+    /// the follicle. `None` for a clamped base.
+    pub follicle_stiffness_nnm_per_rad: Option<f64>,
 }
 
 impl SweptWhisker {
@@ -66,6 +69,9 @@ impl Whisker {
             pole: side.sign() * pole.radius_mm / self.length_mm,
             gradient: (self.modulus_tip_to_base - 1.0) * self.arc_stretch,
             friction: side.sign() * pole.friction,
+            mount: self
+                .follicle_stiffness_nnm_per_rad
+                .map_or(0.0, |stiffness| self.units().moment_nnm / stiffness),
             spiral: self.euler_spiral.map(|spiral| {
                 let length = self.length_mm;
                 [spiral.per_mm * length, spiral.per_mm2 * length * length]

@@ -39,13 +39,14 @@ pub struct RodAxes {
 }
 
 /// Numbers of a rod other than its profile.
-const NUMBERS: [fn(&mut RodDerivative) -> &mut f64; 8] = [
+const NUMBERS: [fn(&mut RodDerivative) -> &mut f64; 9] = [
     |by| &mut by.taper,
     |by| &mut by.bend,
     |by| &mut by.slope,
     |by| &mut by.pole,
     |by| &mut by.gradient,
     |by| &mut by.friction,
+    |by| &mut by.mount,
     |by| &mut by.spiral[0],
     |by| &mut by.spiral[1],
 ];

@@ -62,6 +62,11 @@ impl WhiskerDerivative {
                 by.change(whisker, pole, side, parameter);
             }
         }
+        if let Some(stiffness) = whisker.follicle_stiffness_nnm_per_rad {
+            let is_own = variable == Variable::Parameter(Parameter::FollicleStiffness);
+            let ln_stiffness = if is_own { 1.0 / stiffness } else { 0.0 };
+            by.rod.mount = whisker.units().moment_nnm / stiffness * (by.ln_moment - ln_stiffness);
+        }
         Ok(by)
     }
 
@@ -89,6 +94,7 @@ impl WhiskerDerivative {
             | Parameter::ArcStretch
             | Parameter::PoleRadiusMm
             | Parameter::Friction => true,
+            Parameter::FollicleStiffness => whisker.follicle_stiffness_nnm_per_rad.is_some(),
         }
     }
 
@@ -133,6 +139,7 @@ impl WhiskerDerivative {
                     self.change_rows(whisker, 1.0, |_| [0.0; 2]);
                 }
             }
+            Parameter::FollicleStiffness => {}
             Parameter::PoleRadiusMm => rod.pole = side.sign() / length,
             Parameter::Friction => rod.friction = side.sign(),
         }

@@ -32,6 +32,7 @@ impl Away {
             profile_scale: 1.0,
             modulus_tip_to_base: 1.0,
             arc_stretch: 1.0,
+            follicle_stiffness_nnm_per_rad: None,
         }
     }
 

@@ -41,6 +41,7 @@ pub fn scene(
             profile_scale: 1.0,
             modulus_tip_to_base: 1.0,
             arc_stretch: 1.0,
+            follicle_stiffness_nnm_per_rad: None,
         },
         pole: Pole::smooth(0.25),
         grid: Grid {

@@ -7,6 +7,7 @@ use whiskmap::mechanics::shooting::batch::InitialCondition;
 use whiskmap::random::RandomStream;
 
 /// Random numbers of 24 bits, which `f32` represents exactly.
+#[derive(Clone)]
 pub struct Random(RandomStream);
 
 impl Random {
@@ -67,6 +68,14 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
             .then(|| [random.between(-0.8, 0.8), random.between(-0.8, 0.8)]),
         polynomial: effects.polynomial.then(|| Arc::new(polynomial(random))),
         profile: None,
+        mount: 0.0,
+    };
+    // Every fourth rod is in a mount that turns. Its compliance does not change the other numbers.
+    let mut mount = random.clone();
+    let turns = f64::from(mount.unit() < 0.25);
+    let rod = Rod {
+        mount: turns * mount.between(0.0, 2.0),
+        ..rod
     };
     if effects.profile {
         return Rod {

@@ -16,7 +16,7 @@ pub struct Push {
 
 /// The push with this index: a parabola, a spiral or a straight whisker in turn, every tenth one with measured radii,
 /// and every tenth one with a traced shape. Friction, modulus and
-/// stretch vary.
+/// stretch vary. Every fourth whisker is in a follicle that turns.
 pub fn push(index: u64) -> Push {
     let mut random = Random::new(index.wrapping_mul(0x9e37_79b9));
     let mut between = |low: f64, high: f64| random.between(low, high);
@@ -56,7 +56,7 @@ pub fn push(index: u64) -> Push {
         per_mm: between(-0.8, 0.8) / length_mm,
         per_mm2: between(-0.8, 0.8) / (length_mm * length_mm),
     });
-    Push {
+    let mut push = Push {
         whisker: Whisker {
             length_mm,
             base_radius_um,
@@ -72,6 +72,7 @@ pub fn push(index: u64) -> Push {
             profile_scale: if measured { between(0.5, 2.0) } else { 1.0 },
             modulus_tip_to_base: between(0.3, 3.0),
             arc_stretch,
+            follicle_stiffness_nnm_per_rad: None,
         },
         pole: Pole {
             radius_mm: between(0.0, 0.03) * length_mm,
@@ -83,7 +84,12 @@ pub fn push(index: u64) -> Push {
             Side::Cf
         },
         distance_mm: between(0.15, 0.98) * length_mm,
+    };
+    if index % 4 == 3 {
+        let stiffness = push.whisker.units().moment_nnm * between(0.3, 10.0);
+        push.whisker.follicle_stiffness_nnm_per_rad = Some(stiffness);
     }
+    push
 }
 
 impl Push {
@@ -101,6 +107,8 @@ impl Push {
             Some(_) => all.extend([P::ProfileScale, P::TipExtensionMm]),
             None => all.extend([P::LengthMm, P::BaseRadiusUm, P::TipRadiusUm, P::Taper]),
         }
+        let follicle = self.whisker.follicle_stiffness_nnm_per_rad;
+        all.extend(follicle.map(|_| P::FollicleStiffness));
         match (&self.whisker.traced, self.whisker.euler_spiral) {
             (Some(_), _) => {}
             (None, Some(_)) => all.extend([P::SpiralPerMm, P::SpiralPerMm2]),
@@ -133,6 +141,10 @@ impl Push {
                 Parameter::TipRadiusUm => self.whisker.tip_radius_um,
                 Parameter::Taper => 1.0 - self.whisker.taper(),
                 Parameter::YoungsModulusGpa => self.whisker.youngs_modulus_gpa,
+                Parameter::FollicleStiffness => {
+                    let stiffness = self.whisker.follicle_stiffness_nnm_per_rad;
+                    stiffness.unwrap_or_default()
+                }
                 Parameter::ParabolaPerMm | Parameter::SpiralPerMm => 1.0 / length_mm,
                 Parameter::SpiralPerMm2 => 1.0 / (length_mm * length_mm),
                 Parameter::ArcStretch => 1.0 - self.whisker.taper(),
@@ -192,6 +204,10 @@ impl Push {
                 Parameter::SpiralPerMm2 => whisker.euler_spiral.as_mut().unwrap().per_mm2 += h,
                 Parameter::ModulusTipToBase => whisker.modulus_tip_to_base += h,
                 Parameter::ArcStretch => whisker.arc_stretch += h,
+                Parameter::FollicleStiffness => {
+                    let stiffness = whisker.follicle_stiffness_nnm_per_rad.as_mut();
+                    *stiffness.unwrap() += h;
+                }
                 Parameter::PoleRadiusMm => moved.pole.radius_mm += h,
                 Parameter::Friction => moved.pole.friction += h,
                 _ => panic!("{parameter:?}"),

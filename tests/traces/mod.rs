@@ -29,6 +29,7 @@ fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
         profile_scale: 1.0,
         modulus_tip_to_base: 1.0,
         arc_stretch: 1.0,
+        follicle_stiffness_nnm_per_rad: None,
     }
 }
 

@@ -23,6 +23,7 @@ const PARAMETERS = {
     youngs_modulus_gpa: (of) => [of.youngs_modulus_gpa / 5, of.youngs_modulus_gpa * 5],
     modulus_tip_to_base: () => [0.2, 5],
     arc_stretch: () => [1, 1.2],
+    follicle_stiffness_nnm_per_rad: (of) => [of.follicle_stiffness_nnm_per_rad / 5, of.follicle_stiffness_nnm_per_rad * 5],
 };
 
 const rows = new Map();

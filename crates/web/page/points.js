@@ -9,7 +9,7 @@ import { ownUnit, shown, withUnit } from './text.js';
 const LARGEST = 1 << 20;
 
 // Parameters that a fit is likely to free, in this order.
-const LIKELY = ['tip_radius_um', 'parabola_per_mm', 'vertex_mm', 'length_mm', 'base_radius_um', 'pole_radius_mm', 'friction', 'modulus_tip_to_base', 'arc_stretch'];
+const LIKELY = ['tip_radius_um', 'parabola_per_mm', 'vertex_mm', 'length_mm', 'base_radius_um', 'pole_radius_mm', 'friction', 'modulus_tip_to_base', 'arc_stretch', 'follicle_stiffness_nnm_per_rad'];
 
 // Opens a file: a scene, or else measured points.
 export async function open(file) {

@@ -171,14 +171,18 @@ impl Gpu {
         let read = part.par_iter().zip(&contacts).zip(&found);
         let read = read.map(|((index, contact), found)| {
             let [cos, sin, x, y, energy, ..] = found.map(Into::into);
-            let (tangent, position) = (DVec2::new(cos, sin), DVec2::new(x, y));
-            let to_pole = conditions[*index].rod.to_pole() - position;
+            let (rod, force): (_, f64) = (conditions[*index].rod, contact[1].into());
+            let position = DVec2::new(x, y);
+            // The shader knows no mount.
+            let turn = rod.mount * force * x;
+            let tangent = DVec2::from_angle(turn).rotate(DVec2::new(cos, sin));
+            let to_pole = rod.to_pole() - position;
             PlainState {
-                pole: DVec2::new(cos, -sin).rotate(to_pole),
+                pole: DVec2::new(tangent.x, -tangent.y).rotate(to_pole),
                 tangent,
                 position,
-                force: contact[1].into(),
-                energy,
+                force,
+                energy: (0.5 * force * x).mul_add(turn, energy),
             }
         });
         Ok(read.collect())

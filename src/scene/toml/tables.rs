@@ -46,6 +46,8 @@ pub(in crate::scene) struct WhiskerTable {
     pub modulus_gradient: GradientTable,
     #[serde(default)]
     pub projection: ProjectionTable,
+    #[serde(default)]
+    pub follicle: FollicleTable,
 }
 
 #[derive(Default, Deserialize)]
@@ -104,6 +106,13 @@ pub(in crate::scene) struct ProjectionTable {
 
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub(in crate::scene) struct FollicleTable {
+    #[serde(deserialize_with = "required")]
+    pub stiffness_nnm_per_rad: Option<f64>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(in crate::scene) struct PoleTable {
     #[serde(deserialize_with = "required")]
     pub radius_mm: Option<f64>,
@@ -131,6 +140,7 @@ pub(in crate::scene) struct GridTable {
     pub friction: Option<AxisValues>,
     pub modulus_tip_to_base: Option<AxisValues>,
     pub arc_stretch: Option<AxisValues>,
+    pub follicle_stiffness_nnm_per_rad: Option<AxisValues>,
 }
 
 #[derive(Default, Deserialize)]

@@ -36,13 +36,13 @@ impl FoldPoint {
     }
 }
 
-/// Number of samples of `q = |load| s^2` for each round of the march. Measured radii multiply `q` by their softness.
+/// Number of samples of `q = |load| s^2` for each round of the march. Measured radii and a mount multiply `q` by their softness.
 const SAMPLES_PER_ROUND: usize = 11;
 
 /// Spacing of the first samples in `q`. The second fold is farther from the first one than this.
 const FIRST_SPACING: f64 = 0.75;
 
-/// Value of `q` at which the march begins. Measured radii and moduli that fall toward the tip do not enter `q`. Without them the sheet is
+/// Value of `q` at which the march begins. Measured radii, moduli that fall toward the tip and mounts do not enter `q`. Without them the sheet is
 /// wider: no first fold of 2,000 random whiskers with friction up to 2 and `A*` up to 2 lay below 6.5.
 const SURELY_STABLE: f64 = 4.5;
 
@@ -55,7 +55,7 @@ const LAST_STEP_BETWEEN_SAMPLES: f64 = 1e-4;
 
 /// Returns the value of `q = |load| s^2` up to which every state of `rod` is stable; 0 if it is not known.
 pub fn surely_stable(rod: &Rod) -> f64 {
-    if rod.profile.is_none() && rod.gradient >= 0.0 {
+    if rod.profile.is_none() && rod.gradient >= 0.0 && rod.mount == 0.0 {
         SURELY_STABLE
     } else {
         0.0

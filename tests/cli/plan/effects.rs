@@ -27,6 +27,7 @@ fn a_straight_cylinder_has_no_effects() {
         "modulus gradient | off | own kernel | tip_to_base is 1 or left out",
         "pole radius | off | free: start | radius_mm is 0 or left out",
         "friction | off | free: start | friction is 0 or left out",
+        "elastic follicle | off | free: start | no whisker.follicle: the base is clamped",
         "projection | off | free: taper | arc_stretch is 1 or left out",
     ];
     assert_eq!(effects(&run), expected);
@@ -61,6 +62,7 @@ fn the_cone_scene() {
         "modulus gradient | off | own kernel | tip_to_base is 1 or left out",
         "pole radius | on | free: start | radius_mm 0.25",
         "friction | off | free: start | friction is 0 or left out",
+        "elastic follicle | off | free: start | no whisker.follicle: the base is clamped",
         "projection | off | free: taper | arc_stretch is 1 or left out",
     ];
     assert_eq!(effects(&run), expected);
@@ -71,7 +73,7 @@ fn the_cone_scene() {
     assert_eq!(fact(&run, "GPU calls"), calls);
 
     // Only the seconds change, and they are positive.
-    let same = |run: &Run| run.out.lines().take(17).collect::<Vec<_>>().join("\n");
+    let same = |run: &Run| run.out.lines().take(18).collect::<Vec<_>>().join("\n");
     let again = plan(&place);
     assert_eq!(same(&run), same(&again));
     let words: Vec<&str> = fact(&run, "time").split(' ').collect();
@@ -85,6 +87,7 @@ fn the_cone_scene() {
 #[test]
 fn everything_on() {
     let more = "[whisker.modulus_gradient]\ntip_to_base = 1.4\n[whisker.projection]\narc_stretch = 1.03\n\
+                [whisker.follicle]\nstiffness_nnm_per_rad = 900\n\
                 [contact]\nfriction = 0.2\n[pole]";
     let run = plan(&Place::with(&SCENE.replace("[pole]", more)));
     let listed = effects(&run);

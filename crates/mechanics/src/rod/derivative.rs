@@ -19,6 +19,8 @@ pub struct RodDerivative {
     pub gradient: f64,
     /// Derivative of the signed friction coefficient, dimensionless per unit of the variable.
     pub friction: f64,
+    /// Derivative of the compliance of the mount, in radians for a moment of `E I_base/L_w`, per unit of the variable.
+    pub mount: f64,
     /// Derivatives of the coefficients `[k0, k1]` of the Euler spiral at rest, which are in radians per whisker length, per unit of the variable.
     /// They may differ from 0 on a straight rod.
     pub spiral: [f64; 2],

@@ -36,12 +36,13 @@ impl Effects {
         !(self.curvature || self.spiral || self.polynomial || self.gradient || self.profile)
     }
 
-    /// Returns the effects of the kernel for a contact at `beta tau = taper_tau`. Beyond 1.5 on a straight cone, `gradient` is set: its
-    /// kernel carries all derivatives.
+    /// Returns the effects of the kernel for a contact of `rod` at `tau`. On a straight cone beyond `beta tau = 1.5`, or in a mount that
+    /// turns, `gradient` is set: its kernel carries all derivatives.
     #[must_use]
-    pub fn reaching(self, taper_tau: f64) -> Self {
+    pub fn reaching(self, rod: &Rod, tau: f64) -> Self {
+        let needs_all = rod.taper * tau > SLENDER || rod.mount != 0.0;
         Self {
-            gradient: self.gradient || self.similar() && taper_tau > SLENDER,
+            gradient: self.gradient || self.similar() && needs_all,
             ..self
         }
     }

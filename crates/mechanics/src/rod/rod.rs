@@ -61,6 +61,9 @@ pub struct Rod {
     pub gradient: f64,
     /// Coulomb's friction coefficient of the contact, friction over normal force, with the sign of the side.
     pub friction: f64,
+    /// Compliance of the mount that holds the base: radians by which it turns for a moment of `E I_base/L_w`, at least 0. A clamp does
+    /// not turn: 0.
+    pub mount: f64,
     /// Coefficients `[k0, k1]` of an Euler spiral at rest with curvature `k0 + k1 s`, in radians per whisker length. The spiral replaces the
     /// parabola; `s` is in whisker lengths. `None` without a spiral.
     pub spiral: Option<[f64; 2]>,
@@ -204,16 +207,18 @@ impl Rod {
         s.derivative
     }
 
-    /// Returns the softness at `tau`, dimensionless: the whisker's rotation there under a small load, over that of the cone with the same
-    /// base and tip. It is 1 without a profile. Folds of all whiskers lie at similar `|load| s^2 softness`.
+    /// Returns the softness at `tau`, dimensionless: the whisker's rotation there under a small load, over that of the clamped cone with the
+    /// same base and tip. It is 1 without a profile and a mount that turns. Folds of all whiskers lie at similar `|load| s^2 softness`.
     #[must_use]
     pub fn softness(&self, tau: f64) -> f64 {
-        self.profile.as_ref().map_or(1.0, |profile| {
-            let s = arclength(self, tau);
-            let scale = self.radius(tau);
-            let cone = s * s * (1.0 + 2.0 * scale) / (6.0 * scale * scale);
-            profile.compliance(s) / cone
-        })
+        if self.profile.is_none() && self.mount == 0.0 {
+            return 1.0;
+        }
+        let s = arclength(self, tau);
+        let scale = self.radius(tau);
+        let cone = s * s * (1.0 + 2.0 * scale) / (6.0 * scale * scale);
+        let bending = self.profile.as_ref().map_or(cone, |own| own.compliance(s));
+        (bending + self.mount * s) / cone
     }
 
     /// Returns the scale of the coordinates at `tau`: the radius of the cone over the base radius.

@@ -14,6 +14,7 @@ mod integrator;
 mod intrinsic;
 mod map;
 mod material;
+mod mount;
 mod parabola;
 mod reading;
 mod resolution;

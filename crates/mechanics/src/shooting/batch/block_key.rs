@@ -7,8 +7,8 @@ use std::sync::Arc;
 /// Properties that all trajectories of a block have in common.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlockKey {
-    /// Effects of the block's kernel: those of the method and of the rod. A profile counts only if it is the rod's own. Beyond `beta tau
-    /// = 1.5` on a straight cone, [`Effects::reaching`] adds `gradient`.
+    /// Effects of the block's kernel: those of the method and of the rod. A profile counts only if it is the rod's own. Where a
+    /// straight rod needs all derivatives, [`Effects::reaching`] adds `gradient`.
     pub effects: Effects,
     /// Address of the profile; 0 without one.
     profile: usize,
@@ -29,7 +29,7 @@ impl BlockKey {
             effects: Effects {
                 // Rods without a profile never use its kernels.
                 profile: profile.is_some(),
-                ..method.effects.and(rod).reaching(rod.taper * tau)
+                ..method.effects.and(rod).reaching(rod, *tau)
             },
             profile: profile.map_or(0, |profile| Arc::as_ptr(profile).addr()),
             steps,

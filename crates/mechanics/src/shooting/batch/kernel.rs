@@ -2,12 +2,13 @@
 
 use super::block::Block;
 use super::block_key::BlockKey;
-use super::gather::{Conditions, Contacts, Gather, GatherMaterial, lanes};
+use super::gather::{Conditions, Contacts, Gather, GatherMaterial, lanes, numbers};
 use super::{FEW_KERNELS, Method, OutputSet};
 use crate::numerics::{Lanes, LanesTask, SimdTask, WIDTH};
 use crate::rod::Effects;
 use crate::rod::radius_and_arclength;
 use crate::shooting::contact::Contact;
+use crate::shooting::mount::in_mount;
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
 use crate::shooting::{
     Bent, Graded, Integrator, Measured, Nystrom8, Polynomial, Spiral, Straight, Uniform,
@@ -198,6 +199,12 @@ where
         };
         let start = (at_rest, (rod, S::start(&contact)));
         let (_, (rod, carried)) = C::to_base::<M, I, S, ADVANCES>(&contacts, intrinsic, start);
+        let mount = numbers(conditions, |condition| condition.rod.mount);
+        let (rod, carried) = if mount == [0.0; WIDTH] {
+            (rod, carried)
+        } else {
+            in_mount::<T, S>(T::pack(mount), contact.force, rod, carried)
+        };
         let arrival = Arrival {
             contact,
             taper,

@@ -11,6 +11,7 @@ use crate::rod::radius_and_arclength;
 use crate::rod::{Piece, RadiusProfile};
 use crate::shooting::batch::{FEW_KERNELS, InitialCondition, PoleCentre};
 use crate::shooting::contact::Contact;
+use crate::shooting::mount::in_mount;
 use crate::shooting::sensitivity::{Arrival, Energetic, GeneralFirst, SensitivitySet};
 use crate::shooting::{
     BackwardCompliance, Bent, Graded, Intrinsic, Measured, Nystrom8, Polynomial, Resolution,
@@ -192,6 +193,9 @@ impl<T: Lanes, R: DualRest<T>> LanesTask<T> for Kernel<'_, R> {
             Some(profile) => self.along(profile, &system, section, [taper, tau], start),
             None => self.evenly(&system, section, [taper, tau], start),
         };
+        let mount = self.varied.number(|rod| rod.mount, |by| by.mount);
+        let (at_base, carried) =
+            in_mount::<Dual<T>, Carried>(mount, contact.force, at_base, carried);
         let arrival = Arrival {
             contact,
             taper,

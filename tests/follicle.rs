@@ -1,0 +1,180 @@
+//! A follicle in which the base turns: values of another solver, the limit of a clamp, agreement of engines, and its parameter.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use crate::random_rods::Random;
+use whiskmap::scene::{Curvature, Pole, Scene, Whisker};
+use whiskmap::trace::{Branch, DetachmentKind, WhiskerShape, curve};
+use whiskmap::{MapEngine, Options, Regime, Side, map};
+
+/// Perfect cone of 16 mm with a base radius of 33.5 um, straight, in a follicle.
+fn cone(stiffness_nnm_per_rad: Option<f64>) -> Whisker {
+    Whisker {
+        length_mm: 16.0,
+        base_radius_um: 33.5,
+        tip_radius_um: 0.0,
+        youngs_modulus_gpa: 5.0,
+        curvature: None,
+        euler_spiral: None,
+        traced: None,
+        profile: None,
+        profile_scale: 1.0,
+        modulus_tip_to_base: 1.0,
+        arc_stretch: 1.0,
+        follicle_stiffness_nnm_per_rad: stiffness_nnm_per_rad,
+    }
+}
+
+/// Values for 5e-6 N m/rad from the states of a clamped whisker, and from another solver (65.21 degrees); and without a follicle.
+#[test]
+fn a_pad_lets_go_later() {
+    for (stiffness, push_deg, moment_nnm) in [(Some(5000.0), 65.21147, 871.9), (None, 56.20, 684.0)]
+    {
+        let end = curve(&cone(stiffness), &Pole::smooth(0.0), Side::Cb, &[5.0])[0];
+        assert_eq!(end.kind, DetachmentKind::SlipOff);
+        let (push, moment) = (end.push_angle_deg.unwrap(), end.base_moment_nnm.unwrap());
+        let digits = if stiffness.is_some() { 6e-6 } else { 6e-3 };
+        assert!((push - push_deg).abs() < digits, "{push}");
+        assert!((moment.abs() - moment_nnm).abs() < 0.6, "{moment}");
+    }
+}
+
+/// Random tapered whiskers with parabola and friction.
+fn random(random: &mut Random) -> (Whisker, Pole) {
+    let whisker = Whisker {
+        tip_radius_um: random.between(0.0, 25.0),
+        curvature: Some(Curvature {
+            parabola_per_mm: random.between(0.0, 0.03),
+            vertex_mm: 0.0,
+        }),
+        modulus_tip_to_base: random.between(0.5, 2.0),
+        ..cone(None)
+    };
+    let pole = Pole {
+        radius_mm: random.between(0.0, 0.4),
+        friction: random.between(0.0, 0.3),
+    };
+    (whisker, pole)
+}
+
+/// At a fixed pole, a state of the clamped whisker is one in a follicle that is pushed further, by moment over stiffness. So the push ends at the
+/// largest sum of both along the clamped branch, also if it is among the states that are unstable in a clamp, or unless the tip comes first.
+#[test]
+fn a_push_is_that_of_a_clamp_and_the_turn_of_the_follicle() {
+    let mut numbers = Random::new(5);
+    let mut kinds = [0; 2];
+    for _ in 0..12 {
+        let (clamped, pole) = random(&mut numbers);
+        let pole = Pole::smooth(pole.radius_mm);
+        let stiffness = clamped.units().moment_nnm * numbers.between(0.2, 5.0);
+        let held = Whisker {
+            follicle_stiffness_nnm_per_rad: Some(stiffness),
+            ..clamped.clone()
+        };
+        for side in Side::BOTH {
+            let distance_mm = numbers.between(3.0, 14.0);
+            let end = curve(&held, &pole, side, &[distance_mm])[0];
+            let branch = Branch::new(&clamped, &pole, side, distance_mm).unwrap();
+            let points = branch.points(4001).unwrap();
+            let pushes = points.iter().map(|point| {
+                let turn = (side.sign() * point.base_moment_nnm / stiffness).to_degrees();
+                side.sign() * point.push_angle_deg + turn
+            });
+            let pushes: Vec<f64> = pushes.collect();
+            let top = pushes.windows(2).position(|pair| pair[1] < pair[0]);
+            let largest = pushes[top.unwrap_or(pushes.len() - 1)];
+            kinds[usize::from(end.kind == DetachmentKind::PullOff)] += 1;
+            let push = side.sign() * end.push_angle_deg.unwrap();
+            // Points are 0.02 degrees apart, and the top is flat.
+            assert!(
+                (push - largest).abs() < 1e-4,
+                "{held:?} {side:?}: {push} {largest}"
+            );
+        }
+    }
+    assert!(kinds.iter().all(|count| *count > 2), "{kinds:?}");
+}
+
+#[test]
+fn a_stiff_follicle_is_a_clamp() {
+    let mut numbers = Random::new(6);
+    for _ in 0..8 {
+        let (clamped, pole) = random(&mut numbers);
+        let held = Whisker {
+            follicle_stiffness_nnm_per_rad: Some(1e15),
+            ..clamped.clone()
+        };
+        for side in Side::BOTH {
+            let distances = [2.0, 5.0, 8.0, 11.0, 14.0];
+            let [held, clamped] = [&held, &clamped].map(|own| curve(own, &pole, side, &distances));
+            for (held, clamped) in held.iter().zip(&clamped) {
+                assert_eq!(held.kind, clamped.kind);
+                if let (Some(held), Some(clamped)) = (held.push_angle_deg, clamped.push_angle_deg) {
+                    assert!((held - clamped).abs() < 1e-9, "{held} {clamped}");
+                }
+            }
+        }
+    }
+}
+
+/// The base's tangent turns by moment over stiffness from the axis of the follicle, and the push does the work that is stored.
+#[test]
+fn the_base_turns_and_the_spring_stores_energy() {
+    let stiffness = 5000.0;
+    let whisker = Whisker {
+        tip_radius_um: 2.0,
+        ..cone(Some(stiffness))
+    };
+    let branch = Branch::new(&whisker, &Pole::smooth(0.3), Side::Cb, 6.0).unwrap();
+    let points = branch.points(2001).unwrap();
+    let mut work = 0.0;
+    for pair in points.windows(2) {
+        let turn = (pair[1].push_angle_deg - pair[0].push_angle_deg).to_radians();
+        work += 0.5 * (pair[0].base_moment_nnm + pair[1].base_moment_nnm) * turn;
+        let energy = pair[1].energy_nj;
+        assert!(
+            (work - energy).abs() < 1e-5 * energy.max(1.0),
+            "{work} {energy}"
+        );
+    }
+    let state = branch.state(40f64.to_radians(), true).unwrap();
+    let shape = WhiskerShape::new(&branch, &state, 200);
+    let turn = (shape.state.base_moment_nnm / stiffness).to_degrees();
+    assert!(turn > 5.0, "{turn}");
+    assert!((shape.points[0].angle_deg - (turn - 40.0)).abs() < 1e-9);
+    let moment = shape.points[0].moment_nnm;
+    assert!((moment.abs() - shape.state.base_moment_nnm.abs()).abs() < 1e-9 * moment.abs());
+}
+
+/// A sweep from nearly a hinge to nearly a clamp.
+const SCENE: &str = "title = 'Follicle'\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 1.5\nyoungs_modulus_gpa = 3\n\
+    curvature.parabola_per_mm = 0.02\n[pole]\nradius_mm = 0.25\n[grid]\n\
+    push_angle_deg = { from = -120, to = 120, count = 241 }\ndistance_mm = { from = 4, to = 20, count = 65 }\n\
+    follicle_stiffness_nnm_per_rad = [20, 300, 5000, 1e6]\n";
+
+/// Cells are in the regimes that their boundaries say, by trajectories and by nets, and nothing is left open.
+#[test]
+fn engines_agree_from_hinge_to_clamp() {
+    let scene = Scene::parse(SCENE, "follicle").unwrap();
+    let maps = [MapEngine::Cpu, MapEngine::Spectral].map(|engine| {
+        let mut options = Options::default();
+        options.engine = engine;
+        map(&scene, options).unwrap()
+    });
+    let [trajectories, nets] = &maps;
+    let engine = &nets.summary.engine_cells;
+    assert!(engine.solved > nets.summary.refined / 2, "{engine:?}");
+    for (own, other) in trajectories.cells().zip(nets.cells()) {
+        assert_eq!(own.regime, other.regime, "{own:?}");
+        assert_ne!(own.regime, Regime::Unresolved, "{own:?}");
+    }
+    // The softer the follicle, the later the whisker lets go.
+    let contacts = |whisker: usize| {
+        let cells = trajectories.cells().filter(|cell| cell.whisker == whisker);
+        cells.filter(|cell| cell.regime == Regime::Contact).count()
+    };
+    let contacts: Vec<usize> = (0..4).map(contacts).collect();
+    assert!(
+        contacts.windows(2).all(|pair| pair[0] > pair[1]),
+        "{contacts:?}"
+    );
+}
