@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use whiskmap::scene::{AxisScale, AxisValues, Parameter, Scene, SceneBuilder, SceneData};
 
-use super::{BASE, parse, shipped, sweep};
+use super::{BASE, parse, sweep};
+use crate::shipped;
 
 fn cone() -> Scene {
     Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap()
@@ -126,7 +127,7 @@ fn parameters_are_read_and_replaced() {
 /// Neutral values of all parameters, in scenes that leave them out: shipped ones, and one without a curvature.
 #[test]
 fn neutral_values_change_nothing() {
-    let scenes = shipped().into_iter().map(|path| Scene::read(path).unwrap());
+    let scenes = shipped::scenes().into_iter();
     let straight = Scene::builder("straight")
         .set(Parameter::LengthMm, 20.0)
         .set(Parameter::BaseRadiusUm, 30.0)
