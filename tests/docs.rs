@@ -143,7 +143,7 @@ fn the_numbers_of_scenes_are_on_their_pages() {
             }
         }
     }
-    assert_eq!(compared, 11);
+    assert_eq!(compared, 13);
 }
 
 /// Returns the number of cells of a row of a table; pipes in cells are escaped.

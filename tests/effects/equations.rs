@@ -48,6 +48,8 @@ fn plainly(condition: &InitialCondition, steps: u32) -> DVec2 {
         from = to;
     }
     let [theta, x, y] = y;
+    // The moment turns the base in its mount.
+    let theta = theta + rod.mount * force * x;
     DVec2::from_angle(-theta).rotate(rod.to_pole() - DVec2::new(x, y))
 }
 
