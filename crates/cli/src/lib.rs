@@ -63,7 +63,7 @@ use whiskmap::store::TemporaryFiles;
 
 /// Compute where a whisker pushed against a pole stays in contact, slips off or is pulled off
 #[derive(Debug, Parser)]
-#[command(version, bin_name = "whiskmap", arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "whiskmap", version, bin_name = "whiskmap", arg_required_else_help = true, after_help = EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
