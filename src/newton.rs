@@ -97,7 +97,7 @@ pub struct NewtonIterate<S> {
     pub outcome: NewtonOutcome,
 }
 
-/// Rule of the Newton loop for which trajectories share a block of SIMD lanes.
+/// Which trajectories of the Newton loop may share a block of SIMD lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaneSharing {
     /// Only trajectories with the same number of steps share a block. Results do not depend on the other problems.

@@ -98,8 +98,8 @@ impl WhiskerSide {
         values(&reader.read(state.at.point.x, &state.full, touch, push))
     }
 
-    /// Returns sizes of the channel values `[channel]` along a row with this `end`. Components of the force are as large as the force,
-    /// moment and energy as the force and its lever, angles as a radian.
+    /// Returns the size of each channel's values along a row with this `end`, `[channel]`. For a component of the force it is the force, for
+    /// the moment and the energy the force times its lever, and for an angle one radian.
     #[must_use]
     pub fn sizes(&self, end: &Crossing) -> Values {
         let rod = &self.sheet.rod;

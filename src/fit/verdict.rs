@@ -29,7 +29,8 @@ const TENS_DEG: f64 = 10.0;
 pub struct NotAFit {
     /// Root mean square of the residuals, measured less predicted angles, in degrees.
     pub rms_deg: f64,
-    /// Largest root mean square of the residuals of a fit, in degrees: 5, or a third of the range of the measured angles and 0.
+    /// Largest root mean square of the residuals that a fit may have, in degrees: 5, or a third of the width of the smallest range that contains
+    /// 0 and all measured angles if that is less.
     pub largest_rms_deg: f64,
     /// Chi-square over the degrees of freedom, dimensionless; `None` if the points have no standard deviations.
     pub reduced_chi_square: Option<f64>,

@@ -45,7 +45,8 @@ const MOST_MISS: f64 = 1e-10;
 /// Width in `w` to which an extremum of the curvature is narrowed. The curvature changes there by the square.
 const EXTREMUM_WIDTH: f64 = 1e-6;
 
-/// Miss of an extremum of the curvature, in parts of its change, at which rounding decides whether the extremum or two states have it.
+/// Largest difference between an extremum of the curvature and the measured curvature, in parts of the change of curvature, with which the
+/// extremum counts as the state. Rounding decides there whether two states next to the extremum have the measured curvature, or none.
 const AT_EXTREMUM: f64 = 1e-11;
 
 /// Contact and curvature of a frame, in whisker lengths.

@@ -73,7 +73,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             plan,
             method,
             rows_at_once: match net {
-                // After a failed audit, the bytes depend on where a batch ends.
+                // After a failed audit, the CPU engine solves the batches that follow. So that equal runs write equal bytes, batches must not depend
+                // on the number of threads.
                 Some(_) if !has_device => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
                 Some(_) => plan.rows_at_once,
                 None => rows(cells),

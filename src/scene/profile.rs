@@ -178,7 +178,8 @@ fn beyond(rows: &[[f64; 2]], extension: f64) -> [f64; 2] {
     [end + extension, slope.mul_add(extension, last)]
 }
 
-/// Limits of the length of the cone beyond `rows`: at most the length of the rows. Its end has a radius that a last row may have.
+/// Returns the limits of the length of the cone beyond `rows`. It is at most as long as the rows, and so short that the radius at its end is
+/// one that the last row of a profile may have.
 fn extension_limits(rows: &[[f64; 2]]) -> NumberLimits {
     let ([_, base], [length_mm, last]) = (rows[0], rows[rows.len() - 1]);
     let slope = beyond(rows, 1.0)[1] - last;

@@ -198,7 +198,7 @@ mod tests {
             assert_eq!(check_near(name, values, wanted), Err(why.to_owned()));
         }
         assert_eq!(check_near("taper", &[0.5, 0.9], 1.1), Ok(()));
-        // A single value is selected by what its four digits may stand for.
+        // A single value is selected by every number that rounds to its four digits.
         let is_near = |wanted| check_near("taper", &[0.1001], wanted).is_ok();
         assert_eq!(
             [0.10005, 0.10015, 0.1000, 0.1002].map(is_near),

@@ -60,8 +60,8 @@ pub enum TextureError {
     },
     /// The resting whisker does not fit between two asperities.
     #[error(
-        "the resting whisker does not fit between asperities {} and {}, at {} and {} mm: surface.spacing_um must be larger, or \
-         surface.asperity_radius_um or surface.jitter smaller", .asperities[0], .asperities[1], .x_mm[0], .x_mm[1]
+        "the resting whisker does not fit between asperity {} at {} mm and asperity {} at {} mm; must have a larger spacing_um, or a smaller \
+         asperity_radius_um or jitter", .asperities[0], .x_mm[0], .asperities[1], .x_mm[1]
     )]
     Blocked {
         /// Numbers of the two asperities on the surface, from its lower end: `[lower, upper]`.

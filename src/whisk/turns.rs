@@ -18,7 +18,8 @@ pub struct Turns {
 impl Turns {
     /// Returns the phase in which a course begins at `angle`, in radians; `None` in contact.
     pub fn begin(&self, angle: f64) -> Option<Phase> {
-        // At a touch on CB the whisker is still on that side, in front of a point as well.
+        // At first touch on CB the whisker counts as not yet past the pole. Without this, rounding would decide in front of a point contact, whose
+        // two sides are touched at the same angle.
         let cb_touch = (angle / TAU).round();
         let turn = match (angle - TAU * cb_touch).abs() <= ROUNDING {
             true => cb_touch - 1.0,

@@ -148,7 +148,8 @@ fn through_crossings(
         .collect();
     let starts = at_crossings(rows, &entries);
     let ahead = ends_of_pieces(rows, &starts, Stretch::Stable, false);
-    // From the end of a piece, the continuation ahead returns to this end; the continuation back leads to the beginning.
+    // An entry may be the beginning or the end of a piece. From the end, a continuation leads away only backward; forward it comes back to
+    // the same crossing.
     let leads = |entry: &Crossing, end: Option<PieceEnd>| end.filter(|(end, _)| !same(entry, end));
     let ahead: Vec<Option<PieceEnd>> = entries
         .iter()
