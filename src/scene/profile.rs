@@ -14,9 +14,8 @@ pub(super) const MOST: usize = 256;
 /// Largest distance of the last row from the tip, relative to the length: tables are rounded.
 const END_SLACK: f64 = 1e-9;
 
-/// Limits of the radius of a row, in micrometres.
-const THINNEST_UM: f64 = 1e-3;
-const THICKEST_UM: f64 = 1e5;
+/// Limits `[thinnest, thickest]` of the radius of a row, in micrometres.
+const ROW_UM: [f64; 2] = Parameter::BaseRadiusUm.limits();
 
 /// Least distance of two rows, relative to the length: `f32` can tell them apart.
 const NARROWEST: f64 = 1e-6;
@@ -105,7 +104,7 @@ fn check_rows(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
                 "must be farther from the row before it, by at least length_mm / 1000000 ({})",
                 NARROWEST * length_mm
             )
-        } else if !(THINNEST_UM..=THICKEST_UM).contains(&radius) {
+        } else if !(ROW_UM[0]..=ROW_UM[1]).contains(&radius) {
             "the radius must be between 0.001 and 100000 um".to_owned()
         } else if !(thinnest..=thickest).contains(&radius) {
             format!(
@@ -210,8 +209,8 @@ fn scale_limits(rows: &[[f64; 2]]) -> NumberLimits {
     let thinnest = radii.fold(f64::INFINITY, f64::min);
     let [least, most] = Parameter::ProfileScale.limits();
     NumberLimits::between(
-        least.max(THINNEST_UM / thinnest).min(1.0),
-        most.min(THICKEST_UM / thickest),
+        least.max(ROW_UM[0] / thinnest).min(1.0),
+        most.min(ROW_UM[1] / thickest),
     )
 }
 

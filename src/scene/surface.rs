@@ -5,10 +5,10 @@ use super::grid::{FARTHEST, NEAREST};
 use super::limits::NumberLimits;
 use super::whisker::Whisker;
 use crate::random::RandomStream;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Rough surface: asperities on a line. They are small poles without friction.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surface {
     /// Smallest distance from the base to the line through the centres of the asperities, in mm.

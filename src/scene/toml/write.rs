@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 use std::sync::Arc;
 
+use toml_edit::ser::to_document;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, TableLike, TomlError, Value};
 
 use crate::scene::axis::{AxisScale, AxisValues};
@@ -128,17 +129,9 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
             put(root, &format!("uncertainty.{ROWS}"), deviation);
         }
     }
-    if let Some(surface) = &scene.surface {
-        for (key, value) in [
-            ("surface.distance_mm", surface.distance_mm),
-            ("surface.spacing_um", surface.spacing_um),
-            ("surface.asperity_radius_um", surface.asperity_radius_um),
-            ("surface.length_mm", surface.length_mm),
-            ("surface.jitter", surface.jitter),
-        ] {
-            put(root, key, value);
-        }
-        put(root, "surface.seed", i64::from(surface.seed));
+    // Its fields are plain numbers.
+    if let Some(Ok(surface)) = scene.surface.map(|surface| to_document(&surface)) {
+        root.insert("surface", surface.into_table().into());
     }
     document
 }
