@@ -122,6 +122,7 @@ impl Map {
 }
 
 #[cfg(all(test, feature = "ndarray"))]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use crate::compute::{Options, map};
     use crate::plan::Channel;
