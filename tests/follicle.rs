@@ -41,7 +41,7 @@ fn a_pad_lets_go_later() {
 /// Random tapered whiskers with parabola and friction.
 fn random(random: &mut Random) -> (Whisker, Pole) {
     let whisker = Whisker {
-        tip_radius_um: random.between(0.0, 25.0),
+        tip_radius_um: random.between(0.0, 15.0),
         curvature: Some(Curvature {
             parabola_per_mm: random.between(0.0, 0.03),
             vertex_mm: 0.0,
@@ -62,8 +62,14 @@ fn random(random: &mut Random) -> (Whisker, Pole) {
 fn a_push_is_that_of_a_clamp_and_the_turn_of_the_follicle() {
     let mut numbers = Random::new(5);
     let mut kinds = [0; 2];
-    for _ in 0..12 {
-        let (clamped, pole) = random(&mut numbers);
+    for index in 0..12 {
+        let (mut clamped, pole) = random(&mut numbers);
+        // A cylinder is pulled off far from the base.
+        let mut range = [3.0, 12.0];
+        if index % 2 == 1 {
+            clamped.tip_radius_um = clamped.base_radius_um;
+            range = [8.0, 15.0];
+        }
         let pole = Pole::smooth(pole.radius_mm);
         let stiffness = clamped.units().moment_nnm * numbers.between(0.2, 5.0);
         let held = Whisker {
@@ -71,7 +77,7 @@ fn a_push_is_that_of_a_clamp_and_the_turn_of_the_follicle() {
             ..clamped.clone()
         };
         for side in Side::BOTH {
-            let distance_mm = numbers.between(3.0, 14.0);
+            let distance_mm = numbers.between(range[0], range[1]);
             let end = curve(&held, &pole, side, &[distance_mm])[0];
             let branch = Branch::new(&clamped, &pole, side, distance_mm).unwrap();
             let points = branch.points(4001).unwrap();

@@ -74,7 +74,7 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     let mut mount = random.clone();
     let turns = f64::from(mount.unit() < 0.25);
     let rod = Rod {
-        mount: turns * mount.between(0.0, 2.0),
+        mount: turns * mount.between(0.0, 0.2),
         ..rod
     };
     if effects.profile {
