@@ -3,6 +3,7 @@
 //! A process that is killed leaves them. They are locked while their process runs, so that a later process can remove these leftovers.
 //! The locks in a shared folder may be visible on one host only, so names contain the host.
 
+#[cfg(feature = "zarr")]
 use super::output::folder_of;
 use std::fs::{self, File, Metadata};
 use std::io;
