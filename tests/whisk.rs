@@ -288,3 +288,95 @@ fn a_course_begins_in_contact_only_where_a_side_holds_the_whisker() {
     let wanted = "cannot begin in contact: the first angle is 20 deg; pushes on CB end at 15.609";
     assert!(why.starts_with(wanted), "{why}");
 }
+
+/// The course through angles, one a second, with a bridge across gaps of at most `bridge_s`.
+fn with_gaps(scene: &Scene, angles: &[f64], bridge_s: f64) -> Whisk {
+    let times = (0..angles.len()).map(|i| i as f64).collect();
+    let course = AngleCourse::new(times, angles.to_vec()).unwrap();
+    let mut options = WhiskOptions::default();
+    options.bridge_s = bridge_s;
+    whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options).unwrap()
+}
+
+fn reasons(found: &Whisk) -> Vec<Option<Undecided>> {
+    found.samples.iter().map(|sample| sample.reason).collect()
+}
+
+/// A bridged gap takes its angles, and their samples, and nothing else: here they lie on straight lines.
+#[test]
+fn a_course_continues_across_a_bridged_gap() {
+    let whole = [-10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0, 10.0, 0.0, -10.0];
+    for friction in [0.0, 0.3] {
+        let scene = scene("cone").with(Parameter::Friction, friction).unwrap();
+        let mut angles = whole;
+        for missing in [2, 4, 5, 8] {
+            angles[missing] = f64::NAN;
+        }
+        let wanted = through(&scene, DISTANCE, &whole).unwrap();
+        let found = with_gaps(&scene, &angles, 3.0);
+        assert_eq!(kinds(&found.events), kinds(&wanted.events));
+        for (own, other) in found.events.iter().zip(&wanted.events) {
+            // Times are interpolated over longer lines.
+            assert!(
+                (own.time_s - other.time_s).abs() < 1e-12,
+                "{own:?} {other:?}"
+            );
+            assert_eq!(own.force_un, other.force_un);
+        }
+        for ((own, other), angle) in found.samples.iter().zip(&wanted.samples).zip(angles) {
+            assert_eq!(own.time_s, other.time_s);
+            match angle.is_nan() {
+                true => {
+                    assert_eq!(own.reason, Some(Undecided::Bridged), "{own:?}");
+                    assert_eq!((own.angle_deg, own.force_un, own.side), (None, None, None));
+                }
+                false => assert_eq!(own, other),
+            }
+        }
+        let counts: Vec<_> = found
+            .gaps
+            .iter()
+            .map(|gap| (gap.count, gap.is_bridged))
+            .collect();
+        assert_eq!(counts, [(1, true), (2, true), (1, true)]);
+        assert_eq!(found.lost_nj(), wanted.lost_nj());
+        // The longest gap lasts 3 s: a shorter bridge ends there.
+        assert!(!with_gaps(&scene, &angles, 2.999).gaps[1].is_bridged);
+    }
+}
+
+/// After a gap that is not bridged the whisker can be free or in contact, until only one phase is possible.
+#[test]
+fn a_course_is_undecided_after_a_gap_until_one_phase_is_left() {
+    let nan = f64::NAN;
+    let angles = [nan, -10.0, 5.0, nan, 10.0, 20.0, 5.0, -5.0, nan];
+    for friction in [0.0, 0.3] {
+        let scene = scene("cone").with(Parameter::Friction, friction).unwrap();
+        let found = with_gaps(&scene, &angles, 0.0);
+        let (missing, after) = (Some(Undecided::Missing), Some(Undecided::AfterGap));
+        let wanted = [
+            missing, None, None, missing, after, None, None, None, missing,
+        ];
+        assert_eq!(reasons(&found), wanted, "{friction}");
+        let regimes: Vec<_> = found.samples[5..8].iter().map(|own| own.regime).collect();
+        let (free, contact) = (WhiskRegime::Free, WhiskRegime::Contact);
+        assert_eq!(regimes, [free, free, contact]);
+        let held = through(&scene, DISTANCE, &[-10.0, 20.0, 5.0, -5.0]).unwrap();
+        assert_eq!(found.samples[7].force_un, held.samples[3].force_un);
+        assert!(found.lost_nj().is_nan());
+        let warnings = found.warnings();
+        let gaps =
+            "3 angles are missing in 3 gaps, the first at 0 s: after them the course is undecided";
+        assert!(warnings[0].starts_with(gaps), "{warnings:?}");
+        // What friction has dissipated in the gap is not known.
+        let known = found.samples[7].dissipated_nj;
+        assert_eq!(known.is_none(), friction > 0.0, "{known:?}");
+    }
+}
+
+#[test]
+fn a_course_of_missing_angles_is_refused() {
+    let course = AngleCourse::new(vec![0.0, 1.0, 2.0], vec![f64::NAN, 1.0, f64::NAN]);
+    let (known, angles) = (1, 3);
+    assert_eq!(course, Err(CourseError::Missing { known, angles }));
+}

@@ -30,8 +30,8 @@ type WhiskColumns<'py> = (
     Vec<String>,
 );
 
-/// Computes the course of the scene's only whisker in front of one pole, with the angles of the base at these times. `start` names the state
-/// in which it begins.
+/// Computes the course of the scene's only whisker in front of one pole, with the angles of the base at these times, NaN where one is missing.
+/// `start` names the state in which it begins. Gaps of at most `bridge_s`, in s, are bridged.
 #[pyfunction]
 pub fn whisk<'py>(
     py: Python<'py>,
@@ -40,13 +40,19 @@ pub fn whisk<'py>(
     time_s: PyReadonlyArray1<'py, f64>,
     angle_deg: PyReadonlyArray1<'py, f64>,
     start: Option<&str>,
+    bridge_s: f64,
 ) -> PyResult<WhiskColumns<'py>> {
+    if !(0.0..f64::INFINITY).contains(&bridge_s) {
+        let why = format!("bridge_s = {bridge_s}: must be at least 0, and finite");
+        return Err(refused(&why));
+    }
     let scene = at_pole(py, scene, distance_mm)?;
     let course = course(&time_s, &angle_deg)?;
     let start = start.map(arguments::start).transpose()?;
     let job = |cancel: &Arc<AtomicBool>| {
         let mut options = WhiskOptions::default();
         (options.start, options.cancel) = (start, Some(Arc::clone(cancel)));
+        options.bridge_s = bridge_s;
         let found = whisk_with(&scene.whisker, &scene.pole, distance_mm, &course, &options)?;
         let samples = Table::new(&found.samples, WhiskSample::COLUMNS, cancel);
         let events = Table::new(&found.events, WhiskEvent::COLUMNS, cancel);

@@ -186,8 +186,8 @@ def test_a_force_is_never_negative(cone, model):
 def test_a_refused_number_of_an_array_is_named(cone):
     time, angle = sine(20, 10, 0.01)
     broken = angle.copy()
-    broken[3] = np.nan
-    with pytest.raises(ValueError, match=r"angle_deg\[3\] = NaN: must be between -360 and 360"):
+    broken[3] = np.inf
+    with pytest.raises(ValueError, match=r"angle_deg\[3\] = inf: must be between -360 and 360"):
         wm.whisk(cone, 15.66, time, broken)
     frame = pd.read_csv(FRAMES, comment="#")
     frame.loc[4, "at_arc_length_mm"] = 99
@@ -195,3 +195,21 @@ def test_a_refused_number_of_an_array_is_named(cone):
         wm.force(cone, frame)
     with pytest.raises(TypeError, match=r"frames\['time_s'\]\[1\] = \(\): must be a number"):
         wm.force(cone, {"time_s": np.array([0.0, ()], dtype=object)})
+
+def test_gaps_are_those_of_the_program(cone, tmp_path):
+    time, angle = sine(14, 5, 0.2)
+    angle[[20, 21, 90]] = np.nan
+    angles = tmp_path / "angles.csv"
+    pd.DataFrame({"time_s": time, "angle_deg": angle}).to_csv(angles, index=False)
+    options = ("whisk", CONE, "--distance", 15.66, "--angles", angles)
+    with pytest.warns(wm.SceneWarning, match="3 angles are missing in 2 gaps, the first at 0.02 s: the course continues"):
+        bridged = wm.whisk(cone, 15.66, time, angle, bridge_s=0.003)
+    same(bridged.samples, table(*options, "--bridge", "3ms"))
+    with pytest.warns(wm.SceneWarning, match="after them the course is undecided"):
+        same(wm.whisk(cone, 15.66, time, angle).samples, table(*options))
+    with pytest.raises(ValueError, match="bridge_s = -1: must be at least 0, and finite"):
+        wm.whisk(cone, 15.66, time, angle, bridge_s=-1)
+    frame = pd.read_csv(FRAMES, comment="#")
+    frame.loc[50, "curvature_per_mm"] = np.nan
+    with pytest.warns(wm.SceneWarning, match="frames have no force"):
+        assert wm.force(cone, frame).reason[50] == "missing"

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from whiskmap._whiskmap import _Column
 
-_CONTACT = ("contact_x_mm", "contact_y_mm", "contact_angle_deg")
-
 
 @dataclass(frozen=True)
 class Whisk:
@@ -32,11 +30,12 @@ class Whisk:
     ----------
     samples : xarray.Dataset
         State at each of the times, by `time_s`: `angle_deg`, `regime` ("free", "contact", "undecided"), `side`, loads and energy. Loads
-        of a free whisker are 0. NaN where there is no contact, or where a sample is undecided for the `reason`.
+        of a free whisker are 0. NaN where there is no contact, or where a sample is undecided for the `reason`. In gaps the reason is
+        "missing", or "bridged" if the course continues across the gap; after a gap that is not bridged it is "after-gap".
     events : xarray.Dataset
         Touches, releases, slip-offs, pull-offs and snaps between samples, by `number`: `time_s`, `event`, `angle_deg` and the state.
     lost_nj : float
-        Energy that the detachments lose, in nJ; NaN if one is not known.
+        Energy that the detachments lose, in nJ; NaN if one is not known, as after a gap that is not bridged.
     dissipated_nj : float
         Energy that friction dissipates, in nJ; NaN if a part of the course is undecided.
     cf_touch_deg : float
@@ -86,6 +85,7 @@ def whisk(
     angle_deg: ArrayLike,
     *,
     start: Literal["contact", "free"] | None = None,
+    bridge_s: float = 0,
 ) -> Whisk:
     """Compute the quasi-static course of a whisker whose base rotates in front of one pole.
 
@@ -99,15 +99,19 @@ def whisk(
         Times of the samples in s, which grow; at least two.
     angle_deg : array_like
         Angle of the base at each of the times: 0 at first touch on CB, growing with the push there. It changes along straight lines
-        between samples.
+        between samples. NaN where it is missing: that sample has no state. After such a gap the course is undecided until only one state
+        is possible.
     start : {"contact", "free"}, optional
         State at the first angle. In "contact", the base has pushed the whisker there from first touch: on CB if that side holds it, otherwise
         on CF. A "free" whisker beyond first touch has passed the pole; that is assumed, with a warning, if left out.
+    bridge_s : float
+        Longest gap, in s, across which the course continues along a straight line: the time between the angles before and after missing
+        ones. 0 bridges none.
 
     Raises
     ------
     ValueError
-        If the times do not grow, an angle is beyond a turn, or the whisker cannot be in the state at the start.
+        If the times do not grow, an angle is beyond a turn, `bridge_s` is negative, or the whisker cannot be in the state at the start.
     StateError
         If the resting whisker does not reach the pole.
     SceneError
@@ -118,12 +122,14 @@ def whisk(
     Warns
     -----
     SceneWarning
-        If a free whisker beyond first touch is assumed, or samples are undecided.
+        If a free whisker beyond first touch is assumed, gaps are bridged or not, or samples are undecided.
     """
     checked, distance = _checked(scene), number("distance_mm", distance_mm)
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
     time, angle = _one_dimensional(*course)
-    samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(checked, distance, time, angle, start)
+    samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(
+        checked, distance, time, angle, start, number("bridge_s", bridge_s)
+    )
     warn(warnings)
     about = {"distance_mm": distance}
     return Whisk(_over_time(samples, scene, about), _numbered(events, scene, about), lost, dissipated, cf_touch)
@@ -166,16 +172,16 @@ def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, m
         A scene of one whisker without friction. Its grid is not used.
     frames : path, mapping or pandas.DataFrame
         A CSV file, or columns of equal length: `time_s`, `curvature_per_mm`, `at_arc_length_mm`, `contact_x_mm`, `contact_y_mm` in the
-        frame of the base, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. Numbers of the contact are
-        NaN or None in frames without contact.
+        frame of the base, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. The position of the contact
+        is NaN or None in frames without contact. Other numbers are NaN or None where they are missing.
     model : bool
         True computes the stable state of the full model that has this curvature, instead of the moment over the lever.
 
     Returns
     -------
     xarray.Dataset
-        Force, and force and moment at the base, by `time_s`. NaN with a `reason` ("no-lever", "out-of-reach", "no-state") where a frame
-        has no force.
+        Force, and force and moment at the base, by `time_s`. NaN with a `reason` ("missing", "no-lever", "out-of-reach", "no-state")
+        where a frame has no force.
 
     Raises
     ------
@@ -184,18 +190,11 @@ def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, m
     OSError
         If the file cannot be read.
     """
-    checked, given = _checked(scene), frames
-    if not isinstance(frames, (str, os.PathLike)) and hasattr(frames, "keys"):
-        frames = {str(name): _or_empty(str(name), frames[name]) for name in frames.keys()}
-    with naming_rows("frames", given):
-        columns, warning = _whiskmap.force(checked, csv_text("frames", frames), origin_of("frames", given), bool(model))
+    checked = _checked(scene)
+    with naming_rows("frames", frames):
+        columns, warning = _whiskmap.force(checked, csv_text("frames", frames), origin_of("frames", frames), bool(model))
     warn([warning])
     return _over_time(columns, scene)
-
-
-def _or_empty(name: str, values: Iterable[Any]) -> Iterable[Any]:
-    """A column, with None for the numbers of a contact that are NaN."""
-    return [None if value != value else value for value in values] if name in _CONTACT else values
 
 
 def _one_dimensional(*arrays: Any) -> tuple[Any, ...]:

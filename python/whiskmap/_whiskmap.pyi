@@ -112,7 +112,7 @@ def shape(
     scene: CheckedScene, distance_mm: float, push_angle_deg: float, stable: bool, points: int
 ) -> tuple[list[_Column], list[float], float, float, list[_Column]]: ...
 def whisk(
-    scene: CheckedScene, distance_mm: float, time_s: NDArray[float64], angle_deg: NDArray[float64], start: str | None
+    scene: CheckedScene, distance_mm: float, time_s: NDArray[float64], angle_deg: NDArray[float64], start: str | None, bridge_s: float
 ) -> tuple[list[_Column], list[_Column], float, float, float, list[str]]: ...
 def texture(
     scene: CheckedScene, time_s: NDArray[float64], angle_deg: NDArray[float64]

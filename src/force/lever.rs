@@ -18,6 +18,11 @@ pub struct Bending {
     length_mm: f64,
 }
 
+/// Returns a number that is not NaN.
+fn known(number: f64) -> Option<f64> {
+    Some(number).filter(|number| !number.is_nan())
+}
+
 impl Bending {
     pub fn new(whisker: &Whisker, frame: &CurvatureFrame) -> Self {
         // The side only gives the signs of the pole and of friction, which do not enter.
@@ -51,8 +56,8 @@ impl Bending {
     pub fn none(&self, time_s: f64, reason: NoForce) -> FrameForce {
         FrameForce {
             time_s,
-            curvature_change_per_mm: self.change_per_mm,
-            moment_nnm: self.moment_nnm,
+            curvature_change_per_mm: known(self.change_per_mm),
+            moment_nnm: known(self.moment_nnm),
             force_un: None,
             base_force_x_un: None,
             base_force_y_un: None,

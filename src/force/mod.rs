@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Contact in a frame, in the frame of the base: the first axis is the base's tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameContact {
-    /// Position of the contact, `[x, y]` in mm.
+    /// Position of the contact, `[x, y]` in mm; NaN where it is missing.
     pub contact_mm: [f64; 2],
     /// Angle of the whisker's tangent at the contact, in degrees; `None` if it was not measured.
     pub contact_angle_deg: Option<f64>,
@@ -34,20 +34,39 @@ pub struct CurvatureFrame {
     pub line: usize,
     /// Time of the frame, in s.
     pub time_s: f64,
-    /// Curvature of the whisker at the measured point, in 1/mm.
+    /// Curvature of the whisker at the measured point, in 1/mm; NaN where it is missing.
     pub curvature_per_mm: f64,
-    /// Arclength from the base to the measured point, in mm.
+    /// Arclength from the base to the measured point, in mm; NaN where it is missing.
     pub at_arc_length_mm: f64,
-    /// Position of the measured point, `[x, y]` in mm; `None` for that of the resting whisker.
+    /// Position of the measured point, `[x, y]` in mm, NaN where it is missing; `None` for that of the resting whisker.
     pub at_mm: Option<[f64; 2]>,
     /// Position and tangent of the whisker at the contact in this frame; `None` if the whisker is free.
     pub contact: Option<FrameContact>,
+}
+
+impl CurvatureFrame {
+    /// Returns true if a number that `method` needs is missing.
+    fn is_missing(&self, method: ForceMethod) -> bool {
+        let contact = self.contact.as_ref();
+        let position = contact.map_or([0.0; 2], |own| own.contact_mm);
+        let angle = contact.and_then(|own| own.contact_angle_deg);
+        let angle = angle.filter(|_| method == ForceMethod::Lever);
+        let at = self
+            .at_mm
+            .filter(|_| method == ForceMethod::Lever && contact.is_some());
+        let [at, place] = [at.unwrap_or([0.0; 2]), position];
+        let numbers = [self.curvature_per_mm, self.at_arc_length_mm];
+        let numbers = numbers.into_iter().chain(at).chain(place).chain(angle);
+        numbers.into_iter().any(f64::is_nan)
+    }
 }
 
 /// Reason why a frame has no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NoForce {
+    /// A number of the frame is missing.
+    Missing,
     /// The measured point is at the contact or beyond it, where there is no moment.
     NoLever,
     /// The contact is farther from the base than the whisker is long.
@@ -63,9 +82,9 @@ row! {
         /// Time of the frame, in s.
         pub time_s: f64,
         /// Change of the curvature at the measured point from that at rest, in 1/mm.
-        pub curvature_change_per_mm: f64,
+        pub curvature_change_per_mm: Option<f64>,
         /// Bending moment at the measured point, in nN m: positive turns the tip to the left.
-        pub moment_nnm: f64,
+        pub moment_nnm: Option<f64>,
         /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
@@ -78,7 +97,7 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Distance of the measured contact from that of the model, in mm; with --model.
         pub contact_off_mm: Option<f64>,
-        /// Reason of a frame without a force: no-lever, out-of-reach or no-state.
+        /// Reason of a frame without a force: missing, no-lever, out-of-reach or no-state.
         pub reason: Option<NoForce>,
     }
 }
@@ -128,6 +147,9 @@ pub fn forces_until(
     let model = (method == ForceMethod::Model).then(|| Model::new(whisker, pole, nearest));
     let force = |frame: &CurvatureFrame| {
         let lever = lever::Bending::new(whisker, frame);
+        if frame.is_missing(method) {
+            return lever.none(frame.time_s, NoForce::Missing);
+        }
         let Some(contact) = &frame.contact else {
             return lever.free(frame.time_s);
         };

@@ -48,9 +48,9 @@ pub enum TextureError {
     /// A number of the rough surface is out of its range.
     #[error(transparent)]
     Surface(#[from] SceneError),
-    /// The base turns away from the surface.
+    /// The base turns away from the surface, or its angle is missing.
     #[error(
-        "angle_deg[{index}] = {angle_deg}: must be between -90 and 90 deg from the normal of the surface"
+        "angle_deg[{index}] = {angle_deg}: must be between -90 and 90 deg from the normal of the surface, and none may be missing"
     )]
     Angle {
         /// Index of the sample whose angle is out of range.
@@ -112,8 +112,8 @@ pub enum TextureError {
 /// ```
 ///
 /// # Errors
-/// If a number of the surface is out of its range, the course begins in contact or turns the base away from the surface, the resting whisker does not fit between two asperities, or a
-/// detachment is not found.
+/// If a number of the surface is out of its range, an angle is missing, the course begins in contact or turns the base away from the
+/// surface, the resting whisker does not fit between two asperities, or a detachment is not found.
 pub fn texture(
     whisker: &Whisker,
     surface: &Surface,
@@ -134,7 +134,10 @@ pub fn texture_until(
 ) -> Result<Texture, TextureError> {
     surface.check(whisker)?;
     let angles = course.angles_deg();
-    if let Some(index) = angles.iter().position(|angle| angle.abs() > 90.0) {
+    if let Some(index) = angles
+        .iter()
+        .position(|angle| !(-90.0..=90.0).contains(angle))
+    {
         let angle_deg = angles[index];
         return Err(TextureError::Angle { index, angle_deg });
     }

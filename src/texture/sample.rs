@@ -75,8 +75,12 @@ pub fn samples(
             Phase::Undecided { reason, .. } => Some(match reason {
                 Undecided::OnThePole => NoTextureState::OnAnAsperity,
                 Undecided::TipEdge => NoTextureState::TipEdge,
-                // Only a contact with friction is stuck, and textures have none.
-                Undecided::NotFound | Undecided::Stuck => NoTextureState::NotFound,
+                // Only a contact with friction is stuck, and textures have none. Their courses have no gaps.
+                Undecided::NotFound
+                | Undecided::Stuck
+                | Undecided::Missing
+                | Undecided::Bridged
+                | Undecided::AfterGap => NoTextureState::NotFound,
             }),
             Phase::Contact { .. } if held.is_none_or(|own| own.state.is_none()) => {
                 Some(NoTextureState::NotFound)

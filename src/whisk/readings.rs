@@ -99,6 +99,23 @@ impl Found<'_> {
     }
 }
 
+/// Returns a sample without a state, whose angle is missing for this `reason`.
+pub fn missing(time_s: f64, reason: Undecided) -> WhiskSample {
+    let phase = Phase::Undecided {
+        obstacle: 0,
+        reason,
+    };
+    let own = LegSample {
+        phase,
+        contact: None,
+        dissipated: f64::NAN,
+    };
+    WhiskSample {
+        time_s,
+        ..sample(&own, None, f64::NAN)
+    }
+}
+
 /// Returns a sample without time and angle. `unit` is that of energies, in nJ.
 fn sample(own: &LegSample, reading: ContactReading, unit: f64) -> WhiskSample {
     let LegSample {
@@ -119,7 +136,7 @@ fn sample(own: &LegSample, reading: ContactReading, unit: f64) -> WhiskSample {
     let is_known = dissipated.is_finite() && reason != Some(Undecided::Stuck);
     WhiskSample {
         time_s: f64::NAN,
-        angle_deg: f64::NAN,
+        angle_deg: None,
         regime: match (phase, reason) {
             (_, Some(_)) => WhiskRegime::Undecided,
             (Phase::Free { .. }, _) => WhiskRegime::Free,

@@ -29,6 +29,12 @@ pub enum Undecided {
     NotFound,
     /// The contact has stuck where the push should have ended, and the course from there is not known.
     Stuck,
+    /// The angle of the base is missing, in a gap after which the course is not known.
+    Missing,
+    /// The angle of the base is missing, in a gap across which the course continues.
+    Bridged,
+    /// The angle of the base was missing, and several states are possible since then.
+    AfterGap,
 }
 
 row! {
@@ -38,7 +44,7 @@ row! {
         /// Time of the sample, in s.
         pub time_s: f64,
         /// Angle of the base, in degrees: 0 at first touch on CB, positive pushes CB.
-        pub angle_deg: f64,
+        pub angle_deg: Option<f64>,
         /// Regime: free, contact or undecided.
         pub regime: WhiskRegime,
         /// Side of the whisker that the pole is on in contact: cb (convex) or cf (concave).
@@ -63,7 +69,7 @@ row! {
         pub dissipated_nj: Option<f64>,
         /// Sliding direction of a contact with friction: tip, base or sticks.
         pub sliding: Option<Sliding>,
-        /// Reason of an undecided sample: on-the-pole, tip-edge, not-found or stuck.
+        /// Reason of an undecided sample: on-the-pole, tip-edge, not-found, stuck, missing, bridged or after-gap.
         pub reason: Option<Undecided>,
     }
 }

@@ -60,8 +60,6 @@ fn wrong_frames_are_refused() {
             "0,0.03,20,15,4,30",
             "at_arc_length_mm = 20: must be a number of at least 0 and less than 20",
         ),
-        ("0,0.03,2,15,,30", "f.csv:2: has a part of a contact"),
-        ("0,0.03,2,15,4,", "f.csv:2: has a part of a contact"),
         (
             "0,0.03,2,15,4,30\n0,0.03,2,15,4,30",
             "f.csv:3: time_s = 0: must be more than 0 of the line before",
@@ -83,4 +81,32 @@ fn wrong_frames_are_refused() {
     let rough = Place::with(&SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
     rough.write("f.csv", &format!("{HEADER}\n0,0.03,2,15,4,30\n"));
     force(&rough, &[]).assert_refused(&["contact.friction = 0.3: must be 0"]);
+}
+
+/// A frame with a missing number is a row with its reason, and what is known.
+#[test]
+fn frames_with_a_missing_number_have_a_reason() {
+    let place = Place::with(SCENE);
+    let rows = [
+        "0,,2,15,4,30",
+        "1,NaN,2,15,4,30",
+        "2,0.03,,15,4,30",
+        "3,0.03,2,15,,30",
+        "4,0.03,2,15,4,",
+        "5,0.03,2,,,",
+        "6,0.03,2,15,4,30",
+    ];
+    place.write("f.csv", &format!("{HEADER}\n{}\n", rows.join("\n")));
+    let run = force(&place, &[]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let found = cells(&run.out, TABLE);
+    let reasons: Vec<&str> = found.iter().map(|row| *row.last().unwrap()).collect();
+    assert_eq!(reasons, [&["missing"; 5][..], &["", ""]].concat());
+    let changes: Vec<bool> = found.iter().map(|row| !row[1].is_empty()).collect();
+    assert_eq!(changes, [false, false, false, true, true, true, true]);
+    assert!(run.err.contains("5 of 7 frames have no force"), "{run:?}");
+    // The model needs no angle.
+    let model = force(&place, &["--model"]);
+    let found = cells(&model.out, TABLE);
+    assert_eq!(*found[4].last().unwrap(), "");
 }

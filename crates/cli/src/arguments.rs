@@ -17,6 +17,13 @@ pub fn angle(text: &str) -> Result<f64, String> {
     Quantity::AngleDeg.parse(text)
 }
 
+/// Parses a positive time in seconds, or with a unit.
+pub fn duration(text: &str) -> Result<f64, String> {
+    let seconds = Quantity::TimeS.parse(text)?;
+    let seconds = Some(seconds).filter(|seconds| *seconds > 0.0);
+    seconds.ok_or_else(|| "must be a positive time".to_owned())
+}
+
 /// Numbers of threads that a run can have.
 pub const THREADS: RangeInclusive<u32> = 1..=1024;
 
