@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{
-    CurvatureFrames, ForceMethod, FrameForce, forces_until, warning as force_warning,
+    CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until, warning as force_warning,
 };
 use whiskmap::scene::Scene;
 use whiskmap::texture::{
@@ -129,10 +129,14 @@ pub fn texture<'py>(
     ))
 }
 
-/// Columns of forces, and a warning.
-type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>);
+/// Mean and scatter of the curvature of frames without contact, in 1/mm, and their number.
+type Baseline = (f64, f64, usize);
 
-/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`.
+/// Columns of forces, a warning, and the baseline.
+type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>, Option<Baseline>);
+
+/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`. The baseline is that of frames in `baseline_s`, or
+/// of frames without contact in the column `contact`.
 #[pyfunction]
 pub fn force<'py>(
     py: Python<'py>,
@@ -140,6 +144,7 @@ pub fn force<'py>(
     frames: &str,
     origin: &str,
     model: bool,
+    baseline_s: Option<[f64; 2]>,
 ) -> PyResult<ForceColumns<'py>> {
     let scene = &scene.0;
     single(scene)?;
@@ -151,13 +156,22 @@ pub fn force<'py>(
     let whisker = scene.first_whisker().whisker;
     let read = CurvatureFrames::parse(frames, origin, whisker.length_mm, method);
     let read = read.map_err(|why| refused(&why))?;
+    let baseline = read.baseline(&whisker, baseline_s);
+    let baseline = baseline.map_err(|why| refused(&why))?;
+    let deviations = scene.uncertainty.as_ref().map(|own| own.frames);
+    let options = ForceOptions {
+        baseline,
+        deviations: deviations.unwrap_or_default(),
+        ..ForceOptions::new(method)
+    };
     let job = |cancel: &Arc<AtomicBool>| {
-        let found = forces_until(&whisker, &scene.pole, &read.frames, method, cancel);
+        let found = forces_until(&whisker, &scene.pole, &read.frames, &options, cancel);
         let table = Table::new(&found, FrameForce::COLUMNS, cancel);
         (table, force_warning(&found))
     };
     let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;
-    Ok((table.into_columns(py)?, warning))
+    let baseline = baseline.map(|own| (own.mean_per_mm, own.sd_per_mm, own.count));
+    Ok((table.into_columns(py)?, warning, baseline))
 }
 
 fn course(

@@ -213,3 +213,20 @@ def test_gaps_are_those_of_the_program(cone, tmp_path):
     frame.loc[50, "curvature_per_mm"] = np.nan
     with pytest.warns(wm.SceneWarning, match="frames have no force"):
         assert wm.force(cone, frame).reason[50] == "missing"
+
+def test_a_baseline_is_that_of_the_program(cone):
+    frame = pd.read_csv(FRAMES, comment="#")
+    free = frame.contact_x_mm.isna()
+    span = (float(frame.time_s[0]), float(frame.time_s[~free].min()) - 1e-6)
+    own = wm.force(cone, frame, baseline_s=span)
+    same(own, table("force", CONE, "--frames", FRAMES, "--baseline", f"{span[0]}..{span[1]}"))
+    assert own.attrs["baseline_frames"] == int((frame.time_s <= span[1]).sum()) and own.attrs["baseline_sd_per_mm"] >= 0
+    deviating = cone.replace(uncertainty={"curvature_sd_per_mm": 1e-3})
+    assert deviating.uncertainty == {"curvature_sd_per_mm": 1e-3}
+    sd = wm.force(deviating, frame.assign(contact=(~free).astype(int))).force_sd_un
+    assert (sd[~free] > 0).all() and np.isnan(sd[free]).all()
+    for baseline in ((1, 0), (0, 1, 2)):
+        with pytest.raises(ValueError, match="must be a first and a later last time, in s"):
+            wm.force(cone, frame, baseline_s=baseline)
+    with pytest.raises(ValueError, match=r"^frames\[\d+\]: time_s = .*: is in contact"):
+        wm.force(cone, frame, baseline_s=(0, 1e6))

@@ -13,7 +13,7 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, rest_coords, variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, naming_rows, number, origin_of, real_array
+from whiskmap._values import csv_text, naming_rows, number, numbers, origin_of, real_array
 from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
@@ -163,7 +163,13 @@ def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
     return Texture(_over_time(samples, scene), _numbered(events, scene), _numbered(stays, scene), bins, lost, reached)
 
 
-def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, model: bool = False) -> xr.Dataset:
+def force(
+    scene: Scene,
+    frames: str | os.PathLike[str] | Mapping[str, Any],
+    *,
+    model: bool = False,
+    baseline_s: tuple[float, float] | None = None,
+) -> xr.Dataset:
     """Compute the contact force in frames of a film from the change of curvature at one point of the whisker.
 
     Parameters
@@ -173,28 +179,42 @@ def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, m
     frames : path, mapping or pandas.DataFrame
         A CSV file, or columns of equal length: `time_s`, `curvature_per_mm`, `at_arc_length_mm`, `contact_x_mm`, `contact_y_mm` in the
         frame of the base, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. The position of the contact
-        is NaN or None in frames without contact. Other numbers are NaN or None where they are missing.
+        is NaN or None in frames without contact, or a column `contact` is 0 there and 1 elsewhere. Other numbers are NaN or None where
+        they are missing.
     model : bool
         True computes the stable state of the full model that has this curvature, instead of the moment over the lever.
+    baseline_s : tuple of float, optional
+        First and last time, in s, of frames without contact. The curvature changes from their mean. Without it, the frames whose `contact`
+        is 0 are the baseline, if there is such a column.
 
     Returns
     -------
     xarray.Dataset
         Force, and force and moment at the base, by `time_s`. NaN with a `reason` ("missing", "no-lever", "out-of-reach", "no-state")
-        where a frame has no force.
+        where a frame has no force. `force_sd_un` and the other standard deviations are of first order. They come from the scatter of the
+        baseline, and from `curvature_sd_per_mm` (instead of the scatter), `contact_sd_mm` and `angle_sd_deg` of the scene's `uncertainty`.
+        The attributes `baseline_per_mm`, `baseline_sd_per_mm` and `baseline_frames` report the baseline.
 
     Raises
     ------
     ValueError
-        If a column is missing, a value is out of its range, times do not grow, or the scene has friction.
+        If a column is missing, a value is out of its range, times do not grow, the scene has friction, or the baseline has a frame in
+        contact or fewer than two frames.
     OSError
         If the file cannot be read.
     """
-    checked = _checked(scene)
+    checked, span = _checked(scene), None
+    if baseline_s is not None:
+        span = tuple(numbers("baseline_s", baseline_s))
+        if len(span) != 2 or not span[0] < span[1]:
+            raise ValueError(f"baseline_s = {baseline_s!r}: must be a first and a later last time, in s")
     with naming_rows("frames", frames):
-        columns, warning = _whiskmap.force(checked, csv_text("frames", frames), origin_of("frames", frames), bool(model))
+        columns, warning, baseline = _whiskmap.force(
+            checked, csv_text("frames", frames), origin_of("frames", frames), bool(model), span
+        )
     warn([warning])
-    return _over_time(columns, scene)
+    names = ("baseline_per_mm", "baseline_sd_per_mm", "baseline_frames")
+    return _over_time(columns, scene, dict(zip(names, baseline or ())))
 
 
 def _one_dimensional(*arrays: Any) -> tuple[Any, ...]:

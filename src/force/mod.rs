@@ -3,14 +3,17 @@
 //! The bending moment at a point is the bending stiffness there times the change of the curvature from that of the resting whisker. Divided
 //! by the lever of the contact it is the force, which is normal to the whisker at the contact: friction and inertia are left out.
 
+mod baseline;
+mod deviation;
 mod frames;
 mod lever;
 mod model;
 mod state_curve;
 
+pub use baseline::CurvatureBaseline;
 pub use frames::CurvatureFrames;
 
-use crate::scene::{Pole, Whisker};
+use crate::scene::{FrameDeviations, Pole, Whisker};
 use crate::trace::row;
 use glam::DVec2;
 use model::Model;
@@ -81,7 +84,7 @@ row! {
     pub struct FrameForce {
         /// Time of the frame, in s.
         pub time_s: f64,
-        /// Change of the curvature at the measured point from that at rest, in 1/mm.
+        /// Change of the curvature at the measured point from that at rest, less the baseline if there is one, in 1/mm.
         pub curvature_change_per_mm: Option<f64>,
         /// Bending moment at the measured point, in nN m: positive turns the tip to the left.
         pub moment_nnm: Option<f64>,
@@ -97,6 +100,14 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Distance of the measured contact from that of the model, in mm; with --model.
         pub contact_off_mm: Option<f64>,
+        /// Standard deviation of the size of the force, in uN; with a baseline or standard deviations of frames.
+        pub force_sd_un: Option<f64>,
+        /// Standard deviation of the force on the base along the base's tangent, in uN.
+        pub base_force_x_sd_un: Option<f64>,
+        /// Standard deviation of the force on the base to the left of its tangent, in uN.
+        pub base_force_y_sd_un: Option<f64>,
+        /// Standard deviation of the moment on the base, in nN m.
+        pub base_moment_sd_nnm: Option<f64>,
         /// Reason of a frame without a force: missing, no-lever, out-of-reach or no-state.
         pub reason: Option<NoForce>,
     }
@@ -109,6 +120,38 @@ pub enum ForceMethod {
     Lever,
     /// The stable state of the full model that has this curvature, and this distance of the contact from the base.
     Model,
+}
+
+/// Method, baseline and standard deviations with which forces follow from frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceOptions {
+    /// Method by which forces follow from the curvature.
+    pub method: ForceMethod,
+    /// Baseline from which the curvature changes; `None` for the shape at rest alone.
+    pub baseline: Option<CurvatureBaseline>,
+    /// Standard deviations of what a frame measures. Without one of the curvature, the scatter of the baseline is it.
+    pub deviations: FrameDeviations,
+}
+
+impl ForceOptions {
+    /// Creates options without a baseline and standard deviations.
+    #[must_use]
+    pub fn new(method: ForceMethod) -> Self {
+        Self {
+            method,
+            baseline: None,
+            deviations: FrameDeviations::default(),
+        }
+    }
+
+    /// Returns the standard deviations of what a frame measures, with the scatter of the baseline.
+    fn with_scatter(&self) -> FrameDeviations {
+        let scatter = self.baseline.map(|own| own.sd_per_mm);
+        FrameDeviations {
+            curvature_per_mm: self.deviations.curvature_per_mm.or(scatter),
+            ..self.deviations
+        }
+    }
 }
 
 /// Returns one line for frames without a force; `None` without such frames.
@@ -129,24 +172,30 @@ pub fn forces(
     frames: &[CurvatureFrame],
     method: ForceMethod,
 ) -> Vec<FrameForce> {
-    forces_until(whisker, pole, frames, method, &AtomicBool::new(false))
+    let options = ForceOptions::new(method);
+    forces_until(whisker, pole, frames, &options, &AtomicBool::new(false))
 }
 
-/// Computes the forces as [`forces`] does. If `cancel` is true, the function soon returns, and the remaining frames have no force.
+/// Computes the forces as [`forces`] does, with a baseline and standard deviations. These are of first order in those of the frames, which
+/// are independent; loads of frames without contact are exactly 0. If `cancel` is true, the function soon returns, and the remaining frames
+/// have no force.
 #[must_use]
 pub fn forces_until(
     whisker: &Whisker,
     pole: &Pole,
     frames: &[CurvatureFrame],
-    method: ForceMethod,
+    options: &ForceOptions,
     cancel: &AtomicBool,
 ) -> Vec<FrameForce> {
+    let method = options.method;
+    let deviations = options.with_scatter();
+    let baseline_per_mm = options.baseline.map_or(0.0, |own| own.mean_per_mm);
     let distances = frames.iter().filter_map(|frame| frame.contact);
     let distances = distances.map(|contact| DVec2::from(contact.contact_mm).length());
     let nearest = distances.fold(whisker.length_mm, f64::min);
     let model = (method == ForceMethod::Model).then(|| Model::new(whisker, pole, nearest));
     let force = |frame: &CurvatureFrame| {
-        let lever = lever::Bending::new(whisker, frame);
+        let lever = lever::Bending::new(whisker, frame).less(baseline_per_mm);
         if frame.is_missing(method) {
             return lever.none(frame.time_s, NoForce::Missing);
         }
@@ -155,8 +204,8 @@ pub fn forces_until(
         };
         match &model {
             Some(_) if cancel.load(Ordering::Relaxed) => lever.none(frame.time_s, NoForce::NoState),
-            Some(model) => model.force(&lever, frame, contact),
-            None => lever.force(frame, contact),
+            Some(model) => model.force(&lever, frame, contact, &deviations),
+            None => lever.force(frame, contact, &deviations),
         }
     };
     frames.par_iter().map(force).collect()

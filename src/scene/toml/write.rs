@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use toml_edit::{Array, DocumentMut, InlineTable, Item, TableLike, TomlError, Value};
 
+use crate::scene::FrameDeviations;
 use crate::scene::axis::{AxisScale, AxisValues};
 use crate::scene::deviations::ROWS;
 use crate::scene::error::SceneError;
@@ -126,6 +127,12 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
         }
         if let Some(deviation) = deviations.profile_radius_um {
             put(root, &format!("uncertainty.{ROWS}"), deviation);
+        }
+        let frames = FrameDeviations::NAMES.into_iter();
+        for (name, deviation) in frames.zip(deviations.frames.values()) {
+            if let Some(deviation) = deviation {
+                put(root, &format!("uncertainty.{name}"), deviation);
+            }
         }
     }
     if let Some(surface) = &scene.surface {
