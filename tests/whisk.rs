@@ -3,7 +3,7 @@
 use crate::shipped;
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
-use whiskmap::trace::{Branch, DetachmentKind, curve};
+use whiskmap::trace::{Branch, DetachmentKind, ShapePoint, WhiskerPart, WhiskerShape, curve};
 use whiskmap::whisk::{
     AngleCourse, CourseError, CourseStart, Undecided, Whisk, WhiskError, WhiskEvent,
     WhiskEventKind, WhiskOptions, WhiskRegime, whisk, whisk_with,
@@ -366,7 +366,7 @@ fn a_course_is_undecided_after_a_gap_until_one_phase_is_left() {
         assert!(found.lost_nj().is_nan());
         let warnings = found.warnings();
         let gaps =
-            "3 angles are missing in 3 gaps, the first at 0 s: after them the course is undecided";
+            "missing angles: 3, gaps: 3, the first at 0 s: after them the course is undecided";
         assert!(warnings[0].starts_with(gaps), "{warnings:?}");
         // What friction has dissipated in the gap is not known.
         let known = found.samples[7].dissipated_nj;
@@ -379,4 +379,75 @@ fn a_course_of_missing_angles_is_refused() {
     let course = AngleCourse::new(vec![0.0, 1.0, 2.0], vec![f64::NAN, 1.0, f64::NAN]);
     let (known, angles) = (1, 3);
     assert_eq!(course, Err(CourseError::Missing { known, angles }));
+}
+
+/// Contact and curvature of samples are those of the shape, which is fixed to the pole: on both sides, with and without friction.
+#[test]
+fn contacts_and_curvatures_are_those_of_shapes() {
+    let angles: Vec<f64> = [-20.0, -5.0, 3.0, 9.0, 15.0, 20.0, 5.0, -3.0, -12.0, -20.0].to_vec();
+    for (name, friction) in [("cone", 0.0), ("cone", 0.3), ("measured", 0.0)] {
+        let scene = scene(name).with(Parameter::Friction, friction).unwrap();
+        let times = (0..angles.len()).map(|i| i as f64).collect();
+        let course = AngleCourse::new(times, angles.clone()).unwrap();
+        let mut options = WhiskOptions::default();
+        let length = scene.whisker.length_mm;
+        let at_mm = 0.1 * length;
+        options.curvature_at_mm = Some(at_mm);
+        let found = whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options).unwrap();
+        let rest = Rest::new(&scene.whisker.rod(&scene.pole, Side::Cb));
+        let mut compared = [0; 2];
+        for sample in &found.samples {
+            let Some(side) = sample.side else {
+                assert_eq!(sample.contact_x_mm, None);
+                let own = sample.curvature_per_mm.unwrap();
+                assert_eq!(own, rest.curvature(at_mm / length) / length);
+                continue;
+            };
+            let is_cf = side == Side::Cf;
+            let distance = if is_cf {
+                cf_distance(&scene, DISTANCE)
+            } else {
+                DISTANCE
+            };
+            let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
+            let push = sample.push_angle_deg.unwrap();
+            let state = branch.state(push.to_radians(), true).unwrap();
+            let shape = WhiskerShape::new(&branch, &state, 101);
+            let contact = shape
+                .points
+                .iter()
+                .find(|own| own.part == WhiskerPart::Contact)
+                .unwrap();
+            let near = |own: &&ShapePoint| (own.arc_length_mm - at_mm).abs() < 1e-9;
+            let at = shape.points.iter().find(near).unwrap();
+            // The axes of first touch on CF are turned by the touch.
+            let turn = if is_cf {
+                -found.cf_touch_deg.to_radians()
+            } else {
+                0.0
+            };
+            let (sin, cos) = turn.sin_cos();
+            let [x, y] = [contact.x_mm, contact.y_mm];
+            let wanted = [x * cos - y * sin, x * sin + y * cos];
+            let own = [sample.contact_x_mm.unwrap(), sample.contact_y_mm.unwrap()];
+            let miss = (own[0] - wanted[0]).hypot(own[1] - wanted[1]);
+            assert!(miss < 1e-8, "{name} {friction} {own:?} {wanted:?}");
+            let curvature = sample.curvature_per_mm.unwrap();
+            assert!(
+                (curvature - at.curvature_per_mm).abs() < 1e-9,
+                "{name} {friction} {curvature} {at:?}"
+            );
+            compared[usize::from(is_cf)] += 1;
+        }
+        assert!(compared[0] > 1 && compared[1] > 1, "{compared:?}");
+    }
+    let scene = scene("cone");
+    let course = AngleCourse::new(vec![0.0, 1.0], vec![0.0, 5.0]).unwrap();
+    for at_mm in [-1.0, 20.1, f64::NAN] {
+        let mut options = WhiskOptions::default();
+        options.curvature_at_mm = Some(at_mm);
+        let why = whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options).unwrap_err();
+        let said = format!("curvature_at_mm = {at_mm}: must be between 0 and 20");
+        assert!(why.to_string().starts_with(&said), "{why}");
+    }
 }

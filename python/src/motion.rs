@@ -31,7 +31,8 @@ type WhiskColumns<'py> = (
 );
 
 /// Computes the course of the scene's only whisker in front of one pole, with the angles of the base at these times, NaN where one is missing.
-/// `start` names the state in which it begins. Gaps of at most `bridge_s`, in s, are bridged.
+/// `start` names the state in which it begins. Gaps of at most `bridge_s`, in s, are bridged. Samples have the
+/// curvature at the arclength `curvature_at_mm`, if it is given.
 #[pyfunction]
 pub fn whisk<'py>(
     py: Python<'py>,
@@ -41,6 +42,7 @@ pub fn whisk<'py>(
     angle_deg: PyReadonlyArray1<'py, f64>,
     start: Option<&str>,
     bridge_s: f64,
+    curvature_at_mm: Option<f64>,
 ) -> PyResult<WhiskColumns<'py>> {
     if !(0.0..f64::INFINITY).contains(&bridge_s) {
         let why = format!("bridge_s = {bridge_s}: must be at least 0, and finite");
@@ -52,7 +54,7 @@ pub fn whisk<'py>(
     let job = |cancel: &Arc<AtomicBool>| {
         let mut options = WhiskOptions::default();
         (options.start, options.cancel) = (start, Some(Arc::clone(cancel)));
-        options.bridge_s = bridge_s;
+        (options.bridge_s, options.curvature_at_mm) = (bridge_s, curvature_at_mm);
         let found = whisk_with(&scene.whisker, &scene.pole, distance_mm, &course, &options)?;
         let samples = Table::new(&found.samples, WhiskSample::COLUMNS, cancel);
         let events = Table::new(&found.events, WhiskEvent::COLUMNS, cancel);
@@ -85,13 +87,15 @@ type TextureColumns<'py> = (
     Option<String>,
 );
 
-/// Computes the course of the scene's only whisker behind its surface, with the angles of the base at these times.
+/// Computes the course of the scene's only whisker behind its surface, with the angles of the base at these times. Samples have the curvature at
+/// the arclength `curvature_at_mm`, if it is given.
 #[pyfunction]
 pub fn texture<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     time_s: PyReadonlyArray1<'py, f64>,
     angle_deg: PyReadonlyArray1<'py, f64>,
+    curvature_at_mm: Option<f64>,
 ) -> PyResult<TextureColumns<'py>> {
     let scene = &scene.0;
     single(scene)?;
@@ -103,7 +107,7 @@ pub fn texture<'py>(
     without_friction(scene, "asperities have no friction in this model")?;
     let course = course(&time_s, &angle_deg)?;
     let job = |cancel: &Arc<AtomicBool>| {
-        let found = texture_until(&scene.whisker, &surface, &course, cancel)?;
+        let found = texture_until(&scene.whisker, &surface, &course, curvature_at_mm, cancel)?;
         let tables = [
             Table::new(&found.samples, TextureSample::COLUMNS, cancel),
             Table::new(&found.events, TextureEvent::COLUMNS, cancel),

@@ -202,7 +202,7 @@ def test_gaps_are_those_of_the_program(cone, tmp_path):
     angles = tmp_path / "angles.csv"
     pd.DataFrame({"time_s": time, "angle_deg": angle}).to_csv(angles, index=False)
     options = ("whisk", CONE, "--distance", 15.66, "--angles", angles)
-    with pytest.warns(wm.SceneWarning, match="3 angles are missing in 2 gaps, the first at 0.02 s: the course continues"):
+    with pytest.warns(wm.SceneWarning, match="missing angles: 3, gaps: 2, the first at 0.02 s: the course continues"):
         bridged = wm.whisk(cone, 15.66, time, angle, bridge_s=0.003)
     same(bridged.samples, table(*options, "--bridge", "3ms"))
     with pytest.warns(wm.SceneWarning, match="after them the course is undecided"):
@@ -230,3 +230,15 @@ def test_a_baseline_is_that_of_the_program(cone):
             wm.force(cone, frame, baseline_s=baseline)
     with pytest.raises(ValueError, match=r"^frames\[\d+\]: time_s = .*: is in contact"):
         wm.force(cone, frame, baseline_s=(0, 1e6))
+
+def test_samples_have_the_curvature_at_an_arclength(cone):
+    time, angle = sine(14, 5, 0.2)
+    found = wm.whisk(cone, 15.66, time, angle, curvature_at_mm=2).samples
+    held = found.regime == "contact"
+    state = wm.shape(cone, 15.66, float(found.push_angle_deg[held][3]), points=201)
+    assert float(found.curvature_per_mm[held][3]) == pytest.approx(float(state.curvature_per_mm[20]), abs=1e-9)
+    assert np.isfinite(found.contact_x_mm[held]).all() and np.isnan(found.contact_x_mm[~held]).all()
+    rough = wm.Scene.read(ROOT / "scenes/texture_cone.toml")
+    assert np.isfinite(wm.texture(rough, time, angle, curvature_at_mm=2).samples.curvature_per_mm).all()
+    with pytest.raises(ValueError, match="curvature_at_mm = 21: must be between 0 and 20"):
+        wm.whisk(cone, 15.66, time, angle, curvature_at_mm=21)

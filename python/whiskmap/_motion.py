@@ -30,7 +30,8 @@ class Whisk:
     ----------
     samples : xarray.Dataset
         State at each of the times, by `time_s`: `angle_deg`, `regime` ("free", "contact", "undecided"), `side`, loads and energy. Loads
-        of a free whisker are 0. NaN where there is no contact, or where a sample is undecided for the `reason`. In gaps the reason is
+        of a free whisker are 0. The position of the contact, `contact_x_mm` and `contact_y_mm`, is in axes that do not turn with the base:
+        the first is along its tangent at first touch on CB. NaN where there is no contact, or where a sample is undecided for the `reason`. In gaps the reason is
         "missing", or "bridged" if the course continues across the gap; after a gap that is not bridged it is "after-gap".
     events : xarray.Dataset
         Touches, releases, slip-offs, pull-offs and snaps between samples, by `number`: `time_s`, `event`, `angle_deg` and the state.
@@ -56,8 +57,8 @@ class Texture:
     Attributes
     ----------
     samples : xarray.Dataset
-        State at each of the times, by `time_s`: `phase` ("stuck", "slipping", "free", "undecided"), `asperity`, position of the tip,
-        loads and energy. NaN without an asperity, or where a sample is undecided for the `reason`.
+        State at each of the times, by `time_s`: `phase` ("stuck", "slipping", "free", "undecided"), `asperity`, positions of the contact
+        and of the tip, loads and energy. NaN without an asperity, or where a sample is undecided for the `reason`.
     events : xarray.Dataset
         Touches, releases, slip-offs and pull-offs between samples, by `number`.
     stays : xarray.Dataset
@@ -86,6 +87,7 @@ def whisk(
     *,
     start: Literal["contact", "free"] | None = None,
     bridge_s: float = 0,
+    curvature_at_mm: float | None = None,
 ) -> Whisk:
     """Compute the quasi-static course of a whisker whose base rotates in front of one pole.
 
@@ -107,6 +109,8 @@ def whisk(
     bridge_s : float
         Longest gap, in s, across which the course continues along a straight line: the time between the angles before and after missing
         ones. 0 bridges none.
+    curvature_at_mm : float, optional
+        Arclength from the base, in mm, at which the samples have `curvature_per_mm`.
 
     Raises
     ------
@@ -128,14 +132,14 @@ def whisk(
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
     time, angle = _one_dimensional(*course)
     samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(
-        checked, distance, time, angle, start, number("bridge_s", bridge_s)
+        checked, distance, time, angle, start, number("bridge_s", bridge_s), _optional("curvature_at_mm", curvature_at_mm)
     )
     warn(warnings)
     about = {"distance_mm": distance}
     return Whisk(_over_time(samples, scene, about), _numbered(events, scene, about), lost, dissipated, cf_touch)
 
 
-def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
+def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike, *, curvature_at_mm: float | None = None) -> Texture:
     """Compute the quasi-static course of a whisker whose base sweeps behind the scene's rough surface.
 
     The paper has no model for this. Inertia and friction are left out, and one asperity at a time bends the whisker.
@@ -148,6 +152,8 @@ def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
         Times of the samples in s, which grow; at least two.
     angle_deg : array_like
         Angle of the base at each of the times, -90 to 90: 0 where the chord of the resting whisker is normal to the surface.
+    curvature_at_mm : float, optional
+        Arclength from the base, in mm, at which the samples have `curvature_per_mm`.
 
     Raises
     ------
@@ -157,7 +163,9 @@ def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
         If a detachment is not found.
     """
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
-    samples, events, stays, histogram, lost, reached, warning = _whiskmap.texture(_checked(scene), *_one_dimensional(*course))
+    samples, events, stays, histogram, lost, reached, warning = _whiskmap.texture(
+        _checked(scene), *_one_dimensional(*course), _optional("curvature_at_mm", curvature_at_mm)
+    )
     warn([warning])
     bins = xr.Dataset(variables(histogram, ("bin",), (-1,)), rest_coords(scene), attributes(scene))
     return Texture(_over_time(samples, scene), _numbered(events, scene), _numbered(stays, scene), bins, lost, reached)
@@ -215,6 +223,10 @@ def force(
     warn([warning])
     names = ("baseline_per_mm", "baseline_sd_per_mm", "baseline_frames")
     return _over_time(columns, scene, dict(zip(names, baseline or ())))
+
+
+def _optional(name: str, value: Any) -> float | None:
+    return None if value is None else number(name, value)
 
 
 def _one_dimensional(*arrays: Any) -> tuple[Any, ...]:

@@ -56,14 +56,18 @@ impl AngleCourse {
         let gap = |(before, after): (Option<usize>, Option<usize>)| {
             let inside: Range<usize> = before.map_or(0, |i| i + 1)..after.unwrap_or(count);
             let ends = before.zip(after);
-            let length_s = ends.map(|(before, after)| self.times_s[after] - self.times_s[before]);
+            let times = ends.map(|(before, after)| [self.times_s[before], self.times_s[after]]);
+            let is_short = |[from, to]: [f64; 2]| {
+                let rounding = f64::EPSILON * (from.abs() + to.abs());
+                to - from <= bridge_s + rounding
+            };
             (!inside.is_empty()).then(|| CourseGap {
                 begin: inside.start,
                 end: after,
                 count: inside.len(),
                 time_s: self.times_s[inside.start],
-                length_s,
-                is_bridged: length_s.is_some_and(|length_s| length_s <= bridge_s),
+                length_s: times.map(|[from, to]| to - from),
+                is_bridged: bridge_s > 0.0 && times.is_some_and(is_short),
             })
         };
         pairs.filter_map(gap).collect()
@@ -78,7 +82,7 @@ pub(super) fn warnings(gaps: &[CourseGap]) -> impl Iterator<Item = String> {
         let missing: usize = own.clone().map(|gap| gap.count).sum();
         let longest = own.filter_map(|gap| gap.length_s).fold(0.0, f64::max);
         let [at, longest] = [first.time_s, longest].map(|own| digits(rounded(own, 6)));
-        let what = format!("{missing} angles are missing in {count} gaps, the first at {at} s");
+        let what = format!("missing angles: {missing}, gaps: {count}, the first at {at} s");
         Some(match is_bridged {
             true => format!("{what}: the course continues along straight lines across them, the longest of {longest} s"),
             false => format!("{what}: after them the course is undecided until only one state is possible; a bridge continues it, which for the longest must have {longest} s"),

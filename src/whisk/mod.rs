@@ -26,9 +26,10 @@ pub use start::{CourseStart, WhiskOptions};
 use crate::scene::{Pole, Whisker, digits};
 use crate::sheet::Row;
 use crate::trace::NoState;
+use glam::DVec2;
 use legs::Legs;
 use phase::{Phase, ROUNDING};
-use readings::Found;
+use readings::{CurvaturePoint, FixedPole, Found};
 use states::SideStates;
 use turns::Turns;
 use whiskmap_mechanics::rod::{Rest, Side};
@@ -142,6 +143,16 @@ pub enum WhiskError {
         /// Angle of the base at which a push on CF ends, in degrees; `None` if the resting whisker does not reach the pole there.
         cf_end_deg: Option<f64>,
     },
+    /// The curvature should be taken at a place that the whisker does not have.
+    #[error(
+        "curvature_at_mm = {at_mm}: must be between 0 and {length_mm}, the whisker's length in mm"
+    )]
+    CurvatureAt {
+        /// Arclength of the place, in mm.
+        at_mm: f64,
+        /// Length of the whisker, in mm.
+        length_mm: f64,
+    },
     /// The end of the push was not found on this side.
     #[error("the detachment on {0:?} was not found")]
     Unresolved(Side),
@@ -177,7 +188,8 @@ pub fn whisk(
 /// Computes the course as [`whisk`] does, with a start and a flag that cancels.
 ///
 /// # Errors
-/// Fails as [`whisk`] does. Also if the course should begin in contact, but no side holds the whisker, and if it is cancelled.
+/// Fails as [`whisk`] does. Also if the course should begin in contact, but no side holds the whisker, if the curvature should be taken beyond
+/// the whisker, and if it is cancelled.
 pub fn whisk_with(
     whisker: &Whisker,
     pole: &Pole,
@@ -185,6 +197,12 @@ pub fn whisk_with(
     course: &AngleCourse,
     options: &WhiskOptions,
 ) -> Result<Whisk, WhiskError> {
+    let length_mm = whisker.length_mm;
+    if let Some(at_mm) = options.curvature_at_mm
+        && !(0.0..=length_mm).contains(&at_mm)
+    {
+        return Err(WhiskError::CurvatureAt { at_mm, length_mm });
+    }
     let rods = [Side::Cb, Side::Cf].map(|side| whisker.rod(pole, side));
     let rests = rods.each_ref().map(Rest::new);
     let cb = Row::new(&rests[0], distance_mm / whisker.length_mm);
@@ -235,12 +253,17 @@ pub fn whisk_with(
             false => legs.leg(angles, times),
         }
     }
+    let point = options.curvature_at_mm.map(|at_mm| CurvaturePoint {
+        rest: &rests[0],
+        at_mm,
+        length_mm,
+    });
     let mut samples = Vec::with_capacity(legs.samples.len());
     for own in legs.samples.chunks(STATES_AT_ONCE) {
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
-        samples.extend(found.samples(own));
+        samples.extend(found.samples(own, point.as_ref()));
     }
     let mut events = Vec::with_capacity(legs.events.len());
     for own in legs.events.chunks(STATES_AT_ONCE) {
@@ -249,14 +272,14 @@ pub fn whisk_with(
         }
         events.extend(found.events(own));
     }
+    let fixed = FixedPole {
+        centre_mm: DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm),
+        radius_mm: pole.radius_mm,
+    };
     let mut samples: Vec<WhiskSample> = known
         .iter()
         .zip(samples)
-        .map(|(&i, own)| WhiskSample {
-            time_s: course.times_s[i],
-            angle_deg: Some(course.angles_deg[i]),
-            ..own
-        })
+        .map(|(&i, own)| own.at(course.times_s[i], course.angles_deg[i], &fixed))
         .collect();
     samples.extend(gaps.iter().flat_map(|gap| gap.samples(&course.times_s)));
     samples.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));

@@ -53,8 +53,14 @@ row! {
         pub push_angle_deg: Option<f64>,
         /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: Option<f64>,
+        /// Position of the contact along the base's tangent at first touch on CB, in mm; the base is at 0.
+        pub contact_x_mm: Option<f64>,
+        /// Position of the contact to the left of the base's tangent at first touch on CB, in mm.
+        pub contact_y_mm: Option<f64>,
         /// Angle of the tangent at the contact, from the base's tangent, in degrees.
         pub contact_angle_deg: Option<f64>,
+        /// Curvature of the whisker at the arclength of --curvature-at, in 1/mm.
+        pub curvature_per_mm: Option<f64>,
         /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.

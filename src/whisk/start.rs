@@ -17,12 +17,14 @@ pub enum CourseStart {
     Contact,
 }
 
-/// Start of a course, gaps that it bridges, and cancellation.
+/// Start of a course, point of its curvature, gaps that it bridges, and cancellation.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct WhiskOptions {
     /// State in which the course begins. `None` assumes a free whisker.
     pub start: Option<CourseStart>,
+    /// Arclength from the base, in mm, at which samples have the curvature; `None` for samples without it.
+    pub curvature_at_mm: Option<f64>,
     /// Longest gap, in s, across which the course continues along a straight line: the time between the angles before and after missing
     /// ones. The default 0 bridges none.
     pub bridge_s: f64,

@@ -160,7 +160,7 @@ fn gaps_are_rows_with_a_reason() {
     let run = whisk(&place, &["--angles", "a.csv"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(reasons(&run), ["", "", "missing", "missing", "after-gap"]);
-    let warned = "warning: 2 angles are missing in 1 gaps, the first at 0.02 s: after them the course is undecided";
+    let warned = "warning: missing angles: 2, gaps: 1, the first at 0.02 s: after them the course is undecided";
     assert!(run.err.contains(warned), "{run:?}");
     assert!(
         run.err.contains("detachments lose an unknown energy"),
@@ -195,4 +195,42 @@ fn gaps_are_rows_with_a_reason() {
     place.write("a.csv", "time_s,angle_deg\n0,\n0.01,5\n");
     whisk(&place, &["--angles", "a.csv"])
         .assert_refused(&["a.csv: 1 of 2 angles are not missing: must be at least 2"]);
+}
+
+/// The curvature is a column where it is wanted, and its arclength takes units.
+#[test]
+fn samples_have_the_curvature_at_an_arclength() {
+    let place = Place::with(SCENE);
+    let column = |more: &[&str]| -> Vec<String> {
+        let sine = ["--sine", "12,10,0.1", "--rate", "100"];
+        let run = whisk(&place, &[&sine[..], more].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let mut lines = run
+            .out
+            .lines()
+            .map(|line| line.split(',').collect::<Vec<_>>());
+        let header = lines.next().unwrap();
+        let own = header
+            .iter()
+            .position(|name| *name == "curvature_per_mm")
+            .unwrap();
+        lines.map(|line| line[own].to_owned()).collect()
+    };
+    let own = column(&["--curvature-at", "2mm"]);
+    assert_eq!(own, column(&["--curvature-at", "0.2cm"]));
+    assert!(
+        own.iter().all(|cell| cell.parse::<f64>().is_ok()),
+        "{own:?}"
+    );
+    assert!(own.iter().any(|cell| *cell != own[0]), "{own:?}");
+    assert!(column(&[]).iter().all(String::is_empty));
+    for (at, said) in [
+        (
+            "20.1",
+            "--curvature-at: curvature_at_mm = 20.1: must be between 0 and 20, the whisker's length in mm",
+        ),
+        ("2s", "unit s: must be mm"),
+    ] {
+        whisk(&place, &["--sine", "12,10,0.1", "--curvature-at", at]).assert_refused(&[said]);
+    }
 }

@@ -73,11 +73,13 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
         StartChoice::Free => CourseStart::Free,
         StartChoice::Contact => CourseStart::Contact,
     });
+    options.curvature_at_mm = args.course.curvature_at;
     options.bridge_s = args.bridge.unwrap_or_default();
     let found = whisk::whisk_with(&whisker, &scene.pole, distance, &course, &options);
     let found = found.map_err(|why| match why {
         WhiskError::Pole(why) => refuse(distance, why),
         WhiskError::Unresolved(_) => Failure::Course(why),
+        WhiskError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
         why => Failure::Input(format!("{}: {why}", args.course.source())),
     })?;
     outputs.rows(&found.samples)?;
