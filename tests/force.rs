@@ -1,9 +1,14 @@
 //! Forces from curvature against the states that have it.
 
 use crate::shipped;
-use whiskmap::force::{CurvatureFrame, ForceMethod, FrameContact, FrameForce, NoForce, forces};
+use std::sync::atomic::AtomicBool;
+use whiskmap::force::{
+    CurvatureFrame, CurvatureFrames, ForceMethod, ForceOptions, FrameContact, FrameForce, NoForce,
+    forces, forces_until,
+};
 use whiskmap::mechanics::rod::{Rest, Side};
-use whiskmap::scene::Scene;
+use whiskmap::random::RandomStream;
+use whiskmap::scene::{FrameDeviations, Scene};
 use whiskmap::trace::{Branch, BranchPoint, NoState, WhiskerPart, WhiskerShape};
 
 /// The frame of a stable or unstable state: its curvature at the point next to `part` of the length, and its contact. With the frame, the
@@ -228,6 +233,190 @@ fn states_beside_the_largest_curvature_come_back() {
             let own = found.force_un.unwrap_or_else(|| panic!("{context}"));
             // Measured: 7.3e-11.
             assert!((own / wanted - 1.0).abs() < 1e-9, "{context}");
+        }
+    }
+}
+
+/// Frames without contact whose curvature is `offset` off that at rest, with a scatter of `sd`, before a frame of a state.
+fn with_baseline(scene: &Scene, frame: CurvatureFrame, offset: f64, sd: f64) -> CurvatureFrames {
+    let rest = Rest::new(&scene.whisker.rod(&scene.pole, Side::Cb));
+    let length = scene.whisker.length_mm;
+    let at_rest = rest.curvature(frame.at_arc_length_mm / length) / length;
+    let row = |time_s: f64, curvature: f64, rest: &str| {
+        format!("{time_s},{curvature:?},{},{rest}\n", frame.at_arc_length_mm)
+    };
+    let mut text = String::from(
+        "time_s,curvature_per_mm,at_arc_length_mm,contact_x_mm,contact_y_mm,at_x_mm,at_y_mm\n",
+    );
+    // Two values one apart have a standard deviation of 1/sqrt(2).
+    for (i, part) in [0.5, -0.5].into_iter().enumerate() {
+        let off = part * std::f64::consts::SQRT_2 * sd;
+        text += &row(i as f64, at_rest + offset + off, ",,0,0");
+    }
+    let ([x, y], [at_x, at_y]) = (frame.contact.unwrap().contact_mm, frame.at_mm.unwrap());
+    let contact = format!("{x:?},{y:?},{at_x:?},{at_y:?}");
+    text += &row(2.0, frame.curvature_per_mm + offset, &contact);
+    CurvatureFrames::parse(&text, "f.csv", length, ForceMethod::Model).unwrap()
+}
+
+fn forces_of(scene: &Scene, frames: &[CurvatureFrame], options: &ForceOptions) -> Vec<FrameForce> {
+    let cancel = AtomicBool::new(false);
+    forces_until(&scene.whisker, &scene.pole, frames, options, &cancel)
+}
+
+/// A constant error of the curvature is that of the frames without contact, too. Their scatter is the standard deviation of each curvature.
+#[test]
+fn a_baseline_takes_away_an_offset() {
+    let scene = shipped::scene("cone");
+    let (frame, state) = frame(&scene, 15.66, 10.0, 0.1);
+    let (offset, sd) = (0.05 * frame.curvature_per_mm, 1e-4);
+    let read = with_baseline(&scene, frame, offset, sd);
+    let baseline = read.baseline(&scene.whisker, Some([0.0, 1.0])).unwrap();
+    let own = baseline.unwrap();
+    assert_eq!(own.count, 2);
+    assert!((own.mean_per_mm / offset - 1.0).abs() < 1e-12, "{own:?}");
+    assert!((own.sd_per_mm / sd - 1.0).abs() < 1e-9, "{own:?}");
+    let options = ForceOptions {
+        baseline,
+        ..ForceOptions::new(ForceMethod::Model)
+    };
+    let last = |options: &ForceOptions| forces_of(&scene, &read.frames, options)[2];
+    let (with, without) = (last(&options), last(&ForceOptions::new(ForceMethod::Model)));
+    let ratio = |force: FrameForce| force.force_un.unwrap() / state.force_un;
+    assert!((ratio(with) - 1.0).abs() < 1e-9, "{with:?}");
+    assert!((ratio(without) - 1.0).abs() > 0.05, "{without:?}");
+    assert_eq!(without.force_sd_un, None);
+    let given = |sd| ForceOptions {
+        deviations: FrameDeviations {
+            curvature_per_mm: Some(sd),
+            ..FrameDeviations::default()
+        },
+        ..options
+    };
+    // The scatter counts as the scene's deviation would, which replaces it.
+    let [same, twice] = [own.sd_per_mm, 2.0 * own.sd_per_mm].map(|sd| last(&given(sd)));
+    assert_eq!(same.force_sd_un, with.force_sd_un);
+    let twice = twice.force_sd_un.unwrap() / with.force_sd_un.unwrap();
+    assert!((twice - 2.0).abs() < 1e-12, "{twice}");
+    for (span, said) in [
+        (
+            Some([1.0, 2.0]),
+            "f.csv:4: time_s = 2: is in contact; the baseline from 1 to 2 s must have frames",
+        ),
+        (
+            Some([0.5, 1.0]),
+            "f.csv: has 1 frames without contact and with a curvature from 0.5 to 1 s: a baseline must",
+        ),
+    ] {
+        let why = read.baseline(&scene.whisker, span).unwrap_err().to_string();
+        assert!(why.starts_with(said), "{why}");
+    }
+    assert_eq!(read.baseline(&scene.whisker, None), Ok(None));
+}
+
+/// The loads of a frame: size and parts of the force, and the moment.
+fn loads(force: &FrameForce) -> [f64; 4] {
+    [
+        force.force_un,
+        force.base_force_x_un,
+        force.base_force_y_un,
+        force.base_moment_nnm,
+    ]
+    .map(Option::unwrap)
+}
+
+/// A frame whose numbers are off by `by`: curvature, both coordinates of the contact, and angle.
+fn off(frame: &CurvatureFrame, by: [f64; 4]) -> CurvatureFrame {
+    let mut off = *frame;
+    let contact = off.contact.as_mut().unwrap();
+    off.curvature_per_mm += by[0];
+    contact.contact_mm[0] += by[1];
+    contact.contact_mm[1] += by[2];
+    *contact.contact_angle_deg.as_mut().unwrap() += by[3];
+    off
+}
+
+/// Standard deviations of forces are those of differences, one number of the frame at a time, and of random frames.
+#[test]
+fn standard_deviations_are_those_of_random_frames() {
+    const SAMPLES: u64 = 2000;
+    let sd = [2e-6, 2e-4, 2e-4, 0.005];
+    for (name, distance, push, part) in
+        [("cone", 15.66, 10.0, 0.1), ("measured", 12.0, -30.0, 0.05)]
+    {
+        let scene = shipped::scene(name);
+        let (frame, _) = frame(&scene, distance, push, part);
+        for method in [ForceMethod::Lever, ForceMethod::Model] {
+            let found = |deviations| {
+                let options = ForceOptions {
+                    deviations,
+                    ..ForceOptions::new(method)
+                };
+                let found = forces_of(&scene, &[frame], &options)[0];
+                let sd = [
+                    found.force_sd_un,
+                    found.base_force_x_sd_un,
+                    found.base_force_y_sd_un,
+                    found.base_moment_sd_nnm,
+                ];
+                sd.map(Option::unwrap)
+            };
+            let none = FrameDeviations::default();
+            let one = |own: usize| match own {
+                0 => FrameDeviations {
+                    curvature_per_mm: Some(sd[0]),
+                    ..none
+                },
+                1 => FrameDeviations {
+                    contact_mm: Some(sd[1]),
+                    ..none
+                },
+                _ => FrameDeviations {
+                    angle_deg: Some(sd[3]),
+                    ..none
+                },
+            };
+            let change = |number: usize| -> [f64; 4] {
+                let ends = [-0.01, 0.01].map(|part| {
+                    let mut by = [0.0; 4];
+                    by[number] = part * sd[number];
+                    loads(&forces(&scene.whisker, &scene.pole, &[off(&frame, by)], method)[0])
+                });
+                std::array::from_fn(|i| (ends[1][i] - ends[0][i]) / 0.02)
+            };
+            let changes = [0, 1, 2, 3].map(change);
+            let size = loads(&forces(&scene.whisker, &scene.pole, &[frame], method)[0]);
+            for (own, numbers) in [&[0][..], &[1, 2], &[3]].into_iter().enumerate() {
+                for (i, found) in found(one(own)).into_iter().enumerate() {
+                    let squares = numbers.iter().map(|number| changes[*number][i].powi(2));
+                    let wanted = squares.sum::<f64>().sqrt();
+                    // Rounding of the differences: forces are found to 1e-11.
+                    let allowed = 1e-5 * wanted + 1e-8 * size[i].abs();
+                    let context = format!("{name} {method:?} {own} {i}: {found} {wanted}");
+                    assert!((found - wanted).abs() < allowed, "{context}");
+                }
+            }
+            let all = FrameDeviations {
+                curvature_per_mm: Some(sd[0]),
+                contact_mm: Some(sd[1]),
+                angle_deg: Some(sd[3]),
+            };
+            let frames: Vec<CurvatureFrame> = (0..SAMPLES)
+                .map(|i| {
+                    let mut random = RandomStream::new(3, i);
+                    off(&frame, sd.map(|sd| sd * random.normal()))
+                })
+                .collect();
+            let drawn = forces(&scene.whisker, &scene.pole, &frames, method);
+            let drawn: Vec<[f64; 4]> = drawn.iter().map(loads).collect();
+            for (i, found) in found(all).into_iter().enumerate() {
+                let mean = drawn.iter().map(|own| own[i]).sum::<f64>() / SAMPLES as f64;
+                let squares = drawn.iter().map(|own| (own[i] - mean).powi(2)).sum::<f64>();
+                let wanted = (squares / (SAMPLES - 1) as f64).sqrt();
+                // The standard deviation of that of 2000 samples is 1.6 %.
+                let context = format!("{name} {method:?} {i}: {found} {wanted}");
+                assert!((found / wanted - 1.0).abs() < 0.05, "{context}");
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::shipped;
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
-use whiskmap::trace::{Branch, DetachmentKind, curve};
+use whiskmap::trace::{Branch, DetachmentKind, ShapePoint, WhiskerPart, WhiskerShape, curve};
 use whiskmap::whisk::{
     AngleCourse, CourseError, CourseStart, Undecided, Whisk, WhiskError, WhiskEvent,
     WhiskEventKind, WhiskOptions, WhiskRegime, whisk, whisk_with,
@@ -287,4 +287,167 @@ fn a_course_begins_in_contact_only_where_a_side_holds_the_whisker() {
     let why = found.unwrap_err().to_string();
     let wanted = "cannot begin in contact: the first angle is 20 deg; pushes on CB end at 15.609";
     assert!(why.starts_with(wanted), "{why}");
+}
+
+/// The course through angles, one a second, with a bridge across gaps of at most `bridge_s`.
+fn with_gaps(scene: &Scene, angles: &[f64], bridge_s: f64) -> Whisk {
+    let times = (0..angles.len()).map(|i| i as f64).collect();
+    let course = AngleCourse::new(times, angles.to_vec()).unwrap();
+    let mut options = WhiskOptions::default();
+    options.bridge_s = bridge_s;
+    whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options).unwrap()
+}
+
+fn reasons(found: &Whisk) -> Vec<Option<Undecided>> {
+    found.samples.iter().map(|sample| sample.reason).collect()
+}
+
+/// A bridged gap takes its angles, and their samples, and nothing else: here they lie on straight lines.
+#[test]
+fn a_course_continues_across_a_bridged_gap() {
+    let whole = [-10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0, 10.0, 0.0, -10.0];
+    for friction in [0.0, 0.3] {
+        let scene = scene("cone").with(Parameter::Friction, friction).unwrap();
+        let mut angles = whole;
+        for missing in [2, 4, 5, 8] {
+            angles[missing] = f64::NAN;
+        }
+        let wanted = through(&scene, DISTANCE, &whole).unwrap();
+        let found = with_gaps(&scene, &angles, 3.0);
+        assert_eq!(kinds(&found.events), kinds(&wanted.events));
+        for (own, other) in found.events.iter().zip(&wanted.events) {
+            // Times are interpolated over longer lines.
+            assert!(
+                (own.time_s - other.time_s).abs() < 1e-12,
+                "{own:?} {other:?}"
+            );
+            assert_eq!(own.force_un, other.force_un);
+        }
+        for ((own, other), angle) in found.samples.iter().zip(&wanted.samples).zip(angles) {
+            assert_eq!(own.time_s, other.time_s);
+            match angle.is_nan() {
+                true => {
+                    assert_eq!(own.reason, Some(Undecided::Bridged), "{own:?}");
+                    assert_eq!((own.angle_deg, own.force_un, own.side), (None, None, None));
+                }
+                false => assert_eq!(own, other),
+            }
+        }
+        let counts: Vec<_> = found
+            .gaps
+            .iter()
+            .map(|gap| (gap.count, gap.is_bridged))
+            .collect();
+        assert_eq!(counts, [(1, true), (2, true), (1, true)]);
+        assert_eq!(found.lost_nj(), wanted.lost_nj());
+        // The longest gap lasts 3 s: a shorter bridge ends there.
+        assert!(!with_gaps(&scene, &angles, 2.999).gaps[1].is_bridged);
+    }
+}
+
+/// After a gap that is not bridged the whisker can be free or in contact, until only one phase is possible.
+#[test]
+fn a_course_is_undecided_after_a_gap_until_one_phase_is_left() {
+    let nan = f64::NAN;
+    let angles = [nan, -10.0, 5.0, nan, 10.0, 20.0, 5.0, -5.0, nan];
+    for friction in [0.0, 0.3] {
+        let scene = scene("cone").with(Parameter::Friction, friction).unwrap();
+        let found = with_gaps(&scene, &angles, 0.0);
+        let (missing, after) = (Some(Undecided::Missing), Some(Undecided::AfterGap));
+        let wanted = [
+            missing, None, None, missing, after, None, None, None, missing,
+        ];
+        assert_eq!(reasons(&found), wanted, "{friction}");
+        let regimes: Vec<_> = found.samples[5..8].iter().map(|own| own.regime).collect();
+        let (free, contact) = (WhiskRegime::Free, WhiskRegime::Contact);
+        assert_eq!(regimes, [free, free, contact]);
+        let held = through(&scene, DISTANCE, &[-10.0, 20.0, 5.0, -5.0]).unwrap();
+        assert_eq!(found.samples[7].force_un, held.samples[3].force_un);
+        assert!(found.lost_nj().is_nan());
+        let warnings = found.warnings();
+        let gaps =
+            "missing angles: 3, gaps: 3, the first at 0 s: after them the course is undecided";
+        assert!(warnings[0].starts_with(gaps), "{warnings:?}");
+        // What friction has dissipated in the gap is not known.
+        let known = found.samples[7].dissipated_nj;
+        assert_eq!(known.is_none(), friction > 0.0, "{known:?}");
+    }
+}
+
+#[test]
+fn a_course_of_missing_angles_is_refused() {
+    let course = AngleCourse::new(vec![0.0, 1.0, 2.0], vec![f64::NAN, 1.0, f64::NAN]);
+    let (known, angles) = (1, 3);
+    assert_eq!(course, Err(CourseError::Missing { known, angles }));
+}
+
+/// Contact and curvature of samples are those of the shape, which is fixed to the pole: on both sides, with and without friction.
+#[test]
+fn contacts_and_curvatures_are_those_of_shapes() {
+    let angles: Vec<f64> = [-20.0, -5.0, 3.0, 9.0, 15.0, 20.0, 5.0, -3.0, -12.0, -20.0].to_vec();
+    for (name, friction) in [("cone", 0.0), ("cone", 0.3), ("measured", 0.0)] {
+        let scene = scene(name).with(Parameter::Friction, friction).unwrap();
+        let times = (0..angles.len()).map(|i| i as f64).collect();
+        let course = AngleCourse::new(times, angles.clone()).unwrap();
+        let mut options = WhiskOptions::default();
+        let length = scene.whisker.length_mm;
+        let at_mm = 0.1 * length;
+        options.curvature_at_mm = Some(at_mm);
+        let found = whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options).unwrap();
+        let rest = Rest::new(&scene.whisker.rod(&scene.pole, Side::Cb));
+        let mut compared = [0; 2];
+        for sample in &found.samples {
+            let Some(side) = sample.side else {
+                assert_eq!(sample.contact_x_mm, None);
+                let own = sample.curvature_per_mm.unwrap();
+                assert_eq!(own, rest.curvature(at_mm / length) / length);
+                continue;
+            };
+            let is_cf = side == Side::Cf;
+            let distance = if is_cf {
+                cf_distance(&scene, DISTANCE)
+            } else {
+                DISTANCE
+            };
+            let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
+            let push = sample.push_angle_deg.unwrap();
+            let state = branch.state(push.to_radians(), true).unwrap();
+            let shape = WhiskerShape::new(&branch, &state, 101);
+            let contact = shape
+                .points
+                .iter()
+                .find(|own| own.part == WhiskerPart::Contact)
+                .unwrap();
+            let near = |own: &&ShapePoint| (own.arc_length_mm - at_mm).abs() < 1e-9;
+            let at = shape.points.iter().find(near).unwrap();
+            // The axes of first touch on CF are turned by the touch.
+            let turn = if is_cf {
+                -found.cf_touch_deg.to_radians()
+            } else {
+                0.0
+            };
+            let (sin, cos) = turn.sin_cos();
+            let [x, y] = [contact.x_mm, contact.y_mm];
+            let wanted = [x * cos - y * sin, x * sin + y * cos];
+            let own = [sample.contact_x_mm.unwrap(), sample.contact_y_mm.unwrap()];
+            let miss = (own[0] - wanted[0]).hypot(own[1] - wanted[1]);
+            assert!(miss < 1e-8, "{name} {friction} {own:?} {wanted:?}");
+            let curvature = sample.curvature_per_mm.unwrap();
+            assert!(
+                (curvature - at.curvature_per_mm).abs() < 1e-9,
+                "{name} {friction} {curvature} {at:?}"
+            );
+            compared[usize::from(is_cf)] += 1;
+        }
+        assert!(compared[0] > 1 && compared[1] > 1, "{compared:?}");
+    }
+    let scene = scene("cone");
+    let course = AngleCourse::new(vec![0.0, 1.0], vec![0.0, 5.0]).unwrap();
+    for at_mm in [-1.0, 20.1, f64::NAN] {
+        let mut options = WhiskOptions::default();
+        options.curvature_at_mm = Some(at_mm);
+        let why = whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options).unwrap_err();
+        let said = format!("curvature_at_mm = {at_mm}: must be between 0 and 20");
+        assert!(why.to_string().starts_with(&said), "{why}");
+    }
 }

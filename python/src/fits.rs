@@ -61,7 +61,11 @@ pub fn fit<'py>(
         FitError::NotConverged(_) => PyRuntimeError::new_err(why.to_string()),
         _ => refused(why.to_string()),
     })?;
-    let noted = [points.crossed(), fit.moved_start(&scene.0, &points)];
+    let noted = [
+        points.missing(),
+        points.crossed(),
+        fit.moved_start(&scene.0, &points),
+    ];
     let warnings = noted.into_iter().flatten().chain(fit.warnings(&points));
     let warnings = warnings.collect();
     let estimates = fit.estimates.iter();

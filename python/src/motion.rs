@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{
-    CurvatureFrames, ForceMethod, FrameForce, forces_until, warning as force_warning,
+    CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until, warning as force_warning,
 };
 use whiskmap::scene::Scene;
 use whiskmap::texture::{
@@ -30,8 +30,9 @@ type WhiskColumns<'py> = (
     Vec<String>,
 );
 
-/// Computes the course of the scene's only whisker in front of one pole, with the angles of the base at these times. `start` names the state
-/// in which it begins.
+/// Computes the course of the scene's only whisker in front of one pole, with the angles of the base at these times, NaN where one is missing.
+/// `start` names the state in which it begins. Gaps of at most `bridge_s`, in s, are bridged. Samples have the
+/// curvature at the arclength `curvature_at_mm`, if it is given.
 #[pyfunction]
 pub fn whisk<'py>(
     py: Python<'py>,
@@ -40,13 +41,20 @@ pub fn whisk<'py>(
     time_s: PyReadonlyArray1<'py, f64>,
     angle_deg: PyReadonlyArray1<'py, f64>,
     start: Option<&str>,
+    bridge_s: f64,
+    curvature_at_mm: Option<f64>,
 ) -> PyResult<WhiskColumns<'py>> {
+    if !(0.0..f64::INFINITY).contains(&bridge_s) {
+        let why = format!("bridge_s = {bridge_s}: must be at least 0, and finite");
+        return Err(refused(&why));
+    }
     let scene = at_pole(py, scene, distance_mm)?;
     let course = course(&time_s, &angle_deg)?;
     let start = start.map(arguments::start).transpose()?;
     let job = |cancel: &Arc<AtomicBool>| {
         let mut options = WhiskOptions::default();
         (options.start, options.cancel) = (start, Some(Arc::clone(cancel)));
+        (options.bridge_s, options.curvature_at_mm) = (bridge_s, curvature_at_mm);
         let found = whisk_with(&scene.whisker, &scene.pole, distance_mm, &course, &options)?;
         let samples = Table::new(&found.samples, WhiskSample::COLUMNS, cancel);
         let events = Table::new(&found.events, WhiskEvent::COLUMNS, cancel);
@@ -79,13 +87,15 @@ type TextureColumns<'py> = (
     Option<String>,
 );
 
-/// Computes the course of the scene's only whisker behind its surface, with the angles of the base at these times.
+/// Computes the course of the scene's only whisker behind its surface, with the angles of the base at these times. Samples have the curvature at
+/// the arclength `curvature_at_mm`, if it is given.
 #[pyfunction]
 pub fn texture<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     time_s: PyReadonlyArray1<'py, f64>,
     angle_deg: PyReadonlyArray1<'py, f64>,
+    curvature_at_mm: Option<f64>,
 ) -> PyResult<TextureColumns<'py>> {
     let scene = &scene.0;
     single(scene)?;
@@ -97,7 +107,7 @@ pub fn texture<'py>(
     without_friction(scene, "asperities have no friction in this model")?;
     let course = course(&time_s, &angle_deg)?;
     let job = |cancel: &Arc<AtomicBool>| {
-        let found = texture_until(&scene.whisker, &surface, &course, cancel)?;
+        let found = texture_until(&scene.whisker, &surface, &course, curvature_at_mm, cancel)?;
         let tables = [
             Table::new(&found.samples, TextureSample::COLUMNS, cancel),
             Table::new(&found.events, TextureEvent::COLUMNS, cancel),
@@ -123,10 +133,14 @@ pub fn texture<'py>(
     ))
 }
 
-/// Columns of forces, and a warning.
-type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>);
+/// Mean and scatter of the curvature of frames without contact, in 1/mm, and their number.
+type Baseline = (f64, f64, usize);
 
-/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`.
+/// Columns of forces, a warning, and the baseline.
+type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>, Option<Baseline>);
+
+/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`. The baseline is that of frames in `baseline_s`, or
+/// of frames without contact in the column `contact`.
 #[pyfunction]
 pub fn force<'py>(
     py: Python<'py>,
@@ -134,6 +148,7 @@ pub fn force<'py>(
     frames: &str,
     origin: &str,
     model: bool,
+    baseline_s: Option<[f64; 2]>,
 ) -> PyResult<ForceColumns<'py>> {
     let scene = &scene.0;
     single(scene)?;
@@ -145,13 +160,22 @@ pub fn force<'py>(
     let whisker = scene.first_whisker().whisker;
     let read = CurvatureFrames::parse(frames, origin, whisker.length_mm, method);
     let read = read.map_err(|why| refused(&why))?;
+    let baseline = read.baseline(&whisker, baseline_s);
+    let baseline = baseline.map_err(|why| refused(&why))?;
+    let deviations = scene.uncertainty.as_ref().map(|own| own.frames);
+    let options = ForceOptions {
+        baseline,
+        deviations: deviations.unwrap_or_default(),
+        ..ForceOptions::new(method)
+    };
     let job = |cancel: &Arc<AtomicBool>| {
-        let found = forces_until(&whisker, &scene.pole, &read.frames, method, cancel);
+        let found = forces_until(&whisker, &scene.pole, &read.frames, &options, cancel);
         let table = Table::new(&found, FrameForce::COLUMNS, cancel);
         (table, force_warning(&found))
     };
     let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;
-    Ok((table.into_columns(py)?, warning))
+    let baseline = baseline.map(|own| (own.mean_per_mm, own.sd_per_mm, own.count));
+    Ok((table.into_columns(py)?, warning, baseline))
 }
 
 fn course(

@@ -8,7 +8,9 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use whiskmap::scene::{AxisScale, AxisValues, Deviations, Parameter, Scene, Surface};
+use whiskmap::scene::{
+    AxisScale, AxisValues, Deviations, FrameDeviations, Parameter, Scene, Surface,
+};
 use whiskmap::traced::TracedShape;
 
 /// Name of the standard deviation of measured radii.
@@ -223,7 +225,7 @@ fn uncertainty(by_name: &BTreeMap<String, f64>) -> PyResult<Deviations> {
     for (name, deviation) in by_name {
         if name == PROFILE_RADIUS {
             deviations.profile_radius_um = Some(*deviation);
-        } else {
+        } else if !deviations.frames.set(name, *deviation) {
             deviations
                 .parameters
                 .push((parameter("uncertainty", name)?, *deviation));
@@ -238,5 +240,8 @@ fn deviations_by_name(deviations: &Deviations) -> BTreeMap<String, f64> {
     let rows = deviations
         .profile_radius_um
         .map(|deviation| (PROFILE_RADIUS.to_owned(), deviation));
-    parameters.chain(rows).collect()
+    let frames = FrameDeviations::NAMES.into_iter();
+    let frames = frames.zip(deviations.frames.values());
+    let frames = frames.filter_map(|(name, deviation)| Some((name.to_owned(), deviation?)));
+    parameters.chain(rows).chain(frames).collect()
 }

@@ -186,8 +186,8 @@ def test_a_force_is_never_negative(cone, model):
 def test_a_refused_number_of_an_array_is_named(cone):
     time, angle = sine(20, 10, 0.01)
     broken = angle.copy()
-    broken[3] = np.nan
-    with pytest.raises(ValueError, match=r"angle_deg\[3\] = NaN: must be between -360 and 360"):
+    broken[3] = np.inf
+    with pytest.raises(ValueError, match=r"angle_deg\[3\] = inf: must be between -360 and 360"):
         wm.whisk(cone, 15.66, time, broken)
     frame = pd.read_csv(FRAMES, comment="#")
     frame.loc[4, "at_arc_length_mm"] = 99
@@ -195,3 +195,50 @@ def test_a_refused_number_of_an_array_is_named(cone):
         wm.force(cone, frame)
     with pytest.raises(TypeError, match=r"frames\['time_s'\]\[1\] = \(\): must be a number"):
         wm.force(cone, {"time_s": np.array([0.0, ()], dtype=object)})
+
+def test_gaps_are_those_of_the_program(cone, tmp_path):
+    time, angle = sine(14, 5, 0.2)
+    angle[[20, 21, 90]] = np.nan
+    angles = tmp_path / "angles.csv"
+    pd.DataFrame({"time_s": time, "angle_deg": angle}).to_csv(angles, index=False)
+    options = ("whisk", CONE, "--distance", 15.66, "--angles", angles)
+    with pytest.warns(wm.SceneWarning, match="missing angles: 3, gaps: 2, the first at 0.02 s: the course continues"):
+        bridged = wm.whisk(cone, 15.66, time, angle, bridge_s=0.003)
+    same(bridged.samples, table(*options, "--bridge", "3ms"))
+    with pytest.warns(wm.SceneWarning, match="after them the course is undecided"):
+        same(wm.whisk(cone, 15.66, time, angle).samples, table(*options))
+    with pytest.raises(ValueError, match="bridge_s = -1: must be at least 0, and finite"):
+        wm.whisk(cone, 15.66, time, angle, bridge_s=-1)
+    frame = pd.read_csv(FRAMES, comment="#")
+    frame.loc[50, "curvature_per_mm"] = np.nan
+    with pytest.warns(wm.SceneWarning, match="frames have no force"):
+        assert wm.force(cone, frame).reason[50] == "missing"
+
+def test_a_baseline_is_that_of_the_program(cone):
+    frame = pd.read_csv(FRAMES, comment="#")
+    free = frame.contact_x_mm.isna()
+    span = (float(frame.time_s[0]), float(frame.time_s[~free].min()) - 1e-6)
+    own = wm.force(cone, frame, baseline_s=span)
+    same(own, table("force", CONE, "--frames", FRAMES, "--baseline", f"{span[0]}..{span[1]}"))
+    assert own.attrs["baseline_frames"] == int((frame.time_s <= span[1]).sum()) and own.attrs["baseline_sd_per_mm"] >= 0
+    deviating = cone.replace(uncertainty={"curvature_sd_per_mm": 1e-3})
+    assert deviating.uncertainty == {"curvature_sd_per_mm": 1e-3}
+    sd = wm.force(deviating, frame.assign(contact=(~free).astype(int))).force_sd_un
+    assert (sd[~free] > 0).all() and np.isnan(sd[free]).all()
+    for baseline in ((1, 0), (0, 1, 2)):
+        with pytest.raises(ValueError, match="must be a first and a later last time, in s"):
+            wm.force(cone, frame, baseline_s=baseline)
+    with pytest.raises(ValueError, match=r"^frames\[\d+\]: time_s = .*: is in contact"):
+        wm.force(cone, frame, baseline_s=(0, 1e6))
+
+def test_samples_have_the_curvature_at_an_arclength(cone):
+    time, angle = sine(14, 5, 0.2)
+    found = wm.whisk(cone, 15.66, time, angle, curvature_at_mm=2).samples
+    held = found.regime == "contact"
+    state = wm.shape(cone, 15.66, float(found.push_angle_deg[held][3]), points=201)
+    assert float(found.curvature_per_mm[held][3]) == pytest.approx(float(state.curvature_per_mm[20]), abs=1e-9)
+    assert np.isfinite(found.contact_x_mm[held]).all() and np.isnan(found.contact_x_mm[~held]).all()
+    rough = wm.Scene.read(ROOT / "scenes/texture_cone.toml")
+    assert np.isfinite(wm.texture(rough, time, angle, curvature_at_mm=2).samples.curvature_per_mm).all()
+    with pytest.raises(ValueError, match="curvature_at_mm = 21: must be between 0 and 20"):
+        wm.whisk(cone, 15.66, time, angle, curvature_at_mm=21)

@@ -33,7 +33,8 @@ class Fit:
         `value`, `standard_error` (NaN if the points do not determine the parameter, or it is at a limit), `at_limit` and
         `correlation`, by `parameter`; units are in the coordinate `units`.
     points : xarray.Dataset
-        Measured points with the predictions of the fitted scene, by `point`.
+        Measured points with the predictions of the fitted scene, by `point`; those without a residual have a `reason`: "missing" (a
+        value) or "no-detachment".
     chi_square : float
         Sum of the squares of residuals over standard deviations.
     degrees_of_freedom : int
@@ -61,7 +62,8 @@ def fit(scene: Scene, points: str | os.PathLike[str] | Mapping[str, Any], free: 
         A scene of one whisker.
     points : path, mapping or pandas.DataFrame
         A CSV file, or columns of equal length: `side` ("cb", "cf"), `distance_mm`, `push_angle_deg` or `push_chord_deg`, and
-        if known `kind` ("slip-off", "pull-off") and `sd_deg`, the standard deviation of the angle.
+        if known `kind` ("slip-off", "pull-off") and `sd_deg`, the standard deviation of the angle. A point with a number that is NaN or
+        None is left out.
     free : sequence of str
         Names of the parameters to fit, such as ``["tip_radius_um", "parabola_per_mm"]``.
 

@@ -13,15 +13,13 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, rest_coords, variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, naming_rows, number, origin_of, real_array
+from whiskmap._values import csv_text, naming_rows, number, numbers, origin_of, real_array
 from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from whiskmap._whiskmap import _Column
-
-_CONTACT = ("contact_x_mm", "contact_y_mm", "contact_angle_deg")
 
 
 @dataclass(frozen=True)
@@ -32,11 +30,13 @@ class Whisk:
     ----------
     samples : xarray.Dataset
         State at each of the times, by `time_s`: `angle_deg`, `regime` ("free", "contact", "undecided"), `side`, loads and energy. Loads
-        of a free whisker are 0. NaN where there is no contact, or where a sample is undecided for the `reason`.
+        of a free whisker are 0. The position of the contact, `contact_x_mm` and `contact_y_mm`, is in axes that do not turn with the base:
+        the first is along its tangent at first touch on CB. NaN where there is no contact, or where a sample is undecided for the `reason`. In gaps the reason is
+        "missing", or "bridged" if the course continues across the gap; after a gap that is not bridged it is "after-gap".
     events : xarray.Dataset
         Touches, releases, slip-offs, pull-offs and snaps between samples, by `number`: `time_s`, `event`, `angle_deg` and the state.
     lost_nj : float
-        Energy that the detachments lose, in nJ; NaN if one is not known.
+        Energy that the detachments lose, in nJ; NaN if one is not known, as after a gap that is not bridged.
     dissipated_nj : float
         Energy that friction dissipates, in nJ; NaN if a part of the course is undecided.
     cf_touch_deg : float
@@ -57,8 +57,8 @@ class Texture:
     Attributes
     ----------
     samples : xarray.Dataset
-        State at each of the times, by `time_s`: `phase` ("stuck", "slipping", "free", "undecided"), `asperity`, position of the tip,
-        loads and energy. NaN without an asperity, or where a sample is undecided for the `reason`.
+        State at each of the times, by `time_s`: `phase` ("stuck", "slipping", "free", "undecided"), `asperity`, positions of the contact
+        and of the tip, loads and energy. NaN without an asperity, or where a sample is undecided for the `reason`.
     events : xarray.Dataset
         Touches, releases, slip-offs and pull-offs between samples, by `number`.
     stays : xarray.Dataset
@@ -86,6 +86,8 @@ def whisk(
     angle_deg: ArrayLike,
     *,
     start: Literal["contact", "free"] | None = None,
+    bridge_s: float = 0,
+    curvature_at_mm: float | None = None,
 ) -> Whisk:
     """Compute the quasi-static course of a whisker whose base rotates in front of one pole.
 
@@ -99,15 +101,21 @@ def whisk(
         Times of the samples in s, which grow; at least two.
     angle_deg : array_like
         Angle of the base at each of the times: 0 at first touch on CB, growing with the push there. It changes along straight lines
-        between samples.
+        between samples. NaN where it is missing: that sample has no state. After such a gap the course is undecided until only one state
+        is possible.
     start : {"contact", "free"}, optional
         State at the first angle. In "contact", the base has pushed the whisker there from first touch: on CB if that side holds it, otherwise
         on CF. A "free" whisker beyond first touch has passed the pole; that is assumed, with a warning, if left out.
+    bridge_s : float
+        Longest gap, in s, across which the course continues along a straight line: the time between the angles before and after missing
+        ones. 0 bridges none.
+    curvature_at_mm : float, optional
+        Arclength from the base, in mm, at which the samples have `curvature_per_mm`.
 
     Raises
     ------
     ValueError
-        If the times do not grow, an angle is beyond a turn, or the whisker cannot be in the state at the start.
+        If the times do not grow, an angle is beyond a turn, `bridge_s` is negative, or the whisker cannot be in the state at the start.
     StateError
         If the resting whisker does not reach the pole.
     SceneError
@@ -118,18 +126,20 @@ def whisk(
     Warns
     -----
     SceneWarning
-        If a free whisker beyond first touch is assumed, or samples are undecided.
+        If a free whisker beyond first touch is assumed, gaps are bridged or not, or samples are undecided.
     """
     checked, distance = _checked(scene), number("distance_mm", distance_mm)
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
     time, angle = _one_dimensional(*course)
-    samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(checked, distance, time, angle, start)
+    samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(
+        checked, distance, time, angle, start, number("bridge_s", bridge_s), _optional("curvature_at_mm", curvature_at_mm)
+    )
     warn(warnings)
     about = {"distance_mm": distance}
     return Whisk(_over_time(samples, scene, about), _numbered(events, scene, about), lost, dissipated, cf_touch)
 
 
-def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
+def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike, *, curvature_at_mm: float | None = None) -> Texture:
     """Compute the quasi-static course of a whisker whose base sweeps behind the scene's rough surface.
 
     The paper has no model for this. Inertia and friction are left out, and one asperity at a time bends the whisker.
@@ -142,6 +152,8 @@ def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
         Times of the samples in s, which grow; at least two.
     angle_deg : array_like
         Angle of the base at each of the times, -90 to 90: 0 where the chord of the resting whisker is normal to the surface.
+    curvature_at_mm : float, optional
+        Arclength from the base, in mm, at which the samples have `curvature_per_mm`.
 
     Raises
     ------
@@ -151,13 +163,21 @@ def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike) -> Texture:
         If a detachment is not found.
     """
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
-    samples, events, stays, histogram, lost, reached, warning = _whiskmap.texture(_checked(scene), *_one_dimensional(*course))
+    samples, events, stays, histogram, lost, reached, warning = _whiskmap.texture(
+        _checked(scene), *_one_dimensional(*course), _optional("curvature_at_mm", curvature_at_mm)
+    )
     warn([warning])
     bins = xr.Dataset(variables(histogram, ("bin",), (-1,)), rest_coords(scene), attributes(scene))
     return Texture(_over_time(samples, scene), _numbered(events, scene), _numbered(stays, scene), bins, lost, reached)
 
 
-def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, model: bool = False) -> xr.Dataset:
+def force(
+    scene: Scene,
+    frames: str | os.PathLike[str] | Mapping[str, Any],
+    *,
+    model: bool = False,
+    baseline_s: tuple[float, float] | None = None,
+) -> xr.Dataset:
     """Compute the contact force in frames of a film from the change of curvature at one point of the whisker.
 
     Parameters
@@ -166,36 +186,47 @@ def force(scene: Scene, frames: str | os.PathLike[str] | Mapping[str, Any], *, m
         A scene of one whisker without friction. Its grid is not used.
     frames : path, mapping or pandas.DataFrame
         A CSV file, or columns of equal length: `time_s`, `curvature_per_mm`, `at_arc_length_mm`, `contact_x_mm`, `contact_y_mm` in the
-        frame of the base, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. Numbers of the contact are
-        NaN or None in frames without contact.
+        frame of the base, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. The position of the contact
+        is NaN or None in frames without contact, or a column `contact` is 0 there and 1 elsewhere. Other numbers are NaN or None where
+        they are missing.
     model : bool
         True computes the stable state of the full model that has this curvature, instead of the moment over the lever.
+    baseline_s : tuple of float, optional
+        First and last time, in s, of frames without contact. The curvature changes from their mean. Without it, the frames whose `contact`
+        is 0 are the baseline, if there is such a column.
 
     Returns
     -------
     xarray.Dataset
-        Force, and force and moment at the base, by `time_s`. NaN with a `reason` ("no-lever", "out-of-reach", "no-state") where a frame
-        has no force.
+        Force, and force and moment at the base, by `time_s`. NaN with a `reason` ("missing", "no-lever", "out-of-reach", "no-state")
+        where a frame has no force. `force_sd_un` and the other standard deviations are of first order. They come from the scatter of the
+        baseline, and from `curvature_sd_per_mm` (instead of the scatter), `contact_sd_mm` and `angle_sd_deg` of the scene's `uncertainty`.
+        The attributes `baseline_per_mm`, `baseline_sd_per_mm` and `baseline_frames` report the baseline.
 
     Raises
     ------
     ValueError
-        If a column is missing, a value is out of its range, times do not grow, or the scene has friction.
+        If a column is missing, a value is out of its range, times do not grow, the scene has friction, or the baseline has a frame in
+        contact or fewer than two frames.
     OSError
         If the file cannot be read.
     """
-    checked, given = _checked(scene), frames
-    if not isinstance(frames, (str, os.PathLike)) and hasattr(frames, "keys"):
-        frames = {str(name): _or_empty(str(name), frames[name]) for name in frames.keys()}
-    with naming_rows("frames", given):
-        columns, warning = _whiskmap.force(checked, csv_text("frames", frames), origin_of("frames", given), bool(model))
+    checked, span = _checked(scene), None
+    if baseline_s is not None:
+        span = tuple(numbers("baseline_s", baseline_s))
+        if len(span) != 2 or not span[0] < span[1]:
+            raise ValueError(f"baseline_s = {baseline_s!r}: must be a first and a later last time, in s")
+    with naming_rows("frames", frames):
+        columns, warning, baseline = _whiskmap.force(
+            checked, csv_text("frames", frames), origin_of("frames", frames), bool(model), span
+        )
     warn([warning])
-    return _over_time(columns, scene)
+    names = ("baseline_per_mm", "baseline_sd_per_mm", "baseline_frames")
+    return _over_time(columns, scene, dict(zip(names, baseline or ())))
 
 
-def _or_empty(name: str, values: Iterable[Any]) -> Iterable[Any]:
-    """A column, with None for the numbers of a contact that are NaN."""
-    return [None if value != value else value for value in values] if name in _CONTACT else values
+def _optional(name: str, value: Any) -> float | None:
+    return None if value is None else number(name, value)
 
 
 def _one_dimensional(*arrays: Any) -> tuple[Any, ...]:

@@ -82,7 +82,7 @@ impl<'a> Misfit<'a> {
         let scene = self.accepted(parameters)?;
         let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
         self.points.check_reach(&whisker, &pole).ok()?;
-        let rows = self.points.beside(&whisker, &pole).rows;
+        let rows = self.points.compared(&whisker, &pole);
         let mut residuals = Vec::with_capacity(rows.len());
         for (row, point) in rows.iter().zip(&self.points.points) {
             residuals.push(-row.residual_deg? / point.sd_deg);

@@ -299,11 +299,12 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
 /// The points that detach at the values of `scene`.
 fn used(scene: &Scene, points: &MeasuredPoints) -> MeasuredPoints {
     let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    let rows = points.beside(&whisker, &pole).rows;
+    let rows = points.compared(&whisker, &pole);
     let detaching = points.points.iter().zip(rows);
     let detaching = detaching.filter(|(_, row)| row.residual_deg.is_some());
     MeasuredPoints {
         points: detaching.map(|(point, _)| *point).collect(),
+        incomplete: Vec::new(),
         ..points.clone()
     }
 }

@@ -194,10 +194,12 @@ mod tests {
     ) -> Option<NotAFit> {
         let places = [8.0, 10.0, 12.0].map(|distance_mm| [distance_mm, 20.0]);
         let theory = compared(&points(&places, None));
-        let places = theory
-            .rows
-            .iter()
-            .map(|row| [row.distance_mm, row.predicted_deg.unwrap() + off_deg]);
+        let places = theory.rows.iter().map(|row| {
+            [
+                row.distance_mm.unwrap(),
+                row.predicted_deg.unwrap() + off_deg,
+            ]
+        });
         let near = points(&places.collect::<Vec<_>>(), sd_deg);
         NotAFit::new(&near, &cone(), &compared(&near), chi_square, freedom)
     }

@@ -7,8 +7,12 @@ use std::path::Path;
 /// Frames of a film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvatureFrames {
+    /// Name of the file of frames in messages.
+    pub origin: String,
     /// Frames in the order of time, `[frame]`.
     pub frames: Vec<CurvatureFrame>,
+    /// True if the file has the column `contact`, which gives the frames without contact.
+    pub have_contacts: bool,
     /// Note about columns of the file that are not used; `None` without such columns.
     pub note: Option<String>,
 }
@@ -28,11 +32,15 @@ const ANGLE: &str = "contact_angle_deg";
 /// Optional columns: the position of the measured point.
 const AT: [&str; 2] = ["at_x_mm", "at_y_mm"];
 
+/// Optional column: whether the whisker is in contact.
+const CONTACT: &str = "contact";
+
 /// Largest size of a position in mm and of a curvature in 1/mm. The largest whisker has 1e5 mm, and the largest curvature of a scene is 1e6.
 const MOST: f64 = 1e6;
 
 impl CurvatureFrames {
-    /// Reads the frames of a CSV file for a whisker of `length_mm`; `-` is standard input. Frames without contact have empty cells for it.
+    /// Reads the frames of a CSV file for a whisker of `length_mm`; `-` is standard input. Frames without contact have empty cells for it,
+    /// or 0 in the column `contact`. Other empty cells, and those with `NaN`, are missing values.
     ///
     /// # Errors
     /// If the file cannot be read, a column that `method` needs is missing, a cell is no number or out of its range, or a time does not
@@ -67,8 +75,11 @@ impl CurvatureFrames {
     fn of(table: &CsvTable, length_mm: f64, method: ForceMethod) -> Result<Self, CsvError> {
         let angle: &[&str] = &[ANGLE];
         let (needed, optional) = match method {
-            ForceMethod::Lever => ([&NEEDED[..], &[angle]].concat(), AT.to_vec()),
-            ForceMethod::Model => (NEEDED.to_vec(), [&AT[..], angle].concat()),
+            ForceMethod::Lever => (
+                [&NEEDED[..], &[angle]].concat(),
+                [&AT[..], &[CONTACT]].concat(),
+            ),
+            ForceMethod::Model => (NEEDED.to_vec(), [&AT[..], &[CONTACT], angle].concat()),
         };
         let note = table.require(&needed, &optional)?;
         if table.has(AT[0]) != table.has(AT[1]) {
@@ -80,45 +91,33 @@ impl CurvatureFrames {
         }
         let times = table.times_s()?;
         let must = format!("a number between -{MOST:e} and {MOST:e}");
-        let number = |name: &str| table.numbers(name, &must, |number| number.abs() <= MOST);
+        let number = |name: &str| table.measurements(name, &must, |number| number.abs() <= MOST);
         let curvatures = number("curvature_per_mm")?.unwrap_or_default();
         let at = number(AT[0])?.zip(number(AT[1])?);
         let on_whisker =
             format!("a number of at least 0 and less than {length_mm}, the whisker's length in mm");
         let is_on_whisker = |mm: f64| (0.0..length_mm).contains(&mm);
         let places = table
-            .numbers("at_arc_length_mm", &on_whisker, is_on_whisker)?
+            .measurements("at_arc_length_mm", &on_whisker, is_on_whisker)?
             .unwrap_or_default();
-        let number_or_none = |name: &str, most: f64, must: &str| {
-            let is_good = |number: &f64| number.abs() <= most;
-            table.values(name, must, |cell| match cell {
-                "" => Some(None),
-                cell => cell.parse().ok().filter(is_good).map(Some),
-            })
-        };
-        let must = format!("{must}, or empty without contact");
-        let [xs, ys] =
-            ["contact_x_mm", "contact_y_mm"].map(|name| number_or_none(name, MOST, &must));
+        let [xs, ys] = ["contact_x_mm", "contact_y_mm"].map(number);
         let (xs, ys) = (xs?.unwrap_or_default(), ys?.unwrap_or_default());
-        let angle = "a number between -360 and 360, or empty without contact";
-        let angles = number_or_none(ANGLE, 360.0, angle)?;
+        let turn = "a number between -360 and 360";
+        let angles = table.measurements(ANGLE, turn, |angle| angle.abs() <= 360.0)?;
+        let contacts = table.measurements(CONTACT, "0 or 1", |cell| [0.0, 1.0].contains(&cell))?;
         let mut frames = Vec::with_capacity(times.len());
         for (i, line) in table.lines().enumerate() {
-            let contact_angle_deg = angles.as_ref().and_then(|angles| angles[i]);
-            let needs_angle = method == ForceMethod::Lever;
-            let contact = match (xs[i], ys[i]) {
-                (None, None) => None,
-                (Some(x), Some(y)) if !needs_angle || contact_angle_deg.is_some() => {
-                    Some(FrameContact {
-                        contact_mm: [x, y],
-                        contact_angle_deg,
-                    })
-                }
-                _ => {
-                    let what = "has a part of a contact: must have all of its numbers, or none without contact";
-                    return Err(CsvError::at(&table.origin, line, what));
-                }
+            let contact_mm = [xs[i], ys[i]];
+            let angle = angles.as_ref().map(|angles| angles[i]);
+            // Without the column `contact`, a frame in which no position was measured has no contact.
+            let is_in_contact = match &contacts {
+                Some(contacts) => contacts[i] != 0.0,
+                None => contact_mm.into_iter().any(|own| !own.is_nan()),
             };
+            let contact = is_in_contact.then_some(FrameContact {
+                contact_mm,
+                contact_angle_deg: angle,
+            });
             frames.push(CurvatureFrame {
                 line,
                 time_s: times[i],
@@ -128,6 +127,11 @@ impl CurvatureFrames {
                 contact,
             });
         }
-        Ok(Self { frames, note })
+        Ok(Self {
+            origin: table.origin.clone(),
+            frames,
+            have_contacts: contacts.is_some(),
+            note,
+        })
     }
 }

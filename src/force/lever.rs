@@ -1,7 +1,8 @@
 //! Moment over lever.
 
+use super::deviation::LoadDerivatives;
 use super::{CurvatureFrame, FrameContact, FrameForce, NoForce};
-use crate::scene::{Pole, Whisker};
+use crate::scene::{FrameDeviations, Pole, Whisker};
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rest, Side};
 
@@ -10,12 +11,17 @@ use whiskmap_mechanics::rod::{Rest, Side};
 pub struct Bending {
     /// Position of the measured point in the frame of the base, in mm.
     at: DVec2,
-    /// Change of the curvature from that at rest, in 1/mm.
+    /// Change of the curvature from that at rest, less the baseline, in 1/mm.
     pub change_per_mm: f64,
-    /// Bending moment, in nN m.
-    moment_nnm: f64,
+    /// Bending moment over the change of the curvature, in nN m per 1/mm.
+    stiffness: f64,
     /// Length of the whisker, in mm.
     length_mm: f64,
+}
+
+/// Returns a number that is not NaN.
+fn known(number: f64) -> Option<f64> {
+    Some(number).filter(|number| !number.is_nan())
 }
 
 impl Bending {
@@ -30,9 +36,23 @@ impl Bending {
                 .at_mm
                 .map_or_else(|| rest.at_arclength(s).0 * length, DVec2::from),
             change_per_mm,
-            moment_nnm: change_per_mm * length * rod.stiffness(s) * whisker.units().moment_nnm,
+            stiffness: length * rod.stiffness(s) * whisker.units().moment_nnm,
             length_mm: length,
         }
+    }
+
+    /// Returns the bending with a change of the curvature that is less by a baseline, in 1/mm.
+    pub fn less(self, baseline_per_mm: f64) -> Self {
+        let change_per_mm = self.change_per_mm - baseline_per_mm;
+        Self {
+            change_per_mm,
+            ..self
+        }
+    }
+
+    /// Returns the bending moment, in nN m.
+    fn moment_nnm(&self) -> f64 {
+        self.change_per_mm * self.stiffness
     }
 
     /// Returns the row of a frame without contact at `time_s`, in s: all loads are 0.
@@ -51,21 +71,30 @@ impl Bending {
     pub fn none(&self, time_s: f64, reason: NoForce) -> FrameForce {
         FrameForce {
             time_s,
-            curvature_change_per_mm: self.change_per_mm,
-            moment_nnm: self.moment_nnm,
+            curvature_change_per_mm: known(self.change_per_mm),
+            moment_nnm: known(self.moment_nnm()),
             force_un: None,
             base_force_x_un: None,
             base_force_y_un: None,
             base_moment_nnm: None,
             contact_angle_deg: None,
             contact_off_mm: None,
+            force_sd_un: None,
+            base_force_x_sd_un: None,
+            base_force_y_sd_un: None,
+            base_moment_sd_nnm: None,
             reason: Some(reason),
         }
     }
 
     /// Returns the force as the moment at the measured point over the lever of the contact: the distance between them along the tangent
     /// at the contact.
-    pub fn force(&self, frame: &CurvatureFrame, contact: &FrameContact) -> FrameForce {
+    pub fn force(
+        &self,
+        frame: &CurvatureFrame,
+        contact: &FrameContact,
+        sd: &FrameDeviations,
+    ) -> FrameForce {
         let none = self.none(frame.time_s, NoForce::NoLever);
         let Some(angle) = contact.contact_angle_deg else {
             return none;
@@ -77,9 +106,27 @@ impl Bending {
         if lever <= f64::EPSILON * self.length_mm {
             return none;
         }
-        let force = self.moment_nnm / lever;
-        let on_base = force * tangent.perp();
-        FrameForce {
+        let force = self.moment_nnm() / lever;
+        let normal = tangent.perp();
+        let on_base = force * normal;
+        // Derivatives of the loads, by those of the force, of the normal and of the position.
+        let loads = |force_by: f64, normal_by: DVec2, position_by: DVec2| {
+            let by = force_by * normal + force * normal_by;
+            let moment = position_by.perp_dot(on_base) + position.perp_dot(by);
+            [force_by, by.x, by.y, moment]
+        };
+        let by_coordinate = |along: DVec2| {
+            let lever_by = along.dot(tangent);
+            loads(-force * lever_by / lever, DVec2::ZERO, along)
+        };
+        let lever_by_angle = (position - self.at).dot(normal);
+        let by_angle = loads(-force * lever_by_angle / lever, -tangent, DVec2::ZERO);
+        let derivatives = LoadDerivatives {
+            by_curvature: loads(self.stiffness / lever, DVec2::ZERO, DVec2::ZERO),
+            by_contact: [DVec2::X, DVec2::Y].map(by_coordinate),
+            by_angle: by_angle.map(|by| by * 1.0_f64.to_radians()),
+        };
+        let found = FrameForce {
             force_un: Some(force.abs()),
             base_force_x_un: Some(on_base.x),
             base_force_y_un: Some(on_base.y),
@@ -87,6 +134,7 @@ impl Bending {
             contact_angle_deg: Some(angle),
             reason: None,
             ..none
-        }
+        };
+        derivatives.deviate(found, sd)
     }
 }

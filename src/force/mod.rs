@@ -3,14 +3,17 @@
 //! The bending moment at a point is the bending stiffness there times the change of the curvature from that of the resting whisker. Divided
 //! by the lever of the contact it is the force, which is normal to the whisker at the contact: friction and inertia are left out.
 
+mod baseline;
+mod deviation;
 mod frames;
 mod lever;
 mod model;
 mod state_curve;
 
+pub use baseline::CurvatureBaseline;
 pub use frames::CurvatureFrames;
 
-use crate::scene::{Pole, Whisker};
+use crate::scene::{FrameDeviations, Pole, Whisker};
 use crate::trace::row;
 use glam::DVec2;
 use model::Model;
@@ -21,7 +24,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Contact in a frame, in the frame of the base: the first axis is the base's tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameContact {
-    /// Position of the contact, `[x, y]` in mm.
+    /// Position of the contact, `[x, y]` in mm; NaN where it is missing.
     pub contact_mm: [f64; 2],
     /// Angle of the whisker's tangent at the contact, in degrees; `None` if it was not measured.
     pub contact_angle_deg: Option<f64>,
@@ -34,20 +37,39 @@ pub struct CurvatureFrame {
     pub line: usize,
     /// Time of the frame, in s.
     pub time_s: f64,
-    /// Curvature of the whisker at the measured point, in 1/mm.
+    /// Curvature of the whisker at the measured point, in 1/mm; NaN where it is missing.
     pub curvature_per_mm: f64,
-    /// Arclength from the base to the measured point, in mm.
+    /// Arclength from the base to the measured point, in mm; NaN where it is missing.
     pub at_arc_length_mm: f64,
-    /// Position of the measured point, `[x, y]` in mm; `None` for that of the resting whisker.
+    /// Position of the measured point, `[x, y]` in mm, NaN where it is missing; `None` for that of the resting whisker.
     pub at_mm: Option<[f64; 2]>,
     /// Position and tangent of the whisker at the contact in this frame; `None` if the whisker is free.
     pub contact: Option<FrameContact>,
+}
+
+impl CurvatureFrame {
+    /// Returns true if a number that `method` needs is missing.
+    fn is_missing(&self, method: ForceMethod) -> bool {
+        let contact = self.contact.as_ref();
+        let position = contact.map_or([0.0; 2], |own| own.contact_mm);
+        let angle = contact.and_then(|own| own.contact_angle_deg);
+        let angle = angle.filter(|_| method == ForceMethod::Lever);
+        let at = self
+            .at_mm
+            .filter(|_| method == ForceMethod::Lever && contact.is_some());
+        let [at, place] = [at.unwrap_or([0.0; 2]), position];
+        let numbers = [self.curvature_per_mm, self.at_arc_length_mm];
+        let numbers = numbers.into_iter().chain(at).chain(place).chain(angle);
+        numbers.into_iter().any(f64::is_nan)
+    }
 }
 
 /// Reason why a frame has no force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NoForce {
+    /// A number of the frame is missing.
+    Missing,
     /// The measured point is at the contact or beyond it, where there is no moment.
     NoLever,
     /// The contact is farther from the base than the whisker is long.
@@ -62,10 +84,10 @@ row! {
     pub struct FrameForce {
         /// Time of the frame, in s.
         pub time_s: f64,
-        /// Change of the curvature at the measured point from that at rest, in 1/mm.
-        pub curvature_change_per_mm: f64,
+        /// Change of the curvature at the measured point from that at rest, less the baseline if there is one, in 1/mm.
+        pub curvature_change_per_mm: Option<f64>,
         /// Bending moment at the measured point, in nN m: positive turns the tip to the left.
-        pub moment_nnm: f64,
+        pub moment_nnm: Option<f64>,
         /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
@@ -78,7 +100,15 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Distance of the measured contact from that of the model, in mm; with --model.
         pub contact_off_mm: Option<f64>,
-        /// Reason of a frame without a force: no-lever, out-of-reach or no-state.
+        /// Standard deviation of the size of the force, in uN; with a baseline or standard deviations of frames.
+        pub force_sd_un: Option<f64>,
+        /// Standard deviation of the force on the base along the base's tangent, in uN.
+        pub base_force_x_sd_un: Option<f64>,
+        /// Standard deviation of the force on the base to the left of its tangent, in uN.
+        pub base_force_y_sd_un: Option<f64>,
+        /// Standard deviation of the moment on the base, in nN m.
+        pub base_moment_sd_nnm: Option<f64>,
+        /// Reason of a frame without a force: missing, no-lever, out-of-reach or no-state.
         pub reason: Option<NoForce>,
     }
 }
@@ -90,6 +120,38 @@ pub enum ForceMethod {
     Lever,
     /// The stable state of the full model that has this curvature, and this distance of the contact from the base.
     Model,
+}
+
+/// Method, baseline and standard deviations with which forces follow from frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceOptions {
+    /// Method by which forces follow from the curvature.
+    pub method: ForceMethod,
+    /// Baseline from which the curvature changes; `None` for the shape at rest alone.
+    pub baseline: Option<CurvatureBaseline>,
+    /// Standard deviations of what a frame measures. Without one of the curvature, the scatter of the baseline is it.
+    pub deviations: FrameDeviations,
+}
+
+impl ForceOptions {
+    /// Creates options without a baseline and standard deviations.
+    #[must_use]
+    pub fn new(method: ForceMethod) -> Self {
+        Self {
+            method,
+            baseline: None,
+            deviations: FrameDeviations::default(),
+        }
+    }
+
+    /// Returns the standard deviations of what a frame measures, with the scatter of the baseline.
+    fn with_scatter(&self) -> FrameDeviations {
+        let scatter = self.baseline.map(|own| own.sd_per_mm);
+        FrameDeviations {
+            curvature_per_mm: self.deviations.curvature_per_mm.or(scatter),
+            ..self.deviations
+        }
+    }
 }
 
 /// Returns one line for frames without a force; `None` without such frames.
@@ -110,31 +172,40 @@ pub fn forces(
     frames: &[CurvatureFrame],
     method: ForceMethod,
 ) -> Vec<FrameForce> {
-    forces_until(whisker, pole, frames, method, &AtomicBool::new(false))
+    let options = ForceOptions::new(method);
+    forces_until(whisker, pole, frames, &options, &AtomicBool::new(false))
 }
 
-/// Computes the forces as [`forces`] does. If `cancel` is true, the function soon returns, and the remaining frames have no force.
+/// Computes the forces as [`forces`] does, with a baseline and standard deviations. These are of first order in those of the frames, which
+/// are independent; loads of frames without contact are exactly 0. If `cancel` is true, the function soon returns, and the remaining frames
+/// have no force.
 #[must_use]
 pub fn forces_until(
     whisker: &Whisker,
     pole: &Pole,
     frames: &[CurvatureFrame],
-    method: ForceMethod,
+    options: &ForceOptions,
     cancel: &AtomicBool,
 ) -> Vec<FrameForce> {
+    let method = options.method;
+    let deviations = options.with_scatter();
+    let baseline_per_mm = options.baseline.map_or(0.0, |own| own.mean_per_mm);
     let distances = frames.iter().filter_map(|frame| frame.contact);
     let distances = distances.map(|contact| DVec2::from(contact.contact_mm).length());
     let nearest = distances.fold(whisker.length_mm, f64::min);
     let model = (method == ForceMethod::Model).then(|| Model::new(whisker, pole, nearest));
     let force = |frame: &CurvatureFrame| {
-        let lever = lever::Bending::new(whisker, frame);
+        let lever = lever::Bending::new(whisker, frame).less(baseline_per_mm);
+        if frame.is_missing(method) {
+            return lever.none(frame.time_s, NoForce::Missing);
+        }
         let Some(contact) = &frame.contact else {
             return lever.free(frame.time_s);
         };
         match &model {
             Some(_) if cancel.load(Ordering::Relaxed) => lever.none(frame.time_s, NoForce::NoState),
-            Some(model) => model.force(&lever, frame, contact),
-            None => lever.force(frame, contact),
+            Some(model) => model.force(&lever, frame, contact, &deviations),
+            None => lever.force(frame, contact, &deviations),
         }
     };
     frames.par_iter().map(force).collect()

@@ -1,14 +1,17 @@
 //! Force of the full model: the stable state with the measured curvature, at the measured distance of the contact from the base.
 
+use super::deviation::{LoadDerivatives, Loads};
 use super::lever::Bending;
 use super::state_curve::{Measured, ModelState, StateCurve};
 use super::{CurvatureFrame, FrameContact, FrameForce, NoForce};
-use crate::scene::{Pole, Whisker};
+use crate::scene::{FrameDeviations, Pole, Whisker};
 use crate::sheet::Sheet;
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
 use whiskmap_mechanics::shooting::Resolution;
 use whiskmap_mechanics::shooting::batch::Method;
+use whiskmap_mechanics::shooting::sensitivity::BaseDerivatives;
+use whiskmap_mechanics::shooting::shape::{RodPoint, varied_profile};
 
 /// Number of intervals between the rows of a sheet.
 const ROWS: u32 = 16;
@@ -48,6 +51,7 @@ impl Model {
         bending: &Bending,
         frame: &CurvatureFrame,
         contact: &FrameContact,
+        sd: &FrameDeviations,
     ) -> FrameForce {
         let none = |reason| bending.none(frame.time_s, reason);
         let length = self.units.length_mm;
@@ -75,17 +79,18 @@ impl Model {
                 sheet,
                 measured,
             };
-            curve.states(rod.tau(s))
+            let states = curve.states(rod.tau(s)).into_iter();
+            states.map(move |state| (rod, state))
         });
-        let nearest = found.min_by(|one, other| off(one).total_cmp(&off(other)));
-        let Some(state) = nearest else {
+        let nearest = found.min_by(|(_, one), (_, other)| off(one).total_cmp(&off(other)));
+        let Some((rod, state)) = nearest else {
             return none(NoForce::NoState);
         };
         let ModelState { point, base, .. } = state;
         let units = &self.units;
         let force = point.y * rod.radius(point.x).powi(2);
         let on_base = force * DVec2::new(base.tangent.y, base.tangent.x) * units.force_un;
-        FrameForce {
+        let found = FrameForce {
             force_un: Some((force * units.force_un).abs()),
             base_force_x_un: Some(on_base.x),
             base_force_y_un: Some(on_base.y),
@@ -94,6 +99,99 @@ impl Model {
             contact_off_mm: Some(off(&state) * length),
             reason: None,
             ..none(NoForce::NoState)
+        };
+        match self.derivatives(rod, point, &measured) {
+            Some(derivatives) => derivatives.deviate(found, sd),
+            None => found,
+        }
+    }
+
+    /// Returns the derivatives of the loads of the state at `point`, `(tau, load)`, by the implicit function theorem: the state has the measured
+    /// distance `d` of the contact and the measured change `c` of the curvature, so that `d(tau, load)/d(d, c)` is the inverse of
+    /// `d(d, c)/d(tau, load)`. The angle of the contact does not enter. `None` if a point of the state is at the contact.
+    fn derivatives(&self, rod: &Rod, point: DVec2, measured: &Measured) -> Option<LoadDerivatives> {
+        let (tau, load) = point.into();
+        let at = [0.0, measured.at];
+        let varied = varied_profile(rod, tau, load, Resolution::FINE, &at);
+        let [base, middle] = varied.try_into().ok()?;
+        let radius = rod.radius(tau);
+        let force = load * radius * radius;
+        let force_by = [-2.0 * rod.taper * force, radius * radius];
+        let state = VariedState {
+            force,
+            base,
+            middle,
+            stiffness: rod.stiffness(measured.at),
+        };
+        let [by_tau, by_load] = [0, 1].map(|i| state.by(i, force_by[i]));
+        let [of_tau, of_load] = [by_tau.constraints, by_load.constraints];
+        let det = of_tau.perp_dot(of_load);
+        let units = &self.units;
+        let scale = [
+            units.force_un,
+            units.force_un,
+            units.force_un,
+            units.moment_nnm,
+        ];
+        let along = |tau_by: f64, load_by: f64, unit: f64| {
+            let sum = |i: usize| tau_by * by_tau.loads[i] + load_by * by_load.loads[i];
+            std::array::from_fn(|i| sum(i) * scale[i] * unit)
+        };
+        let length = units.length_mm;
+        let by_distance: Loads = along(of_load.y / det, -of_tau.y / det, 1.0 / length);
+        let by_curvature = along(-of_load.x / det, of_tau.x / det, length);
+        let direction = measured.contact.normalize();
+        Some(LoadDerivatives {
+            by_curvature,
+            by_contact: direction
+                .to_array()
+                .map(|part| by_distance.map(|by| part * by)),
+            by_angle: [0.0; 4],
+        })
+    }
+}
+
+/// Base and measured point of a state, each with its derivatives by `tau` and load.
+struct VariedState {
+    /// Signed force at the contact, in `E I_base/L_w^2`.
+    force: f64,
+    base: (RodPoint, BaseDerivatives<f64>),
+    middle: (RodPoint, BaseDerivatives<f64>),
+    /// Bending stiffness at the measured point over that at the base.
+    stiffness: f64,
+}
+
+/// Derivatives of a state by one of its coordinates.
+struct StateBy {
+    /// Derivatives of the distance of the contact and of the change of the curvature at the measured point.
+    constraints: DVec2,
+    /// Derivatives of the loads.
+    loads: Loads,
+}
+
+impl VariedState {
+    /// Returns the derivatives by `tau` (0) or load (1), with that of the force.
+    fn by(&self, coordinate: usize, force_by: f64) -> StateBy {
+        let of = |(point, by): &(RodPoint, BaseDerivatives<f64>)| {
+            let by = [by.by_tau, by.by_load][coordinate];
+            (*point, by)
+        };
+        let (base, [angle_by, x_by, y_by]) = of(&self.base);
+        let (middle, [_, middle_by, _]) = of(&self.middle);
+        let (force, position) = (self.force, base.position);
+        let moment_by = |x: f64, x_by: f64| -(force_by * x + force * x_by);
+        let [cos, sin] = base.tangent.to_array();
+        StateBy {
+            constraints: DVec2::new(
+                position.dot(DVec2::new(x_by, y_by)) / position.length(),
+                moment_by(middle.position.x, middle_by) / self.stiffness,
+            ),
+            loads: [
+                force_by,
+                force_by * sin + force * angle_by * cos,
+                force_by * cos - force * angle_by * sin,
+                moment_by(position.x, x_by),
+            ],
         }
     }
 }

@@ -12,6 +12,7 @@ use std::f64::consts::PI;
 /// assert_eq!(Quantity::of("tip_radius_um").parse("2"), Ok(2.0));
 /// assert_eq!(Quantity::AngleDeg.parse("30\u{b0}"), Ok(30.0));
 /// assert_eq!(Quantity::of("force_un").parse("60mN"), Ok(60e3));
+/// assert_eq!(Quantity::TimeS.parse("20ms"), Ok(0.02));
 /// assert!(Quantity::LengthMm.parse("30deg").is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,8 @@ pub enum Quantity {
     MomentNnm,
     /// An energy; a number without a unit is in nanojoules.
     EnergyNj,
+    /// A time; a number without a unit is in seconds.
+    TimeS,
     /// A plain number, which has no unit.
     Number,
 }
@@ -49,15 +52,17 @@ const MOMENTS: Units = &[
     ("Nmm", 1e6),
 ];
 const ENERGIES: Units = &[("nJ", 1.0), ("uJ", 1e3), ("mJ", 1e6), ("J", 1e9)];
+const TIMES: Units = &[("s", 1e6), ("ms", 1e3), ("us", 1.0)];
 
 impl Quantity {
     /// All quantities that have a unit, one for each kind of unit.
-    pub const KINDS: [Self; 5] = [
+    pub const KINDS: [Self; 6] = [
         Self::LengthMm,
         Self::AngleDeg,
         Self::ForceUn,
         Self::MomentNnm,
         Self::EnergyNj,
+        Self::TimeS,
     ];
 
     /// Returns the quantity of an axis or a channel, by the unit at the end of its name.
@@ -71,6 +76,7 @@ impl Quantity {
             Some("un") => Self::ForceUn,
             Some("nnm") => Self::MomentNnm,
             Some("nj") => Self::EnergyNj,
+            Some("s") => Self::TimeS,
             _ => Self::Number,
         }
     }
@@ -84,6 +90,7 @@ impl Quantity {
             Self::ForceUn => ["uN", "a force", "60, 60uN or 0.06mN"],
             Self::MomentNnm => ["nNm", "a moment", "250, 250nNm or 0.25uNm"],
             Self::EnergyNj => ["nJ", "an energy", "40, 40nJ or 0.04uJ"],
+            Self::TimeS => ["s", "a time", "0.02, 0.02s or 20ms"],
             Self::Number => ["", "a number", "0.9"],
         }
     }
@@ -102,6 +109,7 @@ impl Quantity {
             Self::ForceUn => FORCES,
             Self::MomentNnm => MOMENTS,
             Self::EnergyNj => ENERGIES,
+            Self::TimeS => TIMES,
             Self::Number => &[],
         }
     }
@@ -178,7 +186,7 @@ fn converted(number: f64, from: f64, to: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::Quantity::{
-        self, AngleDeg, EnergyNj, ForceUn, LengthMm, LengthUm, MomentNnm, Number,
+        self, AngleDeg, EnergyNj, ForceUn, LengthMm, LengthUm, MomentNnm, Number, TimeS,
     };
 
     #[test]
@@ -202,6 +210,8 @@ mod tests {
             (MomentNnm, "1.1Nmm", 1.1e6),
             (MomentNnm, "3\u{b5}Nm", 3e3),
             (EnergyNj, "7uJ", 7e3),
+            (TimeS, "20ms", 0.02),
+            (TimeS, "-1.5 s", -1.5),
             (Number, "-1e-3", -1e-3),
         ] {
             assert_eq!(quantity.parse(text), Ok(value), "{text}");
@@ -218,6 +228,11 @@ mod tests {
             (LengthMm, "30deg", lengths),
             (LengthMm, "15km", "unit km: must be mm"),
             (AngleDeg, "15mm", angles),
+            (
+                TimeS,
+                "20min",
+                "unit min: must be s (the default), ms or us",
+            ),
             (Number, "0.9mm", "unit mm: must be left out"),
             (LengthMm, "far", "must be a length"),
             (LengthMm, "1,5", "must be a length"),
@@ -243,6 +258,7 @@ mod tests {
             ("force_un", ForceUn),
             ("base_moment_nnm", MomentNnm),
             ("energy_nj", EnergyNj),
+            ("time_s", TimeS),
         ] {
             assert_eq!(Quantity::of(name), quantity, "{name}");
         }

@@ -217,22 +217,54 @@ impl CsvTable {
         must: &str,
         is_allowed: impl Fn(f64) -> bool,
     ) -> Result<Option<Vec<f64>>, CsvError> {
+        self.parsed(column, must, |cell| {
+            cell.parse().ok().filter(|number| is_allowed(*number))
+        })
+    }
+
+    /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A missing value, an empty cell or `NaN`,
+    /// is NaN.
+    ///
+    /// # Errors
+    /// Fails as [`CsvTable::numbers`] does, but for missing values.
+    pub fn measurements(
+        &self,
+        column: &str,
+        must: &str,
+        is_allowed: impl Fn(f64) -> bool,
+    ) -> Result<Option<Vec<f64>>, CsvError> {
+        let must = format!("{must}, or empty where it is missing");
+        self.parsed(column, &must, |cell| match cell {
+            "" => Some(f64::NAN),
+            cell => {
+                let number = cell.parse().ok();
+                number.filter(|number: &f64| number.is_nan() || is_allowed(*number))
+            }
+        })
+    }
+
+    /// Returns the values of a column of numbers, row by row; `value` parses a cell with a decimal point.
+    fn parsed<T>(
+        &self,
+        column: &str,
+        must: &str,
+        value: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<Vec<T>>, CsvError> {
         let with_point = |cell: &str| match cell.contains('.') {
             true => None,
             false => Some(cell.replacen(',', ".", 1)),
         };
-        let number = |text: String| text.parse().ok().filter(|number| is_allowed(*number));
         let has_commas = || {
             let cells = self.values(column, "", |cell| Some(cell.contains(',')));
             cells.is_ok_and(|cells| cells.is_some_and(|cells| cells.contains(&true)))
         };
         if self.separator != ',' && has_commas() {
             let must = format!("{must}; this column has decimal commas");
-            return self.values(column, &must, |cell| with_point(cell).and_then(number));
+            return self.values(column, &must, |cell| value(&with_point(cell)?));
         }
         let is_quoted = self.separator == ',' && has_commas();
         let must = format!("{must}{}", if is_quoted { DECIMAL_COMMAS } else { "" });
-        self.values(column, &must, |cell| number(cell.to_owned()))
+        self.values(column, &must, value)
     }
 
     /// Returns the column `time_s` of the CSV file: times in s that grow, row by row. Without such a column there are no times.

@@ -1,6 +1,7 @@
 //! Comparison of measured points with theory.
 
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
+use crate::input::shortened;
 use crate::scene::{Pole, Whisker, digits};
 use crate::sensitivity::{Derivatives, Variable, detachments};
 use crate::trace::row;
@@ -18,9 +19,9 @@ row! {
         /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
         /// Distance from the base to the contact at first touch, in mm.
-        pub distance_mm: f64,
+        pub distance_mm: Option<f64>,
         /// Measured angle, in degrees: of the push or of the chord, as in the file.
-        pub measured_deg: f64,
+        pub measured_deg: Option<f64>,
         /// Standard deviation of the measured angle, in degrees; empty where not given.
         pub sd_deg: Option<f64>,
         /// Observed end of the push: slip-off, pull-off or empty.
@@ -28,10 +29,22 @@ row! {
         /// Predicted angle of the same kind, in degrees; empty where the side never detaches.
         pub predicted_deg: Option<f64>,
         /// Predicted end of the push: slip-off, pull-off, out-of-reach or unresolved.
-        pub predicted_kind: DetachmentKind,
+        pub predicted_kind: Option<DetachmentKind>,
         /// Measured less predicted angle, in degrees.
         pub residual_deg: Option<f64>,
+        /// Reason of a point without a residual: missing (a value) or no-detachment.
+        pub reason: Option<NotCompared>,
     }
+}
+
+/// Reason why a measured point has no residual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NotCompared {
+    /// A value of the measured point is missing.
+    Missing,
+    /// By theory, the side of the measured point never detaches.
+    NoDetachment,
 }
 
 /// Measured points with the predictions for one whisker and pole.
@@ -60,7 +73,7 @@ impl MeasuredPoints {
     pub fn left_out(&self, comparison: &Comparison) -> Vec<String> {
         let (rows, origin) = (comparison.left_out(), &self.origin);
         let warning = |row: &ComparedPoint| {
-            let (line, distance) = (row.line, digits(row.distance_mm));
+            let (line, distance) = (row.line, digits(row.distance_mm.unwrap_or(f64::NAN)));
             format!(
                 "{origin}:{line}: left out: by theory this side never detaches at {distance} mm"
             )
@@ -68,9 +81,49 @@ impl MeasuredPoints {
         rows.map(warning).collect()
     }
 
-    /// Compares the points with the detachments of `whisker` at `pole`.
+    /// Returns one line for the points with a missing value; `None` without such points.
+    #[must_use]
+    pub fn missing(&self) -> Option<String> {
+        let lines: Vec<String> = self
+            .incomplete
+            .iter()
+            .map(|own| own.line.to_string())
+            .collect();
+        let count = self.points.len() + lines.len();
+        (!lines.is_empty()).then(|| {
+            format!(
+                "{} of {count} points in {} have a missing value and are left out: lines {}",
+                lines.len(),
+                self.origin,
+                shortened(&lines.join(", "))
+            )
+        })
+    }
+
+    /// Compares the points with the detachments of `whisker` at `pole`. Rows of points with a missing value have no prediction.
     #[must_use]
     pub fn beside(&self, whisker: &Whisker, pole: &Pole) -> Comparison {
+        let known = |number: f64| Some(number).filter(|number| !number.is_nan());
+        let incomplete = self.incomplete.iter().map(|point| ComparedPoint {
+            line: point.line,
+            side: point.side,
+            distance_mm: known(point.distance_mm),
+            measured_deg: known(point.angle_deg),
+            sd_deg: known(point.sd_deg).filter(|_| self.have_deviations),
+            kind: point.kind,
+            predicted_deg: None,
+            predicted_kind: None,
+            residual_deg: None,
+            reason: Some(NotCompared::Missing),
+        });
+        let mut rows = self.compared(whisker, pole);
+        rows.extend(incomplete);
+        rows.sort_by_key(|row| row.line);
+        Comparison { rows }
+    }
+
+    /// Returns the points that have all of their values, with their predictions for `whisker` at `pole`: `[point]`.
+    pub(crate) fn compared(&self, whisker: &Whisker, pole: &Pole) -> Vec<ComparedPoint> {
         let ends = Side::BOTH.map(|side| self.ends(whisker, pole, side));
         let compared = |point: &MeasuredPoint| {
             let ends = &ends[usize::from(point.side == Side::Cb)];
@@ -83,18 +136,20 @@ impl MeasuredPoints {
             ComparedPoint {
                 line: point.line,
                 side: point.side,
-                distance_mm: point.distance_mm,
-                measured_deg: point.angle_deg,
+                distance_mm: Some(point.distance_mm),
+                measured_deg: Some(point.angle_deg),
                 sd_deg: self.have_deviations.then_some(point.sd_deg),
                 kind: point.kind,
                 predicted_deg,
-                predicted_kind: end.kind,
+                predicted_kind: Some(end.kind),
                 residual_deg: predicted_deg.map(|predicted| point.angle_deg - predicted),
+                reason: match predicted_deg {
+                    None => Some(NotCompared::NoDetachment),
+                    Some(_) => None,
+                },
             }
         };
-        Comparison {
-            rows: self.points.iter().map(compared).collect(),
-        }
+        self.points.iter().map(compared).collect()
     }
 
     /// Returns the derivatives of the predicted angles by each of `variables`, in degrees per unit of the variable, `[variable][point]`.
@@ -143,9 +198,10 @@ impl MeasuredPoints {
 }
 
 impl Comparison {
-    /// Returns the measured points without a prediction.
+    /// Returns the measured points without a prediction, because by theory their side never detaches.
     pub fn left_out(&self) -> impl Iterator<Item = &ComparedPoint> {
-        self.rows.iter().filter(|row| row.residual_deg.is_none())
+        let reason = Some(NotCompared::NoDetachment);
+        self.rows.iter().filter(move |row| row.reason == reason)
     }
 
     /// Returns the number of measured points with a prediction.
@@ -158,8 +214,7 @@ impl Comparison {
     #[must_use]
     pub fn of_another_kind(&self) -> usize {
         let compared = self.rows.iter().filter(|row| row.residual_deg.is_some());
-        let differs =
-            |row: &&ComparedPoint| row.kind.is_some_and(|kind| kind != row.predicted_kind);
+        let differs = |row: &&ComparedPoint| row.kind.is_some() && row.kind != row.predicted_kind;
         compared.filter(differs).count()
     }
 

@@ -3,7 +3,7 @@
 mod compare;
 mod read;
 
-pub use compare::{ComparedPoint, Comparison};
+pub use compare::{ComparedPoint, Comparison, NotCompared};
 
 use crate::trace::DetachmentKind;
 use whiskmap_mechanics::rod::Side;
@@ -19,8 +19,10 @@ pub struct MeasuredPoints {
     pub angle: MeasuredAngle,
     /// True if the file of points gives standard deviations.
     pub have_deviations: bool,
-    /// Measured points, at least one: `[point]`.
+    /// Measured points with all of their values, at least one: `[point]`.
     pub points: Vec<MeasuredPoint>,
+    /// Measured points with a missing value, which is NaN. They are not compared: `[point]`.
+    pub incomplete: Vec<MeasuredPoint>,
 }
 
 /// Measured detachment: side, distance, angle and kind.

@@ -37,7 +37,8 @@ impl MeasuredPoints {
         Self::of(&table?)
     }
 
-    /// Reads points from the text of a CSV file, as [`CsvTable`] splits it. Messages call the text `origin`.
+    /// Reads points from the text of a CSV file, as [`CsvTable`] splits it. Messages call the text `origin`. An empty cell and `NaN` are missing
+    /// numbers.
     ///
     /// ```
     /// use whiskmap::measured::MeasuredPoints;
@@ -50,7 +51,7 @@ impl MeasuredPoints {
     /// ```
     ///
     /// # Errors
-    /// If columns are missing or twice there, a cell is no number or out of its range, or there is no point.
+    /// If columns are missing or twice there, a cell is no number or out of its range, or no point has all of its values.
     pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
         Self::of(&CsvTable::parse(text, origin)?)
     }
@@ -74,12 +75,13 @@ impl MeasuredPoints {
             _ => None,
         })?;
         let is_positive = |number: f64| number > 0.0 && number.is_finite();
-        let distances_mm = table.numbers("distance_mm", "a positive number", is_positive)?;
+        let distances_mm = table.measurements("distance_mm", "a positive number", is_positive)?;
         let is_deviation = |number: f64| (LEAST_SD_DEG..=360.0).contains(&number);
         let must = format!("a number between {} and 360", digits(LEAST_SD_DEG));
-        let deviations_deg = table.numbers("sd_deg", &must, is_deviation)?;
+        let deviations_deg = table.measurements("sd_deg", &must, is_deviation)?;
         let turn = "a number between -360 and 360";
-        let angles_deg = table.numbers(angle.column(), turn, |number| number.abs() <= 360.0)?;
+        let angles_deg =
+            table.measurements(angle.column(), turn, |number| number.abs() <= 360.0)?;
         let rows = table.lines().zip(sides.unwrap_or_default());
         let rows = rows.zip(
             distances_mm
@@ -98,12 +100,24 @@ impl MeasuredPoints {
                     sd_deg: deviations_deg.as_ref().map_or(1.0, |all| all[i]),
                 },
             );
+        let (points, incomplete): (Vec<_>, Vec<_>) = points.partition(|point| {
+            let numbers = [point.distance_mm, point.angle_deg, point.sd_deg];
+            !numbers.into_iter().any(f64::is_nan)
+        });
+        if points.is_empty() {
+            let what = format!(
+                "has no row with all of its values: must have at least one with {}",
+                NEEDED.map(|group| group.join(" or ")).join(", ")
+            );
+            return Err(CsvError::whole(&table.origin, what));
+        }
         Ok(Self {
             origin: table.origin.clone(),
             note,
             angle,
             have_deviations: deviations_deg.is_some(),
-            points: points.collect(),
+            points,
+            incomplete,
         })
     }
 

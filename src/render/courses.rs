@@ -18,7 +18,7 @@ struct Curve {
 const CURVES: [Curve; 3] = [
     Curve {
         name: "angle_deg",
-        sample: |sample| Some(sample.angle_deg),
+        sample: |sample| sample.angle_deg,
         event: |event| Some(event.angle_deg),
         free: |event| event.angle_deg,
     },

@@ -6,20 +6,20 @@ use crate::uncertainty::EndSpread;
 use whiskmap_plot::{Band, Dot, Ink, Line, Shade, Stroke};
 
 /// Returns measured detachments as dots at `[angle (deg), distance (mm)]`: slip-off open, pull-off filled, grey where the kind is
-/// unknown.
+/// unknown. Points with a missing angle or distance have none.
 #[must_use]
 pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
-    let dots = points.iter().map(|point| {
+    let dots = points.iter().filter_map(|point| {
         let (ink, open, name) = measured_look(point);
-        Dot {
-            at: [point.measured_deg, point.distance_mm],
+        Some(Dot {
+            at: [point.measured_deg?, point.distance_mm?],
             ink,
             open,
             name: Some(match point.sd_deg {
                 Some(_) => format!("{name} \u{b1} standard deviation"),
                 None => name.to_owned(),
             }),
-        }
+        })
     });
     dots.collect()
 }
@@ -30,7 +30,8 @@ pub fn measured(points: &[ComparedPoint]) -> Vec<Dot> {
 pub fn error_bars(points: &[ComparedPoint]) -> Vec<Line> {
     let bars = points.iter().filter_map(|point| {
         let sd = point.sd_deg?;
-        let ends = [-sd, sd].map(|end| [point.measured_deg + end, point.distance_mm]);
+        let [angle, distance] = [point.measured_deg?, point.distance_mm?];
+        let ends = [-sd, sd].map(|end| [angle + end, distance]);
         let (ink, ..) = measured_look(point);
         Some(Line::new(ends.to_vec(), ink, Stroke::Solid))
     });

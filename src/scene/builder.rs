@@ -14,6 +14,45 @@ pub struct Deviations {
     pub parameters: Vec<(Parameter, f64)>,
     /// Standard deviation of the radius of every row of `whisker.profile`, in micrometres; `None` without a profile.
     pub profile_radius_um: Option<f64>,
+    /// Standard deviations of what a frame of a film measures.
+    pub frames: FrameDeviations,
+}
+
+/// Standard deviations of what a frame of a film measures. `None` for what is exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameDeviations {
+    /// Standard deviation of the curvature, in 1/mm.
+    pub curvature_per_mm: Option<f64>,
+    /// Standard deviation of each coordinate of the contact, in mm.
+    pub contact_mm: Option<f64>,
+    /// Standard deviation of the angle of the tangent at the contact, in degrees.
+    pub angle_deg: Option<f64>,
+}
+
+impl FrameDeviations {
+    /// Names of the standard deviations in the table `[uncertainty]`, in the order of [`FrameDeviations::values`].
+    pub const NAMES: [&str; 3] = ["curvature_sd_per_mm", "contact_sd_mm", "angle_sd_deg"];
+
+    /// Returns the standard deviations by the names of [`FrameDeviations::NAMES`].
+    #[must_use]
+    pub const fn values(&self) -> [Option<f64>; 3] {
+        [self.curvature_per_mm, self.contact_mm, self.angle_deg]
+    }
+
+    /// Sets the standard deviation of this name. Returns false for another name.
+    pub fn set(&mut self, name: &str, deviation: f64) -> bool {
+        let own = [
+            &mut self.curvature_per_mm,
+            &mut self.contact_mm,
+            &mut self.angle_deg,
+        ];
+        let named = Self::NAMES.into_iter().zip(own);
+        let mut found = named.filter(|(own, _)| *own == name);
+        found.next().is_some_and(|(_, own)| {
+            *own = Some(deviation);
+            true
+        })
+    }
 }
 
 /// Given numbers of a scene, by parameter: `[parameter]`, each in its unit; `None` for a number that is not given.

@@ -1,6 +1,6 @@
 //! Table `[uncertainty]` of a scene: standard deviations of its numbers.
 
-use super::builder::{Deviations, SceneBuilder};
+use super::builder::{Deviations, FrameDeviations, SceneBuilder};
 use super::error::SceneFault;
 use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
@@ -19,8 +19,10 @@ pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneF
     let Deviations {
         parameters,
         profile_radius_um,
+        frames,
     } = deviations;
-    if parameters.is_empty() && profile_radius_um.is_none() {
+    if parameters.is_empty() && profile_radius_um.is_none() && *frames == FrameDeviations::default()
+    {
         let must = format!("must have at least one of {}", names());
         return Err(SceneFault::new("uncertainty", must));
     }
@@ -56,11 +58,17 @@ pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneF
             return Err(SceneFault::of_value(key, digits(deviation), must));
         }
     }
+    for (name, deviation) in FrameDeviations::NAMES.into_iter().zip(frames.values()) {
+        if let Some(deviation) = deviation {
+            limits.check(&format!("uncertainty.{name}"), deviation)?;
+        }
+    }
     Ok(Some(deviations.clone()))
 }
 
 /// Returns the names of all keys of the table `[uncertainty]`, with commas between them.
 pub(super) fn names() -> String {
     let names = Parameter::ALL.map(|one| format!("`{}`", one.name()));
-    format!("{}, `{ROWS}`", names.join(", "))
+    let frames = FrameDeviations::NAMES.map(|name| format!("`{name}`"));
+    format!("{}, `{ROWS}`, {}", names.join(", "), frames.join(", "))
 }

@@ -28,7 +28,7 @@ mod whisker;
 pub(crate) use grid::NEAREST;
 
 pub use axis::{AxisScale, AxisValues};
-pub use builder::{Deviations, SceneBuilder};
+pub use builder::{Deviations, FrameDeviations, SceneBuilder};
 pub use check::LONGEST_TITLE;
 pub use data::SceneData;
 

@@ -25,6 +25,7 @@ use crate::whisk::phase::{Obstacles, Phase};
 use crate::whisk::states::{BothSides, RowPush};
 use crate::whisk::{AngleCourse, STATES_AT_ONCE, WhiskEventKind};
 use asperities::Asperities;
+use rayon::prelude::*;
 use sample::{Crossing, Held};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tip::TipFrame;
@@ -48,9 +49,9 @@ pub enum TextureError {
     /// A number of the rough surface is out of its range.
     #[error(transparent)]
     Surface(#[from] SceneError),
-    /// The base turns away from the surface.
+    /// The base turns away from the surface, or its angle is missing.
     #[error(
-        "angle_deg[{index}] = {angle_deg}: must be between -90 and 90 deg from the normal of the surface"
+        "angle_deg[{index}] = {angle_deg}: must be between -90 and 90 deg from the normal of the surface, and none may be missing"
     )]
     Angle {
         /// Index of the sample whose angle is out of range.
@@ -90,6 +91,16 @@ pub enum TextureError {
         /// Side of the whisker that the asperity is on.
         side: Side,
     },
+    /// The curvature should be taken at a place that the whisker does not have.
+    #[error(
+        "curvature_at_mm = {at_mm}: must be between 0 and {length_mm}, the whisker's length in mm"
+    )]
+    CurvatureAt {
+        /// Arclength of the place, in mm.
+        at_mm: f64,
+        /// Length of the whisker, in mm.
+        length_mm: f64,
+    },
     /// The course was cancelled.
     #[error("cancelled")]
     Cancelled,
@@ -112,29 +123,40 @@ pub enum TextureError {
 /// ```
 ///
 /// # Errors
-/// If a number of the surface is out of its range, the course begins in contact or turns the base away from the surface, the resting whisker does not fit between two asperities, or a
-/// detachment is not found.
+/// If a number of the surface is out of its range, an angle is missing, the course begins in contact or turns the base away from the
+/// surface, the resting whisker does not fit between two asperities, or a detachment is not found.
 pub fn texture(
     whisker: &Whisker,
     surface: &Surface,
     course: &AngleCourse,
 ) -> Result<Texture, TextureError> {
-    texture_until(whisker, surface, course, &AtomicBool::new(false))
+    texture_until(whisker, surface, course, None, &AtomicBool::new(false))
 }
 
-/// Computes the course as [`texture`] does. If `cancel` is true, the function soon returns an error.
+/// Computes the course as [`texture`] does, with the curvature at an arclength in mm, if it is given. If `cancel` is true, the function soon
+/// returns an error.
 ///
 /// # Errors
-/// Fails as [`texture`] does, and if it is cancelled.
+/// Fails as [`texture`] does, if the whisker is shorter than the arclength, and if it is cancelled.
 pub fn texture_until(
     whisker: &Whisker,
     surface: &Surface,
     course: &AngleCourse,
+    curvature_at_mm: Option<f64>,
     cancel: &AtomicBool,
 ) -> Result<Texture, TextureError> {
     surface.check(whisker)?;
+    let length_mm = whisker.length_mm;
+    if let Some(at_mm) = curvature_at_mm
+        && !(0.0..=length_mm).contains(&at_mm)
+    {
+        return Err(TextureError::CurvatureAt { at_mm, length_mm });
+    }
     let angles = course.angles_deg();
-    if let Some(index) = angles.iter().position(|angle| angle.abs() > 90.0) {
+    if let Some(index) = angles
+        .iter()
+        .position(|angle| !(-90.0..=90.0).contains(angle))
+    {
         let angle_deg = angles[index];
         return Err(TextureError::Angle { index, angle_deg });
     }
@@ -157,7 +179,7 @@ pub fn texture_until(
         place.contact(side, obstacle, push)
     });
     let contacts: Vec<Contact> = contacts.collect();
-    let held = place.held(&states, &contacts, &moments, cancel)?;
+    let held = place.held(&states, &contacts, &moments, curvature_at_mm, cancel)?;
 
     let changes = passages.iter().map(|own| [own.time_s, own.angle]);
     let changes: Vec<[f64; 2]> = changes.collect();
@@ -165,7 +187,7 @@ pub fn texture_until(
         .iter()
         .map(|own| place.contact(own.side, own.obstacle, own.push));
     let contacts: Vec<Contact> = contacts.collect();
-    let held_then = place.held(&states, &contacts, &changes, cancel)?;
+    let held_then = place.held(&states, &contacts, &changes, None, cancel)?;
     let kinds = passages.iter().zip(&contacts).map(|(passage, contact)| {
         let end = contact.map(|own| states.detachment(own.side, own.row_push.0));
         passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
@@ -175,7 +197,15 @@ pub fn texture_until(
     let samples = held.iter().zip(&moments);
     let crossed = Crossing::first(samples.chain(held_then.iter().zip(&changes)));
     Ok(Texture {
-        samples: sample::samples(course, &phases, &passages, &held, &place.tips, crossed),
+        samples: sample::samples(
+            course,
+            &phases,
+            &passages,
+            &held,
+            &place.tips,
+            crossed,
+            curvature_at_mm,
+        ),
         events: event::events(&passages, &kinds, &held_then, crossed),
         reached: asperities.len(),
     })
@@ -213,18 +243,19 @@ impl Placed<'_> {
         states: &BothSides,
         contacts: &[Contact],
         moments: &[[f64; 2]],
+        curvature_at_mm: Option<f64>,
         cancel: &AtomicBool,
     ) -> Result<Vec<Option<Held>>, TextureError> {
         let row = |contact: &Contact| contact.map(|own| (own.side, own.row_push));
-        let mut readings = Vec::with_capacity(contacts.len());
+        let mut found = Vec::with_capacity(contacts.len());
         for own in contacts.chunks(STATES_AT_ONCE) {
             if cancel.load(Ordering::Relaxed) {
                 return Err(TextureError::Cancelled);
             }
-            readings.extend(states.readings(&own.iter().map(row).collect::<Vec<_>>()));
+            found.extend(states.states(&own.iter().map(row).collect::<Vec<_>>()));
         }
-        let held = contacts.iter().zip(readings).zip(moments);
-        let held = held.map(|((contact, reading), [_, angle])| {
+        let held = contacts.par_iter().zip(found).zip(moments);
+        let held = held.map(|((contact, state), [_, angle])| {
             let AsperityContact {
                 side,
                 obstacle,
@@ -235,8 +266,13 @@ impl Placed<'_> {
                 asperity,
                 side,
                 push: row_push.1,
-                state: reading
-                    .map(|reading| (reading, self.tips.held(x_mm, side, *angle, &reading))),
+                state: state.map(|own| {
+                    let tip = self.tips.held(x_mm, side, *angle, &own.reading);
+                    (own.reading, tip)
+                }),
+                curvature_per_mm: state
+                    .zip(curvature_at_mm)
+                    .and_then(|(own, at_mm)| Some(states.of(side)?.curvature_per_mm(&own, at_mm))),
             })
         });
         Ok(held.collect())

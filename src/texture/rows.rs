@@ -51,6 +51,12 @@ row! {
         pub push_angle_deg: Option<f64>,
         /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: Option<f64>,
+        /// Position of the contact along the surface, in mm from the point nearest to the base.
+        pub contact_x_mm: Option<f64>,
+        /// Position of the contact toward the surface, in mm from the base.
+        pub contact_y_mm: Option<f64>,
+        /// Curvature of the whisker at the arclength of --curvature-at, in 1/mm.
+        pub curvature_per_mm: Option<f64>,
         /// Position of the tip along the surface, in mm from the point nearest to the base.
         pub tip_x_mm: Option<f64>,
         /// Height of the tip beyond the line of the asperities, in mm.

@@ -17,6 +17,8 @@ pub struct Held {
     pub push: f64,
     /// Loads of the held whisker, and position of its tip; `None` where no state was found.
     pub state: Option<(Reading, TipPlace)>,
+    /// Curvature of the held whisker at a given arclength, in 1/mm; `None` without a state, or an arclength.
+    pub curvature_per_mm: Option<f64>,
 }
 
 impl Held {
@@ -60,6 +62,7 @@ pub fn samples(
     held: &[Option<Held>],
     tips: &TipFrame,
     crossed: Option<Crossing>,
+    curvature_at_mm: Option<f64>,
 ) -> Vec<TextureSample> {
     let mut passages = passages.iter().peekable();
     let times = course.times_s().iter().zip(course.angles_deg());
@@ -75,8 +78,12 @@ pub fn samples(
             Phase::Undecided { reason, .. } => Some(match reason {
                 Undecided::OnThePole => NoTextureState::OnAnAsperity,
                 Undecided::TipEdge => NoTextureState::TipEdge,
-                // Only a contact with friction is stuck, and textures have none.
-                Undecided::NotFound | Undecided::Stuck => NoTextureState::NotFound,
+                // Only a contact with friction is stuck, and textures have none. Their courses have no gaps.
+                Undecided::NotFound
+                | Undecided::Stuck
+                | Undecided::Missing
+                | Undecided::Bridged
+                | Undecided::AfterGap => NoTextureState::NotFound,
             }),
             Phase::Contact { .. } if held.is_none_or(|own| own.state.is_none()) => {
                 Some(NoTextureState::NotFound)
@@ -93,6 +100,11 @@ pub fn samples(
             true => Some(tips.free(angle_deg.to_radians())),
             false => held.and_then(|own| own.state).map(|(_, tip)| tip),
         };
+        let contact = tip.and_then(|tip| tip.contact_mm);
+        let curvature_per_mm = match is_free {
+            true => curvature_at_mm.map(|at_mm| tips.curvature_at_rest(at_mm)),
+            false => held.and_then(|own| own.curvature_per_mm),
+        };
         TextureSample {
             time_s,
             angle_deg,
@@ -106,6 +118,9 @@ pub fn samples(
             side: held.map(|own| own.side),
             push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
             arc_length_mm: held.and_then(|own| own.value(|state| state.arc_length_mm)),
+            contact_x_mm: contact.map(|own| own.x),
+            contact_y_mm: contact.map(|own| own.y),
+            curvature_per_mm,
             tip_x_mm: tip.map(|tip| tip.x_mm),
             tip_height_mm: tip.map(|tip| tip.height_mm),
             force_un: load(|state| state.force_un),

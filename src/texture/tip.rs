@@ -25,6 +25,8 @@ pub struct TipPlace {
     pub x_mm: f64,
     /// Height of the tip beyond the line of the asperities, in mm.
     pub height_mm: f64,
+    /// Position of the contact along the surface and toward it, in mm from the base; `None` for a free whisker.
+    pub contact_mm: Option<DVec2>,
     /// True if another part of the whisker than that next to the contact meets the line of the asperities.
     pub crosses: bool,
 }
@@ -58,7 +60,7 @@ impl TipFrame {
 
     /// Returns the position of the tip of the free whisker with the base at `angle`, in radians.
     pub fn free(&self, angle: f64) -> TipPlace {
-        self.place(self.resting(self.rest.end(), angle), false)
+        self.place(self.resting(self.rest.end(), angle), None, false)
     }
 
     /// Returns the point at arclength `s`, in whisker lengths, of the free whisker with the base at `angle`, in radians. The point is in mm: along
@@ -90,7 +92,7 @@ impl TipFrame {
         let (begin, tip) = (free(s), free(end));
         let at_mm = |s_mm: f64| free(s_mm / self.length_mm);
         let crosses = tangent.y <= 0.0 || self.descends(&begin, &tip, &at_mm);
-        self.place(contact + tip.from_contact, crosses)
+        self.place(contact + tip.from_contact, Some(contact), crosses)
     }
 
     /// Returns true if a point between two points of the free part lies below the contact. The second derivative of the height by the
@@ -118,10 +120,16 @@ impl TipFrame {
         self.descends(from, &middle, between) || self.descends(&middle, to, between)
     }
 
-    fn place(&self, tip: DVec2, crosses: bool) -> TipPlace {
+    /// Returns the curvature of the whisker at rest at the arclength `at_mm`, in 1/mm.
+    pub fn curvature_at_rest(&self, at_mm: f64) -> f64 {
+        self.rest.curvature(at_mm / self.length_mm) / self.length_mm
+    }
+
+    fn place(&self, tip: DVec2, contact_mm: Option<DVec2>, crosses: bool) -> TipPlace {
         TipPlace {
             x_mm: tip.x,
             height_mm: tip.y - self.distance_mm,
+            contact_mm,
             crosses,
         }
     }

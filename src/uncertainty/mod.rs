@@ -42,6 +42,11 @@ pub enum DrawError {
         "the scene has no [uncertainty]: add that table, such as `base_radius_um = 1.0`, a standard deviation"
     )]
     NoTable,
+    /// The table `[uncertainty]` has standard deviations of frames alone.
+    #[error(
+        "the scene's [uncertainty] is of frames alone: add a parameter of the scene, such as `base_radius_um = 1.0`, a standard deviation"
+    )]
+    FramesAlone,
     /// The scene sweeps whiskers along this axis, but draws need one whisker.
     #[error("grid.{0}: must be left out, as one whisker is drawn around")]
     Sweep(&'static str),
@@ -70,9 +75,12 @@ impl Draws {
     /// Draws `samples` random whiskers; equal seeds give equal whiskers.
     ///
     /// # Errors
-    /// If the scene has no `[uncertainty]`, sweeps whiskers, or refuses almost every draw, or if there are too many.
+    /// If the scene has no `[uncertainty]` of its parameters, sweeps whiskers, or refuses almost every draw, or if there are too many.
     pub fn new(scene: &Scene, samples: usize, seed: u64) -> Result<Self, DrawError> {
         let deviations: &Deviations = scene.uncertainty.as_ref().ok_or(DrawError::NoTable)?;
+        if deviations.parameters.is_empty() && deviations.profile_radius_um.is_none() {
+            return Err(DrawError::FramesAlone);
+        }
         if let Some(axis) = scene.grid.sweep.first() {
             return Err(DrawError::Sweep(axis.parameter.axis()));
         }

@@ -9,7 +9,7 @@ use std::path::Path;
 pub struct AngleCourse {
     /// Times of the samples in s; they grow.
     pub(super) times_s: Vec<f64>,
-    /// Angles of the base in degrees, `[time]`: 0 at first touch on CB.
+    /// Angles of the base in degrees, `[time]`: 0 at first touch on CB; NaN where one is missing.
     pub(super) angles_deg: Vec<f64>,
     /// Note about columns of a file that are not used; `None` without such columns.
     pub note: Option<String>,
@@ -24,6 +24,14 @@ pub enum CourseError {
     Count {
         /// Number of times of the course.
         times: usize,
+        /// Number of angles of the course.
+        angles: usize,
+    },
+    /// Almost all angles are missing.
+    #[error("{known} of {angles} angles are not missing: must be at least 2")]
+    Missing {
+        /// Number of angles of the course that are not missing.
+        known: usize,
         /// Number of angles of the course.
         angles: usize,
     },
@@ -72,10 +80,10 @@ pub enum CourseError {
 const MOST_SAMPLES: f64 = 1e6;
 
 impl AngleCourse {
-    /// Creates a course through `angles_deg`, in degrees, at `times_s`, in s.
+    /// Creates a course through `angles_deg`, in degrees, at `times_s`, in s. A missing angle is NaN.
     ///
     /// # Errors
-    /// If there are fewer than two samples, times do not grow, or a number is out of range.
+    /// If there are fewer than two samples with an angle, times do not grow, or a number is out of range.
     pub fn new(times_s: Vec<f64>, angles_deg: Vec<f64>) -> Result<Self, CourseError> {
         let [times, angles] = [times_s.len(), angles_deg.len()];
         if times < 2 || times != angles {
@@ -88,9 +96,14 @@ impl AngleCourse {
             let time_s = times_s[index];
             return Err(CourseError::TimeRange { index, time_s });
         }
-        if let Some(index) = angles_deg.iter().position(|angle| !is_angle(*angle)) {
+        let is_refused = |angle: &f64| !(angle.is_nan() || is_angle(*angle));
+        if let Some(index) = angles_deg.iter().position(is_refused) {
             let angle_deg = angles_deg[index];
             return Err(CourseError::Angle { index, angle_deg });
+        }
+        let known = angles_deg.iter().filter(|angle| !angle.is_nan()).count();
+        if known < 2 {
+            return Err(CourseError::Missing { known, angles });
         }
         if let Some(before) = times_s.windows(2).position(|pair| pair[1] <= pair[0]) {
             let [before_s, time_s] = [times_s[before], times_s[before + 1]];
@@ -135,7 +148,8 @@ impl AngleCourse {
         Self::new(times, angles)
     }
 
-    /// Reads the course of a CSV file with the columns `time_s` and `angle_deg`; `-` is standard input.
+    /// Reads the course of a CSV file with the columns `time_s` and `angle_deg`; `-` is standard input. A missing angle is an empty cell or
+    /// `NaN`.
     ///
     /// # Errors
     /// If the file cannot be read, a column is missing, a cell is no number or out of its range, or a time does not grow.
@@ -159,7 +173,8 @@ impl AngleCourse {
     fn of(table: &CsvTable) -> Result<Self, CsvError> {
         let note = table.require(&[&["time_s"], &["angle_deg"]], &[])?;
         let times_s = table.times_s()?;
-        let angles_deg = table.numbers("angle_deg", "a number between -360 and 360", is_angle)?;
+        let angles_deg =
+            table.measurements("angle_deg", "a number between -360 and 360", is_angle)?;
         let course = Self::new(times_s, angles_deg.unwrap_or_default());
         let course = course.map_err(|why| CsvError::whole(&table.origin, why.to_string()))?;
         Ok(Self { note, ..course })
@@ -171,7 +186,7 @@ impl AngleCourse {
         &self.times_s
     }
 
-    /// Returns the angles of the base at the course's samples, in degrees: `[sample]`.
+    /// Returns the angles of the base at the course's samples, in degrees: `[sample]`. A missing angle is NaN.
     #[must_use]
     pub fn angles_deg(&self) -> &[f64] {
         &self.angles_deg

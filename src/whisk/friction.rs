@@ -36,6 +36,15 @@ impl<'a> FrictionCourse<'a> {
         }
     }
 
+    /// Forgets the contact after a gap in the course. The energy dissipated so far is no longer known.
+    pub fn forget(&mut self) {
+        self.open = None;
+        if self.limits.iter().any(Option::is_some) {
+            self.ended = f64::NAN;
+        }
+        self.is_lost = false;
+    }
+
     /// Begins a contact on `side`, moves it from first touch to `push`, a magnitude in radians, and returns it.
     pub fn touch(&mut self, side: Side, push: f64) -> CourseContact {
         let limits = self.limits[usize::from(side == Side::Cf)];

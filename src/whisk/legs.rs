@@ -38,6 +38,8 @@ pub struct LegEvent {
 pub struct Legs<'a> {
     turns: &'a Turns,
     phase: Phase,
+    /// Phases in which the course can be after a gap; none while its phase is known.
+    possible: Vec<Phase>,
     friction: FrictionCourse<'a>,
     /// Change of the angle on the last leg on which the base moved, in radians; 0 before it.
     heading: f64,
@@ -72,6 +74,7 @@ impl<'a> Legs<'a> {
         Self {
             turns,
             phase,
+            possible: Vec::new(),
             friction: FrictionCourse::new(sides),
             heading: 0.0,
             samples: Vec::new(),
@@ -92,10 +95,42 @@ impl<'a> Legs<'a> {
         });
     }
 
+    /// Continues the course after a gap, at the `angle` of the base, in radians, and the time in s: from here on all phases are followed in
+    /// which the whisker can be.
+    pub fn resume(&mut self, angle: f64, time_s: f64) {
+        self.possible = self.turns.possible(angle);
+        self.friction.forget();
+        self.heading = 0.0;
+        self.decide();
+        self.end(Leg {
+            angles: [angle; 2],
+            times: [time_s; 2],
+        });
+    }
+
+    /// Ends the search for the phase after a gap, if the whisker is free in all phases in which it can be. A contact with friction has a
+    /// history of its own.
+    fn decide(&mut self) {
+        if let [first @ Phase::Free { .. }, others @ ..] = &self.possible[..]
+            && others.iter().all(|own| own == first)
+        {
+            self.phase = *first;
+            self.possible.clear();
+        }
+    }
+
     /// Moves the base through `angles`, in radians, in the `times`, in s. Adds the events between, and the sample at the end.
     pub fn leg(&mut self, angles: [f64; 2], times: [f64; 2]) {
         let leg = Leg { angles, times };
         let [from, to] = angles;
+        if !self.possible.is_empty() {
+            for phase in &mut self.possible {
+                self.turns.pass(phase, from, to, |_| {});
+            }
+            self.decide();
+            self.end(leg);
+            return;
+        }
         if to != from {
             self.head(from, to - from);
         }
@@ -200,6 +235,14 @@ impl<'a> Legs<'a> {
             contact: None,
             dissipated: self.friction.dissipated(),
         };
+        if !self.possible.is_empty() {
+            sample.phase = Phase::Undecided {
+                obstacle: 0,
+                reason: Undecided::AfterGap,
+            };
+            self.samples.push(sample);
+            return;
+        }
         if let Some((side, obstacle, push)) = self.contact(leg.angles[1]) {
             let (contact, dissipated, changes) = self.friction.at(side, push);
             self.change(&leg, side, obstacle, changes);

@@ -8,6 +8,7 @@
 mod contact;
 mod course;
 mod friction;
+mod gaps;
 mod legs;
 pub(crate) mod phase;
 mod readings;
@@ -17,6 +18,7 @@ pub(crate) mod states;
 mod turns;
 
 pub use course::{AngleCourse, CourseError};
+pub use gaps::CourseGap;
 pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 pub use start::{CourseStart, WhiskOptions};
@@ -24,9 +26,10 @@ pub use start::{CourseStart, WhiskOptions};
 use crate::scene::{Pole, Whisker, digits};
 use crate::sheet::Row;
 use crate::trace::NoState;
+use glam::DVec2;
 use legs::Legs;
 use phase::{Phase, ROUNDING};
-use readings::Found;
+use readings::{CurvaturePoint, FixedPole, Found};
 use states::SideStates;
 use turns::Turns;
 use whiskmap_mechanics::rod::{Rest, Side};
@@ -38,6 +41,8 @@ pub struct Whisk {
     pub samples: Vec<WhiskSample>,
     /// Events of the course in the order of time: `[event]`.
     pub events: Vec<WhiskEvent>,
+    /// Gaps of the course, in which angles of the base are missing, in the order of time: `[gap]`.
+    pub gaps: Vec<CourseGap>,
     /// Angle of the base at first touch on CF, in degrees. It differs from 0 with the radius of the pole.
     pub cf_touch_deg: f64,
     /// First angle of the base, in degrees, if it lies beyond first touch and no start was given: the whisker is then assumed to be free.
@@ -46,7 +51,8 @@ pub struct Whisk {
 }
 
 impl Whisk {
-    /// Returns one line for the assumption of a free whisker beyond first touch, and one for samples without a state; none without these.
+    /// Returns one line for the assumption of a free whisker beyond first touch, one for bridged gaps, one for other gaps, and one for samples
+    /// without a state; none without these.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let start = self.assumed_free_deg.map(|angle_deg| {
@@ -69,7 +75,8 @@ impl Whisk {
             let all = self.samples.len();
             format!("{undecided} of {all} samples are undecided, for the reasons in the table; {spans} such spans begin")
         });
-        start.into_iter().chain(without).collect()
+        let gaps = gaps::warnings(&self.gaps);
+        start.into_iter().chain(gaps).chain(without).collect()
     }
 
     /// Returns the energy that friction dissipates along the course, in nJ; NaN if a part of the course is undecided.
@@ -80,9 +87,12 @@ impl Whisk {
     }
 
     /// Returns the energy that the detachments of the course lose, in nJ: that of the last states before them, without that of a state
-    /// on the other side that follows at once.
+    /// on the other side that follows at once. It is NaN after a gap that is not bridged.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
+        if self.gaps.iter().any(|gap| !gap.is_bridged) {
+            return f64::NAN;
+        }
         let mut events = self.events.iter().peekable();
         let mut lost = 0.0;
         while let Some(event) = events.next() {
@@ -133,6 +143,16 @@ pub enum WhiskError {
         /// Angle of the base at which a push on CF ends, in degrees; `None` if the resting whisker does not reach the pole there.
         cf_end_deg: Option<f64>,
     },
+    /// The curvature should be taken at a place that the whisker does not have.
+    #[error(
+        "curvature_at_mm = {at_mm}: must be between 0 and {length_mm}, the whisker's length in mm"
+    )]
+    CurvatureAt {
+        /// Arclength of the place, in mm.
+        at_mm: f64,
+        /// Length of the whisker, in mm.
+        length_mm: f64,
+    },
     /// The end of the push was not found on this side.
     #[error("the detachment on {0:?} was not found")]
     Unresolved(Side),
@@ -168,7 +188,8 @@ pub fn whisk(
 /// Computes the course as [`whisk`] does, with a start and a flag that cancels.
 ///
 /// # Errors
-/// Fails as [`whisk`] does. Also if the course should begin in contact, but no side holds the whisker, and if it is cancelled.
+/// Fails as [`whisk`] does. Also if the course should begin in contact, but no side holds the whisker, if the curvature should be taken beyond
+/// the whisker, and if it is cancelled.
 pub fn whisk_with(
     whisker: &Whisker,
     pole: &Pole,
@@ -176,6 +197,12 @@ pub fn whisk_with(
     course: &AngleCourse,
     options: &WhiskOptions,
 ) -> Result<Whisk, WhiskError> {
+    let length_mm = whisker.length_mm;
+    if let Some(at_mm) = options.curvature_at_mm
+        && !(0.0..=length_mm).contains(&at_mm)
+    {
+        return Err(WhiskError::CurvatureAt { at_mm, length_mm });
+    }
     let rods = [Side::Cb, Side::Cf].map(|side| whisker.rod(pole, side));
     let rests = rods.each_ref().map(Rest::new);
     let cb = Row::new(&rests[0], distance_mm / whisker.length_mm);
@@ -200,28 +227,43 @@ pub fn whisk_with(
         cb_end: cb_states.end(0),
         cf_end: cf_states.as_ref().map(|states| states.end(0)),
     };
-    let first = course.angles_deg[0];
+    let known = course.known();
+    let first = course.angles_deg[known[0]];
     let phase = begin(&turns, first, options.start)?;
     let found = Found {
         cb: &cb_states,
         cf: cf_states.as_ref(),
     };
     let mut legs = Legs::new(&turns, phase, [Some(found.cb), found.cf]);
-    legs.first(first.to_radians(), course.times_s[0]);
-    let times = course.times_s.windows(2);
-    for (angles, times) in course.angles_deg.windows(2).zip(times) {
+    legs.first(first.to_radians(), course.times_s[known[0]]);
+    let gaps = course.gaps(options.bridge_s);
+    let is_open = |end: usize| {
+        gaps.iter()
+            .any(|gap| !gap.is_bridged && gap.end == Some(end))
+    };
+    for pair in known.windows(2) {
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
-        let angles = [angles[0], angles[1]].map(f64::to_radians);
-        legs.leg(angles, [times[0], times[1]]);
+        let ends = [pair[0], pair[1]];
+        let angles = ends.map(|i| course.angles_deg[i].to_radians());
+        let times = ends.map(|i| course.times_s[i]);
+        match is_open(ends[1]) {
+            true => legs.resume(angles[1], times[1]),
+            false => legs.leg(angles, times),
+        }
     }
+    let point = options.curvature_at_mm.map(|at_mm| CurvaturePoint {
+        rest: &rests[0],
+        at_mm,
+        length_mm,
+    });
     let mut samples = Vec::with_capacity(legs.samples.len());
     for own in legs.samples.chunks(STATES_AT_ONCE) {
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
-        samples.extend(found.samples(own));
+        samples.extend(found.samples(own, point.as_ref()));
     }
     let mut events = Vec::with_capacity(legs.events.len());
     for own in legs.events.chunks(STATES_AT_ONCE) {
@@ -230,17 +272,21 @@ pub fn whisk_with(
         }
         events.extend(found.events(own));
     }
-    let times = course.times_s.iter().zip(&course.angles_deg);
-    let samples = times
+    let fixed = FixedPole {
+        centre_mm: DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm),
+        radius_mm: pole.radius_mm,
+    };
+    let mut samples: Vec<WhiskSample> = known
+        .iter()
         .zip(samples)
-        .map(|((time_s, angle_deg), own)| WhiskSample {
-            time_s: *time_s,
-            angle_deg: *angle_deg,
-            ..own
-        });
+        .map(|(&i, own)| own.at(course.times_s[i], course.angles_deg[i], &fixed))
+        .collect();
+    samples.extend(gaps.iter().flat_map(|gap| gap.samples(&course.times_s)));
+    samples.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
     Ok(Whisk {
-        samples: samples.collect(),
+        samples,
         events,
+        gaps,
         cf_touch_deg: turns.cf_touch.to_degrees(),
         assumed_free_deg: (options.start.is_none() && first.to_radians() > ROUNDING)
             .then_some(first),
@@ -254,7 +300,7 @@ pub(crate) const STATES_AT_ONCE: usize = 1 << 10;
 fn begin(turns: &Turns, first_deg: f64, start: Option<CourseStart>) -> Result<Phase, WhiskError> {
     let first = first_deg.to_radians();
     match start {
-        Some(CourseStart::Contact) => turns.held(first).ok_or_else(|| WhiskError::NotHeld {
+        Some(CourseStart::Contact) => turns.held(first).next().ok_or_else(|| WhiskError::NotHeld {
             angle_deg: first_deg,
             cb_end_deg: turns.cb_end.to_degrees(),
             cf_end_deg: turns.cf_end.map(|end| (turns.cf_touch - end).to_degrees()),

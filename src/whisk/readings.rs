@@ -4,10 +4,12 @@ use super::contact::CourseContact;
 use super::legs::{LegEvent, LegSample};
 use super::phase::Phase;
 use super::rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
-use super::states::{SideStates, SolveContacts};
-use crate::friction::{ContactPhase, Sliding, held, states};
+use super::states::{ContactState, SideStates, SolveContacts};
+use crate::friction::{ContactPhase, held, states};
 use crate::trace::DetachmentKind;
-use whiskmap_mechanics::rod::Side;
+use glam::DVec2;
+use rayon::prelude::*;
+use whiskmap_mechanics::rod::{Rest, Side};
 use whiskmap_mechanics::shooting::Reading;
 
 /// Stable states of the whisker on both sides, CB and CF.
@@ -18,8 +20,46 @@ pub struct Found<'a> {
     pub cf: Option<&'a SideStates>,
 }
 
-/// State of a contact in physical units, with its sliding direction if there is friction.
-type ContactReading = Option<(Reading, Option<Sliding>)>;
+/// Pole in front of the whisker, in mm in the axes of first touch on CB: the base is at the origin, its tangent then along the first axis.
+#[derive(Clone, Copy, Debug)]
+pub struct FixedPole {
+    pub centre_mm: DVec2,
+    pub radius_mm: f64,
+}
+
+/// Point of the whisker at which the curvature of samples is taken.
+pub struct CurvaturePoint<'a> {
+    pub rest: &'a Rest,
+    pub at_mm: f64,
+    pub length_mm: f64,
+}
+
+impl CurvaturePoint<'_> {
+    /// Returns the curvature at rest, in 1/mm.
+    pub fn at_rest_per_mm(&self) -> f64 {
+        self.rest.curvature(self.at_mm / self.length_mm) / self.length_mm
+    }
+}
+
+impl WhiskSample {
+    /// Returns the sample at a time in s and an angle of the base in degrees, with the position of the contact on `pole`.
+    pub(super) fn at(self, time_s: f64, angle_deg: f64, pole: &FixedPole) -> Self {
+        let contact = self
+            .side
+            .zip(self.contact_angle_deg)
+            .map(|(side, contact_deg)| {
+                let tangent = DVec2::from_angle((contact_deg - angle_deg).to_radians());
+                pole.centre_mm + side.sign() * pole.radius_mm * tangent.perp()
+            });
+        Self {
+            time_s,
+            angle_deg: Some(angle_deg),
+            contact_x_mm: contact.map(|own| own.x),
+            contact_y_mm: contact.map(|own| own.y),
+            ..self
+        }
+    }
+}
 
 /// Returns a `push`, a magnitude in radians, in degrees with the sign of its side.
 pub fn signed_deg(side: Side, push: f64) -> f64 {
@@ -39,7 +79,7 @@ impl Found<'_> {
         &self,
         contacts: &[Option<CourseContact>],
         solve: SolveContacts,
-    ) -> Vec<ContactReading> {
+    ) -> Vec<Option<ContactState>> {
         let mut readings = vec![None; contacts.len()];
         for side in Side::BOTH {
             let own = contacts.iter().enumerate();
@@ -54,16 +94,31 @@ impl Found<'_> {
         readings
     }
 
-    /// Returns the samples of a course with their states, without times and angles: `[sample]`.
-    pub fn samples(&self, samples: &[LegSample]) -> Vec<WhiskSample> {
+    /// Returns the samples of a course with their states and the curvature at a point, without times and angles: `[sample]`.
+    pub fn samples(
+        &self,
+        samples: &[LegSample],
+        point: Option<&CurvaturePoint>,
+    ) -> Vec<WhiskSample> {
         let contacts: Vec<Option<CourseContact>> =
             samples.iter().map(|sample| sample.contact).collect();
         let readings = self.readings(&contacts, states);
         let unit = self.cb.energy_nj();
-        let samples = samples.iter().zip(readings);
-        samples
-            .map(|(own, reading)| sample(own, reading, unit))
-            .collect()
+        let samples = samples.par_iter().zip(readings);
+        let with_curvature = |(own, state): (&LegSample, Option<ContactState>)| {
+            let curvature = point.and_then(|point| match own.phase {
+                Phase::Free { .. } => Some(point.at_rest_per_mm()),
+                _ => {
+                    let states = self.of(own.contact?.side)?;
+                    Some(states.curvature_per_mm(&state?, point.at_mm))
+                }
+            });
+            WhiskSample {
+                curvature_per_mm: curvature,
+                ..sample(own, state, unit)
+            }
+        };
+        samples.map(with_curvature).collect()
     }
 
     /// Returns the events of a course with their states: `[event]`.
@@ -76,7 +131,7 @@ impl Found<'_> {
             let CourseContact { side, push, .. } = event.contact;
             let end = self.of(side).map(|states| states.kind(0));
             let push = Some(push).filter(|push| !push.is_nan());
-            let reading = reading.map(|(reading, _)| reading);
+            let reading = reading.map(|own| own.reading);
             WhiskEvent {
                 time_s: event.time_s,
                 event: event.kind.unwrap_or(match end {
@@ -99,8 +154,25 @@ impl Found<'_> {
     }
 }
 
+/// Returns a sample without a state, whose angle is missing for this `reason`.
+pub fn missing(time_s: f64, reason: Undecided) -> WhiskSample {
+    let phase = Phase::Undecided {
+        obstacle: 0,
+        reason,
+    };
+    let own = LegSample {
+        phase,
+        contact: None,
+        dissipated: f64::NAN,
+    };
+    WhiskSample {
+        time_s,
+        ..sample(&own, None, f64::NAN)
+    }
+}
+
 /// Returns a sample without time and angle. `unit` is that of energies, in nJ.
-fn sample(own: &LegSample, reading: ContactReading, unit: f64) -> WhiskSample {
+fn sample(own: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSample {
     let LegSample {
         phase,
         contact,
@@ -108,10 +180,10 @@ fn sample(own: &LegSample, reading: ContactReading, unit: f64) -> WhiskSample {
     } = *own;
     let reason = match phase {
         Phase::Undecided { reason, .. } => Some(reason),
-        Phase::Contact { .. } if reading.is_none() => Some(Undecided::NotFound),
+        Phase::Contact { .. } if state.is_none() => Some(Undecided::NotFound),
         _ => None,
     };
-    let (reading, sliding) = reading.unzip();
+    let (reading, sliding) = state.map(|own| (own.reading, own.sliding)).unzip();
     let load = |of: fn(&Reading) -> f64| match phase {
         Phase::Free { .. } => Some(0.0),
         _ => reading.as_ref().map(of),
@@ -119,7 +191,7 @@ fn sample(own: &LegSample, reading: ContactReading, unit: f64) -> WhiskSample {
     let is_known = dissipated.is_finite() && reason != Some(Undecided::Stuck);
     WhiskSample {
         time_s: f64::NAN,
-        angle_deg: f64::NAN,
+        angle_deg: None,
         regime: match (phase, reason) {
             (_, Some(_)) => WhiskRegime::Undecided,
             (Phase::Free { .. }, _) => WhiskRegime::Free,
@@ -128,6 +200,9 @@ fn sample(own: &LegSample, reading: ContactReading, unit: f64) -> WhiskSample {
         side: contact.map(|own| own.side),
         push_angle_deg: contact.map(|own| signed_deg(own.side, own.push)),
         arc_length_mm: reading.map(|state| state.arc_length_mm),
+        contact_x_mm: None,
+        contact_y_mm: None,
+        curvature_per_mm: None,
         contact_angle_deg: reading.map(|state| state.contact_angle_deg),
         force_un: load(|state| state.force_un),
         base_force_x_un: load(|state| state.base_force_un.x),

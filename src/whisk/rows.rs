@@ -29,6 +29,12 @@ pub enum Undecided {
     NotFound,
     /// The contact has stuck where the push should have ended, and the course from there is not known.
     Stuck,
+    /// The angle of the base is missing, in a gap after which the course is not known.
+    Missing,
+    /// The angle of the base is missing, in a gap across which the course continues.
+    Bridged,
+    /// The angle of the base was missing, and several states are possible since then.
+    AfterGap,
 }
 
 row! {
@@ -38,7 +44,7 @@ row! {
         /// Time of the sample, in s.
         pub time_s: f64,
         /// Angle of the base, in degrees: 0 at first touch on CB, positive pushes CB.
-        pub angle_deg: f64,
+        pub angle_deg: Option<f64>,
         /// Regime: free, contact or undecided.
         pub regime: WhiskRegime,
         /// Side of the whisker that the pole is on in contact: cb (convex) or cf (concave).
@@ -47,8 +53,14 @@ row! {
         pub push_angle_deg: Option<f64>,
         /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: Option<f64>,
+        /// Position of the contact along the base's tangent at first touch on CB, in mm; the base is at 0.
+        pub contact_x_mm: Option<f64>,
+        /// Position of the contact to the left of the base's tangent at first touch on CB, in mm.
+        pub contact_y_mm: Option<f64>,
         /// Angle of the tangent at the contact, from the base's tangent, in degrees.
         pub contact_angle_deg: Option<f64>,
+        /// Curvature of the whisker at the arclength of --curvature-at, in 1/mm.
+        pub curvature_per_mm: Option<f64>,
         /// Size of the force between pole and whisker, normal to both, in uN.
         pub force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
@@ -63,7 +75,7 @@ row! {
         pub dissipated_nj: Option<f64>,
         /// Sliding direction of a contact with friction: tip, base or sticks.
         pub sliding: Option<Sliding>,
-        /// Reason of an undecided sample: on-the-pole, tip-edge, not-found or stuck.
+        /// Reason of an undecided sample: on-the-pole, tip-edge, not-found, stuck, missing, bridged or after-gap.
         pub reason: Option<Undecided>,
     }
 }

@@ -6,8 +6,10 @@ use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
 use crate::trace::{Branch, DetachmentKind, crossings, snaps_deg};
-use whiskmap_mechanics::rod::Side;
+use glam::DVec2;
+use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::batch::{Batch, Method};
+use whiskmap_mechanics::shooting::shape::profile;
 use whiskmap_mechanics::shooting::{FirstVariation, Reader, Reading, Resolution};
 
 /// Stable states on one side of poles at several distances, from first touch to the end of the push.
@@ -22,6 +24,30 @@ pub struct SideStates {
     limits: Vec<CourseLimits>,
 }
 
+/// State of a contact: its values in physical units, and what its shape follows from.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactState {
+    pub reading: Reading,
+    /// Sliding direction of the contact; `None` without friction.
+    pub sliding: Option<Sliding>,
+    /// Contact and load, `(tau, load)`.
+    point: DVec2,
+    /// Force ratio: tangential over normal force, with the sign of the side; 0 without friction.
+    ratio: f64,
+}
+
+impl ContactState {
+    /// Creates a state without friction, or without a load.
+    fn smooth(reading: Reading, tau: f64, load: f64) -> Self {
+        Self {
+            reading,
+            sliding: None,
+            point: DVec2::new(tau, load),
+            ratio: 0.0,
+        }
+    }
+}
+
 /// Solver for states with friction, one for each query: [`states`](crate::friction::states) or [`held`](crate::friction::held). `None` where no state
 /// is found.
 pub type SolveContacts = fn(&[ContactQuery]) -> Vec<Option<FrictionState>>;
@@ -29,8 +55,8 @@ pub type SolveContacts = fn(&[ContactQuery]) -> Vec<Option<FrictionState>>;
 /// End of the pushes of one row.
 struct RowEnd {
     crossing: Crossing,
-    /// State at the end of the push.
-    state: Reading,
+    /// State at the end of the push, where the contact slides.
+    state: ContactState,
 }
 
 /// Contact with a pole: index of the pole's row, and the push in radians, as a magnitude.
@@ -68,8 +94,12 @@ impl SideStates {
         let ends = ends.into_iter().zip(&sheet.rows).zip(at_ends);
         let ends = ends.map(|((crossing, row), at_end)| {
             let push = side.sign() * crossing.push;
+            let reading = reader.read(crossing.tau, &at_end.full, row.touch, push);
             RowEnd {
-                state: reader.read(crossing.tau, &at_end.full, row.touch, push),
+                state: ContactState {
+                    ratio: rod.friction,
+                    ..ContactState::smooth(reading, crossing.tau, crossing.load)
+                },
                 crossing,
             }
         });
@@ -112,17 +142,30 @@ impl SideStates {
         self.whisker.units().moment_nnm
     }
 
-    /// Returns the states of `contacts` in the first row, with their sliding directions if there is friction, `[contact]`; `None` where no
-    /// state is found. States with friction are solved by `solve`.
+    /// Returns the curvature of the whisker in `state` at the arclength `at_mm`, in 1/mm.
+    pub fn curvature_per_mm(&self, state: &ContactState, at_mm: f64) -> f64 {
+        let length = self.whisker.length_mm;
+        let rod = Rod {
+            friction: state.ratio,
+            ..self.sheet.rod.clone()
+        };
+        let (tau, load) = state.point.into();
+        let points = profile(&rod, tau, load, Resolution::FINE, &[at_mm / length]);
+        points
+            .first()
+            .map_or(f64::NAN, |point| point.curvature / length)
+    }
+
+    /// Returns the states of `contacts` in the first row, `[contact]`; `None` where no state is found. States with friction are solved by
+    /// `solve`.
     pub fn at(
         &self,
         contacts: &[CourseContact],
         solve: SolveContacts,
-    ) -> Vec<Option<(Reading, Option<Sliding>)>> {
+    ) -> Vec<Option<ContactState>> {
         let Some(limits) = self.limits(0) else {
             let pushes: Vec<RowPush> = contacts.iter().map(|contact| (0, contact.push)).collect();
-            let states = self.without_friction(&pushes).into_iter();
-            return states.map(|state| Some((state?, None))).collect();
+            return self.without_friction(&pushes);
         };
         // A contact that sticks when the push is back at 0 is not at first touch: the whisker is still bent.
         let is_inside = |own: &CourseContact| {
@@ -137,26 +180,32 @@ impl SideStates {
                 let state = own.phase.and_then(|_| solved.next()?)?;
                 let reader = self.reader.with_contact(&state.rod(&self.sheet.rod));
                 let (touch, push) = (self.sheet.rows[0].touch, self.sheet.side.sign() * own.push);
-                let reading = reader.read(state.at.point.x, &state.full, touch, push);
-                return Some((reading, Some(state.sliding)));
+                return Some(ContactState {
+                    reading: reader.read(state.at.point.x, &state.full, touch, push),
+                    sliding: Some(state.sliding),
+                    point: state.at.point,
+                    ratio: state.at.ratio,
+                });
             }
-            let reading = match own.push > 0.0 {
+            let state = match own.push > 0.0 {
                 true => self.ends[0].state,
                 false => self.at_touch(0),
             };
-            Some((reading, own.phase.map(|phase| phase.sliding())))
+            let sliding = own.phase.map(|phase| phase.sliding());
+            Some(ContactState { sliding, ..state })
         });
         states.collect()
     }
 
-    fn at_touch(&self, row: usize) -> Reading {
+    fn at_touch(&self, row: usize) -> ContactState {
         let row = &self.sheet.rows[row];
         let contact = row.contact.min(row.end);
-        self.reader.at_first_touch(contact, row.touch)
+        let reading = self.reader.at_first_touch(contact, row.touch);
+        ContactState::smooth(reading, self.sheet.rod.tau(contact), 0.0)
     }
 
     /// Returns the states without friction at `contacts`, `[contact]`; `None` where no state is found.
-    fn without_friction(&self, contacts: &[RowPush]) -> Vec<Option<Reading>> {
+    fn without_friction(&self, contacts: &[RowPush]) -> Vec<Option<ContactState>> {
         let sign = self.sheet.side.sign();
         let mut order: Vec<usize> = (0..contacts.len()).collect();
         let of = |i: usize| contacts[i];
@@ -183,7 +232,8 @@ impl SideStates {
             if cell.outcome == RefineOutcome::Solved {
                 let (state, (row, push)) = (cell.state, of(i));
                 let touch = self.sheet.rows[row].touch;
-                states[i] = Some(self.reader.read(state.tau, &state.full, touch, sign * push));
+                let reading = self.reader.read(state.tau, &state.full, touch, sign * push);
+                states[i] = Some(ContactState::smooth(reading, state.tau, state.load));
             }
         }
         self.fill(contacts, &mut states);
@@ -191,7 +241,7 @@ impl SideStates {
     }
 
     /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation.
-    fn fill(&self, contacts: &[RowPush], states: &mut [Option<Reading>]) {
+    fn fill(&self, contacts: &[RowPush], states: &mut [Option<ContactState>]) {
         let side = self.sheet.side;
         let mut last: Option<(usize, Option<Branch>)> = None;
         for (state, &(row, push)) in states.iter_mut().zip(contacts) {
@@ -207,7 +257,8 @@ impl SideStates {
                 };
                 *state = branch.as_ref().and_then(|branch| {
                     let state = branch.state(side.sign() * push, true).ok()?;
-                    Some(branch.read(&state))
+                    let reading = branch.read(&state);
+                    Some(ContactState::smooth(reading, state.tau, state.load))
                 });
                 last = Some((row, branch));
             }
@@ -229,9 +280,9 @@ impl BothSides {
         }
     }
 
-    /// Returns the state of each of the `contacts` in physical units, `[contact]`; `None` where there is none.
-    pub fn readings(&self, contacts: &[Option<(Side, RowPush)>]) -> Vec<Option<Reading>> {
-        let mut readings = vec![None; contacts.len()];
+    /// Returns the state of each of the `contacts`, `[contact]`; `None` where there is none.
+    pub fn states(&self, contacts: &[Option<(Side, RowPush)>]) -> Vec<Option<ContactState>> {
+        let mut found = vec![None; contacts.len()];
         for side in Side::BOTH {
             let own = contacts.iter().enumerate();
             let own =
@@ -239,10 +290,10 @@ impl BothSides {
             let (places, pushes): (Vec<usize>, Vec<RowPush>) = own.unzip();
             let states = self.of(side).map(|states| states.without_friction(&pushes));
             for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
-                readings[i] = state;
+                found[i] = state;
             }
         }
-        readings
+        found
     }
 
     /// Returns the kind of the event at which a push against the pole of `row` ends.

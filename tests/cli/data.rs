@@ -3,8 +3,7 @@
 use super::traces::cells;
 use super::{Place, Run, SCENE};
 
-pub const POINTS: &str =
-    "line,side,distance_mm,measured_deg,sd_deg,kind,predicted_deg,predicted_kind,residual_deg";
+pub const POINTS: &str = "line,side,distance_mm,measured_deg,sd_deg,kind,predicted_deg,predicted_kind,residual_deg,reason";
 
 /// Points of a whisker whose tip is 2 um thick.
 pub const DATA: &str = "# made up\nkind,side,distance_mm,push_angle_deg\n\
@@ -100,7 +99,7 @@ fn points_that_never_detach() {
     assert!(run.err.starts_with(named), "{run:?}");
     assert_eq!(
         cells(&run.out, POINTS)[0][4..],
-        ["", "", "", "unresolved", ""]
+        ["", "", "", "unresolved", "", "no-detachment"]
     );
     place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,8,40\n");
     let run = curve(&place, &[]);

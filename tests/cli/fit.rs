@@ -305,3 +305,47 @@ fn wrong_input_is_refused_before_any_file_is_made() {
         ["points.csv", "scene.toml", "sweep.toml"]
     );
 }
+
+/// A point with a missing number is a row with its reason, and the others are fitted as without it.
+#[test]
+fn points_with_a_missing_number_are_left_out() {
+    let place = place();
+    let own = String::from_utf8(place.bytes("points.csv")).unwrap();
+    let options = ["--free", "tip_radius_um", "--json", "fit.json"];
+    fit(&place, &options);
+    let whole = json(&place, "fit.json");
+    let columns = own.lines().next().unwrap().split(',').count();
+    let commas = ",".repeat(columns - 3);
+    place.write(
+        "points.csv",
+        &format!("{}\ncb,,12{commas}\ncf,9,NaN{commas}\n", own.trim_end()),
+    );
+    let run = fit(&place, &options);
+    assert!(
+        run.err.contains(
+            "2 of 8 points in points.csv have a missing value and are left out: lines 8, 9"
+        ),
+        "{run:?}"
+    );
+    let found = json(&place, "fit.json");
+    assert_eq!(found["values"], whole["values"]);
+    assert_eq!(found["left_out"], 0);
+    let rows = found["points"].as_array().unwrap();
+    let reasons: Vec<&Value> = rows.iter().map(|row| &row["reason"]).collect();
+    assert_eq!(
+        reasons[5..],
+        [
+            &Value::Null,
+            &Value::from("missing"),
+            &Value::from("missing")
+        ]
+    );
+    assert_eq!(rows[6]["measured_deg"], 12.0);
+    assert_eq!(rows[7]["distance_mm"], 9.0);
+    let beside = place.run(&["curve", "scene.toml", "--data", "points.csv"]);
+    assert!(beside.out.ends_with(",missing\n"), "{beside:?}");
+    place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,,12\n");
+    place.run(&[&FIT[..], &options].concat()).assert_refused(&[
+        "points.csv: has no row with all of its values: must have at least one with side, distance_mm, push_angle_deg or push_chord_deg",
+    ]);
+}

@@ -7,7 +7,8 @@ const HEADER: &str =
     "time_s,curvature_per_mm,at_arc_length_mm,contact_x_mm,contact_y_mm,contact_angle_deg";
 
 const TABLE: &str = "time_s,curvature_change_per_mm,moment_nnm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,\
-                     contact_angle_deg,contact_off_mm,reason";
+                     contact_angle_deg,contact_off_mm,force_sd_un,base_force_x_sd_un,base_force_y_sd_un,base_moment_sd_nnm,\
+                     reason";
 
 fn force(place: &Place, more: &[&str]) -> super::Run {
     place.run(&[&["force", "scene.toml", "--frames", "f.csv"], more].concat())
@@ -60,8 +61,6 @@ fn wrong_frames_are_refused() {
             "0,0.03,20,15,4,30",
             "at_arc_length_mm = 20: must be a number of at least 0 and less than 20",
         ),
-        ("0,0.03,2,15,,30", "f.csv:2: has a part of a contact"),
-        ("0,0.03,2,15,4,", "f.csv:2: has a part of a contact"),
         (
             "0,0.03,2,15,4,30\n0,0.03,2,15,4,30",
             "f.csv:3: time_s = 0: must be more than 0 of the line before",
@@ -83,4 +82,164 @@ fn wrong_frames_are_refused() {
     let rough = Place::with(&SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
     rough.write("f.csv", &format!("{HEADER}\n0,0.03,2,15,4,30\n"));
     force(&rough, &[]).assert_refused(&["contact.friction = 0.3: must be 0"]);
+}
+
+/// A frame with a missing number is a row with its reason, and what is known.
+#[test]
+fn frames_with_a_missing_number_have_a_reason() {
+    let place = Place::with(SCENE);
+    let rows = [
+        "0,,2,15,4,30",
+        "1,NaN,2,15,4,30",
+        "2,0.03,,15,4,30",
+        "3,0.03,2,15,,30",
+        "4,0.03,2,15,4,",
+        "5,0.03,2,,,",
+        "6,0.03,2,15,4,30",
+    ];
+    place.write("f.csv", &format!("{HEADER}\n{}\n", rows.join("\n")));
+    let run = force(&place, &[]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let found = cells(&run.out, TABLE);
+    let reasons: Vec<&str> = found.iter().map(|row| *row.last().unwrap()).collect();
+    assert_eq!(reasons, [&["missing"; 5][..], &["", ""]].concat());
+    let changes: Vec<bool> = found.iter().map(|row| !row[1].is_empty()).collect();
+    assert_eq!(changes, [false, false, false, true, true, true, true]);
+    assert!(run.err.contains("5 of 7 frames have no force"), "{run:?}");
+    // The model needs no angle.
+    let model = force(&place, &["--model"]);
+    let found = cells(&model.out, TABLE);
+    assert_eq!(*found[4].last().unwrap(), "");
+}
+
+/// The frames of a time, or those whose contact is 0, give the baseline, which is reported with its scatter.
+#[test]
+fn a_baseline_is_reported_and_used() {
+    let place = Place::with(SCENE);
+    let rows = [
+        "0,0.011,2,,,",
+        "0.05,0.013,2,,,",
+        "0.1,0.012,2,,,",
+        "0.2,0.03,2,15,4,30",
+    ];
+    place.write("f.csv", &format!("{HEADER}\n{}\n", rows.join("\n")));
+    let plain = force(&place, &[]);
+    let sds = |run: &super::Run| -> Vec<bool> {
+        let rows = cells(&run.out, TABLE);
+        rows.iter().map(|row| !row[9].is_empty()).collect()
+    };
+    assert_eq!((sds(&plain), &*plain.err), (vec![false; 4], ""));
+    let spanned = force(&place, &["--baseline", "0s..100ms"]);
+    assert_eq!(spanned.code, Some(0), "{spanned:?}");
+    assert!(
+        spanned
+            .err
+            .contains("baseline of 3 frames without contact: "),
+        "{spanned:?}"
+    );
+    assert!(
+        spanned
+            .err
+            .contains("; the scatter of a frame is 0.001 per mm"),
+        "{spanned:?}"
+    );
+    assert_eq!(sds(&spanned), [false, false, false, true]);
+    // The column needs no empty cells.
+    let with_column: Vec<String> = rows
+        .iter()
+        .zip([0, 0, 0, 1])
+        .map(|(row, contact)| format!("{},{contact}", row.replace(",,,", ",9,9,9")))
+        .collect();
+    place.write(
+        "f.csv",
+        &format!("{HEADER},contact\n{}\n", with_column.join("\n")),
+    );
+    let column = force(&place, &[]);
+    assert_eq!((&column.out, &column.err), (&spanned.out, &spanned.err));
+    // A contact that is not known, or whose position is not, is missing.
+    place.write(
+        "f.csv",
+        &format!(
+            "{HEADER},contact\n{}\n1,0.03,2,15,4,30,\n2,0.03,2,,,,1\n",
+            with_column.join("\n")
+        ),
+    );
+    let run = force(&place, &[]);
+    let reasons = cells(&run.out, TABLE);
+    let reasons: Vec<&str> = reasons.iter().map(|row| *row.last().unwrap()).collect();
+    assert_eq!(reasons, ["", "", "", "", "missing", "missing"]);
+    for (text, options, said) in [
+        (
+            "0,0.01,2,,,,0",
+            &["--baseline", "0..1"][..],
+            "f.csv: has 1 frames without contact",
+        ),
+        (
+            "0,0.01,2,1,1,1,1",
+            &[],
+            "f.csv: has 0 frames without contact",
+        ),
+        (
+            "0,0.01,2,1,1,1,1",
+            &["--baseline", "0..1"],
+            "f.csv:2: time_s = 0: is in contact",
+        ),
+        (
+            "0,0.01,2,1,1,1,0.5",
+            &[],
+            "contact = 0.5: must be 0 or 1, or empty where it is missing",
+        ),
+        (
+            "0,0.01,2,,,,0",
+            &["--baseline", "1"],
+            "must be a span of time, such as 0s..0.1s",
+        ),
+        (
+            "0,0.01,2,,,,0",
+            &["--baseline", "1..0"],
+            "must be a span of time, such as 0s..0.1s",
+        ),
+        (
+            "0,0.01,2,,,,0",
+            &["--baseline", "0..1mm"],
+            "1mm: unit mm: must be s (the default), ms or us",
+        ),
+    ] {
+        place.write("f.csv", &format!("{HEADER},contact\n{text}\n"));
+        force(&place, options).assert_refused(&[said]);
+    }
+}
+
+/// The scene's standard deviations of frames are those of forces.
+#[test]
+fn a_scene_gives_standard_deviations_of_frames() {
+    let row = format!("{HEADER}\n0,0.03,2,15,4,30\n");
+    let sd = |keys: &str, options: &[&str]| -> Vec<f64> {
+        let place = Place::with(&format!("{SCENE}[uncertainty]\n{keys}\n"));
+        place.write("f.csv", &row);
+        let run = force(&place, options);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let cells = cells(&run.out, TABLE);
+        cells[0][9..13]
+            .iter()
+            .map(|cell| cell.parse().unwrap())
+            .collect()
+    };
+    let keys = [
+        "curvature_sd_per_mm = 1e-3",
+        "contact_sd_mm = 0.1",
+        "angle_sd_deg = 2",
+    ];
+    let parts = keys.map(|key| sd(key, &[]));
+    let all = sd(&keys.join("\n"), &[]);
+    for (i, own) in all.into_iter().enumerate() {
+        let wanted: f64 = parts.iter().map(|part| part[i] * part[i]).sum();
+        assert!((own / wanted.sqrt() - 1.0).abs() < 1e-9, "{own}");
+        assert!(parts.iter().all(|part| part[i] > 0.0), "{parts:?}");
+    }
+    assert_eq!(sd(keys[2], &["--model"]), [0.0; 4]);
+    let place = Place::with(&format!("{SCENE}[uncertainty]\nangle_sd_deg = 2\n"));
+    place
+        .run(&["curve", "scene.toml", "--samples", "20"])
+        .assert_refused(&["[uncertainty] is of frames alone: add a parameter of the scene"]);
 }

@@ -185,3 +185,44 @@ fn wrong_sweeps_are_refused() {
     assert_eq!(begin(touch).code, Some(0));
     begin(touch + 0.01).assert_refused(&["--angles a.csv: begins in contact", "must be at most"]);
 }
+
+/// The curvature of samples is that at rest where the whisker is free, and another one in contact.
+#[test]
+fn samples_have_the_curvature_at_an_arclength() {
+    let place = place(SURFACE);
+    let sweep = [
+        "texture",
+        "scene.toml",
+        "--sine",
+        "15,0.2,5",
+        "--rate",
+        "20",
+    ];
+    let run = place.run(&[&sweep[..], &["--curvature-at", "2"]].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let header = run.out.lines().next().unwrap().to_owned();
+    let column = |name: &str| header.split(',').position(|own| own == name).unwrap();
+    let (phase, own) = (column("phase"), column("curvature_per_mm"));
+    let (x, y) = (column("contact_x_mm"), column("contact_y_mm"));
+    let rows = cells(&run.out, &header);
+    let at_rest = rows.iter().find(|row| row[phase] == "free").unwrap()[own];
+    let mut held = 0;
+    for row in rows.iter().filter(|row| row[phase] == "stuck") {
+        assert_ne!(row[own], at_rest, "{row:?}");
+        let [x, y]: [f64; 2] = [row[x], row[y]].map(|cell| cell.parse().unwrap());
+        // On the whisker's side of an asperity, whose radius is 0.02 mm.
+        assert!((y - 18.0).abs() <= 0.02 && x.abs() < 10.1, "{row:?}");
+        held += 1;
+    }
+    assert!(held > 10, "{held}");
+    place
+        .run(&[&sweep[..], &["--curvature-at", "21"]].concat())
+        .assert_refused(&["--curvature-at: curvature_at_mm = 21: must be between 0 and 20"]);
+    place.write("a.csv", "time_s,angle_deg\n0,0\n1,\n2,1\n");
+    place
+        .run(&["texture", "scene.toml", "--angles", "a.csv"])
+        .assert_refused(&[
+            "--angles a.csv: angle_deg[1] = NaN: must be between -90 and 90 deg",
+            "none may be missing",
+        ]);
+}

@@ -144,3 +144,93 @@ fn a_start_beyond_first_touch_is_named() {
     let run = whisk(&place, &["--angles", "a.csv", "--start", "contact"]);
     run.assert_refused(&["--angles a.csv: cannot begin in contact: the first angle is 20 deg"]);
 }
+
+/// A lost frame is a row with its reason; a bridge continues the course across it, and says so.
+#[test]
+fn gaps_are_rows_with_a_reason() {
+    let place = Place::with(SCENE);
+    place.write(
+        "a.csv",
+        "time_s,angle_deg\n0,-5\n0.01,5\n0.02,\n0.03,NaN\n0.04,10\n",
+    );
+    let reasons = |run: &super::Run| -> Vec<String> {
+        let cells = run.out.lines().skip(1).map(|line| line.rsplit(',').next());
+        cells.map(|cell| cell.unwrap().to_owned()).collect()
+    };
+    let run = whisk(&place, &["--angles", "a.csv"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(reasons(&run), ["", "", "missing", "missing", "after-gap"]);
+    let warned = "warning: missing angles: 2, gaps: 1, the first at 0.02 s: after them the course is undecided";
+    assert!(run.err.contains(warned), "{run:?}");
+    assert!(
+        run.err.contains("detachments lose an unknown energy"),
+        "{run:?}"
+    );
+    let run = whisk(&place, &["--angles", "a.csv", "--bridge", "30ms"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(reasons(&run), ["", "", "bridged", "bridged", ""]);
+    let said = "the course continues along straight lines across them, the longest of 0.03 s";
+    assert!(run.err.contains(said), "{run:?}");
+    for (options, said) in [
+        (
+            &["--bridge", "0"][..],
+            "--bridge <TIME>': must be a positive time",
+        ),
+        (
+            &["--bridge", "20mm"],
+            "unit mm: must be s (the default), ms or us",
+        ),
+        (
+            &["--bridge", "20ms", "--sine", "1,1,1"],
+            "cannot be used with",
+        ),
+    ] {
+        let course: &[&str] = if options.len() > 2 {
+            &[]
+        } else {
+            &["--angles", "a.csv"]
+        };
+        whisk(&place, &[course, options].concat()).assert_refused(&[said]);
+    }
+    place.write("a.csv", "time_s,angle_deg\n0,\n0.01,5\n");
+    whisk(&place, &["--angles", "a.csv"])
+        .assert_refused(&["a.csv: 1 of 2 angles are not missing: must be at least 2"]);
+}
+
+/// The curvature is a column where it is wanted, and its arclength takes units.
+#[test]
+fn samples_have_the_curvature_at_an_arclength() {
+    let place = Place::with(SCENE);
+    let column = |more: &[&str]| -> Vec<String> {
+        let sine = ["--sine", "12,10,0.1", "--rate", "100"];
+        let run = whisk(&place, &[&sine[..], more].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let mut lines = run
+            .out
+            .lines()
+            .map(|line| line.split(',').collect::<Vec<_>>());
+        let header = lines.next().unwrap();
+        let own = header
+            .iter()
+            .position(|name| *name == "curvature_per_mm")
+            .unwrap();
+        lines.map(|line| line[own].to_owned()).collect()
+    };
+    let own = column(&["--curvature-at", "2mm"]);
+    assert_eq!(own, column(&["--curvature-at", "0.2cm"]));
+    assert!(
+        own.iter().all(|cell| cell.parse::<f64>().is_ok()),
+        "{own:?}"
+    );
+    assert!(own.iter().any(|cell| *cell != own[0]), "{own:?}");
+    assert!(column(&[]).iter().all(String::is_empty));
+    for (at, said) in [
+        (
+            "20.1",
+            "--curvature-at: curvature_at_mm = 20.1: must be between 0 and 20, the whisker's length in mm",
+        ),
+        ("2s", "unit s: must be mm"),
+    ] {
+        whisk(&place, &["--sine", "12,10,0.1", "--curvature-at", at]).assert_refused(&[said]);
+    }
+}

@@ -48,6 +48,7 @@ fn detachments(scene: &Scene, angle: MeasuredAngle, distances_mm: &[f64]) -> Mea
         angle,
         have_deviations: false,
         points: points.collect(),
+        incomplete: Vec::new(),
     }
 }
 

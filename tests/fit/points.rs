@@ -243,7 +243,10 @@ fn points_are_compared_one_by_one() {
     let [far, first, cf, again] = beside.rows[..] else {
         panic!()
     };
-    assert_eq!((far.line, far.predicted_kind), (2, DetachmentKind::PullOff));
+    assert_eq!(
+        (far.line, far.predicted_kind),
+        (2, Some(DetachmentKind::PullOff))
+    );
     assert_eq!((cf.side, cf.kind), (Side::Cf, None));
     let slip = first.predicted_deg.unwrap();
     assert!(

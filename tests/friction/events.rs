@@ -196,7 +196,7 @@ fn a_contact_that_slides_back_is_released() {
         let work: f64 = pairs
             .map(|pair| {
                 let moments = [0, 1].map(|i| pair[i].base_moment_nnm.unwrap());
-                let turned = (pair[1].angle_deg - pair[0].angle_deg).to_radians();
+                let turned = (pair[1].angle_deg.unwrap() - pair[0].angle_deg.unwrap()).to_radians();
                 0.5 * (moments[0] + moments[1]) * turned
             })
             .sum();

@@ -161,6 +161,22 @@ fn deviations_belong_to_numbers_of_the_scene() {
             ["must be left out", "there is no whisker.profile"],
         ),
         (
+            "contact_sd_mm = -1",
+            "20:17",
+            [
+                "uncertainty.contact_sd_mm = -1: must be",
+                "between 0 and 100000",
+            ],
+        ),
+        (
+            "curvature_sd = 1",
+            "20:16",
+            [
+                "is not known; must be one of",
+                "; did you mean `curvature_sd_per_mm`?",
+            ],
+        ),
+        (
             "tip_radius_um = 1\ntaper = 0.1",
             "21:9",
             ["uncertainty.taper = 0.1", "beside tip_radius_um"],
@@ -183,6 +199,15 @@ fn deviations_belong_to_numbers_of_the_scene() {
         [(Parameter::LengthMm, 0.0), (Parameter::Taper, 0.01)]
     );
     assert_eq!(deviations.profile_radius_um, None);
+    let frames = "angle_sd_deg = 2\ncontact_sd_mm = 0.1\ncurvature_sd_per_mm = 1e-3";
+    let scene = with(frames).unwrap();
+    let deviations = scene.uncertainty.as_ref().unwrap();
+    assert_eq!(
+        deviations.frames.values(),
+        [Some(1e-3), Some(0.1), Some(2.0)]
+    );
+    let again = parse(&scene.to_toml()).unwrap();
+    assert_eq!(again.uncertainty, scene.uncertainty);
 
     let measured = BASE
         .replace("base_radius_um = 30.0", measured)

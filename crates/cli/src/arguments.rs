@@ -17,6 +17,25 @@ pub fn angle(text: &str) -> Result<f64, String> {
     Quantity::AngleDeg.parse(text)
 }
 
+/// Parses a positive time in seconds, or with a unit.
+pub fn duration(text: &str) -> Result<f64, String> {
+    let seconds = Quantity::TimeS.parse(text)?;
+    let seconds = Some(seconds).filter(|seconds| *seconds > 0.0);
+    seconds.ok_or_else(|| "must be a positive time".to_owned())
+}
+
+/// Parses a span of time, `FROM..TO` in seconds or with units.
+pub fn span(text: &str) -> Result<[f64; 2], String> {
+    let must = || "must be a span of time, such as 0s..0.1s".to_owned();
+    let (from, to) = text.split_once("..").ok_or_else(must)?;
+    let time = |text: &str| {
+        let seconds = Quantity::TimeS.parse(text);
+        seconds.map_err(|why| format!("{text}: {why}"))
+    };
+    let ends @ [from, to] = [time(from)?, time(to)?];
+    (from < to).then_some(ends).ok_or_else(must)
+}
+
 /// Numbers of threads that a run can have.
 pub const THREADS: RangeInclusive<u32> = 1..=1024;
 

@@ -1,6 +1,6 @@
 //! Arguments of commands over time: the course of the angle of the base.
 
-use super::arguments::angle;
+use super::arguments::{angle, length};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use clap::Args;
@@ -19,6 +19,9 @@ pub struct CourseArgs {
     /// Number of samples per second of --sine
     #[arg(long, value_name = "HZ", default_value = "1000", value_parser = positive, conflicts_with = "angles")]
     rate: f64,
+    /// Give samples the curvature at this arclength from the base, in mm or with a unit
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub curvature_at: Option<f64>,
 }
 
 /// Amplitude in degrees, frequency in Hz and duration in s of a sine.

@@ -15,14 +15,15 @@ pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads measured points from the input `path`. Prints unused columns, and the number of points whose angle has the other side's sign.
+/// Reads measured points from the input `path`. Prints unused columns, and the number of points with a missing value, and of those whose angle
+/// has the other side's sign.
 pub fn read(files: &mut Files, path: &Path) -> Result<MeasuredPoints, Failure> {
     let points = MeasuredPoints::read(path)?;
     files.input(path);
     if let Some(note) = &points.note {
         message(&format!("note: {note}"));
     }
-    if let Some(warning) = points.crossed() {
+    for warning in [points.missing(), points.crossed()].into_iter().flatten() {
         message(&format!("warning: {warning}"));
     }
     Ok(points)

@@ -1,13 +1,14 @@
 //! Command `whiskmap force`.
 
-use super::arguments::column_help;
+use super::arguments::{column_help, span};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::OutputArgs;
 use super::pole::check_single;
 use clap::Args;
 use std::path::{Path, PathBuf};
-use whiskmap::force::{self, CurvatureFrames, ForceMethod, FrameForce, forces};
+use std::sync::atomic::AtomicBool;
+use whiskmap::force::{self, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until};
 use whiskmap::render::forces as chart;
 
 const EXAMPLES: &str = "\
@@ -16,13 +17,17 @@ Examples:
   whiskmap force scenes/cone.toml --frames scenes/frames.csv --model --csv force.csv
 
 FILE has the columns time_s, curvature_per_mm, at_arc_length_mm, contact_x_mm and contact_y_mm, in the frame of the base: the first \
-axis is the base's tangent. Frames without contact leave the cells of the contact empty. Without --model, the column \
+axis is the base's tangent. Frames without contact leave the cells of the contact empty, or have 0 in a column contact, which has 1 \
+in the others. Other numbers may be missing: an empty cell, or NaN. Without --model, the column \
 contact_angle_deg has the angle of the whisker's tangent at the contact; at_x_mm and at_y_mm are the position of the measured \
 point, which is otherwise that of the resting whisker.
 
 The moment at the measured point is the bending stiffness there times the change of curvature. The force is this moment over the \
 lever of the contact, normal to the whisker. With --model, it is that of the stable state of the full model that has this curvature \
-at this distance of the contact from the base.";
+at this distance of the contact from the base.
+
+With --baseline or a column contact, the change of curvature is that from the mean of the frames without contact, and their scatter \
+gives a standard deviation of each force. The scene's [uncertainty] may give curvature_sd_per_mm, contact_sd_mm and angle_sd_deg.";
 
 #[derive(Debug, Args)]
 #[command(
@@ -38,6 +43,9 @@ pub struct ForceArgs {
     /// Compute the state of the full model instead of the moment over the lever
     #[arg(long)]
     model: bool,
+    /// Subtract the mean change of curvature in the frames of this time, which must be without contact
+    #[arg(long, value_name = "FROM..TO", allow_hyphen_values = true, value_parser = span)]
+    baseline: Option<[f64; 2]>,
     #[command(flatten)]
     outputs: OutputArgs,
 }
@@ -66,8 +74,28 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(note) = &read.note {
         message(&format!("note: {note}"));
     }
+    let baseline = read.baseline(&whisker, args.baseline)?;
+    if let Some(baseline) = &baseline {
+        message(&baseline.note());
+    }
     let mut outputs = args.outputs.open(files)?;
-    let found = forces(&whisker, &scene.pole, &read.frames, method);
+    let options = ForceOptions {
+        baseline,
+        deviations: scene
+            .uncertainty
+            .as_ref()
+            .map(|own| own.frames)
+            .unwrap_or_default(),
+        ..ForceOptions::new(method)
+    };
+    let frames = &read.frames;
+    let found = forces_until(
+        &whisker,
+        &scene.pole,
+        frames,
+        &options,
+        &AtomicBool::new(false),
+    );
     if let Some(warning) = force::warning(&found) {
         message(&format!("warning: {warning}"));
     }

@@ -8,10 +8,12 @@ use super::outputs::{OutputArgs, OutputTable};
 use super::pole::check_single;
 use clap::Args;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use whiskmap::render::textures;
 use whiskmap::scene::{digits, rounded};
 use whiskmap::texture::{
-    AsperityStay, Texture, TextureError, TextureEvent, TexturePhase, TextureSample, TipBin, texture,
+    AsperityStay, Texture, TextureError, TextureEvent, TexturePhase, TextureSample, TipBin,
+    texture_until,
 };
 use whiskmap::whisk::WhiskEventKind;
 
@@ -80,8 +82,17 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     let events = table("--events", &args.events)?;
     let dwells = table("--dwells", &args.dwells)?;
     let histogram = table("--histogram", &args.histogram)?;
-    let found = texture(&scene.whisker, &surface, &course).map_err(|why| match why {
+    let at_mm = args.course.curvature_at;
+    let found = texture_until(
+        &scene.whisker,
+        &surface,
+        &course,
+        at_mm,
+        &AtomicBool::new(false),
+    );
+    let found = found.map_err(|why| match why {
         TextureError::Unresolved { .. } => Failure::Texture(why),
+        TextureError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
         TextureError::Blocked { .. } | TextureError::Surface(_) => {
             Failure::Input(format!("{}: {why}", args.scene.display()))
         }

@@ -1,6 +1,6 @@
 //! Command `whiskmap whisk`.
 
-use super::arguments::column_help;
+use super::arguments::{column_help, duration};
 use super::course::CourseArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
@@ -22,7 +22,10 @@ Examples:
 The angle of the base is 0 where the resting whisker first touches the pole on CB, and grows with the push there. A whisker that \
 detaches swings to the other side of the pole, and touches it there on the way back. The course is quasi-static: inertia is left \
 out. Between samples the angle changes along straight lines, on which events are exact. A course begins without contact unless --start \
-is contact. A first angle beyond first touch needs --start: the whisker may be free past the pole, or in contact.";
+is contact. A first angle beyond first touch needs --start: the whisker may be free past the pole, or in contact.
+
+An angle of --angles may be missing: an empty cell, or NaN. Its sample has no state. After such a gap the course is undecided until \
+only one state is possible, unless --bridge continues it.";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum StartChoice {
@@ -46,6 +49,9 @@ pub struct WhiskArgs {
     /// State of the whisker at the first angle
     #[arg(long, value_name = "STATE")]
     start: Option<StartChoice>,
+    /// Continue the course along a straight line across gaps of missing angles, if the angles around a gap are at most TIME apart
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with = "sine")]
+    bridge: Option<f64>,
     /// Write touches, releases, slip-offs, pull-offs and snaps to FILE, as CSV
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
@@ -67,10 +73,13 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
         StartChoice::Free => CourseStart::Free,
         StartChoice::Contact => CourseStart::Contact,
     });
+    options.curvature_at_mm = args.course.curvature_at;
+    options.bridge_s = args.bridge.unwrap_or_default();
     let found = whisk::whisk_with(&whisker, &scene.pole, distance, &course, &options);
     let found = found.map_err(|why| match why {
         WhiskError::Pole(why) => refuse(distance, why),
         WhiskError::Unresolved(_) => Failure::Course(why),
+        WhiskError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
         why => Failure::Input(format!("{}: {why}", args.course.source())),
     })?;
     outputs.rows(&found.samples)?;

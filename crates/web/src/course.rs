@@ -48,7 +48,7 @@ impl WhiskTask {
         let at_rest = WhiskerShape::at_rest(&cb, POINTS);
         let shape = |sample: &WhiskSample| {
             let Some((side, push_deg)) = sample.side.zip(sample.push_angle_deg) else {
-                return Some(turned(&at_rest, -sample.angle_deg));
+                return Some(turned(&at_rest, -sample.angle_deg?));
             };
             let (branch, turn_deg) = match side {
                 Side::Cb => (&cb, 0.0),

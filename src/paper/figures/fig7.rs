@@ -28,7 +28,7 @@ const SEED: u64 = 7;
 #[derive(Clone, Copy, Serialize)]
 struct TrialFrame {
     time_s: f64,
-    angle_deg: f64,
+    angle_deg: Option<f64>,
     curvature_per_mm: f64,
     force_un: Option<f64>,
     lever_force_un: Option<f64>,
@@ -108,7 +108,7 @@ pub fn fig7b() -> Result<Figure, FigureError> {
     let angle = Plot {
         x_label: "time (s)".to_owned(),
         y_label: "angle of the base (deg)".to_owned(),
-        lines: vec![line(&|row| Some(row.angle_deg), Ink::Black)],
+        lines: vec![line(&|row| row.angle_deg, Ink::Black)],
         ..Plot::default()
     };
     let force = Plot {

@@ -26,7 +26,7 @@ pub struct Motion {
 #[derive(Clone, Copy, Serialize)]
 struct FramePoint {
     time_s: f64,
-    angle_deg: f64,
+    angle_deg: Option<f64>,
     regime: WhiskRegime,
     x_mm: f64,
     y_mm: f64,
@@ -92,7 +92,10 @@ impl Motion {
                 };
                 (points.collect(), turn)
             }
-            _ => (WhiskerShape::at_rest(&self.cb, POINTS), -sample.angle_deg),
+            _ => {
+                let angle_deg = sample.angle_deg.unwrap_or(f64::NAN);
+                (WhiskerShape::at_rest(&self.cb, POINTS), -angle_deg)
+            }
         };
         let turn = DVec2::from_angle(turn.to_radians());
         let turned = points

@@ -12,7 +12,7 @@ use toml_edit::de::Deserializer;
 
 use crate::input::{TEXT_MIB, bounded, did_you_mean, open, shortened};
 use crate::scene::axis::{AxisValues, NOT_GROWING};
-use crate::scene::builder::{Deviations, Numbers};
+use crate::scene::builder::{Deviations, FrameDeviations, Numbers};
 use crate::scene::deviations;
 use crate::scene::error::{DECIMAL_POINTS, SceneError, SceneFault, has_tight_comma};
 use crate::scene::limits::digits;
@@ -175,9 +175,13 @@ fn uncertainty(table: &BTreeMap<String, f64>) -> Result<Deviations, SceneFault> 
         match Parameter::named(name) {
             Some(parameter) => uncertainty.parameters.push((parameter, deviation)),
             None if name == deviations::ROWS => uncertainty.profile_radius_um = Some(deviation),
+            None if uncertainty.frames.set(name, deviation) => {}
             None => {
-                let known = Parameter::ALL.map(Parameter::name);
-                let hint = did_you_mean(name, known.into_iter().chain([deviations::ROWS]));
+                let known = Parameter::ALL.map(Parameter::name).into_iter();
+                let known = known
+                    .chain([deviations::ROWS])
+                    .chain(FrameDeviations::NAMES);
+                let hint = did_you_mean(name, known);
                 let names = deviations::names();
                 let must = format!("is not known; must be one of {names}{hint}");
                 let key = format!("uncertainty.{}", shortened(name));

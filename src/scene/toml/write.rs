@@ -6,6 +6,7 @@ use std::sync::Arc;
 use toml_edit::ser::to_document;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, TableLike, TomlError, Value};
 
+use crate::scene::FrameDeviations;
 use crate::scene::axis::{AxisScale, AxisValues};
 use crate::scene::deviations::ROWS;
 use crate::scene::error::SceneError;
@@ -127,6 +128,12 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
         }
         if let Some(deviation) = deviations.profile_radius_um {
             put(root, &format!("uncertainty.{ROWS}"), deviation);
+        }
+        let frames = FrameDeviations::NAMES.into_iter();
+        for (name, deviation) in frames.zip(deviations.frames.values()) {
+            if let Some(deviation) = deviation {
+                put(root, &format!("uncertainty.{name}"), deviation);
+            }
         }
     }
     // Its fields are plain numbers.

@@ -1,10 +1,12 @@
 //! Shapes of deflected whiskers, as points along them.
 
 use crate::rod::{Rest, Rod, arclength};
+use crate::shooting::contact::Contact;
+use crate::shooting::sensitivity::{Arrival, BaseDerivatives, GeneralFirst, SensitivitySet};
 use crate::shooting::{
-    BackwardCompliance, Bent, Graded, Intrinsic, Measured, NoSensitivity, Nystrom8, PieceSteps,
-    Polynomial, Resolution, RodSystem, Scales, Section, Spiral, TrajectoryState, collocate,
-    integrate,
+    BackwardCompliance, Bent, Carried, Graded, Intrinsic, Measured, NoSensitivity, Nystrom8,
+    PieceSteps, Planar, Polynomial, Resolution, RodSystem, Scales, Section, Spiral,
+    TrajectoryState, collocate, integrate,
 };
 use glam::DVec2;
 
@@ -33,29 +35,40 @@ pub fn profile(
     resolution: Resolution,
     at: &[f64],
 ) -> Vec<RodPoint> {
-    let (radius, contact) = (rod.radius(tau), arclength(rod, tau));
-    let trajectory = ShapeTrajectory {
-        rod,
-        rest: Rest::new(rod),
-        tau,
-        contact,
-        force: load * radius * radius,
-        tangent: rod.contact_tangent(),
-        steps: resolution.steps(rod, tau, load),
-        pieces: resolution.of_pieces(rod, tau, load),
+    let trajectory = ShapeTrajectory::new(rod, tau, load, resolution);
+    let (loaded, free) = at.split_at(trajectory.loaded_count(at));
+    let states = trajectory.states::<NoSensitivity>(loaded);
+    let states = loaded.iter().zip(states);
+    let points = states.map(|(s, (state, _))| trajectory.loaded(*s, state));
+    let free = free.iter().map(|s| trajectory.free(*s));
+    points.chain(free).collect()
+}
+
+/// Returns the points of [`profile`] before the contact, `[point]`, each with the derivatives of its position and tangent by `tau` and load at a
+/// fixed arclength, in the frame of the contact.
+#[must_use]
+pub fn varied_profile(
+    rod: &Rod,
+    tau: f64,
+    load: f64,
+    resolution: Resolution,
+    at: &[f64],
+) -> Vec<(RodPoint, BaseDerivatives<f64>)> {
+    let trajectory = ShapeTrajectory::new(rod, tau, load, resolution);
+    let loaded = &at[..trajectory.loaded_count(at)];
+    let states = trajectory.states::<GeneralFirst>(loaded);
+    let states = loaded.iter().zip(states);
+    let varied = |(s, (state, carried)): (&f64, (Planar<f64>, _))| {
+        // The carried derivatives are those at a fixed arclength all along the trajectory, not at the base alone.
+        let arrival = Arrival {
+            contact: trajectory.start(),
+            taper: rod.taper,
+            rod: state,
+        };
+        let by = GeneralFirst::at_base(&arrival, carried);
+        (trajectory.loaded(*s, state), by)
     };
-    if let Some(polynomial) = &rod.polynomial {
-        let centred = *polynomial.centred();
-        return trajectory.points(Polynomial { centred }, (), at);
-    }
-    match rod.spiral {
-        Some([at_base, slope]) => trajectory.points(Spiral { at_base, slope }, (), at),
-        None => {
-            let twice_bend = 2.0 * rod.bend;
-            let rest = Rest::parabola_tangent(rod, contact).to_array();
-            trajectory.points(Bent { twice_bend }, rest, at)
-        }
-    }
+    states.map(varied).collect()
 }
 
 /// Number and length of the steps over a `part` of `whole`, which takes `steps`.
@@ -63,6 +76,9 @@ fn share(steps: u32, whole: f64, part: f64) -> (u32, f64) {
     let steps = ((f64::from(steps) * part / whole).ceil() as u32).max(1);
     (steps, part / f64::from(steps))
 }
+
+/// State of a rod before the contact, with the derivatives that it carries.
+type LoadedState<S> = (Planar<f64>, Carried<f64, S>);
 
 /// A trajectory from a contact to the base, to be evaluated at points between.
 struct ShapeTrajectory<'a> {
@@ -82,47 +98,90 @@ struct ShapeTrajectory<'a> {
     pieces: PieceSteps,
 }
 
-impl ShapeTrajectory<'_> {
-    fn points<I: Intrinsic<f64>>(&self, intrinsic: I, rest: I::State, at: &[f64]) -> Vec<RodPoint> {
-        let deflected = at.partition_point(|s| *s < self.contact);
+impl<'a> ShapeTrajectory<'a> {
+    fn new(rod: &'a Rod, tau: f64, load: f64, resolution: Resolution) -> Self {
+        let radius = rod.radius(tau);
+        Self {
+            rod,
+            rest: Rest::new(rod),
+            tau,
+            contact: arclength(rod, tau),
+            force: load * radius * radius,
+            tangent: rod.contact_tangent(),
+            steps: resolution.steps(rod, tau, load),
+            pieces: resolution.of_pieces(rod, tau, load),
+        }
+    }
+
+    /// Returns the number of the growing arclengths `at` that are before the contact.
+    fn loaded_count(&self, at: &[f64]) -> usize {
+        at.partition_point(|s| *s < self.contact)
+    }
+
+    /// Returns the contact at which the trajectory starts. First derivatives need no slope of the curvature.
+    fn start(&self) -> Contact<f64> {
+        Contact {
+            radius: self.rod.radius(self.tau),
+            force: self.force,
+            tangent: self.tangent.to_array(),
+            stiffness: self.rod.stiffness(self.contact),
+            curvature: self.rest.curvature(self.contact),
+            curvature_slope: 0.0,
+        }
+    }
+
+    /// Returns the states of the rod with the derivatives that they carry, `[point]`, at each of the growing arclengths `at` before the contact.
+    fn states<S: SensitivitySet<f64>>(&self, at: &[f64]) -> Vec<LoadedState<S>> {
+        if let Some(polynomial) = &self.rod.polynomial {
+            let centred = *polynomial.centred();
+            return self.states_on::<_, S>(Polynomial { centred }, (), at);
+        }
+        match self.rod.spiral {
+            Some([at_base, slope]) => self.states_on::<_, S>(Spiral { at_base, slope }, (), at),
+            None => {
+                let twice_bend = 2.0 * self.rod.bend;
+                let rest = Rest::parabola_tangent(self.rod, self.contact).to_array();
+                self.states_on::<_, S>(Bent { twice_bend }, rest, at)
+            }
+        }
+    }
+
+    /// Returns the states of a rod of this rest shape, as [`ShapeTrajectory::states`] does.
+    fn states_on<I: Intrinsic<f64>, S: SensitivitySet<f64>>(
+        &self,
+        intrinsic: I,
+        rest: I::State,
+        at: &[f64],
+    ) -> Vec<LoadedState<S>> {
         let tangent = self.tangent;
-        let mut state: TrajectoryState<f64, I, NoSensitivity> = (
-            rest,
-            ([tangent.x, tangent.y, 0.0, 0.0, 0.0], ((), ((), ()))),
-        );
+        let rod = [tangent.x, tangent.y, 0.0, 0.0, 0.0];
+        let mut state: TrajectoryState<f64, I, S> = (rest, (rod, S::start(&self.start())));
         let mut from = self.tau;
-        let mut points: Vec<RodPoint> = at[..deflected]
-            .iter()
-            .rev()
-            .map(|s| {
-                let to = self.rod.tau(*s);
-                state = self.advance(intrinsic, (from, to), state);
-                from = to;
-                let (_, (rod, _)) = state;
-                self.loaded(*s, rod)
-            })
-            .collect();
-        points.reverse();
-        points.extend(at[deflected..].iter().map(|s| self.free(*s)));
-        points
+        let states = at.iter().rev().map(|s| {
+            let to = self.rod.tau(*s);
+            state = self.advance::<I, S>(intrinsic, (from, to), state);
+            from = to;
+            state.1
+        });
+        let mut states: Vec<LoadedState<S>> = states.collect();
+        states.reverse();
+        states
     }
 
     /// Integrates `state` from one `tau` back to a smaller one, piece by piece.
-    fn advance<I: Intrinsic<f64>>(
+    fn advance<I: Intrinsic<f64>, S: SensitivitySet<f64>>(
         &self,
         intrinsic: I,
         (mut from, to): (f64, f64),
-        mut state: TrajectoryState<f64, I, NoSensitivity>,
-    ) -> TrajectoryState<f64, I, NoSensitivity> {
+        mut state: TrajectoryState<f64, I, S>,
+    ) -> TrajectoryState<f64, I, S> {
         let gradient = self.rod.gradient;
         let Some(profile) = &self.rod.profile else {
             let (steps, h) = share(self.steps, self.tau, from - to);
             let system = self.system(intrinsic, Graded { gradient });
             let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
             let section = self.section(from);
-            return integrate::<Nystrom8, f64, _, _, NoSensitivity>(
-                &system, &scales, section, steps, state,
-            );
+            return integrate::<Nystrom8, f64, _, _, S>(&system, &scales, section, steps, state);
         };
         let mut ahead = self.tau;
         let last = self.rod.piece(self.contact);
@@ -146,7 +205,7 @@ impl ShapeTrajectory<'_> {
                         from: section.arclength,
                         length: section.rho * scales.end().along,
                     };
-                    state = collocate::<f64, _, NoSensitivity>(
+                    state = collocate::<f64, _, S>(
                         &system,
                         scales.end(),
                         &section,
