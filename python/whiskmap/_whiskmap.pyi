@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "CheckedScene", "ComputedMap", "SceneError", "StateError", "StoredMap", "arithmetic", "axis_title", "branch", "channel_attributes", "channels", "coordinates",
-    "curve", "design", "detachment", "fit", "force", "inks", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "variables",
+    "curve", "design", "detachment", "fit", "force", "inks", "locate", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "variables",
     "version", "whisk",
 ]
 
@@ -118,6 +118,9 @@ def texture(
     scene: CheckedScene, time_s: NDArray[float64], angle_deg: NDArray[float64]
 ) -> tuple[list[_Column], list[_Column], list[_Column], list[_Column], float, int, str | None]: ...
 def force(scene: CheckedScene, frames: str, origin: str, model: bool) -> tuple[list[_Column], str | None]: ...
+def locate(
+    scene: CheckedScene, readings: str, origin: str, deviations: tuple[float, float] | None
+) -> tuple[list[_Column], str | None]: ...
 def fit(scene: CheckedScene, points: str, origin: str, free: Sequence[str]) -> _FitResult: ...
 def design(
     scene: CheckedScene, parameter: str, goal: str, value: float, distance_mm: float, side: str | None

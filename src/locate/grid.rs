@@ -110,7 +110,9 @@ impl SheetGrid {
             Some(*tau)
         });
         let inward: Vec<f64> = inward.collect();
-        let folds = first_folds(case, &inward).into_iter().map_while(|fold| fold);
+        let folds = first_folds(case, &inward)
+            .into_iter()
+            .map_while(|fold| fold);
         let mut contacts: Vec<[f64; 2]> = folds.map(|fold| [fold.tau, fold.q()]).collect();
         contacts.reverse();
         let parts = parts();
@@ -239,7 +241,8 @@ impl SheetGrid {
     /// not stable, not on the whisker, or the base is inside the pole.
     pub fn direction(&self, at: DVec2, map: &ShootingMap) -> Option<f64> {
         let [tau, load] = [at.x, self.side.sign() * at.y];
-        let is_on_whisker = tau >= self.taus[0] && self.rod.radius(tau) * (tau - self.rod.tau_tip()) <= ON_TIP;
+        let is_on_whisker =
+            tau >= self.taus[0] && self.rod.radius(tau) * (tau - self.rod.tau_tip()) <= ON_TIP;
         let scale = map.by_tau.length() * map.by_load.length();
         let is_pole_outside = map.pole.length() > self.rod.pole.abs();
         if !(is_on_whisker && load > 0.0 && map.det() > -FLAT * scale && is_pole_outside) {
@@ -257,7 +260,10 @@ impl SheetGrid {
             false => interpolated,
         };
         let part = load * tau * tau / q;
-        let before = self.parts.partition_point(|own| *own < part).saturating_sub(1);
+        let before = self
+            .parts
+            .partition_point(|own| *own < part)
+            .saturating_sub(1);
         let near = self.phis[i * self.parts.len() + before];
         (part < NEAR_FOLD).then(|| nearest_turn(map.pole.to_angle(), near))
     }
@@ -285,9 +291,14 @@ impl PairGrid {
         let sines = nodes.iter().zip(&levers).map(|(node, lever)| {
             let full = &node.full;
             let by_tau = both(lever_by(full, &node.by_tau)) - 2.0 * rod.taper * *lever;
-            let by_load = node.by_load.force * *lever + full.force * both(lever_by(full, &node.by_load));
+            let by_load =
+                node.by_load.force * *lever + full.force * both(lever_by(full, &node.by_load));
             let sine = by_tau.perp_dot(by_load) / (by_tau.length() * by_load.length());
-            if sine.abs() > SINE_ROUNDING { sine } else { 0.0 }
+            if sine.abs() > SINE_ROUNDING {
+                sine
+            } else {
+                0.0
+            }
         });
         let sines: Vec<f64> = sines.collect();
         let turns_in = |cell: usize| {

@@ -8,7 +8,7 @@ mod grid;
 mod newton;
 mod readings;
 
-pub use readings::BaseReadings;
+pub use readings::{BaseReadings, MOST_ANGLE, MOST_LOAD};
 
 use crate::newton::{BatchNewton, NewtonOutcome};
 use crate::scene::{Pole, Whisker};
@@ -95,7 +95,7 @@ row! {
         pub base_force_y_un: Option<f64>,
         /// Difference of the state's numbers from the reading: over the reading's size, or in standard deviations if these are given.
         pub misfit: Option<f64>,
-        /// Ratio of the largest to the smallest relative change of the numbers by contact and force; infinite on a singular line.
+        /// Largest over smallest change of the measured numbers for equal relative changes of contact and load; infinite on a singular line.
         pub condition: Option<f64>,
         /// Standard deviation of the arclength of the contact, in mm.
         pub arc_length_sd_mm: Option<f64>,
@@ -117,6 +117,9 @@ row! {
         pub reason: Option<NoLocation>,
     }
 }
+
+/// Number of intervals between points of the resting whisker.
+const POINTS_AT_REST: u32 = 200;
 
 /// Number of readings that are solved together.
 const READINGS_AT_ONCE: usize = 64;
@@ -189,6 +192,17 @@ impl Locator {
             units,
             method,
         }
+    }
+
+    /// Returns points of the resting whisker in the frame of the base, evenly spaced from base to tip, `[point][x, y]` in mm.
+    #[must_use]
+    pub fn at_rest_mm(&self) -> Vec<[f64; 2]> {
+        let [SheetGrid { rest, .. }, _] = &self.sides;
+        let place = |i: u32| rest.end() * f64::from(i) / f64::from(POINTS_AT_REST);
+        let points = (0..=POINTS_AT_REST).map(|i| rest.at_arclength(place(i)).0);
+        points
+            .map(|at| (at * self.units.length_mm).to_array())
+            .collect()
     }
 
     /// Finds all stable states for each of the `readings`, in their order; those of a reading by growing push angle. Each reading has at

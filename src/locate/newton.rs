@@ -79,7 +79,9 @@ impl Triangle {
     pub fn condition(&self) -> f64 {
         let product = self.first * self.second;
         let squares = self.first.powi(2) + self.mixed.powi(2) + self.second.powi(2);
-        let difference = (squares * squares - 4.0 * product * product).max(0.0).sqrt();
+        let difference = (squares * squares - 4.0 * product * product)
+            .max(0.0)
+            .sqrt();
         0.5 * (squares + difference) / product
     }
 

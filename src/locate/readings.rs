@@ -2,6 +2,7 @@
 
 use super::BaseReading;
 use crate::input::{CsvError, CsvTable};
+use crate::scene::digits;
 use std::path::Path;
 
 /// Readings of a sensor at the base.
@@ -29,7 +30,7 @@ pub const MOST_ANGLE: f64 = 360.0;
 
 impl BaseReadings {
     /// Reads a CSV file with at least two of the columns `base_moment_nnm`, `base_force_x_un` and `base_force_y_un`, and optionally
-    /// `angle_deg`; `-` is standard input. An empty cell is a number that was not measured.
+    /// `angle_deg`; `-` is standard input. An empty cell or `nan` is a number that was not measured.
     ///
     /// # Errors
     /// If the file cannot be read, two of the columns are missing, or a cell is no number or out of its range.
@@ -56,15 +57,19 @@ impl BaseReadings {
         let loads = [moment, x, y];
         if loads.into_iter().filter(|name| table.has(name)).count() < 2 {
             let others = note.map_or(String::new(), |note| format!("; {note}"));
-            let what = format!("must have at least two of the columns {moment}, {x} and {y}{others}");
+            let what =
+                format!("must have at least two of the columns {moment}, {x} and {y}{others}");
             return Err(CsvError::whole(&table.origin, what));
         }
         let numbers = |name: &str, most: f64| {
-            let must = format!("a number between -{most:e} and {most:e}, or empty if not measured");
-            let is_allowed = |number: &f64| number.abs() <= most;
+            let end = digits(most);
+            let must = format!("a number between -{end} and {end}, or empty if not measured");
             let values = table.values(name, &must, |cell| match cell {
-                "" => Some(None),
-                cell => cell.parse().ok().filter(is_allowed).map(Some),
+                "" | "nan" | "NaN" => Some(None),
+                cell => {
+                    let number: Option<f64> = cell.parse().ok();
+                    number.filter(|own| own.abs() <= most).map(Some)
+                }
             });
             let rows = table.lines().count();
             Ok::<_, CsvError>(values?.unwrap_or_else(|| vec![None; rows]))

@@ -4,6 +4,7 @@
 
 use super::labels;
 use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
+use crate::locate::{LocatedState, Locator};
 use crate::scene::{Parameter, digits};
 use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
 use whiskmap_plot::{Disc, Dot, Ink, Line, Plot, Stroke};
@@ -144,6 +145,28 @@ pub fn shapes(title: &str, drawn: &[DrawnShape]) -> Plot {
         centre: drawn.shape.pole_mm,
         radius: drawn.shape.pole_radius_mm,
         dark: false,
+    }));
+    plot
+}
+
+/// Returns a plot of located contacts in the frame of the base, in mm, and of the resting whisker.
+#[must_use]
+pub fn contacts(locator: &Locator, located: &[LocatedState]) -> Plot {
+    let mut plot = empty("", "x (mm)", "y (mm)");
+    plot.equal_axes = true;
+    let at_rest = Line::new(locator.at_rest_mm(), Ink::Grey, Stroke::Solid);
+    plot.lines.push(at_rest.named("at rest"));
+    plot.dots.extend(located.iter().filter_map(|row| {
+        let (ink, open, name) = match row.states {
+            1 => (Ink::Black, false, "one state"),
+            _ => (Ink::Blue, true, "one of several states"),
+        };
+        Some(Dot {
+            at: [row.contact_x_mm?, row.contact_y_mm?],
+            ink,
+            open,
+            name: Some(name.to_owned()),
+        })
     }));
     plot
 }
