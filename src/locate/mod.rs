@@ -5,9 +5,11 @@
 //! standard deviations that follow from those of the sensor. With all three numbers, the state nearest to them is returned.
 
 mod grid;
+mod map;
 mod newton;
 mod readings;
 
+pub use map::SharedState;
 pub use readings::{BaseReadings, MOST_ANGLE, MOST_LOAD};
 
 use crate::newton::{BatchNewton, NewtonOutcome};

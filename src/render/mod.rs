@@ -25,7 +25,7 @@ pub use options::MapOptions;
 pub use overlays::{bands, error_bars, measured};
 pub use plots::{
     BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, branches, contacts,
-    curves, designs, shapes,
+    curves, designs, shapes, shared_states,
 };
 pub use sensitivities::sensitivities;
 pub use textures::{STUCK, TIP, textures, tip_histogram, tip_lines};

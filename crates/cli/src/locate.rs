@@ -9,15 +9,17 @@ use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
 use whiskmap::locate::{
-    self, BaseReading, BaseReadings, LocatedState, Locator, MOST_ANGLE, MOST_LOAD, SensorDeviations,
+    self, BaseReading, BaseReadings, LocatedState, Locator, MOST_ANGLE, MOST_LOAD,
+    SensorDeviations, SharedState,
 };
-use whiskmap::render::contacts;
+use whiskmap::render::{contacts, shared_states};
 use whiskmap::scene::digits;
 
 const EXAMPLES: &str = "\
 Examples:
   whiskmap locate scenes/cone.toml --base-moment 60nNm --base-force-y 6uN --angle 30deg
   whiskmap locate scenes/cone.toml --readings scenes/readings.csv --moment-sd 0.5nNm --force-sd 0.05uN --plot locate.svg
+  whiskmap locate scenes/cone.toml --map --plot determined.svg
 
 FILE has at least two of the columns base_moment_nnm, base_force_x_un and base_force_y_un, and may have angle_deg, the angle of the base \
 in the laboratory. A number that was not measured is an empty cell. Moment and force are those of the pole on the base, in the frame of \
@@ -26,17 +28,23 @@ the base: the first axis is the base's tangent. In a follicle, the frame is that
 Each stable state with the numbers of a reading is a row. With all three numbers, it is the state nearest to them, by the standard \
 deviations if these are given.";
 
+/// Options of a single reading.
+const LOAD_OPTIONS: [&str; 4] = ["base_moment", "base_force_x", "base_force_y", "angle"];
+
 #[derive(Debug, Args)]
 #[command(
-    group(ArgGroup::new("numbers").required(true).multiple(true).args(["readings", "base_moment", "base_force_x", "base_force_y"])),
+    group(ArgGroup::new("numbers").required(true).multiple(true).args(["map", "readings", "base_moment", "base_force_x", "base_force_y"])),
     after_help = EXAMPLES,
-    after_long_help = column_help(EXAMPLES, &[("Columns", LocatedState::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", LocatedState::COLUMNS), ("Columns with --map", SharedState::COLUMNS)])
 )]
 pub struct LocateArgs {
     /// Scene file; - is standard input
     scene: PathBuf,
+    /// Show where two numbers determine the contact, and where several states share them
+    #[arg(long, conflicts_with_all = LOAD_OPTIONS, conflicts_with_all = ["readings", "moment_sd", "force_sd"])]
+    map: bool,
     /// CSV file of readings of the sensor; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["base_moment", "base_force_x", "base_force_y", "angle"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = LOAD_OPTIONS)]
     readings: Option<PathBuf>,
     /// Moment of the pole on the base, in nN m or with a unit, such as 0.3uNm: positive turns it to the left
     #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, value_parser = moment)]
@@ -164,6 +172,16 @@ pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
         );
         return Err(Failure::Input(why));
     }
+    let whisker = scene.first_whisker().whisker;
+    if args.map {
+        let mut outputs = args.outputs.open(files)?;
+        let locator = Locator::new(&whisker, &scene.pole);
+        let distances = &scene.grid.distance_mm;
+        let range = [distances[0], distances[distances.len() - 1]];
+        let states = locator.shared_states(&whisker, &scene.pole, range);
+        outputs.rows(&states)?;
+        return outputs.finish_chart(|| shared_states(&scene.title, &states), []);
+    }
     let readings = args.readings(files)?;
     let mut outputs = args.outputs.open(files)?;
     let deviations = args.moment_sd.zip(args.force_sd);
@@ -171,7 +189,7 @@ pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
         moment_nnm,
         force_un,
     });
-    let locator = Locator::new(&scene.first_whisker().whisker, &scene.pole);
+    let locator = Locator::new(&whisker, &scene.pole);
     let located = locator.locate(&readings, deviations);
     if let Some(warning) = locate::warning(&located) {
         message(&format!("warning: {warning}"));
