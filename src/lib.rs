@@ -52,6 +52,7 @@ pub mod design;
 #[cfg(feature = "fit")]
 pub mod fit;
 pub mod force;
+pub mod locate;
 pub mod measured;
 pub mod random;
 #[cfg(feature = "render")]

@@ -19,6 +19,7 @@ mod friction;
 mod hard_cases;
 mod hard_maps;
 mod jumps;
+mod locate;
 mod map;
 mod maps;
 mod plan;

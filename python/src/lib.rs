@@ -10,6 +10,7 @@ mod detachment;
 mod errors;
 mod fits;
 mod lazy;
+mod locate;
 mod maps;
 mod motion;
 mod plan;
@@ -36,6 +37,8 @@ mod _whiskmap {
     use super::fits::{design, fit};
     #[pymodule_export]
     use super::lazy::ComputedMap;
+    #[pymodule_export]
+    use super::locate::locate;
     #[pymodule_export]
     use super::maps::map;
     #[pymodule_export]

@@ -186,11 +186,11 @@ fn course(
     AngleCourse::new(times, angles).map_err(|why| refused(&why))
 }
 
-fn refused(why: &impl std::fmt::Display) -> PyErr {
+pub fn refused(why: &impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(why.to_string())
 }
 
-fn without_friction(scene: &Scene, because: &str) -> PyResult<()> {
+pub fn without_friction(scene: &Scene, because: &str) -> PyResult<()> {
     match scene.pole.friction {
         0.0 => Ok(()),
         friction => Err(refused(&format!(

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from whiskmap._fits import Fit as Fit
     from whiskmap._fits import design as design
     from whiskmap._fits import fit as fit
+    from whiskmap._locate import locate as locate
     from whiskmap._maps import Plan as Plan
     from whiskmap._maps import map as map
     from whiskmap._maps import plan as plan
@@ -70,6 +71,7 @@ _MODULES = {
     "detachment": "_detachment",
     "fit": "_fits",
     "force": "_motion",
+    "locate": "_locate",
     "map": "_maps",
     "open": "_stored",
     "plan": "_maps",

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "CheckedScene", "ComputedMap", "SceneError", "StateError", "StoredMap", "arithmetic", "axis_title", "branch", "channel_attributes", "channels", "coordinates",
-    "curve", "design", "detachment", "fit", "force", "inks", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "variables",
+    "curve", "design", "detachment", "fit", "force", "inks", "locate", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "variables",
     "version", "whisk",
 ]
 
@@ -121,6 +121,9 @@ def texture(
 def force(
     scene: CheckedScene, frames: str, origin: str, model: bool, baseline_s: tuple[float, float] | None
 ) -> tuple[list[_Column], str | None, tuple[float, float, int] | None]: ...
+def locate(
+    scene: CheckedScene, readings: str, origin: str, deviations: tuple[float, float] | None
+) -> tuple[list[_Column], str | None]: ...
 def fit(scene: CheckedScene, points: str, origin: str, free: Sequence[str]) -> _FitResult: ...
 def design(
     scene: CheckedScene, parameter: str, goal: str, value: float, distance_mm: float, side: str | None

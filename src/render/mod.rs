@@ -24,8 +24,8 @@ pub use map::{map, regime_fill};
 pub use options::MapOptions;
 pub use overlays::{bands, error_bars, measured};
 pub use plots::{
-    BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, branches, curves,
-    designs, shapes,
+    BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, branches, contacts,
+    curves, designs, shapes, shared_states,
 };
 pub use sensitivities::sensitivities;
 pub use textures::{STUCK, TIP, textures, tip_histogram, tip_lines};

@@ -17,16 +17,18 @@ mod row;
 mod samples;
 mod span;
 
+pub(crate) use case::SheetCase;
 pub use continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 pub use continuation::{Continuation, NODE_MISS, continuations};
 pub use edges::edge_newton::{EdgeIterate, EdgeProblem, EdgeStart, edge_newton};
 pub use fold::FoldPoint;
+pub(crate) use fold::coordinate::{tau_of, u_of};
+pub(crate) use fold::{directions, first_folds};
 pub use net::{NetRow, PUSH_MARGIN};
 pub use row::{Crossing, Edge, Row};
 pub use span::Guess;
 pub(crate) use span::RowSpan;
 
-use case::SheetCase;
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
 use net::{FOLD_ERROR, GUESS_ERROR, ValueNet};

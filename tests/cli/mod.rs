@@ -25,6 +25,7 @@ mod fit;
 mod force;
 mod integrity;
 mod leftovers;
+mod locate;
 mod manual;
 mod map;
 mod marks;

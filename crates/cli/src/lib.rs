@@ -24,6 +24,7 @@ mod failure;
 mod files;
 mod fit;
 mod force;
+mod locate;
 mod manual;
 mod map;
 mod map_format;
@@ -90,6 +91,7 @@ Examples:
   whiskmap whisk scenes/cone.toml --distance 15.66 --sine 40deg,10,0.2
   whiskmap texture scenes/texture_cone.toml --plot texture.png
   whiskmap force scenes/cone.toml --frames scenes/frames.csv
+  whiskmap locate scenes/cone.toml --base-moment 60nNm --base-force-y 6uN
   whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper
   whiskmap reproduce                                 # figures 1 to 7 of the paper
   whiskmap verify
@@ -132,6 +134,8 @@ enum Command {
     Texture(texture::TextureArgs),
     /// Compute contact forces from the change of curvature in the frames of a film
     Force(force::ForceArgs),
+    /// Find the contacts that belong to moment and force at the base
+    Locate(locate::LocateArgs),
     /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
     Design(design::DesignArgs),
     /// Draw the theory of the paper's Figs. 1 to 7, with a table for each panel
@@ -236,6 +240,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Whisk(args) => whisk::run(args, files),
         Command::Texture(args) => texture::run(args, files),
         Command::Force(args) => force::run(args, files),
+        Command::Locate(args) => locate::run(args, files),
         Command::Design(args) => design::run(args, files),
         Command::Reproduce(args) => reproduce::run(args, files),
         Command::Verify => verify::run(),

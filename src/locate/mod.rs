@@ -1,0 +1,467 @@
+//! Contacts from moment and force at the base: the inverse problem of a sensor that holds the whisker.
+//!
+//! Two of moment, axial force and transverse force determine contact and load, except where their Jacobian is singular; there may be
+//! several states, or none. All stable states with the measured numbers are returned, each with the condition of the inverse and the
+//! standard deviations that follow from those of the sensor. With all three numbers, the state nearest to them is returned.
+
+mod grid;
+mod map;
+mod newton;
+mod readings;
+
+pub use map::SharedState;
+pub use readings::{BaseReadings, MOST_ANGLE, MOST_LOAD};
+
+use crate::newton::{BatchNewton, NewtonOutcome};
+use crate::scene::{Pole, Whisker};
+use crate::trace::row;
+use glam::{DVec2, DVec3};
+use grid::{PAIRS, SheetGrid};
+use newton::{BaseProblem, Triangle, base_derivatives, base_numbers, by_logarithms};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::{RodDerivative, Side, Units};
+use whiskmap_mechanics::shooting::batch::Method;
+use whiskmap_mechanics::shooting::{FirstVariation, FullState, Resolution};
+
+/// Numbers of a sensor at the base. A state needs two of moment and forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BaseReading {
+    /// Moment of the pole on the base, in nN m, positive if it turns the base to the left; `None` if it was not measured.
+    pub moment_nnm: Option<f64>,
+    /// Force of the pole on the base along the base's tangent, in uN; `None` if it was not measured.
+    pub force_x_un: Option<f64>,
+    /// Force of the pole on the base to the left of its tangent, in uN; `None` if it was not measured.
+    pub force_y_un: Option<f64>,
+    /// Angle of the base's tangent in the laboratory, in degrees; `None` if it was not measured.
+    pub angle_deg: Option<f64>,
+}
+
+/// Standard deviations of a sensor, of which the errors are independent and normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorDeviations {
+    /// Standard deviation of the moment, in nN m; positive.
+    pub moment_nnm: f64,
+    /// Standard deviation of each component of the force, in uN; positive.
+    pub force_un: f64,
+}
+
+/// Reason why a reading has no state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoLocation {
+    /// The reading has fewer than two numbers of the base.
+    Incomplete,
+    /// All numbers of the reading are 0: the whisker is free, or only touches.
+    NoLoad,
+    /// One of the two numbers follows from the other, as moment and axial force of a cylinder do.
+    Undetermined,
+    /// No stable state has these numbers.
+    NoState,
+}
+
+row! {
+    /// Stable state with the numbers of a reading. A reading without such a state has one row with the reason.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct LocatedState {
+        /// Number of the reading, from 1.
+        pub reading: usize,
+        /// Number of stable states with the numbers of the reading.
+        pub states: usize,
+        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+        pub side: Option<Side>,
+        /// Arclength from the base to the contact, in mm.
+        pub arc_length_mm: Option<f64>,
+        /// Position of the contact along the base's tangent, in mm.
+        pub contact_x_mm: Option<f64>,
+        /// Position of the contact to the left of the base's tangent, in mm.
+        pub contact_y_mm: Option<f64>,
+        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
+        pub contact_angle_deg: Option<f64>,
+        /// Position of the pole's centre along the base's tangent, in mm.
+        pub pole_x_mm: Option<f64>,
+        /// Position of the pole's centre to the left of the base's tangent, in mm.
+        pub pole_y_mm: Option<f64>,
+        /// Distance from the base to the contact at first touch, in mm.
+        pub distance_mm: Option<f64>,
+        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
+        pub push_angle_deg: Option<f64>,
+        /// Size of the force between pole and whisker, normal to both, in uN.
+        pub force_un: Option<f64>,
+        /// Moment of the pole on the base, in nN m: positive turns it to the left.
+        pub base_moment_nnm: Option<f64>,
+        /// Force that the pole puts on the base, along the base's tangent, in uN.
+        pub base_force_x_un: Option<f64>,
+        /// Force that the pole puts on the base, to the left of its tangent, in uN.
+        pub base_force_y_un: Option<f64>,
+        /// Difference of the state's numbers from the reading: over the reading's size, or in standard deviations if these are given.
+        pub misfit: Option<f64>,
+        /// Largest over smallest change of the measured numbers for equal relative changes of contact and load; infinite on a singular line.
+        pub condition: Option<f64>,
+        /// Standard deviation of the arclength of the contact, in mm.
+        pub arc_length_sd_mm: Option<f64>,
+        /// Standard deviation of the distance, in mm.
+        pub distance_sd_mm: Option<f64>,
+        /// Standard deviation of the push angle, in degrees.
+        pub push_angle_sd_deg: Option<f64>,
+        /// Standard deviation of the force between pole and whisker, in uN.
+        pub force_sd_un: Option<f64>,
+        /// Position of the contact along the laboratory's first axis, from the base, in mm; with the angle of the base.
+        pub lab_contact_x_mm: Option<f64>,
+        /// Position of the contact along the laboratory's second axis, from the base, in mm; with the angle of the base.
+        pub lab_contact_y_mm: Option<f64>,
+        /// Position of the pole's centre along the laboratory's first axis, from the base, in mm; with the angle of the base.
+        pub lab_pole_x_mm: Option<f64>,
+        /// Position of the pole's centre along the laboratory's second axis, from the base, in mm; with the angle of the base.
+        pub lab_pole_y_mm: Option<f64>,
+        /// Reason of a reading without a state: incomplete, no-load, undetermined or no-state.
+        pub reason: Option<NoLocation>,
+    }
+}
+
+/// Number of intervals between points of the resting whisker.
+const POINTS_AT_REST: u32 = 200;
+
+/// Number of readings that are solved together.
+const READINGS_AT_ONCE: usize = 64;
+
+/// Maximum number of trajectories to a state. On a singular line each step halves the error.
+const MOST_TRAJECTORIES: u32 = 40;
+
+/// Difference of the logarithms of contact and load below which two solutions are one state.
+const SAME_STATE: f64 = 1e-6;
+
+/// Largest misfit of a state to two numbers, over the reading's size.
+const MOST_MISFIT_OF_TWO: f64 = 1e-9;
+
+/// Largest misfit of a state to three numbers without standard deviations, over the reading's size: that of numbers with three digits.
+const MOST_MISFIT_OF_THREE: f64 = 1e-3;
+
+/// Largest misfit of a state to three numbers, in standard deviations: beyond it lies one of two million normal errors.
+const MOST_DEVIATIONS: f64 = 5.0;
+
+/// Locator: finds the stable states of one whisker and pole by the numbers at the base.
+pub struct Locator {
+    sides: [SheetGrid; 2],
+    units: Units,
+    method: Method,
+}
+
+/// Reading in the units of the rod.
+struct Wanted<'a> {
+    reading: &'a BaseReading,
+    /// Moment and forces `[M, Fx, Fy]`; 0 if not measured.
+    numbers: DVec3,
+    /// 1 for each measured number, otherwise 0.
+    measured: DVec3,
+    /// Measured numbers over their standard deviations or, without these, [`Wanted::measured`].
+    weights: DVec3,
+    /// Reason why no state is searched; `None` if one is.
+    reason: Option<NoLocation>,
+}
+
+/// State that a search has found.
+struct FoundState<'a> {
+    grid: &'a SheetGrid,
+    at: DVec2,
+    full: FullState,
+    last: FirstVariation,
+    phi: f64,
+    misfit: f64,
+}
+
+/// Returns one line for readings without a state; `None` without such readings.
+#[must_use]
+pub fn warning(located: &[LocatedState]) -> Option<String> {
+    let without = located.iter().filter(|row| row.reason.is_some()).count();
+    let all = located.last().map_or(0, |row| row.reading);
+    (without > 0)
+        .then(|| format!("{without} of {all} readings have no state, for the reasons in the table"))
+}
+
+impl Locator {
+    /// Creates the locator of `whisker` at `pole`, whose friction is left out. Contacts are searched from the pole's radius, or a
+    /// thousandth of the length, to the tip.
+    #[must_use]
+    pub fn new(whisker: &Whisker, pole: &Pole) -> Self {
+        let method = Method::new(Resolution::FINE);
+        let pole = Pole::smooth(pole.radius_mm);
+        let units = whisker.units();
+        let grid = |side| SheetGrid::new(method, whisker.rod(&pole, side), side, units);
+        Self {
+            sides: Side::BOTH.map(grid),
+            units,
+            method,
+        }
+    }
+
+    /// Returns points of the resting whisker in the frame of the base, evenly spaced from base to tip, `[point][x, y]` in mm.
+    #[must_use]
+    pub fn at_rest_mm(&self) -> Vec<[f64; 2]> {
+        let [SheetGrid { rest, .. }, _] = &self.sides;
+        let place = |i: u32| rest.end() * f64::from(i) / f64::from(POINTS_AT_REST);
+        let points = (0..=POINTS_AT_REST).map(|i| rest.at_arclength(place(i)).0);
+        points
+            .map(|at| (at * self.units.length_mm).to_array())
+            .collect()
+    }
+
+    /// Finds all stable states for each of the `readings`, in their order; those of a reading by growing push angle. Each reading has at
+    /// least one row.
+    #[must_use]
+    pub fn locate(
+        &self,
+        readings: &[BaseReading],
+        deviations: Option<SensorDeviations>,
+    ) -> Vec<LocatedState> {
+        self.locate_until(readings, deviations, &AtomicBool::new(false))
+    }
+
+    /// Finds states as [`Locator::locate`] does. If `cancel` is true, the function soon returns, without the rows of further readings.
+    #[must_use]
+    pub fn locate_until(
+        &self,
+        readings: &[BaseReading],
+        deviations: Option<SensorDeviations>,
+        cancel: &AtomicBool,
+    ) -> Vec<LocatedState> {
+        let chunks = readings.par_chunks(READINGS_AT_ONCE).enumerate();
+        let located = chunks.flat_map_iter(|(chunk, readings)| {
+            let readings = match cancel.load(Ordering::Relaxed) {
+                true => &[],
+                false => readings,
+            };
+            let wanted = readings.iter().map(|own| self.wanted(own, deviations));
+            let wanted: Vec<Wanted> = wanted.collect();
+            let found = self.solve(&wanted, deviations.is_some());
+            let first = chunk * READINGS_AT_ONCE + 1;
+            let rows = wanted.iter().zip(found).enumerate();
+            let rows = rows.flat_map(|(i, (wanted, found))| {
+                self.rows(first + i, wanted, deviations.is_some(), &found)
+            });
+            rows.collect::<Vec<_>>()
+        });
+        located.collect()
+    }
+
+    fn wanted<'a>(
+        &self,
+        reading: &'a BaseReading,
+        deviations: Option<SensorDeviations>,
+    ) -> Wanted<'a> {
+        let units = &self.units;
+        let given = [reading.moment_nnm, reading.force_x_un, reading.force_y_un];
+        let measured = DVec3::from(given.map(|number| f64::from(u8::from(number.is_some()))));
+        let in_rod = DVec3::new(units.moment_nnm, units.force_un, units.force_un);
+        let sds = deviations.map(|own| DVec3::new(own.moment_nnm, own.force_un, own.force_un));
+        let mut wanted = Wanted {
+            reading,
+            numbers: DVec3::from(given.map(Option::unwrap_or_default)) / in_rod,
+            measured,
+            weights: sds.map_or(measured, |sds| measured * in_rod / sds),
+            reason: None,
+        };
+        let is_determined = |pair| self.sides.iter().any(|grid| grid.is_determined(pair));
+        wanted.reason = match () {
+            () if wanted.pairs().next().is_none() => Some(NoLocation::Incomplete),
+            () if wanted.numbers == DVec3::ZERO => Some(NoLocation::NoLoad),
+            () if !wanted.pairs().any(is_determined) => Some(NoLocation::Undetermined),
+            () => None,
+        };
+        wanted
+    }
+
+    /// Finds the states for each of the `wanted` readings, `[reading][state]`.
+    fn solve(&self, wanted: &[Wanted], has_deviations: bool) -> Vec<Vec<FoundState<'_>>> {
+        let mut problems = Vec::new();
+        let mut starts = Vec::new();
+        let mut origins = Vec::new();
+        let mut signs = Vec::new();
+        for (i, wanted) in wanted.iter().enumerate() {
+            let sides = self.sides.iter().filter(|_| wanted.reason.is_none());
+            for grid in sides {
+                for pair in wanted.pairs().filter(|pair| grid.is_determined(*pair)) {
+                    grid.add_starts(pair, wanted.numbers, &mut signs, &mut starts);
+                }
+                origins.resize(starts.len(), (i, grid));
+                problems.resize_with(starts.len(), || BaseProblem {
+                    rod: &grid.rod,
+                    wanted: wanted.numbers,
+                    weights: wanted.weights,
+                    last: FirstVariation::default(),
+                });
+            }
+        }
+        let newton = BatchNewton::new(self.method, MOST_TRAJECTORIES);
+        let iterates = newton.solve(&mut problems, starts);
+        let mut found: Vec<Vec<FoundState>> = wanted.iter().map(|_| Vec::new()).collect();
+        for (((i, grid), problem), iterate) in origins.into_iter().zip(problems).zip(iterates) {
+            let (at, full) = (iterate.point, iterate.state);
+            if iterate.outcome != NewtonOutcome::Converged {
+                continue;
+            }
+            let is_same = |other: &FoundState| {
+                let change = (at - other.at).abs() / other.at.abs();
+                std::ptr::eq(grid, other.grid) && change.max_element() < SAME_STATE
+            };
+            let misfit = wanted[i].misfit(&full, has_deviations);
+            let Some(misfit) = misfit.filter(|_| !found[i].iter().any(is_same)) else {
+                continue;
+            };
+            let direction = grid.direction(at, &full.map);
+            found[i].extend(direction.map(|phi| FoundState {
+                grid,
+                at,
+                full,
+                last: problem.last,
+                phi,
+                misfit,
+            }));
+        }
+        found
+    }
+
+    /// Returns the rows of the reading with this `number`.
+    fn rows(
+        &self,
+        number: usize,
+        wanted: &Wanted,
+        has_deviations: bool,
+        found: &[FoundState],
+    ) -> Vec<LocatedState> {
+        let reason = wanted.reason.unwrap_or(NoLocation::NoState);
+        let without = LocatedState::without(number, reason);
+        if found.is_empty() {
+            return vec![without];
+        }
+        let states = found.iter().map(|state| LocatedState {
+            states: found.len(),
+            ..self.row(without, wanted, has_deviations, state)
+        });
+        let mut rows: Vec<LocatedState> = states.collect();
+        let push = |row: &LocatedState| row.push_angle_deg.unwrap_or_default();
+        rows.sort_by(|one, other| push(one).total_cmp(&push(other)));
+        rows
+    }
+
+    /// Returns `row` with the values of the state `found`.
+    fn row(
+        &self,
+        row: LocatedState,
+        wanted: &Wanted,
+        has_deviations: bool,
+        found: &FoundState,
+    ) -> LocatedState {
+        let (grid, full, at, units) = (found.grid, &found.full, found.at, &self.units);
+        let distance = grid.rest.distance_of_pole(full.map.pole.length());
+        let touch = grid.rest.pole_at_distance(distance).to_angle();
+        let push = found.phi - touch;
+        let reading = grid.reader.read(at.x, full, touch, push);
+        let to_base = DVec2::new(full.tangent.x, -full.tangent.y);
+        let contact = units.length_mm * to_base.rotate(-full.position);
+        let pole = units.length_mm * full.map.pole;
+        let columns = base_derivatives(&grid.rod, at, &found.last);
+        let condition = Triangle::new(columns.map(|own| wanted.measured * own)).condition();
+        let weighted = Triangle::new(columns.map(|own| wanted.weights * own));
+        let deviation = |gradient: DVec2, unit: f64| {
+            has_deviations.then(|| weighted.deviation(gradient) * unit)
+        };
+        // Gradients by the logarithms of contact and load.
+        let [tau, load] = by_logarithms(&grid.rod, at);
+        let [by_contact, by_load] = [full.map.by_tau * tau, full.map.by_load * load];
+        let by_distance = grid
+            .rest
+            .touch_derivative(distance, 1.0, &RodDerivative::default());
+        let of_distance = DVec2::new(by_contact.x, by_load.x) / by_distance.x;
+        let of_push = DVec2::new(by_contact.y, by_load.y) - by_distance.y * of_distance;
+        let arclength = reading.arc_length_mm / units.length_mm;
+        // The force is the load times the squared radius.
+        let of_force = DVec2::new(-2.0 * grid.rod.taper * tau, 1.0);
+        let turn = wanted.reading.angle_deg.map(f64::to_radians);
+        let [lab_contact, lab_pole] =
+            [contact, pole].map(|at| turn.map(|turn| DVec2::from_angle(turn).rotate(at)));
+        LocatedState {
+            side: Some(grid.side),
+            arc_length_mm: Some(reading.arc_length_mm),
+            contact_x_mm: Some(contact.x),
+            contact_y_mm: Some(contact.y),
+            contact_angle_deg: Some(reading.contact_angle_deg),
+            pole_x_mm: Some(pole.x),
+            pole_y_mm: Some(pole.y),
+            distance_mm: Some(distance * units.length_mm),
+            push_angle_deg: Some(push.to_degrees()),
+            force_un: Some(reading.force_un),
+            base_moment_nnm: Some(reading.base_moment_nnm),
+            base_force_x_un: Some(reading.base_force_un.x),
+            base_force_y_un: Some(reading.base_force_un.y),
+            misfit: Some(found.misfit),
+            condition: Some(condition),
+            arc_length_sd_mm: deviation(DVec2::new(arclength, 0.0), units.length_mm),
+            distance_sd_mm: deviation(of_distance, units.length_mm),
+            push_angle_sd_deg: deviation(of_push, 1f64.to_degrees()),
+            force_sd_un: deviation(of_force, reading.force_un),
+            lab_contact_x_mm: lab_contact.map(|at| at.x),
+            lab_contact_y_mm: lab_contact.map(|at| at.y),
+            lab_pole_x_mm: lab_pole.map(|at| at.x),
+            lab_pole_y_mm: lab_pole.map(|at| at.y),
+            reason: None,
+            ..row
+        }
+    }
+}
+
+impl Wanted<'_> {
+    /// Returns the indices of the measured pairs of numbers.
+    fn pairs(&self) -> impl Iterator<Item = usize> {
+        let measured = self.measured;
+        (0..PAIRS.len()).filter(move |&pair| PAIRS[pair].iter().all(|&i| measured[i] > 0.0))
+    }
+
+    /// Returns the misfit of a state; `None` if it is too large.
+    fn misfit(&self, full: &FullState, has_deviations: bool) -> Option<f64> {
+        let difference = base_numbers(full) - self.numbers;
+        let relative = (self.measured * difference).length() / self.numbers.length();
+        let is_overdetermined = self.measured == DVec3::ONE;
+        let (misfit, most) = match (has_deviations, is_overdetermined) {
+            (true, true) => ((self.weights * difference).length(), MOST_DEVIATIONS),
+            (false, true) => (relative, MOST_MISFIT_OF_THREE),
+            (_, false) => (relative, MOST_MISFIT_OF_TWO),
+        };
+        (misfit <= most).then_some(misfit)
+    }
+}
+
+impl LocatedState {
+    /// Returns the row of the reading with this `number` without a state.
+    const fn without(number: usize, reason: NoLocation) -> Self {
+        Self {
+            reading: number,
+            states: 0,
+            side: None,
+            arc_length_mm: None,
+            contact_x_mm: None,
+            contact_y_mm: None,
+            contact_angle_deg: None,
+            pole_x_mm: None,
+            pole_y_mm: None,
+            distance_mm: None,
+            push_angle_deg: None,
+            force_un: None,
+            base_moment_nnm: None,
+            base_force_x_un: None,
+            base_force_y_un: None,
+            misfit: None,
+            condition: None,
+            arc_length_sd_mm: None,
+            distance_sd_mm: None,
+            push_angle_sd_deg: None,
+            force_sd_un: None,
+            lab_contact_x_mm: None,
+            lab_contact_y_mm: None,
+            lab_pole_x_mm: None,
+            lab_pole_y_mm: None,
+            reason: Some(reason),
+        }
+    }
+}

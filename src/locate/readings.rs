@@ -1,0 +1,91 @@
+//! Reader of CSV files of readings.
+
+use super::BaseReading;
+use crate::input::{CsvError, CsvTable};
+use crate::scene::digits;
+use std::path::Path;
+
+/// Readings of a sensor at the base.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseReadings {
+    /// Readings in the order of the file, `[reading]`.
+    pub readings: Vec<BaseReading>,
+    /// Note about columns of the file that are not used; `None` without such columns.
+    pub note: Option<String>,
+}
+
+/// Columns of the numbers at the base, in the order of the fields of [`BaseReading`], and of the angle.
+const COLUMNS: [&str; 4] = [
+    "base_moment_nnm",
+    "base_force_x_un",
+    "base_force_y_un",
+    "angle_deg",
+];
+
+/// Largest size of a moment in nN m and of a force in uN: beyond that of every whisker of a scene.
+pub const MOST_LOAD: f64 = 1e18;
+
+/// Largest size of an angle of the base, in degrees.
+pub const MOST_ANGLE: f64 = 360.0;
+
+impl BaseReadings {
+    /// Reads a CSV file with at least two of the columns `base_moment_nnm`, `base_force_x_un` and `base_force_y_un`, and optionally
+    /// `angle_deg`; `-` is standard input. An empty cell or `nan` is a number that was not measured.
+    ///
+    /// # Errors
+    /// If the file cannot be read, two of the columns are missing, or a cell is no number or out of its range.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
+        let path = path.as_ref();
+        let table = match path == Path::new("-") {
+            true => CsvTable::read_stdin()?,
+            false => CsvTable::read(path)?,
+        };
+        Self::of(&table)
+    }
+
+    /// Reads the readings from the text of a CSV file, as [`BaseReadings::read`] does. Messages call the text `origin`.
+    ///
+    /// # Errors
+    /// Fails as [`BaseReadings::read`] does.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
+        Self::of(&CsvTable::parse(text, origin)?)
+    }
+
+    fn of(table: &CsvTable) -> Result<Self, CsvError> {
+        let [moment, x, y, angle] = COLUMNS;
+        let note = table.require(&[], &COLUMNS)?;
+        let loads = [moment, x, y];
+        if loads.into_iter().filter(|name| table.has(name)).count() < 2 {
+            let others = note.map_or(String::new(), |note| format!("; {note}"));
+            let what =
+                format!("must have at least two of the columns {moment}, {x} and {y}{others}");
+            return Err(CsvError::whole(&table.origin, what));
+        }
+        let numbers = |name: &str, most: f64| {
+            let end = digits(most);
+            let must = format!("a number between -{end} and {end}, or empty if not measured");
+            let values = table.values(name, &must, |cell| match cell {
+                "" | "nan" | "NaN" => Some(None),
+                cell => {
+                    let number: Option<f64> = cell.parse().ok();
+                    number.filter(|own| own.abs() <= most).map(Some)
+                }
+            });
+            let rows = table.lines().count();
+            Ok::<_, CsvError>(values?.unwrap_or_else(|| vec![None; rows]))
+        };
+        let [moments, xs, ys] = loads.map(|name| numbers(name, MOST_LOAD));
+        let (moments, xs, ys) = (moments?, xs?, ys?);
+        let angles = numbers(angle, MOST_ANGLE)?;
+        let readings = (0..moments.len()).map(|i| BaseReading {
+            moment_nnm: moments[i],
+            force_x_un: xs[i],
+            force_y_un: ys[i],
+            angle_deg: angles[i],
+        });
+        Ok(Self {
+            readings: readings.collect(),
+            note,
+        })
+    }
+}

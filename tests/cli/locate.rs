@@ -1,0 +1,203 @@
+//! `whiskmap locate`.
+
+use super::{Place, SCENE};
+
+/// The numbers that `shape` gives a state lead back to it.
+#[test]
+fn a_state_of_shape_comes_back() {
+    let place = Place::with(SCENE);
+    let shape = place.run(&[
+        "shape",
+        "scene.toml",
+        "--distance",
+        "15.66",
+        "--push-angle",
+        "10",
+        "--state",
+        "state.csv",
+        "--csv",
+        "shape.csv",
+    ]);
+    assert_eq!(shape.code, Some(0), "{shape:?}");
+    let table = |text: &str, name: &str| -> f64 {
+        let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let at = lines
+            .next()
+            .unwrap()
+            .iter()
+            .position(|own| *own == name)
+            .unwrap();
+        lines.next().unwrap()[at].parse().unwrap()
+    };
+    let state = String::from_utf8(place.bytes("state.csv")).unwrap();
+    let moment = format!("{:?}", table(&state, "base_moment_nnm"));
+    let force = format!("{:?}", table(&state, "base_force_y_un"));
+    let located = place.run(&[
+        "locate",
+        "scene.toml",
+        "--base-moment",
+        &moment,
+        "--base-force-y",
+        &force,
+        "--angle",
+        "0.5rad",
+    ]);
+    assert_eq!(located.code, Some(0), "{located:?}");
+    for (name, wanted) in [("distance_mm", 15.66), ("push_angle_deg", 10.0)] {
+        let own = table(&located.out, name);
+        assert!((own - wanted).abs() < 1e-8, "{name} {own}");
+    }
+    assert!(table(&located.out, "lab_contact_x_mm") < table(&located.out, "contact_x_mm"));
+}
+
+#[test]
+fn readings_of_a_file_have_rows_and_a_picture() {
+    let place = Place::with(SCENE);
+    place.write(
+        "r.csv",
+        "base_moment_nnm,base_force_y_un,day\n60,6,1\n,6,1\n0,0,1\n-60,6,1\n",
+    );
+    let run = place.run(&[
+        "locate",
+        "scene.toml",
+        "--readings",
+        "r.csv",
+        "--moment-sd",
+        "1nNm",
+        "--force-sd",
+        "0.1uN",
+        "--csv",
+        "out.csv",
+        "--plot",
+        "out.svg",
+    ]);
+    assert_eq!(
+        (run.code, &*run.out),
+        (Some(0), "out.csv\nout.svg\n"),
+        "{run:?}"
+    );
+    assert!(
+        run.err.contains("columns that are not used: day"),
+        "{run:?}"
+    );
+    assert!(run.err.contains("3 of 4 readings have no state"), "{run:?}");
+    let table = String::from_utf8(place.bytes("out.csv")).unwrap();
+    for end in [",incomplete", ",no-load", ",no-state"] {
+        assert!(table.lines().any(|line| line.ends_with(end)), "{table}");
+    }
+    let svg = String::from_utf8(place.bytes("out.svg")).unwrap();
+    assert!(
+        svg.contains(">at rest<") && svg.contains(">one state<"),
+        "{svg}"
+    );
+}
+
+#[test]
+fn bad_readings_are_refused() {
+    let place = Place::with(SCENE);
+    let locate = |more: &[&str]| place.run(&[&["locate", "scene.toml"], more].concat());
+    for (given, said) in [
+        (
+            &["--base-moment", "60"][..],
+            "--base-moment 60: must come with another of --base-moment, --base-force-x and --base-force-y",
+        ),
+        (
+            &["--base-moment", "60mm", "--base-force-x", "1"],
+            "unit mm: must be nNm",
+        ),
+        (
+            &["--base-moment", "1e19", "--base-force-x", "1"],
+            "must be between -1e18 nNm and 1e18 nNm",
+        ),
+        (
+            &["--base-moment", "1", "--base-force-x", "-1e19"],
+            "must be between -1e18 uN and 1e18 uN",
+        ),
+        (
+            &[
+                "--base-moment",
+                "1",
+                "--base-force-x",
+                "1",
+                "--angle",
+                "361",
+            ],
+            "must be between -360",
+        ),
+        (
+            &[
+                "--base-moment",
+                "1",
+                "--base-force-x",
+                "1",
+                "--moment-sd",
+                "1",
+            ],
+            "--force-sd",
+        ),
+        (
+            &[
+                "--base-moment",
+                "1",
+                "--base-force-x",
+                "1",
+                "--moment-sd",
+                "0",
+                "--force-sd",
+                "1",
+            ],
+            "must be more than 0",
+        ),
+        (
+            &[
+                "--base-moment",
+                "1",
+                "--base-force-x",
+                "1",
+                "--moment-sd",
+                "1",
+                "--force-sd",
+                "-1",
+            ],
+            "must be more than 0",
+        ),
+        (&["--base-moment", "1", "--readings", "r.csv"], "--readings"),
+        (&[], "--readings"),
+    ] {
+        locate(given).assert_refused(&[said]);
+    }
+    for (text, said) in [
+        (
+            "base_moment_nnm\n1\n",
+            "r.csv: must have at least two of the columns base_moment_nnm, base_force_x_un and base_force_y_un",
+        ),
+        ("base_moment_nnm,base_force_q_un\n1,2\n", "did you mean"),
+        (
+            "base_moment_nnm,base_force_x_un\n1,x\n",
+            "r.csv:2: base_force_x_un = x: must be a number between -1e18 and 1e18, or empty if not measured",
+        ),
+        (
+            "base_moment_nnm,base_force_x_un,angle_deg\n1,2,400\n",
+            "r.csv:2: angle_deg = 400: must be a number between -360 and 360",
+        ),
+        (
+            "base_moment_nnm,base_moment_nnm,base_force_x_un\n1,2,3\n",
+            "r.csv:1: found",
+        ),
+    ] {
+        place.write("r.csv", text);
+        locate(&["--readings", "r.csv"]).assert_refused(&[said]);
+    }
+    let both = place.run(&["locate", "-", "--readings", "-"]);
+    both.assert_refused(&["--readings -: standard input is the scene"]);
+    let rough = Place::with(&SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
+    let rough = rough.run(&[
+        "locate",
+        "scene.toml",
+        "--base-moment",
+        "1",
+        "--base-force-x",
+        "1",
+    ]);
+    rough.assert_refused(&["contact.friction = 0.3: must be 0"]);
+}
