@@ -268,7 +268,7 @@ fn forces_of(scene: &Scene, frames: &[CurvatureFrame], options: &ForceOptions) -
 #[test]
 fn a_baseline_takes_away_an_offset() {
     let scene = shipped::scene("cone");
-    let (frame, state) = frame(&scene, 15.66, 10.0, 0.1);
+    let (frame, state) = frame(&scene, 15.66, 5.0, 0.1);
     let (offset, sd) = (0.05 * frame.curvature_per_mm, 1e-4);
     let read = with_baseline(&scene, frame, offset, sd);
     let baseline = read.baseline(&scene.whisker, Some([0.0, 1.0])).unwrap();
@@ -339,7 +339,7 @@ fn off(frame: &CurvatureFrame, by: [f64; 4]) -> CurvatureFrame {
 /// Standard deviations of forces are those of differences, one number of the frame at a time, and of random frames.
 #[test]
 fn standard_deviations_are_those_of_random_frames() {
-    const SAMPLES: u64 = 2000;
+    const SAMPLES: u64 = 500;
     let sd = [2e-6, 2e-4, 2e-4, 0.005];
     for (name, distance, push, part) in
         [("cone", 15.66, 10.0, 0.1), ("measured", 12.0, -30.0, 0.05)]
@@ -413,9 +413,9 @@ fn standard_deviations_are_those_of_random_frames() {
                 let mean = drawn.iter().map(|own| own[i]).sum::<f64>() / SAMPLES as f64;
                 let squares = drawn.iter().map(|own| (own[i] - mean).powi(2)).sum::<f64>();
                 let wanted = (squares / (SAMPLES - 1) as f64).sqrt();
-                // The standard deviation of that of 2000 samples is 1.6 %.
+                // The standard deviation of that of 500 samples is 3.2 %.
                 let context = format!("{name} {method:?} {i}: {found} {wanted}");
-                assert!((found / wanted - 1.0).abs() < 0.05, "{context}");
+                assert!((found / wanted - 1.0).abs() < 0.1, "{context}");
             }
         }
     }

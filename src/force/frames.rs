@@ -107,11 +107,17 @@ impl CurvatureFrames {
         let contacts = table.measurements(CONTACT, "0 or 1", |cell| [0.0, 1.0].contains(&cell))?;
         let mut frames = Vec::with_capacity(times.len());
         for (i, line) in table.lines().enumerate() {
-            let contact_mm = [xs[i], ys[i]];
+            let mut contact_mm = [xs[i], ys[i]];
             let angle = angles.as_ref().map(|angles| angles[i]);
             // Without the column `contact`, a frame in which no position was measured has no contact.
             let is_in_contact = match &contacts {
-                Some(contacts) => contacts[i] != 0.0,
+                Some(contacts) => {
+                    // Whether there is a contact is missing, so that its position is not that of one.
+                    if contacts[i].is_nan() {
+                        contact_mm = [f64::NAN; 2];
+                    }
+                    contacts[i] != 0.0
+                }
                 None => contact_mm.into_iter().any(|own| !own.is_nan()),
             };
             let contact = is_in_contact.then_some(FrameContact {
