@@ -92,6 +92,49 @@ fn readings_of_a_file_have_rows_and_a_picture() {
     );
 }
 
+/// A cylinder's moment and axial force are dependent; other pairs have at least the state itself.
+#[test]
+fn a_map_counts_the_states_that_share_numbers() {
+    let cylinder = SCENE.replace("tip_radius_um = 1.5", "tip_radius_um = 30");
+    let straight = cylinder.replace("[whisker.curvature]\nparabola_per_mm = 0.02\n", "");
+    let place = Place::with(&straight);
+    let run = place.run(&[
+        "locate",
+        "scene.toml",
+        "--map",
+        "--csv",
+        "map.csv",
+        "--plot",
+        "map.svg",
+    ]);
+    assert_eq!(
+        (run.code, &*run.out),
+        (Some(0), "map.csv\nmap.svg\n"),
+        "{run:?}"
+    );
+    let table = String::from_utf8(place.bytes("map.csv")).unwrap();
+    let header = table.lines().next().unwrap();
+    assert!(header.starts_with("distance_mm,side,push_angle_deg,arc_length_mm,moment_x_states"));
+    let rows = table
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let counts = rows.map(|row| [4, 6, 8].map(|column| row[column].parse::<usize>().unwrap()));
+    let counts: Vec<[usize; 3]> = counts.collect();
+    assert!(counts.len() > 500, "{table}");
+    for [moment_x, moment_y, force] in counts {
+        assert!(
+            moment_x == 0 && moment_y > 0 && force > 0,
+            "{moment_x} {moment_y} {force}"
+        );
+    }
+    let svg = String::from_utf8(place.bytes("map.svg")).unwrap();
+    assert!(
+        svg.contains(">undetermined<") && svg.contains(">moment and axial force<"),
+        "{svg}"
+    );
+}
+
 #[test]
 fn bad_readings_are_refused() {
     let place = Place::with(SCENE);
@@ -162,6 +205,8 @@ fn bad_readings_are_refused() {
             "must be more than 0",
         ),
         (&["--base-moment", "1", "--readings", "r.csv"], "--readings"),
+        (&["--map", "--base-moment", "1"], "--map"),
+        (&["--map", "--readings", "r.csv"], "--map"),
         (&[], "--readings"),
     ] {
         locate(given).assert_refused(&[said]);

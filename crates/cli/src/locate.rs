@@ -1,6 +1,6 @@
 //! Command `whiskmap locate`.
 
-use super::arguments::{angle, column_help};
+use super::arguments::column_help;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::OutputArgs;
