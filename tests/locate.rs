@@ -222,6 +222,7 @@ fn the_condition_grows_toward_a_singular_line() {
             tip_radius_um,
             curvature: None,
             modulus_tip_to_base: 1.0,
+            follicle_stiffness_nnm_per_rad: None,
             ..cone.clone()
         };
         let state = states(&whisker, &pole, &[0.6], &[0.5])[1];
