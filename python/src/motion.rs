@@ -30,6 +30,9 @@ type WhiskColumns<'py> = (
     Vec<String>,
 );
 
+/// Times in s and angles of the base in degrees, `[sample]`.
+type TimesAndAngles<'py> = (PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, f64>);
+
 /// Computes the course of the scene's only whisker in front of one pole, with the angles of the base at these times, NaN where one is missing.
 /// `start` names the state in which it begins. Gaps of at most `bridge_s`, in s, are bridged. Samples have the
 /// curvature at the arclength `curvature_at_mm`, if it is given.
@@ -38,8 +41,7 @@ pub fn whisk<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     distance_mm: f64,
-    time_s: PyReadonlyArray1<'py, f64>,
-    angle_deg: PyReadonlyArray1<'py, f64>,
+    (time_s, angle_deg): TimesAndAngles<'py>,
     start: Option<&str>,
     bridge_s: f64,
     curvature_at_mm: Option<f64>,

@@ -132,7 +132,7 @@ def whisk(
     course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
     time, angle = _one_dimensional(*course)
     samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(
-        checked, distance, time, angle, start, number("bridge_s", bridge_s), _optional("curvature_at_mm", curvature_at_mm)
+        checked, distance, (time, angle), start, number("bridge_s", bridge_s), _optional("curvature_at_mm", curvature_at_mm)
     )
     warn(warnings)
     about = {"distance_mm": distance}

@@ -112,8 +112,8 @@ def shape(
     scene: CheckedScene, distance_mm: float, push_angle_deg: float, stable: bool, points: int
 ) -> tuple[list[_Column], list[float], float, float, list[_Column]]: ...
 def whisk(
-    scene: CheckedScene, distance_mm: float, time_s: NDArray[float64], angle_deg: NDArray[float64], start: str | None, bridge_s: float,
-    curvature_at_mm: float | None,
+    scene: CheckedScene, distance_mm: float, times_and_angles: tuple[NDArray[float64], NDArray[float64]], start: str | None,
+    bridge_s: float, curvature_at_mm: float | None,
 ) -> tuple[list[_Column], list[_Column], float, float, float, list[str]]: ...
 def texture(
     scene: CheckedScene, time_s: NDArray[float64], angle_deg: NDArray[float64], curvature_at_mm: float | None
