@@ -89,7 +89,7 @@ impl Triangle {
     pub fn deviation(&self, gradient: DVec2) -> f64 {
         let x = gradient.x / self.first;
         let y = (gradient.y - self.mixed * x) / self.second;
-        x.hypot(y)
+        libm::hypot(x, y)
     }
 }
 
