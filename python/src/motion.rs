@@ -41,7 +41,7 @@ pub fn whisk<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     distance_mm: f64,
-    (time_s, angle_deg): TimesAndAngles<'py>,
+    times_and_angles: TimesAndAngles<'py>,
     start: Option<&str>,
     bridge_s: f64,
     curvature_at_mm: Option<f64>,
@@ -51,6 +51,7 @@ pub fn whisk<'py>(
         return Err(refused(&why));
     }
     let scene = at_pole(py, scene, distance_mm)?;
+    let (time_s, angle_deg) = times_and_angles;
     let course = course(&time_s, &angle_deg)?;
     let start = start.map(arguments::start).transpose()?;
     let job = |cancel: &Arc<AtomicBool>| {
