@@ -216,7 +216,7 @@ def test_gaps_are_those_of_the_program(cone, tmp_path):
 
 def test_a_baseline_is_that_of_the_program(cone):
     frame = pd.read_csv(FRAMES, comment="#")
-    free = frame.contact_x_mm.isna()
+    free = frame.contact_x_mm.isna().to_numpy()
     span = (float(frame.time_s[0]), float(frame.time_s[~free].min()) - 1e-6)
     own = wm.force(cone, frame, baseline_s=span)
     same(own, table("force", CONE, "--frames", FRAMES, "--baseline", f"{span[0]}..{span[1]}"))
@@ -230,6 +230,7 @@ def test_a_baseline_is_that_of_the_program(cone):
             wm.force(cone, frame, baseline_s=baseline)
     with pytest.raises(ValueError, match=r"^frames\[\d+\]: time_s = .*: is in contact"):
         wm.force(cone, frame, baseline_s=(0, 1e6))
+
 
 def test_samples_have_the_curvature_at_an_arclength(cone):
     time, angle = sine(14, 5, 0.2)

@@ -162,9 +162,9 @@ def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike, *, curvature_
     RuntimeError
         If a detachment is not found.
     """
-    course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
+    time, angle = _one_dimensional(real_array("time_s", time_s), real_array("angle_deg", angle_deg))
     samples, events, stays, histogram, lost, reached, warning = _whiskmap.texture(
-        _checked(scene), *_one_dimensional(*course), _optional("curvature_at_mm", curvature_at_mm)
+        _checked(scene), time, angle, _optional("curvature_at_mm", curvature_at_mm)
     )
     warn([warning])
     bins = xr.Dataset(variables(histogram, ("bin",), (-1,)), rest_coords(scene), attributes(scene))
@@ -213,9 +213,10 @@ def force(
     """
     checked, span = _checked(scene), None
     if baseline_s is not None:
-        span = tuple(numbers("baseline_s", baseline_s))
-        if len(span) != 2 or not span[0] < span[1]:
+        ends = numbers("baseline_s", baseline_s)
+        if len(ends) != 2 or not ends[0] < ends[1]:
             raise ValueError(f"baseline_s = {baseline_s!r}: must be a first and a later last time, in s")
+        span = (ends[0], ends[1])
     with naming_rows("frames", frames):
         columns, warning, baseline = _whiskmap.force(
             checked, csv_text("frames", frames), origin_of("frames", frames), bool(model), span
