@@ -1,6 +1,6 @@
 //! Outputs: files being written. No other module opens files for writing.
 
-use super::temporary::{TemporaryFile, TemporaryFiles};
+use super::temporary::{TemporaryFile, TemporaryFiles, folder_of, sync_folder};
 use crate::terminal::StandardOutput;
 use std::fs::{self, File, Metadata};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -204,23 +204,5 @@ pub fn resolved(path: &Path) -> io::Result<PathBuf> {
             }
         }
         found => found,
-    }
-}
-
-/// Returns the folder that holds `path`.
-pub(super) fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
-}
-
-/// Brings the names in a folder to the disk. Only Unix opens folders, some users may not, and some network file systems bring no
-/// folder to the disk: there, a crash of the machine can still take the new name back.
-pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
-    use io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
-    match File::open(folder).and_then(|folder| folder.sync_all()) {
-        Err(why) if matches!(why.kind(), PermissionDenied | InvalidInput | Unsupported) => Ok(()),
-        synced => synced,
     }
 }

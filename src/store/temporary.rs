@@ -3,8 +3,6 @@
 //! A process that is killed leaves them. They are locked while their process runs, so that a later process can remove these leftovers.
 //! The locks in a shared folder may be visible on one host only, so names contain the host.
 
-#[cfg(feature = "zarr")]
-use super::output::folder_of;
 use std::fs::{self, File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -224,7 +222,7 @@ impl TemporaryFolder {
         }
         fs::rename(self.folder.path(), target)?;
         let _ = self.folder.keep();
-        super::output::sync_folder(folder_of(target))
+        sync_folder(folder_of(target))
     }
 }
 
@@ -263,4 +261,22 @@ fn host() -> String {
     let host = std::env::var("COMPUTERNAME").unwrap_or_default();
     let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);
     host.chars().filter(is_plain).take(64).collect()
+}
+
+/// Returns the folder that holds `path`.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Brings the names in a folder to the disk. Only Unix opens folders, some users may not, and some network file systems bring no
+/// folder to the disk: there, a crash of the machine can still take the new name back.
+pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
+    use io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        Err(why) if matches!(why.kind(), PermissionDenied | InvalidInput | Unsupported) => Ok(()),
+        synced => synced,
+    }
 }
