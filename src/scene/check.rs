@@ -8,7 +8,7 @@ use super::data::SceneData;
 use super::deviations;
 use super::error::SceneFault;
 use super::grid::{FARTHEST, Grid, NEAREST};
-use super::limits::{NumberLimits, digits, limits};
+use super::limits::{NumberLimits, digits};
 use super::parameter::{MOST_STRETCH, Parameter, STIFFEST_TIP};
 use super::profile;
 use super::shape;
@@ -87,19 +87,19 @@ fn whisker(
     traced: Option<&TracedShape>,
 ) -> Result<Whisker, SceneFault> {
     let check = |parameter, limits| check_number(numbers, parameter, limits);
-    let length_mm = check(Parameter::LengthMm, limits(Parameter::LengthMm))?;
+    let length_mm = check(Parameter::LengthMm, Parameter::LengthMm.number_limits())?;
     let radii = profile::radii(numbers, rows, length_mm)?;
     let length_mm = radii.length_mm;
     let modulus = numbers.get(Parameter::YoungsModulusGpa);
     let unit = modulus.and_then(|gpa| other_unit(gpa, MODULUS_GPA, &MODULUS_UNITS));
     let unit = unit.map(|unit| format!("is it in {unit}?"));
     let modulus = Parameter::YoungsModulusGpa;
-    let youngs_modulus_gpa = check(modulus, limits(modulus).remarks(unit))?;
+    let youngs_modulus_gpa = check(modulus, modulus.number_limits().remarks(unit))?;
     let (curvature, euler_spiral) = shape::shape(numbers, length_mm)?;
     let traced = traced.map(|own| shape::traced(numbers, &own.curvature));
     let traced = traced.transpose()?;
     let ratio = Parameter::ModulusTipToBase;
-    let modulus_tip_to_base = check(ratio, limits(ratio))?;
+    let modulus_tip_to_base = check(ratio, ratio.number_limits())?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
     let pointed = 1.0 / own_taper;
     let gradient = modulus_tip_to_base - 1.0;
@@ -124,7 +124,7 @@ fn whisker(
     let stiffness = Parameter::FollicleStiffness;
     let given = numbers.get(stiffness);
     let follicle_stiffness_nnm_per_rad = given
-        .map(|own| limits(stiffness).check(stiffness.key(), own))
+        .map(|own| stiffness.number_limits().check(stiffness.key(), own))
         .transpose()?;
     Ok(Whisker {
         length_mm,
@@ -185,7 +185,7 @@ fn pole(numbers: &Numbers, whisker: &Whisker, grid: &Grid) -> Result<Pole, Scene
     let check = |parameter, limits| check_number(numbers, parameter, limits);
     Ok(Pole {
         radius_mm: check(Parameter::PoleRadiusMm, NumberLimits::below(0.0, end))?,
-        friction: check(Parameter::Friction, limits(Parameter::Friction))?,
+        friction: check(Parameter::Friction, Parameter::Friction.number_limits())?,
     })
 }
 

@@ -3,19 +3,6 @@
 use std::fmt;
 
 use super::error::SceneFault;
-use super::parameter::Parameter;
-
-/// Returns the limits of a parameter, whatever the other numbers are.
-///
-/// Coulomb's coefficient is about 0.5 for whiskers of rats on steel. Up to 1, every end of 25,000 random whiskers was found
-/// (`benches/NOTES.md`).
-pub(super) fn limits(parameter: Parameter) -> NumberLimits {
-    let [least, most] = parameter.limits();
-    let remark =
-        "with more, whiskers coil around the pole for turns on end, and not all ends are known";
-    let remark = Some(remark).filter(|_| parameter == Parameter::Friction);
-    NumberLimits::between(least, most).remarks(remark)
-}
 
 /// Limits of a number: a range, in the number's unit. NaN is in none, and no range here reaches infinity.
 pub(super) struct NumberLimits {

@@ -1,6 +1,7 @@
 //! Parameters: the numbers of a scene by name, and the table of all that is known of each.
 
 use super::axis::AxisValues;
+use super::limits::NumberLimits;
 use super::toml::SceneFile;
 
 /// Largest ratio of the moduli at tip and base, and of those at base and tip. Measured ratios lie between 0.7 and 1.4.
@@ -182,6 +183,18 @@ parameters! {
 }
 
 impl Parameter {
+    /// Returns the limits of the parameter, whatever the other numbers are.
+    ///
+    /// Coulomb's coefficient is about 0.5 for whiskers of rats on steel. Up to 1, every end of 25,000 random whiskers was found
+    /// (`benches/NOTES.md`).
+    pub(super) fn number_limits(self) -> NumberLimits {
+        let [least, most] = self.limits();
+        let remark =
+            "with more, whiskers coil around the pole for turns on end, and not all ends are known";
+        let remark = Some(remark).filter(|_| self == Self::Friction);
+        NumberLimits::between(least, most).remarks(remark)
+    }
+
     /// Returns the parameter with this name; `None` without one.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {

@@ -2,7 +2,7 @@
 
 use super::builder::Numbers;
 use super::error::SceneFault;
-use super::limits::{NumberLimits, digits, limits};
+use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
 
 /// Key of the measured rows of radii in a scene file.
@@ -71,7 +71,9 @@ pub(super) fn radii(
         let absent = || SceneFault::new(keys[end], "is left out, and there is no whisker.profile");
         ends[end].ok_or_else(absent)
     };
-    let base_radius_um = limits(Parameter::BaseRadiusUm).check(keys[0], given(0)?)?;
+    let base_radius_um = Parameter::BaseRadiusUm
+        .number_limits()
+        .check(keys[0], given(0)?)?;
     let tip_radius_um =
         NumberLimits::between(0.0, ("base_radius_um", base_radius_um)).check(keys[1], given(1)?)?;
     Ok(Radii {

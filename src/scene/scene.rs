@@ -7,7 +7,6 @@ use std::sync::Arc;
 use super::builder::SceneBuilder;
 use super::data::SceneData;
 use super::error::{SceneError, SceneFault};
-use super::limits::limits;
 use super::parameter::Parameter;
 use super::toml::SceneText;
 use crate::traced::TracedShape;
@@ -50,7 +49,8 @@ impl SceneBuilder {
         let refused = |fault| SceneError::of_fault("", "", fault);
         if let Some(taper) = self.numbers.get(Parameter::Taper) {
             // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
-            limits(Parameter::Taper)
+            Parameter::Taper
+                .number_limits()
                 .check(Parameter::Taper.name(), taper)
                 .map_err(refused)?;
             let key = Parameter::BaseRadiusUm.key();

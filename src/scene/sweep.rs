@@ -3,7 +3,7 @@
 use super::builder::SceneBuilder;
 use super::error::SceneFault;
 use super::grid::{Grid, SweepAxis, SweepPlace};
-use super::limits::{digits, limits};
+use super::limits::digits;
 use super::parameter::Parameter;
 use super::shape;
 
@@ -16,7 +16,7 @@ pub(super) fn axes(
         let parameter = *parameter;
         let limits = match parameter {
             Parameter::ParabolaPerMm => shape::parabola_limits(lengths_mm[1]),
-            _ => limits(parameter),
+            _ => parameter.number_limits(),
         };
         // An axis replaces the scene's own number, which must be valid nevertheless.
         if let Some(own) = scene.numbers.get(parameter) {
@@ -40,7 +40,7 @@ pub(super) fn axes(
 /// Returns the least and the greatest length of the whiskers of a sweep, with the cones beyond measured rows, in millimetres.
 pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
     let length = Parameter::LengthMm;
-    let limits = limits(length);
+    let limits = length.number_limits();
     let own = scene.numbers.get(length);
     let own = own.ok_or_else(|| SceneFault::new(length.key(), "is left out"))?;
     limits.check(length.key(), own)?;

@@ -3,7 +3,6 @@
 use super::array::ZarrArray;
 use super::metadata;
 use super::read::open_regular;
-use super::verification::metadata_fault;
 use super::{METADATA, ZarrStore};
 use crate::store::{Output, StoreError, TemporaryFiles};
 use serde_json::{Map, Value};
@@ -118,6 +117,27 @@ pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, StoreError> 
     match root.get_mut("attributes").map(Value::take) {
         Some(Value::Object(attributes)) => Ok(attributes),
         _ => Err(foreign(&"it has no attributes")),
+    }
+}
+
+/// Returns the fault of a metadata file that must have these `bytes`; `None` without one. A longer file is not read to its end.
+pub(super) fn metadata_fault(path: &Path, bytes: &[u8]) -> Option<StoreError> {
+    let mut found = Vec::new();
+    let read = open_regular(path).and_then(|file| {
+        let read = file.take(bytes.len() as u64 + 1).read_to_end(&mut found);
+        read.map_err(StoreError::at(path, StoreError::Read))
+    });
+    match read {
+        Ok(_) if found == bytes => None,
+        Ok(_) => {
+            let why = "it is not as the scene demands";
+            Some(StoreError::Damaged(path.to_owned(), why.to_owned()))
+        }
+        Err(StoreError::NotComputed(_)) => Some(StoreError::Damaged(
+            path.to_owned(),
+            "it is missing".to_owned(),
+        )),
+        Err(why) => Some(why),
     }
 }
 

@@ -5,7 +5,7 @@ use super::blocks::Blocks;
 use super::channels::{CHANNELS, channel, with_flags};
 use super::encoding::ChunkEncoding;
 use super::encoding::ValueKind::{Code, Coordinate, Count};
-use super::verification::{AGREED, StoreIdentity};
+use super::identity::{AGREED, IDENTITY, StoreIdentity};
 use crate::classify::Regime;
 use crate::plan::{Digits, STATE_CHANNELS};
 use crate::scene::{Grid, SceneData};
@@ -161,9 +161,6 @@ pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, 
     attributes.insert(IDENTITY.to_owned(), json!(identity));
     attributes
 }
-
-/// Name of the attribute with the identity of the store.
-pub(super) const IDENTITY: &str = "identity";
 
 /// Returns the metadata of the store's root, with those of all arrays.
 pub(super) fn group<'a>(

@@ -13,6 +13,7 @@ mod blosc;
 mod channels;
 mod encoding;
 mod files;
+mod identity;
 mod metadata;
 mod pack;
 mod planes;
@@ -27,7 +28,7 @@ pub use self::verification::{BlockState, CheckDepth};
 
 use self::array::ZarrArray;
 use self::blocks::Blocks;
-use self::verification::StoreIdentity;
+use self::identity::StoreIdentity;
 use super::attributes::DIGITS;
 use super::stored::is_compatible;
 use super::{Channels, MapDescription, StoreError};
@@ -115,8 +116,8 @@ impl ZarrStore {
                 version.to_owned(),
             ));
         }
-        if text(metadata::IDENTITY)? != StoreIdentity::of(&attributes).text() {
-            let names = verification::AGREED.join(", ");
+        if text(identity::IDENTITY)? != StoreIdentity::of(&attributes).text() {
+            let names = identity::AGREED.join(", ");
             let why = format!(
                 "its `identity` does not fit its attributes {names}: one of them was changed"
             );

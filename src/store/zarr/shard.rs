@@ -4,7 +4,7 @@
 //! and ignore the identity.
 
 use super::blosc;
-use super::verification::FileIdentity;
+use super::identity::FileIdentity;
 use std::borrow::Cow;
 use std::io::{self, Read, Seek, SeekFrom};
 
