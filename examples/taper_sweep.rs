@@ -10,7 +10,7 @@ use whiskmap::{Options, map};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::read("scenes/morphology.toml")?.thinned(64, 8);
     let map = map(&scene, Options::default())?;
-    for (own, panel) in scene.whiskers().zip(&map.panels) {
+    for (own, panel) in scene.whiskers().flatten().zip(&map.panels) {
         let slipped = panel
             .regime
             .iter()

@@ -33,6 +33,7 @@ mod sensitivity;
 mod shaders;
 mod shipped;
 mod store;
+mod table;
 mod texture;
 mod ties;
 mod traced;

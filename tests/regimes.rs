@@ -64,7 +64,8 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
                 "{case}"
             );
             let regimes: Vec<Vec<u32>> = panels.into_iter().map(|panel| panel.regime).collect();
-            for (SweptWhisker { whisker, .. }, regimes) in scene.whiskers().zip(&regimes) {
+            for (SweptWhisker { whisker, .. }, regimes) in scene.whiskers().flatten().zip(&regimes)
+            {
                 let case = format!("{case}, taper {}", whisker.taper());
                 for side in Side::BOTH {
                     let case = format!("{case}, {side:?}");

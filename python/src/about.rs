@@ -61,8 +61,17 @@ pub fn channel_attributes(name: &str) -> Option<String> {
     store::channel_attributes(name).map(|attributes| attributes.to_string())
 }
 
-/// Name, CF attributes as JSON, and values of a coordinate.
-pub type Coordinate<'py> = (&'static str, String, Bound<'py, PyArray1<f64>>);
+/// Name, CF attributes as JSON, and values of a coordinate: numbers, or names of whiskers.
+pub type Coordinate<'py> = (&'static str, String, CoordinateValues<'py>);
+
+/// Values of a coordinate.
+#[derive(IntoPyObject)]
+pub enum CoordinateValues<'py> {
+    #[pyo3(transparent)]
+    Numbers(Bound<'py, PyArray1<f64>>),
+    #[pyo3(transparent)]
+    Names(Vec<String>),
+}
 
 /// Returns the name, the CF attributes as JSON, and the values of each coordinate of a scene's maps, in the order of their dimensions.
 #[pyfunction]
@@ -74,11 +83,13 @@ pub fn coordinates<'py>(py: Python<'py>, scene: &CheckedScene) -> Vec<Coordinate
 pub fn of_grid<'py>(py: Python<'py>, grid: &whiskmap::scene::Grid) -> Vec<Coordinate<'py>> {
     let all = store::coordinates(grid).into_iter();
     all.map(|own| {
-        (
-            own.name,
-            own.attributes.to_string(),
-            PyArray1::from_slice(py, own.values),
-        )
+        let numbers: Option<Vec<f64>> = own.values.iter().map(|value| value.number()).collect();
+        let names = || own.values.iter().map(ToString::to_string).collect();
+        let values = match numbers {
+            Some(numbers) => CoordinateValues::Numbers(PyArray1::from_vec(py, numbers)),
+            None => CoordinateValues::Names(names()),
+        };
+        (own.name, own.attributes.to_string(), values)
     })
     .collect()
 }

@@ -3,14 +3,17 @@
 use crate::arguments::{parameter, refused};
 use crate::errors::of_scene;
 use crate::threads;
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::scene::{
-    AxisScale, AxisValues, Deviations, FrameDeviations, Parameter, Scene, Surface,
+    AxisScale, AxisValues, Coordinate, Deviations, FrameDeviations, Parameter, Scene, Surface,
+    SweepVariable, WhiskerRow,
 };
+use whiskmap::store::{AxisValue, scene_at};
 use whiskmap::traced::TracedShape;
 
 /// Name of the standard deviation of measured radii.
@@ -34,8 +37,16 @@ type Traced = (Vec<[f64; 2]>, Option<usize>);
 /// Surface: distance in mm, spacing and asperity radius in um, length in mm, jitter, and seed.
 type SurfaceTuple = (f64, f64, f64, f64, f64, u32);
 
-/// Description of a scene: title, numbers by name, measured rows, traced points, axes by name, standard deviations by name, surface, and
-/// name.
+/// Row of a table of whiskers: name, numbers by name, measured rows, and traced points.
+type RowTuple = (
+    String,
+    Vec<(String, f64)>,
+    Option<Vec<[f64; 2]>>,
+    Option<Vec<[f64; 2]>>,
+);
+
+/// Description of a scene: title, numbers by name, measured rows, traced points, axes by name, standard deviations by name, surface, table
+/// of whiskers, and name.
 type Description = (
     String,
     BTreeMap<String, f64>,
@@ -44,6 +55,7 @@ type Description = (
     Vec<(String, AxisTuple)>,
     Option<BTreeMap<String, f64>>,
     Option<SurfaceTuple>,
+    Option<Vec<RowTuple>>,
     Option<String>,
 );
 
@@ -68,7 +80,7 @@ impl CheckedScene {
     /// Checks the description of a scene.
     #[staticmethod]
     fn build(py: Python<'_>, description: Description) -> PyResult<Self> {
-        let (title, numbers, rows, traced, axes, deviations, surface, name) = description;
+        let (title, numbers, rows, traced, axes, deviations, surface, table, name) = description;
         let mut builder = Scene::builder(title);
         for (name, value) in numbers {
             builder = builder.set(parameter("whisker", &name)?, value);
@@ -102,10 +114,15 @@ impl CheckedScene {
                 seed: own.5,
             });
         }
+        if let Some(rows) = table {
+            let rows = rows.into_iter().map(whisker_row);
+            builder = builder.whiskers(rows.collect::<PyResult<Vec<_>>>()?);
+        }
         if let Some(name) = name {
             builder = builder.name(name);
         }
-        builder.build().map(Self).map_err(|why| of_scene(py, &why))
+        let build = || builder.build();
+        py.detach(build).map(Self).map_err(|why| of_scene(py, &why))
     }
 
     /// Returns the description from which [`CheckedScene::build`] makes an equal scene.
@@ -114,7 +131,7 @@ impl CheckedScene {
         let given = Parameter::ALL
             .into_iter()
             .filter(|own| *own != Parameter::Taper);
-        let given = given.filter_map(|own| Some((own.name().to_owned(), own.value(&self.0)?)));
+        let given = given.filter_map(|own| Some((own.name().to_owned(), builder.number(own)?)));
         let axes = builder.axes();
         (
             self.0.title.clone(),
@@ -137,8 +154,29 @@ impl CheckedScene {
                     own.seed,
                 )
             }),
+            (!self.0.table.is_empty()).then(|| self.0.table_rows().iter().map(row_tuple).collect()),
             Some(self.0.name.clone()),
         )
+    }
+
+    /// Returns the names of the rows of the table that have no whisker, with the reasons.
+    fn refused(&self) -> Vec<(String, String)> {
+        let refused = self.0.refused();
+        refused
+            .map(|(name, reason)| (name.to_owned(), reason.to_owned()))
+            .collect()
+    }
+
+    /// Returns the scene with the whisker `name` of the table alone.
+    fn whisker(&self, py: Python<'_>, name: &str) -> PyResult<Self> {
+        let wanted = AxisValue {
+            axis: SweepVariable::WHISKER.to_owned(),
+            value: Coordinate::Name(name.to_owned()),
+        };
+        let (scene, _) = scene_at(&self.0, &[wanted], true)
+            .map_err(|why| PyKeyError::new_err(why.to_string()))?;
+        let alone = scene.of_whisker(0);
+        alone.map(Self).map_err(|why| of_scene(py, &why))
     }
 
     /// Returns the scene as the text of a file.
@@ -164,10 +202,37 @@ impl CheckedScene {
             && own.whisker == other.whisker
             && own.pole == other.pole
             && own.grid == other.grid
+            && own.table == other.table
             && own.uncertainty == other.uncertainty
             && own.surface == other.surface
             && own.name == other.name
     }
+}
+
+fn whisker_row((name, numbers, rows, points): RowTuple) -> PyResult<WhiskerRow> {
+    let mut row = WhiskerRow::new(name);
+    for (name, value) in numbers {
+        row = row.set(parameter("table", &name)?, value);
+    }
+    if let Some(rows) = rows {
+        row = row.profile(rows);
+    }
+    Ok(match points {
+        Some(points) => row.rest_points(points),
+        None => row,
+    })
+}
+
+fn row_tuple(row: &WhiskerRow) -> RowTuple {
+    let numbers = row.numbers().iter();
+    (
+        row.name().to_owned(),
+        numbers
+            .map(|(parameter, value)| (parameter.name().to_owned(), *value))
+            .collect(),
+        row.measured_rows().map(<[_]>::to_vec),
+        row.points_mm().map(<[_]>::to_vec),
+    )
 }
 
 fn axis_values(name: &str, values: AxisTuple) -> PyResult<AxisValues> {

@@ -31,6 +31,7 @@ def build(
     axes: Mapping[str, Any],
     uncertainty: Mapping[str, float] | None,
     surface: Surface | None,
+    table: Any,
     name: str | None,
 ) -> CheckedScene:
     """Check the plain values of a scene. `rest` is the traced points with their degree."""
@@ -55,7 +56,7 @@ def build(
         raise ValueError(f"rest_degree = {degree}: must be left out without rest_points")
     traced = None if points is None else ([list(point) for point in points], degree)
     rough = None if surface is None else astuple(surface)
-    return CheckedScene.build((title, present, profile, traced, listed, deviations, rough, name))
+    return CheckedScene.build((title, present, profile, traced, listed, deviations, rough, table, name))
 
 
 def set_parameter(parameter: str, value: Any, given: dict[str, Any], axes: dict[str, Any]) -> None:

@@ -17,7 +17,7 @@ from whiskmap._values import real_array, side_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-_KINDS = np.array(["slip-off", "pull-off", "out-of-reach", "unresolved"])
+_KINDS = np.array(["slip-off", "pull-off", "out-of-reach", "unresolved", "no-whisker"])
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,8 @@ class Detachment:
     Attributes
     ----------
     kind : array of str
-        "slip-off", "pull-off", "out-of-reach" (the resting whisker does not reach the pole) or "unresolved".
+        "slip-off", "pull-off", "out-of-reach" (the resting whisker does not reach the pole), "unresolved", or "no-whisker" (a value is
+        missing or refused).
     push_angle_deg : array of float
         Rotation of the base since first touch: positive CB, negative CF.
     push_chord_deg : array of float
@@ -53,6 +54,8 @@ class Detachment:
     jac : dict of str to array of float
         Exact derivatives of each quantity by name, of the shape of the quantity and one axis more, `variables`. Units are those of
         the names, such as degrees per um. NaN where slip-off turns into pull-off, and where the push ends at first touch.
+    refused : dict of tuple of int to str
+        Reasons of the elements without a whisker, by their indices.
     """
 
     kind: NDArray[np.str_]
@@ -70,6 +73,7 @@ class Detachment:
     snaps_deg: NDArray[np.float64]
     variables: tuple[str, ...]
     jac: dict[str, NDArray[np.float64]]
+    refused: dict[tuple[int, ...], str]
 
 
 def detachment(
@@ -79,6 +83,7 @@ def detachment(
     distance_mm: ArrayLike,
     side: Literal["both", "cb", "cf"] | ArrayLike = "both",
     jac: bool | Sequence[str] = False,
+    strict: bool = False,
     threads: int | None = None,
     **parameters: ArrayLike,
 ) -> Detachment:
@@ -97,6 +102,8 @@ def detachment(
         Variables of the derivatives: names of parameters, and "distance_mm". True selects all parameters that are given here, in
         their order. A variable varies with all other values fixed that are given: with `taper`, the radius at the base varies at
         a fixed taper.
+    strict : bool
+        True refuses all if one element is refused or NaN. Otherwise these elements are "no-whisker", and `refused` has the reasons.
     threads : int, optional
         Number of threads; one for each core if left out.
     **parameters : array_like
@@ -113,9 +120,9 @@ def detachment(
     TypeError
         If a name is unknown, or values are no real numbers.
     SceneError
-        If a value is out of its range: the message names the argument, the index and the value.
+        If a value of all elements is out of its range, or with `strict` of one: the message names the argument, the index and the value.
     ValueError
-        If the arguments do not broadcast, or a value is not finite.
+        If the arguments do not broadcast, or a value is infinite, or with `strict` NaN.
 
     Examples
     --------
@@ -144,8 +151,9 @@ def detachment(
             raise TypeError(f"detachment() got an unexpected keyword argument {name!r}{resembling(name)}")
         arrays[name] = real_array(name, values)
     for name, array in arrays.items():
-        if not np.isfinite(array).all():
-            place = np.unravel_index(int(np.argmin(np.isfinite(array))), array.shape)
+        is_allowed = np.isfinite(array) if strict or array.size == 1 else ~np.isinf(array)
+        if not is_allowed.all():
+            place = np.unravel_index(int(np.argmin(is_allowed)), array.shape)
             raise ValueError(f"{name}{list(map(int, place)) or ''} = {array[place]}: must be finite")
     variables = _variables(jac, tuple(parameters))
     is_cb = _is_cb(side)
@@ -155,25 +163,37 @@ def detachment(
     shape = _shape(arrays | {"side": is_cb})
     fixed = {name: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
     flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items() if name not in fixed}
-    try:
-        kinds, residual, snaps, quantities = _whiskmap.detachment(
-            None if scene is None else _checked(scene),
-            fixed,
-            {name: array for name, array in flat.items() if name != "distance_mm"},
-            flat["distance_mm"],
-            np.broadcast_to(is_cb, shape).ravel(),
-            variables,
-            threads,
-        )
-    except _whiskmap.SceneError as why:
-        raise _named(why, arrays, shape, has_both) from None
+    missing = {int(place): f"{name} is missing" for name, array in flat.items() for place in np.flatnonzero(np.isnan(array))}
+    present = np.setdiff1d(np.arange(flat["distance_mm"].size), np.array(list(missing), dtype=np.intp))
+    kinds, residual, snaps, quantities, refused = _whiskmap.detachment(
+        None if scene is None else _checked(scene),
+        fixed,
+        {name: array[present] for name, array in flat.items() if name != "distance_mm"},
+        flat["distance_mm"][present],
+        np.broadcast_to(is_cb, shape).ravel()[present],
+        variables,
+        threads,
+    )
+    for why in refused:
+        why.element = int(present[why.element])
+    named = {why.element: _named(why, arrays, shape, has_both) for why in refused}
+    if named and (strict or len(named) == present.size):
+        raise named[min(named)]
+    reasons = missing | {element: str(why) for element, why in named.items()}
+
+    def full(values: NDArray[Any], rest: Any, *more: int) -> NDArray[Any]:
+        array = np.full((flat["distance_mm"].size, *more), rest, dtype=values.dtype)
+        array[present] = values.reshape(-1, *more)
+        return array.reshape(*shape, *more)
+
     return Detachment(
-        kind=_KINDS[kinds].reshape(shape),
-        residual=residual.reshape(shape),
-        snaps_deg=snaps.reshape(shape),
+        kind=_KINDS[full(kinds, len(_KINDS) - 1)],
+        residual=full(residual, np.nan),
+        snaps_deg=full(snaps, np.nan),
         variables=variables,
-        jac={name: by.reshape(*shape, len(variables)) for name, _, by in quantities} if variables else {},
-        **{name: values.reshape(shape) for name, values, _ in quantities},
+        jac={name: full(by, np.nan, len(variables)) for name, _, by in quantities} if variables else {},
+        refused={tuple(map(int, np.unravel_index(own, shape))): reasons[own] for own in sorted(reasons)},
+        **{name: full(values, np.nan) for name, values, _ in quantities},
     )
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Literal, Union
 
-from whiskmap._values import number, numbers
+from whiskmap._values import number, number_or_nan, numbers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -220,6 +221,36 @@ def pairs_of(name: str, pairs: Any) -> list[list[float]]:
         if len(row) != 2:
             raise ValueError(f"{name}[{index}]: must have 2 numbers, has {len(row)}")
     return rows
+
+
+def rows_of(table: Any) -> list[Any] | None:
+    """Rows of a table of whiskers: name, numbers by name, profile and traced points."""
+    if table is None:
+        return None
+    if not hasattr(table, "keys"):
+        raise TypeError(f"table = {table!r}: must be a DataFrame or a mapping of columns")
+    columns = {str(own): list(table[own]) for own in table.keys()}
+    if "name" not in columns:
+        raise ValueError("table: must have the column name")
+    names = columns.pop("name")
+    if wrong := [own for own, values in columns.items() if len(values) != len(names)]:
+        raise ValueError(f"table[{wrong[0]!r}]: must have {len(names)} values, as many as names, has {len(columns[wrong[0]])}")
+    pairs = {own: columns.pop(own, [None] * len(names)) for own in PAIRS}
+
+    def given(own: str, row: int) -> list[list[float]] | None:
+        value = pairs[own][row]
+        is_absent = not isinstance(value, Iterable) and math.isnan(number_or_nan(own, value))
+        return None if is_absent else pairs_of(own, value)
+
+    return [
+        (
+            str(name),
+            [(own, number_or_nan(f"table[{own!r}][{row}]", values[row])) for own, values in columns.items()],
+            given("profile", row),
+            given("rest_points", row),
+        )
+        for row, name in enumerate(names)
+    ]
 
 
 def degree_of(value: Any) -> int | None:

@@ -8,12 +8,11 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from whiskmap._description import PARAMETERS, build, order_of, range_of, resembling, set_parameter
-from whiskmap._parts import PAIRS, Grid, Pole, Surface, Whisker, axis_of, degree_of, pairs_of
+from whiskmap._parts import PAIRS, Grid, Pole, Surface, Whisker, axis_of, degree_of, pairs_of, rows_of
 from whiskmap._warnings import warn
 from whiskmap._whiskmap import CheckedScene, coordinates
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -53,11 +52,16 @@ class Scene:
         Standard deviations of the scene's numbers, by name, such as ``{"tip_radius_um": 0.5}``.
     surface : Surface, optional
         A rough surface, for `texture`.
+    table : pandas.DataFrame or mapping, optional
+        Whiskers: a column `name`, and columns of parameters such as `length_mm`, whose numbers replace those of `whisker`; columns
+        `profile` and `rest_points` have arrays, or None. A row with a NaN has no whisker: `refused` has the reason. The table is the first
+        axis of results, `whisker`.
 
     Raises
     ------
     SceneError
-        If a value is out of its range or contradicts another one. `key`, `value` and `allowed` say which.
+        If a value is out of its range or contradicts another one, or no row of a table has a whisker. `key`, `value` and `allowed` say
+        which.
     """
 
     __slots__ = ("_checked",)
@@ -73,6 +77,7 @@ class Scene:
         name: str = "scene",
         uncertainty: Mapping[str, float] | None = None,
         surface: Surface | None = None,
+        table: Any = None,
     ) -> None:
         pole = Pole() if pole is None else pole
         for argument, value, kind in (("whisker", whisker, Whisker), ("grid", grid, Grid), ("pole", pole, Pole)):
@@ -81,7 +86,8 @@ class Scene:
         given = {own.name: getattr(whisker, own.name) for own in fields(whisker) if own.name not in (*PAIRS, "rest_degree")}
         given |= {"pole_radius_mm": pole.radius_mm or None, "friction": pole.friction or None}
         axes = {"push_angle_deg": grid.push_angle_deg, "distance_mm": grid.distance_mm, **grid.sweep}
-        self._checked = build(title, given, whisker.profile, (whisker.rest_points, whisker.rest_degree), axes, uncertainty, surface, name)
+        rest = (whisker.rest_points, whisker.rest_degree)
+        self._checked = build(title, given, whisker.profile, rest, axes, uncertainty, surface, rows_of(table), name)
         warn(self.warnings)
 
     @classmethod
@@ -124,7 +130,7 @@ class Scene:
         **changes
             A number sets a parameter, such as ``taper=0.5`` or ``pole_radius_mm=1``; it ends a sweep of it. A `Range`, a list or
             an array makes the parameter a sweep axis. None leaves a value out. Also `push_angle_deg`, `distance_mm`, `profile`,
-            `rest_points`, `rest_degree`, `title`, `name`, `uncertainty` and `surface`. Their order does not matter.
+            `rest_points`, `rest_degree`, `title`, `name`, `uncertainty`, `surface` and `table`. Their order does not matter.
 
         Raises
         ------
@@ -133,11 +139,12 @@ class Scene:
         SceneError
             If a value is out of its range or contradicts another one.
         """
-        title, given, rows, traced, listed, uncertainty, _, name = self._checked.description()
+        title, given, rows, traced, listed, uncertainty, _, table, name = self._checked.description()
         axes: dict[str, Any] = dict(listed)
         changed: dict[str, Any] = dict(given)
         texts: dict[str, Any] = {"title": title, "name": name, "uncertainty": uncertainty, "surface": self.surface, "profile": rows}
         texts["rest_points"], texts["rest_degree"] = traced or (None, None)
+        texts["table"] = table
         for key in order_of(changes):
             value = changes[key]
             if key in texts:
@@ -151,7 +158,8 @@ class Scene:
         rows, points = (None if texts[own] is None else pairs_of(own, texts[own]) for own in PAIRS)
         is_dropped = points is None and "rest_degree" not in changes
         rest = (points, None if is_dropped else degree_of(texts["rest_degree"]))
-        built = build(texts["title"], changed, rows, rest, axes, texts["uncertainty"], texts["surface"], texts["name"])
+        rough, whiskers = texts["surface"], rows_of(texts["table"]) if "table" in changes else table
+        built = build(texts["title"], changed, rows, rest, axes, texts["uncertainty"], rough, whiskers, texts["name"])
         return Scene._of(built)._warned()
 
     @property
@@ -200,9 +208,26 @@ class Scene:
         return Surface(**dict(zip(names, numbers)), seed=seed)
 
     @property
-    def coords(self) -> dict[str, NDArray[np.float64]]:
-        """Values of all axes by name, in the order of a map's dimensions."""
-        return {name: values for name, _, values in coordinates(self._checked)}
+    def refused(self) -> dict[str, str]:
+        """Reasons of the rows of the table that have no whisker, by name."""
+        return dict(self._checked.refused())
+
+    def select(self, whisker: str) -> Scene:
+        """Return the scene with one whisker of the table, by its name.
+
+        Raises
+        ------
+        KeyError
+            If there is no such whisker, or its row has none.
+        """
+        return Scene._of(self._checked.whisker(whisker))
+
+    @property
+    def coords(self) -> dict[str, NDArray[Any]]:
+        """Values of all axes by name, in the order of a map's dimensions; names of the whiskers of a table."""
+        import numpy as np
+
+        return {name: np.asarray(values) for name, _, values in coordinates(self._checked)}
 
     @property
     def warnings(self) -> list[str]:

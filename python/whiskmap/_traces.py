@@ -36,8 +36,8 @@ def curve(scene: Scene, *, tolerance_deg: float | None = None, threads: int | No
     Returns
     -------
     xarray.Dataset
-        Dimensions are the sweep axes, `side` ("cf", "cb") and `distance_mm`. `kind` is "slip-off", "pull-off", "out-of-reach" or
-        "unresolved"; without a detachment the quantities are NaN. `to_dataframe()` is the table of `whiskmap curve`.
+        Dimensions are the sweep axes, `side` ("cf", "cb") and `distance_mm`. `kind` is "slip-off", "pull-off", "out-of-reach",
+        "unresolved", or "no-whisker" for a row of a table without a whisker; without a detachment the quantities are NaN. `to_dataframe()` is the table of `whiskmap curve`.
 
     Raises
     ------

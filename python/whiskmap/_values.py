@@ -23,6 +23,12 @@ def number(name: str, value: Any) -> float:
         raise TypeError(f"{name} = {value!r}: must be one number") from None
 
 
+def number_or_nan(name: str, value: Any) -> float:
+    """Return a number as `number` does, and NaN for a missing one: None, or NA of pandas."""
+    is_missing = value is None or type(value).__name__ in ("NAType", "NaTType")
+    return float("nan") if is_missing else number(name, value)
+
+
 def numbers(name: str, values: Any) -> list[float]:
     """Return a list, a tuple or a one-dimensional array as a list of floats."""
     if hasattr(values, "__array__"):

@@ -12,7 +12,7 @@ __all__ = [
     "version", "whisk",
 ]
 
-_Coordinate = tuple[str, str, NDArray[float64]]
+_Coordinate = tuple[str, str, NDArray[float64] | list[str]]
 _Column = tuple[str, NDArray[Any] | list[str], str | None, str]
 _Description = tuple[
     str,
@@ -22,6 +22,7 @@ _Description = tuple[
     list[tuple[str, Any]],
     dict[str, float] | None,
     tuple[float, float, float, float, float, int] | None,
+    list[tuple[str, list[tuple[str, float]], list[list[float]] | None, list[list[float]] | None]] | None,
     str | None,
 ]
 
@@ -47,6 +48,8 @@ class CheckedScene:
     def description(self) -> _Description: ...
     def to_toml(self) -> str: ...
     def warnings(self) -> list[str]: ...
+    def refused(self) -> list[tuple[str, str]]: ...
+    def whisker(self, name: str) -> CheckedScene: ...
     def rest_fit(self) -> tuple[int, float, bool] | None: ...
     def __eq__(self, other: object, /) -> bool: ...
 

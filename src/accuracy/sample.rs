@@ -112,7 +112,7 @@ fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
-/// Returns the whiskers at some values of the sweep's axes: at their ends alone if there are more than two axes.
+/// Returns the whiskers at some values of the sweep's axes: at their ends alone if there are more than two axes. All whiskers of a table count.
 fn whiskers(scene: &Scene) -> Vec<SweptWhisker> {
     let mut few = SceneData::clone(scene);
     let most = if few.grid.sweep.len() > 2 {
@@ -121,9 +121,12 @@ fn whiskers(scene: &Scene) -> Vec<SweptWhisker> {
         WHISKERS
     };
     for axis in &mut few.grid.sweep {
-        axis.values = spread(&axis.values, most);
+        // Whiskers of a table are in no order.
+        if axis.variable.parameter().is_some() {
+            axis.values = spread(&axis.values, most);
+        }
     }
-    few.whiskers().collect()
+    few.whiskers().flatten().collect()
 }
 
 /// Returns at most `most` values, with the first and the last.

@@ -40,7 +40,7 @@ pub fn places(hits: &[Hit]) -> Vec<(f64, f64)> {
 pub fn whisker_sides(scene: &Scene) -> Vec<(SweptWhisker, Side)> {
     let sides = Plan::sides(scene);
     let both = |own: SweptWhisker| sides.iter().map(move |side| (own.clone(), *side));
-    scene.whiskers().flat_map(both).collect()
+    scene.whiskers().flatten().flat_map(both).collect()
 }
 
 /// Distribution of the magnitude of an error over all states, in the unit of the field that contains it.

@@ -80,6 +80,8 @@ named! {
         Disagreement = 102, "unresolved: cell and boundary disagree";
         /// The boundary of the cell's row was not found, or only in part.
         NoBoundary = 103, "unresolved: boundary not found";
+        /// The row of the table of whiskers has no whisker; the scene names the reason.
+        NoWhisker = 104, "unresolved: no whisker";
     }
 }
 

@@ -84,7 +84,7 @@ fn check_grids(grids: [&Grid; 2]) -> Result<(), Mismatch> {
 /// Returns names and values of all axes: the sweep axes, distance and push angle.
 fn axes(grid: &Grid) -> Vec<(&'static str, &[f64])> {
     let sweep = grid.sweep.iter();
-    let sweep = sweep.map(|axis| (axis.parameter.axis(), &*axis.values));
+    let sweep = sweep.map(|axis| (axis.variable.name(), &*axis.values));
     let inside = [
         ("distance_mm", &*grid.distance_mm),
         ("push_angle_deg", &*grid.push_angle_deg),

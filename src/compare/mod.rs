@@ -12,7 +12,7 @@ pub use self::codes::{CodeComparison, CodePair, DifferentCodes};
 pub use self::quantity::QuantityComparison;
 pub use self::within::Within;
 
-use crate::scene::{Grid, digits, rounded};
+use crate::scene::{Coordinate, Grid};
 use crate::store::{MapSource, StoreError, ZarrStore};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
@@ -46,26 +46,26 @@ pub enum CompareError {
 
 /// Place of a cell: names and values of the sweep axes, the distance in mm and the push angle in degrees.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CellPlace(pub Vec<(&'static str, f64)>);
+pub struct CellPlace(pub Vec<(&'static str, Coordinate)>);
 
 impl CellPlace {
     /// Returns the place of a cell of `grid` with this index, `[whisker][distance][push angle]`.
     fn of(grid: &Grid, cell: usize) -> Self {
         let (columns, rows) = (grid.push_angle_deg.len(), grid.distance_mm.len());
         let whisker = grid.place(cell / (rows * columns));
-        let sweep = whisker.values().map(|(axis, value)| (axis.axis(), value));
         let inside = [
             ("distance_mm", grid.distance_mm[cell / columns % rows]),
             ("push_angle_deg", grid.push_angle_deg[cell % columns]),
         ];
-        Self(sweep.chain(inside).collect())
+        let inside = inside.map(|(name, value)| (name, Coordinate::Number(value)));
+        Self(whisker.coordinates().chain(inside).collect())
     }
 }
 
 impl fmt::Display for CellPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values = self.0.iter();
-        let values = values.map(|(name, value)| format!("{name} = {}", digits(rounded(*value, 4))));
+        let values = values.map(|(name, value)| format!("{name} = {}", value.rounded(4)));
         f.write_str(&values.collect::<Vec<_>>().join(", "))
     }
 }

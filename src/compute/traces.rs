@@ -1,7 +1,7 @@
 //! Detachment curves, branches and shapes, computed in memory.
 
 use super::{Error, Options, accuracy};
-use crate::scene::{Scene, SweepPlace, SweptWhisker};
+use crate::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
 use crate::trace::{Branch, Detachment, NoState, WhiskerShape, curve_at, sides, whiskers_at_once};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
@@ -29,18 +29,19 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
     let accuracy = accuracy(scene, options.tolerance_deg, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     let distances = &scene.grid.distance_mm;
-    let curves = |group: Vec<_>| {
-        sides(&group, |own: &SweptWhisker, side| {
-            let parts = distances.chunks(DISTANCES_AT_ONCE);
-            let parts = parts.filter(|_| !options.is_cancelled());
-            parts
-                .flat_map(|part| curve_at(resolution, &own.whisker, &own.pole, side, part))
-                .collect()
-        })
+    let of_side = |own: Result<&SweptWhisker, &RefusedWhisker>, side| {
+        let Ok(own) = own else {
+            return Detachment::without_whisker(side, distances);
+        };
+        let parts = distances.chunks(DISTANCES_AT_ONCE);
+        let parts = parts.filter(|_| !options.is_cancelled());
+        parts
+            .flat_map(|part| curve_at(resolution, &own.whisker, &own.pole, side, part))
+            .collect()
     };
     let mut ends = Vec::with_capacity(2 * scene.whisker_count() * distances.len());
     for group in scene.whisker_groups(whiskers_at_once(distances.len())) {
-        ends.extend(curves(group));
+        ends.extend(sides(&group, of_side));
         if options.is_cancelled() {
             return Err(Error::Cancelled);
         }

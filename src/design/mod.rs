@@ -137,7 +137,7 @@ pub fn design_until(
     cancel: &AtomicBool,
 ) -> Result<Design, DesignError> {
     if let Some(axis) = scene.grid.sweep.first() {
-        return Err(DesignError::Sweep(axis.parameter.axis()));
+        return Err(DesignError::Sweep(axis.variable.name()));
     }
     let Some(value) = parameter.value(scene) else {
         let given = Parameter::given(scene);

@@ -185,7 +185,7 @@ mod tests {
     /// The cone of the paper with more rows at the tip than its map has.
     fn cone() -> WhiskerSide {
         let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
-        let swept = scene.whisker(0);
+        let swept = scene.first_whisker();
         let pushes: Vec<f64> = (1..60).map(f64::from).collect();
         let columns = Arc::new(SideColumns::new(&pushes, Side::Cb, 0));
         let (rod, units) = (swept.rod(columns.side), swept.whisker.units());

@@ -55,6 +55,13 @@ impl Panel {
         panel
     }
 
+    /// Creates the panel of a row of a table that has no whisker.
+    pub(super) fn without_whisker(cells: usize, channels: Channels) -> Self {
+        let mut panel = Self::unresolved(cells, channels);
+        panel.status.fill(Status::NoWhisker.code());
+        panel
+    }
+
     /// Changes the number of cells and the channels. Every cell must be written afterwards.
     pub(super) fn resized(mut self, cells: usize, channels: Channels) -> Self {
         for codes in [&mut self.regime, &mut self.status, &mut self.newton_steps] {

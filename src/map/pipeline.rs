@@ -42,10 +42,10 @@ pub struct Pipeline<'a, 'e> {
     pushes: Arc<[f64]>,
     /// The whiskers of each group of panels whose batches are still to be made.
     groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
-    /// The sides of the group of the last batch, and the number of their rows in batches: band by band, and in a band side by side.
-    begun: Option<(Arc<[WhiskerSide]>, usize)>,
-    /// The batches made and not completed, each with whether it is the last one of its band.
-    queue: VecDeque<(Arc<RowBatch>, bool)>,
+    /// The group of the last batch, and the number of its rows in batches: band by band, and in a band side by side.
+    begun: Option<(Group, usize)>,
+    /// The batches made and not completed.
+    queue: VecDeque<Queued>,
     worker: Worker<'e>,
     /// True if the engine has a thread of its own, beside the stages.
     has_device: bool,
@@ -53,6 +53,22 @@ pub struct Pipeline<'a, 'e> {
     /// Maximum residual of the rows of an engine, in whisker lengths; `None` without an engine.
     net: Option<f64>,
     summary: Summary,
+}
+
+/// Group of panels.
+struct Group {
+    /// Sides of the whiskers of the group.
+    sides: Arc<[WhiskerSide]>,
+    /// Places in the group of rows of a table that have no whisker.
+    without_whisker: Arc<[usize]>,
+}
+
+/// Batch of a group.
+struct Queued {
+    /// Batch that was made; `None` for a group without a whisker.
+    batch: Option<Arc<RowBatch>>,
+    /// Places in the group of rows without a whisker, if the batch is the last one of its band.
+    completes: Option<Arc<[usize]>>,
 }
 
 impl<'a, 'e> Pipeline<'a, 'e> {
@@ -137,37 +153,68 @@ impl<'a, 'e> Pipeline<'a, 'e> {
     fn advance(&mut self, panels: &mut Vec<Panel>) -> Option<(usize, bool)> {
         let ahead = if self.worker.has_thread() { AHEAD } else { 0 };
         while self.queue.len() <= ahead
-            && let Some((batch, is_last)) = self.next_batch()
+            && let Some(queued) = self.next_batch()
         {
-            let batch = Arc::new(batch);
-            if batch.is_for_engine() {
-                self.worker.submit(Arc::clone(&batch));
+            if let Some(batch) = &queued.batch
+                && batch.is_for_engine()
+            {
+                self.worker.submit(Arc::clone(batch));
             }
-            self.queue.push_back((batch, is_last));
+            self.queue.push_back(queued);
         }
-        let (batch, is_last) = self.queue.pop_front()?;
-        let begun = Stopwatch::start();
-        let is_submitted = batch.is_for_engine();
-        let cells = is_submitted.then(|| self.worker.collect()).flatten();
-        if self.has_device {
-            self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
+        let Queued { batch, completes } = self.queue.pop_front()?;
+        let mut done = 0;
+        if let Some(batch) = batch {
+            let begun = Stopwatch::start();
+            let is_submitted = batch.is_for_engine();
+            let cells = is_submitted.then(|| self.worker.collect()).flatten();
+            if self.has_device {
+                self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
+            }
+            self.complete(&batch, cells, panels);
+            done += batch.cells();
         }
-        self.complete(&batch, cells, panels);
-        Some((batch.cells(), is_last))
+        let (grid, channels) = (&self.scene.grid, self.plan.channels);
+        let cells = grid.push_angle_deg.len() * grid.distance_mm.len();
+        for place in completes.as_deref().into_iter().flatten() {
+            panels.insert(*place, Panel::without_whisker(cells, channels));
+            done += cells;
+        }
+        Some((done, completes.is_some()))
     }
 
-    /// Makes the next batch, with expansions of its rows if there is an engine. Returns it with whether it is the last one of its band.
-    fn next_batch(&mut self) -> Option<(RowBatch, bool)> {
-        let (sides, from) = match self.begun.take() {
-            Some(begun) => begun,
-            None => {
-                let whiskers = self.groups.next()?;
-                let net = self.net.filter(|_| self.worker.is_working());
-                let of_plan = (self.plan, self.method, net);
-                let sides = || whisker_sides(self.scene, of_plan, &self.columns, whiskers);
-                (self.summary.stages.time(Stage::Sheets, sides), 0)
+    /// Computes the sides of the next group.
+    fn next_group(&mut self) -> Option<Group> {
+        let whiskers = self.groups.next()?;
+        let (mut found, mut without_whisker) = (Vec::new(), Vec::new());
+        for (place, index) in whiskers.enumerate() {
+            match self.scene.whisker(index) {
+                Ok(whisker) => found.push(whisker),
+                Err(_) => without_whisker.push(place),
             }
+        }
+        let net = self.net.filter(|_| self.worker.is_working());
+        let of_plan = (self.plan, self.method, net);
+        let sides = || whisker_sides(self.scene, of_plan, &self.columns, &found);
+        Some(Group {
+            sides: self.summary.stages.time(Stage::Sheets, sides),
+            without_whisker: without_whisker.into(),
+        })
+    }
+
+    /// Makes the next batch, with expansions of its rows if there is an engine.
+    fn next_batch(&mut self) -> Option<Queued> {
+        let (group, from) = match self.begun.take() {
+            Some(begun) => begun,
+            None => (self.next_group()?, 0),
         };
+        let sides = &group.sides;
+        if sides.is_empty() {
+            return Some(Queued {
+                batch: None,
+                completes: Some(group.without_whisker),
+            });
+        }
         let method = self.method;
         let height = self.scene.grid.distance_mm.len();
         let all = sides.len() * height;
@@ -179,7 +226,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             let i = i - band.start * sides.len();
             (i / band.len(), band.start + i % band.len())
         });
-        let mut batch = RowBatch::new(method, Arc::clone(&sides), Arc::clone(&self.pushes), rows);
+        let mut batch = RowBatch::new(method, Arc::clone(sides), Arc::clone(&self.pushes), rows);
         batch.has_values = self.plan.channels.has_state();
         if let Some(most) = self.net
             && self.worker.is_working()
@@ -187,8 +234,10 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             let times = &mut self.summary.stages;
             batch = times.time(Stage::Rows, || batch.with_expansions(most));
         }
-        self.begun = (to < all).then_some((sides, to));
-        Some((batch, to == end))
+        let completes = (to == end).then(|| Arc::clone(&group.without_whisker));
+        self.begun = (to < all).then_some((group, to));
+        let batch = Some(Arc::new(batch));
+        Some(Queued { batch, completes })
     }
 
     /// The rows of the band that has `row`.

@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn a_state_beyond_the_end_is_no_contact() {
         let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
-        let (method, swept) = (Method::fine(), scene.whisker(0));
+        let (method, swept) = (Method::fine(), scene.first_whisker());
         let push_angle_deg: Vec<f64> = (1..60).map(f64::from).collect();
         let columns = SideColumns::new(&push_angle_deg, Side::Cb, 0);
         let pushes: Arc<[f64]> = columns.magnitudes.clone().into();

@@ -6,7 +6,6 @@ use crate::scene::{Parameter, Scene, SweptWhisker};
 use crate::sensitivity::of_rows;
 use crate::sheet::Sheet;
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::Arc;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::batch::Method;
@@ -23,15 +22,14 @@ pub fn side_columns(push_angle_deg: &[f64], sides: &[Side]) -> (Vec<Arc<SideColu
     (columns.collect(), pushes.into())
 }
 
-/// Computes every side of some of the `whiskers` of `scene`, whisker by whisker, with the channels of the plan. If an engine evaluates
+/// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the channels of the plan. If an engine evaluates
 /// rows, each side gets a `net` with this residual, in whisker lengths.
 pub fn whisker_sides(
     scene: &Scene,
     (plan, method, net): (&Plan, Method, Option<f64>),
     columns: &[Arc<SideColumns>],
-    whiskers: Range<usize>,
+    whiskers: &[SweptWhisker],
 ) -> Arc<[WhiskerSide]> {
-    let whiskers: Vec<SweptWhisker> = whiskers.map(|index| scene.whisker(index)).collect();
     let of_whisker = |swept| columns.iter().map(move |columns| (swept, columns));
     let pairs: Vec<_> = whiskers.iter().flat_map(of_whisker).collect();
     let grid = &scene.grid;

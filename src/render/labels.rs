@@ -1,6 +1,6 @@
 //! Labels of axes, channels and regions in words, with their units.
 
-use crate::scene::Parameter;
+use crate::scene::{Parameter, SweepVariable};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_plot::Region;
 
@@ -54,6 +54,13 @@ pub fn parameter(parameter: Parameter) -> String {
         "1" => parameter.title().to_owned(),
         unit => format!("{} ({})", parameter.title(), unit.replace("um", "\u{b5}m")),
     }
+}
+
+/// Returns the label of a sweep axis.
+#[must_use]
+pub fn variable(variable: &SweepVariable) -> String {
+    let own = variable.parameter();
+    own.map_or_else(|| variable.title().to_owned(), parameter)
 }
 
 /// Returns the label of a channel of quantities.

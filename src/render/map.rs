@@ -4,7 +4,7 @@ use super::boundary::stretches;
 use super::marks::{MARKED, has_marks, is_mark};
 use super::{MapOptions, RenderError, labels, row};
 use crate::classify::Regime;
-use crate::scene::SweepAxis;
+use crate::scene::{SweepAxis, SweepVariable};
 use crate::store::{ChannelValues, MapSlice, NOT_COMPUTED};
 use std::collections::BTreeMap;
 use whiskmap_plot::{
@@ -63,9 +63,13 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
 }
 
 fn panel_axis(axis: &SweepAxis) -> PanelAxis {
-    PanelAxis {
-        label: labels::parameter(axis.parameter),
-        values: axis.values.clone(),
+    let label = labels::variable(&axis.variable);
+    match axis.variable {
+        SweepVariable::Parameter(_) => PanelAxis::of_values(label, &axis.values),
+        SweepVariable::Whisker(_) => PanelAxis {
+            label,
+            texts: axis.coordinates().map(|name| name.to_string()).collect(),
+        },
     }
 }
 

@@ -254,7 +254,7 @@ const fn look(kind: DetachmentKind) -> Option<(Ink, &'static str)> {
     match kind {
         DetachmentKind::SlipOff => Some((Ink::Black, "slip-off")),
         DetachmentKind::PullOff => Some((Ink::Blue, "pull-off")),
-        DetachmentKind::OutOfReach | DetachmentKind::Unresolved => None,
+        DetachmentKind::OutOfReach | DetachmentKind::Unresolved | DetachmentKind::NoWhisker => None,
     }
 }
 

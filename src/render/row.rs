@@ -3,6 +3,7 @@
 use super::marks::has_marks;
 use super::{MapOptions, RenderError, labels};
 use crate::classify::Status;
+use crate::scene::Coordinate;
 use crate::store::{ChannelValues, MapSlice};
 use whiskmap_plot::{Chart, Ink, Line, Picture, Plot, Stroke};
 
@@ -31,8 +32,9 @@ pub fn chart(
     let mut lines = Vec::new();
     let mut names = vec![String::new()];
     if let [axis] = &*grid.sweep {
-        let name = |value: &f64| format!("{} = {value}", labels::parameter(axis.parameter));
-        names = axis.values.iter().map(name).collect();
+        let label = labels::variable(&axis.variable);
+        let name = |value: Coordinate| format!("{label} = {value}");
+        names = axis.coordinates().map(name).collect();
     }
     for (index, name) in names.iter().enumerate() {
         let values: Vec<f64> = map.read_panel(channel, index)?.values().collect();

@@ -1,9 +1,10 @@
 //! Numbers of a scene before they are checked.
 
 use super::axis::AxisValues;
-use super::grid::SweepPlace;
+use super::grid::{Coordinate, SweepPlace};
 use super::parameter::Parameter;
 use super::surface::Surface;
+use super::table::WhiskerRow;
 use crate::traced::TracedShape;
 use std::sync::Arc;
 
@@ -74,6 +75,11 @@ impl Numbers {
         self.0[parameter as usize] = Some(value);
     }
 
+    /// Removes a number of the scene.
+    pub fn clear(&mut self, parameter: Parameter) {
+        self.0[parameter as usize] = None;
+    }
+
     /// Returns the numbers of the whisker at a place of the sweep.
     pub fn at(mut self, place: &SweepPlace) -> Self {
         for (parameter, value) in place.values() {
@@ -122,6 +128,8 @@ pub struct SceneBuilder {
     pub(super) rows: Option<Vec<[f64; 2]>>,
     /// Shape at rest through traced points; `None` without them.
     pub(super) traced: Option<Arc<TracedShape>>,
+    /// Table of whiskers, the first sweep axis; `None` without one.
+    pub(super) table: Option<Arc<[WhiskerRow]>>,
     pub(super) push_angle_deg: AxisValues,
     pub(super) distance_mm: AxisValues,
     pub(super) sweep: Vec<(Parameter, AxisValues)>,
@@ -146,6 +154,12 @@ impl SceneBuilder {
     pub fn set(mut self, parameter: Parameter, value: f64) -> Self {
         self.numbers.set(parameter, value);
         self
+    }
+
+    /// Returns a given number of the scene, in the unit of the parameter; `None` if it is not given, or by a table of whiskers alone.
+    #[must_use]
+    pub fn number(&self, parameter: Parameter) -> Option<f64> {
+        self.numbers.get(parameter)
     }
 
     /// Sets measured radii instead of those at base and tip: arclength in millimetres and radius in micrometres, `[row][arclength,
@@ -190,6 +204,28 @@ impl SceneBuilder {
             None => self.sweep.push((parameter, values)),
         }
         self
+    }
+
+    /// Sets the only value of the axis of this name: of push angles, of distances, of a sweep, or the name of a whisker of the table. Other
+    /// axes and names change nothing.
+    #[must_use]
+    pub fn fixed(mut self, axis: &str, value: &Coordinate) -> Self {
+        let mut swept = Parameter::SWEPT.into_iter();
+        match (value, axis) {
+            (Coordinate::Name(name), _) => {
+                let rows = self.table.iter().flat_map(|rows| rows.iter());
+                let named: Vec<WhiskerRow> =
+                    rows.filter(|row| row.name == *name).cloned().collect();
+                self.table = self.table.map(|_| named.into());
+                self
+            }
+            (Coordinate::Number(value), "push_angle_deg") => self.push_angle_deg([*value]),
+            (Coordinate::Number(value), "distance_mm") => self.distance_mm([*value]),
+            (Coordinate::Number(value), _) => match swept.find(|own| own.axis() == axis) {
+                Some(parameter) => self.sweep(parameter, [*value]),
+                None => self,
+            },
+        }
     }
 
     /// Returns the name and the values of each axis as they are given: push angles, distances, and the sweep in order.

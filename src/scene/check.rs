@@ -7,7 +7,7 @@ use super::builder::{Numbers, SceneBuilder};
 use super::data::SceneData;
 use super::deviations;
 use super::error::SceneFault;
-use super::grid::{FARTHEST, Grid, NEAREST};
+use super::grid::{FARTHEST, Grid, NEAREST, SweepAxis, SweepVariable};
 use super::limits::{NumberLimits, digits};
 use super::parameter::{MOST_STRETCH, Parameter, STIFFEST_TIP};
 use super::profile;
@@ -17,6 +17,7 @@ use super::toml::SceneText;
 use super::warnings::{LENGTH_MM, LENGTH_UNITS, MODULUS_GPA, MODULUS_UNITS, other_unit};
 use super::whisker::{Curvature, Pole, Whisker};
 use crate::traced::TracedShape;
+use std::sync::Arc;
 
 /// Most cells of a scene: more than any disk holds, as a stored cell takes about 20 bytes.
 const MOST_CELLS: u128 = 1 << 44;
@@ -31,6 +32,24 @@ impl SceneBuilder {
     /// Checks the description and returns the data of the scene, with `text` as its TOML.
     pub(super) fn checked(&self, text: SceneText) -> Result<SceneData, SceneFault> {
         check_title(&self.title)?;
+        let Some(rows) = &self.table else {
+            return self.data(text);
+        };
+        let (table, first) = self.table_whiskers(rows)?;
+        let mut data = first.data(text)?;
+        let names = rows.iter().map(|row| row.name.clone());
+        let axis = SweepAxis {
+            variable: SweepVariable::Whisker(names.collect()),
+            values: (1..=rows.len()).map(|row| row as f64).collect(),
+        };
+        data.table = table.into();
+        data.grid.sweep.insert(0, axis);
+        check_size(&data.grid)?;
+        Ok(data)
+    }
+
+    /// Checks the whiskers of a scene without a table, and returns the first one, its pole, and the grid.
+    pub(super) fn first(&self) -> Result<(Whisker, Pole, Grid), SceneFault> {
         let lengths_mm = sweep::lengths_mm(self)?;
         let grid = grid(self, lengths_mm)?;
         sweep::refuse_at_odds(self)?;
@@ -44,6 +63,12 @@ impl SceneBuilder {
         if grid.axis(Parameter::ParabolaPerMm).is_none() {
             whisker.curvature = whisker.curvature.filter(Curvature::is_given);
         }
+        Ok((whisker, pole, grid))
+    }
+
+    /// Checks a scene without a table and returns its data.
+    fn data(&self, text: SceneText) -> Result<SceneData, SceneFault> {
+        let (whisker, pole, grid) = self.first()?;
         check_name(self.name.as_deref())?;
         Ok(SceneData {
             title: self.title.clone(),
@@ -52,6 +77,7 @@ impl SceneBuilder {
             whisker,
             pole,
             grid,
+            table: Arc::default(),
             name: self.name.as_ref().unwrap_or(&self.stem).clone(),
             text,
         })
@@ -153,22 +179,28 @@ fn grid(scene: &SceneBuilder, [shortest, longest]: [f64; 2]) -> Result<Grid, Sce
     let reach = NumberLimits::between(near, far).remarks(unit);
     let distance_mm = scene.distance_mm.checked("grid.distance_mm", &reach)?;
     let sweep = sweep::axes(scene, [shortest, longest])?;
+    let grid = Grid {
+        push_angle_deg,
+        distance_mm,
+        sweep,
+    };
+    check_size(&grid)?;
+    Ok(grid)
+}
 
-    let mut counts = vec![push_angle_deg.len(), distance_mm.len()];
-    counts.extend(sweep.iter().map(|axis| axis.values.len()));
-    let cells = counts
-        .iter()
-        .try_fold(1, |cells: u128, &count| cells.checked_mul(count as u128));
+/// Checks the number of cells of a grid.
+fn check_size(grid: &Grid) -> Result<(), SceneFault> {
+    let sweep = grid.sweep.iter().map(|axis| axis.values.len());
+    let mut counts = [grid.push_angle_deg.len(), grid.distance_mm.len()]
+        .into_iter()
+        .chain(sweep);
+    let cells = counts.try_fold(1, |cells: u128, count| cells.checked_mul(count as u128));
     if cells.is_none_or(|cells| cells > MOST_CELLS) {
         let has = cells.map_or_else(String::new, |cells| format!(", has {cells}"));
         let must = format!("must have at most {MOST_CELLS} cells over all axes{has}");
         return Err(SceneFault::new("grid", must));
     }
-    Ok(Grid {
-        push_angle_deg,
-        distance_mm,
-        sweep,
-    })
+    Ok(())
 }
 
 /// Checks the pole. Where its rim touches the whisker at rest, the centre is at a distance `D` from the base. Along the whisker, `D^2`

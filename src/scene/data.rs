@@ -4,20 +4,24 @@ use super::builder::Deviations;
 use super::grid::{FARTHEST, Grid, NEAREST, SweepPlace};
 use super::parameter::Parameter;
 use super::surface::Surface;
+use super::table::TableWhisker;
 use super::toml::SceneText;
 use super::whisker::{Curvature, Pole, SweptWhisker, Whisker};
+use std::sync::Arc;
 
 /// Data of a scene. Only a [`Scene`](super::Scene) guarantees that the values are valid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneData {
     /// Title of the scene: one line of text.
     pub title: String,
-    /// Whisker of the scene, the first one of a sweep. [`SceneData::whiskers`] yields the whiskers to simulate.
+    /// Whisker of the scene, the first one of a sweep that exists. [`SceneData::whiskers`] yields the whiskers to simulate.
     pub whisker: Whisker,
-    /// Pole of the scene, the first one of a sweep.
+    /// Pole of the scene, the first one of a sweep that exists.
     pub pole: Pole,
     /// Push angles, distances and sweep axes of the map.
     pub grid: Grid,
+    /// Whiskers of the table of whiskers, `[row]`; empty without one.
+    pub table: Arc<[TableWhisker]>,
     /// Standard deviations of the scene's numbers; `None` if the scene does not give them.
     pub uncertainty: Option<Deviations>,
     /// Rough surface in front of the whisker; `None` if the scene does not give it.
@@ -28,12 +32,41 @@ pub struct SceneData {
     pub text: SceneText,
 }
 
+/// Row of a table of whiskers without a whisker, at a place of the sweep.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{name}: {reason}")]
+pub struct RefusedWhisker {
+    /// Place of the row in the sweep.
+    pub place: SweepPlace,
+    /// Name of the row.
+    pub name: String,
+    /// Reason why the row has no whisker.
+    pub reason: String,
+}
+
 impl SceneData {
-    /// Returns the scene's whisker and pole with the values of `place`. A taper determines the radius at the tip. The vertex of a
-    /// curvature axis is the whisker's own, or 0 if the scene gives none.
-    #[must_use]
-    pub fn whisker_at(&self, place: SweepPlace) -> SweptWhisker {
-        let (mut whisker, mut pole) = (self.whisker.clone(), self.pole);
+    /// Returns the whisker and pole of `place`: those of its row in the table of whiskers, or of the scene, with the values of
+    /// `place`. A taper determines the radius at the tip. The vertex of a curvature axis is the whisker's own, or 0 if the scene gives
+    /// none.
+    ///
+    /// # Errors
+    /// If the row of the table has no whisker.
+    pub fn whisker_at(&self, place: SweepPlace) -> Result<SweptWhisker, RefusedWhisker> {
+        let row = place.row().and_then(|row| self.table.get(row));
+        let (mut whisker, mut pole) = match row {
+            None => (self.whisker.clone(), self.pole),
+            Some(TableWhisker { found: Ok(own), .. }) => own.clone(),
+            Some(TableWhisker {
+                name,
+                found: Err(reason),
+            }) => {
+                return Err(RefusedWhisker {
+                    place,
+                    name: name.clone(),
+                    reason: reason.clone(),
+                });
+            }
+        };
         let mut curvature = whisker.curvature.unwrap_or_default();
         for (parameter, value) in place.values() {
             match parameter {
@@ -63,26 +96,32 @@ impl SceneData {
             whisker.tip_radius_um = whisker.base_radius_um * (1.0 - taper);
         }
         whisker.curvature = Some(curvature).filter(Curvature::is_given);
-        SweptWhisker {
+        Ok(SweptWhisker {
             place,
             whisker,
             pole,
-        }
+        })
     }
 
-    /// Returns every whisker of the sweep; the first axis varies fastest. Without axes, it is the one whisker of the scene.
-    pub fn whiskers(&self) -> impl Iterator<Item = SweptWhisker> {
+    /// Returns every whisker of the sweep; the first axis varies fastest. Without axes, it is the one whisker of the scene. Places of rows
+    /// without a whisker have the reason.
+    pub fn whiskers(&self) -> impl Iterator<Item = Result<SweptWhisker, RefusedWhisker>> {
         (0..self.whisker_count()).map(|index| self.whisker(index))
     }
 
     /// Returns whisker `index` of the sweep, in the order of [`Self::whiskers`]. Indices are taken modulo [`Self::whisker_count`].
-    #[must_use]
-    pub fn whisker(&self, index: usize) -> SweptWhisker {
+    ///
+    /// # Errors
+    /// If its row in the table of whiskers has no whisker.
+    pub fn whisker(&self, index: usize) -> Result<SweptWhisker, RefusedWhisker> {
         self.whisker_at(self.grid.place(index))
     }
 
     /// Returns the whiskers of the sweep in groups of `size`, `[group][whisker]`; the last group has the rest.
-    pub fn whisker_groups(&self, size: usize) -> impl Iterator<Item = Vec<SweptWhisker>> {
+    pub fn whisker_groups(
+        &self,
+        size: usize,
+    ) -> impl Iterator<Item = Vec<Result<SweptWhisker, RefusedWhisker>>> {
         let mut whiskers = self.whiskers();
         let next = move || -> Vec<_> { whiskers.by_ref().take(size).collect() };
         std::iter::repeat_with(next).take_while(|group| !group.is_empty())
@@ -94,17 +133,29 @@ impl SceneData {
         self.grid.whisker_count()
     }
 
-    /// Returns the first whisker of the sweep, or the only one.
+    /// Returns the first whisker of the sweep that exists, or the only one.
     #[must_use]
     pub fn first_whisker(&self) -> SweptWhisker {
-        self.whisker(0)
+        let mut whiskers = self.whiskers().flatten();
+        // One of the whiskers of a scene exists.
+        whiskers.next().unwrap_or_else(|| SweptWhisker {
+            place: self.grid.place(0),
+            whisker: self.whisker.clone(),
+            pole: self.pole,
+        })
     }
 
-    /// Returns the whiskers at the ends of the sweep axes: an effect that any whisker has, one of these has.
+    /// Returns the rows of the table of whiskers that have no whisker, each with the reason.
+    pub fn refused(&self) -> impl Iterator<Item = (&str, &str)> {
+        let rows = self.table.iter();
+        rows.filter_map(|row| Some((&*row.name, &**row.found.as_ref().err()?)))
+    }
+
+    /// Returns the whiskers at the ends of the sweep axes, and all of a table: an effect that any whisker has, one of these has.
     pub fn corner_whiskers(&self) -> impl Iterator<Item = SweptWhisker> {
         let ends = self.grid.ends();
         let corners = 0..ends.whisker_count();
-        corners.map(move |index| self.whisker_at(ends.place(index)))
+        corners.filter_map(move |index| self.whisker_at(ends.place(index)).ok())
     }
 
     /// Returns true if any whisker of the sweep has friction with its pole.

@@ -13,6 +13,7 @@ mod grid;
 mod limits;
 mod parameter;
 mod profile;
+mod rows;
 #[allow(
     clippy::module_inception,
     reason = "the type that this module is named after"
@@ -21,6 +22,7 @@ mod scene;
 mod shape;
 mod surface;
 mod sweep;
+mod table;
 mod toml;
 mod warnings;
 mod whisker;
@@ -30,14 +32,15 @@ pub(crate) use grid::NEAREST;
 pub use axis::{AxisScale, AxisValues};
 pub use builder::{Deviations, FrameDeviations, SceneBuilder};
 pub use check::LONGEST_TITLE;
-pub use data::SceneData;
+pub use data::{RefusedWhisker, SceneData};
 
 pub use error::SceneError;
-pub use grid::{Grid, SweepAxis, SweepPlace};
+pub use grid::{Coordinate, Grid, SweepAxis, SweepPlace, SweepVariable};
 pub use limits::{digits, rounded};
 pub use parameter::Parameter;
 pub(crate) use parameter::derivative_columns;
 pub use scene::Scene;
 pub use surface::Surface;
+pub use table::{TableWhisker, WhiskerRow};
 pub use toml::SceneText;
 pub use whisker::{Curvature, EulerSpiral, Pole, SweptWhisker, Whisker};

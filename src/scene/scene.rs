@@ -8,6 +8,7 @@ use super::builder::SceneBuilder;
 use super::data::SceneData;
 use super::error::{SceneError, SceneFault};
 use super::parameter::Parameter;
+use super::table::WhiskerRow;
 use super::toml::SceneText;
 use crate::traced::TracedShape;
 
@@ -45,20 +46,9 @@ impl SceneBuilder {
     ///
     /// # Errors
     /// If a number is missing, out of its range, or contradicts another one. The error names its key in a scene file.
-    pub fn build(mut self) -> Result<Scene, SceneError> {
+    pub fn build(self) -> Result<Scene, SceneError> {
         let refused = |fault| SceneError::of_fault("", "", fault);
-        if let Some(taper) = self.numbers.get(Parameter::Taper) {
-            // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
-            Parameter::Taper
-                .number_limits()
-                .check(Parameter::Taper.name(), taper)
-                .map_err(refused)?;
-            let key = Parameter::BaseRadiusUm.key();
-            let absent = || refused(SceneFault::new(key, "is left out, and there is a taper"));
-            let tip_radius_um = self.numbers.tip_radius_um().ok_or_else(absent)?;
-            self.numbers.set(Parameter::TipRadiusUm, tip_radius_um);
-        }
-        let builder = Arc::new(self);
+        let builder = Arc::new(self.with_tip_of_taper().map_err(refused)?);
         let text = SceneText::of_numbers(Arc::clone(&builder));
         let data = builder.checked(text).map_err(refused)?;
         Ok(Scene {
@@ -99,6 +89,12 @@ impl Scene {
         self.builder.traced.as_deref()
     }
 
+    /// Returns the rows of the table of whiskers as they are given, `[row]`; empty without one.
+    #[must_use]
+    pub fn table_rows(&self) -> &[WhiskerRow] {
+        self.builder.table.as_deref().unwrap_or_default()
+    }
+
     /// Returns the paths of the CSV files that the scene names, of radii and of traced points: `[file]`.
     #[must_use]
     pub fn csv_files(&self) -> &[PathBuf] {
@@ -115,13 +111,17 @@ impl Scene {
     /// modulo [`SceneData::whisker_count`]. A scene without sweep axes stays as it is.
     ///
     /// # Errors
-    /// Never for a scene that was built: its whiskers have passed every check.
+    /// If the whisker's row in the table of whiskers has no whisker.
     pub fn of_whisker(&self, index: usize) -> Result<Self, SceneError> {
         if !self.is_sweep() {
             return Ok(self.clone());
         }
-        let mut builder = self.to_builder();
-        builder.numbers = builder.numbers.at(&self.grid.place(index));
+        let (mut builder, place) = (self.to_builder(), self.grid.place(index));
+        if let Some((rows, row)) = builder.table.clone().zip(place.row()) {
+            let one = builder.of_row(&rows[row]);
+            builder = one.map_err(|fault| SceneError::of_fault("", "", fault))?;
+        }
+        builder.numbers = builder.numbers.at(&place);
         builder.sweep.clear();
         builder.build()
     }
@@ -176,12 +176,31 @@ fn thin(values: &mut Vec<f64>, most: usize) {
 }
 
 impl SceneBuilder {
-    /// Returns the given value of a parameter, in its unit; `None` if it is not given. A taper is given with the radius at the tip, whose
+    /// Returns the builder with the radius at the tip in place of a taper.
+    pub(super) fn with_tip_of_taper(mut self) -> Result<Self, SceneFault> {
+        if let Some(taper) = self.numbers.get(Parameter::Taper) {
+            // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
+            let limits = Parameter::Taper.number_limits();
+            limits.check(Parameter::Taper.name(), taper)?;
+            let key = Parameter::BaseRadiusUm.key();
+            let absent = || SceneFault::new(key, "is left out, and there is a taper");
+            let tip_radius_um = self.numbers.tip_radius_um().ok_or_else(absent)?;
+            self.numbers.set(Parameter::TipRadiusUm, tip_radius_um);
+        }
+        Ok(self)
+    }
+
+    /// Returns the given value of a parameter, in its unit, or that of the first row of the table that has one; `None` if it is not given. A
+    /// taper is given with the radius at the tip, whose
     /// value this is.
     pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         let tip = || self.numbers.get(Parameter::TipRadiusUm);
         let own = self.numbers.get(parameter);
-        own.or_else(|| tip().filter(|_| parameter == Parameter::Taper))
+        let own = own.or_else(|| tip().filter(|_| parameter == Parameter::Taper));
+        own.or_else(|| {
+            let mut rows = self.table.iter().flat_map(|rows| rows.iter());
+            rows.find_map(|row| row.number(parameter))
+        })
     }
 }
 

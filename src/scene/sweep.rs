@@ -26,11 +26,12 @@ pub(super) fn axes(
             }
         }
         let values = values.checked(parameter.axis_key(), &limits)?;
-        Ok(SweepAxis { parameter, values })
+        let variable = parameter.into();
+        Ok(SweepAxis { variable, values })
     });
     let mut axes: Vec<SweepAxis> = checked.collect::<Result<_, _>>()?;
     if let [first, _] = &axes[..]
-        && first.parameter == Parameter::ParabolaPerMm
+        && first.variable == Parameter::ParabolaPerMm.into()
     {
         axes.swap(0, 1);
     }
@@ -104,8 +105,9 @@ pub(super) fn check_corners(
 ) -> Result<(), SceneFault> {
     let mut ends = grid.ends();
     for axis in &mut ends.sweep {
-        let all = grid.axis(axis.parameter).unwrap_or_default();
-        if axis.parameter == Parameter::ParabolaPerMm && all[0] == 0.0 && all.len() > 2 {
+        let bend = Parameter::ParabolaPerMm;
+        let all = grid.axis(bend).unwrap_or_default();
+        if axis.variable == bend.into() && all[0] == 0.0 && all.len() > 2 {
             axis.values.insert(1, all[1]);
         }
     }

@@ -1,7 +1,7 @@
 //! Values selected on the axes of a map or a store.
 
-use crate::input::{Quantity, did_you_mean};
-use crate::scene::{LONGEST_TITLE, Scene, digits, rounded};
+use crate::input::{Quantity, did_you_mean, shortened};
+use crate::scene::{Coordinate, LONGEST_TITLE, Scene, SweepAxis, SweepVariable, digits};
 use std::str::FromStr;
 
 /// Selected value of an axis of a map or a store.
@@ -9,17 +9,17 @@ use std::str::FromStr;
 pub struct AxisValue {
     /// Name of the selected axis, such as `taper` or `distance_mm`.
     pub axis: String,
-    /// Selected value, in the unit of the axis.
-    pub value: f64,
+    /// Selected value, in the unit of the axis, or name of a whisker.
+    pub value: Coordinate,
 }
 
-/// Reads `AXIS=VALUE`; the value of a length or an angle may have another unit than the axis.
+/// Reads `AXIS=VALUE`; the value of a length or an angle may have another unit than the axis. On the axis `whisker` it is a name.
 ///
 /// ```
 /// use whiskmap::store::AxisValue;
 ///
 /// let at: AxisValue = "distance_mm = 1.5cm".parse()?;
-/// assert_eq!((&*at.axis, at.value), ("distance_mm", 15.0));
+/// assert_eq!((&*at.axis, at.value.number()), ("distance_mm", Some(15.0)));
 /// # Ok::<(), String>(())
 /// ```
 impl FromStr for AxisValue {
@@ -30,7 +30,10 @@ impl FromStr for AxisValue {
             .split_once('=')
             .ok_or("must be AXIS=VALUE, such as taper=0.9")?;
         let axis = axis.trim();
-        let value = Quantity::of(axis).parse(value)?;
+        let value = match axis {
+            SweepVariable::WHISKER => Coordinate::Name(value.trim().to_owned()),
+            _ => Coordinate::Number(Quantity::of(axis).parse(value)?),
+        };
         let axis = axis.to_owned();
         Ok(Self { axis, value })
     }
@@ -64,16 +67,21 @@ pub fn scene_at(
     exact: bool,
 ) -> Result<(Scene, ChosenValues), InvalidAxisValue> {
     let sweep = scene.grid.sweep.iter();
-    let axes: Vec<_> = sweep
-        .map(|axis| (axis.parameter.axis(), &*axis.values))
-        .collect();
+    let axes: Vec<_> = sweep.map(AxisValues::of).collect();
     let (mut builder, mut chosen) = (scene.to_builder(), ChosenValues::new());
     for at in wanted {
         let select = select(&axes, &chosen, at, exact);
         let (axis, index) = select.map_err(|why| InvalidAxisValue::new(at, why))?;
-        let (name, value) = (axes[axis].0, axes[axis].1[index]);
-        builder = builder.sweep(scene.grid.sweep[axis].parameter, [value]);
-        chosen.push((name, value));
+        let (own, value) = (&scene.grid.sweep[axis], axes[axis].values[index]);
+        let value = own.variable.coordinate(value);
+        let mut refused = scene.refused();
+        if let Coordinate::Name(name) = &value
+            && let Some((_, reason)) = refused.find(|(own, _)| own == name)
+        {
+            return Err(InvalidAxisValue::new(at, format!("{name}: {reason}")));
+        }
+        builder = builder.fixed(own.variable.name(), &value);
+        chosen.push((own.variable.name(), value));
     }
     if let Some(at) = wanted.last() {
         let title = titled(&scene.title, &chosen);
@@ -88,11 +96,29 @@ pub fn scene_at(
 }
 
 /// Names and values of selected axes, each in the unit of its axis: `[axis]`.
-pub type ChosenValues = Vec<(&'static str, f64)>;
+pub type ChosenValues = Vec<(&'static str, Coordinate)>;
+
+/// Name and values of an axis, and the names of the whiskers of a table whose rows the values number.
+pub(super) struct AxisValues<'a> {
+    pub name: &'static str,
+    pub values: &'a [f64],
+    pub names: &'a [String],
+}
+
+impl<'a> AxisValues<'a> {
+    /// Returns name and values of a sweep axis.
+    pub fn of(axis: &'a SweepAxis) -> Self {
+        Self {
+            name: axis.variable.name(),
+            values: &axis.values,
+            names: axis.variable.names(),
+        }
+    }
+}
 
 /// Returns names of selected axes, and their values as text to four digits.
 pub(super) fn readable(chosen: &ChosenValues) -> impl Iterator<Item = (&'static str, String)> {
-    let text = |(name, value): &(_, f64)| (*name, digits(rounded(*value, 4)));
+    let text = |(name, value): &(_, Coordinate)| (*name, value.rounded(4).to_string());
     chosen.iter().map(text)
 }
 
@@ -106,13 +132,13 @@ pub(super) fn titled(title: &str, chosen: &ChosenValues) -> String {
 
 /// Returns the indices of the axis and of the value that `at` selects on `axes`, of which some are `chosen` already.
 pub(super) fn select(
-    axes: &[(&'static str, &[f64])],
+    axes: &[AxisValues<'_>],
     chosen: &ChosenValues,
     at: &AxisValue,
     exact: bool,
 ) -> Result<(usize, usize), String> {
-    let names = || axes.iter().map(|(name, _)| *name).collect::<Vec<_>>();
-    let axis = axes.iter().position(|(name, _)| *name == at.axis);
+    let names = || axes.iter().map(|axis| axis.name).collect::<Vec<_>>();
+    let axis = axes.iter().position(|axis| axis.name == at.axis);
     let unknown = || match &*names() {
         [] => "there is no sweep axis".to_owned(),
         names => {
@@ -121,20 +147,43 @@ pub(super) fn select(
         }
     };
     let axis = axis.ok_or_else(unknown)?;
-    let (name, values) = axes[axis];
-    let index = nearest(values, at.value);
+    let AxisValues {
+        name,
+        values,
+        names,
+    } = &axes[axis];
+    let index = match &at.value {
+        Coordinate::Name(wanted) => named(values, names, wanted)?,
+        Coordinate::Number(wanted) => numbered(name, values, *wanted, exact)?,
+    };
+    if chosen.iter().any(|(other, _)| other == name) {
+        return Err("is given twice".to_owned());
+    }
+    Ok((axis, index))
+}
+
+/// Returns the index of the whisker `wanted` among the `values` of an axis, which number the rows of a table with these `names`.
+fn named(values: &[f64], names: &[String], wanted: &str) -> Result<usize, String> {
+    let row = names.iter().position(|name| name == wanted);
+    let index = row.and_then(|row| values.iter().position(|value| *value == (row + 1) as f64));
+    index.ok_or_else(|| {
+        let hint = did_you_mean(wanted, names.iter().map(String::as_str));
+        format!("there is no whisker {}{hint}", shortened(wanted))
+    })
+}
+
+/// Returns the index of the value of the axis `name` that is nearest to `wanted`, and equal to it if `exact`.
+fn numbered(name: &str, values: &[f64], wanted: f64, exact: bool) -> Result<usize, String> {
+    let index = nearest(values, wanted);
     let value = values[index];
-    if exact && value != at.value {
-        let [wanted, value] = [at.value, value].map(|own| with_unit(name, own));
+    if exact && value != wanted {
+        let [wanted, value] = [wanted, value].map(|own| with_unit(name, own));
         return Err(format!(
             "{wanted} is no value of the axis; the nearest is {value}"
         ));
     }
-    check_near(name, values, at.value)?;
-    if chosen.iter().any(|(other, _)| *other == name) {
-        return Err("is given twice".to_owned());
-    }
-    Ok((axis, index))
+    check_near(name, values, wanted)?;
+    Ok(index)
 }
 
 /// Relative distance at which a value still selects the only value of an axis: messages and file names have four digits.

@@ -5,7 +5,7 @@ use super::tally::{CellCounts, regimes, statuses};
 use crate::engine;
 use crate::map::{Audit, Channels, EngineCells};
 use crate::plan::Digits;
-use crate::scene::{Grid, Parameter, SceneData, SweepAxis};
+use crate::scene::{Grid, Parameter, SceneData, SweepAxis, SweepVariable};
 use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -38,6 +38,9 @@ pub(super) struct AxisAttribute {
     /// Place of the first value.
     first: String,
     values: Vec<f64>,
+    /// Names of the whiskers of a table, `[row]`, whose numbers from 1 are the values; absent for numbers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    names: Vec<String>,
 }
 
 /// Name, unit, direction and place of the first value of the axes inside a panel.
@@ -137,6 +140,7 @@ fn axes(grid: &Grid) -> Vec<AxisAttribute> {
         direction: direction.to_owned(),
         first: first.to_owned(),
         values: values.to_owned(),
+        names: Vec::new(),
     };
     let [push_angle, distance] = INSIDE;
     let inside = [
@@ -145,9 +149,12 @@ fn axes(grid: &Grid) -> Vec<AxisAttribute> {
     ];
     let atlas = grid.atlas().into_iter().zip(ATLAS);
     let atlas = atlas.filter_map(|(own, [direction, first])| {
-        let SweepAxis { parameter, values } = own?;
-        let about = [parameter.axis(), parameter.unit(), direction, first];
-        Some(axis(about, values))
+        let SweepAxis { variable, values } = own?;
+        let about = [variable.name(), variable.unit(), direction, first];
+        Some(AxisAttribute {
+            names: variable.names().to_vec(),
+            ..axis(about, values)
+        })
     });
     inside.into_iter().chain(atlas).collect()
 }
@@ -174,13 +181,23 @@ pub(super) fn decode_axes(mut found: Vec<AxisAttribute>) -> Result<Grid, String>
         sweep: Vec::new(),
     };
     found.sort_by(|one, next| one.direction.cmp(&next.direction));
-    for AxisAttribute { name, values, .. } in found {
-        let known = Parameter::SWEPT.into_iter();
-        let parameter = known
-            .filter(|parameter| grid.axis(*parameter).is_none())
-            .find(|parameter| parameter.axis() == name)
+    for AxisAttribute {
+        name,
+        values,
+        names,
+        ..
+    } in found
+    {
+        let are_rows = values
+            .iter()
+            .all(|value| (1.0..=names.len() as f64).contains(value) && value.fract() == 0.0);
+        let known = Parameter::SWEPT.into_iter().map(SweepVariable::from);
+        let known = known.chain(are_rows.then(|| SweepVariable::Whisker(names.into())));
+        let variable = known
+            .filter(|variable| grid.sweep.iter().all(|axis| axis.variable != *variable))
+            .find(|variable| variable.name() == name)
             .ok_or_else(|| format!("the axis `{name}` is unknown or there twice"))?;
-        grid.sweep.push(SweepAxis { parameter, values });
+        grid.sweep.push(SweepAxis { variable, values });
     }
     if grid.sweep.len() > ATLAS.len() {
         return Err("an atlas has at most two axes".to_owned());

@@ -20,7 +20,7 @@ row! {
         pub distance_mm: Option<f64>,
         /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Reason why there is no corner: always-slips-off, always-pulls-off or not-found.
+        /// Reason why there is no corner: always-slips-off, always-pulls-off, not-found or no-whisker.
         pub reason: Option<NoCorner>,
     }
 }
@@ -35,6 +35,21 @@ pub enum NoCorner {
     AlwaysPullsOff,
     /// No corner was found: the fold with the contact at the tip, or an end next to it, is missing.
     NotFound,
+    /// The row of the table of whiskers has no whisker.
+    NoWhisker,
+}
+
+impl Corner {
+    /// Returns the corner of a row of a table that has no whisker.
+    #[must_use]
+    pub const fn without_whisker(side: Side) -> Self {
+        Self {
+            side,
+            distance_mm: None,
+            push_angle_deg: None,
+            reason: Some(NoCorner::NoWhisker),
+        }
+    }
 }
 
 /// Computes the corner of the detachment curve of `whisker` on one `side`. Without a corner, distance and push angle are `None`, and
@@ -104,7 +119,9 @@ fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Result
         match end(distance).kind {
             DetachmentKind::SlipOff => Ok(true),
             DetachmentKind::PullOff => Ok(false),
-            DetachmentKind::OutOfReach | DetachmentKind::Unresolved => Err(NoCorner::NotFound),
+            DetachmentKind::OutOfReach | DetachmentKind::Unresolved | DetachmentKind::NoWhisker => {
+                Err(NoCorner::NotFound)
+            }
         }
     })?;
     Ok(bracket.below)

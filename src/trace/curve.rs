@@ -22,6 +22,8 @@ pub enum DetachmentKind {
     OutOfReach,
     /// The end of the push is unknown: the boundary of the row was not found.
     Unresolved,
+    /// There is no push: the row of the table of whiskers has no whisker.
+    NoWhisker,
 }
 
 row! {
@@ -33,8 +35,8 @@ row! {
         /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
         /// Distance from the base to the pole's centre, in mm, constant in a push.
-        pub pole_distance_mm: f64,
-        /// End of the push: slip-off, pull-off, out-of-reach or unresolved.
+        pub pole_distance_mm: Option<f64>,
+        /// End of the push: slip-off, pull-off, out-of-reach, unresolved or no-whisker.
         pub kind: DetachmentKind,
         /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
@@ -66,6 +68,35 @@ row! {
         pub sliding: Option<Sliding>,
         /// Push up to which the whisker may snap to other stable states, in degrees.
         pub snaps_deg: Option<f64>,
+    }
+}
+
+impl Detachment {
+    /// Returns the detachments of a row of a table that has no whisker, `[distance]`: without values.
+    #[must_use]
+    pub fn without_whisker(side: Side, distances_mm: &[f64]) -> Vec<Self> {
+        let end = |distance_mm: &f64| Self {
+            side,
+            distance_mm: *distance_mm,
+            pole_distance_mm: None,
+            kind: DetachmentKind::NoWhisker,
+            push_angle_deg: None,
+            push_chord_deg: None,
+            contact_distance_mm: None,
+            arc_length_mm: None,
+            force_un: None,
+            base_force_x_un: None,
+            base_force_y_un: None,
+            base_moment_nnm: None,
+            energy_nj: None,
+            peak_strain: None,
+            peak_strain_mm: None,
+            contact_angle_deg: None,
+            residual: None,
+            sliding: None,
+            snaps_deg: None,
+        };
+        distances_mm.iter().map(end).collect()
     }
 }
 
@@ -164,7 +195,7 @@ pub(crate) fn detachments(
             let end = Detachment {
                 side,
                 distance_mm: *distance_mm,
-                pole_distance_mm: row.pole_distance * whisker.length_mm,
+                pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
                 kind: match crossing.map(|end| end.edge) {
                     Ok(Edge::Fold) => DetachmentKind::SlipOff,
                     Ok(Edge::Tip) => DetachmentKind::PullOff,

@@ -24,7 +24,7 @@ pub use state::StateAtPush;
 
 pub(crate) use columns::row;
 
-use crate::scene::{SweepPlace, SweptWhisker};
+use crate::scene::{RefusedWhisker, SweepPlace, SweptWhisker};
 use rayon::prelude::*;
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
@@ -61,16 +61,19 @@ pub fn whiskers_at_once(distances: usize) -> usize {
     (ENDS_AT_ONCE / (2 * distances)).clamp(1, MOST_WHISKERS)
 }
 
-/// Returns the results of `of_side` for each side of each whisker, in the order of `whiskers`, CF before CB.
+/// Returns the results of `of_side` for each side of each whisker, in the order of `whiskers`, CF before CB. Rows of a table without a
+/// whisker have results, too.
 pub fn sides<R: Send>(
-    whiskers: &[SweptWhisker],
-    of_side: impl Fn(&SweptWhisker, Side) -> Vec<R> + Sync,
+    whiskers: &[Result<SweptWhisker, RefusedWhisker>],
+    of_side: impl Fn(Result<&SweptWhisker, &RefusedWhisker>, Side) -> Vec<R> + Sync,
 ) -> Vec<(SweepPlace, R)> {
-    let both = |swept| Side::BOTH.map(|side| (swept, side));
-    let sides: Vec<(&SweptWhisker, Side)> = whiskers.iter().flat_map(both).collect();
-    let placed = |(swept, side): (&SweptWhisker, Side)| {
-        let place = swept.place.clone();
-        let rows = of_side(swept, side).into_iter();
+    let both = |whisker| Side::BOTH.map(|side| (whisker, side));
+    let sides: Vec<_> = whiskers.iter().flat_map(both).collect();
+    let placed = |(whisker, side): (&Result<SweptWhisker, RefusedWhisker>, Side)| {
+        let whisker = whisker.as_ref();
+        let place = whisker.map_or_else(|refused| &refused.place, |swept| &swept.place);
+        let place = place.clone();
+        let rows = of_side(whisker, side).into_iter();
         rows.map(move |row| (place.clone(), row))
     };
     sides.into_par_iter().flat_map_iter(placed).collect()

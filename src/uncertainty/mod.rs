@@ -82,7 +82,7 @@ impl Draws {
             return Err(DrawError::FramesAlone);
         }
         if let Some(axis) = scene.grid.sweep.first() {
-            return Err(DrawError::Sweep(axis.parameter.axis()));
+            return Err(DrawError::Sweep(axis.variable.name()));
         }
         let distances = scene.grid.distance_mm.len();
         let ends = samples.saturating_mul(distances);

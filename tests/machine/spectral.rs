@@ -96,7 +96,7 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
             let are_edges = [wanted, found].map(|own| edges.contains(own));
             assert_eq!(are_edges, [true; 2], "{title}: {whisker}");
         }
-        let swept = scene.whisker(whisker);
+        let swept = scene.whisker(whisker).unwrap();
         let distances = grid.distance_mm.iter();
         let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
         for side in Side::BOTH {
@@ -233,7 +233,7 @@ fn small_values_next_to_reach_are_exact() {
         );
         let scene = |grid: &str| Scene::parse(&format!("{whisker}{grid}"), "reach").unwrap();
         let one = scene("[grid]\npush_angle_deg = [1]\ndistance_mm = [10]\n");
-        let rest = Rest::new(&one.whisker(0).rod(Side::Cb));
+        let rest = Rest::new(&one.first_whisker().rod(Side::Cb));
         let reach = 50.0 * rest.at_arclength(1.0).0.length();
         let far = (0..120).map(|i| reach * (0.6 + 0.4 * f64::from(i) / 120.0));
         let near = (3..10).map(|k| reach * (1.0 - 10_f64.powi(-k)));

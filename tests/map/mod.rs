@@ -54,10 +54,12 @@ pub fn scene(
             .into_iter()
             .filter_map(|(parameter, values)| {
                 let values = values?;
-                Some(SweepAxis { parameter, values })
+                let variable = parameter.into();
+                Some(SweepAxis { variable, values })
             })
             .collect(),
         },
+        table: std::sync::Arc::default(),
         name: "made-up".to_owned(),
         text: SceneText::of_source("title = \"A made-up whisker\"\n"),
     }

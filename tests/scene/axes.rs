@@ -47,10 +47,10 @@ fn every_axis_takes_the_place_of_its_number() {
         ("arc_stretch", Parameter::ArcStretch, [1.0, 1.05]),
     ] {
         let scene = swept(&format!("{axis} = {values:?}")).unwrap();
-        assert_eq!(scene.grid.sweep[0].parameter.axis(), axis);
+        assert_eq!(scene.grid.sweep[0].variable.name(), axis);
         assert_eq!(scene.whisker_count(), 2, "{axis}");
         let plain = swept("").unwrap();
-        for (own, value) in scene.whiskers().zip(values) {
+        for (own, value) in scene.whiskers().flatten().zip(values) {
             let place: Vec<f64> = own.place.values().map(|(_, value)| value).collect();
             assert_eq!(place, [value], "{axis}");
             let value = if axis == "taper" {
@@ -74,7 +74,7 @@ fn axes_are_in_the_order_of_the_file_and_the_first_varies_fastest() {
         .grid
         .sweep
         .iter()
-        .map(|axis| axis.parameter.axis())
+        .map(|axis| axis.variable.name())
         .collect();
     assert_eq!(
         names,
@@ -83,11 +83,16 @@ fn axes_are_in_the_order_of_the_file_and_the_first_varies_fastest() {
     assert_eq!(scene.whisker_count(), 12);
     let seen: Vec<(f64, f64)> = scene
         .whiskers()
+        .flatten()
         .map(|own| (own.pole.friction, own.pole.radius_mm))
         .collect();
     assert_eq!(seen[..4], [(0.0, 0.1), (0.5, 0.1), (0.0, 0.2), (0.5, 0.2)]);
     assert_eq!(
-        scene.whisker(11).place.value(Parameter::ParabolaPerMm),
+        scene
+            .whisker(11)
+            .unwrap()
+            .place
+            .value(Parameter::ParabolaPerMm),
         Some(0.02)
     );
 
@@ -101,7 +106,7 @@ fn axes_are_in_the_order_of_the_file_and_the_first_varies_fastest() {
 
     // In an atlas a curvature lies upwards, as ever.
     let scene = swept("curvature_per_mm = [0, 0.01, 0.02]\ntaper = [0, 1]").unwrap();
-    assert_eq!(scene.grid.sweep[0].parameter, Parameter::Taper);
+    assert_eq!(scene.grid.sweep[0].variable, Parameter::Taper.into());
     let alone = swept("curvature_per_mm = [0, 0.01, 0.02]").unwrap();
     let [across, upwards] = alone.grid.atlas();
     assert!(across.is_none() && upwards.is_some());

@@ -119,7 +119,7 @@ const PUSH: BranchAxis = BranchAxis {
 
 pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
     let distances = &each_once(&args.poles.distance);
-    let (scene, whisker) = pole::read(files, &args.poles.scene, "branch", distances)?;
+    let (scene, whisker) = pole::read(files, &args.poles.whisker, "branch", distances)?;
     let mut outputs = args.outputs.open(files)?;
     let sides: &[Side] = match args.side {
         SideChoice::Cb => &[Side::Cb],

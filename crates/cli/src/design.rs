@@ -127,8 +127,8 @@ impl DesignArgs {
 
 pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let target = args.target()?;
-    let (path, distance) = (&args.pole.scene, args.pole.distance);
-    let (scene, _) = pole::read(files, path, "design", &[distance])?;
+    let (path, distance) = (&args.pole.whisker.scene, args.pole.distance);
+    let (scene, _) = pole::read(files, &args.pole.whisker, "design", &[distance])?;
     let output = args.output.as_deref();
     let (better, picture) = open(files, "--output", output, &args.picture)?;
     let refused = |why| match why {

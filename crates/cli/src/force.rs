@@ -4,7 +4,7 @@ use super::arguments::{column_help, span};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::OutputArgs;
-use super::pole::check_single;
+use super::pole::WhiskerArgs;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -35,8 +35,8 @@ gives a standard deviation of each force. The scene's [uncertainty] may give cur
     after_long_help = column_help(EXAMPLES, &[("Columns", FrameForce::COLUMNS)])
 )]
 pub struct ForceArgs {
-    /// Scene file; - is standard input
-    scene: PathBuf,
+    #[command(flatten)]
+    whisker: WhiskerArgs,
     /// CSV file of the curvature over time; - is standard input
     #[arg(long, value_name = "FILE")]
     frames: PathBuf,
@@ -51,20 +51,11 @@ pub struct ForceArgs {
 }
 
 pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
-    if [&args.scene, &args.frames] == [Path::new(STDOUT); 2] {
+    if [&args.whisker.scene, &args.frames] == [Path::new(STDOUT); 2] {
         let why = "--frames -: standard input is the scene, and can be read once; name a file";
         return Err(Failure::Input(why.to_owned()));
     }
-    let scene = files.scene(&args.scene)?;
-    check_single(&scene, "force")?;
-    let friction = scene.pole.friction;
-    if friction != 0.0 {
-        let why = format!(
-            "contact.friction = {friction}: must be 0, because the force is taken as normal to the whisker"
-        );
-        return Err(Failure::Input(why));
-    }
-    let whisker = scene.first_whisker().whisker;
+    let (scene, whisker) = args.whisker.without_friction(files, "force")?;
     let method = match args.model {
         true => ForceMethod::Model,
         false => ForceMethod::Lever,

@@ -4,7 +4,7 @@ use super::arguments::column_help;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::OutputArgs;
-use super::pole::check_single;
+use super::pole::WhiskerArgs;
 use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
@@ -38,8 +38,8 @@ const LOAD_OPTIONS: [&str; 4] = ["base_moment", "base_force_x", "base_force_y", 
     after_long_help = column_help(EXAMPLES, &[("Columns", LocatedState::COLUMNS), ("Columns with --map", SharedState::COLUMNS)])
 )]
 pub struct LocateArgs {
-    /// Scene file; - is standard input
-    scene: PathBuf,
+    #[command(flatten)]
+    whisker: WhiskerArgs,
     /// Show where two numbers determine the contact, and where several states share them
     #[arg(long, conflicts_with_all = LOAD_OPTIONS, conflicts_with_all = ["readings", "moment_sd", "force_sd"])]
     map: bool,
@@ -159,20 +159,13 @@ impl LocateArgs {
 
 pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
     args.check_numbers()?;
-    if args.readings.as_deref() == Some(Path::new(STDOUT)) && args.scene == Path::new(STDOUT) {
+    if args.readings.as_deref() == Some(Path::new(STDOUT))
+        && args.whisker.scene == Path::new(STDOUT)
+    {
         let why = "--readings -: standard input is the scene, and can be read once; name a file";
         return Err(Failure::Input(why.to_owned()));
     }
-    let scene = files.scene(&args.scene)?;
-    check_single(&scene, "locate")?;
-    let friction = scene.pole.friction;
-    if friction != 0.0 {
-        let why = format!(
-            "contact.friction = {friction}: must be 0, because the force is taken as normal to the whisker"
-        );
-        return Err(Failure::Input(why));
-    }
-    let whisker = scene.first_whisker().whisker;
+    let (scene, whisker) = args.whisker.without_friction(files, "locate")?;
     if args.map {
         let mut outputs = args.outputs.open(files)?;
         let locator = Locator::new(&whisker, &scene.pole);

@@ -3,10 +3,46 @@
 use super::arguments::length;
 use super::failure::Failure;
 use super::files::Files;
+use super::selection::SelectionArgs;
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use whiskmap::scene::{Scene, Whisker, digits};
 use whiskmap::trace::NoState;
+
+#[derive(Debug, Args)]
+pub struct WhiskerArgs {
+    /// Scene file; - is standard input
+    pub scene: PathBuf,
+    #[command(flatten)]
+    selection: SelectionArgs,
+}
+
+impl WhiskerArgs {
+    /// Reads the scene of `command`, which needs one whisker.
+    pub fn read(&self, files: &mut Files, command: &str) -> Result<Scene, Failure> {
+        let scene = self.selection.of_scene(&files.scene(&self.scene)?)?;
+        check_single(&scene, command)?;
+        Ok(scene)
+    }
+
+    /// Reads the scene of `command` and its only whisker, which touches its pole without friction.
+    pub fn without_friction(
+        &self,
+        files: &mut Files,
+        command: &str,
+    ) -> Result<(Scene, Whisker), Failure> {
+        let scene = self.read(files, command)?;
+        let friction = scene.pole.friction;
+        if friction != 0.0 {
+            let why = format!(
+                "contact.friction = {friction}: must be 0, because the force is taken as normal to the whisker"
+            );
+            return Err(Failure::Input(why));
+        }
+        let whisker = scene.first_whisker().whisker;
+        Ok((scene, whisker))
+    }
+}
 
 /// Returns an error if the scene of `command` has several whiskers.
 pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
@@ -15,17 +51,17 @@ pub fn check_single(scene: &Scene, command: &str) -> Result<(), Failure> {
         return Ok(());
     }
     let mut axes = scene.grid.sweep.iter();
-    let key = axes.find(|axis| axis.values.len() > 1);
-    let key = key.map_or("", |axis| axis.parameter.axis());
+    let axis = axes.find(|axis| axis.values.len() > 1);
+    let (key, name) = axis.map_or(("", ""), |axis| (axis.variable.key(), axis.variable.name()));
     Err(Failure::Input(format!(
-        "grid.{key}: the scene sweeps {whiskers} whiskers, but {command} needs one; give the axis one value or omit it"
+        "{key}: the scene sweeps {whiskers} whiskers, but {command} needs one; select it by --at {name}=VALUE"
     )))
 }
 
 #[derive(Debug, Args)]
 pub struct PoleArgs {
-    /// Scene file; - is standard input
-    pub scene: PathBuf,
+    #[command(flatten)]
+    pub whisker: WhiskerArgs,
     /// Distance from the base to the contact at first touch, in mm or with a unit, such as 1.5cm
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = length)]
     pub distance: f64,
@@ -33,8 +69,8 @@ pub struct PoleArgs {
 
 #[derive(Debug, Args)]
 pub struct PolesArgs {
-    /// Scene file; - is standard input
-    pub scene: PathBuf,
+    #[command(flatten)]
+    pub whisker: WhiskerArgs,
     /// Distance from the base to the contact at first touch, in mm or with a unit, such as 1.5cm; several are separated by
     /// commas, or given by several --distance
     #[arg(
@@ -51,12 +87,11 @@ pub struct PolesArgs {
 /// Reads the scene of `command` and its only whisker, with poles at these distances.
 pub fn read(
     files: &mut Files,
-    path: &Path,
+    args: &WhiskerArgs,
     command: &str,
     distances: &[f64],
 ) -> Result<(Scene, Whisker), Failure> {
-    let scene = files.scene(path)?;
-    check_single(&scene, command)?;
+    let scene = args.read(files, command)?;
     check_distances(&scene, distances)?;
     let whisker = scene.first_whisker().whisker;
     Ok((scene, whisker))

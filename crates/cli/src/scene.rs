@@ -5,6 +5,9 @@ use std::path::Path;
 use whiskmap::scene::{Scene, digits, rounded};
 use whiskmap::traced::TracedShape;
 
+/// Largest number of rows without a whisker that a warning names.
+const MOST_REFUSED: usize = 10;
+
 /// Reads a scene; prints notes about unused columns and warnings about values that look like another unit.
 pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let scene = Scene::read(path)?;
@@ -16,6 +19,21 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
         message(&format!(
             "note: whisker.rest: {}",
             fitted(traced, length_mm)
+        ));
+    }
+    let refused: Vec<_> = scene.refused().collect();
+    if !refused.is_empty() {
+        let rows = refused.iter().take(MOST_REFUSED);
+        let rows = rows.map(|(name, reason)| format!("{name} ({reason})"));
+        let more = match refused.len().saturating_sub(MOST_REFUSED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        message(&format!(
+            "warning: {} of {} rows of whiskers.table have no whisker: {}{more}",
+            refused.len(),
+            scene.table.len(),
+            rows.collect::<Vec<_>>().join(", ")
         ));
     }
     for warning in scene.warnings() {

@@ -9,12 +9,12 @@ use std::path::Path;
 use std::str::FromStr;
 use whiskmap::input::did_you_mean;
 use whiskmap::plan::Channels;
-use whiskmap::scene::{Grid, Scene, digits};
+use whiskmap::scene::{Coordinate, Grid, Scene};
 use whiskmap::store::{AxisValue, GridPart, InvalidAxisValue, MapSlice, MapSource, scene_at};
 
 #[derive(Debug, Args)]
 pub struct SelectionArgs {
-    /// Select the nearest value on an axis; the value may have a unit, such as distance_mm=1.5cm
+    /// Select the nearest value on an axis; the value may have a unit, such as distance_mm=1.5cm; whisker=NAME selects a row of a table
     #[arg(long, value_name = "AXIS=VALUE", value_parser = AxisValue::from_str, allow_hyphen_values = true)]
     at: Vec<AxisValue>,
     /// Accept only values on the axis in --at, not the nearest
@@ -69,7 +69,7 @@ impl SelectionArgs {
     /// Returns the selected part of the sweep of a scene, and prints the selected values.
     pub fn of_scene(&self, scene: &Scene) -> Result<Scene, Failure> {
         if let Some(at) = self.at.iter().find(|at| at.axis == "distance_mm") {
-            let value = digits(at.value);
+            let value = &at.value;
             let why = format!(
                 "--at distance_mm={value}: selects a whisker of the sweep; --distance {value} selects the distance"
             );
@@ -85,9 +85,9 @@ fn refused(why: InvalidAxisValue) -> Failure {
     Failure::Input(format!("--at {why}"))
 }
 
-fn name(chosen: &[(&'static str, f64)]) {
+fn name(chosen: &[(&'static str, Coordinate)]) {
     for (name, value) in chosen {
-        message(&format!("{name} = {}", digits(*value)));
+        message(&format!("{name} = {value}"));
     }
 }
 

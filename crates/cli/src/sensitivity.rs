@@ -4,9 +4,8 @@ use super::arguments::{column_help, length};
 use super::failure::{Failure, check_resolved};
 use super::files::Files;
 use super::outputs::OutputArgs;
-use super::pole::{self, title};
+use super::pole::{self, WhiskerArgs, title};
 use clap::Args;
-use std::path::PathBuf;
 use whiskmap::render::sensitivities;
 use whiskmap::sensitivity::{VariableEffect, effects};
 use whiskmap::trace::DetachmentKind;
@@ -27,8 +26,8 @@ variables of value 0 or without an effect are left out.";
     after_long_help = column_help(EXAMPLES, &[("Columns", VariableEffect::COLUMNS)])
 )]
 pub struct SensitivityArgs {
-    /// Scene file; - is standard input
-    scene: PathBuf,
+    #[command(flatten)]
+    whisker: WhiskerArgs,
     /// Distance from the base to the contact at first touch, in mm or with a unit, such as 1.5cm [default: the middle one of the scene]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = length)]
     distance: Option<f64>,
@@ -38,7 +37,7 @@ pub struct SensitivityArgs {
 
 pub fn run(args: &SensitivityArgs, files: &mut Files) -> Result<(), Failure> {
     let distance: Vec<f64> = args.distance.into_iter().collect();
-    let (scene, _) = pole::read(files, &args.scene, "sensitivity", &distance)?;
+    let (scene, _) = pole::read(files, &args.whisker, "sensitivity", &distance)?;
     let distances = &scene.grid.distance_mm;
     let distance = args.distance.unwrap_or(distances[distances.len() / 2]);
     let mut outputs = args.outputs.open(files)?;

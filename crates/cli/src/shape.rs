@@ -59,8 +59,8 @@ enum BranchPart {
 }
 
 pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
-    let (path, distance) = (&args.pole.scene, args.pole.distance);
-    let (scene, whisker) = pole::read(files, path, "shape", &[distance])?;
+    let distance = args.pole.distance;
+    let (scene, whisker) = pole::read(files, &args.pole.whisker, "shape", &[distance])?;
     let push_deg = args.push_angle;
     if !(-360.0..=360.0).contains(&push_deg) {
         let push = digits(push_deg);

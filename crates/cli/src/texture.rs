@@ -5,7 +5,7 @@ use super::course::CourseArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::outputs::{OutputArgs, OutputTable};
-use super::pole::check_single;
+use super::pole::WhiskerArgs;
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -39,8 +39,8 @@ and lets one asperity at a time bend the whisker, which passes between them.";
     ])
 )]
 pub struct TextureArgs {
-    /// Scene file; - is standard input
-    scene: PathBuf,
+    #[command(flatten)]
+    whisker: WhiskerArgs,
     #[command(flatten)]
     course: CourseArgs,
     /// Write touches, releases, slip-offs and pull-offs to FILE, as CSV
@@ -57,11 +57,10 @@ pub struct TextureArgs {
 }
 
 pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
-    args.course.check_stdin(&args.scene)?;
-    let scene = files.scene(&args.scene)?;
-    check_single(&scene, "texture")?;
+    args.course.check_stdin(&args.whisker.scene)?;
+    let scene = args.whisker.read(files, "texture")?;
     let surface = scene.surface.ok_or_else(|| {
-        let path = args.scene.display();
+        let path = args.whisker.scene.display();
         let keys = "distance_mm, spacing_um, asperity_radius_um and length_mm";
         Failure::Input(format!(
             "{path}: the scene has no [surface]: add that table, with {keys}"
@@ -94,7 +93,7 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
         TextureError::Unresolved { .. } => Failure::Texture(why),
         TextureError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
         TextureError::Blocked { .. } | TextureError::Surface(_) => {
-            Failure::Input(format!("{}: {why}", args.scene.display()))
+            Failure::Input(format!("{}: {why}", args.whisker.scene.display()))
         }
         why => Failure::Input(format!("{}: {why}", args.course.source())),
     })?;

@@ -61,8 +61,8 @@ pub struct WhiskArgs {
 
 pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let distance = args.pole.distance;
-    args.course.check_stdin(&args.pole.scene)?;
-    let (scene, whisker) = pole::read(files, &args.pole.scene, "whisk", &[distance])?;
+    args.course.check_stdin(&args.pole.whisker.scene)?;
+    let (scene, whisker) = pole::read(files, &args.pole.whisker, "whisk", &[distance])?;
     let course = args.course.course(files)?;
     let mut outputs = args.outputs.open(files)?;
     let events = args.events.as_deref();

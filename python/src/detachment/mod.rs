@@ -13,7 +13,7 @@ use rows::{DetachmentRows, RefusedRow};
 use std::collections::BTreeMap;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sensitivity::Derivatives;
-use whiskmap::trace::Detachment;
+use whiskmap::trace::{Detachment, DetachmentKind};
 
 /// Name of a quantity, its value, and its derivative.
 type Quantity = (
@@ -47,12 +47,13 @@ type QuantityArrays<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// Kinds of the ends, residuals, push angles up to which a whisker may snap, and quantities.
+/// Kinds of the ends, residuals, push angles up to which a whisker may snap, quantities, and exceptions of refused rows in order.
 type DetachmentArrays<'py> = (
     Bound<'py, PyArray1<u8>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
     Vec<QuantityArrays<'py>>,
+    Vec<PyErr>,
 );
 
 /// Computes one detachment for each row, from numbers that are `fixed` and others that are `varying`, `[row]`. Derivatives are by `variables`.
@@ -98,9 +99,9 @@ pub fn detachment<'py>(
         have_taper: fixed.contains_key(taper) || varying.contains_key(taper),
     };
     let (count, width) = (rows.distance_mm.len(), rows.variables.len());
-    let ends = threads::run(py, threads, |_| Ok(()), |cancel| rows.ends(cancel))?;
-    let ends = ends.map_err(|refused| of_row(py, &refused))?;
-    let mut kinds = vec![0; count];
+    let (ends, refused) = threads::run(py, threads, |_| Ok(()), |cancel| rows.ends(cancel))?;
+    let refused = refused.iter().map(|refused| of_row(py, refused));
+    let mut kinds = vec![DetachmentKind::NoWhisker as u8; count];
     for own in &ends {
         kinds[own.row] = own.end.kind as u8;
     }
@@ -122,7 +123,14 @@ pub fn detachment<'py>(
     });
     let kinds = PyArray1::from_vec(py, kinds);
     let snaps = values(|end| end.snaps_deg);
-    Ok((kinds, values(|end| end.residual), snaps, quantities.into()))
+    let residuals = values(|end| end.residual);
+    Ok((
+        kinds,
+        residuals,
+        snaps,
+        quantities.into(),
+        refused.collect(),
+    ))
 }
 
 /// Returns the exception of a refused row, with its index as the attribute `element`.

@@ -2,6 +2,7 @@
 //!
 //! Rows with the same whisker and side are computed together: one sheet serves all their distances.
 
+use rayon::iter::Either;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -42,28 +43,20 @@ pub struct RefusedRow {
 }
 
 impl DetachmentRows<'_> {
-    /// Returns the end of every row, in any order. After a cancellation, rows are missing.
-    pub fn ends(&self, cancel: &Arc<AtomicBool>) -> Result<Vec<RowEnd>, RefusedRow> {
+    /// Returns the end of every row in any order, and the refused rows in order. After a cancellation, rows are missing.
+    pub fn ends(&self, cancel: &Arc<AtomicBool>) -> (Vec<RowEnd>, Vec<RefusedRow>) {
         let groups = self.groups();
         let ends = groups
             .par_iter()
-            .map(|rows| match cancel.load(Ordering::Relaxed) {
-                true => Ok(Vec::new()),
-                false => self.ends_of(rows),
+            .filter(|_| !cancel.load(Ordering::Relaxed))
+            .flat_map_iter(|rows| self.ends_of(rows.clone()));
+        let (ends, mut refused): (Vec<RowEnd>, Vec<RefusedRow>) =
+            ends.partition_map(|end| match end {
+                Ok(end) => Either::Left(end),
+                Err(refused) => Either::Right(refused),
             });
-        let ends: Vec<Result<Vec<RowEnd>, RefusedRow>> = ends.collect();
-        // The first refused row, on any number of threads.
-        let refused = ends.iter().filter_map(|own| own.as_ref().err());
-        let first = refused.map(|refused| refused.row).min();
-        let mut all = Vec::with_capacity(self.distance_mm.len());
-        for own in ends {
-            match own {
-                Ok(ends) => all.extend(ends),
-                Err(refused) if Some(refused.row) == first => return Err(refused),
-                Err(_) => {}
-            }
-        }
-        Ok(all)
+        refused.sort_by_key(|refused| refused.row);
+        (ends, refused)
     }
 
     /// Rows with the same whisker and side, by growing distance, `[sheet][row]`.
@@ -86,47 +79,50 @@ impl DetachmentRows<'_> {
         sheets.map(<[_]>::to_vec).collect()
     }
 
-    /// The ends of rows of one whisker and side.
-    fn ends_of(&self, rows: &[usize]) -> Result<Vec<RowEnd>, RefusedRow> {
-        let first = rows[0];
-        let mut distances: Vec<f64> = rows.iter().map(|row| self.distance_mm[*row]).collect();
-        distances.dedup();
-        let mut builder = self.base.clone().distance_mm(&*distances);
-        for (parameter, values) in &self.varying {
-            builder = builder.set(*parameter, values[first]);
-        }
-        let scene = builder.build().map_err(|why| {
-            let place = why.key().and_then(|key| {
-                key.strip_prefix("grid.distance_mm[")?
-                    .strip_suffix(']')?
-                    .parse()
-                    .ok()
-            });
-            let distance = place.and_then(|place: usize| distances.get(place));
-            let of_distance =
-                |distance: &f64| rows.iter().find(|row| self.distance_mm[**row] == *distance);
-            let row = distance.and_then(of_distance).copied().unwrap_or(first);
-            RefusedRow {
-                row,
-                why: Box::new(why),
+    /// The ends of rows of one whisker and side. A refused distance leaves the others.
+    fn ends_of(&self, mut rows: Vec<usize>) -> Vec<Result<RowEnd, RefusedRow>> {
+        let mut ends = Vec::with_capacity(rows.len());
+        let (scene, distances) = loop {
+            let Some(first) = rows.first() else {
+                return ends;
+            };
+            let mut distances: Vec<f64> = rows.iter().map(|row| self.distance_mm[*row]).collect();
+            distances.dedup();
+            let mut builder = self.base.clone().distance_mm(&*distances);
+            for (parameter, values) in &self.varying {
+                builder = builder.set(*parameter, values[*first]);
             }
-        })?;
+            let why = match builder.build() {
+                Ok(scene) => break (scene, distances),
+                Err(why) => why,
+            };
+            let place = why.key().and_then(|key| {
+                let place = key.strip_prefix("grid.distance_mm[")?.strip_suffix(']')?;
+                place.parse::<usize>().ok()
+            });
+            let distance = place.and_then(|place| distances.get(place).copied());
+            let is_refused = |row: &mut usize| {
+                distance.is_none_or(|distance| self.distance_mm[*row] == distance)
+            };
+            ends.extend(rows.extract_if(.., is_refused).map(|row| {
+                let why = Box::new(why.clone());
+                Err(RefusedRow { row, why })
+            }));
+        };
+        let first = rows[0];
         let side = if self.is_cb[first] {
             Side::Cb
         } else {
             Side::Cf
         };
-        let ends = self.differentiated(&scene, side, &distances);
-        let end = |row: &usize| {
-            let place = distances.partition_point(|distance| *distance < self.distance_mm[*row]);
-            let (end, by) = &ends[place];
-            RowEnd {
-                row: *row,
-                end: *end,
-                by: by.clone(),
-            }
-        };
-        Ok(rows.iter().map(end).collect())
+        let found = self.differentiated(&scene, side, &distances);
+        ends.extend(rows.into_iter().map(|row| {
+            let place = distances.partition_point(|distance| *distance < self.distance_mm[row]);
+            let (end, by) = &found[place];
+            let (end, by) = (*end, by.clone());
+            Ok(RowEnd { row, end, by })
+        }));
+        ends
     }
 
     /// The ends of one whisker and side with their derivatives, `[distance]`.

@@ -3,6 +3,7 @@
 mod pairs;
 mod read;
 mod tables;
+mod whiskers;
 mod write;
 
 pub(in crate::scene) use tables::SceneFile;

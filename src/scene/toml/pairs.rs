@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use toml_edit::Array;
 
 use crate::input::{CsvError, CsvTable, open_regular};
 use crate::scene::error::SceneFault;
@@ -26,31 +27,14 @@ pub(in crate::scene) struct PairKind {
     most: usize,
 }
 
-/// Rows of `[whisker.profile]`: arclength in millimetres and radius in micrometres.
-const ROWS: PairKind = PairKind {
-    key: profile::KEY,
-    name: "rows",
-    columns: ["arc_length_mm", "radius_um"],
-    // One more than a scene may have.
-    most: profile::MOST + 1,
-};
-
-/// Points of `[whisker.rest]`, in millimetres.
-const POINTS: PairKind = PairKind {
-    key: shape::POINTS_KEY,
-    name: "points",
-    columns: ["x_mm", "y_mm"],
-    most: usize::MAX,
-};
-
 /// Reads measured rows, which their table must have.
 pub(super) fn rows<'de, D: Deserializer<'de>>(pairs: D) -> Result<Option<Pairs>, D::Error> {
-    pairs.deserialize_any(ROWS).map(Some)
+    pairs.deserialize_any(PairKind::ROWS).map(Some)
 }
 
 /// Reads traced points, which their table must have.
 pub(super) fn points<'de, D: Deserializer<'de>>(pairs: D) -> Result<Option<Pairs>, D::Error> {
-    pairs.deserialize_any(POINTS).map(Some)
+    pairs.deserialize_any(PairKind::POINTS).map(Some)
 }
 
 /// Pairs of a scene file: the list of them, or the name of a CSV file with their columns.
@@ -73,8 +57,7 @@ impl<'de> Visitor<'de> for PairKind {
     }
 
     fn visit_str<E>(self, name: &str) -> Result<Pairs, E> {
-        let source = PairSource::Named(name.to_owned());
-        Ok(Pairs { kind: self, source })
+        Ok(self.named(name.to_owned()))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Pairs, A::Error> {
@@ -101,12 +84,12 @@ impl TryFrom<Vec<f64>> for NumberPair {
     }
 }
 
-/// CSV file of pairs.
+/// CSV file that a scene file names: of pairs, or of whiskers.
 pub(super) struct PairsCsv {
-    /// Key of the list in a scene file.
+    /// Key of the list in a scene file that the CSV file replaces.
     pub key: &'static str,
     pub path: PathBuf,
-    /// Line numbers of the pairs in the CSV file, from 1: `[pair]`.
+    /// Line numbers of the pairs or whiskers in the CSV file, from 1: `[pair]`.
     pub lines: Vec<usize>,
     /// Message that names unused columns of the CSV file; `None` without such columns.
     pub note: Option<String>,
@@ -125,16 +108,7 @@ impl Pairs {
             PairSource::Named(name) => name,
             PairSource::Listed(pairs) => return Ok(pairs.into_iter().map(|pair| pair.0).collect()),
         };
-        let Some(folder) = folder else {
-            let name = self.kind.name;
-            return Err(refused(format!(
-                "must be a list of {name}: only a scene file may name a CSV file"
-            )));
-        };
-        let path = folder.join(name);
-        let Some(file) = open_regular(&path).transpose() else {
-            return Err(refused("must name a regular file".to_owned()));
-        };
+        let (file, path) = named_file(self.kind.key, self.kind.name, &name, folder)?;
         let (pairs, csv) = self
             .kind
             .read_csv(file, path)
@@ -144,7 +118,54 @@ impl Pairs {
     }
 }
 
+/// Opens the regular file `name` in `folder`, which `key` names in place of a list of `what`. Returns it with its path. Without a folder,
+/// a name is refused, because the text of a scene must not name files.
+pub(super) fn named_file(
+    key: &str,
+    what: &str,
+    name: &str,
+    folder: Option<&Path>,
+) -> Result<(io::Result<File>, PathBuf), SceneFault> {
+    let Some(folder) = folder else {
+        let must = format!("must be a list of {what}: only a scene file may name a CSV file");
+        return Err(SceneFault::new(key, must));
+    };
+    let path = folder.join(name);
+    match open_regular(&path).transpose() {
+        Some(file) => Ok((file, path)),
+        None => Err(SceneFault::new(key, "must name a regular file")),
+    }
+}
+
+/// Returns pairs of numbers as a list in TOML.
+pub(super) fn pair_array(pairs: &[[f64; 2]]) -> Array {
+    pairs.iter().map(|pair| Array::from_iter(*pair)).collect()
+}
+
 impl PairKind {
+    /// Rows of `[whisker.profile]`: arclength in millimetres and radius in micrometres.
+    pub(super) const ROWS: Self = Self {
+        key: profile::KEY,
+        name: "rows",
+        columns: ["arc_length_mm", "radius_um"],
+        // One more than a scene may have.
+        most: profile::MOST + 1,
+    };
+
+    /// Points of `[whisker.rest]`, in millimetres.
+    pub(super) const POINTS: Self = Self {
+        key: shape::POINTS_KEY,
+        name: "points",
+        columns: ["x_mm", "y_mm"],
+        most: usize::MAX,
+    };
+
+    /// Returns the pairs of the CSV file `name`.
+    pub(super) fn named(self, name: String) -> Pairs {
+        let source = PairSource::Named(name);
+        Pairs { kind: self, source }
+    }
+
     /// Reads the pairs of a CSV file: `[pair][column]`, in the units of the columns.
     fn read_csv(
         self,

@@ -155,6 +155,9 @@ fn build(
         };
         builder = builder.traced(traced);
     }
+    if let Some(rows) = file.whiskers.table {
+        builder.table = Some(rows.read(folder, files)?.into());
+    }
     builder.uncertainty = file.uncertainty.as_ref().map(uncertainty).transpose()?;
     Ok(builder)
 }
@@ -197,7 +200,7 @@ fn located(mut fault: SceneFault, files: &[PairsCsv], origin: &str, text: &str) 
     let of_file = files.iter().find_map(|csv| {
         let pair = fault.key.strip_prefix(csv.key)?.strip_prefix('[')?;
         let pair: usize = pair.strip_suffix(']')?.parse().ok()?;
-        Some((csv.key, csv.lines[pair]))
+        Some((csv.key, *csv.lines.get(pair)?))
     });
     if let Some((key, line)) = of_file {
         let must = format!("line {line}: {}", fault.must);

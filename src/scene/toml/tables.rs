@@ -8,6 +8,7 @@ use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::pairs::{Pairs, points, rows};
+use super::whiskers::{WhiskerRows, whisker_rows};
 use crate::scene::Surface;
 use crate::scene::axis::{AxisScale, AxisValues};
 
@@ -22,6 +23,8 @@ pub(in crate::scene) struct SceneFile {
     #[serde(default)]
     pub contact: ContactTable,
     pub grid: GridTable,
+    #[serde(default)]
+    pub whiskers: WhiskersTable,
     #[serde(default)]
     pub output: OutputTable,
     /// Standard deviations of the scene's numbers by name, each in its unit.
@@ -141,6 +144,13 @@ pub(in crate::scene) struct GridTable {
     pub modulus_tip_to_base: Option<AxisValues>,
     pub arc_stretch: Option<AxisValues>,
     pub follicle_stiffness_nnm_per_rad: Option<AxisValues>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct WhiskersTable {
+    #[serde(deserialize_with = "whisker_rows")]
+    pub table: Option<WhiskerRows>,
 }
 
 #[derive(Default, Deserialize)]

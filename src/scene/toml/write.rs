@@ -7,6 +7,7 @@ use toml_edit::ser::to_document;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, TableLike, TomlError, Value};
 
 use crate::scene::FrameDeviations;
+use crate::scene::SweepVariable;
 use crate::scene::axis::{AxisScale, AxisValues};
 use crate::scene::deviations::ROWS;
 use crate::scene::error::SceneError;
@@ -17,8 +18,9 @@ use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY, POINTS_KEY};
 use crate::scene::{Scene, SceneBuilder};
 use crate::traced::TracedShape;
 
-use super::pairs::PairsCsv;
+use super::pairs::{PairsCsv, pair_array};
 use super::place_in;
+use super::whiskers::row_array;
 
 /// Significant digits with which every `f64` is parsed exactly, and of a number that follows from others: the last ones would be rounding.
 const EXACT_DIGITS: usize = 17;
@@ -115,6 +117,9 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
     for (parameter, values) in &scene.sweep {
         put(root, parameter.axis_key(), values);
     }
+    if let Some(rows) = &scene.table {
+        put(root, SweepVariable::TABLE, row_array(rows));
+    }
     if let Some(name) = &scene.name {
         put(root, "output.name", name.as_str());
     }
@@ -143,10 +148,6 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
     document
 }
 
-fn pair_array(pairs: &[[f64; 2]]) -> Array {
-    pairs.iter().map(|pair| Array::from_iter(*pair)).collect()
-}
-
 /// Sets degree and coefficients of a traced curvature.
 fn put_fit(root: &mut dyn TableLike, traced: &TracedShape) {
     put(root, DEGREE_KEY, traced.degree as i64);
@@ -168,14 +169,23 @@ impl SceneBuilder {
                 own.replace_range(span, &pairs_text(pairs));
             }
         }
-        let Some(traced) = &self.traced else {
+        let of_whiskers = self.table.as_ref();
+        let of_whiskers =
+            of_whiskers.filter(|_| files.iter().any(|csv| csv.key == SweepVariable::TABLE));
+        if self.traced.is_none() && of_whiskers.is_none() {
             return own;
-        };
+        }
         // The text was read as TOML.
         let Ok(mut document) = own.parse::<DocumentMut>() else {
             return own;
         };
         let root = document.as_table_mut();
+        if let Some(rows) = of_whiskers {
+            put(root, SweepVariable::TABLE, row_array(rows));
+        }
+        let Some(traced) = &self.traced else {
+            return document.to_string();
+        };
         put_fit(root, traced);
         let length = Parameter::LengthMm;
         if let Some(length_mm) = self.numbers.get(length)

@@ -7,7 +7,7 @@ pub use part::GridPart;
 
 use super::at::{AxisValue, InvalidAxisValue, readable, titled};
 use super::{AtlasLayout, MapSource, StoreError, StoredMap};
-use crate::scene::{Grid, Scene};
+use crate::scene::{Coordinate, Grid, Scene};
 use std::ops::Range;
 
 /// Slice: a part of a map, stored or computed, that is read panel by panel.
@@ -113,7 +113,7 @@ impl MapSlice {
 
     /// Returns names and values of the fixed axes of the slice, `[axis]`, each in the unit of its axis.
     #[must_use]
-    pub fn chosen(&self) -> &[(&'static str, f64)] {
+    pub fn chosen(&self) -> &[(&'static str, Coordinate)] {
         &self.part.chosen
     }
 
@@ -166,12 +166,9 @@ impl MapSlice {
 
     /// Returns names and values of all sweep axes of the whole map or store, for a whisker of the slice, `[axis]`.
     #[must_use]
-    pub fn place(&self, whisker: usize) -> Vec<(&'static str, f64)> {
+    pub fn place(&self, whisker: usize) -> Vec<(&'static str, Coordinate)> {
         let place = self.source.grid().place(self.in_whole(whisker));
-        let values = place.values();
-        values
-            .map(|(parameter, value)| (parameter.axis(), value))
-            .collect()
+        place.coordinates().collect()
     }
 
     /// Returns the sizes of the axes of the slice that are not fixed, `[axis]`: the sweep axes, then distance and push angle.

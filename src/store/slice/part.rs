@@ -1,7 +1,7 @@
 //! Parts of a grid: the rows, columns and whiskers of selected values.
 
-use crate::scene::Grid;
-use crate::store::at::{AxisValue, ChosenValues, InvalidAxisValue, select};
+use crate::scene::{Coordinate, Grid};
+use crate::store::at::{AxisValue, AxisValues, ChosenValues, InvalidAxisValue, select};
 
 /// Part of a grid in which the values of some axes are fixed.
 #[derive(Clone, Debug)]
@@ -45,15 +45,23 @@ impl GridPart {
 
     fn choose(&mut self, whole: &Grid, at: &AxisValue, exact: bool) -> Result<(), String> {
         let sweep = whole.sweep.iter();
-        let sweep = sweep.map(|axis| (axis.parameter.axis(), &*axis.values));
+        let sweep = sweep.map(AxisValues::of);
         let inside = [
             ("distance_mm", &*whole.distance_mm),
             ("push_angle_deg", &*whole.push_angle_deg),
         ];
+        let inside = inside.map(|(name, values)| AxisValues {
+            name,
+            values,
+            names: &[],
+        });
         let axes: Vec<_> = sweep.chain(inside).collect();
         let (axis, index) = select(&axes, &self.chosen, at, exact)?;
-        let (name, value) = (axes[axis].0, axes[axis].1[index]);
-        self.chosen.push((name, value));
+        let (name, value) = (axes[axis].name, axes[axis].values[index]);
+        let number = Coordinate::Number(value);
+        let coordinate = whole.sweep.get(axis);
+        let coordinate = coordinate.map_or(number, |axis| axis.variable.coordinate(value));
+        self.chosen.push((name, coordinate));
         match name {
             "distance_mm" => {
                 self.rows = vec![index];
@@ -66,7 +74,7 @@ impl GridPart {
             _ => {
                 self.fixed[axis] = Some(index);
                 let sweep = &mut self.grid.sweep;
-                sweep.retain(|axis| axis.parameter.axis() != name);
+                sweep.retain(|axis| axis.variable.name() != name);
             }
         }
         Ok(())

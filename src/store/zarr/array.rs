@@ -54,7 +54,11 @@ impl ZarrArray {
 
     /// The values along an axis, in one chunk that is not packed.
     pub(super) fn of_axis(name: &str, kind: ValueKind, count: usize, about: Value) -> Self {
-        let about = (about, json!([little_endian()]));
+        let codec = match kind {
+            ValueKind::Name => json!({ "name": "vlen-utf8" }),
+            _ => little_endian(),
+        };
+        let about = (about, json!([codec]));
         Self::new(name, kind, [&[count]; 2], &[name], about)
     }
 

@@ -127,7 +127,7 @@ mod tests {
             distance_mm: values(panel[0]),
             sweep: axes
                 .map(|(&count, parameter)| SweepAxis {
-                    parameter,
+                    variable: parameter.into(),
                     values: values(count),
                 })
                 .collect(),

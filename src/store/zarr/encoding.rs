@@ -15,6 +15,8 @@ pub(super) enum ValueKind {
     Quantity,
     /// Coordinates along an axis as `f64`.
     Coordinate,
+    /// Names along an axis as texts in UTF-8.
+    Name,
 }
 
 impl ValueKind {
@@ -25,13 +27,14 @@ impl ValueKind {
             Self::Count => "uint32",
             Self::Quantity => "float32",
             Self::Coordinate => "float64",
+            Self::Name => "string",
         }
     }
 
-    /// Returns the size in bytes of a value of this kind.
+    /// Returns the size in bytes of a value of this kind in blocks, which have no names.
     pub(super) const fn size(self) -> usize {
         match self {
-            Self::Code => 1,
+            Self::Code | Self::Name => 1,
             Self::Count | Self::Quantity => 4,
             Self::Coordinate => 8,
         }
@@ -44,6 +47,7 @@ impl ValueKind {
             Self::Count => (json!(0), vec![0; 4]),
             Self::Quantity => (json!("NaN"), f32::NAN.to_le_bytes().to_vec()),
             Self::Coordinate => (json!("NaN"), f64::NAN.to_le_bytes().to_vec()),
+            Self::Name => (json!(""), Vec::new()),
         }
     }
 }

@@ -4,11 +4,11 @@ use super::array::{ZarrArray, about};
 use super::blocks::Blocks;
 use super::channels::{CHANNELS, channel, with_flags};
 use super::encoding::ChunkEncoding;
-use super::encoding::ValueKind::{Code, Coordinate, Count};
+use super::encoding::ValueKind::{self, Code, Count};
 use super::identity::{AGREED, IDENTITY, StoreIdentity};
 use crate::classify::Regime;
 use crate::plan::{Digits, STATE_CHANNELS};
-use crate::scene::{Grid, SceneData};
+use crate::scene::{Coordinate, Grid, Parameter, SceneData};
 use crate::store::attributes::{DIGITS, digits};
 use crate::store::{Channels, MapDescription};
 use serde_json::{Map, Value, json};
@@ -25,7 +25,7 @@ pub(super) fn arrays(
     blocks: &Blocks,
     (channels, digits): (Channels, Digits),
 ) -> Vec<ZarrArray> {
-    let sweep = grid.sweep.iter().map(|axis| axis.parameter.axis());
+    let sweep = grid.sweep.iter().map(|axis| axis.variable.name());
     let sweep: Vec<&str> = sweep.collect();
     let of_cells = [&sweep[..], &["distance_mm", "push_angle_deg"]].concat();
     let of_regimes = [&sweep[..], &[CODES]].concat();
@@ -68,52 +68,50 @@ const QUANTIZATION: &str = "quantization";
 
 /// Coordinate of maps: values along one axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AxisCoordinate<'a> {
+pub struct AxisCoordinate {
     /// Name of the coordinate and of its dimension.
     pub name: &'static str,
     /// Attributes of the coordinate by the CF conventions: unit and meaning.
     pub attributes: Value,
-    /// Values of the coordinate in its unit, `[value]`.
-    pub values: &'a [f64],
+    /// Values of the coordinate in its unit, or names of whiskers, `[value]`.
+    pub values: Vec<Coordinate>,
 }
 
 /// Returns the coordinates of a grid in the order of the dimensions of channels, `[axis]`: sweep axes, distances and push angles.
 #[must_use]
-pub fn coordinates(grid: &Grid) -> Vec<AxisCoordinate<'_>> {
-    let inside: [(_, _, _, &[f64]); 2] = [
-        (
-            "distance_mm",
-            "mm",
-            "distance at first touch",
-            &grid.distance_mm,
-        ),
-        (
-            "push_angle_deg",
-            "degree",
-            "push angle; CF < 0 < CB",
-            &grid.push_angle_deg,
-        ),
+pub fn coordinates(grid: &Grid) -> Vec<AxisCoordinate> {
+    let numbers = |values: &[f64]| values.iter().copied().map(Coordinate::Number).collect();
+    let inside = [
+        AxisCoordinate {
+            name: "distance_mm",
+            attributes: about(Some("mm"), "distance at first touch"),
+            values: numbers(&grid.distance_mm),
+        },
+        AxisCoordinate {
+            name: "push_angle_deg",
+            attributes: about(Some("degree"), "push angle; CF < 0 < CB"),
+            values: numbers(&grid.push_angle_deg),
+        },
     ];
     let sweep = grid.sweep.iter().map(|axis| {
-        let parameter = axis.parameter;
-        let title = parameter.title();
-        (parameter.axis(), parameter.unit(), title, &*axis.values)
+        let variable = &axis.variable;
+        let unit = variable.parameter().map(Parameter::unit);
+        AxisCoordinate {
+            name: variable.name(),
+            attributes: about(unit, variable.title()),
+            values: axis.coordinates().collect(),
+        }
     });
-    let all = sweep.chain(inside);
-    all.map(|(name, units, title, values)| AxisCoordinate {
-        name,
-        attributes: about(Some(units), title),
-        values,
-    })
-    .collect()
+    sweep.chain(inside).collect()
 }
 
 /// The coordinates along every axis, and the description of the rounding if there is any, with their values as bytes.
 pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)> {
     let mut all = Vec::new();
     for own in coordinates(grid) {
-        let array = ZarrArray::of_axis(own.name, Coordinate, own.values.len(), own.attributes);
-        all.push((array, bytemuck::cast_slice(own.values).to_vec()));
+        let (kind, bytes) = packed(&own.values);
+        let array = ZarrArray::of_axis(own.name, kind, own.values.len(), own.attributes);
+        all.push((array, bytes));
     }
     let codes = Regime::ALL.map(|regime| regime.code() as u8).to_vec();
     let (_, _, units, meaning) = CHANNELS[0];
@@ -127,6 +125,26 @@ pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)
         all.push((ZarrArray::scalar(QUANTIZATION, Code, about), vec![0]));
     }
     all
+}
+
+/// Returns the kind of the values of an axis, and their bytes in a chunk.
+fn packed(values: &[Coordinate]) -> (ValueKind, Vec<u8>) {
+    let numbers: Option<Vec<f64>> = values.iter().map(Coordinate::number).collect();
+    if let Some(numbers) = numbers {
+        return (
+            ValueKind::Coordinate,
+            bytemuck::cast_slice(&numbers).to_vec(),
+        );
+    }
+    // `vlen-utf8`: the number of texts, then each with its length.
+    let count = |count: usize| (count as u32).to_le_bytes();
+    let mut bytes = count(values.len()).to_vec();
+    for value in values {
+        let name = value.to_string();
+        bytes.extend(count(name.len()));
+        bytes.extend(name.into_bytes());
+    }
+    (ValueKind::Name, bytes)
 }
 
 /// Returns the attributes of a store, equal on all machines of one arithmetic class.

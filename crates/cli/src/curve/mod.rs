@@ -22,8 +22,8 @@ use whiskmap::Side;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{Plot, bands};
-use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
-use whiskmap::sensitivity::{DetachmentDerivatives, detachments_at};
+use whiskmap::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
+use whiskmap::sensitivity::{DetachmentDerivatives, NoDerivative, detachments_at};
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 use whiskmap::uncertainty::{EndSpread, PointSpread};
 
@@ -36,6 +36,7 @@ Examples:
   whiskmap curve scenes/cone.toml --derivatives=taper,length_mm --csv curve.csv
   whiskmap curve scenes/cone.toml --corner
   whiskmap curve scenes/morphology.toml --at taper=0.95 --at curvature_per_mm=0.02 --plot curve.svg
+  whiskmap curve scenes/pad.toml --at whisker=C2 --plot C2.svg
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --x force_un --plot forces.svg
@@ -43,8 +44,9 @@ Examples:
 
 The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
 Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \
-sweep axes, such as grid.taper, the table has the curve of every whisker, with a leading column for each axis. A plot shows \
-one whisker, which --at selects.
+sweep axes, such as grid.taper, the table has the curve of every whisker, with a leading column for each axis. With a table of \
+whiskers, the column whisker has their names, and no_whisker the reason why a row has no whisker. A plot shows one whisker, which \
+--at selects.
 
 With --derivatives, columns such as d_push_d_taper follow: exact derivatives of the push angle, force, moment, energy, arc length \
 and contact angle at detachment, each in the unit of its quantity per unit of the variable. Without a derivative, they are empty.
@@ -124,9 +126,9 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
         let (keys, values): (Vec<_>, Vec<_>) = axes
             .map(|axis| {
-                let value = digits(axis.values[axis.values.len() / 2]);
-                let at = format!("--at {}={value}", axis.parameter.axis());
-                (axis.parameter.axis_key(), at)
+                let value = axis.variable.coordinate(axis.values[axis.values.len() / 2]);
+                let at = format!("--at {}={value}", axis.variable.name());
+                (axis.variable.key(), at)
             })
             .unzip();
         return Err(Failure::Input(format!(
@@ -159,26 +161,35 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         if args.corner {
-            let corner = |own: &SweptWhisker, side| {
-                let corner = trace::corner(&own.whisker, &own.pole, side);
+            let corner = |own: Result<&SweptWhisker, &RefusedWhisker>, side| {
                 bar.inc(1);
-                vec![corner]
+                vec![match own {
+                    Ok(own) => trace::corner(&own.whisker, &own.pole, side),
+                    Err(_) => Corner::without_whisker(side),
+                }]
             };
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
             continue;
         }
-        let ends = |own: &SweptWhisker, side| {
+        let row = |DetachmentDerivatives { end, by }| {
+            let columns = DerivativeColumns {
+                variables: &variables,
+                by,
+                first: 0,
+            };
+            (end, columns)
+        };
+        let ends = |own: Result<&SweptWhisker, &RefusedWhisker>, side| {
+            bar.inc(distances.len());
+            let Ok(own) = own else {
+                let ends = Detachment::without_whisker(side, distances).into_iter();
+                let by = || vec![Err(NoDerivative::NoDetachment); variables.len()];
+                return ends
+                    .map(|end| row(DetachmentDerivatives { end, by: by() }))
+                    .collect();
+            };
             let (whisker, pole) = (&own.whisker, &own.pole);
             let ends = detachments_at(resolution, whisker, pole, side, distances, &variables);
-            bar.inc(ends.len());
-            let row = |DetachmentDerivatives { end, by }| {
-                let columns = DerivativeColumns {
-                    variables: &variables,
-                    by,
-                    first: 0,
-                };
-                (end, columns)
-            };
             ends.into_iter().map(row).collect()
         };
         let rows: Vec<(SweepPlace, (Detachment, DerivativeColumns))> = trace::sides(&group, ends);
@@ -195,13 +206,27 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
 
-/// Writes the rows of some whiskers, with a leading column for each sweep axis.
+/// Column of a table with the reason why a row of the table of whiskers has no whisker.
+#[derive(Serialize)]
+struct Reason<'a> {
+    no_whisker: Option<&'a str>,
+}
+
+/// Writes the rows of some whiskers, with a leading column for each sweep axis. With a table of whiskers, the next column has the reason
+/// why there is no whisker.
 fn write<R: Serialize>(
     scene: &Scene,
     outputs: &mut OpenOutputs,
     rows: &[(SweepPlace, R)],
 ) -> Result<(), Failure> {
-    if scene.is_sweep() {
+    if !scene.table.is_empty() {
+        outputs.rows(rows.iter().map(|(place, row)| {
+            let whisker = place.row().and_then(|row| scene.table.get(row));
+            let reason = whisker.and_then(|own| own.found.as_ref().err());
+            let no_whisker = reason.map(String::as_str);
+            (place, Reason { no_whisker }, row)
+        }))
+    } else if scene.is_sweep() {
         outputs.rows(rows)
     } else {
         outputs.rows(rows.iter().map(|(_, row)| row))

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::plan::Digits;
-use whiskmap::scene::{LONGEST_TITLE, Parameter, Scene, SceneData};
+use whiskmap::scene::{LONGEST_TITLE, Scene, SceneData};
 use whiskmap::store::{MapDescription, MapSlice, MapWriter, TemporaryFolder, ZarrStore};
 use whiskmap::terminal::StandardOutput;
 
@@ -165,12 +165,7 @@ fn scene(slice: &MapSlice) -> Result<Scene, Failure> {
     let title: String = slice.title().chars().take(LONGEST_TITLE).collect();
     let mut builder = scene.to_builder().title(title);
     for (axis, value) in slice.chosen() {
-        let mut swept = Parameter::SWEPT.into_iter();
-        builder = match swept.find(|own| own.axis() == *axis) {
-            Some(parameter) => builder.sweep(parameter, [*value]),
-            None if *axis == "push_angle_deg" => builder.push_angle_deg([*value]),
-            None => builder.distance_mm([*value]),
-        };
+        builder = builder.fixed(axis, value);
     }
     Ok(builder.build()?)
 }

@@ -6,13 +6,14 @@ use super::super::outputs::OutputTable;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::collections::BTreeMap;
 use std::path::Path;
+use whiskmap::scene::Coordinate;
 use whiskmap::store::{ChannelValues, MapSlice};
 
 /// Names of the codes of a channel, by code.
 type CodeNames = BTreeMap<u32, String>;
 
 struct CellLine<'a> {
-    axes: &'a [(&'static str, f64)],
+    axes: &'a [(&'static str, Coordinate)],
     channels: &'a [&'static str],
     /// Names of the codes of `regime` and `status`.
     names: [&'a CodeNames; 2],
@@ -67,8 +68,8 @@ pub fn table(
             rows.flat_map(|row| grid.push_angle_deg.iter().map(move |column| (row, column)));
         for (cell, (distance, push_angle)) in cells.enumerate() {
             let mut axes = place.clone();
-            axes.push(("distance_mm", *distance));
-            axes.push(("push_angle_deg", *push_angle));
+            axes.push(("distance_mm", Coordinate::Number(*distance)));
+            axes.push(("push_angle_deg", Coordinate::Number(*push_angle)));
             let line = CellLine {
                 axes: &axes,
                 channels,

@@ -7,7 +7,7 @@ use super::data;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::write;
-use super::pole::check_single;
+use super::pole::WhiskerArgs;
 use clap::Args;
 use serde_json::{Map, Value, json};
 use std::io::Write;
@@ -36,8 +36,8 @@ The values are not a fit if the RMS is more than 5 degrees, or more than a third
 with sd_deg, only if chi-square is also too large for these deviations. A reduced chi-square above 400 is never a fit. Then \
 the exit code is 1 and -o writes nothing.")]
 pub struct FitArgs {
-    /// Scene file; - is standard input
-    scene: PathBuf,
+    #[command(flatten)]
+    whisker: WhiskerArgs,
     /// Measured detachments; - is standard input
     #[arg(long, value_name = "FILE")]
     data: PathBuf,
@@ -53,9 +53,8 @@ pub struct FitArgs {
 }
 
 pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
-    data::check_stdin(&args.scene, &args.data)?;
-    let scene = files.scene(&args.scene)?;
-    check_single(&scene, "fit")?;
+    data::check_stdin(&args.whisker.scene, &args.data)?;
+    let scene = args.whisker.read(files, "fit")?;
     let points = data::read(files, &args.data)?;
     let mut open = |option, path: &Option<PathBuf>| {
         let output = path.as_deref().map(|path| files.output(option, path));

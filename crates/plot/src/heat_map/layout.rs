@@ -6,7 +6,7 @@ use crate::frame::axes::Axes;
 use crate::frame::heading::{ALONE, Heading, LINE, LegendEntry, SIDES, TICK, TITLE};
 use crate::frame::regions::RegionNames;
 use crate::frame::spacing::Spacing;
-use crate::frame::ticks::{self, Tick};
+use crate::frame::ticks::Tick;
 use crate::picture::size::{PictureSize, SizeError};
 use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Picture, font};
@@ -183,7 +183,7 @@ fn sheet_axes(map: &HeatMap, area: [f64; 2], panels: &PanelGrid, spacing: Spacin
     let ticks = |side: usize| -> Vec<Tick> {
         let labels = axes[side]
             .iter()
-            .flat_map(|axis| ticks::labels(&axis.values));
+            .flat_map(|axis| axis.texts.iter().cloned());
         let labels = labels.enumerate();
         let ticks = labels.map(|(place, label)| Tick::new(panels.middle(side, place, area), label));
         ticks.collect()

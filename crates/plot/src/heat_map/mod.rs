@@ -10,6 +10,7 @@ pub mod summary;
 
 use crate::frame::heading::LegendEntry;
 use crate::frame::regions::Region;
+use crate::frame::ticks;
 use crate::picture::palette::{Fill, INK, WHITE};
 use crate::picture::size::{PictureSize, SizeError};
 use crate::picture::{Area, Pen, Picture};
@@ -67,8 +68,17 @@ pub struct HeatMap {
 pub struct PanelAxis {
     /// Name of the panel axis, with its unit.
     pub label: String,
-    /// Values on the panel axis, in the unit of `label`: one for each column of panels from the left, or for each row from below.
-    pub values: Vec<f64>,
+    /// Texts on the panel axis: one for each column of panels from the left, or for each row from below.
+    pub texts: Vec<String>,
+}
+
+impl PanelAxis {
+    /// Creates the axis of panels that differ in a number. Values are in the unit of `label`.
+    #[must_use]
+    pub fn of_values(label: String, values: &[f64]) -> Self {
+        let texts = ticks::labels(values);
+        Self { label, texts }
+    }
 }
 
 /// The contents of one panel of a heat map: values, hatching and curves.

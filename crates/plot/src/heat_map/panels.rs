@@ -4,7 +4,6 @@
 
 use super::{HeatMap, PanelAxis};
 use crate::frame::heading::NAME;
-use crate::frame::ticks;
 use crate::picture::text::fitted;
 use crate::picture::{Anchor, Area, Picture};
 
@@ -36,7 +35,7 @@ impl PanelGrid {
     /// Chooses columns and rows for the panels of a heat map, without sizes.
     pub fn of(map: &HeatMap) -> Self {
         let sizes = map.panel_axes.each_ref();
-        let sizes = sizes.map(|axis| axis.as_ref().map_or(1, |axis| axis.values.len()));
+        let sizes = sizes.map(|axis| axis.as_ref().map_or(1, |axis| axis.texts.len()));
         let count = sizes[0] * sizes[1];
         let alone = match &map.panel_axes {
             [Some(axis), None] | [None, Some(axis)] if count > 1 => Some(axis),
@@ -47,7 +46,7 @@ impl PanelGrid {
         } else {
             count
         };
-        let labels = |axis: &PanelAxis| ticks::labels(&axis.values);
+        let labels = |axis: &PanelAxis| axis.texts.clone();
         Self {
             count,
             counts: match alone {

@@ -103,10 +103,7 @@ fn hatched_cells_have_stripes_and_curves_run_where_their_points_are() {
 #[test]
 fn panels_stand_along_their_axes() {
     let mut map = coded(&[1.0, 2.0], &[1.0, 2.0]);
-    let axis = |label: &str| PanelAxis {
-        label: label.to_owned(),
-        values: vec![0.5, 0.75],
-    };
+    let axis = |label: &str| PanelAxis::of_values(label.to_owned(), &[0.5, 0.75]);
     map.panel_axes = [Some(axis("taper")), Some(axis("friction"))];
     let mut drawn_panels = Vec::new();
     let picture = drawn(&map, |index| {
@@ -143,10 +140,7 @@ fn panels_along_one_axis_fill_rows() {
     let values: Vec<f64> = (0..7).map(|i| 0.25 * f64::from(i)).collect();
     for side in [0, 1] {
         let mut map = coded(&[1.0, 2.0], &[1.0, 2.0]);
-        map.panel_axes[side] = Some(PanelAxis {
-            label: "taper".to_owned(),
-            values: values.clone(),
-        });
+        map.panel_axes[side] = Some(PanelAxis::of_values("taper".to_owned(), &values));
         let mut drawn_panels = Vec::new();
         let picture = drawn(&map, |index| {
             drawn_panels.push(index);

@@ -1,0 +1,229 @@
+//! Tables of whiskers in a scene file: a list of rows, or the name of a CSV file.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use toml_edit::{Array, InlineTable, Value};
+
+use super::pairs::{PairKind, Pairs, PairsCsv, named_file, pair_array, points, rows};
+use crate::input::{CsvError, CsvTable, did_you_mean, shortened};
+use crate::scene::error::SceneFault;
+use crate::scene::grid::SweepVariable;
+use crate::scene::limits::digits;
+use crate::scene::parameter::Parameter;
+use crate::scene::table::WhiskerRow;
+
+/// Key of the table of whiskers in a scene file.
+const KEY: &str = SweepVariable::TABLE;
+
+/// Column with the names of the whiskers.
+const NAME: &str = "name";
+
+/// Column with measured radii: in a CSV file, the name of a CSV file.
+const PROFILE: &str = "profile";
+
+/// Column with traced points: in a CSV file, the name of a CSV file.
+const REST_POINTS: &str = "rest_points";
+
+/// Table of whiskers as a scene file has it.
+pub(in crate::scene) enum WhiskerRows {
+    Listed(Vec<RowTable>),
+    Named(String),
+}
+
+/// Row of a list of whiskers.
+#[derive(Deserialize)]
+pub(in crate::scene) struct RowTable {
+    name: String,
+    #[serde(default, deserialize_with = "rows")]
+    profile: Option<Pairs>,
+    #[serde(default, deserialize_with = "points")]
+    rest_points: Option<Pairs>,
+    #[serde(flatten)]
+    numbers: BTreeMap<String, f64>,
+}
+
+/// Reads a table of whiskers, which its table must have.
+pub(super) fn whisker_rows<'de, D: Deserializer<'de>>(
+    value: D,
+) -> Result<Option<WhiskerRows>, D::Error> {
+    value.deserialize_any(RowsVisitor).map(Some)
+}
+
+struct RowsVisitor;
+
+impl<'de> Visitor<'de> for RowsVisitor {
+    type Value = WhiskerRows;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the name of a CSV file or a list of { name, length_mm, ... }")
+    }
+
+    fn visit_str<E>(self, name: &str) -> Result<WhiskerRows, E> {
+        Ok(WhiskerRows::Named(name.to_owned()))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<WhiskerRows, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(list)).map(WhiskerRows::Listed)
+    }
+}
+
+impl WhiskerRows {
+    /// Returns the listed rows, or reads those of the regular file in `folder` that is named. All files are added to `files`. Without a
+    /// folder, names of files are refused.
+    pub(super) fn read(
+        self,
+        folder: Option<&Path>,
+        files: &mut Vec<PairsCsv>,
+    ) -> Result<Vec<WhiskerRow>, SceneFault> {
+        match self {
+            Self::Listed(list) => {
+                let list = list.into_iter().enumerate();
+                list.map(|(index, row)| row.read(index, folder, files))
+                    .collect()
+            }
+            Self::Named(name) => {
+                let (file, path) = named_file(KEY, "rows", &name, folder)?;
+                let table = CsvTable::read_file(file, &path).map_err(refused)?;
+                read_csv(&table, path, files)
+            }
+        }
+    }
+}
+
+impl RowTable {
+    fn read(
+        self,
+        index: usize,
+        folder: Option<&Path>,
+        files: &mut Vec<PairsCsv>,
+    ) -> Result<WhiskerRow, SceneFault> {
+        let of_row = |fault: SceneFault| {
+            let must = format!("{}: {}", fault.key, fault.must);
+            SceneFault::new(format!("{KEY}[{index}]"), must)
+        };
+        let mut row = WhiskerRow::new(self.name);
+        for (name, value) in self.numbers {
+            let Some(parameter) = Parameter::named(&name) else {
+                let hint = did_you_mean(&name, columns());
+                let known = columns().collect::<Vec<_>>().join(", ");
+                let must = format!("is not known; must be one of {known}{hint}");
+                return Err(of_row(SceneFault::of_value(
+                    shortened(&name),
+                    digits(value),
+                    must,
+                )));
+            };
+            row = row.set(parameter, value);
+        }
+        if let Some(pairs) = self.profile {
+            row = row.profile(read_pairs(pairs, folder, files).map_err(of_row)?);
+        }
+        if let Some(pairs) = self.rest_points {
+            row = row.rest_points(read_pairs(pairs, folder, files).map_err(of_row)?);
+        }
+        Ok(row)
+    }
+}
+
+/// Reads the pairs of a row. Their file counts as one of the table.
+fn read_pairs(
+    pairs: Pairs,
+    folder: Option<&Path>,
+    files: &mut Vec<PairsCsv>,
+) -> Result<Vec<[f64; 2]>, SceneFault> {
+    let mut named = Vec::new();
+    let pairs = pairs.read(folder, &mut named)?;
+    files.extend(named.into_iter().map(|csv| PairsCsv {
+        key: KEY,
+        lines: Vec::new(),
+        ..csv
+    }));
+    Ok(pairs)
+}
+
+fn refused(why: CsvError) -> SceneFault {
+    SceneFault::new(KEY, why.to_string())
+}
+
+/// Names of all columns of a table of whiskers.
+fn columns() -> impl Iterator<Item = &'static str> + Clone {
+    let files = [NAME, PROFILE, REST_POINTS].into_iter();
+    files.chain(Parameter::ALL.map(Parameter::name))
+}
+
+/// Reads the rows of a CSV file. The files that it names are beside it.
+fn read_csv(
+    table: &CsvTable,
+    path: PathBuf,
+    files: &mut Vec<PairsCsv>,
+) -> Result<Vec<WhiskerRow>, SceneFault> {
+    let optional: Vec<&str> = columns().filter(|name| *name != NAME).collect();
+    let note = table.require(&[&[NAME]], &optional).map_err(refused)?;
+    let text = |column: &str| {
+        let cells = table.values(column, "", |cell| Some(cell.to_owned()));
+        cells.map(Option::unwrap_or_default).map_err(refused)
+    };
+    let mut list: Vec<WhiskerRow> = text(NAME)?.into_iter().map(WhiskerRow::new).collect();
+    for parameter in Parameter::ALL {
+        let numbers = table.measurements(parameter.name(), "a number", f64::is_finite);
+        let numbers = numbers.map_err(refused)?.unwrap_or_default();
+        for (row, number) in list.iter_mut().zip(numbers) {
+            *row = std::mem::take(row).set(parameter, number);
+        }
+    }
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    files.push(PairsCsv {
+        key: KEY,
+        path,
+        lines: table.lines().collect(),
+        note,
+    });
+    let kinds: [(_, _, fn(WhiskerRow, Vec<[f64; 2]>) -> WhiskerRow); 2] = [
+        (PROFILE, PairKind::ROWS, WhiskerRow::profile),
+        (REST_POINTS, PairKind::POINTS, WhiskerRow::rest_points),
+    ];
+    for (column, kind, set) in kinds {
+        for (index, (row, name)) in list.iter_mut().zip(text(column)?).enumerate() {
+            if name.is_empty() {
+                continue;
+            }
+            let pairs = read_pairs(kind.named(name), Some(&folder), files);
+            let pairs = pairs.map_err(|fault| {
+                SceneFault::new(
+                    format!("{KEY}[{index}]"),
+                    format!("{column}: {}", fault.must),
+                )
+            })?;
+            *row = set(std::mem::take(row), pairs);
+        }
+    }
+    Ok(list)
+}
+
+/// Returns the rows as a list in TOML, a row on a line.
+pub(super) fn row_array(rows: &[WhiskerRow]) -> Array {
+    let list = rows.iter().map(|row| {
+        let mut table = InlineTable::new();
+        table.insert(NAME, row.name.as_str().into());
+        for (parameter, value) in &row.numbers {
+            table.insert(parameter.name(), (*value).into());
+        }
+        if let Some(rows) = &row.profile {
+            table.insert(PROFILE, pair_array(rows).into());
+        }
+        if let Some(rest) = &row.rest {
+            table.insert(REST_POINTS, pair_array(&rest.points_mm).into());
+        }
+        Value::from(table).decorated("\n    ", "")
+    });
+    let mut array = Array::new();
+    list.for_each(|row| array.push_formatted(row));
+    array.set_trailing_comma(true);
+    array.set_trailing("\n");
+    array
+}
