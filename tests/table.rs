@@ -24,7 +24,7 @@ const ROWS: &str = r#"[
     { name = "C", length_mm = 15, base_radius_um = 20, taper = 0, spiral_per_mm = -0.01, spiral_per_mm2 = 0.002 },
     { name = "D", length_mm = 15, base_radius_um = 20, tip_radius_um = 25 },
     { name = "E", length_mm = 16, profile = [[0, 33], [8, 20], [16, 2]] },
-    { name = "F", base_radius_um = 30, tip_radius_um = 2, rest_points = [[0, 0], [5, 0.3], [10, 1.2], [14, 2.4], [18, 4.0]] },
+    { name = "F", base_radius_um = 30, tip_radius_um = 2, rest_points = [[0, 0], [2.5, 0.1], [5, 0.3], [7.5, 0.7], [10, 1.2], [12, 1.7], [14, 2.4], [16, 3.1], [18, 4.0]] },
 ]"#;
 
 fn parse(text: &str) -> Result<Scene, String> {
@@ -68,8 +68,13 @@ fn every_row_is_the_map_of_its_whisker() {
     let refused: Vec<_> = table.refused().collect();
     let tip = "whisker.tip_radius_um = 25: must be between 0 and base_radius_um (20)";
     assert_eq!(refused, [("B", "base_radius_um is missing"), ("D", tip)]);
+    let dense = scene(ROWS)
+        .replace("count = 25", "count = 160")
+        .replace("[4.0, 9.0, 14.0]", "{ from = 3, to = 16, count = 20 }");
+    let dense = parse(&dense).unwrap();
+    let (_, panels) = compute(&dense, None);
     let mut spectral = Spectral::default();
-    let (summary, by_net) = compute(&table, Some(&mut spectral));
+    let (summary, by_net) = compute(&dense, Some(&mut spectral));
     assert!(summary.engine_cells.solved > 0);
     for (net, exact) in by_net.iter().zip(&panels) {
         assert_eq!(net.regime, exact.regime);
@@ -148,7 +153,10 @@ fn tables_survive_their_texts() {
     let place = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(place.path().join(name), text).unwrap();
     write("e.csv", "arc_length_mm,radius_um\n0,33\n8,20\n16,2\n");
-    write("f.csv", "x_mm,y_mm\n0,0\n5,0.3\n10,1.2\n14,2.4\n18,4.0\n");
+    write(
+        "f.csv",
+        "x_mm,y_mm\n0,0\n2.5,0.1\n5,0.3\n7.5,0.7\n10,1.2\n12,1.7\n14,2.4\n16,3.1\n18,4.0\n",
+    );
     write(
         "pad.csv",
         "name;day;length_mm;base_radius_um;tip_radius_um;profile;rest_points\nA;1;20;30;1,5;;\nB;1;12,5;;2;;\nE;2;16;;;e.csv;\n\
@@ -198,14 +206,17 @@ fn wrong_tables_are_refused() {
             "[{ name = \"A\", lenght_mm = 20 }]",
             "did you mean `length_mm`?",
         ),
-        ("[{ name = \"A\", length_mm = \"20\" }]", "expected f64"),
+        (
+            "[{ name = \"A\", length_mm = \"20\" }]",
+            "invalid type: string \"20\", expected a number",
+        ),
         (
             "[{ name = \"A\", taper = 0.9, tip_radius_um = 2 }]",
             "must have either a taper or a tip_radius_um",
         ),
         (
             "[{ name = \"A\", length_mm = 20 }, { name = \"A\", length_mm = 21 }]",
-            "whiskers.table[1] = { name = \"A\", length_mm = 21 }: the name of a whisker must be unlike those before it",
+            "whiskers.table[1]: the name of a whisker must be unlike those before it",
         ),
         (
             "[{ name = \"A\", length_mm = 20, base_radius_um = 30 }]",

@@ -140,5 +140,9 @@ def detachment(
     variables: Sequence[str],
     threads: int | None,
 ) -> tuple[
-    NDArray[uint8], NDArray[float64], NDArray[float64], list[tuple[str, NDArray[float64], NDArray[float64]]]
+    NDArray[uint8],
+    NDArray[float64],
+    NDArray[float64],
+    list[tuple[str, NDArray[float64], NDArray[float64]]],
+    list[SceneError],
 ]: ...

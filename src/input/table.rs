@@ -222,8 +222,8 @@ impl CsvTable {
         })
     }
 
-    /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A missing value, an empty cell or `NaN`,
-    /// is NaN.
+    /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A missing value, an empty cell, `NaN`
+    /// or `NA`, is NaN.
     ///
     /// # Errors
     /// Fails as [`CsvTable::numbers`] does, but for missing values.
@@ -235,7 +235,7 @@ impl CsvTable {
     ) -> Result<Option<Vec<f64>>, CsvError> {
         let must = format!("{must}, or empty where it is missing");
         self.parsed(column, &must, |cell| match cell {
-            "" => Some(f64::NAN),
+            "" | "NA" => Some(f64::NAN),
             cell => {
                 let number = cell.parse().ok();
                 number.filter(|number: &f64| number.is_nan() || is_allowed(*number))

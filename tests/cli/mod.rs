@@ -52,6 +52,7 @@ mod store;
 #[cfg(unix)]
 mod submit;
 mod sweep;
+mod table;
 #[cfg(unix)]
 mod terminal;
 mod texture;

@@ -71,6 +71,7 @@ fn every_shipped_scene_is_accepted() {
         let sides = match &*scene.name {
             "friction" => [1061, 1],
             "morphology" => [96, 96],
+            "pad" => [141, 37],
             _ => [512, 512],
         };
         let grid = &scene.grid;
@@ -89,6 +90,7 @@ fn every_shipped_scene_is_accepted() {
         "friction",
         "measured",
         "morphology",
+        "pad",
         "robot",
         "texture_cone",
         "texture_hair",

@@ -7,6 +7,7 @@ use super::failure::{Failure, message};
 use super::files::{Files, unwritten};
 use super::map_format::MapFormat;
 use super::outputs::PictureFile;
+use super::scene::check_strict;
 use super::sharded::{self, RunArgs};
 use super::solver::SolverArgs;
 use super::summary::{compute, report};
@@ -66,6 +67,7 @@ pub struct MapArgs {
 
 pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let scene = files.scene(&args.scene)?;
+    check_strict(args.run.strict, &scene)?;
     let format = args.format.unwrap_or(MapFormat::Exr);
     let planned = args.plan(&scene, format)?;
     let mut engine = args.solver.open(&planned)?;

@@ -21,25 +21,41 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
             fitted(traced, length_mm)
         ));
     }
-    let refused: Vec<_> = scene.refused().collect();
-    if !refused.is_empty() {
-        let rows = refused.iter().take(MOST_REFUSED);
-        let rows = rows.map(|(name, reason)| format!("{name} ({reason})"));
-        let more = match refused.len().saturating_sub(MOST_REFUSED) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        message(&format!(
-            "warning: {} of {} rows of whiskers.table have no whisker: {}{more}",
-            refused.len(),
-            scene.table.len(),
-            rows.collect::<Vec<_>>().join(", ")
-        ));
+    if let Some(rows) = without_whisker(&scene) {
+        message(&format!("warning: {rows}"));
     }
     for warning in scene.warnings() {
         message(&format!("warning: {warning}"));
     }
     Ok(scene)
+}
+
+/// Describes the rows of a table of whiskers that have no whisker; `None` if all have one.
+fn without_whisker(scene: &Scene) -> Option<String> {
+    let count = scene.refused().count();
+    let rows = scene.refused().take(MOST_REFUSED);
+    let rows: Vec<String> = rows
+        .map(|(name, reason)| format!("{name} ({reason})"))
+        .collect();
+    let more = match count.saturating_sub(MOST_REFUSED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (count > 0).then(|| {
+        format!(
+            "whiskers.table: {count} of {} rows have no whisker: {}{more}",
+            scene.table.len(),
+            rows.join(", ")
+        )
+    })
+}
+
+/// Returns an error if a scene that must be complete has a row without a whisker.
+pub fn check_strict(is_strict: bool, scene: &Scene) -> Result<(), Failure> {
+    match without_whisker(scene) {
+        Some(rows) if is_strict => Err(Failure::Input(format!("--strict: {rows}"))),
+        _ => Ok(()),
+    }
 }
 
 /// Describes the fit to traced points of a whisker with this length.

@@ -90,6 +90,9 @@ pub struct RunArgs {
     /// Compute one of N parts of a store, from 0/N to N-1/N
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
+    /// Refuse a table of whiskers that has a row without a whisker
+    #[arg(long)]
+    pub strict: bool,
     /// Start even if the disk seems to have too little space
     #[arg(long)]
     pub force: bool,

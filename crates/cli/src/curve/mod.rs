@@ -11,6 +11,7 @@ use super::files::Files;
 use super::outputs::{OpenOutputs, OutputArgs};
 use super::pole;
 use super::progress::Progress;
+use super::scene::check_strict;
 use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
@@ -94,6 +95,9 @@ pub struct CurveArgs {
     x: CurveColumn,
     #[command(flatten)]
     selection: SelectionArgs,
+    /// Refuse a table of whiskers that has a row without a whisker
+    #[arg(long)]
+    strict: bool,
     /// Distances from the base to the contact at first touch in place of the scene's, in mm or with a unit, such as 1.5cm; several
     /// are separated by commas
     #[arg(long, value_name = "LENGTH", value_delimiter = ',', allow_hyphen_values = true, value_parser = length)]
@@ -113,6 +117,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         data::check_stdin(&args.scene, data)?;
     }
     let mut scene = args.selection.of_scene(&files.scene(&args.scene)?)?;
+    check_strict(args.strict, &scene)?;
     if !args.distance.is_empty() {
         pole::check_distances(&scene, &args.distance)?;
         let mut distances = args.distance.clone();

@@ -1,0 +1,98 @@
+"""Tables of whiskers: rows of data frames, and arrays with missing values."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import whiskmap as wm
+
+PAD = pd.DataFrame(
+    {
+        "name": ["C1", "C2", "C3"],
+        "length_mm": [20.0, 18.0, 16.0],
+        "base_radius_um": pd.array([30.0, None, 26.0], dtype="Float64"),
+        "tip_radius_um": [1.5, 2.0, 2.0],
+    }
+)
+
+
+@pytest.fixture
+def pad():
+    whisker = wm.Whisker(youngs_modulus_gpa=3)
+    return wm.Scene(whisker=whisker, grid=wm.Grid(push_angle_deg=wm.Range(-60, 60, 25), distance_mm=[5, 10]), table=PAD)
+
+
+def alone(scene, row):
+    numbers = PAD.iloc[row].drop("name").astype(float)
+    return scene.replace(table=None, **numbers)
+
+
+def test_rows_have_the_results_of_their_whiskers(pad):
+    assert pad.refused == {"C2": "base_radius_um is missing"}
+    ends, cells = wm.curve(pad), wm.map(pad)
+    assert ends.whisker.values.tolist() == ["C1", "C2", "C3"] and ends.kind.dims == ("whisker", "side", "distance_mm")
+    assert (ends.kind.sel(whisker="C2") == "no-whisker").all() and np.isnan(ends.push_angle_deg.sel(whisker="C2")).all()
+    assert (cells.regime.sel(whisker="C2") == 255).all()
+    for row in (0, 2):
+        own, name = alone(pad, row), PAD["name"][row]
+        assert pad.select(name).whisker == own.whisker
+        np.testing.assert_array_equal(ends.force_un.sel(whisker=name), wm.curve(own).force_un)
+        np.testing.assert_array_equal(cells.force_un.sel(whisker=name), wm.map(own).force_un)
+    lazy = wm.map(pad, lazy=True)
+    np.testing.assert_array_equal(lazy.force_un.sel(whisker="C3"), cells.force_un.sel(whisker="C3"))
+
+
+def test_tables_survive_texts_pickles_and_replacements(pad, tmp_path):
+    assert wm.Scene.parse(pad.to_toml()).refused == pad.refused
+    again = pickle.loads(pickle.dumps(pad))
+    assert again == pad and again.coords["whisker"].tolist() == PAD["name"].tolist()
+    thick = pad.replace(pole_radius_mm=0.5)
+    assert thick.refused == pad.refused and thick.select("C3").pole.radius_mm == 0.5
+    assert pad.replace(table={"name": ["A"], "length_mm": [12], "base_radius_um": [20], "taper": [0.9]}).coords["whisker"].tolist() == ["A"]
+    traced = {"name": ["A", "B"], "profile": [[[0, 30], [20, 2]], None], "length_mm": [20, np.nan]}
+    traced["rest_points"] = [None, pd.DataFrame({"x_mm": np.arange(0, 20.0, 2), "y_mm": 0.01 * np.arange(0, 20.0, 2) ** 2})]
+    traced["base_radius_um"], traced["tip_radius_um"] = [np.nan, 30], [np.nan, 2]
+    both = pad.replace(table=traced)
+    assert both.refused == {} and both.select("A").whisker.profile and both.select("B").rest_fit.degree >= 0
+
+
+def test_wrong_tables_are_refused(pad):
+    for table, error, said in [
+        (3, TypeError, "table = 3: must be a DataFrame or a mapping of columns"),
+        ({"length_mm": [20]}, ValueError, "table: must have the column name"),
+        ({"name": ["A"], "length_mm": [20, 21]}, ValueError, r"table\['length_mm'\]: must have 1 values, as many as names, has 2"),
+        ({"name": ["A"], "length_mm": ["20 mm"]}, TypeError, r"table\['length_mm'\]\[0\] = '20 mm': must be a number"),
+        ({"name": ["A"], "lenght_mm": [20]}, ValueError, "table = 'lenght_mm'.*did you mean `length_mm`"),
+        ({"name": ["A"], "length_mm": [np.nan]}, wm.SceneError, "must have a row with a whisker; row 1: length_mm is missing"),
+        ({"name": ["A", "A"], "length_mm": [20, 20]}, wm.SceneError, "the name of a whisker must be unlike those before it"),
+    ]:
+        with pytest.raises(error, match=said):
+            pad.replace(table=table)
+    with pytest.raises(KeyError, match="there is no whisker D1"):
+        pad.select("D1")
+    with pytest.raises(KeyError, match="C2: base_radius_um is missing"):
+        pad.select("C2")
+
+
+def test_missing_elements_leave_the_others():
+    cone = dict(length_mm=20.0, youngs_modulus_gpa=3.0, parabola_per_mm=0.02)
+    radius, taper = np.array([30, np.nan, 33, 30]), np.array([0.9, 0.9, 1.5, 0.8])
+    ends = wm.detachment(base_radius_um=radius, taper=taper, distance_mm=[[12.0], [15.0], [np.nan]], side="cb", jac=True, **cone)
+    assert ends.kind.shape == (3, 4) and ends.jac["force_un"].shape == (3, 4, 5)
+    is_there = ends.kind != "no-whisker"
+    assert is_there.tolist() == [[True, False, False, True]] * 2 + [[False] * 4]
+    assert set(ends.refused) == {tuple(place) for place in np.argwhere(~is_there).tolist()}
+    assert ends.refused[0, 1] == "base_radius_um is missing" and ends.refused[2, 0] == "distance_mm is missing"
+    assert ends.refused[1, 2].startswith("taper[2] = 1.5: must be between 0 and 1")
+    for place in np.argwhere(is_there).tolist():
+        row, column = place
+        own = wm.detachment(base_radius_um=radius[column], taper=taper[column], distance_mm=[12.0, 15.0][row], side="cb", **cone)
+        assert own.force_un == pytest.approx(ends.force_un[row, column], rel=1e-9) and own.refused == {}
+    assert np.isfinite(ends.jac["force_un"][is_there]).all() and np.isnan(ends.force_un[~is_there]).all()
+    # A refused distance leaves the others of its whisker.
+    some = wm.detachment(base_radius_um=30, taper=0.9, distance_mm=[12, 300, 15, 0.001], side="cb", **cone)
+    assert (some.kind == "no-whisker").tolist() == [False, True, False, True]

@@ -1,0 +1,185 @@
+//! Tables of whiskers in commands and files.
+
+use super::{Place, names};
+use whiskmap::scene::Scene;
+use whiskmap::store::StoredMap;
+
+const PAD: &str = r#"title = "A pad"
+[whisker]
+youngs_modulus_gpa = 3.0
+[whiskers]
+table = "pad.csv"
+[grid]
+push_angle_deg = { from = -60, to = 60, count = 13 }
+distance_mm = [5, 10]
+"#;
+
+const ROWS: &str =
+    "name,length_mm,base_radius_um,tip_radius_um\nC1,20,30,1.5\nC2,18,28,\nC3,16,26,2\n";
+
+fn place() -> Place {
+    let place = Place::with(PAD);
+    place.write("pad.csv", ROWS);
+    place
+}
+
+const REFUSED: &str = "whiskers.table: 1 of 3 rows have no whisker: C2 (tip_radius_um is missing)";
+
+#[test]
+fn maps_name_their_whiskers() {
+    let place = place();
+    let run = place.map(&["scene.toml", "-o", "."]);
+    assert!(run.err.contains(&format!("warning: {REFUSED}")), "{run:?}");
+    place.map(&["scene.toml", "-o", ".", "--format", "zarr"]);
+    let map = StoredMap::open(&place.path("scene.exr")).unwrap();
+    assert_eq!(map.grid.sweep[0].variable.names(), ["C1", "C2", "C3"]);
+    for source in ["scene.exr", "scene.zarr", "scene.toml"] {
+        let run = place.run(&[
+            "extract",
+            source,
+            "--at",
+            "whisker=C3",
+            "--at",
+            "distance_mm=5",
+            "-o",
+            "-",
+        ]);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        let part = [
+            "extract",
+            source,
+            "--at",
+            "whisker=C3",
+            "--at",
+            "distance_mm=5",
+            "-o",
+            "c3.csv",
+        ];
+        let run = place.run(&part);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        assert!(run.err.contains("whisker = C3"), "{run:?}");
+        let table = String::from_utf8(place.bytes("c3.csv")).unwrap();
+        let mut lines = table.lines();
+        assert!(
+            lines
+                .next()
+                .unwrap()
+                .starts_with("whisker,distance_mm,push_angle_deg,regime,")
+        );
+        assert_eq!(lines.filter(|line| line.starts_with("C3,5.0,")).count(), 13);
+        let none = place.run(&["extract", source, "--at", "whisker=c3", "-o", "none.csv"]);
+        assert_eq!(none.code, Some(2));
+        assert!(
+            none.err
+                .contains("there is no whisker c3; did you mean `C3`?"),
+            "{none:?}"
+        );
+    }
+    let run = place.run(&[
+        "extract",
+        "scene.exr",
+        "--at",
+        "whisker=C3",
+        "-o",
+        "c3.zarr",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let own = String::from_utf8(place.bytes("c3.zarr/whisker/c.0")).unwrap();
+    assert_eq!(own, "\u{1}\0\0\0\u{2}\0\0\0C3");
+    let run = place.run(&["compare", "scene.exr", "scene.zarr", "--within", "all=0"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.run(&["render", "scene.zarr", "-o", "pad.svg"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let picture = String::from_utf8(place.bytes("pad.svg")).unwrap();
+    assert!(picture.contains(">C2<") && picture.contains("whisker"));
+}
+
+#[test]
+fn curves_have_the_reason_of_a_row_without_a_whisker() {
+    let place = place();
+    let run = place.run(&["curve", "scene.toml"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let lines: Vec<&str> = run.out.lines().collect();
+    assert!(lines[0].starts_with("whisker,no_whisker,side,distance_mm,pole_distance_mm,kind,"));
+    assert_eq!(lines.len(), 1 + 3 * 2 * 2);
+    let empty = "C2,tip_radius_um is missing,cf,5.0,,no-whisker,,,,,,,,,,,,,,,";
+    assert_eq!(lines[5], empty);
+    let one = place.run(&["curve", "scene.toml", "--at", "whisker=C3"]);
+    assert_eq!(one.out.lines().skip(1).collect::<Vec<_>>(), lines[9..]);
+    let text = Scene::read(place.path("scene.toml"))
+        .unwrap()
+        .of_whisker(2)
+        .unwrap();
+    place.write("alone.toml", &text.to_toml());
+    for command in [&["branch", "--distance", "10"][..], &["sensitivity"]] {
+        let run = |file: &[&str]| place.run(&[command, file].concat());
+        let (selected, alone) = (
+            run(&["scene.toml", "--at", "whisker=C3"]),
+            run(&["alone.toml"]),
+        );
+        assert_eq!((selected.code, &selected.out), (Some(0), &alone.out));
+    }
+    let corner = place.run(&["curve", "scene.toml", "--corner"]);
+    assert!(
+        corner
+            .out
+            .contains("C2,tip_radius_um is missing,cf,,,no-whisker"),
+        "{corner:?}"
+    );
+    let derivatives = place.run(&["curve", "scene.toml", "--derivatives=taper"]);
+    assert_eq!(derivatives.code, Some(0), "{derivatives:?}");
+    assert!(
+        derivatives
+            .out
+            .lines()
+            .nth(1)
+            .unwrap()
+            .ends_with(|c: char| c.is_ascii_digit())
+    );
+}
+
+#[test]
+fn wrong_uses_of_tables_are_refused() {
+    let place = place();
+    for (arguments, said) in [
+        (&["map", "scene.toml", "--strict"][..], format!("--strict: {REFUSED}")),
+        (&["curve", "scene.toml", "--strict"], format!("--strict: {REFUSED}")),
+        (
+            &["curve", "scene.toml", "--at", "whisker=C2"],
+            "--at whisker: C2: tip_radius_um is missing".to_owned(),
+        ),
+        (
+            &["branch", "scene.toml", "--distance", "10"],
+            "whiskers.table: the scene sweeps 3 whiskers, but branch needs one; select it by --at whisker=VALUE".to_owned(),
+        ),
+        (
+            &["curve", "scene.toml", "--plot", "curve.svg"],
+            "over whiskers.table; a plot shows one: choose it, such as by --at whisker=C2".to_owned(),
+        ),
+    ] {
+        let run = place.run(arguments);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.err.contains(&said), "{run:?}");
+    }
+    for (rows, said) in [
+        ("length_mm\n20\n", "pad.csv:1: found length_mm; needed name"),
+        (
+            "name,length_mm\nC1,long\n",
+            "pad.csv:2: length_mm = long: must be a number, or empty where it is missing",
+        ),
+        (
+            "name,profile\nC1,no.csv\n",
+            "line 2: profile: no.csv: cannot be read",
+        ),
+        (
+            "name,length_mm\nC1,20\nC1,21\n",
+            "line 3: the name of a whisker must be unlike those before it",
+        ),
+    ] {
+        place.write("pad.csv", rows);
+        let run = place.run(&["curve", "scene.toml"]);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.err.contains(said), "{run:?}");
+    }
+    assert_eq!(names(&place.path("")), ["pad.csv", "scene.toml"]);
+}
