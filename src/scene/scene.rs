@@ -191,26 +191,30 @@ impl SceneBuilder {
     }
 
     /// Returns the given value of a parameter, in its unit, or that of the first row of the table that has one; `None` if it is not given. A
-    /// taper is given with the radius at the tip, whose
-    /// value this is.
+    /// taper is given with the radius at the tip, whose value this is, and in a table the radius at the tip with a taper.
     pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
-        let tip = || self.numbers.get(Parameter::TipRadiusUm);
-        let own = self.numbers.get(parameter);
-        let own = own.or_else(|| tip().filter(|_| parameter == Parameter::Taper));
-        own.or_else(|| {
+        let of_rows = |parameter| {
             let mut rows = self.table.iter().flat_map(|rows| rows.iter());
             rows.find_map(|row| row.number(parameter))
-        })
+        };
+        let number = |parameter| self.numbers.get(parameter).or_else(|| of_rows(parameter));
+        match parameter {
+            Parameter::Taper => number(parameter).or_else(|| number(Parameter::TipRadiusUm)),
+            Parameter::TipRadiusUm => number(parameter).or_else(|| of_rows(Parameter::Taper)),
+            _ => number(parameter),
+        }
     }
 }
 
 impl Parameter {
-    /// Returns the value of the parameter in `scene`, in its unit; `None` if the scene does not give it.
+    /// Returns the value of the parameter in `scene`, in its unit; `None` if the scene does not give it. In a table of whiskers, the first
+    /// whisker counts.
     #[must_use]
     pub fn value(self, scene: &Scene) -> Option<f64> {
         let given = scene.builder.given(self)?;
         Some(match self {
             Self::Taper => scene.whisker.taper(),
+            Self::TipRadiusUm if !scene.table.is_empty() => scene.whisker.tip_radius_um,
             _ => given,
         })
     }

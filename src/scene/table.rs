@@ -99,8 +99,7 @@ impl WhiskerRow {
         self.rest.as_ref().map(|rest| &*rest.points_mm)
     }
 
-    /// Returns the number of the whisker, in the unit of the parameter; `None` if the row does not give it. A taper is given with the
-    /// radius at the tip, whose value this is not.
+    /// Returns the number of the whisker, in the unit of the parameter; `None` if the row does not give it.
     pub(super) fn number(&self, parameter: Parameter) -> Option<f64> {
         let mut numbers = self.numbers.iter();
         let own = numbers.find(|(own, value)| *own == parameter && !value.is_nan());

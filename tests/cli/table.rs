@@ -86,7 +86,13 @@ fn maps_name_their_whiskers() {
     assert_eq!(run.code, Some(0), "{run:?}");
     let own = String::from_utf8(place.bytes("c3.zarr/whisker/c.0")).unwrap();
     assert_eq!(own, "\u{1}\0\0\0\u{2}\0\0\0C3");
-    let run = place.run(&["compare", "scene.exr", "scene.zarr", "--within", "all=0"]);
+    let run = place.run(&[
+        "compare",
+        "scene.exr",
+        "scene.zarr",
+        "--within",
+        "regime=0,force_un=0",
+    ]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let run = place.run(&["render", "scene.zarr", "-o", "pad.svg"]);
     assert_eq!(run.code, Some(0), "{run:?}");

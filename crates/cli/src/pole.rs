@@ -22,7 +22,8 @@ impl WhiskerArgs {
     pub fn read(&self, files: &mut Files, command: &str) -> Result<Scene, Failure> {
         let scene = self.selection.of_scene(&files.scene(&self.scene)?)?;
         check_single(&scene, command)?;
-        Ok(scene)
+        // The values of axes and tables become those of the scene.
+        Ok(scene.of_whisker(0)?)
     }
 
     /// Reads the scene of `command` and its only whisker, which touches its pole without friction.
