@@ -50,6 +50,8 @@ def test_tables_survive_texts_pickles_and_replacements(pad, tmp_path):
     assert wm.Scene.parse(pad.to_toml()).refused == pad.refused
     again = pickle.loads(pickle.dumps(pad))
     assert again == pad and again.coords["whisker"].tolist() == PAD["name"].tolist()
+    assert pad.table[1] == {"name": "C2", "length_mm": 18.0, "base_radius_um": None, "tip_radius_um": 2.0}
+    assert pad.replace(table=pad.table) == pad
     thick = pad.replace(pole_radius_mm=0.5)
     assert thick.refused == pad.refused and thick.select("C3").pole.radius_mm == 0.5
     assert pad.replace(table={"name": ["A"], "length_mm": [12], "base_radius_um": [20], "taper": [0.9]}).coords["whisker"].tolist() == ["A"]
@@ -62,10 +64,11 @@ def test_tables_survive_texts_pickles_and_replacements(pad, tmp_path):
 
 def test_wrong_tables_are_refused(pad):
     for table, error, said in [
-        (3, TypeError, "table = 3: must be a DataFrame or a mapping of columns"),
-        ({"length_mm": [20]}, ValueError, "table: must have the column name"),
-        ({"name": ["A"], "length_mm": [20, 21]}, ValueError, r"table\['length_mm'\]: must have 1 values, as many as names, has 2"),
-        ({"name": ["A"], "length_mm": ["20 mm"]}, TypeError, r"table\['length_mm'\]\[0\] = '20 mm': must be a number"),
+        (3, TypeError, "table = 3: must be a DataFrame, a mapping of columns, or a list of mappings"),
+        ({"length_mm": [20]}, ValueError, r"table\[0\]: must have a name"),
+        ([3], TypeError, r"table\[0\] = 3: must be a mapping"),
+        ({"name": ["A"], "length_mm": [20, 21]}, ValueError, "table: columns must be equally long, have 1 and 2 values"),
+        ({"name": ["A"], "length_mm": ["20 mm"]}, TypeError, r"table\[0\]\['length_mm'\] = '20 mm': must be a number"),
         ({"name": ["A"], "lenght_mm": [20]}, ValueError, "table = 'lenght_mm'.*did you mean `length_mm`"),
         ({"name": ["A"], "length_mm": [np.nan]}, wm.SceneError, "must have a row with a whisker; row 1: length_mm is missing"),
         ({"name": ["A", "A"], "length_mm": [20, 20]}, wm.SceneError, "the name of a whisker must be unlike those before it"),

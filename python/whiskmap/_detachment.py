@@ -183,8 +183,8 @@ def detachment(
 
     def full(values: NDArray[Any], rest: Any, *more: int) -> NDArray[Any]:
         array = np.full((flat["distance_mm"].size, *more), rest, dtype=values.dtype)
-        array[present] = values.reshape(-1, *more)
-        return array.reshape(*shape, *more)
+        array[present] = values.reshape((present.size, *more))
+        return array.reshape((*shape, *more))
 
     return Detachment(
         kind=_KINDS[full(kinds, len(_KINDS) - 1)],

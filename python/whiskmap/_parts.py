@@ -224,33 +224,33 @@ def pairs_of(name: str, pairs: Any) -> list[list[float]]:
 
 
 def rows_of(table: Any) -> list[Any] | None:
-    """Rows of a table of whiskers: name, numbers by name, profile and traced points."""
+    """Rows of a table of whiskers, from columns or from rows: name, numbers by name, profile and traced points."""
     if table is None:
         return None
-    if not hasattr(table, "keys"):
-        raise TypeError(f"table = {table!r}: must be a DataFrame or a mapping of columns")
-    columns = {str(own): list(table[own]) for own in table.keys()}
-    if "name" not in columns:
-        raise ValueError("table: must have the column name")
-    names = columns.pop("name")
-    if wrong := [own for own, values in columns.items() if len(values) != len(names)]:
-        raise ValueError(f"table[{wrong[0]!r}]: must have {len(names)} values, as many as names, has {len(columns[wrong[0]])}")
-    pairs = {own: columns.pop(own, [None] * len(names)) for own in PAIRS}
+    if hasattr(table, "keys"):
+        columns = {str(own): list(table[own]) for own in table.keys()}
+        counts = {len(values) for values in columns.values()}
+        if len(counts) > 1:
+            raise ValueError(f"table: columns must be equally long, have {' and '.join(map(str, sorted(counts)))} values")
+        table = [dict(zip(columns, values)) for values in zip(*columns.values())]
+    if isinstance(table, (str, bytes)) or not isinstance(table, Iterable):
+        raise TypeError(f"table = {table!r}: must be a DataFrame, a mapping of columns, or a list of mappings")
+    return [_row(f"table[{index}]", row) for index, row in enumerate(table)]
 
-    def given(own: str, row: int) -> list[list[float]] | None:
-        value = pairs[own][row]
-        is_absent = not isinstance(value, Iterable) and math.isnan(number_or_nan(own, value))
-        return None if is_absent else pairs_of(own, value)
 
-    return [
-        (
-            str(name),
-            [(own, number_or_nan(f"table[{own!r}][{row}]", values[row])) for own, values in columns.items()],
-            given("profile", row),
-            given("rest_points", row),
-        )
-        for row, name in enumerate(names)
-    ]
+def _row(place: str, row: Any) -> tuple[str, list[tuple[str, float]], Any, Any]:
+    if not isinstance(row, Mapping):
+        raise TypeError(f"{place} = {row!r}: must be a mapping")
+    if "name" not in row:
+        raise ValueError(f"{place}: must have a name")
+    numbers = [(own, number_or_nan(f"{place}[{own!r}]", value)) for own, value in row.items() if own not in (*PAIRS, "name")]
+    profile, points = (_pairs_or_none(f"{place}[{own!r}]", own, row.get(own)) for own in PAIRS)
+    return str(row["name"]), numbers, profile, points
+
+
+def _pairs_or_none(place: str, name: str, value: Any) -> list[list[float]] | None:
+    is_missing = not isinstance(value, Iterable) and math.isnan(number_or_nan(place, value))
+    return None if is_missing else pairs_of(name, value)
 
 
 def degree_of(value: Any) -> int | None:

@@ -52,10 +52,10 @@ class Scene:
         Standard deviations of the scene's numbers, by name, such as ``{"tip_radius_um": 0.5}``.
     surface : Surface, optional
         A rough surface, for `texture`.
-    table : pandas.DataFrame or mapping, optional
-        Whiskers: a column `name`, and columns of parameters such as `length_mm`, whose numbers replace those of `whisker`; columns
-        `profile` and `rest_points` have arrays, or None. A row with a NaN has no whisker: `refused` has the reason. The table is the first
-        axis of results, `whisker`.
+    table : pandas.DataFrame, mapping of columns, or list of mappings, optional
+        Whiskers: a `name`, and parameters such as `length_mm`, whose numbers replace those of `whisker`; `profile` and `rest_points` have
+        arrays, or None. A row with a missing number, NaN or None, has no whisker: `refused` has the reason. The table is the first axis
+        of results, `whisker`.
 
     Raises
     ------
@@ -208,6 +208,15 @@ class Scene:
         return Surface(**dict(zip(names, numbers)), seed=seed)
 
     @property
+    def table(self) -> list[dict[str, Any]] | None:
+        """Rows of the table of whiskers, or None. A missing number is None."""
+        rows = self._checked.description()[7]
+        if rows is None:
+            return None
+        pairs = ([("name", name), *numbers, ("profile", rows), ("rest_points", points)] for name, numbers, rows, points in rows)
+        return [{own: None if value != value else value for own, value in row if value is not None} for row in pairs]
+
+    @property
     def refused(self) -> dict[str, str]:
         """Reasons of the rows of the table that have no whisker, by name."""
         return dict(self._checked.refused())
@@ -245,7 +254,7 @@ class Scene:
         return self._checked.to_toml()
 
     def __repr__(self) -> str:
-        parts = {name: getattr(self, name) for name in ("title", "whisker", "pole", "grid", "name", "uncertainty", "surface")}
+        parts = {name: getattr(self, name) for name in ("title", "whisker", "pole", "grid", "name", "uncertainty", "surface", "table")}
         return f"Scene({', '.join(f'{name}={value!r}' for name, value in parts.items() if value is not None)})"
 
     def __eq__(self, other: object) -> bool:
