@@ -209,11 +209,16 @@ fn what_cannot_be_designed_is_refused() {
         "stiffness",
         &["'stiffness'", "--for", "taper"],
     );
-    place.write("sweep.toml", &format!("{SCENE}curvature_per_mm = [0.02, 0.03]\n"));
+    place.write(
+        "sweep.toml",
+        &format!("{SCENE}curvature_per_mm = [0.02, 0.03]\n"),
+    );
     other(
         "sweep.toml",
         "taper",
-        &["grid.curvature_per_mm: the scene sweeps 2 whiskers, but design needs one; select it by --at"],
+        &[
+            "grid.curvature_per_mm: the scene sweeps 2 whiskers, but design needs one; select it by --at",
+        ],
     );
     let far = [
         "design",

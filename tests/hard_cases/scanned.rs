@@ -3,7 +3,7 @@
 use super::case::{Case, compute};
 use super::cases::is_complete;
 use super::random::{always_the_same, cases, measured};
-use super::states::{Shots, halving};
+use super::states::{States, halving};
 use proptest::prelude::*;
 use std::cell::RefCell;
 use whiskmap::mechanics::rod::arclength;
@@ -38,11 +38,10 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
         prop_assert!(is_complete(&panel));
 
         let seen = &mut *seen.borrow_mut();
-        let shots = Shots::new(&scene);
-        let cells = shots.refined();
-        let states = shots.conditions(&cells);
-        let fine = halving(shots.effects, &states, Resolution::FINE);
-        let half = halving(shots.effects, &states, HALF);
+        let own = States::of(&scene, &panel);
+        let states = own.conditions();
+        let fine = halving(own.effects, &states, Resolution::FINE);
+        let half = halving(own.effects, &states, HALF);
         seen.states += states.len();
         for ((fine, half), state) in fine.iter().zip(half).zip(&states) {
             seen.fine = seen.fine.max(*fine);
@@ -61,20 +60,19 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
 fn measured_radii_hold() {
     let seen = scan(100, &measured());
     // Nearly half of these sheets need continuation: radii that swell and thin make their edges too steep to be certified.
-    assert!(seen.states > 500, "{seen:?}");
+    assert!(seen.states > 900, "{seen:?}");
     holds(&seen);
 }
 
 #[test]
 fn two_thousand_whiskers_hold() {
     let seen = scan(2000, &cases());
-    // Most whiskers that coil up need continuation: their cells have no targets.
-    assert!(seen.states > 19_000 && seen.coiled > 5, "{seen:?}");
+    assert!(seen.states > 22_000 && seen.coiled > 30, "{seen:?}");
     holds(&seen);
 }
 
 fn holds(seen: &Seen) {
-    // Measured 5.6e-11, coiled up or not.
+    // Measured 5.5e-11, coiled up or not.
     assert!(seen.fine < 1e-10, "{seen:?}");
     // Order 8 is a factor of 256; measured 185.
     assert!(seen.half > 128.0 * seen.fine, "{seen:?}");

@@ -1,66 +1,60 @@
-//! States of a map in `f64`, and their difference from states with halved steps.
+//! States of a map, and their difference from states with halved steps.
 
-use rayon::prelude::*;
+use whiskmap::classify::Status;
+use whiskmap::map::Panel;
 use whiskmap::mechanics::rod::{Effects, Rod, Side};
 use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::mechanics::shooting::{Resolution, ShootingMap};
-use whiskmap::refine::{self, CellTarget, RefineOutcome, Refined};
 use whiskmap::scene::Scene;
-use whiskmap::sheet::Sheet;
 
-/// Cells of one whisker that have a guess, on both sides.
-pub struct Shots {
+/// Contacts and loads of one whisker, on both sides. They are rounded to `f32`: the errors of steps are those next to the states.
+pub struct States {
     pub effects: Effects,
-    pub sheets: Vec<Sheet>,
-    pub shots: Vec<CellTarget>,
+    rods: [Rod; 2],
+    /// Side of the state, `tau` and load.
+    states: Vec<(usize, f64, f64)>,
 }
 
-impl Shots {
-    pub fn new(scene: &Scene) -> Self {
-        let length = scene.whisker.length_mm;
-        let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
+impl States {
+    /// The states of a map whose contact slides toward the tip or has no friction.
+    pub fn of(scene: &Scene, panel: &Panel) -> Self {
         let rods = Side::BOTH.map(|side| scene.whisker.rod(&scene.pole, side));
-        let effects = Effects::of(&rods);
-        let pairs: Vec<(Side, Rod)> = Side::BOTH.into_iter().zip(rods).collect();
-        let sheets: Vec<Sheet> = pairs
-            .par_iter()
-            .map(|(side, rod)| {
-                Sheet::new(Method::fine().with_effects(effects), rod, *side, &distances)
-            })
-            .collect();
-        let mut shots = Vec::new();
-        for (index, sheet) in (0..).zip(&sheets) {
-            shots.extend(refine::cell_targets(
-                sheet,
-                index,
-                &scene.grid.push_angle_deg,
-            ));
-        }
+        let units = scene.whisker.units();
+        let [arc_length_mm, _, force_un, ..] = &panel.state;
+        let pushes = scene.grid.push_angle_deg.iter().cycle();
+        let cells = pushes
+            .zip(&panel.status)
+            .zip(arc_length_mm.iter().zip(force_un));
+        let states = cells.filter_map(|((push, status), (arc_length_mm, force_un))| {
+            let side = Side::BOTH
+                .iter()
+                .position(|own| *own == Side::of_push(*push))?;
+            let rod = &rods[side];
+            let s = f64::from(*arc_length_mm) / scene.whisker.length_mm;
+            let tau = match rod.taper {
+                0.0 => s,
+                taper => -(-taper * s).ln_1p() / taper,
+            };
+            let load = f64::from(*force_un) / units.force_un / rod.radius(tau).powi(2);
+            let is_there = *status == Status::Solved.code() && load > 0.0 && tau.is_finite();
+            is_there.then_some((side, tau, Side::BOTH[side].sign() * load))
+        });
+        let states = states.collect();
         Self {
-            effects,
-            sheets,
-            shots,
+            effects: Effects::of(&rods),
+            rods,
+            states,
         }
     }
 
-    /// Refined states of the cells, one per shot.
-    pub fn refined(&self) -> Vec<Refined> {
-        let sheets: Vec<&Sheet> = self.sheets.iter().collect();
-        let method = Method::fine().with_effects(self.effects);
-        refine::refine(method, &sheets, &self.shots)
-    }
-
-    /// Initial conditions of the solved `cells`.
-    pub fn conditions(&self, cells: &[Refined]) -> Vec<InitialCondition<'_>> {
-        let solved = cells.iter().zip(&self.shots);
-        solved
-            .filter(|(cell, _)| cell.outcome == RefineOutcome::Solved)
-            .map(|(cell, shot)| InitialCondition {
-                rod: &self.sheets[shot.rod as usize].rod,
-                tau: cell.state.tau,
-                load: cell.state.load,
-            })
-            .collect()
+    pub fn conditions(&self) -> Vec<InitialCondition<'_>> {
+        let states = self.states.iter();
+        let condition = |&(side, tau, load): &(usize, f64, f64)| InitialCondition {
+            rod: &self.rods[side],
+            tau,
+            load,
+        };
+        states.map(condition).collect()
     }
 }
 

@@ -4,7 +4,7 @@ use super::random_whiskers::{Push, push};
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::Parameter;
 use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable, detachments};
-use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
+use whiskmap::trace::{Detachment, DetachmentKind, curve_without_strain};
 
 /// Result of the comparison of one push.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,7 +62,7 @@ fn differences(push: &Push, variable: Variable, own: &Detachment) -> Option<[f64
             distance_mm,
         } = push.moved(variable, h);
         let finer = Resolution::FINE.doubled();
-        let end = curve_at(finer, &whisker, &pole, side, &[distance_mm]).pop()?;
+        let end = curve_without_strain(finer, &whisker, &pole, side, &[distance_mm]).pop()?;
         quantities(&end).filter(|_| end.kind == own.kind)
     };
     let central = |h: f64| {
