@@ -1,7 +1,7 @@
 //! Parameters: the numbers of a scene by name, and the table of all that is known of each.
 
 use super::axis::AxisValues;
-use super::limits::NumberLimits;
+use super::limits::{NumberLimits, rounded};
 use super::toml::SceneFile;
 
 /// Largest ratio of the moduli at tip and base, and of those at base and tip. Measured ratios lie between 0.7 and 1.4.
@@ -193,6 +193,16 @@ impl Parameter {
             "with more, whiskers coil around the pole for turns on end, and not all ends are known";
         let remark = Some(remark).filter(|_| self == Self::Friction);
         NumberLimits::between(least, most).remarks(remark)
+    }
+
+    /// Returns the limits of the taper, of which `value` is given. Beyond 1 it may be a ratio of radii.
+    pub(super) fn taper_limits(value: f64) -> NumberLimits {
+        let is_ratio = value > 1.0 && value.is_finite();
+        let remark = is_ratio.then(|| {
+            let taper = rounded(1.0 - 1.0 / value, 6);
+            format!("is it base/tip radius? The taper is then {taper}")
+        });
+        Self::Taper.number_limits().remarks(remark)
     }
 
     /// Returns the parameter with this name; `None` without one.

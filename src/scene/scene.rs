@@ -49,8 +49,7 @@ impl SceneBuilder {
         let refused = |fault| SceneError::of_fault("", "", fault);
         if let Some(taper) = self.numbers.get(Parameter::Taper) {
             // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
-            Parameter::Taper
-                .number_limits()
+            Parameter::taper_limits(taper)
                 .check(Parameter::Taper.name(), taper)
                 .map_err(refused)?;
             let key = Parameter::BaseRadiusUm.key();

@@ -17,13 +17,14 @@ pub struct Compared {
     pub worst: f64,
 }
 
-fn quantities(end: &Detachment) -> Option<[f64; 10]> {
+fn quantities(end: &Detachment) -> Option<[f64; 11]> {
     Some([
         end.push_angle_deg?,
         end.push_chord_deg?,
         end.contact_distance_mm?,
         end.arc_length_mm?,
         end.force_un?,
+        end.contact_force_un?,
         end.base_force_x_un?,
         end.base_force_y_un?,
         end.base_moment_nnm?,
@@ -32,13 +33,14 @@ fn quantities(end: &Detachment) -> Option<[f64; 10]> {
     ])
 }
 
-fn listed(by: &Derivatives) -> [f64; 10] {
+fn listed(by: &Derivatives) -> [f64; 11] {
     [
         by.push_angle_deg,
         by.push_chord_deg,
         by.contact_distance_mm,
         by.arc_length_mm,
         by.force_un,
+        by.contact_force_un,
         by.base_force_x_un,
         by.base_force_y_un,
         by.base_moment_nnm,

@@ -57,34 +57,53 @@ pub struct DesignArgs {
 struct GoalArgs {
     /// Push angle of the slip-off, such as 30deg, 30°, 30 or 0.5rad: positive CB, negative CF
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = push)]
-    slip_off: Option<f64>,
+    slip_off: Option<GoalValue>,
     /// Push angle of the pull-off
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, value_parser = push)]
-    pull_off: Option<f64>,
+    pull_off: Option<GoalValue>,
     /// Largest contact force of the push, such as 60mN, 60000uN or 60000
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true, requires = "side", value_parser = load(Quantity::ForceUn))]
-    max_force: Option<f64>,
+    max_force: Option<GoalValue>,
     /// Largest moment at the base in the push, such as 250nNm, 250 or 0.25uNm
     #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, requires = "side", value_parser = load(Quantity::MomentNnm))]
-    max_moment: Option<f64>,
+    max_moment: Option<GoalValue>,
     /// Largest bending strain of the push, such as 0.01
     #[arg(long, value_name = "STRAIN", allow_hyphen_values = true, requires = "side", value_parser = load(Quantity::Number))]
-    max_strain: Option<f64>,
+    max_strain: Option<GoalValue>,
 }
 
-fn push(text: &str) -> Result<f64, String> {
-    let angle = angle(text)?;
-    if angle.abs() <= 360.0 && angle != 0.0 {
-        Ok(angle)
+/// Value of a goal in the goal's own unit, with the unit of the option, in which messages give it back.
+#[derive(Clone, Copy, Debug)]
+struct GoalValue {
+    value: f64,
+    unit: &'static str,
+}
+
+impl GoalValue {
+    /// Returns `value` in the unit of the option, with the unit, and with at most `most` significant digits.
+    fn text(self, quantity: Quantity, value: f64, most: usize) -> String {
+        let converted = quantity.convert(value, self.unit).unwrap_or(value);
+        let number = digits(rounded(converted, most));
+        match self.unit {
+            "" => number,
+            unit => format!("{number} {unit}"),
+        }
+    }
+}
+
+fn push(text: &str) -> Result<GoalValue, String> {
+    let (value, unit) = Quantity::AngleDeg.parse_with_unit(text)?;
+    if value.abs() <= 360.0 && value != 0.0 {
+        Ok(GoalValue { value, unit })
     } else {
         Err("must be between -360deg and 360deg, and not 0".to_owned())
     }
 }
 
 /// Returns a parser of a load of this quantity.
-fn load(quantity: Quantity) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |text| match quantity.parse(text)? {
-        load if load > 0.0 => Ok(load),
+fn load(quantity: Quantity) -> impl Fn(&str) -> Result<GoalValue, String> + Clone {
+    move |text| match quantity.parse_with_unit(text)? {
+        (value, unit) if value > 0.0 => Ok(GoalValue { value, unit }),
         _ => Err("must be more than 0".to_owned()),
     }
 }

@@ -17,7 +17,7 @@ pub(super) const CHANNELS: [ChannelLine; 14] = [
     ("status", Code, None, "how the regime was found, or why it was not"),
     ("arc_length_mm", Quantity, Some("mm"), "arclength from the base to the contact"),
     ("contact_angle_deg", Quantity, Some("degree"), "angle of the whisker at the contact"),
-    ("force_un", Quantity, Some("uN"), "force between pole and whisker, normal to both"),
+    ("force_un", Quantity, Some("uN"), "normal part of the contact force"),
     ("base_force_x_un", Quantity, Some("uN"), "force that the pole puts on the base, along its tangent"),
     ("base_force_y_un", Quantity, Some("uN"), "force that the pole puts on the base, across its tangent"),
     ("base_moment_nnm", Quantity, Some("nN m"), "moment that the pole puts on the base"),
