@@ -1,8 +1,8 @@
 //! Targets of designs: push angles of detachments, and the largest loads of pushes.
 
 use crate::input::Quantity;
-use crate::scene::{Parameter, Scene};
-use crate::sensitivity::detachments;
+use crate::scene::Scene;
+use crate::sensitivity::{Derivatives, Variable, detachments, state};
 use crate::trace::{Branch, BranchPoint, DetachmentKind, curve_without_strain};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
@@ -17,7 +17,8 @@ const TOLERANCE: f64 = 1e-6;
 /// Target of a design: where the pole is, and the value that a push must reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DesignTarget {
-    /// Distance from the base to the contact at first touch, in millimetres.
+    /// Distance from the base to the contact at first touch, in millimetres. It does not count if the design varies it, or gives it as a part of
+    /// the length.
     pub distance_mm: f64,
     /// Side of the whisker that the pole is on.
     pub side: Side,
@@ -34,7 +35,7 @@ pub enum DesignGoal {
     SlipOff,
     /// Push angle at which the whisker is pulled off, in degrees.
     PullOff,
-    /// Largest contact force from first touch to the detachment, in uN.
+    /// Largest whole contact force, with friction, from first touch to the detachment, in uN.
     MaxForce,
     /// Largest moment at the base from first touch to the detachment, in nN m.
     MaxMoment,
@@ -88,7 +89,7 @@ impl DesignGoal {
     fn load(self) -> Option<fn(&BranchPoint) -> f64> {
         match self {
             Self::SlipOff | Self::PullOff => None,
-            Self::MaxForce => Some(|point| point.force_un),
+            Self::MaxForce => Some(|point| point.contact_force_un),
             Self::MaxMoment => Some(|point| point.base_moment_nnm.abs()),
             Self::MaxStrain => Some(|point| point.peak_strain),
         }
@@ -113,27 +114,60 @@ impl DesignTarget {
         }
     }
 
-    /// Returns the exact derivative of the push angle at detachment by `parameter`, in degrees per unit of the parameter. `None` for a load,
-    /// whose largest value may lie anywhere in the push, and without a derivative.
-    pub(super) fn slope(&self, scene: &Scene, parameter: Parameter) -> Option<f64> {
-        if self.goal.load().is_some() {
-            return None;
-        }
-        let (whisker, pole) = (&scene.whisker, &scene.pole);
-        let variables = [parameter.into()];
-        let ends = detachments(whisker, pole, self.side, &[self.distance_mm], &variables);
-        let by = ends.first()?.by.first()?.as_ref().ok()?;
-        Some(by.push_angle_deg)
+    /// Returns the exact derivatives of the goal's quantity for a push of `scene` at its only distance, in the directions of variables with
+    /// factors: `[variable]`. `None` without derivatives, and for strains.
+    ///
+    /// The largest load of a push is that of its end, or a maximum before. There the derivative by the push angle is 0, so that those at a
+    /// fixed push angle are those of the maximum.
+    pub(super) fn gradient(
+        &self,
+        scene: &Scene,
+        directions: &[Vec<(Variable, f64)>],
+    ) -> Option<Vec<f64>> {
+        let (whisker, pole, side) = (&scene.whisker, &scene.pole, self.side);
+        let distance_mm = *scene.grid.distance_mm.first()?;
+        let all = directions.iter().flatten();
+        let variables: Vec<Variable> = all.map(|(variable, _)| *variable).collect();
+        let of_end = || {
+            let mut ends = detachments(whisker, pole, side, &[distance_mm], &variables);
+            ends.pop()
+                .map(|own| (own.end.base_moment_nnm.unwrap_or_default(), own.by))
+        };
+        let of_load = |load| {
+            let branch = Branch::new(whisker, pole, side, distance_mm).ok()?;
+            let Some(push_deg) = branch.peak(load).before_end_deg else {
+                return of_end();
+            };
+            let found = state(whisker, pole, distance_mm, push_deg, &variables).ok()?;
+            Some((found.point.base_moment_nnm, found.by))
+        };
+        let (moment, by) = match self.goal.load() {
+            None => of_end(),
+            Some(load) => of_load(load),
+        }?;
+        let quantity = |by: &Derivatives| match self.goal {
+            DesignGoal::SlipOff | DesignGoal::PullOff => Some(by.push_angle_deg),
+            DesignGoal::MaxForce => Some(by.contact_force_un),
+            DesignGoal::MaxMoment => Some(moment.signum() * by.base_moment_nnm),
+            DesignGoal::MaxStrain => None,
+        };
+        let mut by = by.iter();
+        let mut along = |direction: &Vec<(Variable, f64)>| {
+            let parts = direction.iter().map(|(_, factor)| {
+                let own = by.next()?.as_ref().ok()?;
+                Some(factor * quantity(own)?)
+            });
+            parts.collect::<Vec<_>>().into_iter().sum::<Option<f64>>()
+        };
+        directions.iter().map(&mut along).collect()
     }
 
-    /// Computes how a push ends with the whisker of `scene`, and the value of the goal's quantity, in its unit. The value is `None` without
-    /// a detachment.
+    /// Computes how a push at the only distance of `scene` ends, and the value of the goal's quantity, in its unit. The value is `None`
+    /// without a detachment.
     pub(super) fn reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
         let (whisker, pole, side) = (&scene.whisker, &scene.pole, self.side);
-        let end = || {
-            let distances = [self.distance_mm];
-            curve_without_strain(Resolution::FINE, whisker, pole, side, &distances).pop()
-        };
+        let distances = &scene.grid.distance_mm;
+        let end = || curve_without_strain(Resolution::FINE, whisker, pole, side, distances).pop();
         let Some(end) = end() else {
             return (DetachmentKind::Unresolved, None);
         };
@@ -141,7 +175,7 @@ impl DesignTarget {
         let value = match self.goal.load() {
             None => detaches,
             Some(load) => detaches.and_then(|_| {
-                let branch = Branch::new(whisker, pole, side, self.distance_mm).ok()?;
+                let branch = Branch::new(whisker, pole, side, distances[0]).ok()?;
                 Some(branch.largest(load))
             }),
         };

@@ -38,6 +38,7 @@ pub use limits::{digits, rounded};
 pub use parameter::Parameter;
 pub(crate) use parameter::derivative_columns;
 pub use scene::Scene;
+pub(crate) use scene::range_around;
 pub use surface::Surface;
 pub use toml::SceneText;
 pub use whisker::{Curvature, EulerSpiral, Pole, SweptWhisker, Whisker};

@@ -3,6 +3,7 @@
 use super::axis::AxisValues;
 use super::limits::{NumberLimits, rounded};
 use super::toml::SceneFile;
+use super::whisker::Whisker;
 
 /// Largest ratio of the moduli at tip and base, and of those at base and tip. Measured ratios lie between 0.7 and 1.4.
 pub(super) const STIFFEST_TIP: f64 = 20.0;
@@ -224,5 +225,23 @@ impl Parameter {
         let mut all = Self::ALL.into_iter();
         let own = all.find(|own| own.axis() == name)?;
         Some(format!("; did you mean `{}`?", own.name()))
+    }
+
+    /// Returns the change of the parameter that changes a whisker or its contact altogether, in its unit.
+    pub(crate) fn size(self, whisker: &Whisker) -> f64 {
+        let length = whisker.length_mm;
+        match self {
+            Self::LengthMm | Self::TipExtensionMm | Self::VertexMm | Self::PoleRadiusMm => length,
+            Self::BaseRadiusUm | Self::TipRadiusUm => whisker.base_radius_um,
+            Self::YoungsModulusGpa => whisker.youngs_modulus_gpa,
+            Self::FollicleStiffness => whisker.units().moment_nnm,
+            Self::ParabolaPerMm | Self::SpiralPerMm => 1.0 / length,
+            Self::SpiralPerMm2 => 1.0 / (length * length),
+            Self::Taper
+            | Self::ProfileScale
+            | Self::ModulusTipToBase
+            | Self::ArcStretch
+            | Self::Friction => 1.0,
+        }
     }
 }

@@ -218,20 +218,24 @@ impl Parameter {
         let Some(own) = self.value(scene) else {
             return [f64::NAN; 2];
         };
-        let accepts = |value: f64| scene.with(self, value).is_ok();
-        [f64::MIN, f64::MAX].map(|beyond| {
-            let [mut inside, mut outside] = [own, beyond].map(rank);
-            while inside.abs_diff(outside) > 1 {
-                let middle = inside.midpoint(outside);
-                if accepts(of_rank(middle)) {
-                    inside = middle;
-                } else {
-                    outside = middle;
-                }
-            }
-            of_rank(inside)
-        })
+        range_around(own, |value| scene.with(self, value).is_ok())
     }
+}
+
+/// Returns the range `[least, greatest]` of accepted numbers around an accepted one: `own`.
+pub(crate) fn range_around(own: f64, mut accepts: impl FnMut(f64) -> bool) -> [f64; 2] {
+    [f64::MIN, f64::MAX].map(|beyond| {
+        let [mut inside, mut outside] = [own, beyond].map(rank);
+        while inside.abs_diff(outside) > 1 {
+            let middle = inside.midpoint(outside);
+            if accepts(of_rank(middle)) {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        of_rank(inside)
+    })
 }
 
 /// Rank of a number among all floating-point numbers. Halving ranks finds the end of a range in 64 steps.

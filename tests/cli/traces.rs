@@ -3,10 +3,10 @@
 use super::{Place, Run, SCENE, names, no_folder};
 
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
-                     arc_length_mm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
+                     arc_length_mm,force_un,contact_force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
                      peak_strain_mm,contact_angle_deg,residual,sliding,snaps_deg";
 pub const BRANCH: &str = "distance_mm,side,stable,push_angle_deg,push_chord_deg,arc_length_mm,contact_angle_deg,force_un,\
-                      base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,peak_strain_mm,det,\
+                      contact_force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,peak_strain_mm,det,\
                       mark,sliding,snaps_deg";
 pub const SHAPE: &str = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,strain,part";
 pub const SPREAD: &str = "side,distance_mm,kind,push_angle_deg,slip_off,pull_off,out_of_reach,unresolved,p5_deg,p25_deg,\

@@ -245,10 +245,16 @@ fn a_taper_takes_the_place_of_the_radius_at_the_tip() {
     ] {
         let changed = tapered.with_parameters(changes).unwrap();
         let written = tapered.to_toml_with(changes).unwrap();
-        assert!(written.contains("# of a rat") && !written.contains("tip_radius_um"), "{written}");
+        assert!(
+            written.contains("# of a rat") && !written.contains("tip_radius_um"),
+            "{written}"
+        );
         let again = parse(&written).unwrap();
         let tips = [&again, &changed].map(|scene| scene.whisker.tip_radius_um);
-        assert!((tips[0] - tips[1]).abs() < 1e-13 * changed.whisker.base_radius_um, "{tips:?}");
+        assert!(
+            (tips[0] - tips[1]).abs() < 1e-13 * changed.whisker.base_radius_um,
+            "{tips:?}"
+        );
         assert_eq!(again.whisker.base_radius_um, changed.whisker.base_radius_um);
     }
 }
@@ -257,8 +263,14 @@ fn a_taper_takes_the_place_of_the_radius_at_the_tip() {
 fn a_taper_beside_other_radii_at_the_tip_is_refused() {
     let text = with_line(5, "taper = 0.95");
     for (axis, said) in [
-        ("taper = [0.5]", "grid.taper gives every whisker of the sweep its tip"),
-        ("tip_radius_um = [1]", "grid.tip_radius_um gives every whisker of the sweep its tip"),
+        (
+            "taper = [0.5]",
+            "grid.taper gives every whisker of the sweep its tip",
+        ),
+        (
+            "tip_radius_um = [1]",
+            "grid.tip_radius_um gives every whisker of the sweep its tip",
+        ),
         (
             "base_radius_um = [30, 40]",
             "grid.base_radius_um varies the base; give whisker.tip_radius_um to keep the tip, or grid.taper",
@@ -269,7 +281,10 @@ fn a_taper_beside_other_radii_at_the_tip_is_refused() {
         assert!(why.contains(&said), "{why}");
     }
     let no_base = parse(&text.replace("base_radius_um = 30.0", "")).unwrap_err();
-    assert!(no_base.contains("whisker.base_radius_um: is left out"), "{no_base}");
+    assert!(
+        no_base.contains("whisker.base_radius_um: is left out"),
+        "{no_base}"
+    );
     let rows = "profile = { rows = [[0, 30], [20, 1.5]] }";
     let measured = parse(&text.replace("base_radius_um = 30.0", rows)).unwrap_err();
     let said = "whisker.taper = 0.95: must be left out: the radii are those of whisker.profile";

@@ -96,7 +96,11 @@ impl Scene {
         if is_tapered {
             let taper = changed.whisker.taper();
             if taper != self.whisker.taper() {
-                put(document.as_table_mut(), TAPER_KEY, rounded(taper, DERIVED_DIGITS));
+                put(
+                    document.as_table_mut(),
+                    TAPER_KEY,
+                    rounded(taper, DERIVED_DIGITS),
+                );
             }
         }
         Ok(document.to_string())

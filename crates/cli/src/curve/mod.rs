@@ -19,6 +19,7 @@ use plot::{CurveColumn, scene_curve};
 use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::Side;
+use whiskmap::input::ColumnName;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{Plot, bands};
@@ -81,6 +82,14 @@ pub struct CurveArgs {
     /// Compare the measured detachments in FILE with the curve; - is standard input
     #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance", "derivatives"])]
     data: Option<PathBuf>,
+    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
+    #[arg(
+        long,
+        value_name = "NAME=OWN",
+        value_delimiter = ',',
+        requires = "data"
+    )]
+    columns: Vec<ColumnName>,
     /// Column on the horizontal axis of the plot
     #[arg(
         long,
