@@ -16,7 +16,7 @@ use whiskmap::design::{
     designs_until,
 };
 use whiskmap::fit::{FitError, FitLoss, fit_until};
-use whiskmap::measured::{ComparedPoint, MeasuredPoints};
+use whiskmap::measured::{ComparedPoint, MeasuredAngle, MeasuredPoints};
 use whiskmap::scene::{Parameter, Scene};
 
 /// Name, unit, value, standard error, and whether the value is at a limit, of a fitted parameter.
@@ -35,6 +35,7 @@ pub struct FitResult<'py> {
     degrees_of_freedom: usize,
     is_explained: bool,
     not_a_fit: Option<String>,
+    is_chord: bool,
     points: Vec<Column<'py>>,
     pulls: Vec<Pull>,
     warnings: Vec<String>,
@@ -110,6 +111,7 @@ pub fn fit<'py>(
     });
     Ok(FitResult {
         pulls: pulls.collect(),
+        is_chord: points.angle == MeasuredAngle::Chord,
         estimates: estimates.collect(),
         is_explained: fit.is_explained(),
         correlation: fit.correlation,

@@ -38,6 +38,8 @@ class Fit:
     pulls : xarray.Dataset
         Points by their pull, the strongest first: index of the `point`, `residual_deg`, `weight` by the loss, and the `parameter` whose
         value would change most without the point, by so many `standard_errors`. Empty without standard errors.
+    is_chord : bool
+        True if the measured angles are chord angles, false for push angles.
     chi_square : float
         Sum of the losses of residuals over standard deviations: of their squares, unless another loss was given.
     degrees_of_freedom : int
@@ -51,6 +53,7 @@ class Fit:
     estimates: xr.Dataset
     points: xr.Dataset
     pulls: xr.Dataset
+    is_chord: bool
     chi_square: float
     degrees_of_freedom: int
     is_explained: bool
@@ -120,6 +123,7 @@ def fit(
         estimates=estimates,
         points=xr.Dataset(variables(found["points"], ("point",), (-1,), without=("line",))),
         pulls=_pulls(found["pulls"]),
+        is_chord=found["is_chord"],
         chi_square=found["chi_square"],
         degrees_of_freedom=found["degrees_of_freedom"],
         is_explained=found["is_explained"],

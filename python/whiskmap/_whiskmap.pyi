@@ -83,6 +83,7 @@ class _FitResult(TypedDict):
     degrees_of_freedom: int
     is_explained: bool
     not_a_fit: str | None
+    is_chord: bool
     points: list[_Column]
     pulls: list[tuple[int, float, float, str, float]]
     warnings: list[str]

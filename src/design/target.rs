@@ -2,8 +2,8 @@
 
 use crate::input::Quantity;
 use crate::scene::Scene;
-use crate::sensitivity::{Derivatives, Variable, detachments, state};
-use crate::trace::{Branch, BranchPoint, DetachmentKind, curve_without_strain};
+use crate::sensitivity::{NoDerivative, Variable, detachments, largest};
+use crate::trace::{DetachmentKind, PushLoad, StableBranch, curve_without_strain};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -85,13 +85,14 @@ impl DesignGoal {
         }
     }
 
-    /// The size of a load at a state; `None` for push angles.
-    fn load(self) -> Option<fn(&BranchPoint) -> f64> {
+    /// Returns the load of the goal; `None` for push angles.
+    #[must_use]
+    pub const fn load(self) -> Option<PushLoad> {
         match self {
             Self::SlipOff | Self::PullOff => None,
-            Self::MaxForce => Some(|point| point.contact_force_un),
-            Self::MaxMoment => Some(|point| point.base_moment_nnm.abs()),
-            Self::MaxStrain => Some(|point| point.peak_strain),
+            Self::MaxForce => Some(PushLoad::ContactForce),
+            Self::MaxMoment => Some(PushLoad::BaseMoment),
+            Self::MaxStrain => Some(PushLoad::Strain),
         }
     }
 }
@@ -116,9 +117,6 @@ impl DesignTarget {
 
     /// Returns the exact derivatives of the goal's quantity for a push of `scene` at its only distance, in the directions of variables with
     /// factors: `[variable]`. `None` without derivatives, and for strains.
-    ///
-    /// The largest load of a push is that of its end, or a maximum before. There the derivative by the push angle is 0, so that those at a
-    /// fixed push angle are those of the maximum.
     pub(super) fn gradient(
         &self,
         scene: &Scene,
@@ -128,34 +126,23 @@ impl DesignTarget {
         let distance_mm = *scene.grid.distance_mm.first()?;
         let all = directions.iter().flatten();
         let variables: Vec<Variable> = all.map(|(variable, _)| *variable).collect();
-        let of_end = || {
-            let mut ends = detachments(whisker, pole, side, &[distance_mm], &variables);
-            ends.pop()
-                .map(|own| (own.end.base_moment_nnm.unwrap_or_default(), own.by))
+        let by: Vec<Result<f64, NoDerivative>> = match self.goal.load() {
+            None => {
+                let end = detachments(whisker, pole, side, &[distance_mm], &variables).pop()?;
+                let push = end.by.into_iter();
+                push.map(|by| by.map(|by| by.push_angle_deg)).collect()
+            }
+            Some(load) => {
+                largest(whisker, pole, side, distance_mm, load, &variables)
+                    .ok()?
+                    .by
+            }
         };
-        let of_load = |load| {
-            let branch = Branch::new(whisker, pole, side, distance_mm).ok()?;
-            let Some(push_deg) = branch.peak(load).before_end_deg else {
-                return of_end();
-            };
-            let found = state(whisker, pole, distance_mm, push_deg, &variables).ok()?;
-            Some((found.point.base_moment_nnm, found.by))
-        };
-        let (moment, by) = match self.goal.load() {
-            None => of_end(),
-            Some(load) => of_load(load),
-        }?;
-        let quantity = |by: &Derivatives| match self.goal {
-            DesignGoal::SlipOff | DesignGoal::PullOff => Some(by.push_angle_deg),
-            DesignGoal::MaxForce => Some(by.contact_force_un),
-            DesignGoal::MaxMoment => Some(moment.signum() * by.base_moment_nnm),
-            DesignGoal::MaxStrain => None,
-        };
-        let mut by = by.iter();
+        let mut by = by.into_iter();
         let mut along = |direction: &Vec<(Variable, f64)>| {
             let parts = direction.iter().map(|(_, factor)| {
-                let own = by.next()?.as_ref().ok()?;
-                Some(factor * quantity(own)?)
+                let own = by.next()?.ok()?;
+                Some(factor * own)
             });
             parts.collect::<Vec<_>>().into_iter().sum::<Option<f64>>()
         };
@@ -165,6 +152,19 @@ impl DesignTarget {
     /// Computes how a push at the only distance of `scene` ends, and the value of the goal's quantity, in its unit. The value is `None`
     /// without a detachment.
     pub(super) fn reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
+        self.reached_by(scene, |branch, load| branch.peak(load).size)
+    }
+
+    /// Computes the end of a push as [`Self::reached`] does, with a largest load that is some percent off.
+    pub(super) fn roughly_reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
+        self.reached_by(scene, StableBranch::rough_peak)
+    }
+
+    fn reached_by(
+        &self,
+        scene: &Scene,
+        largest: impl Fn(&StableBranch, PushLoad) -> f64,
+    ) -> (DetachmentKind, Option<f64>) {
         let (whisker, pole, side) = (&scene.whisker, &scene.pole, self.side);
         let distances = &scene.grid.distance_mm;
         let end = || curve_without_strain(Resolution::FINE, whisker, pole, side, distances).pop();
@@ -175,8 +175,8 @@ impl DesignTarget {
         let value = match self.goal.load() {
             None => detaches,
             Some(load) => detaches.and_then(|_| {
-                let branch = Branch::new(whisker, pole, side, distances[0]).ok()?;
-                Some(branch.largest(load))
+                let branch = StableBranch::new(whisker, pole, side, distances[0]).ok()?;
+                Some(largest(&branch, load))
             }),
         };
         match value {

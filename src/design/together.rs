@@ -6,6 +6,7 @@ use super::{DesignError, DesignTarget, DesignVaried, checked};
 use crate::least_squares::{self, BoundedProblem, FAINT, Svd, norm};
 use crate::scene::Scene;
 use crate::sensitivity::Variable;
+use crate::trace::DetachmentKind;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -185,13 +186,29 @@ impl TogetherSearch<'_> {
     }
 
     /// Returns the values of the quantities of the targets, in their units; `None` if the push ends in another way.
-    fn reached(&self, x: &[f64]) -> Option<Vec<f64>> {
+    fn reached(
+        &self,
+        x: &[f64],
+        reached: fn(&DesignTarget, &Scene) -> (DetachmentKind, Option<f64>),
+    ) -> Option<Vec<f64>> {
         let scene = self.at(x)?;
-        let reached = self.targets.iter().map(|target| {
-            let (kind, reached) = target.reached(&scene);
-            reached.filter(|_| target.accepts(kind))
+        let values = self.targets.iter().map(|target| {
+            let (kind, value) = reached(target, &scene);
+            value.filter(|value| target.accepts(kind) && !value.is_nan())
         });
-        reached.collect()
+        values.collect()
+    }
+
+    /// Returns the misses of the targets, each relative to its value.
+    fn misses(
+        &self,
+        x: &[f64],
+        reached: fn(&DesignTarget, &Scene) -> (DetachmentKind, Option<f64>),
+    ) -> Option<Vec<f64>> {
+        let reached = self.reached(x, reached)?;
+        let pairs = reached.iter().zip(self.targets);
+        let misses = pairs.map(|(reached, target)| reached / target.value - 1.0);
+        Some(misses.collect())
     }
 
     /// Returns the largest relative miss of a target.
@@ -226,7 +243,7 @@ impl TogetherSearch<'_> {
         });
         Some(DesignNearest {
             is_at_limit: is_at_limit.collect(),
-            reached: self.reached(x)?,
+            reached: self.reached(x, DesignTarget::reached)?,
             values,
         })
     }
@@ -256,15 +273,8 @@ impl BoundedProblem for TogetherSearch<'_> {
         self.targets.len()
     }
 
-    /// Misses of the targets, each relative to its value.
     fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
-        let reached = self.reached(x)?;
-        let pairs = reached.iter().zip(self.targets);
-        Some(
-            pairs
-                .map(|(reached, target)| reached / target.value - 1.0)
-                .collect(),
-        )
+        self.misses(x, DesignTarget::reached)
     }
 
     fn jacobian(&self, x: &[f64], _residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
@@ -320,7 +330,8 @@ impl Places {
             along.collect()
         };
         let places: Vec<Vec<f64>> = (0..side.pow(count as u32)).map(place).collect();
-        let misses = places.par_iter().map(|x| search.residuals(x)).collect();
+        let rough = |x: &Vec<f64>| search.misses(x, DesignTarget::roughly_reached);
+        let misses = places.par_iter().map(rough).collect();
         Self {
             side,
             places,

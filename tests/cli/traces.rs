@@ -12,7 +12,7 @@ pub const SHAPE: &str = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,mome
 pub const SPREAD: &str = "side,distance_mm,kind,push_angle_deg,slip_off,pull_off,out_of_reach,unresolved,p5_deg,p25_deg,\
                       p50_deg,p75_deg,p95_deg,mean_deg,sd_deg,sd_first_order_deg,\
                       force_un,force_p5_un,force_p25_un,force_p50_un,force_p75_un,force_p95_un,force_mean_un,force_sd_un,\
-                      moment_nnm,moment_p5_nnm,moment_p25_nnm,moment_p50_nnm,moment_p75_nnm,moment_p95_nnm,moment_mean_nnm,moment_sd_nnm";
+                      base_moment_nnm,base_moment_p5_nnm,base_moment_p25_nnm,base_moment_p50_nnm,base_moment_p75_nnm,base_moment_p95_nnm,base_moment_mean_nnm,base_moment_sd_nnm";
 pub const CB: [&str; 5] = ["branch", "scene.toml", "--distance", "15.66", "--side=cb"];
 
 /// Runs the program, which must succeed without messages.

@@ -63,6 +63,18 @@ fn a_sine_and_its_angles_give_one_course() {
     ] {
         assert!(svg.contains(&format!(">{label}<")), "{label}");
     }
+    // The three plots share one axis of times, on paper, too.
+    assert_eq!(svg.matches(">time (s)<").count(), 1);
+    let paper = whisk(
+        &place,
+        &[&sine[..], &["--plot", "paper.svg", "--size", "85mm"]].concat(),
+    );
+    assert_eq!(paper.code, Some(0), "{paper:?}");
+    let times = text("paper.svg");
+    assert!(
+        times.matches(">time (s)<").count() + times.matches(">time (ms)<").count() == 1,
+        "{times}"
+    );
     let table = text("s.csv");
     let angles = table
         .lines()

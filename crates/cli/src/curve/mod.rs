@@ -26,7 +26,7 @@ use whiskmap::render::{Plot, bands};
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker, digits};
 use whiskmap::sensitivity::{DetachmentDerivatives, detachments_at};
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
-use whiskmap::uncertainty::{EndSpread, PointSpread};
+use whiskmap::uncertainty::{EndSpread, LargestSpread, PointSpread};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -65,6 +65,7 @@ const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns with --corner", Corner::COLUMNS),
     ("Columns with --data", ComparedPoint::COLUMNS),
     ("Columns with --samples", EndSpread::COLUMNS),
+    ("More columns with --largest", LargestSpread::COLUMNS),
     (
         "More columns with --data and --samples",
         PointSpread::COLUMNS,
@@ -154,7 +155,10 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {
         let rows = uncertainty::spread(&draws, resolution);
-        outputs.rows(&rows)?;
+        match args.sampling.largest {
+            true => outputs.rows(rows.iter().zip(uncertainty::largest(&draws)))?,
+            false => outputs.rows(&rows)?,
+        }
         outputs.finish(scene.title.clone(), || Plot {
             bands: bands(&rows, args.x.percentiles()),
             ..scene_curve(&scene, resolution, args.x.axis())
