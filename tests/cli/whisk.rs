@@ -33,8 +33,7 @@ fn a_sine_and_its_angles_give_one_course() {
         "{run:?}"
     );
     let text = |name: &str| String::from_utf8(place.bytes(name)).unwrap();
-    let header =
-        "time_s,event,side,angle_deg,push_angle_deg,force_un,base_moment_nnm,energy_nj,snaps_deg";
+    let header = "time_s,event,side,angle_deg,push_angle_deg,force_un,contact_force_un,base_moment_nnm,energy_nj,snaps_deg";
     let events = text("e.csv");
     let events = cells(&events, header);
     let kinds: Vec<_> = events.iter().map(|event| [event[1], event[2]]).collect();
