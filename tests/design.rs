@@ -2,8 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use whiskmap::Side;
-use whiskmap::design::{Design, DesignError, DesignGoal, DesignTarget, design};
+use whiskmap::design::{
+    Design, DesignError, DesignGoal, DesignTarget, DesignVariable, DesignVaried, design, designs,
+};
 use whiskmap::scene::{Parameter, Scene};
+use whiskmap::sensitivity::Variable;
 use whiskmap::trace::{Branch, BranchPoint, Detachment, DetachmentKind, curve};
 
 fn robot() -> Scene {
@@ -297,4 +300,246 @@ fn the_largest_load_of_a_push_reaches_the_target() {
         }
     }
     assert!(before_the_end >= 4, "{before_the_end}");
+}
+
+/// A design of several numbers within the limits of the scene.
+fn varied(variables: &[Variable]) -> DesignVaried {
+    let variables = variables.iter().copied();
+    let variables = variables.map(|variable| DesignVariable {
+        variable,
+        limits: None,
+    });
+    variables.collect()
+}
+
+/// Largest values of a push over 2,000 stable states: contact force, moment and strain.
+fn largest(scene: &Scene, distance_mm: f64, side: Side) -> [f64; 3] {
+    let branch = Branch::new(&scene.whisker, &scene.pole, side, distance_mm).unwrap();
+    let points = branch.points(4000).unwrap();
+    let stable = points.iter().filter(|point| point.stable);
+    stable.fold([0.0; 3], |[force, moment, strain], point| {
+        [
+            point.contact_force_un.max(force),
+            point.base_moment_nnm.abs().max(moment),
+            point.peak_strain.max(strain),
+        ]
+    })
+}
+
+/// What a push reaches, by goal.
+fn reached(scene: &Scene, distance_mm: f64, side: Side, goal: DesignGoal) -> f64 {
+    let [force, moment, strain] = largest(scene, distance_mm, side);
+    match goal {
+        DesignGoal::MaxForce => force,
+        DesignGoal::MaxMoment => moment,
+        DesignGoal::MaxStrain => strain,
+        _ => end(scene, distance_mm, side).push_angle_deg.unwrap(),
+    }
+}
+
+const TAPER: Variable = Variable::Parameter(Parameter::Taper);
+const BASE: Variable = Variable::Parameter(Parameter::BaseRadiusUm);
+const MODULUS: Variable = Variable::Parameter(Parameter::YoungsModulusGpa);
+
+/// Numbers of a scene come back from what its push reaches: two, and three, of different kinds. Each solution is verified by its own push.
+#[test]
+fn several_numbers_come_back_from_as_many_targets() {
+    use DesignGoal::{MaxForce, MaxMoment, MaxStrain, SlipOff};
+    let (robot, rough) = (robot(), everything());
+    for (scene, side, distance_mm, variables, goals) in [
+        (
+            &robot,
+            Side::Cb,
+            60.0,
+            &[BASE, TAPER][..],
+            &[SlipOff, MaxMoment][..],
+        ),
+        (
+            &robot,
+            Side::Cb,
+            60.0,
+            &[Variable::DistanceMm, BASE],
+            &[SlipOff, MaxForce],
+        ),
+        (
+            &robot,
+            Side::Cb,
+            60.0,
+            &[BASE, TAPER, MODULUS],
+            &[SlipOff, MaxMoment, MaxStrain],
+        ),
+        (&rough, Side::Cf, 13.0, &[BASE, TAPER], &[SlipOff, MaxForce]),
+    ] {
+        let target = |goal: &DesignGoal| DesignTarget {
+            distance_mm,
+            side,
+            goal: *goal,
+            value: reached(scene, distance_mm, side, *goal),
+        };
+        let targets: Vec<DesignTarget> = goals.iter().map(target).collect();
+        let found = designs(scene, &varied(variables), &targets).unwrap();
+        assert!(
+            !found.is_undetermined && found.nearest.is_none(),
+            "{found:?}"
+        );
+        let own = |own: &Variable| own.value(scene).unwrap_or(distance_mm);
+        // The largest values of 2,000 states are up to 1e-6 below those of the push.
+        let is_own = |values: &Vec<f64>| {
+            let mut pairs = values.iter().zip(variables);
+            pairs.all(|(value, variable)| (value / own(variable) - 1.0).abs() < 1e-4)
+        };
+        assert!(found.solutions.iter().any(is_own), "{goals:?}: {found:?}");
+        for values in &found.solutions {
+            let mut place = (scene.clone(), distance_mm);
+            let set = varied(variables).changes(scene, values);
+            place.0 = place.0.with_parameters(&set).unwrap();
+            if variables[0] == Variable::DistanceMm {
+                place.1 = values[0];
+            }
+            for target in &targets {
+                let value = reached(&place.0, place.1, side, target.goal);
+                assert!(
+                    (value / target.value - 1.0).abs() < 1e-5,
+                    "{target:?}: {values:?} {value}"
+                );
+            }
+        }
+    }
+}
+
+/// The largest moment grows with the size of the whisker: of a moment that is too large, the nearest values are at the limit of the radius.
+#[test]
+fn nearest_values_are_at_the_limit_that_stops_them() {
+    let scene = robot();
+    let slip_off = target(60.0, Side::Cb, DetachmentKind::SlipOff, 35.0);
+    let moment = DesignTarget {
+        goal: DesignGoal::MaxMoment,
+        value: 1e9,
+        ..slip_off
+    };
+    let mut varied = varied(&[BASE, TAPER]);
+    let most = 1.1 * scene.whisker.base_radius_um;
+    varied.variables[0].limits = Some([100.0, most]);
+    let found = designs(&scene, &varied, &[slip_off, moment]).unwrap();
+    assert_eq!((found.solutions.len(), found.ranges[0]), (0, [100.0, most]));
+    let nearest = found.nearest.unwrap();
+    assert_eq!((nearest.values[0], nearest.is_at_limit[0]), (most, true));
+}
+
+/// No angle and no ratio of loads depends on the modulus: with it alone beside a load, nothing else is determined.
+#[test]
+fn a_line_of_solutions_is_reported() {
+    let scene = robot();
+    let of = |goal, factor: f64| DesignTarget {
+        distance_mm: 60.0,
+        side: Side::Cb,
+        goal,
+        value: factor * reached(&scene, 60.0, Side::Cb, goal),
+    };
+    // The scene's own slip-off at any radius of the same shape, and the moment by radius or modulus.
+    let targets = [
+        of(DesignGoal::MaxForce, 2.0),
+        of(DesignGoal::MaxMoment, 2.0),
+    ];
+    let mut varied = varied(&[BASE, MODULUS]);
+    varied.keeps_taper = true;
+    assert!(designs(&scene, &varied, &targets).unwrap().is_undetermined);
+}
+
+/// A distance in parts of the length follows the length; a kept taper takes the radius at the tip along; the scene's own distance comes back.
+#[test]
+fn what_follows_a_varied_number_follows() {
+    let scene = robot();
+    let whisker = &scene.whisker;
+    let length = DesignVaried {
+        distance_to_length: Some(0.6),
+        ..Parameter::LengthMm.into()
+    };
+    let short = scene
+        .with(Parameter::LengthMm, 0.8 * whisker.length_mm)
+        .unwrap();
+    let own = end(&short, 0.6 * short.whisker.length_mm, Side::Cb);
+    let sought = target(
+        0.6 * whisker.length_mm,
+        Side::Cb,
+        own.kind,
+        own.push_angle_deg.unwrap(),
+    );
+    let found = design(&scene, length, &sought).unwrap();
+    let off = found
+        .values
+        .iter()
+        .map(|own| (own / short.whisker.length_mm - 1.0).abs());
+    assert!(off.fold(f64::INFINITY, f64::min) < 1e-9, "{found:?}");
+
+    let keeping = DesignVaried {
+        keeps_taper: true,
+        ..Parameter::BaseRadiusUm.into()
+    };
+    let load = DesignTarget {
+        distance_mm: 60.0,
+        side: Side::Cb,
+        goal: DesignGoal::MaxMoment,
+        value: 2.0 * reached(&scene, 60.0, Side::Cb, DesignGoal::MaxMoment),
+    };
+    let found = design(&scene, keeping.clone(), &load).unwrap();
+    // A whisker of the same shape: the moment grows with the fourth power of the radius.
+    let wanted = whisker.base_radius_um * 2.0_f64.powf(0.25);
+    assert!(
+        (found.values[0] / wanted - 1.0).abs() < 1e-5,
+        "{:?} {wanted}",
+        found.values
+    );
+    let wider = scene
+        .with_parameters(&keeping.changes(&scene, &found.values))
+        .unwrap();
+    assert!((wider.whisker.taper() - whisker.taper()).abs() < 1e-12);
+    let other = DesignVaried {
+        keeps_taper: true,
+        ..Parameter::LengthMm.into()
+    };
+    assert_eq!(design(&scene, other, &load), Err(DesignError::NoTaper));
+
+    let own = end(&scene, 60.0, Side::Cb);
+    let sought = target(45.0, Side::Cb, own.kind, own.push_angle_deg.unwrap());
+    let found = design(&scene, Variable::DistanceMm, &sought).unwrap();
+    assert!(
+        found.values.iter().any(|value| (value - 60.0).abs() < 1e-7),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn designs_with_other_counts_and_numbers_are_refused() {
+    let scene = robot();
+    let slip_off = target(60.0, Side::Cb, DetachmentKind::SlipOff, 30.0);
+    let moment = DesignTarget {
+        goal: DesignGoal::MaxMoment,
+        value: 1e6,
+        ..slip_off
+    };
+    let other = DesignTarget {
+        distance_mm: 50.0,
+        ..moment
+    };
+    let why = |variables: &[Variable], targets: &[DesignTarget]| {
+        designs(&scene, &varied(variables), targets).unwrap_err()
+    };
+    let tip = Variable::from(Parameter::TipRadiusUm);
+    let counts = |variables, targets| DesignError::Targets { variables, targets };
+    assert_eq!(why(&[TAPER], &[slip_off, moment]), counts(1, 2));
+    assert_eq!(why(&[TAPER, BASE], &[slip_off, slip_off]), counts(2, 1));
+    assert_eq!(why(&[TAPER, BASE], &[slip_off, other]), counts(2, 1));
+    let twice = why(&[TAPER, tip], &[slip_off, moment]);
+    assert_eq!(twice, DesignError::Twice(TAPER, tip));
+    assert_eq!(
+        why(&[Variable::PushAngleDeg], &[slip_off]).to_string(),
+        "push_angle_deg: must be a parameter of the scene, or distance_mm"
+    );
+    let mut limited = varied(&[TAPER]);
+    limited.variables[0].limits = Some([2.0, 3.0]);
+    assert_eq!(
+        design(&scene, limited, &slip_off).unwrap_err().to_string(),
+        "taper: must lie between 0 and 1, which the scene accepts; the limits are 2 to 3"
+    );
 }

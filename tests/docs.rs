@@ -11,7 +11,7 @@ use whiskmap::scene::Parameter;
 use whiskmap::sensitivity::VariableEffect;
 use whiskmap::texture::{AsperityStay, TextureEvent, TextureSample, TipBin};
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
-use whiskmap::uncertainty::{EndSpread, PointSpread};
+use whiskmap::uncertainty::{EndSpread, LargestSpread, PointSpread};
 use whiskmap::whisk::{WhiskEvent, WhiskSample};
 
 /// Returns all files below `folder` with this extension, in order.
@@ -96,6 +96,7 @@ fn every_column_is_on_the_page_of_the_commands() {
         BranchPoint::COLUMNS,
         ShapePoint::COLUMNS,
         EndSpread::COLUMNS,
+        LargestSpread::COLUMNS,
         PointSpread::COLUMNS,
         VariableEffect::COLUMNS,
         WhiskSample::COLUMNS,

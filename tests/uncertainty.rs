@@ -273,10 +273,10 @@ fn measured_radii_spread_loads_by_their_factor_and_pull_offs_by_their_tip() {
         let loads = [
             (force, row.force_mean_un, row.force_sd_un, row.force_p95_un),
             (
-                row.moment_nnm.unwrap(),
-                row.moment_mean_nnm,
-                row.moment_sd_nnm,
-                row.moment_p95_nnm,
+                row.base_moment_nnm.unwrap(),
+                row.base_moment_mean_nnm,
+                row.base_moment_sd_nnm,
+                row.base_moment_p95_nnm,
             ),
         ];
         for (own, mean, sd, p95) in loads {
@@ -296,4 +296,77 @@ fn measured_radii_spread_loads_by_their_factor_and_pull_offs_by_their_tip() {
     assert!(near.sd_deg.unwrap() < 1e-9, "{near:?}");
     let [sd, foretold] = [far.sd_deg, far.sd_first_order_deg].map(Option::unwrap);
     assert!(sd > 1e-4 && (sd / foretold - 1.0).abs() < 0.06, "{far:?}");
+}
+
+/// The largest loads of samples are those of their pushes: proportional to the fourth power of the radii, and at least those at detachment.
+#[test]
+fn largest_loads_of_samples_spread_as_the_loads_of_one_push() {
+    let text = "
+        title = 'measured'
+        [whisker]
+        length_mm = 18.5
+        youngs_modulus_gpa = 3
+        curvature = { parabola_per_mm = 0.02 }
+        [whisker.profile]
+        rows = [[0, 30], [9, 21], [18.5, 11.5]]
+        profile_scale = 1
+        [grid]
+        push_angle_deg = [10]
+        distance_mm = [10]
+        [uncertainty]
+        profile_scale = 1e-3";
+    let scene = Scene::parse(text, "measured.toml").unwrap();
+    let draws = Draws::new(&scene, 200, 1).unwrap();
+    for side in Side::BOTH {
+        let largest = draws.largest(side, || ())[0];
+        let end = draws.spread(Resolution::FINE, side, || ())[0];
+        let branch = whiskmap::trace::Branch::new(&scene.whisker, &scene.pole, side, 10.0).unwrap();
+        let points = branch.points(4000).unwrap();
+        let most = |of: fn(&whiskmap::trace::BranchPoint) -> f64| {
+            let stable = points.iter().filter(|point| point.stable);
+            stable.map(of).fold(0.0, f64::max)
+        };
+        for (own, wanted, mean, sd, power) in [
+            (
+                largest.max_contact_force_un,
+                most(|point| point.contact_force_un),
+                largest.max_contact_force_mean_un,
+                largest.max_contact_force_sd_un,
+                4.0,
+            ),
+            (
+                largest.max_base_moment_nnm,
+                most(|point| point.base_moment_nnm.abs()),
+                largest.max_base_moment_mean_nnm,
+                largest.max_base_moment_sd_nnm,
+                4.0,
+            ),
+            (
+                largest.max_strain,
+                most(|point| point.peak_strain),
+                largest.max_strain_mean,
+                largest.max_strain_sd,
+                1.0,
+            ),
+        ] {
+            let own = own.unwrap();
+            // 2,000 states are up to 1e-6 below the largest one.
+            assert!(
+                (-1e-9..2e-6).contains(&(own / wanted - 1.0)),
+                "{side:?} {own} {wanted}"
+            );
+            // 200 samples leave 5 % of the deviation, and 7 % of it in the mean.
+            assert!(
+                (sd.unwrap() / own / (power * 1e-3) - 1.0).abs() < 0.2,
+                "{largest:?}"
+            );
+            assert!(
+                (mean.unwrap() / own - 1.0).abs() < 3e-4 * power,
+                "{largest:?}"
+            );
+        }
+        let [largest, at_end] =
+            [largest.max_base_moment_nnm, end.base_moment_nnm].map(Option::unwrap);
+        assert!(largest > at_end.abs() * (1.0 + 1e-3), "{largest} {at_end}");
+    }
 }

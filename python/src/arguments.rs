@@ -3,7 +3,7 @@
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use whiskmap::Side;
-use whiskmap::input::did_you_mean;
+use whiskmap::input::{ColumnName, CsvError, CsvTable, did_you_mean};
 use whiskmap::scene::Parameter;
 use whiskmap::whisk::CourseStart;
 use whiskmap::{Channels, MapEngine, Options, Precision};
@@ -24,6 +24,18 @@ pub fn start(name: &str) -> PyResult<CourseStart> {
         "contact" => Ok(CourseStart::Contact),
         _ => Err(refused("start", name, "must be 'free' or 'contact'")),
     }
+}
+
+/// Returns the CSV table in `text`, which messages call `origin`, with expected names in place of own ones: `[column]` of both.
+pub fn table(
+    text: &str,
+    origin: &str,
+    columns: Vec<(String, String)>,
+    known: &[&str],
+) -> Result<CsvTable, CsvError> {
+    let names = columns.into_iter();
+    let names = names.map(|(expected, own)| ColumnName { expected, own });
+    CsvTable::parse(text, origin)?.renamed(&names.collect::<Vec<_>>(), known)
 }
 
 /// Returns the parameter with this name; `argument` is the one that gives it.

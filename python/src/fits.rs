@@ -11,13 +11,19 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::Side;
-use whiskmap::design::{DesignError, DesignGoal, DesignTarget, design_until};
-use whiskmap::fit::{FitError, fit_until};
-use whiskmap::measured::{ComparedPoint, MeasuredPoints};
-use whiskmap::scene::Parameter;
+use whiskmap::design::{
+    DesignError, DesignGoal, DesignTarget, DesignVariable, DesignVaried, design_until,
+    designs_until,
+};
+use whiskmap::fit::{FitError, FitLoss, fit_until};
+use whiskmap::measured::{ComparedPoint, MeasuredAngle, MeasuredPoints};
+use whiskmap::scene::{Parameter, Scene};
 
 /// Name, unit, value, standard error, and whether the value is at a limit, of a fitted parameter.
 type Estimate = (&'static str, &'static str, f64, Option<f64>, bool);
+
+/// Index among the points, residual in degrees, weight, parameter and change in standard errors, of a point that pulls on a fit.
+type Pull = (usize, f64, f64, &'static str, f64);
 
 /// Result of a fit.
 #[derive(IntoPyObject)]
@@ -29,7 +35,9 @@ pub struct FitResult<'py> {
     degrees_of_freedom: usize,
     is_explained: bool,
     not_a_fit: Option<String>,
+    is_chord: bool,
     points: Vec<Column<'py>>,
+    pulls: Vec<Pull>,
     warnings: Vec<String>,
 }
 
@@ -41,17 +49,26 @@ pub fn fit<'py>(
     points: &str,
     origin: &str,
     free: Vec<String>,
+    loss: &str,
+    columns: Vec<(String, String)>,
 ) -> PyResult<FitResult<'py>> {
     single(&scene.0)?;
     let refused = |why: String| PyValueError::new_err(why);
-    let points = MeasuredPoints::parse(points, origin).map_err(|why| refused(why.to_string()))?;
+    let table = arguments::table(points, origin, columns, &MeasuredPoints::COLUMNS);
+    let points = table.and_then(|table| MeasuredPoints::of(&table));
+    let points = points.map_err(|why| refused(why.to_string()))?;
+    let mut losses = FitLoss::ALL.into_iter();
+    let loss = losses.find(|own| own.name() == loss).ok_or_else(|| {
+        let known = FitLoss::ALL.map(FitLoss::name).join(", ");
+        arguments::refused("loss", loss, &format!("must be one of {known}"))
+    })?;
     let free: PyResult<Vec<Parameter>> = free
         .iter()
         .map(|name| arguments::parameter("free", name))
         .collect();
     let free = free?;
     let job = |cancel: &Arc<AtomicBool>| {
-        let fit = fit_until(&scene.0, &points, &free, cancel)?;
+        let fit = fit_until(&scene.0, &points, &free, loss, cancel)?;
         let table = Table::new(&fit.comparison.rows, ComparedPoint::COLUMNS, cancel);
         Ok((fit, table))
     };
@@ -78,7 +95,23 @@ pub fn fit<'py>(
             own.is_at_limit,
         )
     });
+    let pulls = fit.pulls.iter().map(|own| {
+        let name = own.parameter.name();
+        let mut rows = fit.comparison.rows.iter();
+        let index = rows
+            .position(|row| row.line == own.line)
+            .unwrap_or_default();
+        (
+            index,
+            own.residual_deg,
+            own.weight,
+            name,
+            own.standard_errors,
+        )
+    });
     Ok(FitResult {
+        pulls: pulls.collect(),
+        is_chord: points.angle == MeasuredAngle::Chord,
         estimates: estimates.collect(),
         is_explained: fit.is_explained(),
         correlation: fit.correlation,
@@ -94,19 +127,72 @@ pub fn fit<'py>(
 /// Solutions, range, and value, kind and reached quantity of the ends over the range.
 type DesignResult = (Vec<f64>, [f64; 2], Vec<f64>, Vec<String>, Vec<Option<f64>>);
 
-/// Finds every value of `parameter` with which a push of the scene's only whisker reaches `value` of the goal's quantity.
+/// Varied number by its name, with limits.
+type Varied = (String, Option<[f64; 2]>);
+
+/// Values, reached quantities and whether each value is at a limit, of what is nearest to several targets.
+type Nearest = (Vec<f64>, Vec<f64>, Vec<bool>);
+
+/// Solutions `[solution][variable]`, ranges `[variable]`, whether the targets do not determine them, and what is nearest without a solution.
+type DesignsResult = (Vec<Vec<f64>>, Vec<[f64; 2]>, bool, Option<Nearest>);
+
+/// Returns what a design of `scene` varies, and its distance in mm before that. `distance` is in mm, or in whisker lengths if `is_part` is true.
+fn varied(
+    scene: &Scene,
+    variables: Vec<Varied>,
+    distance: Option<(f64, bool)>,
+    keeps_taper: bool,
+) -> PyResult<(DesignVaried, f64)> {
+    let variable = |(name, limits): Varied| {
+        let variable = name.parse();
+        let variable =
+            variable.map_err(|must: String| arguments::refused("parameter", &name, &must));
+        Ok(DesignVariable {
+            variable: variable?,
+            limits,
+        })
+    };
+    let variables = variables.into_iter().map(variable);
+    let mut varied: DesignVaried = variables
+        .collect::<PyResult<Vec<_>>>()?
+        .into_iter()
+        .collect();
+    varied.keeps_taper = keeps_taper;
+    let distances = &scene.grid.distance_mm;
+    let distance_mm = match distance {
+        None => distances[distances.len() / 2],
+        Some((part, true)) => {
+            varied.distance_to_length = Some(part);
+            part * scene.whisker.length_mm
+        }
+        Some((distance_mm, false)) => distance_mm,
+    };
+    Ok((varied, distance_mm))
+}
+
+/// Returns the exception of a refused design.
+fn of_design(py: Python<'_>, why: DesignError) -> PyErr {
+    match why {
+        DesignError::Distance(why) => of_scene(py, &why),
+        _ => PyValueError::new_err(why.to_string()),
+    }
+}
+
+/// Finds every value of the one varied number with which a push of the scene's only whisker reaches `value` of the goal's quantity.
 #[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "one argument of Python each")]
 pub fn design(
     py: Python<'_>,
     scene: &CheckedScene,
-    parameter: &str,
+    parameter: Varied,
     goal: &str,
     value: f64,
-    distance_mm: f64,
+    distance: Option<(f64, bool)>,
     side: Option<&str>,
+    keeps_taper: bool,
 ) -> PyResult<DesignResult> {
     single(&scene.0)?;
-    let parameter = arguments::parameter("parameter", parameter)?;
+    let (varied, distance_mm) = varied(&scene.0, vec![parameter], distance, keeps_taper)?;
     let goal = goals(goal)?;
     let target = DesignTarget {
         distance_mm,
@@ -114,11 +200,9 @@ pub fn design(
         goal,
         value,
     };
-    let job = |cancel: &Arc<AtomicBool>| design_until(&scene.0, parameter, &target, cancel);
-    let found = threads::run(py, None, |_| Ok(()), job)?.map_err(|why| match why {
-        DesignError::Distance(why) => of_scene(py, &why),
-        _ => PyValueError::new_err(why.to_string()),
-    })?;
+    let job = |cancel: &Arc<AtomicBool>| design_until(&scene.0, varied, &target, cancel);
+    let found = threads::run(py, None, |_| Ok(()), job)?;
+    let found = found.map_err(|why| of_design(py, why))?;
     let ends = found.ends.iter();
     let kind = |kind| serde_json::to_value(kind).ok()?.as_str().map(str::to_owned);
     let kinds = ends.clone().map(|end| kind(end.kind).unwrap_or_default());
@@ -129,6 +213,43 @@ pub fn design(
         ends.map(|end| end.value).collect(),
         kinds.collect(),
         reached.collect(),
+    ))
+}
+
+/// Finds the values of several varied numbers with which a push of the scene's only whisker on `side` reaches all `targets`, of which each has a goal and
+/// a value.
+#[pyfunction]
+pub fn designs(
+    py: Python<'_>,
+    scene: &CheckedScene,
+    parameters: Vec<Varied>,
+    targets: Vec<(String, f64)>,
+    distance: Option<(f64, bool)>,
+    side: Option<&str>,
+    keeps_taper: bool,
+) -> PyResult<DesignsResult> {
+    single(&scene.0)?;
+    let (varied, distance_mm) = varied(&scene.0, parameters, distance, keeps_taper)?;
+    let target = |(name, value): &(String, f64)| {
+        let goal = goals(name)?;
+        Ok(DesignTarget {
+            distance_mm,
+            side: target_side(goal, *value, side)?,
+            goal,
+            value: *value,
+        })
+    };
+    let targets: Vec<DesignTarget> = targets.iter().map(target).collect::<PyResult<_>>()?;
+    let job = |cancel: &Arc<AtomicBool>| designs_until(&scene.0, &varied, &targets, cancel);
+    let found = threads::run(py, None, |_| Ok(()), job)?;
+    let found = found.map_err(|why| of_design(py, why))?;
+    let nearest = found.nearest;
+    let nearest = nearest.map(|own| (own.values, own.reached, own.is_at_limit));
+    Ok((
+        found.solutions,
+        found.ranges,
+        found.is_undetermined,
+        nearest,
     ))
 }
 

@@ -34,7 +34,7 @@ mod _whiskmap {
     #[pymodule_export]
     use super::errors::{SceneError, StateError};
     #[pymodule_export]
-    use super::fits::{design, fit};
+    use super::fits::{design, designs, fit};
     #[pymodule_export]
     use super::lazy::ComputedMap;
     #[pymodule_export]

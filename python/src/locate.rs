@@ -1,5 +1,6 @@
 //! Contacts from moment and force at the base, as columns.
 
+use crate::arguments;
 use crate::columns::{Column, Table};
 use crate::motion::{refused, without_friction};
 use crate::scene::CheckedScene;
@@ -21,12 +22,15 @@ pub fn locate<'py>(
     scene: &CheckedScene,
     readings: &str,
     origin: &str,
+    columns: Vec<(String, String)>,
     deviations: Option<(f64, f64)>,
 ) -> PyResult<LocateColumns<'py>> {
     let scene = &scene.0;
     single(scene)?;
     without_friction(scene, "the force is taken as normal to the whisker")?;
-    let read = BaseReadings::parse(readings, origin).map_err(|why| refused(&why))?;
+    let table = arguments::table(readings, origin, columns, &BaseReadings::COLUMNS);
+    let read = table.and_then(|table| BaseReadings::of(&table));
+    let read = read.map_err(|why| refused(&why))?;
     let deviations = deviations.map(|(moment_nnm, force_un)| SensorDeviations {
         moment_nnm,
         force_un,

@@ -150,6 +150,7 @@ pub fn force<'py>(
     scene: &CheckedScene,
     frames: &str,
     origin: &str,
+    columns: Vec<(String, String)>,
     model: bool,
     baseline_s: Option<[f64; 2]>,
 ) -> PyResult<ForceColumns<'py>> {
@@ -161,7 +162,8 @@ pub fn force<'py>(
         false => ForceMethod::Lever,
     };
     let whisker = scene.first_whisker().whisker;
-    let read = CurvatureFrames::parse(frames, origin, whisker.length_mm, method);
+    let table = arguments::table(frames, origin, columns, &CurvatureFrames::COLUMNS);
+    let read = table.and_then(|table| CurvatureFrames::of(&table, whisker.length_mm, method));
     let read = read.map_err(|why| refused(&why))?;
     let baseline = read.baseline(&whisker, baseline_s);
     let baseline = baseline.map_err(|why| refused(&why))?;

@@ -37,6 +37,40 @@ def test_every_plot_returns_artists_of_its_axes(small, cone):
     plt.gcf().canvas.draw()
 
 
+def test_courses_forces_and_fits_are_drawn(cone):
+    _, axes = plt.subplots(1, 3)
+    time = np.arange(201) / 1000
+    found = wm.whisk(cone, 15.66, time, 40 * np.sin(2 * np.pi * 10 * time))
+    line, *dots = wm.plot.whisk(found, ax=axes[0])
+    np.testing.assert_array_equal(line.get_ydata(), found.samples.force_un)
+    assert {dot.get_label() for dot in dots} == set(found.events.event.values)
+    assert len(wm.plot.whisk(found, y="arc_length_mm", ax=axes[0])) == 1
+    frames = wm.force(cone, ROOT / "scenes/frames.csv", baseline_s=(0, 0.02))
+    line, band = wm.plot.force(frames, ax=axes[1], linewidth=3)
+    np.testing.assert_array_equal(line.get_ydata(), frames.force_un)
+    assert line.get_linewidth() == 3 and band.axes is axes[1]
+    fit = wm.fit(cone, ROOT / "scenes/cone_points.csv", ["tip_radius_um", "parabola_per_mm"])
+    artists = wm.plot.fit(fit, ax=axes[2])
+    drawn = sum(len(own.get_xdata()) for own in artists if own.get_linestyle() == "None")
+    assert drawn == fit.points.sizes["point"] and axes[2].get_ylabel() == wm.plot.DISTANCE
+    plt.gcf().canvas.draw()
+
+
+def test_names_of_variables_fit_on_an_axis(small, cone):
+    time = np.arange(101) / 1000
+    whisk = wm.whisk(cone, 15.66, time, 40 * np.sin(2 * np.pi * 10 * time))
+    datasets = [
+        wm.map(small), wm.curve(cone), wm.branch(cone, 15.66), wm.shape(cone, 15.66, 10), whisk.samples, whisk.events,
+        wm.force(cone, ROOT / "scenes/frames.csv"), wm.locate(cone, {"base_moment_nnm": [60], "base_force_y_un": [6]}),
+    ]
+    for ds in datasets:
+        for name, variable in ds.variables.items():
+            words = variable.attrs.get("long_name", "").split()
+            assert len(words) <= 6, (name, words)
+    assert whisk.samples.base_moment_nnm.attrs["long_name"] == "base moment"
+    assert whisk.samples.base_moment_nnm.attrs["comment"].startswith("Moment of the pole on the base")
+
+
 def test_a_branch_of_both_sides_has_each_name_once(cone):
     _, axes = plt.subplots()
     artists = wm.plot.branch(wm.branch(cone, 15.66, "both"), ax=axes)

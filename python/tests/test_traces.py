@@ -84,6 +84,68 @@ def test_fits_and_designs_are_the_programs(cone):
     assert design.values == pytest.approx([4.063], abs=1e-3) and set(design.ends.kind.values) >= {"slip-off"}
 
 
+def test_robust_fits_are_those_of_scipy(cone):
+    optimize = pytest.importorskip("scipy.optimize")
+    frame = pd.read_csv(ROOT / "scenes/cone_points.csv", comment="#")
+    frame.loc[[3, 11], "push_angle_deg"] += 15.0
+    names = ["tip_radius_um", "parabola_per_mm"]
+    deviations = frame["sd_deg"] if "sd_deg" in frame else 1.0
+
+    def residuals(x):
+        end = wm.detachment(cone, distance_mm=frame.distance_mm, side=frame.side, tip_radius_um=x[0], parabola_per_mm=x[1])
+        return (end.push_angle_deg - frame.push_angle_deg) / deviations
+
+    for loss, own in (("soft_l1", "soft-l1"), ("huber", "huber")):
+        options = {"ftol": 1e-14, "xtol": 1e-14, "gtol": 1e-14}
+        found = optimize.least_squares(residuals, [2.4, 0.018], loss=loss, x_scale=[1, 0.01], diff_step=1e-6, **options)
+        with pytest.warns(wm.SceneWarning, match="outlier"):
+            fit = wm.fit(cone, frame, names, loss=own)
+        np.testing.assert_allclose(fit.estimates.value, found.x, rtol=2e-6)
+        assert fit.chi_square == pytest.approx(2 * found.cost, rel=1e-9)
+        assert (fit.pulls.weight < 1.01).all() and set(fit.pulls.parameter.values) <= set(names)
+    with pytest.raises(ValueError, match="loss = 'cauchy': must be one of squares, soft-l1, huber"):
+        wm.fit(cone, frame, names, loss="cauchy")
+
+
+def test_own_names_of_columns(cone):
+    frame = pd.read_csv(ROOT / "scenes/cone_points.csv", comment="#")
+    own = frame.rename(columns={"push_angle_deg": "angle", "distance_mm": "d"})
+    free = ["tip_radius_um", "parabola_per_mm"]
+    fit = wm.fit(cone, own, free, columns={"push": "angle", "distance_mm": "d"})
+    xr.testing.assert_equal(fit.estimates, wm.fit(cone, frame, free).estimates)
+    with pytest.raises(ValueError, match="points: columns push=winkel: `winkel` is no column of the file"):
+        wm.fit(cone, own, free, columns={"push": "winkel"})
+    with pytest.raises(TypeError, match="must be own names of columns by expected ones"):
+        wm.fit(cone, own, free, columns=["angle"])
+    readings = wm.locate(cone, {"Mz": [60], "Fy": [6]}, columns={"base_moment": "Mz", "base_force_y_un": "Fy"})
+    xr.testing.assert_equal(readings, wm.locate(cone, {"base_moment_nnm": [60], "base_force_y_un": [6]}))
+
+
+def test_several_parameters_reach_as_many_targets():
+    robot = wm.Scene.read(ROOT / "scenes/robot.toml")
+    found = wm.design(robot, ["base_radius_um", "taper"], distance_mm=60, slip_off_deg=30, max_moment_nnm=5e6)
+    assert found.values.shape == (1, 2) and list(found.sides) == ["cb"] and found.nearest is None
+    assert found.values[0, 1] == pytest.approx(0.9354536238, abs=1e-6)
+    part = wm.design(robot, ["base_radius_um", "taper"], distance_to_length=60 / robot.whisker.length_mm, slip_off_deg=30, max_moment_nnm=5e6)
+    np.testing.assert_allclose(part.values, found.values, rtol=1e-6)
+    narrow = {"base_radius_um": (10, 20), "taper": None}
+    none = wm.design(robot, narrow, distance_mm=60, slip_off_deg=30, max_moment_nnm=5e6)
+    assert none.values.shape == (0, 2) and none.nearest.at_limit.sel(parameter="base_radius_um")
+    distance = wm.design(robot, "distance_mm", slip_off_deg=30)
+    assert all(wm.design(robot, "distance_mm", slip_off_deg=30).values == distance.values)
+    kept = wm.design(robot, "base_radius_um", distance_mm=60, side="cb", max_moment_nnm=1e6, keep="taper")
+    assert len(kept.values) == 1
+    for wrong, said in [
+        ({"distance_mm": 60}, "exactly 2 of"),
+        ({"slip_off_deg": 30, "max_strain": 1}, "the distance must be one of"),
+        ({"slip_off_deg": 30, "max_strain": 1, "distance_mm": 1, "distance_to_length": 1}, "the distance must be one of"),
+    ]:
+        with pytest.raises(TypeError, match=said):
+            wm.design(robot, ["base_radius_um", "taper"], **wrong)
+    with pytest.raises(ValueError, match="must be a least and a greatest value"):
+        wm.design(robot, {"taper": (1, 0)}, distance_mm=60, slip_off_deg=30)
+
+
 def test_reference_points_of_another_solver():
     """40 points of AUTO-07p, as the Rust tests have them: the angles have 9 decimals."""
     points = pd.read_csv(ROOT / "tests/data/detachment.csv")

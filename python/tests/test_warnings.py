@@ -15,7 +15,7 @@ from conftest import ROOT
 
 import whiskmap as wm
 
-MODULUS = "whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?"
+MODULUS = "whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 250 GPa; is it in MPa?"
 
 
 def issued(call) -> list[str]:

@@ -34,8 +34,8 @@ def rest_coords(scene: Scene) -> dict[str, xr.Variable]:
     if fit is None:
         return {}
     meanings = {
-        "rest_degree": (fit.degree, {"long_name": "degree of the curvature that is fitted to traced points"}),
-        "rest_rms_mm": (fit.rms_mm, {"units": "mm", "long_name": "rms distance of the traced points from the fitted curve"}),
+        "rest_degree": (fit.degree, {"long_name": "degree of the fitted curvature"}),
+        "rest_rms_mm": (fit.rms_mm, {"units": "mm", "long_name": "rms distance of the traced points"}),
     }
     return {name: xr.Variable((), value, about) for name, (value, about) in meanings.items()}
 
@@ -56,9 +56,18 @@ def variables(
         if name in without:
             continue
         array = np.array(values, dtype=np.str_) if isinstance(values, list) else values
-        about = {"long_name": meaning} if units is None else {"units": units, "long_name": meaning}
+        about = {"long_name": _long_name(name), "comment": meaning} | ({} if units is None else {"units": units})
         found[name] = xr.Variable(dims, in_order(array, shape), about)
     return found
+
+
+def _long_name(name: str) -> str:
+    """Return the words of a column's name without its unit: short enough for an axis of a plot. The comment has the meaning."""
+    words = name.split("_")
+    return " ".join(words[:-1] if len(words) > 1 and words[-1] in _UNITS else words)
+
+
+_UNITS = ("mm", "um", "deg", "un", "nnm", "nj", "s")
 
 
 def in_order(rows: NDArray[Any], shape: Sequence[int]) -> NDArray[Any]:

@@ -40,7 +40,9 @@ class Detachment:
     contact_angle_deg : array of float
         Angle of the tangent at the contact, from the base's tangent.
     force_un : array of float
-        Size of the force between pole and whisker, normal to both.
+        Normal part of the force between pole and whisker; never negative.
+    contact_force_un : array of float
+        Size of the whole force between pole and whisker, with friction.
     base_force_x_un, base_force_y_un, base_moment_nnm : array of float
         Force that the pole puts on the base, along and to the left of its tangent, and its moment.
     energy_nj : array of float
@@ -65,6 +67,7 @@ class Detachment:
     arc_length_mm: NDArray[np.float64]
     contact_angle_deg: NDArray[np.float64]
     force_un: NDArray[np.float64]
+    contact_force_un: NDArray[np.float64]
     base_force_x_un: NDArray[np.float64]
     base_force_y_un: NDArray[np.float64]
     base_moment_nnm: NDArray[np.float64]

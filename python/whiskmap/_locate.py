@@ -12,7 +12,7 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, rest_coords, variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, naming_rows, number, origin_of
+from whiskmap._values import csv_text, naming_rows, number, origin_of, own_names
 from whiskmap._warnings import warn
 
 
@@ -22,6 +22,7 @@ def locate(
     *,
     moment_sd_nnm: float | None = None,
     force_sd_un: float | None = None,
+    columns: Mapping[str, str] | None = None,
 ) -> xr.Dataset:
     """Find the contacts that belong to moment and force at the base, as a sensor measures them.
 
@@ -34,6 +35,8 @@ def locate(
         the base, and optionally `angle_deg`, the angle of the base in the laboratory. A number that was not measured is NaN or None.
     moment_sd_nnm, force_sd_un : float, optional
         Standard deviations of the sensor's moment, and of each component of its force; both or none.
+    columns : mapping of str, optional
+        Own names of columns by the expected ones, such as ``{"base_moment_nnm": "Mz"}``. An expected name may be shortened at an underscore.
 
     Returns
     -------
@@ -59,9 +62,10 @@ def locate(
     if not isinstance(readings, (str, os.PathLike)) and hasattr(readings, "keys"):
         readings = {str(name): _or_nan(readings[name]) for name in readings.keys()}
     with naming_rows("readings", given):
-        columns, warning = _whiskmap.locate(checked, csv_text("readings", readings), origin_of("readings", given), deviations)
+        text, origin = csv_text("readings", readings), origin_of("readings", given)
+        found, warning = _whiskmap.locate(checked, text, origin, own_names(columns), deviations)
     warn([warning])
-    return xr.Dataset(variables(columns, ("number",), (-1,)), rest_coords(scene), attributes(scene))
+    return xr.Dataset(variables(found, ("number",), (-1,)), rest_coords(scene), attributes(scene))
 
 
 def _or_nan(values: Iterable[Any]) -> Any:

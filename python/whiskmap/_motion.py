@@ -13,7 +13,7 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, rest_coords, variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, naming_rows, number, numbers, origin_of, real_array
+from whiskmap._values import csv_text, naming_rows, number, numbers, origin_of, own_names, real_array
 from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
@@ -177,6 +177,7 @@ def force(
     *,
     model: bool = False,
     baseline_s: tuple[float, float] | None = None,
+    columns: Mapping[str, str] | None = None,
 ) -> xr.Dataset:
     """Compute the contact force in frames of a film from the change of curvature at one point of the whisker.
 
@@ -194,6 +195,8 @@ def force(
     baseline_s : tuple of float, optional
         First and last time, in s, of frames without contact. The curvature changes from their mean. Without it, the frames whose `contact`
         is 0 are the baseline, if there is such a column.
+    columns : mapping of str, optional
+        Own names of columns by the expected ones, such as ``{"time_s": "t"}``. An expected name may be shortened at an underscore.
 
     Returns
     -------
@@ -218,12 +221,11 @@ def force(
             raise ValueError(f"baseline_s = {baseline_s!r}: must be a first and a later last time, in s")
         span = (ends[0], ends[1])
     with naming_rows("frames", frames):
-        columns, warning, baseline = _whiskmap.force(
-            checked, csv_text("frames", frames), origin_of("frames", frames), bool(model), span
-        )
+        text, origin = csv_text("frames", frames), origin_of("frames", frames)
+        found, warning, baseline = _whiskmap.force(checked, text, origin, own_names(columns), bool(model), span)
     warn([warning])
     names = ("baseline_per_mm", "baseline_sd_per_mm", "baseline_frames")
-    return _over_time(columns, scene, dict(zip(names, baseline or ())))
+    return _over_time(found, scene, dict(zip(names, baseline or ())))
 
 
 def _optional(name: str, value: Any) -> float | None:

@@ -74,7 +74,11 @@ def by_index(name: str, given: Any, text: str) -> str:
     """Return a message about a table, with the index of a row in columns that were given by name instead of the line of a text."""
     if isinstance(given, (str, os.PathLike)):
         return text
-    return re.sub(rf"\b{name}:(\d+):", lambda line: f"{name}[{int(line[1]) - 2}]:", text)
+    def index(line: re.Match[str]) -> str:
+        row = int(line[1]) - 2
+        return f"{name}:" if row < 0 else f"{name}[{row}]:"
+
+    return re.sub(rf"\b{name}:(\d+):", index, text)
 
 
 @contextmanager
@@ -86,6 +90,15 @@ def naming_rows(name: str, given: Any) -> Iterator[None]:
         if type(why) is not ValueError:
             raise
         raise ValueError(by_index(name, given, str(why))) from None
+
+
+def own_names(columns: Mapping[str, str] | None) -> list[tuple[str, str]]:
+    """Return pairs of an expected and an own name of a column."""
+    if columns is None:
+        return []
+    if not hasattr(columns, "items") or not all(isinstance(own, str) for pair in columns.items() for own in pair):
+        raise TypeError(f"columns = {columns!r}: must be own names of columns by expected ones, such as {{'distance_mm': 'd'}}")
+    return list(columns.items())
 
 
 def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> str:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "CheckedScene", "ComputedMap", "SceneError", "StateError", "StoredMap", "arithmetic", "axis_title", "branch", "channel_attributes", "channels", "coordinates",
-    "curve", "design", "detachment", "fit", "force", "inks", "locate", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "variables",
+    "curve", "design", "designs", "detachment", "fit", "force", "inks", "locate", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "variables",
     "version", "whisk",
 ]
 
@@ -86,7 +86,9 @@ class _FitResult(TypedDict):
     degrees_of_freedom: int
     is_explained: bool
     not_a_fit: str | None
+    is_chord: bool
     points: list[_Column]
+    pulls: list[tuple[int, float, float, str, float]]
     warnings: list[str]
 
 def version() -> str: ...
@@ -122,15 +124,23 @@ def texture(
     scene: CheckedScene, time_s: NDArray[float64], angle_deg: NDArray[float64], curvature_at_mm: float | None
 ) -> tuple[list[_Column], list[_Column], list[_Column], list[_Column], float, int, str | None]: ...
 def force(
-    scene: CheckedScene, frames: str, origin: str, model: bool, baseline_s: tuple[float, float] | None
+    scene: CheckedScene, frames: str, origin: str, columns: Sequence[tuple[str, str]], model: bool,
+    baseline_s: tuple[float, float] | None,
 ) -> tuple[list[_Column], str | None, tuple[float, float, int] | None]: ...
 def locate(
-    scene: CheckedScene, readings: str, origin: str, deviations: tuple[float, float] | None
+    scene: CheckedScene, readings: str, origin: str, columns: Sequence[tuple[str, str]], deviations: tuple[float, float] | None
 ) -> tuple[list[_Column], str | None]: ...
-def fit(scene: CheckedScene, points: str, origin: str, free: Sequence[str]) -> _FitResult: ...
+def fit(
+    scene: CheckedScene, points: str, origin: str, free: Sequence[str], loss: str, columns: Sequence[tuple[str, str]]
+) -> _FitResult: ...
 def design(
-    scene: CheckedScene, parameter: str, goal: str, value: float, distance_mm: float, side: str | None
+    scene: CheckedScene, parameter: tuple[str, tuple[float, float] | None], goal: str, value: float,
+    distance: tuple[float, bool] | None, side: str | None, keeps_taper: bool,
 ) -> tuple[list[float], list[float], list[float], list[str], list[float | None]]: ...
+def designs(
+    scene: CheckedScene, parameters: Sequence[tuple[str, tuple[float, float] | None]], targets: Sequence[tuple[str, float]],
+    distance: tuple[float, bool] | None, side: str | None, keeps_taper: bool,
+) -> tuple[list[list[float]], list[list[float]], bool, tuple[list[float], list[float], list[bool]] | None]: ...
 def detachment(
     scene: CheckedScene | None,
     fixed: Mapping[str, float],

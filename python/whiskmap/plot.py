@@ -1,4 +1,4 @@
-"""Maps, curves, branches and shapes on matplotlib axes, in the colours of the program."""
+"""Maps, curves, branches, shapes, courses, forces and fits on matplotlib axes, in the colours of the program."""
 
 from __future__ import annotations
 
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.container import BarContainer
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
+
+    from whiskmap._fits import Fit
+    from whiskmap._motion import Whisk
 
 require("matplotlib", "plot")
 
@@ -184,6 +187,102 @@ def sensitivity(ds: xr.Dataset, *, ax: Axes | None = None, **bars: Any) -> BarCo
     drawn = axes.barh(list(change["variable"].values), change.values, **{"color": inks()["pull-off"]} | bars)
     axes.set(xlabel=axis_title("push_of_1_percent_deg", False))
     return drawn
+
+
+def whisk(found: Whisk, *, y: str = "force_un", ax: Axes | None = None, **line: Any) -> list[Artist]:
+    """Draw a quantity of a course over time, with a dot at each event that has the quantity.
+
+    Parameters
+    ----------
+    found : Whisk
+        A result of `whisk`.
+    y : str
+        Variable of the samples along the vertical axis. Lines break where the state is undecided.
+    ax : matplotlib.axes.Axes, optional
+    **line
+        Properties of the line.
+
+    Returns
+    -------
+    list of matplotlib.artist.Artist
+        The line, then the dots: touches open, slip-offs black, pull-offs blue, others grey.
+    """
+    axes, colours = _axes(ax), inks()
+    samples, events = found.samples, found.events
+    artists: list[Artist] = list(axes.plot(samples["time_s"], samples[y], **{"color": colours["slip-off"]} | line))
+    for kind in np.unique(events["event"].values) if y in events else ():
+        own = events.isel(number=events["event"].values == kind)
+        colour = colours[kind] if kind in ("slip-off", "pull-off") else "grey"
+        face = "none" if kind == "touch" else colour
+        artists += axes.plot(own["time_s"], own[y], "o", color=colour, markerfacecolor=face, label=str(kind))
+    axes.set(xlabel=axis_title("time_s", False), ylabel=axis_title(y, False))
+    return artists
+
+
+def force(ds: xr.Dataset, *, y: str = "force_un", ax: Axes | None = None, **line: Any) -> list[Artist]:
+    """Draw a quantity of forces in frames over time, with a band of one standard deviation if there is one.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A dataset of `force`.
+    y : str
+        Variable along the vertical axis: "force_un", "base_force_x_un", "base_force_y_un" or "base_moment_nnm".
+    ax : matplotlib.axes.Axes, optional
+    **line
+        Properties of the line, which breaks where a frame has no force.
+
+    Returns
+    -------
+    list of matplotlib.artist.Artist
+        The line, then the band.
+    """
+    axes, colour = _axes(ax), inks()["slip-off"]
+    artists: list[Artist] = list(axes.plot(ds["time_s"], ds[y], **{"color": colour} | line))
+    stem, unit = y.rsplit("_", 1)
+    deviation = f"{stem}_sd_{unit}"
+    if deviation in ds and ds[deviation].notnull().any():
+        low, high = ds[y] - ds[deviation], ds[y] + ds[deviation]
+        artists.append(axes.fill_between(ds["time_s"].values, low.values, high.values, color=colour, alpha=0.2, linewidth=0))
+    axes.set(xlabel=axis_title("time_s", False), ylabel=axis_title(y, False))
+    return artists
+
+
+def fit(found: Fit, *, ax: Axes | None = None, **line: Any) -> list[Artist]:
+    """Draw measured points with their standard deviations, and the detachment curve of the fitted scene.
+
+    Parameters
+    ----------
+    found : Fit
+        A result of `fit` to push angles or chord angles.
+    ax : matplotlib.axes.Axes, optional
+    **line
+        Properties of the lines of the curve.
+
+    Returns
+    -------
+    list of matplotlib.artist.Artist
+        The lines of the curve, then the points: slip-offs and points of unknown kind open, pull-offs filled.
+    """
+    from whiskmap._traces import curve as computed
+
+    axes, points = _axes(ax), found.points
+    x = "push_chord_deg" if found.is_chord else "push_angle_deg"
+    distances = points["distance_mm"].values
+    least, most = np.nanmin(distances), np.nanmax(distances)
+    scene = found.scene.replace(distance_mm=np.unique(np.append(np.linspace(least, most, 200), distances[~np.isnan(distances)])))
+    artists: list[Artist] = list(curve(computed(scene), x=x, ax=axes, **line))
+    for is_pull_off in (False, True):
+        own = points.isel(point=(points["kind"].values == "pull-off") == is_pull_off)
+        if not own.sizes["point"]:
+            continue
+        deviation = own["sd_deg"].values
+        bars = None if np.isnan(deviation).all() else deviation
+        colour = inks()["pull-off" if is_pull_off else "slip-off"]
+        look = {"color": colour, "markerfacecolor": colour if is_pull_off else "none", "linestyle": "none", "marker": "o"}
+        label = "measured pull-off" if is_pull_off else "measured"
+        artists += [axes.errorbar(own["measured_deg"], own["distance_mm"], xerr=bars, label=label, **look).lines[0]]
+    return artists
 
 
 def _axes(ax: Axes | None) -> Axes:

@@ -1,22 +1,29 @@
-//! Designs: values of a parameter with which a push reaches a target: a push angle at detachment, or a largest load.
+//! Designs: values of parameters with which a push reaches as many targets: a push angle at detachment, or a largest load.
 //!
-//! The search scans the range that the scene accepts. Between samples it finds changes of the kind of detachment, and turns of
+//! With one parameter, the search scans the range that the scene accepts. Between samples it finds changes of the kind of detachment, and turns of
 //! the target's quantity. Between neighbours of all these values, it finds push angles by Newton's method with exact derivatives, and loads by
-//! bisection. Every solution is computed: a jump across the target is no
-//! solution.
+//! bisection. With several parameters, Newton's method starts from many places within their limits ([`designs`]). Every solution is
+//! computed: a jump across the target is no solution.
 
 mod samples;
 mod search;
 mod target;
+mod together;
 mod turn;
+mod varied;
 
 pub use samples::is_wide;
 pub use target::{DesignGoal, DesignTarget};
+pub use together::{DesignNearest, Designs, designs, designs_until};
+pub use varied::{DesignVariable, DesignVaried};
 
+use crate::input::each_once;
 use crate::scene::{Parameter, Scene, SceneError, digits};
+use crate::sensitivity::Variable;
 use crate::trace::DetachmentKind;
 use search::DesignSearch;
 use std::sync::atomic::{AtomicBool, Ordering};
+use varied::DesignScene;
 
 /// Relative difference of values below which they are one solution, or a range leaves no choice.
 const EQUAL: f64 = 1e-9;
@@ -49,7 +56,7 @@ pub struct Design {
 #[non_exhaustive]
 pub enum DesignError {
     /// The scene sweeps whiskers along this axis, but a design needs one whisker.
-    #[error("grid.{0}: must be left out, as one number of one whisker is varied")]
+    #[error("grid.{0}: must be left out, as numbers of one whisker are varied")]
     Sweep(&'static str),
     /// The scene does not give the parameter of the design.
     #[error("{}: must be one of {given}, which the scene has; it has no {}", .parameter.name(), .parameter.key())]
@@ -59,13 +66,41 @@ pub enum DesignError {
         /// Names of the parameters that the scene gives.
         given: String,
     },
-    /// The scene accepts no other value of the design's parameter.
-    #[error("{}: the scene accepts no value but {} for {}, with all other numbers fixed", .parameter.name(), digits(*.value), .parameter.key())]
+    /// The number is no parameter of a scene, and not the distance.
+    #[error("{0}: must be a parameter of the scene, or distance_mm")]
+    NotVaried(Variable),
+    /// Two varied numbers are one number of the scene.
+    #[error("{0} and {1}: give one of them, because one determines the other")]
+    Twice(Variable, Variable),
+    /// The taper is to stay, but no radius varies, or the taper does.
+    #[error("taper: it can be kept where base_radius_um or tip_radius_um varies alone")]
+    NoTaper,
+    /// The design has not as many targets as varied numbers.
+    #[error("{variables} varied numbers need as many targets, of one push; there are {targets}")]
+    Targets {
+        /// Number of varied numbers.
+        variables: usize,
+        /// Number of targets, all at one distance and side, each of another quantity.
+        targets: usize,
+    },
+    /// The scene and the limits of a varied number allow no value but this.
+    #[error("{variable}: the scene accepts no value but {} for {}, with all other numbers fixed", digits(*.value), key(*.variable))]
     Fixed {
-        /// Parameter of the design that has only one accepted value.
-        parameter: Parameter,
-        /// The only value of the parameter that the scene accepts, in its unit.
+        /// Varied number that has only one accepted value.
+        variable: Variable,
+        /// The only value of the number that the scene accepts, in its unit.
         value: f64,
+    },
+    /// The scene accepts no value within the limits of a varied number.
+    #[error("{variable}: must lie between {} and {}, which the scene accepts; the limits are {} to {}",
+        digits(.range[0]), digits(.range[1]), digits(.limits[0]), digits(.limits[1]))]
+    Limits {
+        /// Varied number with the limits.
+        variable: Variable,
+        /// Range of values that the scene accepts, in the unit of the number.
+        range: [f64; 2],
+        /// Limits of the number, in its unit.
+        limits: [f64; 2],
     },
     /// The scene accepts no pole at the distance of the design.
     #[error(transparent)]
@@ -73,6 +108,14 @@ pub enum DesignError {
     /// The design was cancelled.
     #[error("cancelled")]
     Cancelled,
+}
+
+/// Returns the key of a varied number in a scene file.
+fn key(variable: Variable) -> String {
+    match variable {
+        Variable::Parameter(parameter) => parameter.key().to_owned(),
+        variable => variable.name(),
+    }
 }
 
 impl Design {
@@ -101,7 +144,7 @@ impl Design {
     }
 }
 
-/// Finds every value of `parameter` with which the whisker of `scene` detaches as `target` says. The grid is not used.
+/// Finds every value of the one `varied` number with which the whisker of `scene` detaches as `target` says. The grid is not used.
 ///
 /// ```
 /// use whiskmap::design::{DesignGoal, DesignTarget, design};
@@ -117,43 +160,37 @@ impl Design {
 /// ```
 ///
 /// # Errors
-/// If the scene sweeps whiskers, does not give the parameter, or accepts one value only, or no pole at the distance.
+/// If the scene sweeps whiskers, does not give the number, or accepts one value only, or no pole at the distance.
 pub fn design(
     scene: &Scene,
-    parameter: Parameter,
+    varied: impl Into<DesignVaried>,
     target: &DesignTarget,
 ) -> Result<Design, DesignError> {
-    design_until(scene, parameter, target, &AtomicBool::new(false))
+    design_until(scene, varied, target, &AtomicBool::new(false))
 }
 
-/// Finds every value of `parameter` as [`design`] does. If `cancel` is true, the function soon returns an error.
+/// Finds every value of the one `varied` number as [`design`] does. If `cancel` is true, the function soon returns an error.
 ///
 /// # Errors
 /// Fails as [`design`] does, and if it is cancelled.
 pub fn design_until(
     scene: &Scene,
-    parameter: Parameter,
+    varied: impl Into<DesignVaried>,
     target: &DesignTarget,
     cancel: &AtomicBool,
 ) -> Result<Design, DesignError> {
-    if let Some(axis) = scene.grid.sweep.first() {
-        return Err(DesignError::Sweep(axis.variable.name()));
-    }
-    let Some(value) = parameter.value(scene) else {
-        let given = Parameter::given(scene);
-        return Err(DesignError::Lacking { parameter, given });
-    };
-    let scene = &with_one_pole(scene, target)?;
-    let range = parameter.range(scene);
-    if range[1] - range[0] <= 3.0 * EQUAL * value.abs() {
-        return Err(DesignError::Fixed { parameter, value });
-    }
+    let varied = &varied.into();
+    let (scene, _, ranges) = &checked(scene, varied, &[*target])?;
     let search = DesignSearch {
-        scene,
-        parameter,
+        scene: &DesignScene {
+            scene,
+            varied,
+            distance_mm: target.distance_mm,
+        },
         target,
         cancel,
     };
+    let range = ranges[0];
     let ends = search.scan(range);
     let mut values: Vec<f64> = ends
         .chunk_by(|a, b| a.kind == b.kind)
@@ -181,26 +218,101 @@ pub fn design_until(
     Ok(design)
 }
 
-/// Computes the ends of pushes at values of `parameter` over a part of its range, in its unit, `[value]`, as [`Design::ends`] are.
+/// Computes the ends of pushes at values of the one `varied` number over a part of its range, in its unit, `[value]`, as [`Design::ends`] are.
 ///
 /// # Errors
-/// If the scene accepts no pole at the distance of the target.
+/// Fails as [`design`] does.
 pub fn ends_between(
     scene: &Scene,
-    parameter: Parameter,
+    varied: impl Into<DesignVaried>,
     target: &DesignTarget,
     range: [f64; 2],
 ) -> Result<Vec<DesignEnd>, DesignError> {
+    let varied = &varied.into();
+    let (scene, ..) = &checked(scene, varied, &[*target])?;
     let search = DesignSearch {
-        scene: &with_one_pole(scene, target)?,
-        parameter,
+        scene: &DesignScene {
+            scene,
+            varied,
+            distance_mm: target.distance_mm,
+        },
         target,
         cancel: &AtomicBool::new(false),
     };
     Ok(search.scan(range))
 }
 
-/// The scene with the pole of the target alone: other distances would limit what is accepted.
-fn with_one_pole(scene: &Scene, target: &DesignTarget) -> Result<Scene, SceneError> {
-    scene.to_builder().distance_mm([target.distance_mm]).build()
+/// Scene with one pole, and the values and ranges of the varied numbers, `[variable]`.
+type CheckedDesign = (Scene, Vec<f64>, Vec<[f64; 2]>);
+
+/// Checks what a design varies, and that its `targets` are as many and of one push.
+fn checked(
+    scene: &Scene,
+    varied: &DesignVaried,
+    targets: &[DesignTarget],
+) -> Result<CheckedDesign, DesignError> {
+    if let Some(axis) = scene.grid.sweep.first() {
+        return Err(DesignError::Sweep(axis.variable.name()));
+    }
+    let count = varied.variables.len();
+    let first = targets.first();
+    let is_one_push = |own: &&DesignTarget| {
+        first.is_some_and(|first| (own.distance_mm, own.side) == (first.distance_mm, first.side))
+    };
+    let goals = targets.iter().filter(is_one_push).map(|own| own.goal);
+    let goals = each_once(&goals.collect::<Vec<_>>()).len();
+    if goals != count || targets.len() != count || count == 0 {
+        let (variables, targets) = (count, goals);
+        return Err(DesignError::Targets { variables, targets });
+    }
+    let distance_mm = first.map_or(f64::NAN, |own| own.distance_mm);
+    for (i, own) in varied.variables.iter().enumerate() {
+        let given = match own.variable {
+            Variable::Parameter(parameter) if parameter.value(scene).is_none() => {
+                let given = Parameter::given(scene);
+                return Err(DesignError::Lacking { parameter, given });
+            }
+            Variable::Parameter(_) | Variable::DistanceMm => key(own.variable),
+            other => return Err(DesignError::NotVaried(other)),
+        };
+        let mut others = varied.variables[..i].iter();
+        if let Some(other) = others.find(|other| key(other.variable) == given) {
+            return Err(DesignError::Twice(other.variable, own.variable));
+        }
+    }
+    let varies = |parameter: Parameter| {
+        let mut all = varied.variables.iter();
+        all.any(|own| own.variable == parameter.into())
+    };
+    let [base, tip] = [Parameter::BaseRadiusUm, Parameter::TipRadiusUm].map(varies);
+    if varied.keeps_taper && (base == tip || varies(Parameter::Taper)) {
+        return Err(DesignError::NoTaper);
+    }
+    let unvaried = DesignScene {
+        scene,
+        varied,
+        distance_mm,
+    };
+    let own: Vec<f64> = (0..count).filter_map(|i| unvaried.own(i)).collect();
+    let scene = unvaried.at(&own)?;
+    let at_one_pole = DesignScene {
+        scene: &scene,
+        varied,
+        distance_mm,
+    };
+    let mut ranges = Vec::with_capacity(count);
+    for (i, range) in at_one_pole.ranges(&own).into_iter().enumerate() {
+        let DesignVariable { variable, limits } = varied.variables[i];
+        let range = range.map_err(|range| DesignError::Limits {
+            variable,
+            range,
+            limits: limits.unwrap_or(range),
+        })?;
+        if range[1] - range[0] <= 3.0 * EQUAL * own[i].abs() {
+            let value = own[i];
+            return Err(DesignError::Fixed { variable, value });
+        }
+        ranges.push(range);
+    }
+    Ok((scene, own, ranges))
 }

@@ -1,8 +1,8 @@
 //! Search of a design for ends at a push angle: a scan, changes of kind, and Newton's method between turns.
 
-use super::samples::samples;
+use super::samples::{SAMPLES, samples};
+use super::varied::DesignScene;
 use super::{DesignEnd, DesignTarget, turn};
-use crate::scene::{Parameter, Scene};
 use crate::trace::DetachmentKind;
 use rayon::prelude::*;
 use std::convert::Infallible;
@@ -15,10 +15,9 @@ const CHANGE_WIDTH: f64 = 1e-15;
 /// Longest last step of Newton's method, relative to the value: the error is about its square.
 const LAST_STEP: f64 = 1e-8;
 
-/// Search of a design: the scene, the parameter that varies, and the target.
+/// Search of a design: the scene with the one number that varies, and the target.
 pub struct DesignSearch<'a> {
-    pub scene: &'a Scene,
-    pub parameter: Parameter,
+    pub scene: &'a DesignScene<'a>,
     pub target: &'a DesignTarget,
     pub cancel: &'a AtomicBool,
 }
@@ -26,7 +25,7 @@ pub struct DesignSearch<'a> {
 impl DesignSearch<'_> {
     /// The end at a value of the parameter; `Unresolved` if the scene refuses the value, and after a cancellation.
     fn end(&self, value: f64) -> DesignEnd {
-        let moved = || self.scene.with_parameters(&[(self.parameter, value)]).ok();
+        let moved = || self.scene.at(&[value]).ok();
         let is_cancelled = self.cancel.load(Ordering::Relaxed);
         let moved = (!is_cancelled).then(moved).flatten();
         let reached = moved.map(|scene| self.target.reached(&scene));
@@ -51,16 +50,20 @@ impl DesignSearch<'_> {
     /// The miss at a value of the parameter, and the next value by Newton's method: NaN for a bisection, without a derivative.
     fn newton(&self, value: f64) -> (f64, f64) {
         let miss = self.miss_at(value);
-        let moved = self.scene.with_parameters(&[(self.parameter, value)]);
-        let slope = moved
-            .ok()
-            .and_then(|scene| self.target.slope(&scene, self.parameter));
-        (miss, slope.map_or(f64::NAN, |slope| value - miss / slope))
+        // The largest value of a load may move from the end of the push to before it.
+        let has_slope = self.target.goal.kind().is_some();
+        let moved = has_slope.then(|| self.scene.at(&[value]).ok()).flatten();
+        let slope = moved.and_then(|scene| {
+            let directions = self.scene.directions(&scene);
+            self.target.gradient(&scene, &directions)
+        });
+        let next = slope.map(|slope| value - miss / slope[0]);
+        (miss, next.unwrap_or(f64::NAN))
     }
 
     /// Returns ends of pushes at values over the `range` of the parameter, in its unit, and on both sides of each change of kind: `[value]`.
     pub fn scan(&self, range: [f64; 2]) -> Vec<DesignEnd> {
-        let scanned: Vec<DesignEnd> = samples(range)
+        let scanned: Vec<DesignEnd> = samples(range, SAMPLES)
             .into_par_iter()
             .map(|value| self.end(value))
             .collect();

@@ -1,9 +1,9 @@
 //! Targets of designs: push angles of detachments, and the largest loads of pushes.
 
 use crate::input::Quantity;
-use crate::scene::{Parameter, Scene};
-use crate::sensitivity::detachments;
-use crate::trace::{Branch, BranchPoint, DetachmentKind, curve_without_strain};
+use crate::scene::Scene;
+use crate::sensitivity::{NoDerivative, Variable, detachments, largest};
+use crate::trace::{DetachmentKind, PushLoad, StableBranch, curve_without_strain};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -17,7 +17,8 @@ const TOLERANCE: f64 = 1e-6;
 /// Target of a design: where the pole is, and the value that a push must reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DesignTarget {
-    /// Distance from the base to the contact at first touch, in millimetres.
+    /// Distance from the base to the contact at first touch, in millimetres. It does not count if the design varies it, or gives it as a part of
+    /// the length.
     pub distance_mm: f64,
     /// Side of the whisker that the pole is on.
     pub side: Side,
@@ -34,7 +35,7 @@ pub enum DesignGoal {
     SlipOff,
     /// Push angle at which the whisker is pulled off, in degrees.
     PullOff,
-    /// Largest contact force from first touch to the detachment, in uN.
+    /// Largest whole contact force, with friction, from first touch to the detachment, in uN.
     MaxForce,
     /// Largest moment at the base from first touch to the detachment, in nN m.
     MaxMoment,
@@ -84,13 +85,14 @@ impl DesignGoal {
         }
     }
 
-    /// The size of a load at a state; `None` for push angles.
-    fn load(self) -> Option<fn(&BranchPoint) -> f64> {
+    /// Returns the load of the goal; `None` for push angles.
+    #[must_use]
+    pub const fn load(self) -> Option<PushLoad> {
         match self {
             Self::SlipOff | Self::PullOff => None,
-            Self::MaxForce => Some(|point| point.force_un),
-            Self::MaxMoment => Some(|point| point.base_moment_nnm.abs()),
-            Self::MaxStrain => Some(|point| point.peak_strain),
+            Self::MaxForce => Some(PushLoad::ContactForce),
+            Self::MaxMoment => Some(PushLoad::BaseMoment),
+            Self::MaxStrain => Some(PushLoad::Strain),
         }
     }
 }
@@ -113,27 +115,59 @@ impl DesignTarget {
         }
     }
 
-    /// Returns the exact derivative of the push angle at detachment by `parameter`, in degrees per unit of the parameter. `None` for a load,
-    /// whose largest value may lie anywhere in the push, and without a derivative.
-    pub(super) fn slope(&self, scene: &Scene, parameter: Parameter) -> Option<f64> {
-        if self.goal.load().is_some() {
-            return None;
-        }
-        let (whisker, pole) = (&scene.whisker, &scene.pole);
-        let variables = [parameter.into()];
-        let ends = detachments(whisker, pole, self.side, &[self.distance_mm], &variables);
-        let by = ends.first()?.by.first()?.as_ref().ok()?;
-        Some(by.push_angle_deg)
+    /// Returns the exact derivatives of the goal's quantity for a push of `scene` at its only distance, in the directions of variables with
+    /// factors: `[variable]`. `None` without derivatives, and for strains.
+    pub(super) fn gradient(
+        &self,
+        scene: &Scene,
+        directions: &[Vec<(Variable, f64)>],
+    ) -> Option<Vec<f64>> {
+        let (whisker, pole, side) = (&scene.whisker, &scene.pole, self.side);
+        let distance_mm = *scene.grid.distance_mm.first()?;
+        let all = directions.iter().flatten();
+        let variables: Vec<Variable> = all.map(|(variable, _)| *variable).collect();
+        let by: Vec<Result<f64, NoDerivative>> = match self.goal.load() {
+            None => {
+                let end = detachments(whisker, pole, side, &[distance_mm], &variables).pop()?;
+                let push = end.by.into_iter();
+                push.map(|by| by.map(|by| by.push_angle_deg)).collect()
+            }
+            Some(load) => {
+                largest(whisker, pole, side, distance_mm, load, &variables)
+                    .ok()?
+                    .by
+            }
+        };
+        let mut by = by.into_iter();
+        let mut along = |direction: &Vec<(Variable, f64)>| {
+            let parts = direction.iter().map(|(_, factor)| {
+                let own = by.next()?.ok()?;
+                Some(factor * own)
+            });
+            parts.collect::<Vec<_>>().into_iter().sum::<Option<f64>>()
+        };
+        directions.iter().map(&mut along).collect()
     }
 
-    /// Computes how a push ends with the whisker of `scene`, and the value of the goal's quantity, in its unit. The value is `None` without
-    /// a detachment.
+    /// Computes how a push at the only distance of `scene` ends, and the value of the goal's quantity, in its unit. The value is `None`
+    /// without a detachment.
     pub(super) fn reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
+        self.reached_by(scene, |branch, load| branch.peak(load).size)
+    }
+
+    /// Computes the end of a push as [`Self::reached`] does, with a largest load that is some percent off.
+    pub(super) fn roughly_reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
+        self.reached_by(scene, StableBranch::rough_peak)
+    }
+
+    fn reached_by(
+        &self,
+        scene: &Scene,
+        largest: impl Fn(&StableBranch, PushLoad) -> f64,
+    ) -> (DetachmentKind, Option<f64>) {
         let (whisker, pole, side) = (&scene.whisker, &scene.pole, self.side);
-        let end = || {
-            let distances = [self.distance_mm];
-            curve_without_strain(Resolution::FINE, whisker, pole, side, &distances).pop()
-        };
+        let distances = &scene.grid.distance_mm;
+        let end = || curve_without_strain(Resolution::FINE, whisker, pole, side, distances).pop();
         let Some(end) = end() else {
             return (DetachmentKind::Unresolved, None);
         };
@@ -141,8 +175,8 @@ impl DesignTarget {
         let value = match self.goal.load() {
             None => detaches,
             Some(load) => detaches.and_then(|_| {
-                let branch = Branch::new(whisker, pole, side, self.distance_mm).ok()?;
-                Some(branch.largest(load))
+                let branch = StableBranch::new(whisker, pole, side, distances[0]).ok()?;
+                Some(largest(&branch, load))
             }),
         };
         match value {

@@ -1,18 +1,14 @@
 //! Least squares inside the limits of the scene.
 
 use super::FitError;
-use super::covariance::FAINT;
 use super::misfit::Misfit;
-use crate::least_squares::{dot, minimise, norm};
+use crate::least_squares::{BoundedProblem, search};
 
 /// Message of a fit for which no Jacobian can be computed.
 pub(super) const NO_JACOBIAN: &str = "a point has no derivative by a parameter: it is out of reach, at the reach, or where slip-off turns into pull-off";
 
 /// Relative change of the misfit, and of the parameters, below which the iteration ends.
 const TOLERANCE: f64 = 1e-12;
-
-/// Residual of each point where the scene refuses the parameters, so large that no step goes there.
-const REFUSED: f64 = 1e100;
 
 /// Factors of a start value for further searches.
 const FACTORS: [f64; 6] = [0.25, 0.5, 0.75, 1.5, 2.0, 4.0];
@@ -25,7 +21,8 @@ const LESS: f64 = 1e-6;
 /// measured, further searches start at multiples of each start value.
 pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
     let start = misfit.start();
-    let (mut best, mut least) = search(misfit, &start)?;
+    let found = search(misfit, &start, TOLERANCE, NO_JACOBIAN);
+    let (mut best, mut least) = found.map_err(FitError::NotConverged)?;
     let ranges = misfit.ranges(&misfit.scene(&best)?);
     let mut pairs = best.iter().zip(&ranges);
     if !pairs.any(|(x, range)| range.contains(x)) && !misfit.has_other_kinds(&best) {
@@ -39,7 +36,7 @@ pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
             let mut from = start.clone();
             from[i] = (factor * start[i]).clamp(lowest, highest);
             // The scene may refuse a start.
-            if let Ok((end, sum)) = search(misfit, &from)
+            if let Ok((end, sum)) = search(misfit, &from, TOLERANCE, NO_JACOBIAN)
                 && sum < least * (1.0 - LESS)
             {
                 (best, least) = (end, sum);
@@ -49,64 +46,25 @@ pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
     Ok(best)
 }
 
-/// Returns the parameters at the minimum to which a search from `start` leads, and the misfit there.
-///
-/// Beyond a limit the misfit is continued as it is at the limit. Limits depend on the other parameters, and one that was
-/// met may be left again: while the misfit shrinks, the iteration starts again from where it has ended. Parameters on which no residual
-/// depends stay.
-fn search(misfit: &Misfit<'_>, start: &[f64]) -> Result<(Vec<f64>, f64), FitError> {
-    let (mut best, mut least) = (start.to_vec(), f64::INFINITY);
-    loop {
-        let ranges = misfit.ranges(&misfit.scene(&best)?);
-        let inside = |x: &[f64]| -> Vec<f64> {
-            let pairs = x.iter().zip(&ranges);
-            pairs
-                .map(|(x, [least, most])| x.clamp(*least, *most))
-                .collect()
-        };
-        let residuals = |x: &[f64]| {
-            let refused = || vec![REFUSED; misfit.points.points.len()];
-            misfit.residuals(&inside(x)).unwrap_or_else(refused)
-        };
-        // The columns of parameters that are beyond a limit, or would go there, are 0.
-        let jacobian = |x: &[f64], residuals: &[f64]| {
-            let mut columns = misfit.jacobian(&inside(x)).ok_or(NO_JACOBIAN)?;
-            clear_faint(&mut columns);
-            for ((column, [least, most]), x) in columns.iter_mut().zip(&ranges).zip(x) {
-                let growth = dot(column, residuals);
-                let is_held = x < least
-                    || x > most
-                    || x == least && growth > 0.0
-                    || x == most && growth < 0.0;
-                if is_held {
-                    column.fill(0.0);
-                }
-            }
-            Ok(columns)
-        };
-        let (end, sum) = minimise(residuals, jacobian, best.clone(), TOLERANCE)
-            .map_err(FitError::NotConverged)?;
-        let end = inside(&end);
-        let is_at_limit = end.iter().zip(&ranges).any(|(x, range)| range.contains(x));
-        let is_better = sum < least * (1.0 - TOLERANCE);
-        if is_better {
-            (best, least) = (end, sum);
-        }
-        if !(is_better && is_at_limit) {
-            return Ok((best, least));
-        }
+impl BoundedProblem for Misfit<'_> {
+    fn count(&self) -> usize {
+        self.points.points.len()
     }
-}
 
-/// Clears the columns that are so short that rounding may have made them.
-fn clear_faint(columns: &mut [Vec<f64>]) {
-    let longest = columns
-        .iter()
-        .map(|column| norm(column))
-        .fold(0.0, f64::max);
-    for column in columns {
-        if norm(column) <= FAINT * longest {
-            column.fill(0.0);
-        }
+    fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
+        self.roots(x)
+    }
+
+    fn jacobian(&self, x: &[f64], residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
+        self.jacobian_of_roots(x, residuals)
+    }
+
+    fn ranges(&self, x: &[f64]) -> Vec<[f64; 2]> {
+        // Searches begin and end where the scene accepts the parameters.
+        let scene = self.scene(x);
+        scene.map_or_else(
+            |_| x.iter().map(|x| [*x; 2]).collect(),
+            |scene| self.ranges(&scene),
+        )
     }
 }

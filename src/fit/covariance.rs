@@ -1,10 +1,6 @@
 //! The covariance of parameters, from the Jacobian of the residuals.
 
-use crate::least_squares::{Svd, norm};
-
-/// Least singular value over the largest, and least column over the longest, that counts: the steps of least squares and the measured
-/// values are not more exact.
-pub const FAINT: f64 = 1e-6;
+use crate::least_squares::{FAINT, Svd, dot, norm};
 
 /// Largest component in directions without a singular value, of 1, of a parameter that is determined.
 const PART: f64 = 1e-3;
@@ -59,6 +55,11 @@ impl Covariance {
             rank,
             is_determined: free.iter().map(|free| free.sqrt() < PART).collect(),
         }
+    }
+
+    /// Returns the product of the covariance with the `gradient` of a sum by the parameters, `[parameter]`: the Gauss-Newton step against it.
+    pub fn step(&self, gradient: &[f64]) -> Vec<f64> {
+        self.matrix.iter().map(|row| dot(row, gradient)).collect()
     }
 
     /// Returns the standard deviation of parameter `i` for residuals of variance 1, in the parameter's unit; `None` if it is not determined.

@@ -1,7 +1,8 @@
 //! Residuals of points, as a function of the free parameters of a scene.
 
+use super::FitLoss;
 use crate::measured::MeasuredPoints;
-use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, Whisker};
+use crate::scene::{Parameter, Scene, SceneError, SweptWhisker};
 use crate::sensitivity::Variable;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,6 +16,8 @@ pub(super) struct Misfit<'a> {
     scene: &'a Scene,
     pub points: &'a MeasuredPoints,
     free: &'a [Parameter],
+    /// Loss of residuals.
+    loss: FitLoss,
     /// Unit of each free parameter, `[parameter]`: a power of 2 near its natural size, so that nothing is rounded by it. Parameters in
     /// this module are divided by their units.
     pub units: Vec<f64>,
@@ -27,14 +30,16 @@ impl<'a> Misfit<'a> {
         scene: &'a Scene,
         points: &'a MeasuredPoints,
         free: &'a [Parameter],
+        loss: FitLoss,
         cancel: &'a AtomicBool,
     ) -> Self {
         let first = scene.first_whisker();
-        let units = free.iter().map(|own| size(*own, &first.whisker));
+        let units = free.iter().map(|own| own.size(&first.whisker));
         Self {
             scene,
             points,
             free,
+            loss,
             units: units
                 .map(|size| libm::exp2(libm::log2(size).round()))
                 .collect(),
@@ -88,6 +93,24 @@ impl<'a> Misfit<'a> {
             residuals.push(-row.residual_deg? / point.sd_deg);
         }
         Some(residuals)
+    }
+
+    /// Returns the signed roots of the losses of the residuals, `[point]`; `None` as for [`Self::residuals`].
+    pub fn roots(&self, parameters: &[f64]) -> Option<Vec<f64>> {
+        let mut residuals = self.residuals(parameters)?;
+        residuals.iter_mut().for_each(|r| *r = self.loss.root(*r));
+        Some(residuals)
+    }
+
+    /// Returns the derivative of each point's root of the loss by each scaled parameter, `[parameter][point]`, where the roots are `roots`.
+    /// `None` as for [`Self::jacobian`].
+    pub fn jacobian_of_roots(&self, parameters: &[f64], roots: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let mut columns = self.jacobian(parameters)?;
+        for column in &mut columns {
+            let slopes = column.iter_mut().zip(roots);
+            slopes.for_each(|(own, root)| *own *= self.loss.root_slope(*root));
+        }
+        Some(columns)
     }
 
     /// Returns true if a point detaches in another way with these `parameters` than was measured.
@@ -145,26 +168,5 @@ impl<'a> Misfit<'a> {
             }
         }
         Some(columns)
-    }
-}
-
-/// The change of a parameter that changes a whisker or its contact altogether.
-fn size(parameter: Parameter, whisker: &Whisker) -> f64 {
-    let length = whisker.length_mm;
-    match parameter {
-        Parameter::LengthMm
-        | Parameter::TipExtensionMm
-        | Parameter::VertexMm
-        | Parameter::PoleRadiusMm => length,
-        Parameter::BaseRadiusUm | Parameter::TipRadiusUm => whisker.base_radius_um,
-        Parameter::YoungsModulusGpa => whisker.youngs_modulus_gpa,
-        Parameter::FollicleStiffness => whisker.units().moment_nnm,
-        Parameter::ParabolaPerMm | Parameter::SpiralPerMm => 1.0 / length,
-        Parameter::SpiralPerMm2 => 1.0 / (length * length),
-        Parameter::Taper
-        | Parameter::ProfileScale
-        | Parameter::ModulusTipToBase
-        | Parameter::ArcStretch
-        | Parameter::Friction => 1.0,
     }
 }

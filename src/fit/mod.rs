@@ -1,25 +1,30 @@
 //! Fits of parameters of a scene to measured detachments, by nonlinear least squares.
 //!
-//! The misfit is the sum of squares of measured less predicted angles, each over its standard deviation. Levenberg and Marquardt's method
+//! The misfit is the sum of the losses of measured less predicted angles, each over its standard deviation: squares, or a loss that outliers
+//! hardly change ([`FitLoss`]). Levenberg and Marquardt's method
 //! minimises it inside the limits of the scene (`bounded`), with exact derivatives. Angles are continuous where slip-off turns into
 //! pull-off, but their derivatives are not: the trust region limits steps there.
 
 mod bounded;
 mod covariance;
+mod loss;
 mod misfit;
+mod pull;
 mod start;
 mod verdict;
 
+pub use loss::FitLoss;
+pub use pull::PointPull;
 pub use start::MovedStart;
 pub use verdict::{LikelyCause, NotAFit};
 
 use crate::input::{CsvError, each_once};
-use crate::least_squares::dot;
 use crate::measured::{Comparison, MeasuredPoints};
 use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, digits, rounded};
 use bounded::{NO_JACOBIAN, best};
 use covariance::Covariance;
 use misfit::Misfit;
+use pull::pulls;
 use start::within_reach;
 use std::sync::atomic::AtomicBool;
 
@@ -32,12 +37,16 @@ pub struct Fit {
     pub estimates: Vec<Estimate>,
     /// Correlations of fitted parameters, `[parameter][parameter]`; `None` for a pair with a parameter that is not determined.
     pub correlation: Vec<Vec<Option<f64>>>,
-    /// Sum of the squares of residuals over standard deviations, which are 1 degree if the points have none.
+    /// Loss of residuals that the fit minimises.
+    pub loss: FitLoss,
+    /// Sum of the losses of residuals over standard deviations, which are 1 degree if the points have none: chi-square for squares.
     pub chi_square: f64,
     /// Degrees of freedom of the fit: points used less the number of parameters that they determine.
     pub degrees_of_freedom: usize,
     /// Measured points with the predictions of the fitted scene.
     pub comparison: Comparison,
+    /// Points with their pull on the estimates, the strongest pull first: `[point]`. Empty without standard errors.
+    pub pulls: Vec<PointPull>,
     /// Parameter that does not start at the scene's value, because the scene's whisker does not reach a point; `None` without one.
     pub moved: Option<MovedStart>,
     /// Reason why the best values are not a fit; `None` for a fit. Without a fit there are no standard errors and no correlations.
@@ -46,7 +55,7 @@ pub struct Fit {
 
 impl Fit {
     /// Returns one line for each point that is left out, each parameter at a limit, and each parameter that the points do not determine,
-    /// and one for residuals that are larger than their standard deviations. `points` are those of the fit.
+    /// and one for residuals that are larger than their standard deviations. With another loss than squares, each outlier has a line. `points` are those of the fit.
     #[must_use]
     pub fn warnings(&self, points: &MeasuredPoints) -> Vec<String> {
         let is_fit = self.not_a_fit.is_none();
@@ -61,7 +70,9 @@ impl Fit {
             let is_free = is_fit && own.standard_error.is_none();
             is_free.then(|| format!("{name}: not determined by these points"))
         };
-        let is_large = is_fit && points.have_deviations && !self.is_explained();
+        // With another loss, the residuals give the standard errors.
+        let has_squares = self.loss == FitLoss::Squares;
+        let is_large = is_fit && has_squares && points.have_deviations && !self.is_explained();
         let large = is_large.then(|| {
             let ratio = (self.chi_square / self.degrees_of_freedom.max(1) as f64).sqrt();
             format!(
@@ -70,7 +81,13 @@ impl Fit {
         });
         let parameters = self.estimates.iter().filter_map(of_parameter);
         let left_out = points.left_out(&self.comparison).into_iter();
-        left_out.chain(parameters).chain(large).collect()
+        let outliers = (is_fit && !has_squares).then(|| pull::outliers(self, points));
+        let outliers = outliers.into_iter().flatten();
+        left_out
+            .chain(parameters)
+            .chain(large)
+            .chain(outliers)
+            .collect()
     }
 
     /// Returns one line for the parameter that does not start at its value in `scene`; `None` without one. `scene` and `points` are those
@@ -186,10 +203,18 @@ const NARROWEST: f64 = 1e-6;
 /// # Errors
 /// If a parameter cannot be free, a point is beyond the whisker for every tried start, points are too few, or the iteration does not converge.
 pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<Fit, FitError> {
-    fit_until(scene, points, free, &AtomicBool::new(false))
+    fit_until(
+        scene,
+        points,
+        free,
+        FitLoss::Squares,
+        &AtomicBool::new(false),
+    )
 }
 
-/// Fits parameters as [`fit`] does. If `cancel` is true, the function soon returns an error.
+/// Fits parameters as [`fit`] does, with a loss of residuals. The scale of the loss is the standard deviation of each point, which is 1 degree if
+/// the points have none. With another loss than squares, the standard errors come from the scatter of the residuals: Huber's estimate for
+/// M-estimators (Huber, Robust Statistics, 1981, section 7.6; `H1` of statsmodels). If `cancel` is true, the function soon returns an error.
 ///
 /// # Errors
 /// Fails as [`fit`] does, and if it is cancelled.
@@ -197,6 +222,7 @@ pub fn fit_until(
     scene: &Scene,
     points: &MeasuredPoints,
     free: &[Parameter],
+    loss: FitLoss,
     cancel: &AtomicBool,
 ) -> Result<Fit, FitError> {
     let free = &each_once(free)[..];
@@ -211,7 +237,7 @@ pub fn fit_until(
             used: used.points.len(),
         });
     }
-    let misfit = Misfit::new(scene, &used, free, cancel);
+    let misfit = Misfit::new(scene, &used, free, loss, cancel);
     let best = best(&misfit)?;
     let fitted = misfit.scene(&best)?;
     let here = misfit.residuals(&best);
@@ -225,17 +251,23 @@ pub fn fit_until(
         jacobian[i].fill(0.0);
     }
     let covariance = Covariance::new(&jacobian);
-    let chi_square = dot(&here, &here);
+    let chi_square: f64 = here.iter().map(|r| loss.of(*r)).sum();
     let degrees_of_freedom = used.points.len() - covariance.rank;
     // Without standard deviations, the residuals give the variance of the points.
     let variance = match (used.have_deviations, degrees_of_freedom) {
-        (true, _) => Some(1.0),
-        (false, 0) => None,
-        (false, freedom) => Some(chi_square / freedom as f64),
+        (true, _) if loss == FitLoss::Squares => Some(1.0),
+        (_, 0) => None,
+        (_, freedom) => variance(loss, &here, freedom),
     };
     let comparison = fitted.first_whisker();
     let comparison = points.beside(&comparison.whisker, &comparison.pole);
-    let not_a_fit = NotAFit::new(&used, scene, &comparison, chi_square, degrees_of_freedom);
+    let not_a_fit = NotAFit::new(
+        &used,
+        scene,
+        rms_deg(loss, &here, &used),
+        chi_square,
+        degrees_of_freedom,
+    );
     let estimate = |(i, [least, most]): (usize, &[f64; 2])| {
         let (value, unit) = (best[i], misfit.units[i]);
         let error = covariance.deviation(i).zip(variance);
@@ -258,7 +290,15 @@ pub fn fit_until(
             .filter(|_| is_known(i) && is_known(j))
     };
     let all = || 0..free.len();
+    let pulls = pulls(
+        (loss, &used),
+        (&here, &jacobian),
+        (&covariance, variance),
+        &estimates,
+    );
     Ok(Fit {
+        loss,
+        pulls,
         correlation: all()
             .map(|i| all().map(|j| correlation(i, j)).collect())
             .collect(),
@@ -294,6 +334,37 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
         }
     }
     Ok(())
+}
+
+/// Returns the variance of residuals of variance 1 that gives standard errors: the mean of the squared pulls over the square of the mean
+/// curvature of the loss, with Huber's correction for few points. For squares it is chi-square over the degrees of freedom. `None` if all
+/// residuals are on the linear part of the loss.
+fn variance(loss: FitLoss, residuals: &[f64], freedom: usize) -> Option<f64> {
+    let count = residuals.len() as f64;
+    let pulls: f64 = residuals
+        .iter()
+        .map(|r| (loss.weight(*r) * r).powi(2))
+        .sum();
+    let curvatures = || residuals.iter().map(|r| loss.curvature(*r));
+    let mean = curvatures().sum::<f64>() / count;
+    let spread = curvatures().map(|own| (own - mean).powi(2)).sum::<f64>() / count;
+    let parameters = count - freedom as f64;
+    let few = 1.0 + parameters / count * spread / (mean * mean);
+    let variance = few * few * pulls / freedom as f64 / (mean * mean);
+    Some(variance).filter(|variance| variance.is_finite())
+}
+
+/// Returns the root mean square of the residuals in degrees, with the weights of the loss; `None` without residuals.
+fn rms_deg(loss: FitLoss, residuals: &[f64], used: &MeasuredPoints) -> Option<f64> {
+    let weighted = residuals.iter().zip(&used.points);
+    let [squares, weights] = weighted.fold([0.0; 2], |[squares, weights], (r, point)| {
+        let weight = loss.weight(*r);
+        [
+            squares + weight * (r * point.sd_deg).powi(2),
+            weights + weight,
+        ]
+    });
+    (weights > 0.0).then(|| (squares / weights).sqrt())
 }
 
 /// The points that detach at the values of `scene`.

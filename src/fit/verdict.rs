@@ -1,6 +1,6 @@
 //! Verdict on a fit: refusal of best values with which no whisker of the scene's kind explains the points.
 
-use crate::measured::{Comparison, MeasuredPoints};
+use crate::measured::MeasuredPoints;
 use crate::scene::{Scene, SweptWhisker, digits, rounded};
 use std::fmt;
 
@@ -51,14 +51,14 @@ pub enum LikelyCause {
 }
 
 impl NotAFit {
-    /// Returns the verdict on the `end` of a fit of the `used` points, from `start` on; `None` for a fit.
+    /// Returns the verdict on a fit of the `used` points, from `start` on, whose residuals end with this RMS; `None` for a fit.
     ///
     /// Without standard deviations, a fit has a small RMS. With them, points of low precision may be far off: a fit has a
     /// small RMS or a chi-square that the deviations explain, and its reduced chi-square is at most 400.
     pub(super) fn new(
         used: &MeasuredPoints,
         start: &Scene,
-        end: &Comparison,
+        rms_deg: Option<f64>,
         chi_square: f64,
         freedom: usize,
     ) -> Option<Self> {
@@ -67,7 +67,7 @@ impl NotAFit {
             [least.min(angle), most.max(angle)]
         });
         let largest_rms_deg = LARGEST_RMS_DEG.min(LARGEST_PART * (most - least));
-        let rms_deg = end.rms_deg()?;
+        let rms_deg = rms_deg?;
         let is_near = rms_deg <= largest_rms_deg;
         let reduced = chi_square / freedom.max(1) as f64;
         let reduced = used.have_deviations.then_some(reduced);
@@ -165,6 +165,7 @@ fn three_digits(number: f64) -> String {
 #[allow(clippy::unwrap_used, reason = "a failure fails the test")]
 mod tests {
     use super::*;
+    use crate::measured::Comparison;
 
     fn cone() -> Scene {
         Scene::read("scenes/cone.toml").unwrap()
@@ -201,7 +202,13 @@ mod tests {
             ]
         });
         let near = points(&places.collect::<Vec<_>>(), sd_deg);
-        NotAFit::new(&near, &cone(), &compared(&near), chi_square, freedom)
+        NotAFit::new(
+            &near,
+            &cone(),
+            compared(&near).rms_deg(),
+            chi_square,
+            freedom,
+        )
     }
 
     #[test]
@@ -213,7 +220,7 @@ mod tests {
     #[test]
     fn a_fit_is_within_a_third_of_the_range() {
         let small = points(&[[8.0, 2.0], [10.0, 6.0], [12.0, 9.0]], None);
-        let why = NotAFit::new(&small, &cone(), &compared(&small), 1.0, 2).unwrap();
+        let why = NotAFit::new(&small, &cone(), compared(&small).rms_deg(), 1.0, 2).unwrap();
         assert_eq!(why.largest_rms_deg, 3.0);
     }
 

@@ -39,6 +39,19 @@ const CONTACT: &str = "contact";
 const MOST: f64 = 1e6;
 
 impl CurvatureFrames {
+    /// Names of the columns of a file of frames, `[column]`.
+    pub const COLUMNS: [&str; 9] = [
+        NEEDED[0][0],
+        NEEDED[1][0],
+        NEEDED[2][0],
+        NEEDED[3][0],
+        NEEDED[4][0],
+        ANGLE,
+        AT[0],
+        AT[1],
+        CONTACT,
+    ];
+
     /// Reads the frames of a CSV file for a whisker of `length_mm`; `-` is standard input. Frames without contact have empty cells for it,
     /// or 0 in the column `contact`. Other empty cells, and those with `NaN`, are missing values.
     ///
@@ -50,13 +63,7 @@ impl CurvatureFrames {
         length_mm: f64,
         method: ForceMethod,
     ) -> Result<Self, CsvError> {
-        let path = path.as_ref();
-        let table = if path == Path::new("-") {
-            CsvTable::read_stdin()?
-        } else {
-            CsvTable::read(path)?
-        };
-        Self::of(&table, length_mm, method)
+        Self::of(&CsvTable::input(path)?, length_mm, method)
     }
 
     /// Reads the frames from the text of a CSV file, as [`CurvatureFrames::read`] does. Messages call the text `origin`.
@@ -72,7 +79,11 @@ impl CurvatureFrames {
         Self::of(&CsvTable::parse(text, origin)?, length_mm, method)
     }
 
-    fn of(table: &CsvTable, length_mm: f64, method: ForceMethod) -> Result<Self, CsvError> {
+    /// Returns the frames of a CSV table.
+    ///
+    /// # Errors
+    /// Fails as [`CurvatureFrames::read`] does.
+    pub fn of(table: &CsvTable, length_mm: f64, method: ForceMethod) -> Result<Self, CsvError> {
         let angle: &[&str] = &[ANGLE];
         let (needed, optional) = match method {
             ForceMethod::Lever => (

@@ -1,11 +1,13 @@
 //! Input text: files of bounded length, CSV tables, numbers with units, and names that are nearly right.
 
+mod columns;
 mod lines;
 mod names;
 mod quantity;
 mod source;
 mod table;
 
+pub use columns::ColumnName;
 pub use names::{did_you_mean, each_once};
 pub use quantity::Quantity;
 pub use table::{CsvError, CsvTable};

@@ -127,6 +127,22 @@ impl Quantity {
     /// # Errors
     /// If there is no such number, or its unit is not one of the quantity.
     pub fn parse(self, text: &str) -> Result<f64, String> {
+        self.parse_with_unit(text).map(|(number, _)| number)
+    }
+
+    /// Returns the finite number in `text`, in the quantity's own unit, and the unit in which the text gives it: the own one if it gives
+    /// none, and an empty text for a plain number.
+    ///
+    /// ```
+    /// use whiskmap::input::Quantity;
+    ///
+    /// assert_eq!(Quantity::MomentNnm.parse_with_unit("20mNm"), Ok((20e6, "mNm")));
+    /// assert_eq!(Quantity::MomentNnm.parse_with_unit("20"), Ok((20.0, "nNm")));
+    /// ```
+    ///
+    /// # Errors
+    /// Fails as [`Self::parse`] does.
+    pub fn parse_with_unit(self, text: &str) -> Result<(f64, &'static str), String> {
         let is_last = |c: char| c.is_ascii_digit() || c == '.';
         let end = text.rfind(is_last).map_or(0, |last| last + 1);
         let (number, unit) = text.split_at(end);
@@ -136,28 +152,29 @@ impl Quantity {
         let number = number.ok_or_else(|| format!("must be {kind}, such as {examples}"))?;
         let unit = unit.trim();
         if unit.is_empty() {
-            return Ok(number);
+            return Ok((number, self.unit().unwrap_or_default()));
         }
-        let sizes = self.sizes(unit);
         let unknown = || format!("unit {}: {}", shortened(unit), self.allowed());
-        let [own, size] = sizes.ok_or_else(unknown)?;
-        let converted = Some(converted(number, size, own)).filter(|number| number.is_finite());
-        converted.ok_or_else(|| format!("must be {kind}, such as {examples}"))
+        let (own, (name, size)) = self.sizes(unit).ok_or_else(unknown)?;
+        let number = Some(converted(number, size, own)).filter(|number| number.is_finite());
+        let number = number.ok_or_else(|| format!("must be {kind}, such as {examples}"))?;
+        Ok((number, name))
     }
 
     /// Converts a number in the quantity's own unit to another `unit`. Returns `None` for a unit of another quantity.
     #[must_use]
     pub fn convert(self, number: f64, unit: &str) -> Option<f64> {
-        let [own, size] = self.sizes(unit)?;
+        let (own, (_, size)) = self.sizes(unit)?;
         Some(converted(number, own, size))
     }
 
-    /// Sizes of the quantity's own unit and of another unit of it. The sign for micro is U+00B5 or U+03BC.
-    fn sizes(self, unit: &str) -> Option<[f64; 2]> {
+    /// Size of the quantity's own unit, and name and size of another unit of it. The sign for micro is U+00B5 or U+03BC.
+    fn sizes(self, unit: &str) -> Option<(f64, (&'static str, f64))> {
         let unit = unit.replace(['\u{b5}', '\u{3bc}'], "u");
         let units = self.table().iter();
-        let size = |name: &str| Some(units.clone().find(|(own, _)| *own == name)?.1);
-        Some([size(self.unit()?)?, size(&unit)?])
+        let named = |name: &str| units.clone().find(|(own, _)| *own == name).copied();
+        let (_, own) = named(self.unit()?)?;
+        Some((own, named(&unit)?))
     }
 
     /// Message that lists the allowed units.

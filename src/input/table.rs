@@ -172,6 +172,36 @@ impl CsvTable {
         Ok(unused.map(note))
     }
 
+    /// Returns the line number of the header, from 1.
+    pub(super) const fn header_line(&self) -> usize {
+        self.header.number
+    }
+
+    /// Yields the names of the columns, `[column]`.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.header.cells.iter()
+    }
+
+    /// Returns the table with other names of the columns at these places.
+    pub(super) fn with_names(mut self, renamed: &[(usize, &str)]) -> Self {
+        let new = |place: usize| renamed.iter().find(|(own, _)| *own == place);
+        let names = self.names().enumerate();
+        let names = names.map(|(place, own)| new(place).map_or(own, |(_, name)| *name));
+        self.header.cells = names.collect::<Vec<_>>().into();
+        self
+    }
+
+    /// Reads a CSV file as [`CsvTable::read`] does; `-` is standard input.
+    ///
+    /// # Errors
+    /// Fails as [`CsvTable::read`] does.
+    pub fn input(path: impl AsRef<Path>) -> Result<Self, CsvError> {
+        match path.as_ref() {
+            stdin if stdin == Path::new("-") => Self::read_stdin(),
+            path => Self::read(path),
+        }
+    }
+
     /// Returns true if the CSV file has a column of this name.
     #[must_use]
     pub fn has(&self, column: &str) -> bool {

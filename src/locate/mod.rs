@@ -87,8 +87,10 @@ row! {
         pub distance_mm: Option<f64>,
         /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Size of the force between pole and whisker, normal to both, in uN.
+        /// Normal part of the force between pole and whisker, in uN; never negative.
         pub force_un: Option<f64>,
+        /// Size of the whole force between pole and whisker, with friction, in uN.
+        pub contact_force_un: Option<f64>,
         /// Moment of the pole on the base, in nN m: positive turns it to the left.
         pub base_moment_nnm: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
@@ -392,6 +394,7 @@ impl Locator {
             distance_mm: Some(distance * units.length_mm),
             push_angle_deg: Some(push.to_degrees()),
             force_un: Some(reading.force_un),
+            contact_force_un: Some(reading.contact_force_un()),
             base_moment_nnm: Some(reading.base_moment_nnm),
             base_force_x_un: Some(reading.base_force_un.x),
             base_force_y_un: Some(reading.base_force_un.y),
@@ -448,6 +451,7 @@ impl LocatedState {
             distance_mm: None,
             push_angle_deg: None,
             force_un: None,
+            contact_force_un: None,
             base_moment_nnm: None,
             base_force_x_un: None,
             base_force_y_un: None,

@@ -14,14 +14,6 @@ pub struct BaseReadings {
     pub note: Option<String>,
 }
 
-/// Columns of the numbers at the base, in the order of the fields of [`BaseReading`], and of the angle.
-const COLUMNS: [&str; 4] = [
-    "base_moment_nnm",
-    "base_force_x_un",
-    "base_force_y_un",
-    "angle_deg",
-];
-
 /// Largest size of a moment in nN m and of a force in uN: beyond that of every whisker of a scene.
 pub const MOST_LOAD: f64 = 1e18;
 
@@ -29,18 +21,21 @@ pub const MOST_LOAD: f64 = 1e18;
 pub const MOST_ANGLE: f64 = 360.0;
 
 impl BaseReadings {
+    /// Names of the columns of a file of readings, in the order of the fields of [`BaseReading`]: `[column]`.
+    pub const COLUMNS: [&str; 4] = [
+        "base_moment_nnm",
+        "base_force_x_un",
+        "base_force_y_un",
+        "angle_deg",
+    ];
+
     /// Reads a CSV file with at least two of the columns `base_moment_nnm`, `base_force_x_un` and `base_force_y_un`, and optionally
     /// `angle_deg`; `-` is standard input. An empty cell or `nan` is a number that was not measured.
     ///
     /// # Errors
     /// If the file cannot be read, two of the columns are missing, or a cell is no number or out of its range.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
-        let path = path.as_ref();
-        let table = match path == Path::new("-") {
-            true => CsvTable::read_stdin()?,
-            false => CsvTable::read(path)?,
-        };
-        Self::of(&table)
+        Self::of(&CsvTable::input(path)?)
     }
 
     /// Reads the readings from the text of a CSV file, as [`BaseReadings::read`] does. Messages call the text `origin`.
@@ -51,9 +46,13 @@ impl BaseReadings {
         Self::of(&CsvTable::parse(text, origin)?)
     }
 
-    fn of(table: &CsvTable) -> Result<Self, CsvError> {
-        let [moment, x, y, angle] = COLUMNS;
-        let note = table.require(&[], &COLUMNS)?;
+    /// Returns the readings of a CSV table.
+    ///
+    /// # Errors
+    /// Fails as [`BaseReadings::read`] does.
+    pub fn of(table: &CsvTable) -> Result<Self, CsvError> {
+        let [moment, x, y, angle] = Self::COLUMNS;
+        let note = table.require(&[], &Self::COLUMNS)?;
         let loads = [moment, x, y];
         if loads.into_iter().filter(|name| table.has(name)).count() < 2 {
             let others = note.map_or(String::new(), |note| format!("; {note}"));

@@ -22,19 +22,23 @@ const OPTIONAL: [&str; 2] = ["kind", "sd_deg"];
 const LEAST_SD_DEG: f64 = 1e-6;
 
 impl MeasuredPoints {
+    /// Names of the columns of a file of points, `[column]`.
+    pub const COLUMNS: [&str; 6] = [
+        "side",
+        "distance_mm",
+        MeasuredAngle::Push.column(),
+        MeasuredAngle::Chord.column(),
+        OPTIONAL[0],
+        OPTIONAL[1],
+    ];
+
     /// Reads the points of a CSV file; `-` is standard input.
     ///
     /// # Errors
     /// If the file cannot be read, is longer than 32 MiB, or is neither UTF-8 nor UTF-16 with a byte order mark. Also for the reasons of
     /// [`MeasuredPoints::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
-        let path = path.as_ref();
-        let table = if path == Path::new("-") {
-            CsvTable::read_stdin()
-        } else {
-            CsvTable::read(path)
-        };
-        Self::of(&table?)
+        Self::of(&CsvTable::input(path)?)
     }
 
     /// Reads points from the text of a CSV file, as [`CsvTable`] splits it. Messages call the text `origin`. An empty cell and `NaN` are missing
@@ -56,7 +60,11 @@ impl MeasuredPoints {
         Self::of(&CsvTable::parse(text, origin)?)
     }
 
-    fn of(table: &CsvTable) -> Result<Self, CsvError> {
+    /// Returns the points of a CSV table.
+    ///
+    /// # Errors
+    /// Fails as [`MeasuredPoints::parse`] does.
+    pub fn of(table: &CsvTable) -> Result<Self, CsvError> {
         let note = table.require(&NEEDED, &OPTIONAL)?;
         let angle = match table.has(MeasuredAngle::Push.column()) {
             true => MeasuredAngle::Push,

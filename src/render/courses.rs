@@ -44,6 +44,8 @@ pub fn courses(title: &str, whisk: &Whisk) -> Chart {
     for dot in plots.iter_mut().skip(1).flat_map(|plot| &mut plot.dots) {
         dot.name = None;
     }
+    let times = whisk.samples.iter().map(|sample| sample.time_s);
+    share_times(&mut plots, times);
     Chart {
         plots,
         title: title.to_owned(),
@@ -66,14 +68,28 @@ pub fn forces(title: &str, forces: &[FrameForce]) -> Chart {
             ..Plot::default()
         }
     };
+    let mut plots = vec![
+        plot("force_un", |force| force.force_un),
+        plot("base_moment_nnm", |force| force.base_moment_nnm),
+    ];
+    share_times(&mut plots, forces.iter().map(|force| force.time_s));
     Chart {
-        plots: vec![
-            plot("force_un", |force| force.force_un),
-            plot("base_moment_nnm", |force| force.base_moment_nnm),
-        ],
+        plots,
         title: title.to_owned(),
         columns: 1,
         ..Chart::default()
+    }
+}
+
+/// Gives plots above each other one axis of times, below the last one.
+pub(super) fn share_times(plots: &mut [Plot], times_s: impl Iterator<Item = f64>) {
+    let ends = times_s.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], time| {
+        [time.min(least), time.max(most)]
+    });
+    let last = plots.len() - 1;
+    for (i, plot) in plots.iter_mut().enumerate() {
+        plot.x_range = Some(ends).filter(|ends| ends[0] < ends[1]);
+        plot.is_above = i < last;
     }
 }
 

@@ -79,6 +79,7 @@ pub fn channel(name: &str) -> String {
         "arc_length_mm" => "arc length from base to contact (mm)",
         "contact_angle_deg" => "contact angle (deg)",
         "force_un" => "contact force (\u{b5}N)",
+        "contact_force_un" => "contact force with friction (\u{b5}N)",
         "base_force_x_un" => "force on the base along the whisker (\u{b5}N)",
         "base_force_y_un" => "force on the base across the whisker (\u{b5}N)",
         "base_moment_nnm" => "bending moment at the base (nN m)",

@@ -33,13 +33,15 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
         Some(names) => codes(map, channel, names, options)?,
         None => quantities(map, channel, options)?,
     };
+    let is_log = matches!(&shading, Shading::Quantities(scale) if scale.is_log());
+    let has_sizes = is_log && is_moment(channel);
     let has_boundary = has_boundary(map)?;
     if has_boundary {
         legend.push(LegendEntry::curve("detachment boundary"));
     }
     let has_marks = has_marks(map, channel)?;
     let heat_map = HeatMap {
-        title: map.title(),
+        title: options.title(map),
         x: CellAxis::new(labels::PUSH_ANGLE, &grid.push_angle_deg),
         y: CellAxis::new(labels::DISTANCE, &grid.distance_mm),
         panel_axes: grid.atlas().map(|axis| axis.map(panel_axis)),
@@ -48,8 +50,9 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
         regions: Some(labels::regions(is_straight)),
     };
     heat_map.picture(options.size, |index| {
+        let values = map.read_panel(channel, index)?;
         let mut cells = PanelCells {
-            values: map.read_panel(channel, index)?.values().collect(),
+            values: shown(&values, has_sizes).collect(),
             ..PanelCells::default()
         };
         if has_marks && let ChannelValues::U32(codes) = map.read_panel("status", index)? {
@@ -131,15 +134,45 @@ fn quantities(
     channel: &str,
     options: &MapOptions<'_>,
 ) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
+    // Both sides of a moment share the scale of its size, unless the ends of the colour bar have signs.
+    let is_positive = options.range.is_none_or(|[low, _]| low > 0.0);
+    if is_moment(channel) && options.log != Some(false) && is_positive {
+        let sizes = scaled(map, channel, options, true)?;
+        if matches!(&sizes.0, Shading::Quantities(scale) if scale.is_log()) {
+            return Ok(sizes);
+        }
+    }
+    scaled(map, channel, options, false)
+}
+
+/// Returns true for a moment, whose sign is that of its side.
+fn is_moment(channel: &str) -> bool {
+    channel.ends_with("_nnm")
+}
+
+/// Yields the values of a channel, or their sizes.
+fn shown(values: &ChannelValues, has_sizes: bool) -> impl Iterator<Item = f64> + '_ {
+    let shown = move |value: f64| if has_sizes { value.abs() } else { value };
+    values.values().map(shown)
+}
+
+/// The colour scale of a channel of quantities, or of their sizes, and its legend.
+fn scaled(
+    map: &MapSlice,
+    channel: &str,
+    options: &MapOptions<'_>,
+    has_sizes: bool,
+) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
     let mut summary = ValueSummary::default();
     let mut whole = false;
     for index in 0..map.layout().panels() {
         let samples = map.read_panel(channel, index)?;
         whole |= matches!(samples, ChannelValues::U32(_));
-        summary.extend(samples.values());
+        summary.extend(shown(&samples, has_sizes));
     }
+    let size = if has_sizes { "size of the " } else { "" };
     let scale = ScaleOptions {
-        label: labels::channel(channel),
+        label: format!("{size}{}", labels::channel(channel)),
         blank: if map.has_blanks() {
             "no contact, or not computed".to_owned()
         } else {

@@ -5,7 +5,8 @@
 use super::labels;
 use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
 use crate::locate::{LocatedState, Locator, SharedState};
-use crate::scene::{Parameter, digits};
+use crate::scene::digits;
+use crate::sensitivity::Variable;
 use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
 use whiskmap_plot::{Chart, Disc, Dot, Ink, Line, Plot, Stroke};
 
@@ -207,7 +208,7 @@ pub fn shared_states(title: &str, states: &[SharedState]) -> Chart {
 /// Returns a plot of the goal's quantity over the parameter of a design, with its solutions as dots. Axes with a wide range of positive
 /// numbers are logarithmic.
 #[must_use]
-pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> Plot {
+pub fn designs(variable: Variable, target: &DesignTarget, design: &Design) -> Plot {
     let goal = target.goal;
     let (unit, size) = match goal.quantity().unit() {
         Some("uN") => (" (\u{b5}N)", "\u{b5}N"),
@@ -216,7 +217,11 @@ pub fn designs(parameter: Parameter, target: &DesignTarget, design: &Design) -> 
         _ => ("", ""),
     };
     let label = format!("{}{unit}", goal.title());
-    let mut plot = empty("", &labels::parameter(parameter), &label);
+    let varied = match variable {
+        Variable::Parameter(parameter) => labels::parameter(parameter),
+        variable => labels::axis_title(&variable.name()),
+    };
+    let mut plot = empty("", &varied, &label);
     let reached = [DetachmentKind::SlipOff, DetachmentKind::PullOff];
     let reached = reached.into_iter().filter_map(|kind| design.reached(kind));
     let reached = reached.fold([target.value; 2], |[low, high], [least, most]| {

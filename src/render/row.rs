@@ -69,7 +69,7 @@ pub fn chart(
         logarithmic: [false, options.log == Some(true)],
         ..Plot::default()
     };
-    Ok(Chart::single(map.title(), plot).picture(options.size)?)
+    Ok(Chart::single(options.title(map), plot).picture(options.size)?)
 }
 
 /// Part of a line, and the status of its states if their contact does not slide toward the tip.

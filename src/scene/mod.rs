@@ -40,6 +40,7 @@ pub use limits::{digits, rounded};
 pub use parameter::Parameter;
 pub(crate) use parameter::derivative_columns;
 pub use scene::Scene;
+pub(crate) use scene::range_around;
 pub use surface::Surface;
 pub use table::{TableWhisker, WhiskerRow};
 pub use toml::SceneText;

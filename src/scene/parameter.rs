@@ -1,8 +1,9 @@
 //! Parameters: the numbers of a scene by name, and the table of all that is known of each.
 
 use super::axis::AxisValues;
-use super::limits::NumberLimits;
+use super::limits::{NumberLimits, rounded};
 use super::toml::SceneFile;
+use super::whisker::Whisker;
 
 /// Largest ratio of the moduli at tip and base, and of those at base and tip. Measured ratios lie between 0.7 and 1.4.
 pub(super) const STIFFEST_TIP: f64 = 20.0;
@@ -195,6 +196,16 @@ impl Parameter {
         NumberLimits::between(least, most).remarks(remark)
     }
 
+    /// Returns the limits of the taper, of which `value` is given. Beyond 1 it may be a ratio of radii.
+    pub(super) fn taper_limits(value: f64) -> NumberLimits {
+        let is_ratio = value > 1.0 && value.is_finite();
+        let remark = is_ratio.then(|| {
+            let taper = rounded(1.0 - 1.0 / value, 6);
+            format!("is it base/tip radius? The taper is then {taper}")
+        });
+        Self::Taper.number_limits().remarks(remark)
+    }
+
     /// Returns the parameter with this name; `None` without one.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
@@ -214,5 +225,23 @@ impl Parameter {
         let mut all = Self::ALL.into_iter();
         let own = all.find(|own| own.axis() == name)?;
         Some(format!("; did you mean `{}`?", own.name()))
+    }
+
+    /// Returns the change of the parameter that changes a whisker or its contact altogether, in its unit.
+    pub(crate) fn size(self, whisker: &Whisker) -> f64 {
+        let length = whisker.length_mm;
+        match self {
+            Self::LengthMm | Self::TipExtensionMm | Self::VertexMm | Self::PoleRadiusMm => length,
+            Self::BaseRadiusUm | Self::TipRadiusUm => whisker.base_radius_um,
+            Self::YoungsModulusGpa => whisker.youngs_modulus_gpa,
+            Self::FollicleStiffness => whisker.units().moment_nnm,
+            Self::ParabolaPerMm | Self::SpiralPerMm => 1.0 / length,
+            Self::SpiralPerMm2 => 1.0 / (length * length),
+            Self::Taper
+            | Self::ProfileScale
+            | Self::ModulusTipToBase
+            | Self::ArcStretch
+            | Self::Friction => 1.0,
+        }
     }
 }

@@ -180,8 +180,7 @@ impl SceneBuilder {
     pub(super) fn with_tip_of_taper(mut self) -> Result<Self, SceneFault> {
         if let Some(taper) = self.numbers.get(Parameter::Taper) {
             // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
-            let limits = Parameter::Taper.number_limits();
-            limits.check(Parameter::Taper.name(), taper)?;
+            Parameter::taper_limits(taper).check(Parameter::Taper.name(), taper)?;
             let key = Parameter::BaseRadiusUm.key();
             let absent = || SceneFault::new(key, "is left out, and there is a taper");
             let tip_radius_um = self.numbers.tip_radius_um().ok_or_else(absent)?;
@@ -242,20 +241,24 @@ impl Parameter {
         let Some(own) = self.value(scene) else {
             return [f64::NAN; 2];
         };
-        let accepts = |value: f64| scene.with(self, value).is_ok();
-        [f64::MIN, f64::MAX].map(|beyond| {
-            let [mut inside, mut outside] = [own, beyond].map(rank);
-            while inside.abs_diff(outside) > 1 {
-                let middle = inside.midpoint(outside);
-                if accepts(of_rank(middle)) {
-                    inside = middle;
-                } else {
-                    outside = middle;
-                }
-            }
-            of_rank(inside)
-        })
+        range_around(own, |value| scene.with(self, value).is_ok())
     }
+}
+
+/// Returns the range `[least, greatest]` of accepted numbers around an accepted one: `own`.
+pub(crate) fn range_around(own: f64, mut accepts: impl FnMut(f64) -> bool) -> [f64; 2] {
+    [f64::MIN, f64::MAX].map(|beyond| {
+        let [mut inside, mut outside] = [own, beyond].map(rank);
+        while inside.abs_diff(outside) > 1 {
+            let middle = inside.midpoint(outside);
+            if accepts(of_rank(middle)) {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        of_rank(inside)
+    })
 }
 
 /// Rank of a number among all floating-point numbers. Halving ranks finds the end of a range in 64 steps.

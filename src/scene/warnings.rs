@@ -7,8 +7,8 @@ use super::parameter::Parameter;
 /// Radius over length. Whiskers of rats lie between 1e-4 (at the tip) and 0.01; a thicker rod is no beam.
 const SLENDER: [f64; 2] = [1e-5, 0.1];
 
-/// Expected range of Young's modulus in GPa: hair, polymers and light metals. Whiskers of rats have 1 to 8.
-pub(super) const MODULUS_GPA: [f64; 2] = [0.1, 100.0];
+/// Expected range of Young's modulus in GPa: hair, polymers and metals up to steel. Whiskers of rats have 1 to 8.
+pub(super) const MODULUS_GPA: [f64; 2] = [0.1, 250.0];
 
 /// Other units of Young's modulus, in GPa.
 pub(super) const MODULUS_UNITS: [(&str, f64); 4] =
@@ -61,7 +61,7 @@ impl SceneNumber {
 impl SceneData {
     /// Returns warnings about numbers that look like another unit: one line each, with key, value, unit and the expected range.
     ///
-    /// The numbers are radii below 1e-5 or above 0.1 of the length, moduli outside 0.1 to 100 GPa, and forces outside 1e-6 to 1e9 uN. All
+    /// The numbers are radii below 1e-5 or above 0.1 of the length, moduli outside 0.1 to 250 GPa, and forces outside 1e-6 to 1e9 uN. All
     /// values of sweep axes count; of measured radii the largest one does. A message names another unit only if the number in that unit
     /// is as expected.
     ///
@@ -74,7 +74,7 @@ impl SceneData {
     /// let cone = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")?;
     /// assert!(cone.warnings().is_empty());
     /// let warnings = cone.with(Parameter::YoungsModulusGpa, 3000.0)?.warnings();
-    /// let modulus = "whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?";
+    /// let modulus = "whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 250 GPa; is it in MPa?";
     /// assert_eq!(warnings, [modulus]);
     /// # Ok::<(), whiskmap::scene::SceneError>(())
     /// ```

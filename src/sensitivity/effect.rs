@@ -1,8 +1,8 @@
 //! Effects of single variables on the push angle at detachment, as rows of a table.
 
-use super::{NoDerivative, Variable, detachments};
-use crate::scene::Scene;
-use crate::trace::{DetachmentKind, row};
+use super::{LargestLoad, NoDerivative, Variable, detachments, largest};
+use crate::scene::{Scene, SweptWhisker};
+use crate::trace::{DetachmentKind, PushLoad, row};
 use serde::{Serialize, Serializer};
 use whiskmap_mechanics::rod::Side;
 
@@ -26,7 +26,17 @@ row! {
         pub d_push_deg: Option<f64>,
         /// Change of the push angle if the variable grows by 1 %, to first order, in degrees.
         pub push_of_1_percent_deg: Option<f64>,
-        /// Reason why there is no derivative; empty for a derivative.
+        /// Largest contact force of the push, with friction, in uN.
+        pub max_contact_force_un: Option<f64>,
+        /// Derivative of the largest contact force by the variable, in uN per unit of the variable.
+        pub d_max_contact_force_un: Option<f64>,
+        /// Largest moment at the base in the push, in nN m.
+        pub max_base_moment_nnm: Option<f64>,
+        /// Derivative of the largest moment at the base by the variable, in nN m per unit of the variable.
+        pub d_max_base_moment_nnm: Option<f64>,
+        /// Largest bending strain of the push, which has no derivative.
+        pub max_strain: Option<f64>,
+        /// Reason why there is no derivative of the push angle; empty for a derivative.
         pub reason: Option<NoDerivative>,
     }
 }
@@ -50,6 +60,17 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
     let variables = Variable::of_detachments(scene);
     let whisker = scene.first_whisker();
     let of_side = |side: Side| {
+        let largest = |load| {
+            let SweptWhisker { whisker, pole, .. } = &whisker;
+            largest(whisker, pole, side, distance_mm, load, &variables).ok()
+        };
+        let loads = PushLoad::ALL.map(largest);
+        let [force, moment, strain] = &loads;
+        let size = |load: &Option<LargestLoad>| {
+            let size = load.as_ref().map(|own| own.peak.size);
+            size.filter(|size| !size.is_nan())
+        };
+        let slope = |load: &Option<LargestLoad>, i: usize| load.as_ref()?.by.get(i)?.ok();
         let ends = detachments(
             &whisker.whisker,
             &whisker.pole,
@@ -61,7 +82,8 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
             let rows: Vec<VariableEffect> = variables
                 .iter()
                 .zip(own.by)
-                .map(|(&variable, by)| {
+                .enumerate()
+                .map(|(i, (&variable, by))| {
                     let value = match variable {
                         Variable::DistanceMm => Some(distance_mm),
                         _ => variable.value(scene),
@@ -78,6 +100,11 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
                         push_of_1_percent_deg: d_push_deg
                             .zip(value)
                             .map(|(by, value)| 0.01 * value * by),
+                        max_contact_force_un: size(force),
+                        d_max_contact_force_un: slope(force, i),
+                        max_base_moment_nnm: size(moment),
+                        d_max_base_moment_nnm: slope(moment, i),
+                        max_strain: size(strain),
                         reason: by.err(),
                     }
                 })

@@ -18,12 +18,14 @@
 
 mod differentiated;
 mod effect;
+mod largest;
 mod linearised;
 mod quantities;
 mod variable;
 mod whisker;
 
 pub use effect::{VariableEffect, effects};
+pub use largest::{LargestLoad, largest};
 pub use quantities::Derivatives;
 pub use variable::Variable;
 
@@ -77,6 +79,9 @@ pub enum NoDerivative {
         "the contact does not slide toward the tip, so that the state depends on the whole push"
     )]
     Course,
+    /// The quantity is a largest strain, whose place moves along the whisker.
+    #[error("largest strains are not differentiated")]
+    Strain,
     /// The equations of the state are singular: a state at a fold, or two folds that merge.
     #[error("the equations are singular here")]
     Singular,

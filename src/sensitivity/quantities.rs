@@ -19,6 +19,8 @@ pub struct Derivatives {
     pub arc_length_mm: f64,
     /// Derivative of the magnitude of the normal force, in uN per unit of the variable.
     pub force_un: f64,
+    /// Derivative of the size of the whole contact force, with friction, in uN per unit of the variable.
+    pub contact_force_un: f64,
     /// Derivative of the force on the base along its tangent, in uN per unit of the variable.
     pub base_force_x_un: f64,
     /// Derivative of the force on the base to the left of its tangent, in uN per unit of the variable.
@@ -56,6 +58,7 @@ impl Derivatives {
             contact_distance_mm: sum(self.contact_distance_mm, other.contact_distance_mm),
             arc_length_mm: sum(self.arc_length_mm, other.arc_length_mm),
             force_un: sum(self.force_un, other.force_un),
+            contact_force_un: sum(self.contact_force_un, other.contact_force_un),
             base_force_x_un: sum(self.base_force_x_un, other.base_force_x_un),
             base_force_y_un: sum(self.base_force_y_un, other.base_force_y_un),
             base_moment_nnm: sum(self.base_moment_nnm, other.base_moment_nnm),
@@ -110,6 +113,7 @@ impl Derivatives {
                 size * normal.x,
                 by_size * normal.x - size * normal.y * by_tilt,
             ),
+            contact_force_un: force(size, by_size),
             base_force_x_un: force(base_force.x, by_base_force.x),
             base_force_y_un: force(base_force.y, by_base_force.y),
             base_moment_nnm: moment(-full.force * position.x, by_moment),

@@ -47,8 +47,10 @@ row! {
         pub arc_length_mm: f64,
         /// Angle of the tangent at the contact, from the base's tangent, in degrees.
         pub contact_angle_deg: f64,
-        /// Size of the force between pole and whisker, normal to both, in uN.
+        /// Normal part of the force between pole and whisker, in uN; never negative.
         pub force_un: f64,
+        /// Size of the whole force between pole and whisker, with friction, in uN.
+        pub contact_force_un: f64,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
         pub base_force_x_un: f64,
         /// Force that the pole puts on the base, to the left of its tangent, in uN.
@@ -279,6 +281,7 @@ impl Branch {
             arc_length_mm: reading.arc_length_mm,
             contact_angle_deg: node.angle.to_degrees(),
             force_un: reading.force_un,
+            contact_force_un: reading.contact_force_un(),
             base_force_x_un: reading.base_force_un.x,
             base_force_y_un: reading.base_force_un.y,
             base_moment_nnm: reading.base_moment_nnm,

@@ -46,8 +46,10 @@ row! {
         pub contact_distance_mm: Option<f64>,
         /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: Option<f64>,
-        /// Size of the force between pole and whisker, normal to both, in uN.
+        /// Normal part of the force between pole and whisker, in uN; never negative.
         pub force_un: Option<f64>,
+        /// Size of the whole force between pole and whisker, with friction, in uN.
+        pub contact_force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
         pub base_force_x_un: Option<f64>,
         /// Force that the pole puts on the base, to the left of its tangent, in uN.
@@ -85,6 +87,7 @@ impl Detachment {
             contact_distance_mm: None,
             arc_length_mm: None,
             force_un: None,
+            contact_force_un: None,
             base_force_x_un: None,
             base_force_y_un: None,
             base_moment_nnm: None,
@@ -206,6 +209,7 @@ pub(crate) fn detachments(
                 contact_distance_mm: value(|reading| reading.contact_distance_mm),
                 arc_length_mm: value(|reading| reading.arc_length_mm),
                 force_un: value(|reading| reading.force_un),
+                contact_force_un: value(Reading::contact_force_un),
                 base_force_x_un: value(|reading| reading.base_force_un.x),
                 base_force_y_un: value(|reading| reading.base_force_un.y),
                 base_moment_nnm: value(|reading| reading.base_moment_nnm),

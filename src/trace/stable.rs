@@ -9,7 +9,7 @@ use whiskmap_mechanics::shooting::Reading;
 /// Stable part of a [`Branch`]: the states from first touch to the fold or the tip. The continuation ends there, which saves most of the
 /// time.
 #[derive(Clone, Debug)]
-pub struct StableBranch(Branch);
+pub struct StableBranch(pub(super) Branch);
 
 impl StableBranch {
     /// Computes the stable states of `whisker` at `pole`, whose first touch is at `distance_mm` from the base.

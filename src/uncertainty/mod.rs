@@ -7,11 +7,11 @@ mod first_order;
 mod spread;
 mod varying;
 
-pub use spread::{EndSpread, PointSpread};
+pub use spread::{EndSpread, LargestSpread, PointSpread};
 
 use crate::random::RandomStream;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
-use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
+use crate::trace::{Detachment, DetachmentKind, PushLoad, StableBranch, curve_without_strain};
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
 use whiskmap_mechanics::rod::Side;
@@ -145,6 +145,41 @@ impl Draws {
         })
         .collect()
     }
+
+    /// Computes the spread of the largest loads of pushes on one side, `[distance]`, at every distance of the scene. Each push takes some
+    /// milliseconds. `tick` is called after every whisker.
+    #[must_use]
+    pub fn largest(&self, side: Side, tick: impl Fn() + Sync) -> Vec<LargestSpread> {
+        let distances = &self.scene.grid.distance_mm;
+        let loads = |whisker: &Whisker, pole: &Pole| {
+            let distances = distances.iter();
+            let loads = distances.map(|distance| largest_loads((whisker, pole), side, *distance));
+            loads.collect::<Vec<_>>()
+        };
+        let drawn = self.drawn.par_iter();
+        let drawn = drawn.map(|(whisker, pole)| {
+            let loads = loads(whisker, pole);
+            tick();
+            loads
+        });
+        let drawn: Vec<Vec<Option<[f64; 3]>>> = drawn.collect();
+        let own = loads(&self.scene.whisker, &self.scene.pole).into_iter();
+        let spread = |(row, own): (usize, Option<[f64; 3]>)| {
+            LargestSpread::new(own, drawn.iter().filter_map(|loads| loads[row]))
+        };
+        own.enumerate().map(spread).collect()
+    }
+}
+
+/// Returns the largest contact force (uN), moment at the base (nN m) and strain of a push; `None` if it has no known states.
+fn largest_loads(
+    (whisker, pole): (&Whisker, &Pole),
+    side: Side,
+    distance_mm: f64,
+) -> Option<[f64; 3]> {
+    let branch = StableBranch::new(whisker, pole, side, distance_mm).ok()?;
+    let loads = PushLoad::ALL.map(|load| branch.peak(load).size);
+    loads.iter().all(|own| own.is_finite()).then_some(loads)
 }
 
 /// End of a push.

@@ -58,21 +58,21 @@ row! {
         /// Standard deviation of forces at detachment, from samples, in uN.
         pub force_sd_un: Option<f64>,
         /// Moment at the base of the scene's detachment, in nN m.
-        pub moment_nnm: Option<f64>,
+        pub base_moment_nnm: Option<f64>,
         /// 5th percentile of the moments at detachment, in nN m.
-        pub moment_p5_nnm: Option<f64>,
+        pub base_moment_p5_nnm: Option<f64>,
         /// 25th percentile of the moments at detachment, in nN m.
-        pub moment_p25_nnm: Option<f64>,
+        pub base_moment_p25_nnm: Option<f64>,
         /// Median of the moments at detachment, in nN m.
-        pub moment_p50_nnm: Option<f64>,
+        pub base_moment_p50_nnm: Option<f64>,
         /// 75th percentile of the moments at detachment, in nN m.
-        pub moment_p75_nnm: Option<f64>,
+        pub base_moment_p75_nnm: Option<f64>,
         /// 95th percentile of the moments at detachment, in nN m.
-        pub moment_p95_nnm: Option<f64>,
+        pub base_moment_p95_nnm: Option<f64>,
         /// Mean moment at detachment, in nN m.
-        pub moment_mean_nnm: Option<f64>,
+        pub base_moment_mean_nnm: Option<f64>,
         /// Standard deviation of moments at detachment, from samples, in nN m.
-        pub moment_sd_nnm: Option<f64>,
+        pub base_moment_sd_nnm: Option<f64>,
     }
 }
 
@@ -90,6 +90,102 @@ row! {
         pub p75_deg: Option<f64>,
         /// 95th percentile of the samples' push angles at the point's distance, in degrees.
         pub p95_deg: Option<f64>,
+    }
+}
+
+row! {
+    /// Spread of the largest loads of pushes at one distance, from first touch to the detachment. Percentiles are those of the samples that
+    /// detach.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct LargestSpread {
+        /// Largest contact force of the scene's push, in uN.
+        pub max_contact_force_un: Option<f64>,
+        /// 5th percentile of the largest contact forces of pushes, in uN.
+        pub max_contact_force_p5_un: Option<f64>,
+        /// 25th percentile of the largest contact forces of pushes, in uN.
+        pub max_contact_force_p25_un: Option<f64>,
+        /// Median of the largest contact forces of pushes, in uN.
+        pub max_contact_force_p50_un: Option<f64>,
+        /// 75th percentile of the largest contact forces of pushes, in uN.
+        pub max_contact_force_p75_un: Option<f64>,
+        /// 95th percentile of the largest contact forces of pushes, in uN.
+        pub max_contact_force_p95_un: Option<f64>,
+        /// Mean of the largest contact forces of pushes, in uN.
+        pub max_contact_force_mean_un: Option<f64>,
+        /// Standard deviation of the largest contact forces of pushes, in uN.
+        pub max_contact_force_sd_un: Option<f64>,
+        /// Largest moment at the base of the scene's push, in nN m.
+        pub max_base_moment_nnm: Option<f64>,
+        /// 5th percentile of the largest moments at the base of pushes, in nN m.
+        pub max_base_moment_p5_nnm: Option<f64>,
+        /// 25th percentile of the largest moments at the base of pushes, in nN m.
+        pub max_base_moment_p25_nnm: Option<f64>,
+        /// Median of the largest moments at the base of pushes, in nN m.
+        pub max_base_moment_p50_nnm: Option<f64>,
+        /// 75th percentile of the largest moments at the base of pushes, in nN m.
+        pub max_base_moment_p75_nnm: Option<f64>,
+        /// 95th percentile of the largest moments at the base of pushes, in nN m.
+        pub max_base_moment_p95_nnm: Option<f64>,
+        /// Mean of the largest moments at the base of pushes, in nN m.
+        pub max_base_moment_mean_nnm: Option<f64>,
+        /// Standard deviation of the largest moments at the base of pushes, in nN m.
+        pub max_base_moment_sd_nnm: Option<f64>,
+        /// Largest bending strain of the scene's push, dimensionless.
+        pub max_strain: Option<f64>,
+        /// 5th percentile of the largest bending strains of pushes, dimensionless.
+        pub max_strain_p5: Option<f64>,
+        /// 25th percentile of the largest bending strains of pushes, dimensionless.
+        pub max_strain_p25: Option<f64>,
+        /// Median of the largest bending strains of pushes, dimensionless.
+        pub max_strain_p50: Option<f64>,
+        /// 75th percentile of the largest bending strains of pushes, dimensionless.
+        pub max_strain_p75: Option<f64>,
+        /// 95th percentile of the largest bending strains of pushes, dimensionless.
+        pub max_strain_p95: Option<f64>,
+        /// Mean of the largest bending strains of pushes, dimensionless.
+        pub max_strain_mean: Option<f64>,
+        /// Standard deviation of the largest bending strains of pushes, dimensionless.
+        pub max_strain_sd: Option<f64>,
+    }
+}
+
+impl LargestSpread {
+    /// Computes the spread of the largest loads of samples beside the scene's `own` ones: `[contact force, moment, strain]` of each push that detaches.
+    pub(super) fn new(own: Option<[f64; 3]>, samples: impl Iterator<Item = [f64; 3]>) -> Self {
+        let mut values: [Vec<f64>; 3] = Default::default();
+        for sample in samples {
+            values
+                .iter_mut()
+                .zip(sample)
+                .for_each(|(all, own)| all.push(own));
+        }
+        let [forces, moments, strains] = values.map(Statistics::new);
+        Self {
+            max_contact_force_un: own.map(|own| own[0]),
+            max_contact_force_p5_un: forces.percentiles[0],
+            max_contact_force_p25_un: forces.percentiles[1],
+            max_contact_force_p50_un: forces.percentiles[2],
+            max_contact_force_p75_un: forces.percentiles[3],
+            max_contact_force_p95_un: forces.percentiles[4],
+            max_contact_force_mean_un: forces.mean,
+            max_contact_force_sd_un: forces.deviation,
+            max_base_moment_nnm: own.map(|own| own[1]),
+            max_base_moment_p5_nnm: moments.percentiles[0],
+            max_base_moment_p25_nnm: moments.percentiles[1],
+            max_base_moment_p50_nnm: moments.percentiles[2],
+            max_base_moment_p75_nnm: moments.percentiles[3],
+            max_base_moment_p95_nnm: moments.percentiles[4],
+            max_base_moment_mean_nnm: moments.mean,
+            max_base_moment_sd_nnm: moments.deviation,
+            max_strain: own.map(|own| own[2]),
+            max_strain_p5: strains.percentiles[0],
+            max_strain_p25: strains.percentiles[1],
+            max_strain_p50: strains.percentiles[2],
+            max_strain_p75: strains.percentiles[3],
+            max_strain_p95: strains.percentiles[4],
+            max_strain_mean: strains.mean,
+            max_strain_sd: strains.deviation,
+        }
     }
 }
 
@@ -151,14 +247,14 @@ impl EndSpread {
             force_p95_un: forces.percentiles[4],
             force_mean_un: forces.mean,
             force_sd_un: forces.deviation,
-            moment_nnm: loads.map(|[.., moment]| moment),
-            moment_p5_nnm: moments.percentiles[0],
-            moment_p25_nnm: moments.percentiles[1],
-            moment_p50_nnm: moments.percentiles[2],
-            moment_p75_nnm: moments.percentiles[3],
-            moment_p95_nnm: moments.percentiles[4],
-            moment_mean_nnm: moments.mean,
-            moment_sd_nnm: moments.deviation,
+            base_moment_nnm: loads.map(|[.., moment]| moment),
+            base_moment_p5_nnm: moments.percentiles[0],
+            base_moment_p25_nnm: moments.percentiles[1],
+            base_moment_p50_nnm: moments.percentiles[2],
+            base_moment_p75_nnm: moments.percentiles[3],
+            base_moment_p95_nnm: moments.percentiles[4],
+            base_moment_mean_nnm: moments.mean,
+            base_moment_sd_nnm: moments.deviation,
         }
     }
 }
@@ -238,7 +334,7 @@ mod tests {
         assert_eq!((spread.mean_deg, spread.sd_deg), (Some(3.0), Some(2.0)));
         let forces = (spread.force_mean_un, spread.force_p50_un);
         assert_eq!(forces, (Some(3.0), Some(2.0)));
-        let moments = (spread.moment_mean_nnm, spread.moment_p50_nnm);
+        let moments = (spread.base_moment_mean_nnm, spread.base_moment_p50_nnm);
         assert_eq!(moments, (Some(-3.0), Some(-2.0)));
         let nothing = EndSpread::new(Side::Cb, 10.0, ends[1], std::iter::empty(), None);
         let pushes = [nothing.p50_deg, nothing.mean_deg, nothing.sd_deg];

@@ -148,18 +148,16 @@ impl AngleCourse {
         Self::new(times, angles)
     }
 
+    /// Names of the columns of a file of a course, `[column]`.
+    pub const COLUMNS: [&str; 2] = ["time_s", "angle_deg"];
+
     /// Reads the course of a CSV file with the columns `time_s` and `angle_deg`; `-` is standard input. A missing angle is an empty cell or
     /// `NaN`.
     ///
     /// # Errors
     /// If the file cannot be read, a column is missing, a cell is no number or out of its range, or a time does not grow.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
-        let path = path.as_ref();
-        Self::of(&if path == Path::new("-") {
-            CsvTable::read_stdin()?
-        } else {
-            CsvTable::read(path)?
-        })
+        Self::of(&CsvTable::input(path)?)
     }
 
     /// Reads the course from the text of a CSV file, as [`AngleCourse::read`] does. Messages call the text `origin`.
@@ -170,8 +168,13 @@ impl AngleCourse {
         Self::of(&CsvTable::parse(text, origin)?)
     }
 
-    fn of(table: &CsvTable) -> Result<Self, CsvError> {
-        let note = table.require(&[&["time_s"], &["angle_deg"]], &[])?;
+    /// Returns the course of a CSV table.
+    ///
+    /// # Errors
+    /// Fails as [`AngleCourse::read`] does.
+    pub fn of(table: &CsvTable) -> Result<Self, CsvError> {
+        let [time, angle] = Self::COLUMNS;
+        let note = table.require(&[&[time], &[angle]], &[])?;
         let times_s = table.times_s()?;
         let angles_deg =
             table.measurements("angle_deg", "a number between -360 and 360", is_angle)?;

@@ -142,6 +142,7 @@ impl Found<'_> {
                 angle_deg: event.angle.to_degrees(),
                 push_angle_deg: push.map(|push| signed_deg(side, push)),
                 force_un: reading.map(|state| state.force_un),
+                contact_force_un: reading.as_ref().map(Reading::contact_force_un),
                 base_moment_nnm: reading.map(|state| state.base_moment_nnm),
                 energy_nj: reading.map(|state| state.energy_nj),
                 snaps_deg: match event.kind {
@@ -205,6 +206,7 @@ fn sample(own: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSampl
         curvature_per_mm: None,
         contact_angle_deg: reading.map(|state| state.contact_angle_deg),
         force_un: load(|state| state.force_un),
+        contact_force_un: load(Reading::contact_force_un),
         base_force_x_un: load(|state| state.base_force_un.x),
         base_force_y_un: load(|state| state.base_force_un.y),
         base_moment_nnm: load(|state| state.base_moment_nnm),

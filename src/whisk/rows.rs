@@ -61,8 +61,10 @@ row! {
         pub contact_angle_deg: Option<f64>,
         /// Curvature of the whisker at the arclength of --curvature-at, in 1/mm.
         pub curvature_per_mm: Option<f64>,
-        /// Size of the force between pole and whisker, normal to both, in uN.
+        /// Normal part of the force between pole and whisker, in uN; never negative.
         pub force_un: Option<f64>,
+        /// Size of the whole force between pole and whisker, with friction, in uN.
+        pub contact_force_un: Option<f64>,
         /// Force that the pole puts on the base, along the base's tangent, in uN.
         pub base_force_x_un: Option<f64>,
         /// Force that the pole puts on the base, to the left of its tangent, in uN.
@@ -112,8 +114,10 @@ row! {
         pub angle_deg: f64,
         /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Size of the force between pole and whisker, normal to both, in uN.
+        /// Normal part of the force between pole and whisker, in uN; never negative.
         pub force_un: Option<f64>,
+        /// Size of the whole force between pole and whisker, with friction, in uN.
+        pub contact_force_un: Option<f64>,
         /// Moment of the pole on the base, in nN m: positive turns it to the left.
         pub base_moment_nnm: Option<f64>,
         /// Bending energy of the whisker, in nJ; it is lost if the whisker detaches.

@@ -11,7 +11,7 @@ fn a_branch_has_the_requested_number_of_points() {
     assert_eq!(rows.len(), 17);
     let marks: Vec<&str> = rows
         .iter()
-        .map(|row| row[15])
+        .map(|row| row[16])
         .filter(|mark| !mark.is_empty())
         .collect();
     assert_eq!(marks, ["first-touch", "slip-off", "second-fold"]);
@@ -37,7 +37,7 @@ fn the_fold_can_be_asked_for() {
                 ],
             );
             let rows = cells(&run.out, BRANCH);
-            let fold = rows.iter().find(|row| row[15] == "slip-off").unwrap();
+            let fold = rows.iter().find(|row| row[16] == "slip-off").unwrap();
             for branch in ["stable", "unstable"] {
                 let at = [
                     "shape",

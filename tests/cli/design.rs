@@ -107,6 +107,33 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
             ", and it is pulled off with ",
         ],
     );
+    // Numbers come back in the unit of the question.
+    for (moment, asked, reached) in [
+        (
+            "20mNm",
+            "gives a largest moment at the base of 20 mNm: it slips off with 7.88",
+            "mNm",
+        ),
+        (
+            "5uNmm",
+            "gives a largest moment at the base of 5 uNmm: it slips off with ",
+            "uNmm",
+        ),
+    ] {
+        none(
+            &["--max-moment", moment, "--side", "cb"],
+            &[
+                range,
+                asked,
+                &format!(" {reached} to "),
+                &format!(" {reached}, and "),
+            ],
+        );
+    }
+    none(
+        &["--slip-off", "0.1rad"],
+        &["slip off at 0.1 rad: it slips off between 0.", " rad and "],
+    );
     let far = [
         "design",
         "scene.toml",
@@ -233,4 +260,161 @@ fn what_cannot_be_designed_is_refused() {
     place
         .run(&far)
         .assert_refused(&["--distance 1000000000 mm: must be between"]);
+}
+
+/// Several parameters have a header, and the scene with the values reaches all targets. Distances may be parts of the length.
+#[test]
+fn several_targets_have_a_line_of_values() {
+    let place = Place::with(SCENE);
+    let asked = [
+        "design",
+        "scene.toml",
+        "--distance",
+        "60%",
+        "--slip-off",
+        "30deg",
+        "--max-moment",
+        "0.05uNm",
+        "--for",
+    ];
+    let more = ["base_radius_um=10um..0.1mm,taper", "-o", "better.toml"];
+    let found = place.run(&[&asked[..], &more].concat());
+    assert_eq!((found.code, &*found.err), (Some(0), ""), "{found:?}");
+    let mut lines = found.out.lines();
+    assert_eq!(lines.next(), Some("base_radius_um,taper"));
+    let values = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .map(|own| own.parse().unwrap());
+    let values: Vec<f64> = values.collect();
+    assert_eq!((values.len(), lines.next()), (2, None), "{found:?}");
+    let again = [
+        "design",
+        "better.toml",
+        "--distance",
+        "12",
+        "--slip-off",
+        "30deg",
+        "--for",
+        "taper",
+    ];
+    let taper: f64 = place.run(&again).out.trim().parse().unwrap();
+    assert!((taper - values[1]).abs() < 1e-5, "{taper} {values:?}");
+    let none = place.run(&[&asked[..], &["base_radius_um=10..20,taper"]].concat());
+    assert_eq!((none.code, &*none.out), (Some(1), ""), "{none:?}");
+    for part in [
+        "no base_radius_um between 10 and 20 and taper between 0 and 1 makes the whisker slip off at 30 deg and gives a largest moment \
+         at the base of 0.05 uNm: the nearest values are base_radius_um 20 (a limit) and taper ",
+        " uNm; beyond the limits the targets may be nearer",
+    ] {
+        assert!(none.err.contains(part), "{part}: {none:?}");
+    }
+}
+
+#[test]
+fn a_distance_and_a_kept_taper_are_designed() {
+    let place = Place::with(SCENE);
+    let found = place.run(&[
+        "design",
+        "scene.toml",
+        "--slip-off",
+        "20deg",
+        "--for",
+        "distance_mm",
+    ]);
+    assert_eq!(found.code, Some(0), "{found:?}");
+    let distance = found.out.lines().next().unwrap();
+    let back = [
+        "design",
+        "scene.toml",
+        "--distance",
+        distance,
+        "--slip-off",
+        "20deg",
+        "--for",
+        "taper",
+    ];
+    let taper: f64 = place
+        .run(&back)
+        .out
+        .lines()
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!((taper - 0.95).abs() < 1e-6, "{taper}");
+    let kept = [
+        &[
+            "design",
+            "scene.toml",
+            "--distance",
+            "12",
+            "--side",
+            "cb",
+            "--max-moment",
+            "100",
+        ][..],
+        &["--for", "base_radius_um", "--keep", "taper", "-o", "-"],
+    ];
+    let kept = place.run(&kept.concat());
+    assert_eq!(kept.code, Some(0), "{kept:?}");
+    let radius = |name: &str| -> f64 {
+        let text = kept.out.split(&format!("{name} = ")).nth(1).unwrap();
+        text.split_whitespace().next().unwrap().parse().unwrap()
+    };
+    let tip_to_base = radius("tip_radius_um") / radius("base_radius_um");
+    assert!((tip_to_base - 0.05).abs() < 1e-6, "{}", kept.out);
+}
+
+#[test]
+fn targets_and_parameters_that_do_not_fit_are_refused() {
+    let place = Place::with(SCENE);
+    let slip = ["design", "scene.toml", "--slip-off", "20deg"];
+    for (more, said) in [
+        (
+            "--distance 12 --for taper,base_radius_um",
+            "--for taper,base_radius_um: must be as many parameters as targets; these are --slip-off",
+        ),
+        (
+            "--for taper",
+            "--distance: is left out, and --for does not vary distance_mm",
+        ),
+        (
+            "--distance 12 --for distance_mm",
+            "--distance: must be left out, because --for varies distance_mm",
+        ),
+        (
+            "--distance 0% --for taper",
+            "or a part of the whisker's length, such as 70%",
+        ),
+        (
+            "--distance 12 --for taper=1..0",
+            "taper: limits must be two growing values, such as taper=1..2",
+        ),
+        (
+            "--distance 12 --for length_mm=1um..9deg",
+            "length_mm=9deg: unit deg: must be mm",
+        ),
+        (
+            "--distance 12 --for taper --keep taper",
+            "--keep taper: it can be kept where base_radius_um or",
+        ),
+        ("--distance 12 --for taper --keep length", "'length'"),
+        (
+            "--for distance_mm -o b.toml",
+            "--output: must be left out with --for distance_mm",
+        ),
+        (
+            "--distance 12 --for taper,length_mm --max-force 1 --plot p.svg",
+            "--plot: must be left out with several parameters",
+        ),
+        (
+            "--distance 12 --for taper,tip_radius_um --max-force 1",
+            "--for taper and tip_radius_um: give one of them",
+        ),
+    ] {
+        let words: Vec<&str> = slip.into_iter().chain(more.split(' ')).collect();
+        place.run(&words).assert_refused(&[said]);
+    }
 }

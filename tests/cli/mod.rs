@@ -6,6 +6,7 @@
 
 mod bench;
 mod branch;
+mod columns;
 mod compare;
 mod computed;
 mod curve;

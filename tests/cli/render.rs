@@ -264,6 +264,51 @@ fn scale_and_width_are_chosen() {
     let ranged = draw(&["--range", "-10,2e6"]);
     assert!(ranged.contains(">contact force (N)<") && ranged.contains(">2.0<"));
     assert!(draw(&["--width", "640"]).contains(" width=\"640\" "));
+    // Without a title, the picture is lower and has the rest.
+    let untitled = draw(&["--no-title"]);
+    let title = ">A test<";
+    let title = match plain.contains(title) {
+        true => title.to_owned(),
+        false => format!(
+            ">{}<",
+            SCENE.lines().next().unwrap().split('"').nth(1).unwrap()
+        ),
+    };
+    assert!(
+        plain.contains(&title) && !untitled.contains(&title),
+        "{title}"
+    );
+    assert!(untitled.contains(">contact force ("), "{untitled}");
+    let height = |svg: &str| -> f64 {
+        let height = svg
+            .split(" height=\"")
+            .nth(1)
+            .unwrap()
+            .split('"')
+            .next()
+            .unwrap();
+        height.parse().unwrap()
+    };
+    assert!(height(&untitled) < height(&plain));
+    // Moments of both signs have the logarithmic scale of their size, unless a linear one is chosen.
+    let moment = |more: &[&str]| {
+        let moment = [
+            "render",
+            "outputs/scene.exr",
+            "--channel",
+            "base_moment_nnm",
+            "-o",
+            "moment.svg",
+        ];
+        let run = place.run(&[&moment[..], more].concat());
+        assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+        String::from_utf8(place.bytes("moment.svg")).unwrap()
+    };
+    let size = ">size of the bending moment at the base (";
+    assert!(moment(&[]).contains(size) && moment(&["--log"]).contains(size));
+    let linear = moment(&["--linear"]);
+    assert!(linear.contains(">bending moment at the base (") && !linear.contains(size));
+    assert!(!moment(&["--range", "-100,100"]).contains(size));
 
     let arc = |range: &str| {
         let arc = [

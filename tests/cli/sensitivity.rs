@@ -51,6 +51,23 @@ fn the_table_has_every_variable_of_the_scene() {
         "{}",
         run.out
     );
+    // Forces and moments are proportional to the modulus, and strains do not depend on it.
+    for row in rows
+        .iter()
+        .filter(|row| cell(header, row, "variable") == "youngs_modulus_gpa")
+    {
+        let number = |name: &str| cell(header, row, name).parse::<f64>().unwrap();
+        for [size, slope] in [
+            ["max_contact_force_un", "d_max_contact_force_un"],
+            ["max_base_moment_nnm", "d_max_base_moment_nnm"],
+        ] {
+            assert!(
+                (number("value") * number(slope) / number(size) - 1.0).abs() < 1e-9,
+                "{row:?}"
+            );
+        }
+        assert!((1e-4..0.1).contains(&number("max_strain")), "{row:?}");
+    }
     let svg = String::from_utf8(place.bytes("bars.svg")).unwrap();
     assert!(svg.contains("distance_mm") && svg.contains("+1 %"));
 }

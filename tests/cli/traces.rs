@@ -3,16 +3,16 @@
 use super::{Place, Run, SCENE, names, no_folder};
 
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
-                     arc_length_mm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
+                     arc_length_mm,force_un,contact_force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
                      peak_strain_mm,contact_angle_deg,residual,sliding,snaps_deg";
 pub const BRANCH: &str = "distance_mm,side,stable,push_angle_deg,push_chord_deg,arc_length_mm,contact_angle_deg,force_un,\
-                      base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,peak_strain_mm,det,\
+                      contact_force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,peak_strain_mm,det,\
                       mark,sliding,snaps_deg";
 pub const SHAPE: &str = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,strain,part";
 pub const SPREAD: &str = "side,distance_mm,kind,push_angle_deg,slip_off,pull_off,out_of_reach,unresolved,p5_deg,p25_deg,\
                       p50_deg,p75_deg,p95_deg,mean_deg,sd_deg,sd_first_order_deg,\
                       force_un,force_p5_un,force_p25_un,force_p50_un,force_p75_un,force_p95_un,force_mean_un,force_sd_un,\
-                      moment_nnm,moment_p5_nnm,moment_p25_nnm,moment_p50_nnm,moment_p75_nnm,moment_p95_nnm,moment_mean_nnm,moment_sd_nnm";
+                      base_moment_nnm,base_moment_p5_nnm,base_moment_p25_nnm,base_moment_p50_nnm,base_moment_p75_nnm,base_moment_p95_nnm,base_moment_mean_nnm,base_moment_sd_nnm";
 pub const CB: [&str; 5] = ["branch", "scene.toml", "--distance", "15.66", "--side=cb"];
 
 /// Runs the program, which must succeed without messages.

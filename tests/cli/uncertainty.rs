@@ -197,3 +197,26 @@ fn samples_without_sense_are_refused() {
     let left = ["plain.toml", "scene.toml", "sweep.toml", "wide.toml"];
     assert_eq!(names(&place.path("")), left);
 }
+
+/// The largest loads follow the other columns, and without --samples there are none.
+#[test]
+fn largest_loads_are_more_columns() {
+    let place = uncertain();
+    let words = ["curve", "scene.toml", "--distance", "10", "--samples", "5"];
+    let own = good(&place, &words).out;
+    let largest = good(&place, &[&words[..], &["--largest"]].concat()).out;
+    let (own, largest): (Vec<&str>, Vec<&str>) = (own.lines().collect(), largest.lines().collect());
+    assert_eq!(own.len(), largest.len());
+    for (own, largest) in own.iter().zip(&largest) {
+        let more = largest.strip_prefix(&format!("{own},")).unwrap();
+        assert_eq!(more.split(',').count(), 24, "{more}");
+    }
+    assert!(
+        largest[0].ends_with(",max_strain_mean,max_strain_sd"),
+        "{}",
+        largest[0]
+    );
+    place
+        .run(&["curve", "scene.toml", "--largest"])
+        .assert_refused(&["--samples <N>"]);
+}

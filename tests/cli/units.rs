@@ -72,7 +72,7 @@ fn numbers_in_other_units_are_warned_of() {
     );
     place.write("points.csv", super::data::DATA);
     let warning =
-        "warning: whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 100 GPa; is it in MPa?\n";
+        "warning: whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 250 GPa; is it in MPa?\n";
     for words in [
         &["map", "scene.toml", "--engine", "cpu", "--no-png"][..],
         &["plan", "scene.toml"],

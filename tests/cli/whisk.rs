@@ -33,8 +33,7 @@ fn a_sine_and_its_angles_give_one_course() {
         "{run:?}"
     );
     let text = |name: &str| String::from_utf8(place.bytes(name)).unwrap();
-    let header =
-        "time_s,event,side,angle_deg,push_angle_deg,force_un,base_moment_nnm,energy_nj,snaps_deg";
+    let header = "time_s,event,side,angle_deg,push_angle_deg,force_un,contact_force_un,base_moment_nnm,energy_nj,snaps_deg";
     let events = text("e.csv");
     let events = cells(&events, header);
     let kinds: Vec<_> = events.iter().map(|event| [event[1], event[2]]).collect();
@@ -63,6 +62,18 @@ fn a_sine_and_its_angles_give_one_course() {
     ] {
         assert!(svg.contains(&format!(">{label}<")), "{label}");
     }
+    // The three plots share one axis of times, on paper, too.
+    assert_eq!(svg.matches(">time (s)<").count(), 1);
+    let paper = whisk(
+        &place,
+        &[&sine[..], &["--plot", "paper.svg", "--size", "85mm"]].concat(),
+    );
+    assert_eq!(paper.code, Some(0), "{paper:?}");
+    let times = text("paper.svg");
+    assert!(
+        times.matches(">time (s)<").count() + times.matches(">time (ms)<").count() == 1,
+        "{times}"
+    );
     let table = text("s.csv");
     let angles = table
         .lines()

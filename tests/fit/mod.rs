@@ -6,6 +6,7 @@ mod limits;
 mod noisy;
 mod points;
 mod refused;
+mod robust;
 mod start;
 mod verdict;
 

@@ -43,3 +43,33 @@ fn states_of_the_course_have_no_derivatives() {
     let ends = detachments(&scene.whisker, &scene.pole, Side::Cf, &[15.66], &variables);
     assert!(ends[0].by[0].is_ok(), "{ends:?}");
 }
+
+/// Where the contact slides toward the tip, the tangential force is the friction's coefficient times the normal one (Coulomb). Where it
+/// sticks, it is less. Without friction there is none.
+#[test]
+fn the_whole_force_is_the_normal_one_with_friction() {
+    use whiskmap::friction::Sliding;
+    use whiskmap::trace::{Branch, curve};
+    for friction in [0.0, 0.3] {
+        let scene = cone(0.02, 0.25, friction);
+        let most = f64::sqrt(1.0 + friction * friction);
+        for side in Side::BOTH {
+            let points = Branch::new(&scene.whisker, &scene.pole, side, 15.66).unwrap();
+            for point in points
+                .points(40)
+                .unwrap()
+                .iter()
+                .filter(|point| point.force_un > 0.0)
+            {
+                let ratio = point.contact_force_un / point.force_un;
+                match point.sliding {
+                    Some(Sliding::Sticks) => assert!((1.0..most).contains(&ratio), "{point:?}"),
+                    _ => assert!((ratio / most - 1.0).abs() < 1e-12, "{point:?}"),
+                }
+            }
+            let end = curve(&scene.whisker, &scene.pole, side, &[15.66])[0];
+            let ratio = end.contact_force_un.unwrap() / end.force_un.unwrap();
+            assert!((ratio / most - 1.0).abs() < 1e-12, "{end:?}");
+        }
+    }
+}

@@ -135,6 +135,7 @@ fn a_channel_has_its_unit_and_refused_scales_name_it() {
         ),
     ] {
         let options = MapOptions {
+            without_title: false,
             channel,
             log: log.then_some(true),
             range,

@@ -229,3 +229,64 @@ fn deviations_belong_to_numbers_of_the_scene() {
         "{why}"
     );
 }
+
+/// The key `whisker.taper` gives the tip its radius. A scene written with other radii keeps the key, and is the same scene when it is read.
+#[test]
+fn a_taper_takes_the_place_of_the_radius_at_the_tip() {
+    let text = with_line(5, "taper = 0.95 # of a rat");
+    let tapered = parse(&text).unwrap();
+    assert!((tapered.whisker.tip_radius_um - 1.5).abs() < 1e-14);
+    for changes in [
+        &[(Parameter::Taper, 0.5)][..],
+        &[(Parameter::TipRadiusUm, 3.0)],
+        &[(Parameter::BaseRadiusUm, 40.0)],
+        &[(Parameter::BaseRadiusUm, 40.0), (Parameter::Taper, 0.9)],
+        &[(Parameter::LengthMm, 21.0)],
+    ] {
+        let changed = tapered.with_parameters(changes).unwrap();
+        let written = tapered.to_toml_with(changes).unwrap();
+        assert!(
+            written.contains("# of a rat") && !written.contains("tip_radius_um"),
+            "{written}"
+        );
+        let again = parse(&written).unwrap();
+        let tips = [&again, &changed].map(|scene| scene.whisker.tip_radius_um);
+        assert!(
+            (tips[0] - tips[1]).abs() < 1e-13 * changed.whisker.base_radius_um,
+            "{tips:?}"
+        );
+        assert_eq!(again.whisker.base_radius_um, changed.whisker.base_radius_um);
+    }
+}
+
+#[test]
+fn a_taper_beside_other_radii_at_the_tip_is_refused() {
+    let text = with_line(5, "taper = 0.95");
+    for (axis, said) in [
+        (
+            "taper = [0.5]",
+            "grid.taper gives every whisker of the sweep its tip",
+        ),
+        (
+            "tip_radius_um = [1]",
+            "grid.tip_radius_um gives every whisker of the sweep its tip",
+        ),
+        (
+            "base_radius_um = [30, 40]",
+            "grid.base_radius_um varies the base; give whisker.tip_radius_um to keep the tip, or grid.taper",
+        ),
+    ] {
+        let why = parse(&text.replace("curvature_per_mm = [0, 0.04]", axis)).unwrap_err();
+        let said = format!("whisker.taper = 0.95: must be left out: {said}");
+        assert!(why.contains(&said), "{why}");
+    }
+    let no_base = parse(&text.replace("base_radius_um = 30.0", "")).unwrap_err();
+    assert!(
+        no_base.contains("whisker.base_radius_um: is left out"),
+        "{no_base}"
+    );
+    let rows = "profile = { rows = [[0, 30], [20, 1.5]] }";
+    let measured = parse(&text.replace("base_radius_um = 30.0", rows)).unwrap_err();
+    let said = "whisker.taper = 0.95: must be left out: the radii are those of whisker.profile";
+    assert!(measured.contains(said), "{measured}");
+}

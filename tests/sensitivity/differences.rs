@@ -1,9 +1,10 @@
 //! Exact derivatives of detachments against central differences of ends that are computed independently, in twice the steps.
 
 use super::random_whiskers::{Push, push};
+use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
-use whiskmap::scene::Parameter;
-use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable, detachments};
+use whiskmap::scene::{Parameter, Scene};
+use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable, detachments, largest};
 use whiskmap::trace::{Detachment, DetachmentKind, curve_without_strain};
 
 /// Result of the comparison of one push.
@@ -17,13 +18,14 @@ pub struct Compared {
     pub worst: f64,
 }
 
-fn quantities(end: &Detachment) -> Option<[f64; 10]> {
+fn quantities(end: &Detachment) -> Option<[f64; 11]> {
     Some([
         end.push_angle_deg?,
         end.push_chord_deg?,
         end.contact_distance_mm?,
         end.arc_length_mm?,
         end.force_un?,
+        end.contact_force_un?,
         end.base_force_x_un?,
         end.base_force_y_un?,
         end.base_moment_nnm?,
@@ -32,13 +34,14 @@ fn quantities(end: &Detachment) -> Option<[f64; 10]> {
     ])
 }
 
-fn listed(by: &Derivatives) -> [f64; 10] {
+fn listed(by: &Derivatives) -> [f64; 11] {
     [
         by.push_angle_deg,
         by.push_chord_deg,
         by.contact_distance_mm,
         by.arc_length_mm,
         by.force_un,
+        by.contact_force_un,
         by.base_force_x_un,
         by.base_force_y_un,
         by.base_moment_nnm,
@@ -145,4 +148,64 @@ pub fn compare(index: u64) -> Compared {
         }
     }
     compared
+}
+
+/// Derivatives of largest loads are differences of largest loads, before the detachment and at it.
+#[test]
+fn largest_loads_change_by_their_derivatives() {
+    use whiskmap::trace::{PushLoad, StableBranch};
+    let scene = include_str!("../../scenes/cone.toml");
+    let scene = Scene::parse(scene, "cone.toml").unwrap();
+    let variables = [
+        Parameter::Taper,
+        Parameter::BaseRadiusUm,
+        Parameter::YoungsModulusGpa,
+    ]
+    .map(Variable::from);
+    let mut before = 0;
+    for (side, distance_mm) in [(Side::Cb, 15.66), (Side::Cf, 15.66), (Side::Cb, 8.0)] {
+        for load in [PushLoad::ContactForce, PushLoad::BaseMoment] {
+            let found = largest(
+                &scene.whisker,
+                &scene.pole,
+                side,
+                distance_mm,
+                load,
+                &variables,
+            )
+            .unwrap();
+            before += u32::from(found.peak.before_end_deg.is_some());
+            for (variable, by) in variables.iter().zip(found.by) {
+                let Variable::Parameter(parameter) = variable else {
+                    panic!()
+                };
+                let own = parameter.value(&scene).unwrap();
+                let step = 1e-4 * own;
+                let [less, more] = [-step, step].map(|step| {
+                    let moved = scene.with(*parameter, own + step).unwrap();
+                    let branch =
+                        StableBranch::new(&moved.whisker, &moved.pole, side, distance_mm).unwrap();
+                    branch.peak(load).size
+                });
+                let difference = (more - less) / (2.0 * step);
+                // Largest values are known to 1e-9, over a step of 1e-4.
+                let most = 1e-4 * (difference.abs() + found.peak.size / own * 0.1);
+                assert!(
+                    (by.unwrap() - difference).abs() < most,
+                    "{load:?} {side:?} {variable}: {by:?} {difference}"
+                );
+            }
+        }
+    }
+    assert!(before > 0);
+    let strain = largest(
+        &scene.whisker,
+        &scene.pole,
+        Side::Cb,
+        15.66,
+        PushLoad::Strain,
+        &variables,
+    )
+    .unwrap();
+    assert_eq!(strain.by[0], Err(NoDerivative::Strain));
 }

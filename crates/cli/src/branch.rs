@@ -74,8 +74,10 @@ enum SideChoice {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 enum BranchColumn {
-    /// Size of the force
+    /// Normal part of the contact force
     ForceUn,
+    /// Whole contact force, with friction
+    ContactForceUn,
     /// Moment at the base
     BaseMomentNnm,
     /// Angle of the tangent at the contact, from the base's tangent
@@ -87,7 +89,10 @@ enum BranchColumn {
 impl BranchColumn {
     /// Returns true for a load, which grows far beyond the stable states.
     const fn is_load(self) -> bool {
-        matches!(self, Self::ForceUn | Self::BaseMomentNnm)
+        matches!(
+            self,
+            Self::ForceUn | Self::ContactForceUn | Self::BaseMomentNnm
+        )
     }
 
     fn axis(self) -> BranchAxis {
@@ -95,6 +100,10 @@ impl BranchColumn {
             Self::ForceUn => BranchAxis {
                 label: "contact force (\u{b5}N)",
                 value: |point| point.force_un,
+            },
+            Self::ContactForceUn => BranchAxis {
+                label: "contact force with friction (\u{b5}N)",
+                value: |point| point.contact_force_un,
             },
             Self::BaseMomentNnm => BranchAxis {
                 label: "bending moment at the base (nN m)",

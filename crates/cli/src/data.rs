@@ -3,6 +3,7 @@
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use std::path::Path;
+use whiskmap::input::{ColumnName, CsvTable};
 use whiskmap::measured::{Comparison, MeasuredPoints};
 use whiskmap::scene::{digits, rounded};
 
@@ -15,10 +16,15 @@ pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads measured points from the input `path`. Prints unused columns, and the number of points with a missing value, and of those whose angle
+/// Reads measured points from the input `path`, of which columns may have own names. Prints unused columns, and the number of points with a missing value, and of those whose angle
 /// has the other side's sign.
-pub fn read(files: &mut Files, path: &Path) -> Result<MeasuredPoints, Failure> {
-    let points = MeasuredPoints::read(path)?;
+pub fn read(
+    files: &mut Files,
+    path: &Path,
+    columns: &[ColumnName],
+) -> Result<MeasuredPoints, Failure> {
+    let table = CsvTable::input(path)?.renamed(columns, &MeasuredPoints::COLUMNS)?;
+    let points = MeasuredPoints::of(&table)?;
     files.input(path);
     if let Some(note) = &points.note {
         message(&format!("note: {note}"));

@@ -10,6 +10,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use whiskmap::Side;
+use whiskmap::input::ColumnName;
 use whiskmap::measured::{MeasuredPoint, MeasuredPoints};
 use whiskmap::store::MapSource;
 use whiskmap::terminal::StandardOutput;
@@ -43,6 +44,14 @@ pub struct ExploreArgs {
     /// Put measured detachments on the page, in the format of curve --data
     #[arg(long, value_name = "FILE")]
     data: Option<PathBuf>,
+    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
+    #[arg(
+        long,
+        value_name = "NAME=OWN",
+        value_delimiter = ',',
+        requires = "data"
+    )]
+    columns: Vec<ColumnName>,
     /// Do not open the browser
     #[arg(long)]
     no_open: bool,
@@ -60,7 +69,7 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
     };
     let points = args.data.as_deref().map(|data| {
         data::check_stdin(path, data)?;
-        let points = data::read(files, data)?;
+        let points = data::read(files, data, &args.columns)?;
         let whisker = scene.first_whisker();
         points.check_reach(&whisker.whisker, &whisker.pole)?;
         Ok::<_, Failure>(json!({ "name": points.origin, "csv": csv(&points) }))

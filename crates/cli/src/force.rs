@@ -9,6 +9,7 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{self, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until};
+use whiskmap::input::{ColumnName, CsvTable};
 use whiskmap::render::forces as chart;
 
 const EXAMPLES: &str = "\
@@ -40,6 +41,14 @@ pub struct ForceArgs {
     /// CSV file of the curvature over time; - is standard input
     #[arg(long, value_name = "FILE")]
     frames: PathBuf,
+    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
+    #[arg(
+        long,
+        value_name = "NAME=OWN",
+        value_delimiter = ',',
+        requires = "frames"
+    )]
+    columns: Vec<ColumnName>,
     /// Compute the state of the full model instead of the moment over the lever
     #[arg(long)]
     model: bool,
@@ -60,7 +69,8 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         true => ForceMethod::Model,
         false => ForceMethod::Lever,
     };
-    let read = CurvatureFrames::read(&args.frames, whisker.length_mm, method)?;
+    let table = CsvTable::input(&args.frames)?.renamed(&args.columns, &CurvatureFrames::COLUMNS)?;
+    let read = CurvatureFrames::of(&table, whisker.length_mm, method)?;
     files.input(&args.frames);
     if let Some(note) = &read.note {
         message(&format!("note: {note}"));

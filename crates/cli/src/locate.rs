@@ -7,7 +7,7 @@ use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
 use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
-use whiskmap::input::Quantity;
+use whiskmap::input::{ColumnName, CsvTable, Quantity};
 use whiskmap::locate::{
     self, BaseReading, BaseReadings, LocatedState, Locator, MOST_ANGLE, MOST_LOAD,
     SensorDeviations, SharedState,
@@ -46,6 +46,14 @@ pub struct LocateArgs {
     /// CSV file of readings of the sensor; - is standard input
     #[arg(long, value_name = "FILE", conflicts_with_all = LOAD_OPTIONS)]
     readings: Option<PathBuf>,
+    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
+    #[arg(
+        long,
+        value_name = "NAME=OWN",
+        value_delimiter = ',',
+        requires = "readings"
+    )]
+    columns: Vec<ColumnName>,
     /// Moment of the pole on the base, in nN m or with a unit, such as 0.3uNm: positive turns it to the left
     #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, value_parser = moment)]
     base_moment: Option<f64>,
@@ -125,7 +133,8 @@ impl LocateArgs {
             };
             return Ok(vec![reading]);
         };
-        let read = BaseReadings::read(path)?;
+        let table = CsvTable::input(path)?.renamed(&self.columns, &BaseReadings::COLUMNS)?;
+        let read = BaseReadings::of(&table)?;
         files.input(path);
         if let Some(note) = &read.note {
             message(&format!("note: {note}"));

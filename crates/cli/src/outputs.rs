@@ -111,9 +111,15 @@ pub struct OpenOutputs {
     plot: Option<PictureFile>,
 }
 
+impl PlotArgs {
+    pub const fn is_given(&self) -> bool {
+        self.plot.is_some()
+    }
+}
+
 impl OutputArgs {
-    pub fn has_plot(&self) -> bool {
-        self.picture.plot.is_some()
+    pub const fn has_plot(&self) -> bool {
+        self.picture.is_given()
     }
 
     /// Opens the CSV table and the plot, before any work.

@@ -41,7 +41,7 @@ pub struct RenderArgs {
     /// Draw this channel with a colour bar [default: the regimes]
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
-    /// Use a logarithmic scale from the 1st percentile of the values above 0; cells at or below 0 stay blank [default: for loads and
+    /// Use a logarithmic scale from the 1st percentile of the values above 0; cells at or below 0 stay blank, and moments have their size [default: for loads and
     /// energies that span more than two decades]
     #[arg(long, requires = "channel")]
     log: bool,
@@ -59,6 +59,9 @@ pub struct RenderArgs {
     /// Width of the picture in pixels, from 300 to 8000 [default: by the map, about 1500]
     #[arg(long, value_name = "PX", conflicts_with = "size", value_parser = whole(300..=8000))]
     width: Option<u32>,
+    /// Draw no title
+    #[arg(long)]
+    no_title: bool,
     #[command(flatten)]
     size: SizeArgs,
     /// Write the picture to FILE; the ending selects PNG, SVG or PDF; - is PNG on standard output [default: beside the map, or in
@@ -112,6 +115,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
             channel,
             log: (args.log || args.linear).then_some(args.log),
             range,
+            without_title: args.no_title,
             size,
         },
     )?;

@@ -7,7 +7,8 @@ use super::outputs::{OutputTable, PictureFile};
 use super::size::SizeArgs;
 use clap::Args;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use whiskmap::input::ColumnName;
 use whiskmap::measured::{MeasuredAngle, MeasuredPoint};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::PictureFormat;
@@ -37,13 +38,24 @@ pub struct ReproduceArgs {
     /// Add measured detachments to the right panel of Fig. 5C
     #[arg(long, value_name = "FILE")]
     fig5c_right: Option<PathBuf>,
+    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
+    #[arg(
+        long,
+        value_name = "NAME=OWN",
+        value_delimiter = ',',
+        requires = "points"
+    )]
+    columns: Vec<ColumnName>,
     #[command(flatten)]
     size: SizeArgs,
 }
 
 impl ReproduceArgs {
     fn measurements(&self, files: &mut Files) -> Result<Measurements, Failure> {
-        let mut read = |option, path: &Option<_>, whisker| points(files, option, path, whisker);
+        let mut read = |option, path: &Option<_>, whisker| {
+            let table = path.as_deref().map(|path| (path, &self.columns[..]));
+            points(files, option, table, whisker)
+        };
         Ok(Measurements {
             fig4d: read("--fig4d", &self.fig4d, &FIG4_WHISKER)?,
             fig5c_left: read("--fig5c-left", &self.fig5c_left, &FIG5_LEFT)?,
@@ -52,18 +64,18 @@ impl ReproduceArgs {
     }
 }
 
-/// Reads the points of a file, if there is one. All must be push angles within reach of the resting `whisker`, the longest of its
+/// Reads the points of a file with own names of columns, if there is one. All must be push angles within reach of the resting `whisker`, the longest of its
 /// panel.
 fn points(
     files: &mut Files,
     option: &str,
-    path: &Option<PathBuf>,
+    table: Option<(&Path, &[ColumnName])>,
     whisker: &Whisker,
 ) -> Result<Vec<MeasuredPoint>, Failure> {
-    let Some(path) = path else {
+    let Some((path, columns)) = table else {
         return Ok(Vec::new());
     };
-    let points = data::read(files, path)?;
+    let points = data::read(files, path, columns)?;
     let reach = points.check_reach(whisker, &POLE);
     reach.map_err(|why| Failure::Input(format!("{option} {why}")))?;
     match points.angle {

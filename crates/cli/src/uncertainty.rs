@@ -7,7 +7,7 @@ use clap::Args;
 use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::Scene;
-use whiskmap::uncertainty::{DrawError, Draws, EndSpread};
+use whiskmap::uncertainty::{DrawError, Draws, EndSpread, LargestSpread};
 
 #[derive(Debug, Args)]
 pub struct SampleArgs {
@@ -15,6 +15,9 @@ pub struct SampleArgs {
     /// as bands
     #[arg(long, value_name = "N", value_parser = whole(2..=1_000_000), conflicts_with = "derivatives")]
     samples: Option<u32>,
+    /// Add the percentiles of the largest contact force, moment at the base and strain over the push of each sample; each takes some milliseconds
+    #[arg(long, requires = "samples", conflicts_with = "data")]
+    pub largest: bool,
     /// Seed of the samples
     #[arg(long, value_name = "S", default_value = "1", requires = "samples", value_parser = whole(0..=u32::MAX))]
     seed: u32,
@@ -48,6 +51,15 @@ pub fn spread(draws: &Draws, resolution: Resolution) -> Vec<EndSpread> {
             refused + kept as u64
         ));
     }
+    rows
+}
+
+/// Computes the percentiles of the largest loads of the `draws`, `[side][distance]`, in the order of [`spread`].
+pub fn largest(draws: &Draws) -> Vec<LargestSpread> {
+    let bar = Progress::over(Side::BOTH.len() * draws.len(), "whiskers");
+    let spread = |side| draws.largest(side, || bar.inc(1));
+    let rows = Side::BOTH.into_iter().flat_map(spread).collect();
+    bar.finish();
     rows
 }
 

@@ -27,13 +27,14 @@ macro_rules! quantities {
     ($($name:ident),*) => { [$((stringify!($name), |end| end.$name, |by| by.$name)),*] };
 }
 
-const QUANTITIES: [Quantity; 10] = quantities![
+const QUANTITIES: [Quantity; 11] = quantities![
     push_angle_deg,
     push_chord_deg,
     contact_distance_mm,
     arc_length_mm,
     contact_angle_deg,
     force_un,
+    contact_force_un,
     base_force_x_un,
     base_force_y_un,
     base_moment_nnm,

@@ -13,6 +13,9 @@ use crate::input::shortened;
 use std::ops::Range;
 use toml_edit::{Document, Item};
 
+/// Key of the taper, which a scene file may give instead of the radius at the tip.
+const TAPER_KEY: &str = "whisker.taper";
+
 /// Returns the place of the value of `key` in the text of a scene, such as `grid.distance_mm[1]` or `grid.friction.from`.
 fn place_in(text: &str, key: &str) -> Option<Range<usize>> {
     place(Document::parse(text).ok()?.as_item(), key)

@@ -22,7 +22,8 @@ use crate::scene::{Scene, SceneBuilder};
 use crate::traced::{MOST_DEGREE, TracedShape};
 
 use super::pairs::PairsCsv;
-use super::{SceneFile, SceneText, place_in};
+use super::tables::ProfileTable;
+use super::{SceneFile, SceneText, TAPER_KEY, place_in};
 
 impl Scene {
     /// Reads and checks a scene file; `-` is standard input. Where the file does not name its output, the
@@ -106,7 +107,7 @@ fn build(
     files: &mut Vec<PairsCsv>,
 ) -> Result<SceneBuilder, SceneFault> {
     let mut numbers = Numbers::default();
-    // A taper has only an axis: its key is that of the radius at the tip.
+    // A taper determines the radius at the tip, whose key is its own.
     let parameters = Parameter::ALL.into_iter();
     for parameter in parameters.filter(|parameter| *parameter != Parameter::Taper) {
         if let Some(number) = parameter.number_in(&file) {
@@ -118,6 +119,10 @@ fn build(
     let mut sweep: Vec<(Parameter, AxisValues)> = axes.collect();
     // The derived tables have no order; the scene has that of the text.
     sweep.sort_by_cached_key(|(parameter, _)| Some(place_in(text, parameter.axis_key())?.start));
+    if let Some(taper) = file.whisker.taper {
+        let tip_radius_um = tip_of_taper(taper, &numbers, &sweep, &file.whisker.profile)?;
+        numbers.set(Parameter::TipRadiusUm, tip_radius_um);
+    }
     let mut builder = SceneBuilder {
         title: file.title,
         numbers,
@@ -160,6 +165,36 @@ fn build(
     }
     builder.uncertainty = file.uncertainty.as_ref().map(uncertainty).transpose()?;
     Ok(builder)
+}
+
+/// Returns the radius at the tip that `whisker.taper` gives, in micrometres. Refuses a taper beside what gives other radii at the tip.
+fn tip_of_taper(
+    taper: f64,
+    numbers: &Numbers,
+    sweep: &[(Parameter, AxisValues)],
+    profile: &ProfileTable,
+) -> Result<f64, SceneFault> {
+    let taper = Parameter::taper_limits(taper).check(TAPER_KEY, taper)?;
+    let sweeps = |parameter| sweep.iter().any(|(own, _)| *own == parameter);
+    let must = if profile.rows.is_some() {
+        "the radii are those of whisker.profile"
+    } else if numbers.get(Parameter::TipRadiusUm).is_some() {
+        "whisker.tip_radius_um gives the radius at the tip"
+    } else if sweeps(Parameter::Taper) {
+        "grid.taper gives every whisker of the sweep its tip"
+    } else if sweeps(Parameter::TipRadiusUm) {
+        "grid.tip_radius_um gives every whisker of the sweep its tip"
+    } else if sweeps(Parameter::BaseRadiusUm) {
+        "grid.base_radius_um varies the base; give whisker.tip_radius_um to keep the tip, or grid.taper with one value to \
+         keep the taper"
+    } else {
+        let base = Parameter::BaseRadiusUm;
+        let absent = || SceneFault::new(base.key(), "is left out, and there is no whisker.profile");
+        let base_radius_um = numbers.get(base).ok_or_else(absent)?;
+        return Ok(base_radius_um * (1.0 - taper));
+    };
+    let must = format!("must be left out: {must}");
+    Err(SceneFault::of_value(TAPER_KEY, digits(taper), must))
 }
 
 /// The checked degree of a traced curvature.

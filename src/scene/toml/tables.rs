@@ -38,6 +38,8 @@ pub(in crate::scene) struct WhiskerTable {
     pub length_mm: Option<f64>,
     pub base_radius_um: Option<f64>,
     pub tip_radius_um: Option<f64>,
+    /// Taper instead of the radius at the tip, which it determines.
+    pub taper: Option<f64>,
     pub youngs_modulus_gpa: Option<f64>,
     #[serde(default)]
     pub profile: ProfileTable,

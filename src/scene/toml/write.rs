@@ -19,8 +19,8 @@ use crate::scene::{Scene, SceneBuilder};
 use crate::traced::TracedShape;
 
 use super::pairs::{PairsCsv, pair_array};
-use super::place_in;
 use super::whiskers::row_array;
+use super::{TAPER_KEY, place_in};
 
 /// Significant digits with which every `f64` is parsed exactly, and of a number that follows from others: the last ones would be rounding.
 const EXACT_DIGITS: usize = 17;
@@ -73,7 +73,7 @@ impl Scene {
     }
 
     /// Returns the TOML text of this scene with other values of some parameters, in their units. Comments and layout stay. A taper becomes the
-    /// radius at the tip, with 15 digits.
+    /// radius at the tip, with 15 digits, unless the text has the key `whisker.taper`, which then has the taper.
     ///
     /// # Errors
     /// If a value is not allowed, as in [`Scene::with_parameters`].
@@ -82,14 +82,27 @@ impl Scene {
         let document = self.to_toml().parse();
         let mut document: DocumentMut =
             document.map_err(|why: TomlError| SceneError::whole(&self.name, why.message()))?;
+        let is_tapered = place_in(&self.to_toml(), TAPER_KEY).is_some();
         for (parameter, _) in values {
             let (parameter, digits) = match parameter {
+                Parameter::Taper | Parameter::TipRadiusUm if is_tapered => continue,
                 Parameter::Taper => (Parameter::TipRadiusUm, DERIVED_DIGITS),
                 own => (*own, EXACT_DIGITS),
             };
             if let Some(value) = parameter.value(&changed) {
                 let value = rounded(value, digits);
                 put(document.as_table_mut(), parameter.key(), value);
+            }
+        }
+        // It changes with either radius.
+        if is_tapered {
+            let taper = changed.whisker.taper();
+            if taper != self.whisker.taper() {
+                put(
+                    document.as_table_mut(),
+                    TAPER_KEY,
+                    rounded(taper, DERIVED_DIGITS),
+                );
             }
         }
         Ok(document.to_string())

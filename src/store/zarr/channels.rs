@@ -14,19 +14,19 @@ type ChannelLine = (&'static str, ValueKind, Option<&'static str>, &'static str)
 #[rustfmt::skip]
 pub(super) const CHANNELS: [ChannelLine; 14] = [
     ("regime", Code, None, "what happens to the whisker"),
-    ("status", Code, None, "how the regime was found, or why it was not"),
-    ("arc_length_mm", Quantity, Some("mm"), "arclength from the base to the contact"),
-    ("contact_angle_deg", Quantity, Some("degree"), "angle of the whisker at the contact"),
-    ("force_un", Quantity, Some("uN"), "force between pole and whisker, normal to both"),
-    ("base_force_x_un", Quantity, Some("uN"), "force that the pole puts on the base, along its tangent"),
-    ("base_force_y_un", Quantity, Some("uN"), "force that the pole puts on the base, across its tangent"),
-    ("base_moment_nnm", Quantity, Some("nN m"), "moment that the pole puts on the base"),
-    ("push_chord_deg", Quantity, Some("degree"), "angle at the base between the contact and the resting whisker as far away"),
-    ("contact_distance_mm", Quantity, Some("mm"), "straight distance from the base to the contact"),
+    ("status", Code, None, "how the regime was found"),
+    ("arc_length_mm", Quantity, Some("mm"), "arclength from base to contact"),
+    ("contact_angle_deg", Quantity, Some("degree"), "angle of tangent at contact"),
+    ("force_un", Quantity, Some("uN"), "normal part of the contact force"),
+    ("base_force_x_un", Quantity, Some("uN"), "force on base along its tangent"),
+    ("base_force_y_un", Quantity, Some("uN"), "force on base across its tangent"),
+    ("base_moment_nnm", Quantity, Some("nN m"), "moment of pole on the base"),
+    ("push_chord_deg", Quantity, Some("degree"), "chord angle between contact and rest"),
+    ("contact_distance_mm", Quantity, Some("mm"), "straight distance from base to contact"),
     ("energy_nj", Quantity, Some("nJ"), "energy of bending"),
     ("margin_deg", Quantity, Some("degree"), "push angle left until detachment"),
     ("newton_steps", Count, None, "Newton steps"),
-    ("residual", Quantity, Some("1"), "distance from the wanted pole over the whisker's length"),
+    ("residual", Quantity, Some("1"), "distance from pole over whisker length"),
 ];
 
 /// Returns the attributes of a channel of maps, by the CF conventions: unit, meaning, and flags of codes; `None` for another name.
@@ -46,10 +46,7 @@ pub(super) fn channel(name: &str) -> Option<(ValueKind, Value)> {
         "1" => "degree".to_owned(),
         unit => format!("degree/({unit})"),
     };
-    let meaning = format!(
-        "derivative of the push angle at detachment by {}",
-        parameter.name()
-    );
+    let meaning = format!("derivative of detachment angle by {}", parameter.name());
     Some((Quantity, about(Some(&units), &meaning)))
 }
 

@@ -20,13 +20,14 @@ use plot::{CurveColumn, scene_curve};
 use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::Side;
+use whiskmap::input::ColumnName;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{Plot, bands};
 use whiskmap::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
 use whiskmap::sensitivity::{DetachmentDerivatives, NoDerivative, detachments_at};
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
-use whiskmap::uncertainty::{EndSpread, PointSpread};
+use whiskmap::uncertainty::{EndSpread, LargestSpread, PointSpread};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -67,6 +68,7 @@ const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns with --corner", Corner::COLUMNS),
     ("Columns with --data", ComparedPoint::COLUMNS),
     ("Columns with --samples", EndSpread::COLUMNS),
+    ("More columns with --largest", LargestSpread::COLUMNS),
     (
         "More columns with --data and --samples",
         PointSpread::COLUMNS,
@@ -84,6 +86,14 @@ pub struct CurveArgs {
     /// Compare the measured detachments in FILE with the curve; - is standard input
     #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance", "derivatives"])]
     data: Option<PathBuf>,
+    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
+    #[arg(
+        long,
+        value_name = "NAME=OWN",
+        value_delimiter = ',',
+        requires = "data"
+    )]
+    columns: Vec<ColumnName>,
     /// Column on the horizontal axis of the plot
     #[arg(
         long,
@@ -152,7 +162,10 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     if let Some(draws) = draws {
         let rows = uncertainty::spread(&draws, resolution);
-        outputs.rows(&rows)?;
+        match args.sampling.largest {
+            true => outputs.rows(rows.iter().zip(uncertainty::largest(&draws)))?,
+            false => outputs.rows(&rows)?,
+        }
         outputs.finish(scene.title.clone(), || Plot {
             bands: bands(&rows, args.x.percentiles()),
             ..scene_curve(&scene, resolution, args.x.axis())

@@ -110,10 +110,10 @@ impl CurveColumn {
             },
             Self::BaseMomentNnm => |row| {
                 [
-                    row.moment_p5_nnm,
-                    row.moment_p25_nnm,
-                    row.moment_p75_nnm,
-                    row.moment_p95_nnm,
+                    row.base_moment_p5_nnm,
+                    row.base_moment_p25_nnm,
+                    row.base_moment_p75_nnm,
+                    row.base_moment_p95_nnm,
                 ]
             },
         }

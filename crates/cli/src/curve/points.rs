@@ -22,7 +22,7 @@ pub fn compare(
     files: &mut Files,
 ) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
-    let points = data::read(files, path)?;
+    let points = data::read(files, path, &args.columns)?;
     let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
     points.check_reach(&whisker, &pole)?;
     let measured_mm = points.points.iter().map(|point| point.distance_mm);

@@ -9,11 +9,14 @@ use super::files::{Files, STDOUT};
 use super::outputs::write;
 use super::pole::WhiskerArgs;
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use table::table;
-use whiskmap::fit::{Fit, FitError, fit};
+use whiskmap::fit::{Fit, FitError, FitLoss, fit_until};
+use whiskmap::input::ColumnName;
 use whiskmap::scene::Parameter;
 use whiskmap::store::Output;
 use whiskmap::terminal::StandardOutput;
@@ -24,10 +27,14 @@ Examples:
   whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um,parabola_per_mm
   whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um -o fitted.toml --json fit.json
 
-Minimizes the squares of measured minus predicted angles, from the values of the scene and within its limits. The columns of \
+Minimizes the squares of measured minus predicted angles, or the --loss of these, from the values of the scene and within its limits. The columns of \
 the data are side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) \
 and sd_deg, the standard deviation of the angle. Without sd_deg, the residuals give the standard deviation. If the scene's whisker \
 does not reach a point, a free parameter such as length_mm starts at a value with which it does; a note gives the value.
+
+With --loss soft-l1 or huber, a point pulls less the more standard deviations it is off: 1 degree without sd_deg. Outliers are \
+named by their row, and the standard errors come from the scatter of the residuals. The rows that pull most are those without which \
+an estimate would move by most of its standard errors.
 
 A warning names parameters that the points do not determine. youngs_modulus_gpa and profile_scale are always among them, because no \
 detachment depends on them. These parameters and parameters at a limit of the scene have no standard error.
@@ -41,9 +48,20 @@ pub struct FitArgs {
     /// Measured detachments; - is standard input
     #[arg(long, value_name = "FILE")]
     data: PathBuf,
+    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
+    #[arg(
+        long,
+        value_name = "NAME=OWN",
+        value_delimiter = ',',
+        requires = "data"
+    )]
+    columns: Vec<ColumnName>,
     /// Parameters to fit, separated by commas
     #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = parameter())]
     free: Vec<Parameter>,
+    /// Loss of residuals in standard deviations: soft-l1 and huber grow linearly beyond one, so that outliers pull less
+    #[arg(long, value_name = "LOSS", default_value = "squares", value_parser = loss())]
+    loss: FitLoss,
     /// Write the scene with the fitted values to FITTED.toml; - is standard output
     #[arg(short, long, value_name = "FITTED.toml")]
     output: Option<PathBuf>,
@@ -52,22 +70,33 @@ pub struct FitArgs {
     json: Option<PathBuf>,
 }
 
+/// Returns a parser of the names of losses.
+fn loss() -> impl TypedValueParser<Value = FitLoss> {
+    let names = PossibleValuesParser::new(FitLoss::ALL.map(FitLoss::name));
+    names.map(|name| {
+        let mut all = FitLoss::ALL.into_iter();
+        all.find(|loss| loss.name() == name).unwrap_or_default()
+    })
+}
+
 pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     data::check_stdin(&args.whisker.scene, &args.data)?;
     let scene = args.whisker.read(files, "fit")?;
-    let points = data::read(files, &args.data)?;
+    let points = data::read(files, &args.data, &args.columns)?;
     let mut open = |option, path: &Option<PathBuf>| {
         let output = path.as_deref().map(|path| files.output(option, path));
         output.transpose()
     };
     let toml = open("--output", &args.output)?;
     let json = open("--json", &args.json)?;
-    let found = fit(&scene, &points, &args.free).map_err(|why| match why {
-        FitError::Lacking { .. } | FitError::Twice(..) | FitError::Held { .. } => {
-            Failure::Input(format!("--free {why}"))
-        }
-        _ => why.into(),
-    })?;
+    let never = AtomicBool::new(false);
+    let found =
+        fit_until(&scene, &points, &args.free, args.loss, &never).map_err(|why| match why {
+            FitError::Lacking { .. } | FitError::Twice(..) | FitError::Held { .. } => {
+                Failure::Input(format!("--free {why}"))
+            }
+            _ => why.into(),
+        })?;
     if let Some(note) = found.moved_start(&scene, &points) {
         message(&format!("note: {note}"));
     }
@@ -131,11 +160,23 @@ fn document(fit: &Fit) -> Value {
             "rms_mm": own.rms_mm,
         })
     });
+    let pulls = fit.pulls.iter().map(|own| {
+        json!({
+            "line": own.line,
+            "residual_deg": own.residual_deg,
+            "weight": own.weight,
+            "parameter": own.parameter.name(),
+            "standard_errors": own.standard_errors,
+        })
+    });
+    let pulls: Vec<Value> = pulls.collect();
     json!({
         "not_a_fit": fit.not_a_fit.as_ref().map(ToString::to_string),
         "values": keyed(values),
         "standard_errors": keyed(errors),
         "correlation": keyed(rows.collect()),
+        "loss": fit.loss.name(),
+        "pulls": pulls,
         "chi_square": fit.chi_square,
         "degrees_of_freedom": fit.degrees_of_freedom,
         "rms_deg": comparison.rms_deg(),

@@ -2,9 +2,12 @@
 
 use super::super::data;
 use std::io::{self, Write};
-use whiskmap::fit::{Estimate, Fit};
+use whiskmap::fit::{Estimate, Fit, FitLoss};
 use whiskmap::scene::{digits, rounded};
 use whiskmap::terminal::StandardOutput;
+
+/// Number of rows with the strongest pulls that are printed.
+const PULLS: usize = 3;
 
 /// Returns the text of a missing standard error in the table.
 fn no_error(fit: &Fit, estimate: &Estimate) -> &'static str {
@@ -72,12 +75,30 @@ pub fn table(title: &str, fit: &Fit) -> io::Result<()> {
         }
     }
     let (chi_square, freedom) = (statistic(fit.chi_square), fit.degrees_of_freedom);
-    writeln!(
-        out,
-        "chi-square: {chi_square}, {freedom} degrees of freedom"
-    )?;
+    let name = match fit.loss {
+        FitLoss::Squares => "chi-square".to_owned(),
+        loss => format!("sum of the {} losses", loss.name()),
+    };
+    writeln!(out, "{name}: {chi_square}, {freedom} degrees of freedom")?;
     for (name, value) in data::summary(&fit.comparison) {
         writeln!(out, "{name}: {value}")?;
+    }
+    if !fit.pulls.is_empty() {
+        let strongest = fit.pulls.iter().take(PULLS);
+        let strongest = strongest.map(|own| {
+            let moved = rounded(own.standard_errors, 2);
+            format!(
+                "line {} ({} by {moved:+} standard errors)",
+                own.line,
+                own.parameter.name()
+            )
+        });
+        let strongest: Vec<String> = strongest.collect();
+        writeln!(
+            out,
+            "without these rows, values would move most: {}",
+            strongest.join(", ")
+        )?;
     }
     Ok(())
 }

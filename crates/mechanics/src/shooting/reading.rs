@@ -28,6 +28,15 @@ pub struct Reading {
     pub energy_nj: f64,
 }
 
+impl Reading {
+    /// Returns the size of the whole force between pole and whisker, in micronewtons: its normal part is [`Reading::force_un`], the other one
+    /// is friction. The pole alone puts a force on the whisker, so that it is the force on the base.
+    #[must_use]
+    pub fn contact_force_un(&self) -> f64 {
+        self.base_force_un.length()
+    }
+}
+
 /// Dimensionless numbers of a state from which its reading follows, or of several states in SIMD lanes. Lengths are in whisker lengths,
 /// angles in radians.
 #[derive(Clone, Copy, Debug, Default)]

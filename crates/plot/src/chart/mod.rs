@@ -47,6 +47,10 @@ pub struct Plot {
     /// Range `[low, high]` of the plot's vertical axis, in data units: lines and bands are clipped to it, and other contents beyond it
     /// are not drawn. `None` for the extent of all contents.
     pub y_range: Option<[f64; 2]>,
+    /// Range `[left, right]` of the plot's horizontal axis, in data units; `None` for the extent of all contents. Lines beyond it are drawn.
+    pub x_range: Option<[f64; 2]>,
+    /// True if a plot below has the numbers and the label of the horizontal axis, which both share.
+    pub is_above: bool,
     /// Axes of the plot that are logarithmic, `[x, y]`. On these, numbers that are not positive are not drawn; if any is logarithmic,
     /// neither are discs and insets.
     pub logarithmic: [bool; 2],
@@ -69,6 +73,7 @@ impl Plot {
             discs: Vec::new(),
             inset: None,
             equal_axes: false,
+            x_range: self.x_range.map(|range| range.map(|end| on(0, end))),
             y_range: self.y_range.map(|range| range.map(|end| on(1, end))),
             ..self.clone()
         };

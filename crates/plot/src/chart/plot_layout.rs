@@ -7,7 +7,7 @@ use crate::frame::axes::{Axes, FRAME};
 use crate::frame::heading::{DOT, Heading, LINE, LegendEntry, LegendSymbol};
 use crate::frame::regions::RegionNames;
 use crate::frame::spacing::Spacing;
-use crate::frame::ticks::{self, TickChooser, fraction};
+use crate::frame::ticks::{self, Tick, TickChooser, fraction};
 use crate::frame::units;
 use crate::picture::palette::{Fill, GREY, Rgb, SHADE_DARK, SHADE_LIGHT, WHITE};
 use crate::picture::{Area, Pen, Picture};
@@ -54,7 +54,14 @@ impl<'a> PlotLayout<'a> {
         });
         let (x_label, x_unit) = units::readable(&plot.x_label, x.1);
         let (y_label, y_unit) = units::readable(&plot.y_label, y.1);
-        let x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], x.0);
+        let mut x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], x.0);
+        let x_label = match plot.is_above {
+            true => String::new(),
+            false => x_label,
+        };
+        if plot.is_above {
+            x_ticks.iter_mut().for_each(Tick::clear);
+        }
         let y_ticks = match &*plot.y_names {
             [] => ticks::upwards(window.y.map(|end| end / y_unit), size[1], y.0),
             names => ticks::named(names, window.y),

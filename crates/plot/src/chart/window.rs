@@ -26,6 +26,7 @@ impl Window {
     /// Chooses ranges that show all contents of a plot, for a body of `pixels` `[width, height]`.
     pub fn of(plot: &Plot, pixels: [f64; 2]) -> Self {
         let mut extents = [0, 1].map(|axis| extent(plot, axis));
+        extents[0] = plot.x_range.unwrap_or(extents[0]);
         extents[1] = plot.y_range.unwrap_or(extents[1]);
         let [x, y] = if plot.equal_axes {
             equal_units(extents, pixels)

@@ -91,7 +91,7 @@ impl Axes {
     }
 }
 
-/// Returns true for an axis without ticks and label.
+/// Returns true for an axis without texts.
 fn is_bare(ticks: &[Tick], label: &TextBlock) -> bool {
-    ticks.is_empty() && label.lines.iter().all(String::is_empty)
+    ticks.iter().all(|tick| tick.label.is_empty()) && label.lines.iter().all(String::is_empty)
 }

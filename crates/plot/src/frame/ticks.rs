@@ -22,6 +22,11 @@ impl Tick {
         Self { at, label, width }
     }
 
+    /// Removes the label of the tick.
+    pub fn clear(&mut self) {
+        (self.label, self.width) = (String::new(), 0.0);
+    }
+
     /// Creates a tick of a logarithmic axis. Its label has its own decimals: common labels would all have those of the smallest value.
     pub fn of_power(at: f64, value: f64) -> Self {
         Self::new(at, labels(&[value]).concat())

@@ -70,6 +70,12 @@ pub struct ColourScale {
 }
 
 impl ColourScale {
+    /// Returns true if the scale is logarithmic.
+    #[must_use]
+    pub const fn is_log(&self) -> bool {
+        self.log
+    }
+
     /// Chooses a colour scale for the summarised values.
     ///
     /// # Errors

@@ -15,6 +15,8 @@ use crate::picture::{Anchor, Area, Picture, font};
 const SHEET: [f64; 2] = [1720.0, 1500.0];
 /// Largest width and height of a panel of a contact sheet, in pixels.
 const PANEL: f64 = 560.0;
+/// Room above where the heat map has no title.
+const UNTITLED: f64 = 24.0;
 /// Distance between notes, in pixels.
 const NOTE: f64 = 34.0;
 /// Layouts until panels and the labels around them agree: the labels depend on the panels.
@@ -29,6 +31,8 @@ pub struct HeatMapLayout<'a> {
     /// Notes on the axes of the panels, where the axes of the picture are those of the contact sheet.
     notes: Vec<TextBlock>,
     title: TextBlock,
+    /// Height of the title and the room around it.
+    head: f64,
     heading: Heading,
     /// Space to the left of all panels.
     left: f64,
@@ -120,7 +124,11 @@ impl<'a> HeatMapLayout<'a> {
         let heading = Heading::plan([""; 2], legend, body, spacing);
         let alone = map.regions.as_ref().filter(|_| !is_sheet);
         let regions = RegionNames::plan(alone, map.x.fraction(0.0), area[0]);
-        let top = spacing.head_room + title.below_first() + heading.height + regions.height();
+        let head = match &*map.title {
+            "" => UNTITLED,
+            _ => spacing.head_room + title.below_first(),
+        };
+        let top = head + heading.height + regions.height();
         let body = Area::new([left, top], area);
         let noted: f64 = notes.iter().map(|note| NOTE + note.below_first()).sum();
         Self {
@@ -130,6 +138,7 @@ impl<'a> HeatMapLayout<'a> {
             regions,
             notes,
             title,
+            head,
             heading,
             left,
             head_left: left - before,
@@ -153,8 +162,7 @@ impl<'a> HeatMapLayout<'a> {
         let mut picture = Picture::new(self.units, self.size);
         let title = [self.head_left, self.spacing.title_line];
         picture.block(&self.title, title, Anchor::Left);
-        let head = self.spacing.head_room + self.title.below_first();
-        self.heading.draw(&mut picture, [left, head], left);
+        self.heading.draw(&mut picture, [left, self.head], left);
         for index in 0..self.panels.count {
             let area = self.panels.area(body, index);
             map.draw_panel(&mut picture, area, &panel(index)?, self.line);

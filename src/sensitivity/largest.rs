@@ -1,0 +1,59 @@
+//! Derivatives of the largest loads of pushes.
+
+use super::{Derivatives, NoDerivative, Variable, detachments, state};
+use crate::scene::{Pole, Whisker};
+use crate::trace::{NoState, PushLoad, PushPeak, StableBranch};
+use whiskmap_mechanics::rod::Side;
+
+/// Largest size of a load during a push, with its derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LargestLoad {
+    /// Largest size of the load, with its place.
+    pub peak: PushPeak,
+    /// Derivatives of the largest size by each variable, in the unit of the load per unit of the variable, `[variable]`, or the reason why
+    /// there is none.
+    pub by: Vec<Result<f64, NoDerivative>>,
+}
+
+/// Computes the largest size of `load` in a push of `whisker` on `side`, from first touch at `distance_mm` to the end, with its derivatives by each of
+/// `variables`.
+///
+/// The largest size is that of the end, or a maximum before it. There the derivative by the push angle is 0, so that the derivatives at a fixed push angle are
+/// those of the maximum. Strains have no derivatives.
+///
+/// # Errors
+/// The whisker at rest does not reach the pole, or the continuation fails.
+pub fn largest(
+    whisker: &Whisker,
+    pole: &Pole,
+    side: Side,
+    distance_mm: f64,
+    load: PushLoad,
+    variables: &[Variable],
+) -> Result<LargestLoad, NoState> {
+    let peak = StableBranch::new(whisker, pole, side, distance_mm)?.peak(load);
+    let none = |why| (0.0, vec![Err(why); variables.len()]);
+    let (moment, by) = match peak.before_end_deg {
+        None => {
+            let end = detachments(whisker, pole, side, &[distance_mm], variables).pop();
+            end.map_or_else(
+                || none(NoDerivative::NoDetachment),
+                |own| (own.end.base_moment_nnm.unwrap_or_default(), own.by),
+            )
+        }
+        Some(push_deg) => {
+            let found = state(whisker, pole, distance_mm, push_deg, variables)?;
+            (found.point.base_moment_nnm, found.by)
+        }
+    };
+    let quantity = |by: Derivatives| match load {
+        PushLoad::ContactForce => Ok(by.contact_force_un),
+        PushLoad::BaseMoment => Ok(moment.signum() * by.base_moment_nnm),
+        PushLoad::Strain => Err(NoDerivative::Strain),
+    };
+    let by = by.into_iter().map(|by| by.and_then(quantity));
+    Ok(LargestLoad {
+        peak,
+        by: by.collect(),
+    })
+}

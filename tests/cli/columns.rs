@@ -1,0 +1,104 @@
+//! `--columns`: own names of columns, in all commands that read tables.
+
+use super::{Place, SCENE};
+
+/// Every command with a table: the option of the table, its header and a row, and the own names with a header to match.
+const TABLES: [(&[&str], &str, &str, &str, &str); 5] = [
+    (
+        &["curve", "scene.toml", "--data"],
+        "side,distance_mm,push_angle_deg",
+        "cb,15.66,15.6",
+        "push=angle,distance=d",
+        "side,d,angle",
+    ),
+    (
+        &["fit", "scene.toml", "--free", "tip_radius_um", "--data"],
+        "side,distance_mm,push_angle_deg",
+        "cb,15.66,15.6",
+        "push_angle_deg=angle",
+        "side,distance_mm,angle",
+    ),
+    (
+        &["whisk", "scene.toml", "--distance", "15", "--angles"],
+        "time_s,angle_deg",
+        "0,0\n1,3",
+        "angle=Base,time=t",
+        "t,Base",
+    ),
+    (
+        &["force", "scene.toml", "--model", "--frames"],
+        "time_s,curvature_per_mm,at_arc_length_mm,contact_x_mm,contact_y_mm",
+        "0,0.03,3,,",
+        "curvature_per_mm=kappa,time=t",
+        "t,kappa,at_arc_length_mm,contact_x_mm,contact_y_mm",
+    ),
+    (
+        &["locate", "scene.toml", "--readings"],
+        "base_moment_nnm,base_force_y_un",
+        "60,6",
+        "base_moment=Mz,base_force_y=Fy",
+        "Mz,Fy",
+    ),
+];
+
+#[test]
+fn own_names_of_columns_are_the_expected_ones() {
+    let place = Place::with(SCENE);
+    for (command, header, row, names, own) in TABLES {
+        place.write("table.csv", &format!("{header}\n{row}\n"));
+        let expected = place.run(&[command, &["table.csv"]].concat());
+        assert_eq!(expected.code, Some(0), "{expected:?}");
+        place.write("table.csv", &format!("{own}\n{row}\n"));
+        let found = place.run(&[command, &["table.csv", "--columns", names]].concat());
+        assert_eq!(
+            (found.code, &found.out),
+            (Some(0), &expected.out),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
+fn names_of_columns_that_do_not_fit_are_refused() {
+    let place = Place::with(SCENE);
+    place.write(
+        "table.csv",
+        "side,d,angle,angle,push_chord_deg\ncb,15.66,15.6,1,2\n",
+    );
+    let curve = ["curve", "scene.toml", "--data", "table.csv", "--columns"];
+    for (names, said) in [
+        (
+            "distanze=d",
+            "table.csv:1: columns distanze=d: `distanze` is not known; must be one of side, distance_mm, push_angle_deg, \
+             push_chord_deg, kind, sd_deg; did you mean `distance_mm`?",
+        ),
+        (
+            "distance=e",
+            "columns distance=e: `e` is no column of the file; found side, d, angle, angle, push_chord_deg",
+        ),
+        (
+            "push=angle",
+            "columns push=angle: `angle` must be one column of the file, and is several",
+        ),
+        (
+            "distance=d,distance_mm=side",
+            "columns distance_mm=side: `distance_mm` is given twice",
+        ),
+        ("distance=d,kind=d", "columns kind=d: `d` is given twice"),
+        (
+            "push_chord_deg=d",
+            "columns push_chord_deg=d: the file has a column `push_chord_deg`, too; leave one of both out",
+        ),
+        (
+            "distance",
+            "must be an expected name and an own one, such as distance_mm=d",
+        ),
+        ("=d", "must be an expected name and an own one"),
+    ] {
+        place
+            .run(&[&curve[..], &[names]].concat())
+            .assert_refused(&[said]);
+    }
+    let no_table = ["curve", "scene.toml", "--columns", "distance=d"];
+    place.run(&no_table).assert_refused(&["--data <FILE>"]);
+}
