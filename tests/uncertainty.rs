@@ -155,6 +155,32 @@ fn every_row_of_a_profile_varies() {
     }
 }
 
+/// A measured radius changes all smoothed ones, and the cone beyond them.
+#[test]
+fn every_row_of_a_smooth_profile_varies() {
+    let rows: Vec<[f64; 2]> = (0..9)
+        .map(f64::from)
+        .map(|i| [2.0 * i, 30.0 - 2.5 * i + 0.1 * i * i])
+        .collect();
+    let text = format!(
+        "
+        title = 'smooth'
+        whisker.length_mm = 16
+        whisker.youngs_modulus_gpa = 3
+        whisker.profile = {{ rows = {rows:?}, smooth = true, tip_extension_mm = 2 }}
+        pole.radius_mm = 0.25
+        grid = {{ push_angle_deg = [10], distance_mm = [9] }}
+        uncertainty.profile_radius_um = 1e-3"
+    );
+    let scene = Scene::parse(&text, "smooth.toml").unwrap();
+    assert_eq!(scene.smooth_radii().unwrap().degree, 2);
+    for row in spreads(&scene, 1000, 1) {
+        let [sd, foretold] = [row.sd_deg, row.sd_first_order_deg].map(Option::unwrap);
+        // 1000 samples leave 2.2 %.
+        assert!((sd / foretold - 1.0).abs() < 0.07, "{row:?}");
+    }
+}
+
 #[test]
 fn equal_seeds_draw_equal_whiskers_on_any_number_of_threads() {
     let scene = scene("length_mm = 0.4\ntip_radius_um = 0.5");

@@ -17,7 +17,7 @@ _Column = tuple[str, NDArray[Any] | list[str], str | None, str]
 _Description = tuple[
     str,
     dict[str, float],
-    list[list[float]] | None,
+    tuple[list[list[float]], bool] | None,
     tuple[list[list[float]], int | None] | None,
     list[tuple[str, Any]],
     dict[str, float] | None,
@@ -48,6 +48,7 @@ class CheckedScene:
     def to_toml(self) -> str: ...
     def warnings(self) -> list[str]: ...
     def rest_fit(self) -> tuple[int, float, bool] | None: ...
+    def profile_fit(self) -> tuple[int, float] | None: ...
     def __eq__(self, other: object, /) -> bool: ...
 
 @final

@@ -4,8 +4,10 @@
 //! `|r + J p|` subject to `|D p| <= radius`. `D` has the largest lengths so far of the columns of `J`. The singular values of
 //! `J D^-1` give the step for every damping, and so the damping at which the step reaches the radius.
 
+mod degree;
 mod svd;
 
+pub use degree::smallest_degree;
 pub use svd::{Svd, dot, norm};
 
 /// Most evaluations of the residuals, per parameter.

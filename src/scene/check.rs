@@ -10,7 +10,7 @@ use super::error::SceneFault;
 use super::grid::{FARTHEST, Grid, NEAREST};
 use super::limits::{NumberLimits, digits};
 use super::parameter::{MOST_STRETCH, Parameter, STIFFEST_TIP};
-use super::profile;
+use super::profile::{self, MeasuredRadii};
 use super::shape;
 use super::sweep;
 use super::toml::SceneText;
@@ -31,11 +31,14 @@ impl SceneBuilder {
     /// Checks the description and returns the data of the scene, with `text` as its TOML.
     pub(super) fn checked(&self, text: SceneText) -> Result<SceneData, SceneFault> {
         check_title(&self.title)?;
+        if let Some(traced) = self.traced.as_ref().filter(|_| self.is_length_traced) {
+            shape::check_unit(traced)?;
+        }
         let lengths_mm = sweep::lengths_mm(self)?;
         let grid = grid(self, lengths_mm)?;
         sweep::refuse_at_odds(self)?;
         let at = |numbers: &Numbers| {
-            let whisker = whisker(numbers, self.rows.as_deref(), self.traced.as_deref())?;
+            let whisker = whisker(numbers, self.measured.as_ref(), self.traced.as_deref())?;
             let pole = pole(numbers, &whisker, &grid)?;
             Ok((whisker, pole))
         };
@@ -83,12 +86,12 @@ fn check_number(
 
 fn whisker(
     numbers: &Numbers,
-    rows: Option<&[[f64; 2]]>,
+    measured: Option<&MeasuredRadii>,
     traced: Option<&TracedShape>,
 ) -> Result<Whisker, SceneFault> {
     let check = |parameter, limits| check_number(numbers, parameter, limits);
     let length_mm = check(Parameter::LengthMm, Parameter::LengthMm.number_limits())?;
-    let radii = profile::radii(numbers, rows, length_mm)?;
+    let radii = profile::radii(numbers, measured, length_mm)?;
     let length_mm = radii.length_mm;
     let modulus = numbers.get(Parameter::YoungsModulusGpa);
     let unit = modulus.and_then(|gpa| other_unit(gpa, MODULUS_GPA, &MODULUS_UNITS));

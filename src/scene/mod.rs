@@ -19,6 +19,7 @@ mod profile;
 )]
 mod scene;
 mod shape;
+mod smooth;
 mod surface;
 mod sweep;
 mod toml;
@@ -38,6 +39,7 @@ pub use limits::{digits, rounded};
 pub use parameter::Parameter;
 pub(crate) use parameter::derivative_columns;
 pub use scene::Scene;
+pub use smooth::SmoothRadii;
 pub use surface::Surface;
 pub use toml::SceneText;
 pub use whisker::{Curvature, EulerSpiral, Pole, SweptWhisker, Whisker};

@@ -126,3 +126,37 @@ fn of_measured_radii_the_largest_counts() {
     );
     assert_eq!(measured("[[0, 30], [10, 8], [20, 0.1]]"), [""; 0]);
 }
+
+/// Rows that jump are named with the size of the jumps; smooth ones and too few are not.
+#[test]
+fn radii_that_scatter_are_named() {
+    let rows = |error: f64, count: u32| -> String {
+        let row = |i: u32| {
+            let s = 20.0 * f64::from(i) / f64::from(count - 1);
+            // A curved profile whose errors have all signs.
+            let sign = [1.0, -1.0, -0.5, 0.8, -0.9][i as usize % 5];
+            [s, 30.0 - 2.0 * s + 0.03 * s * s + error * sign]
+        };
+        format!("{:?}", (0..count).map(row).collect::<Vec<_>>())
+    };
+    let found = |rows: &str, more: &str| {
+        let profile = format!("profile = {{ rows = {rows}{more} }}");
+        let text = BASE.replace("base_radius_um = 30.0", &profile);
+        warnings(&text.replace("tip_radius_um = 1.5", ""))
+    };
+    let rough = found(&rows(0.5, 41), "");
+    assert_eq!(rough.len(), 1, "{rough:?}");
+    println!("{rough:?}");
+    let said = "whisker.profile.rows: radii scatter by 0.5";
+    assert!(rough[0].starts_with(said), "{rough:?}");
+    assert!(
+        rough[0].contains(
+            "smooth = true replaces the radii by a polynomial through the rows: degree 2"
+        )
+    );
+    assert_eq!(found(&rows(0.5, 41), ", smooth = true"), [""; 0]);
+    assert_eq!(found(&rows(0.5, 11), ""), [""; 0]);
+    for error in [0.0, 0.05] {
+        assert_eq!(found(&rows(error, 41), ""), [""; 0]);
+    }
+}

@@ -132,6 +132,8 @@ fn document(fit: &Fit) -> Value {
             "rms_mm": own.rms_mm,
         })
     });
+    let smooth = fit.scene.smooth_radii();
+    let smooth = smooth.map(|own| json!({ "degree": own.degree, "rms_um": own.rms_um }));
     json!({
         "not_a_fit": fit.not_a_fit.as_ref().map(ToString::to_string),
         "values": keyed(values),
@@ -144,5 +146,6 @@ fn document(fit: &Fit) -> Value {
         "left_out": comparison.left_out().count(),
         "points": comparison.rows,
         "traced": traced,
+        "smooth_radii": smooth,
     })
 }
