@@ -83,11 +83,13 @@ def naming_rows(name: str, given: Any) -> Iterator[None]:
 
 
 def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> str:
-    """Return the text of a CSV file, or columns by name as such a text; None is an empty cell."""
+    """Return the text of a CSV file, or columns by name as such a text; None is an empty cell. Coordinates of a dataset are columns."""
     import numpy as np
 
     if isinstance(columns, (str, os.PathLike)):
         return Path(columns).read_text(encoding="utf-8-sig")
+    if hasattr(columns, "reset_coords"):
+        columns = columns.reset_coords()
     if not hasattr(columns, "keys"):
         raise TypeError(f"{name} = {columns!r}: must be the path of a CSV file, or columns by name")
     listed = {str(own): list(np.atleast_1d(np.asarray(columns[own]))) for own in columns.keys()}

@@ -4,7 +4,7 @@ use csv::{ReaderBuilder, StringRecord};
 
 /// Line of a CSV file: its cells, and its number from 1.
 #[derive(Clone, Debug)]
-pub(super) struct CsvLine {
+pub(crate) struct CsvLine {
     pub number: usize,
     pub cells: StringRecord,
 }
