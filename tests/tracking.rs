@@ -121,7 +121,9 @@ fn an_arc_of_deeplabcut_comes_back() {
         "{notes}"
     );
     assert!(
-        notes.contains("degree 0: the median of 6 frames, chosen by cross-validation"),
+        notes.contains(
+            "of whole whiskers have a curvature of degree 0, chosen by cross-validation in 6 frames"
+        ),
         "{notes}"
     );
     assert!(!notes.contains("mirrored"), "{notes}");
@@ -641,7 +643,7 @@ fn options_that_do_not_fit_are_refused() {
         (
             &film,
             with(&|own| own.curvature_at_mm = Some(20.5)),
-            "curvature_at_mm = 20.5: must be at least 0 and less than 20, the median length in mm",
+            "curvature_at_mm = 20.5: must be between 0 and ",
         ),
         (
             &film,

@@ -23,6 +23,7 @@ pub struct Options {
     likelihood: f64,
     follicle_px: Option<[f64; 2]>,
     curvature_at_mm: Option<f64>,
+    fit_to_mm: Option<f64>,
     degree: Option<usize>,
     mirror: Option<bool>,
     face_axis: Option<String>,
@@ -54,6 +55,7 @@ impl Options {
         own.likelihood = self.likelihood;
         own.follicle_px = self.follicle_px;
         own.curvature_at_mm = self.curvature_at_mm;
+        own.fit_to_mm = self.fit_to_mm;
         own.degree = self.degree;
         own.mirror = self.mirror;
         own.face_axis = match self.face_axis.as_deref() {

@@ -71,6 +71,7 @@ def read_tracking(
     likelihood: float = 0.9,
     follicle_px: Sequence[float] | None = None,
     curvature_at_mm: float | None = None,
+    fit_to_mm: float | None = None,
     degree: int | None = None,
     mirror: bool | None = None,
     face_axis: Literal["x", "y"] | None = None,
@@ -101,8 +102,11 @@ def read_tracking(
         Position of the follicle: the end that is nearer to it is the base. If left out, the base is the end that moves less.
     curvature_at_mm : float, optional
         Arclength from the base at which the curvature is given; a quarter of the median length if left out.
+    fit_to_mm : float, optional
+        Distance from the base up to which points give base angle and curvature: 0.6 of the median length, or as far as 8 points reach, if left
+        out.
     degree : int, optional
-        Degree of the curvature of the curve through the points of a frame, 0 to 6; cross-validation chooses it if left out.
+        Degree of the curvature of the curves through the points of a frame, 0 to 6; cross-validation chooses it if left out.
     mirror : bool, optional
         Whether to mirror the image. If left out, it is mirrored if the whisker turns clockwise from base to tip.
     face_axis : {"x", "y"}, optional
@@ -140,6 +144,7 @@ def read_tracking(
         "likelihood": number("likelihood", likelihood),
         "follicle_px": None if follicle_px is None else _pair("follicle_px", follicle_px),
         "curvature_at_mm": None if curvature_at_mm is None else number("curvature_at_mm", curvature_at_mm),
+        "fit_to_mm": None if fit_to_mm is None else number("fit_to_mm", fit_to_mm),
         "degree": _whole("degree", degree),
         "mirror": mirror,
         "face_axis": face_axis,
@@ -177,11 +182,11 @@ def _text(path: Path) -> str:
         if file.read(len(_HDF5)) != _HDF5:
             return csv_text("files", path)
     require("ndx_whisk", "nwb")
-    import ndx_whisk
+    import ndx_whisk  # noqa: F401 - registers the type
     import pynwb
 
     with pynwb.NWBHDF5IO(os.fspath(path), mode="r", load_namespaces=True) as io:
-        tables = [own for own in io.read().objects.values() if isinstance(own, ndx_whisk.WhiskerMeasurementTable)]
+        tables = [own for own in io.read().objects.values() if own.neurodata_type == "WhiskerMeasurementTable"]
         if len(tables) != 1:
             raise ValueError(f"{path}: must have one WhiskerMeasurementTable of ndx-whisk, has {len(tables)}")
         return csv_text("files", {name: np.asarray(tables[0][name].data[:]) for name in tables[0].colnames})

@@ -23,7 +23,7 @@ const MOST_VALIDATED: usize = 5000;
 const TOLERANCE: f64 = 1e-13;
 
 /// Squared distance, in units of the squared length, that counts as 0: points from an exact curve.
-const EXACT: f64 = 1e-24;
+pub const EXACT: f64 = 1e-24;
 
 /// Number of points along which the length is estimated before the first fit: noise hardly lengthens so coarse a line.
 const COARSE: usize = 16;
@@ -170,9 +170,16 @@ impl<'a> TracedPoints<'a> {
     /// # Errors
     /// If an iteration does not converge.
     pub fn choose(&self, curves: &[CurveFit]) -> Result<usize, &'static str> {
-        let squares = curves.iter().map(|curve| self.left_out(curve));
-        let squares: Vec<Vec<f64>> = squares.collect::<Result<_, _>>()?;
-        Ok(smallest_degree(&squares, EXACT))
+        Ok(smallest_degree(&self.all_left_out(curves)?, EXACT))
+    }
+
+    /// Returns the squared distances of the points of the cross-validation from the curves fitted without them, `[degree][point]`, in units of
+    /// the squared length of each curve.
+    ///
+    /// # Errors
+    /// If an iteration does not converge.
+    pub fn all_left_out(&self, curves: &[CurveFit]) -> Result<Vec<Vec<f64>>, &'static str> {
+        curves.iter().map(|curve| self.left_out(curve)).collect()
     }
 
     /// Squared distances of the points of the cross-validation from the curves fitted without them, `[point]`, in units of the squared length.

@@ -3,7 +3,8 @@
 use super::options::{FaceAxis, TrackingError, TrackingOptions};
 use super::orient::median;
 use super::{CurvedFrame, ImageFrame, NoFrame};
-use crate::traced::{MOST_DEGREE, TracedShape};
+use crate::scene::{digits, rounded};
+use crate::traced::{MOST_DEGREE, TracedShape, common_degree};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -18,8 +19,12 @@ const MORE_POINTS: usize = 4;
 /// Number of points from which on cross-validation chooses the degree.
 const MANY_POINTS: usize = 8;
 
-/// Number of frames, from all over the film, of whose degrees the median counts.
-const CHOSEN_FRAMES: usize = 15;
+/// Number of frames, from all over the film, whose points choose the degree together.
+const CHOSEN_FRAMES: usize = 40;
+
+/// Part of the median length, from the base on, whose points give base angle and curvature. A loaded whisker bends most beyond it, where it is
+/// thin; a polynomial that follows the whole whisker has a wrong angle at its end.
+const NEAR: f64 = 0.6;
 
 /// Angle by which a whisker turns from base to tip at least, in radians, to have a concave side.
 const STRAIGHT: f64 = 0.02;
@@ -30,18 +35,26 @@ const PLACES: u32 = 64;
 /// Most Newton steps to the place that is nearest to the pole.
 const MOST_STEPS: usize = 20;
 
-/// Curve of a whisker in one frame.
+/// Curve in the plane of the image.
 #[derive(Clone, Debug)]
-pub(super) struct FrameCurve {
+struct PlaneCurve {
     /// Position of the base, in mm.
     base: DVec2,
     /// Angle of the tangent at the base, in radians, counterclockwise from the x axis.
-    pub angle: f64,
+    angle: f64,
     /// Curvature over the length.
     curvature: CurvaturePolynomial,
     /// Length of the curve, in mm.
-    pub length_mm: f64,
-    /// Root mean square of the points' distances from the curve, in mm; `None` without points.
+    length_mm: f64,
+}
+
+/// Curves of a whisker in one frame: near its base, where a low degree of the curvature is enough, and of the whole whisker, which bends more
+/// where it is thin.
+#[derive(Clone, Debug)]
+pub(super) struct FrameCurve {
+    near: PlaneCurve,
+    whole: PlaneCurve,
+    /// Root mean square of the points' distances from the curve of the whole whisker, in mm; `None` without points.
     pub rms_mm: Option<f64>,
 }
 
@@ -56,15 +69,14 @@ pub(super) struct NearestPlace {
     pub offset_mm: f64,
 }
 
-impl FrameCurve {
-    /// Returns the curvature at the arclength `s_mm`, in 1/mm.
-    pub fn curvature_per_mm(&self, s_mm: f64) -> f64 {
-        self.curvature.at(s_mm / self.length_mm) / self.length_mm
-    }
-
-    /// Returns the position at the arclength `s_mm` in the frame of the base, in mm.
-    pub fn position_mm(&self, s_mm: f64) -> DVec2 {
-        self.rest().at_arclength(s_mm / self.length_mm).0 * self.length_mm
+impl PlaneCurve {
+    fn of(fit: &TracedShape) -> Self {
+        Self {
+            base: fit.base_mm.into(),
+            angle: fit.base_angle,
+            curvature: fit.curvature,
+            length_mm: fit.length_mm,
+        }
     }
 
     fn rest(&self) -> Rest {
@@ -74,32 +86,27 @@ impl FrameCurve {
         })
     }
 
-    /// Returns the place that is nearest to the pole's centre, by Newton's method from the nearest of some places.
-    pub fn nearest(&self, pole_mm: [f64; 2]) -> NearestPlace {
-        let rest = self.rest();
-        let pole = DVec2::from_angle(-self.angle).rotate(DVec2::from(pole_mm) - self.base);
-        let pole = pole / self.length_mm;
-        let far = |s: f64| rest.at_arclength(s).0.distance_squared(pole);
+    /// Returns the place that is nearest to a point in mm, in lengths of the curve, and the signed distance of the point in mm, positive on
+    /// the left; by Newton's method from the nearest of some places.
+    fn nearest(&self, rest: &Rest, point_mm: DVec2) -> (f64, f64) {
+        let point = DVec2::from_angle(-self.angle).rotate(point_mm - self.base) / self.length_mm;
+        let far = |s: f64| rest.at_arclength(s).0.distance_squared(point);
         let places = (0..=PLACES).map(|i| f64::from(i) / f64::from(PLACES));
         let first = places.min_by(|one, other| far(*one).total_cmp(&far(*other)));
         let mut s = first.unwrap_or_default();
         for _ in 0..MOST_STEPS {
-            let (point, tangent) = rest.at_arclength(s);
-            let slowed = 1.0 - (pole - point).dot(tangent.perp()) * self.curvature.at(s);
-            let next = (s + (pole - point).dot(tangent) / slowed.max(0.1)).clamp(0.0, 1.0);
+            let (own, tangent) = rest.at_arclength(s);
+            let slowed = 1.0 - (point - own).dot(tangent.perp()) * self.curvature.at(s);
+            let next = (s + (point - own).dot(tangent) / slowed.max(0.1)).clamp(0.0, 1.0);
             let step = (next - s).abs();
             s = next;
             if step < 4.0 * f64::EPSILON {
                 break;
             }
         }
-        let (point, tangent) = rest.at_arclength(s);
-        let side = tangent.perp_dot(pole - point).signum();
-        NearestPlace {
-            at_mm: point * self.length_mm,
-            angle: self.curvature.angle(s),
-            offset_mm: side * point.distance(pole) * self.length_mm,
-        }
+        let (own, tangent) = rest.at_arclength(s);
+        let side = tangent.perp_dot(point - own).signum();
+        (s, side * own.distance(point) * self.length_mm)
     }
 
     /// Returns the curve with the other sign of the y axis.
@@ -108,6 +115,57 @@ impl FrameCurve {
             base: DVec2::new(self.base.x, -self.base.y),
             angle: -self.angle,
             curvature: CurvaturePolynomial::new(self.curvature.legendre().map(|own| -own)),
+            ..self
+        }
+    }
+}
+
+impl FrameCurve {
+    /// Returns the angle of the tangent at the base, in radians, counterclockwise from the x axis.
+    pub const fn angle(&self) -> f64 {
+        self.near.angle
+    }
+
+    /// Returns the length of the whisker, in mm.
+    pub const fn length_mm(&self) -> f64 {
+        self.whole.length_mm
+    }
+
+    /// Returns the length of the part whose curvature is known best, in mm.
+    pub const fn near_mm(&self) -> f64 {
+        self.near.length_mm
+    }
+
+    /// Returns the curvature at the arclength `s_mm`, in 1/mm.
+    pub fn curvature_per_mm(&self, s_mm: f64) -> f64 {
+        let near = &self.near;
+        near.curvature.at(s_mm / near.length_mm) / near.length_mm
+    }
+
+    /// Returns the position at the arclength `s_mm` in the frame of the base, in mm.
+    pub fn position_mm(&self, s_mm: f64) -> DVec2 {
+        let near = &self.near;
+        near.rest().at_arclength(s_mm / near.length_mm).0 * near.length_mm
+    }
+
+    /// Returns the place of the whole whisker that is nearest to the pole's centre.
+    pub fn nearest(&self, pole_mm: [f64; 2]) -> NearestPlace {
+        let Self { near, whole, .. } = self;
+        let rest = whole.rest();
+        let (s, offset_mm) = whole.nearest(&rest, pole_mm.into());
+        let own = rest.at_arclength(s).0 * whole.length_mm;
+        let at = whole.base + DVec2::from_angle(whole.angle).rotate(own);
+        NearestPlace {
+            at_mm: DVec2::from_angle(-near.angle).rotate(at - near.base),
+            angle: whole.angle + whole.curvature.angle(s) - near.angle,
+            offset_mm,
+        }
+    }
+
+    fn mirrored(self) -> Self {
+        Self {
+            near: self.near.mirrored(),
+            whole: self.whole.mirrored(),
             ..self
         }
     }
@@ -152,17 +210,12 @@ impl<'a> Curves<'a> {
                 let must = "must be left out: only measurements of whisk have angles".to_owned();
                 return Err(super::refused("face_axis", axis, must));
             }
-            let degree = match options.degree {
-                Some(degree) => degree,
-                None => degree(frames, scale, cancel, notes),
-            };
-            let curve = |own: &ImageFrame| traced(own, degree, scale, cancel);
-            frames.par_iter().map(curve).collect::<Vec<_>>()
+            traced_frames(frames, options, cancel, notes)
         };
         let turns = curves
             .iter()
             .flatten()
-            .map(|own: &FrameCurve| own.curvature.angle(1.0));
+            .map(|own: &FrameCurve| own.whole.curvature.angle(1.0));
         let turn = median(turns);
         let is_mirrored = options.mirror.unwrap_or(turn < -STRAIGHT);
         if is_mirrored && options.mirror.is_none() {
@@ -225,66 +278,101 @@ fn points_mm(frame: &ImageFrame, scale: f64) -> Option<Vec<[f64; 2]>> {
     Some(points.map(|[x, y]| [scale * x, -scale * y]).collect())
 }
 
-/// The degree for all frames: the median of those that cross-validation chooses in some frames, or one that leaves points over.
-fn degree(
+/// The curves through the points of all frames: near the base, and whole. All frames have the same degrees.
+fn traced_frames(
     frames: &[ImageFrame],
-    scale: f64,
+    options: &TrackingOptions,
+    cancel: &AtomicBool,
+    notes: &mut Vec<String>,
+) -> Vec<Result<FrameCurve, NoFrame>> {
+    let points = frames
+        .iter()
+        .map(|own| points_mm(own, options.mm_per_pixel));
+    let points: Vec<Option<Vec<[f64; 2]>>> = points.collect();
+    let known = || points.iter().flatten();
+    let far =
+        |own: &[[f64; 2]], i: usize| libm::hypot(own[i][0] - own[0][0], own[i][1] - own[0][1]);
+    let length = |own: &Vec<[f64; 2]>| {
+        let steps = own.windows(2);
+        steps
+            .map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]))
+            .sum::<f64>()
+    };
+    let length_mm = median(known().map(length));
+    let few = median(known().map(|own| far(own, (MANY_POINTS - 1).min(own.len() - 1))));
+    // A little more, so that rounding leaves no point out.
+    let reach_mm = options
+        .fit_to_mm
+        .unwrap_or_else(|| (NEAR * length_mm).max(few + 1e-3 * length_mm));
+    let near = |own: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+        let first = own
+            .iter()
+            .enumerate()
+            .take_while(|(i, _)| far(own, *i) <= reach_mm);
+        first.map(|(_, point)| *point).collect()
+    };
+    let mut degree_of = |shapes: Vec<Vec<[f64; 2]>>, what: &str| {
+        options
+            .degree
+            .unwrap_or_else(|| degree(&shapes, what, cancel, notes))
+    };
+    let part = digits(rounded(reach_mm, 3));
+    let near_degree = degree_of(
+        known().map(near).collect(),
+        &format!("near the base, up to {part} mm from it,"),
+    );
+    let whole_degree = degree_of(known().cloned().collect(), "of whole whiskers");
+    let frame = |own: &Option<Vec<[f64; 2]>>| {
+        let whole = own.as_ref().ok_or(NoFrame::Missing)?;
+        let fit = |points: Vec<[f64; 2]>, degree: usize| {
+            let is_enough = points.len() >= degree + MORE_POINTS;
+            if !is_enough || cancel.load(Ordering::Relaxed) {
+                return Err(NoFrame::Missing);
+            }
+            TracedShape::fit_until(points, Some(degree), cancel).map_err(|_| NoFrame::NoCurve)
+        };
+        let near = fit(near(whole), near_degree)?;
+        let whole = fit(whole.clone(), whole_degree)?;
+        Ok(FrameCurve {
+            near: PlaneCurve::of(&near),
+            whole: PlaneCurve::of(&whole),
+            rms_mm: Some(whole.rms_mm),
+        })
+    };
+    points.par_iter().map(frame).collect()
+}
+
+/// The degree for all frames: by cross-validation in some frames together, or one that leaves points over.
+fn degree(
+    shapes: &[Vec<[f64; 2]>],
+    what: &str,
     cancel: &AtomicBool,
     notes: &mut Vec<String>,
 ) -> usize {
-    let points: Vec<_> = frames
-        .iter()
-        .filter_map(|own| points_mm(own, scale))
-        .collect();
-    let many: Vec<_> = points
+    let many: Vec<_> = shapes
         .iter()
         .filter(|own| own.len() >= MANY_POINTS)
         .collect();
     // Cross-validation in a few frames does not speak for all.
-    if 2 * many.len() <= points.len() {
-        let count = median(points.iter().map(|own| own.len() as f64)) as usize;
-        let degree = (count.saturating_sub(MORE_POINTS) / 2).min(MOST_DEGREE);
-        notes.push(format!(
-            "curves of frames have a curvature of degree {degree}, for {count} points (median)"
-        ));
-        return degree;
-    }
-    let count = many.len().min(CHOSEN_FRAMES);
-    let some: Vec<_> = (0..count)
-        .map(|i| many[(2 * i + 1) * many.len() / (2 * count)])
-        .collect();
-    let fits = some.par_iter().filter_map(|own| {
-        let fit = TracedShape::fit_until((*own).clone(), None, cancel);
-        Some(fit.ok()?.degree as f64)
-    });
-    let degrees: Vec<f64> = fits.collect();
-    let degree = median(degrees.iter().copied()) as usize;
+    let (degree, how) = if 2 * many.len() <= shapes.len() {
+        let count = median(shapes.iter().map(|own| own.len() as f64)) as usize;
+        let degree = count.saturating_sub(MORE_POINTS) / 2;
+        (degree.min(MOST_DEGREE), format!("for {count} points"))
+    } else {
+        let count = many.len().min(CHOSEN_FRAMES);
+        let some: Vec<_> = (0..count)
+            .map(|i| many[(2 * i + 1) * many.len() / (2 * count)].clone())
+            .collect();
+        let degree = common_degree(&some, cancel).unwrap_or_default();
+        (
+            degree,
+            format!("chosen by cross-validation in {count} frames"),
+        )
+    };
     notes.push(format!(
-        "curves of frames have a curvature of degree {degree}: the median of {} frames, chosen by cross-validation",
-        degrees.len()
+        "curves {what} have a curvature of degree {degree}, {how}"
     ));
     degree
-}
-
-/// The curve through the points of a frame.
-fn traced(
-    frame: &ImageFrame,
-    degree: usize,
-    scale: f64,
-    cancel: &AtomicBool,
-) -> Result<FrameCurve, NoFrame> {
-    let points = points_mm(frame, scale).filter(|own| own.len() >= degree + MORE_POINTS);
-    let points = points
-        .filter(|_| !cancel.load(Ordering::Relaxed))
-        .ok_or(NoFrame::Missing)?;
-    let fit = TracedShape::fit_until(points, Some(degree), cancel).map_err(|_| NoFrame::NoCurve)?;
-    Ok(FrameCurve {
-        base: fit.base_mm.into(),
-        angle: fit.base_angle,
-        curvature: fit.curvature,
-        length_mm: fit.length_mm,
-        rms_mm: Some(fit.rms_mm),
-    })
 }
 
 /// Follicle, chord and mean curvature (in 1/px) of a measured segment, in the axes of the image; and its angle in degrees.
@@ -339,11 +427,15 @@ fn arc(frame: &ImageFrame, axis: FaceAxis, scale: f64) -> Result<FrameCurve, NoF
     };
     let mut legendre = [0.0; CURVATURE_TERMS];
     legendre[0] = -2.0 * half;
-    Ok(FrameCurve {
+    let arc = PlaneCurve {
         base: scale * DVec2::new(follicle.x, -follicle.y),
         angle: -from_x(angle, axis),
         curvature: CurvaturePolynomial::new(legendre),
         length_mm: scale * length,
+    };
+    Ok(FrameCurve {
+        near: arc.clone(),
+        whole: arc,
         rms_mm: None,
     })
 }

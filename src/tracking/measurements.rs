@@ -115,6 +115,13 @@ fn refuse_points(options: &TrackingOptions) -> Result<(), TrackingError> {
             must("their curvature is the mean of the whisker"),
         ));
     }
+    if let Some(mm) = options.fit_to_mm {
+        return Err(refused(
+            "fit_to_mm",
+            &mm.to_string(),
+            must("they have no points"),
+        ));
+    }
     if let Some(degree) = options.degree {
         return Err(refused(
             "degree",

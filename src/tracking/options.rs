@@ -90,7 +90,10 @@ pub struct TrackingOptions {
     pub follicle_px: Option<[f64; 2]>,
     /// Arclength from the base at which the curvature is given, in mm; `None` for a quarter of the median length.
     pub curvature_at_mm: Option<f64>,
-    /// Degree of the curvature of each frame's curve; `None` to choose it.
+    /// Distance from the base up to which points give base angle and curvature, in mm; `None` for 0.6 of the median length, or as far as 8
+    /// points reach.
+    pub fit_to_mm: Option<f64>,
+    /// Degree of the curvature of each frame's curves; `None` to choose it.
     pub degree: Option<usize>,
     /// Whether the image is mirrored; `None` to mirror it if the whisker turns clockwise from base to tip.
     pub mirror: Option<bool>,
@@ -117,6 +120,7 @@ impl TrackingOptions {
             likelihood: 0.9,
             follicle_px: None,
             curvature_at_mm: None,
+            fit_to_mm: None,
             degree: None,
             mirror: None,
             face_axis: None,
@@ -133,6 +137,7 @@ impl TrackingOptions {
             ("mm_per_pixel", Some(self.mm_per_pixel)),
             ("fps", Some(self.fps)),
             ("contact_within_mm", self.contact_within_mm),
+            ("fit_to_mm", self.fit_to_mm),
         ];
         for (option, number) in numbers {
             if let Some(number) = number.filter(|own| !positive(*own)) {

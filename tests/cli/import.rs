@@ -229,7 +229,7 @@ fn bad_imports_are_refused() {
         (
             "film.csv",
             scaled(&["--curvature-at", "30"]),
-            "--curvature-at 30: must be at least 0 and less than",
+            "--curvature-at 30: must be between 0 and ",
         ),
         (
             "film.csv",

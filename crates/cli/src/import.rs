@@ -72,7 +72,10 @@ pub struct ImportArgs {
     /// Arclength from the base at which the curvature is given, in mm or with a unit [default: a quarter of the median length]
     #[arg(long, value_name = "MM", value_parser = length)]
     curvature_at: Option<f64>,
-    /// Degree of the curvature of the curve through the points of a frame [default: chosen by cross-validation]
+    /// Distance from the base up to which points give base angle and curvature, in mm or with a unit [default: 0.6 of the median length, or as far as 8 points reach]
+    #[arg(long, value_name = "MM", value_parser = length)]
+    fit_to: Option<f64>,
+    /// Degree of the curvature of the curves through the points of a frame [default: chosen by cross-validation]
     #[arg(long, value_name = "DEGREE", value_parser = whole(0..=6))]
     degree: Option<u32>,
     /// Mirror the image [default: if the whisker turns clockwise from base to tip]
@@ -179,6 +182,7 @@ impl ImportArgs {
         options.likelihood = self.likelihood;
         options.follicle_px = self.follicle;
         options.curvature_at_mm = self.curvature_at;
+        options.fit_to_mm = self.fit_to;
         options.degree = self.degree.map(|own| own as usize);
         options.mirror = self.mirror;
         options.face_axis = self.face_axis.map(|own| match own {
