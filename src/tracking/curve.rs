@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial, Rest, Rod};
 
 /// Points more than the degree that a curve needs.
-const MORE_POINTS: usize = 4;
+pub(super) const MORE_POINTS: usize = 4;
 
 /// Number of points from which on cross-validation chooses the degree.
 const MANY_POINTS: usize = 8;

@@ -61,11 +61,11 @@ struct ImageFrames {
 /// Order of the points of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PointOrder {
-    /// From base to tip.
+    /// Order from base to tip.
     FromBase,
-    /// Along the whisker, in either direction, which may change from frame to frame.
+    /// Order along the whisker, in either direction, which may change from frame to frame.
     Along,
-    /// The same in all frames, but any.
+    /// Any order, which is the same in all frames.
     Named,
 }
 
@@ -162,6 +162,13 @@ impl Tracking {
         orient::order(&mut image, options)?;
         let curves = curve::Curves::new(&image.frames, options, cancel, &mut image.notes)?;
         let curves = curves.of_frames(from..=last);
+        if curves.iter().all(|own| own.curve.is_err()) {
+            let what = format!(
+                "has no frame with a curve: must have at least one with the base and {} points along a smooth curve",
+                curve::MORE_POINTS
+            );
+            return Err(CsvError::whole(origin, what).into());
+        }
         let mut notes = image.notes;
         let (frames, contacts) = rows::frames(&curves, options, &mut notes)?;
         let shapes = curves.iter().map(|own| (own.number, own.points_mm.clone()));

@@ -42,7 +42,7 @@ impl TrackingFormat {
         match &cells[..] {
             ["scorer", ..] => Ok(Self::DeepLabCut),
             _ if cells.contains(&"follicle_x") => Ok(Self::Whisk),
-            _ if line.is_empty() || cells.iter().all(|cell| is_number(cell)) => Ok(Self::Xy),
+            _ if line.is_empty() || cells.iter().all(is_number) => Ok(Self::Xy),
             _ => {
                 let what = "has no known format: must be of DeepLabCut (the first cell is scorer), measurements of whisk (with a column \
                             follicle_x), or points without a header";
@@ -95,7 +95,7 @@ pub struct TrackingOptions {
     pub fit_to_mm: Option<f64>,
     /// Degree of the curvature of each frame's curves; `None` to choose it.
     pub degree: Option<usize>,
-    /// Whether the image is mirrored; `None` to mirror it if the whisker turns clockwise from base to tip.
+    /// True to mirror the image, false to leave it; `None` to mirror it if the whisker turns clockwise from base to tip.
     pub mirror: Option<bool>,
     /// Axis from which the angles of `whisk` are measured; `None` to find it.
     pub face_axis: Option<FaceAxis>,

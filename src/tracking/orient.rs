@@ -7,6 +7,9 @@ use super::{ImageFrame, ImageFrames, PointOrder};
 /// moves by 0.35 mm.
 const STEADIER: f64 = 2.0;
 
+/// Number of frames, from all over the film, from which the order of named points is found.
+const ORDER_FRAMES: usize = 1000;
+
 /// Orders the points of all frames from base to tip.
 ///
 /// # Errors
@@ -60,35 +63,30 @@ pub(super) fn order(
 }
 
 /// Orders named points along the whisker, from one of the two that are farthest apart. The first point of the file stays in the first half.
+/// Points that are lost in all frames are left out.
 fn chain(frames: &mut [ImageFrame]) {
-    let count = frames
-        .iter()
-        .map(|own| own.points_px.len())
-        .max()
-        .unwrap_or_default();
+    let count = frames.first().map_or(0, |own| own.points_px.len());
+    let is_seen = |i: &usize| frames.iter().any(|own| own.points_px[*i].is_some());
+    let seen: Vec<usize> = (0..count).filter(is_seen).collect();
+    let step = frames.len().div_ceil(ORDER_FRAMES);
     let far = |a: usize, b: usize| {
-        let both = frames.iter().filter_map(|own| {
-            let at = |i: usize| own.points_px.get(i).copied().flatten();
-            Some(distance(at(a)?, at(b)?))
-        });
-        median(both)
+        let some = frames.iter().step_by(step);
+        median(some.filter_map(|own| Some(distance(own.points_px[a]?, own.points_px[b]?))))
     };
-    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
-    let ends = pairs.max_by(|(a, b), (c, d)| far(*a, *b).total_cmp(&far(*c, *d)));
-    let Some((end, _)) = ends else { return };
-    let mut order: Vec<(usize, f64)> = (0..count)
-        .map(|i| (i, if i == end { 0.0 } else { far(end, i) }))
-        .collect();
+    let pairs = seen
+        .iter()
+        .flat_map(|a| seen.iter().filter(move |b| a < *b).map(move |b| (*a, *b)));
+    let pairs = pairs.map(|(a, b)| (a, far(a, b)));
+    let farthest = pairs.max_by(|(_, one), (_, other)| one.total_cmp(other));
+    let Some((end, _)) = farthest else { return };
+    let mut order: Vec<(usize, f64)> = seen.iter().map(|i| (*i, far(end, *i))).collect();
     order.sort_by(|(_, one), (_, other)| one.total_cmp(other));
-    let first = order.iter().position(|(i, _)| *i == 0).unwrap_or_default();
-    if 2 * first >= count {
+    let first = order.iter().position(|(i, _)| *i == seen[0]);
+    if first.is_some_and(|first| 2 * first >= order.len()) {
         order.reverse();
     }
-    for frame in frames.iter_mut().filter(|own| !own.points_px.is_empty()) {
-        frame.points_px = order
-            .iter()
-            .map(|(i, _)| frame.points_px.get(*i).copied().flatten())
-            .collect();
+    for frame in frames {
+        frame.points_px = order.iter().map(|(i, _)| frame.points_px[*i]).collect();
     }
 }
 

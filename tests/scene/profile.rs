@@ -365,6 +365,33 @@ fn smooth_radii_replace_the_measured_ones() {
     );
 }
 
+/// Smoothed radii are sums of the measured ones with the derivatives as weights, and an exact polynomial comes back with its degree.
+#[test]
+fn smooth_radii_are_linear_in_the_measured_ones() {
+    let fit = |rows: &[[f64; 2]]| {
+        let own = parse(&smoothed(rows, "smooth = true")).unwrap();
+        own.smooth_radii().unwrap()
+    };
+    let rows = noisy_cone(0.3, 2);
+    let smooth = fit(&rows);
+    let mut sums = vec![0.0; rows.len()];
+    for (row, [_, radius]) in rows.iter().enumerate() {
+        for (sum, by) in sums.iter_mut().zip(smooth.by_measured(row)) {
+            *sum += by * radius;
+        }
+    }
+    for (sum, [_, radius]) in sums.iter().zip(&smooth.rows) {
+        assert!((sum - radius).abs() < 1e-11, "{sum} {radius}");
+    }
+    let exact: Vec<[f64; 2]> = rows
+        .iter()
+        .map(|[s, _]| [*s, 30.0 - s - 0.02 * s * s])
+        .collect();
+    let smooth = fit(&exact);
+    assert_eq!(smooth.degree, 2);
+    assert!(smooth.rms_um < 1e-12, "{smooth:?}");
+}
+
 /// Errors of 1 um in rows every 0.5 mm move detachments by 4 degrees; those of the smoothed whisker are near the exact cone's.
 #[test]
 fn smooth_radii_give_the_detachments_of_the_whisker() {
