@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Union
 
@@ -181,10 +182,10 @@ def _text(path: Path) -> str:
     with path.open("rb") as file:
         if file.read(len(_HDF5)) != _HDF5:
             return csv_text("files", path)
-    require("ndx_whisk", "nwb")
-    import ndx_whisk  # noqa: F401 - registers the type
-    import pynwb
-
+    # The library of ndx-whisk registers the type of its tables.
+    for module in ("pynwb", "ndx_whisk"):
+        require(module, "nwb")
+    pynwb: Any = import_module("pynwb")
     with pynwb.NWBHDF5IO(os.fspath(path), mode="r", load_namespaces=True) as io:
         tables = [own for own in io.read().objects.values() if own.neurodata_type == "WhiskerMeasurementTable"]
         if len(tables) != 1:
