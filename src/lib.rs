@@ -67,6 +67,7 @@ pub mod store;
 pub mod texture;
 pub mod trace;
 pub mod traced;
+pub mod tracking;
 pub mod uncertainty;
 pub mod whisk;
 

@@ -11,6 +11,7 @@ use whiskmap::scene::Parameter;
 use whiskmap::sensitivity::VariableEffect;
 use whiskmap::texture::{AsperityStay, TextureEvent, TextureSample, TipBin};
 use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
+use whiskmap::tracking::{TrackedDetachment, TrackedFrame, TrackedPoint};
 use whiskmap::uncertainty::{EndSpread, LargestSpread, PointSpread};
 use whiskmap::whisk::{WhiskEvent, WhiskSample};
 
@@ -106,6 +107,9 @@ fn every_column_is_on_the_page_of_the_commands() {
         AsperityStay::COLUMNS,
         TipBin::COLUMNS,
         FrameForce::COLUMNS,
+        TrackedFrame::COLUMNS,
+        TrackedDetachment::COLUMNS,
+        TrackedPoint::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

@@ -38,6 +38,7 @@ mod texture;
 mod ties;
 mod traced;
 mod traces;
+mod tracking;
 mod uncertainty;
 mod variations;
 mod whisk;

@@ -155,6 +155,48 @@ fn every_row_of_a_profile_varies() {
     }
 }
 
+/// A measured radius changes all smoothed ones, and the cone beyond them.
+#[test]
+fn every_row_of_a_smooth_profile_varies() {
+    // Errors of 0.1 um keep the degree where the rows move a little.
+    let row = |i: u32| {
+        [
+            2.0 * f64::from(i),
+            30.0 - 3.0 * f64::from(i) + [0.1, -0.1, -0.05, 0.08][i as usize % 4],
+        ]
+    };
+    let rows: Vec<[f64; 2]> = (0..9).map(row).collect();
+    let text = format!(
+        "
+        title = 'smooth'
+        whisker.length_mm = 16
+        whisker.youngs_modulus_gpa = 3
+        whisker.profile = {{ rows = {rows:?}, smooth = true, tip_extension_mm = 1 }}
+        pole.radius_mm = 0.25
+        grid = {{ push_angle_deg = [10], distance_mm = [9] }}
+        uncertainty.profile_radius_um = 0.02"
+    );
+    let scene = Scene::parse(&text, "smooth.toml").unwrap();
+    assert_eq!(scene.smooth_radii().unwrap().degree, 1);
+    for row in spreads(&scene, 400, 1) {
+        let squares = (0..rows.len()).map(|place| {
+            let [before, after] = [-1e-4, 1e-4].map(|step| {
+                let mut rows = rows.clone();
+                rows[place][1] += step;
+                let moved = scene.to_builder().profile(rows).build().unwrap();
+                let end = curve(&moved.whisker, &moved.pole, row.side, &[9.0])[0];
+                end.push_angle_deg.unwrap()
+            });
+            ((after - before) / 2e-4 * 0.02).powi(2)
+        });
+        let expected = squares.sum::<f64>().sqrt();
+        let found = row.sd_first_order_deg.unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
+        // 400 samples leave 3.5 %.
+        assert!((row.sd_deg.unwrap() / found - 1.0).abs() < 0.15, "{row:?}");
+    }
+}
+
 #[test]
 fn equal_seeds_draw_equal_whiskers_on_any_number_of_threads() {
     let scene = scene("length_mm = 0.4\ntip_radius_um = 0.5");

@@ -18,6 +18,7 @@ mod scene;
 mod stored;
 mod threads;
 mod traces;
+mod tracking;
 
 /// Functions and classes of the module; `_whiskmap.pyi` has their types.
 #[pyo3::pymodule(gil_used = false)]
@@ -51,4 +52,6 @@ mod _whiskmap {
     use super::stored::StoredMap;
     #[pymodule_export]
     use super::traces::{branch, curve, shape};
+    #[pymodule_export]
+    use super::tracking::TrackedFilm;
 }

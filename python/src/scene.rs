@@ -37,6 +37,9 @@ type Traced = (Vec<[f64; 2]>, Option<usize>);
 /// Surface: distance in mm, spacing and asperity radius in um, length in mm, jitter, and seed.
 type SurfaceTuple = (f64, f64, f64, f64, f64, u32);
 
+/// Measured rows, `[row][arclength, radius]` in millimetres and micrometres, and whether they are smoothed.
+type Measured = (Vec<[f64; 2]>, bool);
+
 /// Row of a table of whiskers: name, numbers by name, measured rows, and traced points.
 type RowTuple = (
     String,
@@ -50,7 +53,7 @@ type RowTuple = (
 type Description = (
     String,
     BTreeMap<String, f64>,
-    Option<Vec<[f64; 2]>>,
+    Option<Measured>,
     Option<Traced>,
     Vec<(String, AxisTuple)>,
     Option<BTreeMap<String, f64>>,
@@ -85,8 +88,8 @@ impl CheckedScene {
         for (name, value) in numbers {
             builder = builder.set(parameter("whisker", &name)?, value);
         }
-        if let Some(rows) = rows {
-            builder = builder.profile(rows);
+        if let Some((rows, smooth)) = rows {
+            builder = builder.profile(rows).smooth_profile(smooth);
         }
         if let Some((points, degree)) = traced {
             let fit = |cancel: &Arc<AtomicBool>| TracedShape::fit_until(points, degree, cancel);
@@ -136,7 +139,9 @@ impl CheckedScene {
         (
             self.0.title.clone(),
             given.collect(),
-            self.0.measured_rows().map(<[_]>::to_vec),
+            self.0
+                .measured_rows()
+                .map(|rows| (rows.to_vec(), self.0.smooth_radii().is_some())),
             self.0.traced().map(|own| {
                 let degree = (!own.is_degree_chosen).then_some(own.degree);
                 (own.points_mm.clone(), degree)
@@ -193,6 +198,12 @@ impl CheckedScene {
     fn rest_fit(&self) -> Option<(usize, f64, bool)> {
         let traced = self.0.traced()?;
         Some((traced.degree, traced.rms_mm, traced.is_degree_chosen))
+    }
+
+    /// Returns degree and rms residual in um of the polynomial that replaces the measured radii.
+    fn profile_fit(&self) -> Option<(usize, f64)> {
+        let smooth = self.0.smooth_radii()?;
+        Some((smooth.degree, smooth.rms_um))
     }
 
     /// Scenes are equal if all their values are, whatever their texts.

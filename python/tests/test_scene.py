@@ -41,7 +41,7 @@ def test_values_make_the_scene_of_the_file(cone):
 
 
 def test_every_parameter_of_rust_is_an_argument():
-    own = {field.name for field in fields(wm.Whisker)} - {"profile", "rest_points", "rest_degree"}
+    own = {field.name for field in fields(wm.Whisker)} - {"profile", "profile_smooth", "rest_points", "rest_degree"}
     pole = {"pole_radius_mm", "friction"}
     assert own | pole == {name for name, *_ in _whiskmap.parameters()}
     assert "curvature_per_mm" in PARAMETERS
@@ -57,6 +57,17 @@ def test_replace_sets_sweeps_and_removes(cone):
     measured = wm.Scene.read(ROOT / "scenes/measured.toml")
     rows = np.array(measured.whisker.profile)
     assert measured.replace(profile=rows) == measured
+    smooth = measured.replace(profile_smooth=True)
+    assert smooth.whisker.profile_smooth and np.array_equal(smooth.whisker.profile, rows) and smooth != measured
+    assert smooth.profile_fit.degree > 0 and smooth.profile_fit.rms_um > 0 and measured.profile_fit is None
+    assert smooth.replace(profile=rows) == smooth == wm.Scene.parse(smooth.to_toml(), smooth.name)
+    assert smooth.replace(profile_smooth=False) == measured
+    bare = smooth.replace(profile=None, base_radius_um=30, tip_radius_um=1.5)
+    assert not bare.whisker.profile_smooth
+    with pytest.raises(ValueError, match="profile_smooth = True: must be left out without profile"):
+        bare.replace(profile_smooth=True)
+    with pytest.raises(TypeError, match="profile_smooth = 1: must be True or False"):
+        measured.replace(profile_smooth=1)
 
 
 def test_traced_points_are_arrays():

@@ -51,6 +51,8 @@ if TYPE_CHECKING:
     from whiskmap._traces import curve as curve
     from whiskmap._traces import sensitivity as sensitivity
     from whiskmap._traces import shape as shape
+    from whiskmap._tracking import Tracking as Tracking
+    from whiskmap._tracking import read_tracking as read_tracking
 
 __version__ = version()
 
@@ -64,6 +66,7 @@ _MODULES = {
     "Fit": "_fits",
     "Plan": "_maps",
     "Texture": "_motion",
+    "Tracking": "_tracking",
     "Whisk": "_motion",
     "branch": "_traces",
     "curve": "_traces",
@@ -76,6 +79,7 @@ _MODULES = {
     "open": "_stored",
     "plan": "_maps",
     "plot": "plot",
+    "read_tracking": "_tracking",
     "sensitivity": "_traces",
     "shape": "_traces",
     "texture": "_motion",

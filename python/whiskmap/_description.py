@@ -26,7 +26,7 @@ def range_of(values: Any) -> Range | list[float]:
 def build(
     title: str,
     given: Mapping[str, float | None],
-    rows: Any,
+    measured: tuple[Any, bool],
     rest: tuple[Any, int | None],
     axes: Mapping[str, Any],
     uncertainty: Mapping[str, float] | None,
@@ -34,7 +34,7 @@ def build(
     table: Any,
     name: str | None,
 ) -> CheckedScene:
-    """Check the plain values of a scene. `rest` is the traced points with their degree."""
+    """Check the plain values of a scene. `measured` is the rows of radii and whether they are smoothed, `rest` the traced points with their degree."""
     for argument, text in (("title", title), ("name", name)):
         if not isinstance(text, str):
             raise TypeError(f"{argument} = {text!r}: must be a text")
@@ -50,7 +50,10 @@ def build(
         for own, values in axes.items()
     ]
     present = {own: value for own, value in given.items() if value is not None}
-    profile = None if rows is None else [list(row) for row in rows]
+    rows, smooth = measured
+    if rows is None and smooth:
+        raise ValueError("profile_smooth = True: must be left out without profile")
+    profile = None if rows is None else ([list(row) for row in rows], smooth)
     points, degree = rest
     if points is None and degree is not None:
         raise ValueError(f"rest_degree = {degree}: must be left out without rest_points")

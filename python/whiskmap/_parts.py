@@ -69,6 +69,9 @@ class Whisker(_Parts):
     profile : array_like or pandas.DataFrame, optional
         Measured rows of arclength (mm) and radius (um), of shape (rows, 2), or columns `arc_length_mm` and `radius_um`, instead of the
         radii.
+    profile_smooth : bool
+        Whether a polynomial through the measured rows replaces their radii. Cross-validation chooses its degree from 0 to 6; `profile_fit` of
+        the scene reports it.
     profile_scale, tip_extension_mm : float, optional
         Factor of the measured radii; length of the cone that continues the last two rows.
     parabola_per_mm, vertex_mm : float, optional
@@ -93,6 +96,7 @@ class Whisker(_Parts):
     tip_radius_um: float | None = None
     taper: float | None = None
     profile: Sequence[Sequence[float]] | NDArray[Any] | None = None
+    profile_smooth: bool = False
     profile_scale: float | None = None
     tip_extension_mm: float | None = None
     parabola_per_mm: float | None = None
@@ -112,6 +116,8 @@ class Whisker(_Parts):
                 set_field(self, own.name, None if value is None else tuple(tuple(row) for row in pairs_of(own.name, value)))
             elif own.name == "rest_degree":
                 set_field(self, own.name, degree_of(value))
+            elif own.name == "profile_smooth":
+                set_field(self, own.name, is_smooth(value))
             elif value is not None:
                 set_field(self, own.name, number(own.name, value))
 
@@ -251,6 +257,13 @@ def _row(place: str, row: Any) -> tuple[str, list[tuple[str, float]], Any, Any]:
 def _pairs_or_none(place: str, name: str, value: Any) -> list[list[float]] | None:
     is_missing = not isinstance(value, Iterable) and math.isnan(number_or_nan(place, value))
     return None if is_missing else pairs_of(name, value)
+
+
+def is_smooth(value: Any) -> bool:
+    """Whether measured radii are smoothed."""
+    if not isinstance(value, bool):
+        raise TypeError(f"profile_smooth = {value!r}: must be True or False")
+    return value
 
 
 def degree_of(value: Any) -> int | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from whiskmap._description import PARAMETERS, build, order_of, range_of, resembling, set_parameter
-from whiskmap._parts import PAIRS, Grid, Pole, Surface, Whisker, axis_of, degree_of, pairs_of, rows_of
+from whiskmap._parts import PAIRS, Grid, Pole, Surface, Whisker, axis_of, degree_of, is_smooth, pairs_of, rows_of
 from whiskmap._warnings import warn
 from whiskmap._whiskmap import CheckedScene, coordinates
 
@@ -33,6 +33,22 @@ class RestFit:
     degree: int
     rms_mm: float
     is_degree_chosen: bool
+
+
+@dataclass(frozen=True)
+class ProfileFit:
+    """Polynomial that replaces measured radii.
+
+    Attributes
+    ----------
+    degree : int
+        Degree of the radius as a polynomial of the arclength, which cross-validation chose.
+    rms_um : float
+        Root mean square of the measured less the smoothed radii, in um.
+    """
+
+    degree: int
+    rms_um: float
 
 
 class Scene:
@@ -83,11 +99,11 @@ class Scene:
         for argument, value, kind in (("whisker", whisker, Whisker), ("grid", grid, Grid), ("pole", pole, Pole)):
             if not isinstance(value, kind):
                 raise TypeError(f"{argument} = {value!r}: must be a {kind.__name__}")
-        given = {own.name: getattr(whisker, own.name) for own in fields(whisker) if own.name not in (*PAIRS, "rest_degree")}
+        given = {own.name: getattr(whisker, own.name) for own in fields(whisker) if own.name not in (*PAIRS, "profile_smooth", "rest_degree")}
         given |= {"pole_radius_mm": pole.radius_mm or None, "friction": pole.friction or None}
         axes = {"push_angle_deg": grid.push_angle_deg, "distance_mm": grid.distance_mm, **grid.sweep}
-        rest = (whisker.rest_points, whisker.rest_degree)
-        self._checked = build(title, given, whisker.profile, rest, axes, uncertainty, surface, rows_of(table), name)
+        measured, rest = (whisker.profile, whisker.profile_smooth), (whisker.rest_points, whisker.rest_degree)
+        self._checked = build(title, given, measured, rest, axes, uncertainty, surface, rows_of(table), name)
         warn(self.warnings)
 
     @classmethod
@@ -130,7 +146,8 @@ class Scene:
         **changes
             A number sets a parameter, such as ``taper=0.5`` or ``pole_radius_mm=1``; it ends a sweep of it. A `Range`, a list or
             an array makes the parameter a sweep axis. None leaves a value out. Also `push_angle_deg`, `distance_mm`, `profile`,
-            `rest_points`, `rest_degree`, `title`, `name`, `uncertainty`, `surface` and `table`. Their order does not matter.
+            `profile_smooth`, `rest_points`, `rest_degree`, `title`, `name`, `uncertainty`, `surface` and `table`. Their order does not
+            matter.
 
         Raises
         ------
@@ -139,10 +156,11 @@ class Scene:
         SceneError
             If a value is out of its range or contradicts another one.
         """
-        title, given, rows, traced, listed, uncertainty, _, table, name = self._checked.description()
+        title, given, measured, traced, listed, uncertainty, _, table, name = self._checked.description()
         axes: dict[str, Any] = dict(listed)
         changed: dict[str, Any] = dict(given)
-        texts: dict[str, Any] = {"title": title, "name": name, "uncertainty": uncertainty, "surface": self.surface, "profile": rows}
+        texts: dict[str, Any] = {"title": title, "name": name, "uncertainty": uncertainty, "surface": self.surface}
+        texts["profile"], texts["profile_smooth"] = measured or (None, False)
         texts["rest_points"], texts["rest_degree"] = traced or (None, None)
         texts["table"] = table
         for key in order_of(changes):
@@ -158,8 +176,9 @@ class Scene:
         rows, points = (None if texts[own] is None else pairs_of(own, texts[own]) for own in PAIRS)
         is_dropped = points is None and "rest_degree" not in changes
         rest = (points, None if is_dropped else degree_of(texts["rest_degree"]))
+        smooth = is_smooth(texts["profile_smooth"]) and (rows is not None or "profile_smooth" in changes)
         rough, whiskers = texts["surface"], rows_of(texts["table"]) if "table" in changes else table
-        built = build(texts["title"], changed, rows, rest, axes, texts["uncertainty"], rough, whiskers, texts["name"])
+        built = build(texts["title"], changed, (rows, smooth), rest, axes, texts["uncertainty"], rough, whiskers, texts["name"])
         return Scene._of(built)._warned()
 
     @property
@@ -175,10 +194,11 @@ class Scene:
     @property
     def whisker(self) -> Whisker:
         """The whisker; a taper is given as the radius at the tip."""
-        _, given, rows, traced, *_ = self._checked.description()
+        _, given, measured, traced, *_ = self._checked.description()
+        rows, smooth = measured or (None, False)
         points, degree = traced or (None, None)
         own = {name: value for name, value in given.items() if name not in ("pole_radius_mm", "friction")}
-        return Whisker(**own, profile=rows, rest_points=points, rest_degree=degree)
+        return Whisker(**own, profile=rows, profile_smooth=smooth, rest_points=points, rest_degree=degree)
 
     @property
     def pole(self) -> Pole:
@@ -248,6 +268,12 @@ class Scene:
         """The fit to traced points, or None without such points."""
         own = self._checked.rest_fit()
         return None if own is None else RestFit(*own)
+
+    @property
+    def profile_fit(self) -> ProfileFit | None:
+        """The polynomial that replaces the measured radii, or None unless they are smoothed."""
+        own = self._checked.profile_fit()
+        return None if own is None else ProfileFit(*own)
 
     def to_toml(self) -> str:
         """Return the text of a scene file: the one that was read, or one written from the values."""

@@ -102,14 +102,15 @@ def own_names(columns: Mapping[str, str] | None) -> list[tuple[str, str]]:
 
 
 def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> str:
-    """Return the text of a CSV file, or columns by name as such a text; None is an empty cell."""
+    """Return the text of a CSV file, or columns by name as such a text; None is an empty cell. Coordinates of a dataset are columns."""
     import numpy as np
 
     if isinstance(columns, (str, os.PathLike)):
         return Path(columns).read_text(encoding="utf-8-sig")
-    if not hasattr(columns, "keys"):
+    table: Any = columns.reset_coords() if hasattr(columns, "reset_coords") else columns
+    if not hasattr(table, "keys"):
         raise TypeError(f"{name} = {columns!r}: must be the path of a CSV file, or columns by name")
-    listed = {str(own): list(np.atleast_1d(np.asarray(columns[own]))) for own in columns.keys()}
+    listed = {str(own): list(np.atleast_1d(np.asarray(table[own]))) for own in table.keys()}
     lengths = {own: len(values) for own, values in listed.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"{name}: columns must be equally long, have {lengths}")

@@ -4,7 +4,7 @@ use csv::{ReaderBuilder, StringRecord};
 
 /// Line of a CSV file: its cells, and its number from 1.
 #[derive(Clone, Debug)]
-pub(super) struct CsvLine {
+pub(crate) struct CsvLine {
     pub number: usize,
     pub cells: StringRecord,
 }
@@ -27,13 +27,20 @@ fn declared(text: &str) -> Option<char> {
         .find(|own| separator.trim_start_matches(' ') == own.to_string())
 }
 
-/// Returns the separator of the columns of a CSV text: the declared one, or the most frequent one of its header, outside of quotes.
+/// Returns the separator of the columns of a CSV text: the declared one, or the most frequent one of its header, outside of quotes. Of a first
+/// line without letters, it is the first separator there is.
 pub(super) fn separator(text: &str) -> char {
     if let Some(separator) = declared(text) {
         return separator;
     }
     let is_header = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
     let header = text.lines().find(is_header).unwrap_or_default();
+    // A line of numbers, without a header, may have decimal commas.
+    if !header.contains(char::is_alphabetic)
+        && let Some(first) = SEPARATORS.into_iter().find(|own| header.contains(*own))
+    {
+        return first;
+    }
     let count = |separator: &char| -> usize {
         let unquoted = header.split('"').step_by(2);
         unquoted.map(|part| part.matches(*separator).count()).sum()

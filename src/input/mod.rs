@@ -12,6 +12,7 @@ pub use names::{did_you_mean, each_once};
 pub use quantity::Quantity;
 pub use table::{CsvError, CsvTable};
 
+pub(crate) use lines::CsvLine;
 pub(crate) use names::shortened;
 pub(crate) use source::{TEXT_MIB, bounded, open, open_regular};
-pub(crate) use table::MOST_SECONDS;
+pub(crate) use table::{CsvLines, MOST_SECONDS, read_bytes, text_of};

@@ -80,10 +80,8 @@ impl CsvTable {
     }
 
     fn decode(bytes: io::Result<Vec<u8>>, origin: &str) -> Result<Self, CsvError> {
-        let unreadable = |why| CsvError::whole(origin, format!("cannot be read: {why}"));
-        let text = decoded(&bytes.map_err(unreadable)?);
-        let text = text.map_err(|(line, what)| CsvError::at(origin, line, what))?;
-        Self::parse(&text, origin)
+        let bytes = bytes.map_err(unreadable(origin))?;
+        Self::parse(&text_of(&bytes, origin)?, origin)
     }
 
     /// Splits the text of a CSV file into cells. Messages call the file `origin`.
@@ -91,41 +89,13 @@ impl CsvTable {
     /// # Errors
     /// If there is no row, a quote is not closed, or a row has fewer cells than the header has names, or more that are not empty.
     pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
-        let text = normalised(text);
-        let separator = separator(&text);
-        let lines = lines(&text, separator);
-        let mut lines = lines.map_err(|(line, what)| CsvError::at(origin, line, what))?;
-        if lines.len() < 2 {
+        let mut own = CsvLines::split(text, origin)?;
+        if own.lines.len() < 2 {
             let what = "has no rows: must have a header and at least one row below it";
             return Err(CsvError::whole(origin, what));
         }
-        let header = lines.remove(0);
-        let columns = header.cells.len();
-        let named = filled(&header);
-        let is_wrong = |row: &&CsvLine| row.cells.len() < named || filled(row) > columns;
-        if let Some(row) = lines.iter().find(is_wrong) {
-            let has = row.cells.len();
-            let ending = if has == 1 { "" } else { "s" };
-            let mut pairs = row.cells.iter().zip(row.cells.iter().skip(1));
-            let mut has_comma = || {
-                pairs.any(|(whole, rest)| {
-                    let is_digit = |c: char| c.is_ascii_digit();
-                    whole.ends_with(is_digit) && !rest.is_empty() && rest.chars().all(is_digit)
-                })
-            };
-            let hint = match has > columns && separator == ',' && has_comma() {
-                true => DECIMAL_COMMAS,
-                false => "",
-            };
-            let what = format!("has {has} cell{ending}: must have {columns}, one a column{hint}");
-            return Err(CsvError::at(origin, row.number, what));
-        }
-        Ok(Self {
-            origin: origin.to_owned(),
-            separator,
-            header,
-            rows: lines,
-        })
+        let header = own.lines.remove(0);
+        own.table(header, origin)
     }
 
     /// Checks the header of a CSV file: it must have one name of each group of `needed`, once, and each `optional` name at most once.
@@ -316,6 +286,85 @@ impl CsvTable {
             }
         }
     }
+}
+
+/// Lines of a CSV file whose header is not its first line.
+#[derive(Debug)]
+pub(crate) struct CsvLines {
+    separator: char,
+    pub lines: Vec<CsvLine>,
+}
+
+impl CsvLines {
+    /// Splits the text of a CSV file into the lines of its cells. Messages call the file `origin`.
+    ///
+    /// # Errors
+    /// If a quote is not closed.
+    pub fn split(text: &str, origin: &str) -> Result<Self, CsvError> {
+        let text = normalised(text);
+        let separator = separator(&text);
+        let lines = lines(&text, separator);
+        let lines = lines.map_err(|(line, what)| CsvError::at(origin, line, what))?;
+        Ok(Self { separator, lines })
+    }
+
+    /// Returns the table of the lines below this `header`.
+    ///
+    /// # Errors
+    /// If a row has fewer cells than the header has names, or more that are not empty.
+    pub fn table(self, header: CsvLine, origin: &str) -> Result<CsvTable, CsvError> {
+        let columns = header.cells.len();
+        let named = filled(&header);
+        let is_wrong = |row: &&CsvLine| row.cells.len() < named || filled(row) > columns;
+        if let Some(row) = self.lines.iter().find(is_wrong) {
+            let has = row.cells.len();
+            let ending = if has == 1 { "" } else { "s" };
+            let mut pairs = row.cells.iter().zip(row.cells.iter().skip(1));
+            let mut has_comma = || {
+                pairs.any(|(whole, rest)| {
+                    let is_digit = |c: char| c.is_ascii_digit();
+                    whole.ends_with(is_digit) && !rest.is_empty() && rest.chars().all(is_digit)
+                })
+            };
+            let hint = match has > columns && self.separator == ',' && has_comma() {
+                true => DECIMAL_COMMAS,
+                false => "",
+            };
+            let what = format!("has {has} cell{ending}: must have {columns}, one a column{hint}");
+            return Err(CsvError::at(origin, row.number, what));
+        }
+        Ok(CsvTable {
+            origin: origin.to_owned(),
+            separator: self.separator,
+            header,
+            rows: self.lines,
+        })
+    }
+}
+
+/// Returns a converter of errors from reading the file `origin`.
+fn unreadable(origin: &str) -> impl FnOnce(io::Error) -> CsvError {
+    move |why| CsvError::whole(origin, format!("cannot be read: {why}"))
+}
+
+/// Reads a file of at most `most_mib` MiB; `-` is standard input.
+///
+/// # Errors
+/// If it cannot be read, or is longer.
+pub(crate) fn read_bytes(path: &Path, most_mib: u64) -> Result<Vec<u8>, CsvError> {
+    let bytes = match path == Path::new("-") {
+        true => bounded(io::stdin().lock(), most_mib),
+        false => open(path).and_then(|file| bounded(file, most_mib)),
+    };
+    bytes.map_err(unreadable(&path.to_string_lossy()))
+}
+
+/// Returns the text of the file `origin` with these `bytes`, in UTF-8, or in UTF-16 with a byte order mark.
+///
+/// # Errors
+/// If it is no such text.
+pub(crate) fn text_of(bytes: &[u8], origin: &str) -> Result<String, CsvError> {
+    decoded(bytes).map_err(|(line, what)| CsvError::at(origin, line, what))
 }
 
 /// Largest size of a time, in s: 30,000 years, so that a clock may begin at any date.

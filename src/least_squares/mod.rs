@@ -5,9 +5,11 @@
 //! `J D^-1` give the step for every damping, and so the damping at which the step reaches the radius.
 
 mod bounded;
+mod degree;
 mod svd;
 
 pub use bounded::{BoundedProblem, FAINT, search};
+pub use degree::smallest_degree;
 pub use svd::{Svd, dot, norm};
 
 /// Most evaluations of the residuals, per parameter.

@@ -45,9 +45,13 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
         .into_iter()
         .fold(radii(whisker), |own, parameter| why(parameter, own)),
     };
+    let smooth = scene.smooth_radii().map_or_else(String::new, |own| {
+        let (degree, rms) = (own.degree, own.rms_um);
+        format!(", smooth: degree {degree}, rms {rms:.1e} um")
+    });
     let measured = whisker.profile.as_ref().map_or_else(
         || "no whisker.profile".to_owned(),
-        |rows| format!("{} rows of whisker.profile", rows.len()),
+        |rows| format!("{} rows of whisker.profile{smooth}", rows.len()),
     );
     let number = |parameter, key, value, neutral| why(parameter, given(key, value, neutral));
     let bend = whisker.curvature.unwrap_or_default().parabola_per_mm;

@@ -3,6 +3,7 @@
 use super::axis::AxisValues;
 use super::grid::{Coordinate, SweepPlace};
 use super::parameter::Parameter;
+use super::smooth::MeasuredRadii;
 use super::surface::Surface;
 use super::table::WhiskerRow;
 use crate::traced::TracedShape;
@@ -124,10 +125,12 @@ impl Numbers {
 pub struct SceneBuilder {
     pub(super) title: String,
     pub(super) numbers: Numbers,
-    /// Measured rows of arclength in millimetres and radius in micrometres, `[row][arclength, radius]`; `None` without a profile.
-    pub(super) rows: Option<Vec<[f64; 2]>>,
+    /// Measured rows; `None` without a profile.
+    pub(super) measured: Option<MeasuredRadii>,
     /// Shape at rest through traced points; `None` without them.
     pub(super) traced: Option<Arc<TracedShape>>,
+    /// True if the length is that of the curve through the traced points, because none was set before them.
+    pub(super) is_length_traced: bool,
     /// Table of whiskers, the first sweep axis; `None` without one.
     pub(super) table: Option<Arc<[WhiskerRow]>>,
     pub(super) push_angle_deg: AxisValues,
@@ -163,21 +166,39 @@ impl SceneBuilder {
     }
 
     /// Sets measured radii instead of those at base and tip: arclength in millimetres and radius in micrometres, `[row][arclength,
-    /// radius]`.
+    /// radius]`. The rows of a scene that smooths its rows are smoothed, too.
     #[must_use]
     pub fn profile(mut self, rows: impl Into<Vec<[f64; 2]>>) -> Self {
-        self.rows = Some(rows.into());
+        let smooth = self.measured.is_some_and(|own| own.smooth);
+        let rows = rows.into();
+        self.measured = Some(MeasuredRadii { rows, smooth });
         self
     }
 
-    /// Sets a traced shape at rest instead of a parabola or a spiral. If no length is set, the whisker has the length of the curve;
-    /// otherwise it has the shape at its own scale.
+    /// Sets whether a polynomial through the measured rows replaces their radii, see [`SmoothRadii`](super::SmoothRadii). Without rows, it
+    /// does nothing.
     #[must_use]
-    pub fn traced(mut self, shape: TracedShape) -> Self {
-        if self.numbers.get(Parameter::LengthMm).is_none() {
+    pub fn smooth_profile(mut self, smooth: bool) -> Self {
+        if let Some(own) = &mut self.measured {
+            own.smooth = smooth;
+        }
+        self
+    }
+
+    /// Sets a traced shape at rest instead of a parabola or a spiral. If no length is set, the whisker has the length of the curve, which
+    /// must then be between 1 and 200 mm; otherwise it has the shape at its own scale.
+    #[must_use]
+    pub fn traced(self, shape: TracedShape) -> Self {
+        self.with_traced(Arc::new(shape))
+    }
+
+    /// Sets a traced shape as [`SceneBuilder::traced`] does.
+    pub(super) fn with_traced(mut self, shape: Arc<TracedShape>) -> Self {
+        self.is_length_traced = self.numbers.get(Parameter::LengthMm).is_none();
+        if self.is_length_traced {
             self.numbers.set(Parameter::LengthMm, shape.length_mm);
         }
-        self.traced = Some(Arc::new(shape));
+        self.traced = Some(shape);
         self
     }
 

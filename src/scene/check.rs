@@ -12,6 +12,7 @@ use super::limits::{NumberLimits, digits};
 use super::parameter::{MOST_STRETCH, Parameter, STIFFEST_TIP};
 use super::profile;
 use super::shape;
+use super::smooth::MeasuredRadii;
 use super::sweep;
 use super::toml::SceneText;
 use super::warnings::{LENGTH_MM, LENGTH_UNITS, MODULUS_GPA, MODULUS_UNITS, other_unit};
@@ -50,11 +51,14 @@ impl SceneBuilder {
 
     /// Checks the whiskers of a scene without a table, and returns the first one, its pole, and the grid.
     pub(super) fn first(&self) -> Result<(Whisker, Pole, Grid), SceneFault> {
+        if let Some(traced) = self.traced.as_ref().filter(|_| self.is_length_traced) {
+            shape::check_unit(traced)?;
+        }
         let lengths_mm = sweep::lengths_mm(self)?;
         let grid = grid(self, lengths_mm)?;
         sweep::refuse_at_odds(self)?;
         let at = |numbers: &Numbers| {
-            let whisker = whisker(numbers, self.rows.as_deref(), self.traced.as_deref())?;
+            let whisker = whisker(numbers, self.measured.as_ref(), self.traced.as_deref())?;
             let pole = pole(numbers, &whisker, &grid)?;
             Ok((whisker, pole))
         };
@@ -109,12 +113,12 @@ fn check_number(
 
 fn whisker(
     numbers: &Numbers,
-    rows: Option<&[[f64; 2]]>,
+    measured: Option<&MeasuredRadii>,
     traced: Option<&TracedShape>,
 ) -> Result<Whisker, SceneFault> {
     let check = |parameter, limits| check_number(numbers, parameter, limits);
     let length_mm = check(Parameter::LengthMm, Parameter::LengthMm.number_limits())?;
-    let radii = profile::radii(numbers, rows, length_mm)?;
+    let radii = profile::radii(numbers, measured, length_mm)?;
     let length_mm = radii.length_mm;
     let modulus = numbers.get(Parameter::YoungsModulusGpa);
     let unit = modulus.and_then(|gpa| other_unit(gpa, MODULUS_GPA, &MODULUS_UNITS));

@@ -26,7 +26,7 @@ pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneF
         let must = format!("must have at least one of {}", names());
         return Err(SceneFault::new("uncertainty", must));
     }
-    let is_measured = scene.rows.is_some();
+    let is_measured = scene.measured.is_some();
     let has_tip = || {
         parameters
             .iter()

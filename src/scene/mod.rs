@@ -20,6 +20,7 @@ mod rows;
 )]
 mod scene;
 mod shape;
+mod smooth;
 mod surface;
 mod sweep;
 mod table;
@@ -41,6 +42,7 @@ pub use parameter::Parameter;
 pub(crate) use parameter::derivative_columns;
 pub use scene::Scene;
 pub(crate) use scene::range_around;
+pub use smooth::SmoothRadii;
 pub use surface::Surface;
 pub use table::{TableWhisker, WhiskerRow};
 pub use toml::SceneText;

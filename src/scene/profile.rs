@@ -4,6 +4,7 @@ use super::builder::Numbers;
 use super::error::SceneFault;
 use super::limits::{NumberLimits, digits};
 use super::parameter::Parameter;
+use super::smooth::{MeasuredRadii, SMOOTH_KEY};
 
 /// Key of the measured rows of radii in a scene file.
 pub(super) const KEY: &str = "whisker.profile.rows";
@@ -41,7 +42,7 @@ pub(super) struct Radii {
 /// Checks and returns the radii of a whisker of `length_mm`.
 pub(super) fn radii(
     numbers: &Numbers,
-    rows: Option<&[[f64; 2]]>,
+    given: Option<&MeasuredRadii>,
     length_mm: f64,
 ) -> Result<Radii, SceneFault> {
     let keys = [Parameter::BaseRadiusUm, Parameter::TipRadiusUm].map(Parameter::key);
@@ -49,7 +50,7 @@ pub(super) fn radii(
         numbers.get(Parameter::BaseRadiusUm),
         numbers.tip_radius_um(),
     ];
-    if let Some(rows) = rows {
+    if let Some(given) = given {
         if let Some((key, value)) = keys
             .iter()
             .zip(ends)
@@ -58,8 +59,20 @@ pub(super) fn radii(
             let must = "must be left out: the radii are those of whisker.profile";
             return Err(SceneFault::of_value(*key, digits(value), must));
         }
-        check_rows(rows, length_mm)?;
-        return measured(numbers, rows, length_mm);
+        check_places(&given.rows, length_mm)?;
+        let Some(smooth) = given.smoothed()? else {
+            check_radii(&given.rows)?;
+            return measured(numbers, &given.rows, length_mm);
+        };
+        check_radii(&smooth.rows).map_err(|fault| {
+            let degree = smooth.degree;
+            let must = format!(
+                "{}, of the fit of degree {degree}: {}",
+                fault.key, fault.must
+            );
+            SceneFault::of_value(SMOOTH_KEY, "true".to_owned(), must)
+        })?;
+        return measured(numbers, &smooth.rows, length_mm);
     }
     for parameter in [Parameter::ProfileScale, Parameter::TipExtensionMm] {
         if let Some(value) = numbers.get(parameter) {
@@ -84,7 +97,8 @@ pub(super) fn radii(
     })
 }
 
-fn check_rows(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
+/// Checks the arclengths of measured rows, and that the radii have a plausible unit.
+fn check_places(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
     let count = match rows.len() {
         2..=MOST => None,
         few @ ..2 => Some(few.to_string()),
@@ -94,9 +108,7 @@ fn check_rows(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
         let must = format!("must be 2 to {MOST} rows, are {count}");
         return Err(SceneFault::new(KEY, must));
     }
-    let refused = |i: usize, must: String| Err(SceneFault::new(format!("{KEY}[{i}]"), must));
     let (first, last) = (rows[0], rows[rows.len() - 1]);
-    let (thinnest, thickest) = (first[1] / SHARPEST_TIP, DEEPEST_WAIST * first[1]);
     let mut before = f64::NEG_INFINITY;
     for (i, &[s, radius]) in rows.iter().enumerate() {
         let must = if !(s > before && s <= length_mm * (1.0 + END_SLACK)) {
@@ -108,15 +120,11 @@ fn check_rows(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
             )
         } else if !(ROW_UM[0]..=ROW_UM[1]).contains(&radius) {
             "the radius must be between 0.001 and 100000 um".to_owned()
-        } else if !(thinnest..=thickest).contains(&radius) {
-            format!(
-                "the radius must be between a thousandth of that at the base ({thinnest}) and four times it ({thickest})"
-            )
         } else {
             before = s;
             continue;
         };
-        return refused(i, must);
+        return Err(refused(i, must));
     }
     if first[0] != 0.0 || (last[0] - length_mm).abs() > END_SLACK * length_mm {
         let must = format!(
@@ -127,18 +135,37 @@ fn check_rows(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
         );
         return Err(SceneFault::new(KEY, must));
     }
-    let (base_radius_um, tip_radius_um) = (first[1], last[1]);
+    Ok(())
+}
+
+/// Fault of a measured row.
+fn refused(row: usize, must: String) -> SceneFault {
+    SceneFault::new(format!("{KEY}[{row}]"), must)
+}
+
+/// Checks the radii of measured or smoothed rows.
+fn check_radii(rows: &[[f64; 2]]) -> Result<(), SceneFault> {
+    let (base_radius_um, tip_radius_um) = (rows[0][1], rows[rows.len() - 1][1]);
+    let limits = base_radius_um / SHARPEST_TIP..=DEEPEST_WAIST * base_radius_um;
+    if let Some(i) = rows.iter().position(|[_, radius]| !limits.contains(radius)) {
+        let must = format!(
+            "the radius must be between a thousandth of that at the base ({}) and four times it ({})",
+            limits.start(),
+            limits.end()
+        );
+        return Err(refused(i, must));
+    }
     if tip_radius_um > base_radius_um {
         let must =
             format!("the radius at the tip must be at most that at the base ({base_radius_um})");
-        return refused(rows.len() - 1, must);
+        return Err(refused(rows.len() - 1, must));
     }
     if let Some((i, thinnest)) = deep_waist(rows) {
         let must = format!(
             "the radius must be at least {} um: a waist is at most four times as thin as the whisker on both sides of it",
             digits(thinnest)
         );
-        return refused(i, must);
+        return Err(refused(i, must));
     }
     Ok(())
 }

@@ -36,15 +36,10 @@ impl SceneBuilder {
             }
         }
         if let Some(rows) = &row.profile {
-            one.rows = Some(rows.clone());
+            one = one.profile(rows.clone());
         }
         if let Some(rest) = &row.rest {
-            let shape = rest.shape.clone()?;
-            let length = Parameter::LengthMm;
-            if one.numbers.get(length).is_none() {
-                one.numbers.set(length, shape.length_mm);
-            }
-            one.traced = Some(shape);
+            one = one.with_traced(rest.shape.clone()?);
         }
         one.with_tip_of_taper()
     }

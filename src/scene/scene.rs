@@ -8,6 +8,7 @@ use super::builder::SceneBuilder;
 use super::data::SceneData;
 use super::error::{SceneError, SceneFault};
 use super::parameter::Parameter;
+use super::smooth::SmoothRadii;
 use super::table::WhiskerRow;
 use super::toml::SceneText;
 use crate::traced::TracedShape;
@@ -80,7 +81,14 @@ impl Scene {
     /// Returns the measured rows as the scene gives them, `[row][arclength_mm, radius_um]`; `None` without a profile.
     #[must_use]
     pub fn measured_rows(&self) -> Option<&[[f64; 2]]> {
-        self.builder.rows.as_deref()
+        Some(&self.builder.measured.as_ref()?.rows)
+    }
+
+    /// Returns the smoothed radii that replace the measured ones; `None` unless the scene smooths them.
+    #[must_use]
+    pub fn smooth_radii(&self) -> Option<SmoothRadii> {
+        // The rows of a scene have passed the checks.
+        self.builder.measured.as_ref()?.smoothed().ok().flatten()
     }
 
     /// Returns the traced shape at rest with the fit to its points; `None` without points.

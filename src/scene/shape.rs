@@ -6,10 +6,11 @@ use glam::DVec2;
 
 use super::builder::Numbers;
 use super::error::{SceneError, SceneFault};
-use super::limits::{NumberLimits, digits};
+use super::limits::{NumberLimits, digits, rounded};
 use super::parameter::Parameter;
+use super::warnings::LENGTH_MM;
 use super::whisker::{Curvature, EulerSpiral};
-use crate::traced::TracedError;
+use crate::traced::{TracedError, TracedShape};
 use whiskmap_mechanics::rod::CurvaturePolynomial;
 
 /// Key of the points of a traced shape in a scene file.
@@ -132,6 +133,23 @@ fn euler_spiral(
         return Err(SceneFault::of_value(key, digits(per_mm2), must));
     }
     Ok(Some(EulerSpiral { per_mm, per_mm2 }))
+}
+
+/// Refuses traced points whose length is none of a whisker in millimetres, if the scene does not give the length.
+pub(super) fn check_unit(traced: &TracedShape) -> Result<(), SceneFault> {
+    let [least, most] = LENGTH_MM;
+    let length_mm = traced.length_mm;
+    if (least..=most).contains(&length_mm) {
+        return Ok(());
+    }
+    let must = format!(
+        "must be in mm: the curve through them is {} mm long, and a length outside {} to {} mm must be given by whisker.length_mm. \
+         `whiskmap import --mm-per-pixel` converts pixels",
+        digits(rounded(length_mm, 6)),
+        digits(least),
+        digits(most)
+    );
+    Err(SceneFault::new(POINTS_KEY, must))
 }
 
 /// Checks and returns the curvature of a traced shape.

@@ -56,7 +56,7 @@ pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
 /// Refuses sweep axes of parameters that another part of the scene determines.
 pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
     let given = |parameter| scene.numbers.get(parameter).is_some();
-    let is_measured = scene.rows.is_some();
+    let is_measured = scene.measured.is_some();
     let is_spiral = given(Parameter::SpiralPerMm) || given(Parameter::SpiralPerMm2);
     for (parameter, _) in &scene.sweep {
         let must = match parameter {

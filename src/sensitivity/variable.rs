@@ -66,7 +66,10 @@ impl Variable {
     pub fn value(self, scene: &Scene) -> Option<f64> {
         match self {
             Self::Parameter(parameter) => parameter.value(scene),
-            Self::ProfileRadiusUm(row) => Some(scene.measured_rows()?.get(row)?[1]),
+            Self::ProfileRadiusUm(row) => match scene.smooth_radii() {
+                Some(smooth) => Some(smooth.rows.get(row)?[1]),
+                None => Some(scene.measured_rows()?.get(row)?[1]),
+            },
             Self::DistanceMm | Self::PushAngleDeg => None,
         }
     }

@@ -5,7 +5,7 @@
 //! by Levenberg and Marquardt's method; the foot of each point follows the curve.
 
 use super::curve::{CurvePose, CurveTable, CurveTerms, Foot};
-use crate::least_squares::minimise;
+use crate::least_squares::{minimise, smallest_degree};
 use glam::DVec2;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::CURVATURE_TERMS;
@@ -23,7 +23,7 @@ const MOST_VALIDATED: usize = 5000;
 const TOLERANCE: f64 = 1e-13;
 
 /// Squared distance, in units of the squared length, that counts as 0: points from an exact curve.
-const EXACT: f64 = 1e-24;
+pub const EXACT: f64 = 1e-24;
 
 /// Number of points along which the length is estimated before the first fit: noise hardly lengthens so coarse a line.
 const COARSE: usize = 16;
@@ -165,36 +165,21 @@ impl<'a> TracedPoints<'a> {
     /// Returns the degree of the best of `curves`, by cross-validation. A tenth of the points is left out at a time, every tenth point. Of
     /// more than [`MOST_VALIDATED`] points, every k-th is used.
     ///
-    /// The smallest degree is chosen whose mean squared distance of the points that are left out is not larger than the least one by more
-    /// than the standard error of the difference (the rule of one standard error; Hastie et al., The Elements of Statistical Learning,
-    /// 2009, section 7.10, with paired differences).
+    /// The smallest degree is chosen whose distances of the points that are left out are as good as the least ones ([`smallest_degree`]).
     ///
     /// # Errors
     /// If an iteration does not converge.
     pub fn choose(&self, curves: &[CurveFit]) -> Result<usize, &'static str> {
-        let squares = curves.iter().map(|curve| self.left_out(curve));
-        let squares: Vec<Vec<f64>> = squares.collect::<Result<_, _>>()?;
-        let count = squares[0].len() as f64;
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
-        let means: Vec<f64> = squares.iter().map(|own| mean(own)).collect();
-        let best = (0..means.len()).fold(0, |best, degree| {
-            if means[degree] < means[best] {
-                degree
-            } else {
-                best
-            }
-        });
-        let is_good = |degree: &usize| {
-            let pairs = squares[*degree].iter().zip(&squares[best]);
-            let differences: Vec<f64> = pairs.map(|(own, least)| own - least).collect();
-            let excess = mean(&differences);
-            let spread = differences
-                .iter()
-                .map(|own| (own - excess) * (own - excess));
-            let error = (spread.sum::<f64>() / (count * (count - 1.0))).sqrt();
-            excess <= error + EXACT
-        };
-        Ok((0..best).find(is_good).unwrap_or(best))
+        Ok(smallest_degree(&self.all_left_out(curves)?, EXACT))
+    }
+
+    /// Returns the squared distances of the points of the cross-validation from the curves fitted without them, `[degree][point]`, in units of
+    /// the squared length of each curve.
+    ///
+    /// # Errors
+    /// If an iteration does not converge.
+    pub fn all_left_out(&self, curves: &[CurveFit]) -> Result<Vec<Vec<f64>>, &'static str> {
+        curves.iter().map(|curve| self.left_out(curve)).collect()
     }
 
     /// Squared distances of the points of the cross-validation from the curves fitted without them, `[point]`, in units of the squared length.

@@ -8,9 +8,11 @@
 mod curve;
 mod curve_fit;
 
+use crate::least_squares::smallest_degree;
 pub use curve_fit::MOST_DEGREE;
-use curve_fit::{CurveFit, TracedPoints};
+use curve_fit::{CurveFit, EXACT, TracedPoints};
 use glam::DVec2;
+use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial};
 
@@ -203,6 +205,23 @@ impl TracedShape {
         own.map(|point| back.rotate(DVec2::from(*point) - base).into())
             .collect()
     }
+}
+
+/// Returns the degree of the curvature for all of several shapes, `[shape][point][x, y]` from base to tip, by cross-validation of all of their
+/// points together; `None` if none of them has a curve. All have at least 8 points.
+pub(crate) fn common_degree(shapes: &[Vec<[f64; 2]>], cancel: &AtomicBool) -> Option<usize> {
+    let squares = shapes.par_iter().filter_map(|points_mm| {
+        let most = most_degree(points_mm.len(), None).ok()?;
+        check(points_mm).ok()?;
+        let points: Vec<DVec2> = points_mm.iter().map(|point| (*point).into()).collect();
+        let traced = TracedPoints::new(&points, cancel);
+        traced.all_left_out(&traced.curves(most).ok()?).ok()
+    });
+    let squares: Vec<Vec<Vec<f64>>> = squares.collect();
+    let most = squares.iter().map(Vec::len).min()?;
+    let pooled = |degree: usize| squares.iter().flat_map(|own| own[degree].clone()).collect();
+    let pooled: Vec<Vec<f64>> = (0..most).map(pooled).collect();
+    Some(smallest_degree(&pooled, EXACT))
 }
 
 /// Returns the largest degree of the curves to fit to `count` points.

@@ -1,6 +1,7 @@
 //! The spread of push angles to first order: `sd^2 = sum (d push/d value x sd of the value)^2`.
 
 use super::varying::Varying;
+use crate::input::each_once;
 use crate::scene::Scene;
 use crate::sensitivity::{DetachmentDerivatives, Variable, detachments_at};
 use whiskmap_mechanics::rod::Side;
@@ -18,11 +19,8 @@ pub(super) fn deviations_deg(
         .iter()
         .map(|one| one.variables(scene, varying))
         .collect();
-    let variables: Vec<Variable> = parts
-        .iter()
-        .flatten()
-        .map(|(variable, _)| *variable)
-        .collect();
+    let all: Vec<Variable> = parts.iter().flatten().map(|(own, _)| *own).collect();
+    let variables = each_once(&all);
     let ends = detachments_at(
         resolution,
         &scene.whisker,
@@ -33,12 +31,15 @@ pub(super) fn deviations_deg(
     );
     let deviation = |DetachmentDerivatives { end, by }: DetachmentDerivatives| {
         end.push_angle_deg?;
-        let mut by = by.into_iter();
+        let slope_of = |variable: &Variable| {
+            let index = variables.iter().position(|own| own == variable)?;
+            Some(by[index].as_ref().ok()?.push_angle_deg)
+        };
         let mut square = 0.0;
         for (one, parts) in varying.iter().zip(&parts) {
             let mut slope = 0.0;
-            for (_, change) in parts {
-                slope += change * by.next()?.ok()?.push_angle_deg;
+            for (variable, change) in parts {
+                slope += change * slope_of(variable)?;
             }
             square += (slope * one.deviation).powi(2);
         }

@@ -45,7 +45,7 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
 
 impl Varying {
     /// Returns the variables of the whisker that the number of `scene` changes, each with its change per unit of the number. The cone beyond
-    /// the last measured row follows the last two rows.
+    /// the last measured row follows the last two rows. A measured radius changes all smoothed ones.
     /// With a taper in `all`, the radius at the tip follows that at the base.
     pub(super) fn variables(&self, scene: &Scene, all: &[Self]) -> Vec<(Variable, f64)> {
         let is_taper =
@@ -62,17 +62,29 @@ impl Varying {
             VaryingSource::Row(row) => row,
         };
         let rows = rows(scene);
-        let mut variables = vec![(Variable::ProfileRadiusUm(row), 1.0)];
+        let changes = match scene.smooth_radii() {
+            Some(smooth) => smooth.by_measured(row),
+            None => (0..rows.len())
+                .map(|own| f64::from(u8::from(own == row)))
+                .collect(),
+        };
+        let changed = changes
+            .iter()
+            .enumerate()
+            .filter(|(_, change)| **change != 0.0);
+        let mut variables: Vec<(Variable, f64)> = changed
+            .map(|(own, change)| (Variable::ProfileRadiusUm(own), *change))
+            .collect();
         let extension = scene.whisker.length_mm - rows[rows.len() - 1][0];
         let has_cone = scene.whisker.profile.as_ref().map_or(0, Vec::len) > rows.len();
-        if let ([.., [from, _], [end, _]], true) = (&rows[..], has_cone) {
+        if let ([.., [from, _], [end, _]], [.., before, last], true) =
+            (&rows[..], &changes[..], has_cone)
+        {
             let growth = extension / (end - from);
-            let change = match rows.len() - row {
-                1 => 1.0 + growth,
-                2 => -growth,
-                _ => return variables,
-            };
-            variables.push((Variable::ProfileRadiusUm(rows.len()), change));
+            let change = last + growth * (last - before);
+            if change != 0.0 {
+                variables.push((Variable::ProfileRadiusUm(rows.len()), change));
+            }
         }
         variables
     }

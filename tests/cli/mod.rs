@@ -24,6 +24,7 @@ mod faults;
 mod files;
 mod fit;
 mod force;
+mod import;
 mod integrity;
 mod leftovers;
 mod locate;

@@ -3,6 +3,7 @@
 use std::fs;
 
 use whiskmap::Side;
+use whiskmap::random::RandomStream;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Detachment, curve};
 
@@ -315,4 +316,136 @@ fn a_cone_beyond_the_rows_has_limits() {
         why.contains("must be left out: there are no whisker.profile.rows"),
         "{why}"
     );
+}
+
+/// Rows every 0.5 mm of the cone of the base scene, with errors of this standard deviation in um.
+fn noisy_cone(deviation_um: f64, seed: u64) -> Vec<[f64; 2]> {
+    let mut random = RandomStream::new(seed, 0);
+    let row = |i: u32| {
+        let s = 0.5 * f64::from(i);
+        [s, 30.0 - 1.425 * s + deviation_um * random.normal()]
+    };
+    (0..=40).map(row).collect()
+}
+
+fn smoothed(rows: &[[f64; 2]], smooth: &str) -> String {
+    scene(&format!("[whisker.profile]\nrows = {rows:?}\n{smooth}"), "")
+}
+
+#[test]
+fn smooth_radii_replace_the_measured_ones() {
+    let rows = noisy_cone(0.3, 1);
+    let own = parse(&smoothed(&rows, "smooth = true")).unwrap();
+    let fit = own.smooth_radii().unwrap();
+    assert_eq!((fit.degree, own.measured_rows()), (1, Some(&rows[..])));
+    assert!((0.2..0.4).contains(&fit.rms_um), "{fit:?}");
+    // The least squares of a straight line, by the normal equations.
+    let count = rows.len() as f64;
+    let [s, r] = [0, 1].map(|column| rows.iter().map(|row| row[column]).sum::<f64>() / count);
+    let [mut ss, mut sr] = [0.0; 2];
+    for [own_s, own_r] in &rows {
+        ss += (own_s - s) * (own_s - s);
+        sr += (own_s - s) * (own_r - r);
+    }
+    let line = |place: f64| r + sr / ss * (place - s);
+    assert!((own.whisker.base_radius_um - line(0.0)).abs() < 1e-12);
+    assert!((own.whisker.tip_radius_um - line(20.0)).abs() < 1e-12);
+
+    // What is kept with a map is smoothed again, to the same bits; a scene of numbers keeps the key, too.
+    assert_eq!(parse(&own.to_toml()).unwrap().whisker, own.whisker);
+    let built = own.to_builder().build().unwrap();
+    assert!(built.to_toml().contains("smooth = true"));
+    assert_eq!(parse(&built.to_toml()).unwrap().whisker, own.whisker);
+    let rough = own.to_builder().smooth_profile(false).build().unwrap();
+    let plain = parse(&smoothed(&rows, "smooth = false")).unwrap();
+    assert_eq!(rough.whisker, plain.whisker);
+    assert_eq!(
+        (rough.smooth_radii(), rough.whisker.tip_radius_um),
+        (None, rows[40][1])
+    );
+}
+
+/// Smoothed radii are sums of the measured ones with the derivatives as weights, and an exact polynomial comes back with its degree.
+#[test]
+fn smooth_radii_are_linear_in_the_measured_ones() {
+    let fit = |rows: &[[f64; 2]]| {
+        let own = parse(&smoothed(rows, "smooth = true")).unwrap();
+        own.smooth_radii().unwrap()
+    };
+    let rows = noisy_cone(0.3, 2);
+    let smooth = fit(&rows);
+    let mut sums = vec![0.0; rows.len()];
+    for (row, [_, radius]) in rows.iter().enumerate() {
+        for (sum, by) in sums.iter_mut().zip(smooth.by_measured(row)) {
+            *sum += by * radius;
+        }
+    }
+    for (sum, [_, radius]) in sums.iter().zip(&smooth.rows) {
+        assert!((sum - radius).abs() < 1e-11, "{sum} {radius}");
+    }
+    let exact: Vec<[f64; 2]> = rows
+        .iter()
+        .map(|[s, _]| [*s, 30.0 - s - 0.02 * s * s])
+        .collect();
+    let smooth = fit(&exact);
+    assert_eq!(smooth.degree, 2);
+    assert!(smooth.rms_um < 1e-12, "{smooth:?}");
+}
+
+/// Errors of 1 um in rows every 0.5 mm move detachments by 4 degrees; those of the smoothed whisker are near the exact cone's.
+#[test]
+fn smooth_radii_give_the_detachments_of_the_whisker() {
+    let distances = [6.0, 8.0, 10.0, 12.0, 14.0];
+    let ends = |text: &str| {
+        let own = parse(text).unwrap();
+        let ends = Side::BOTH.map(|side| curve(&own.whisker, &own.pole, side, &distances));
+        let angles = ends
+            .into_iter()
+            .flatten()
+            .map(|end| end.push_angle_deg.unwrap());
+        angles.collect::<Vec<f64>>()
+    };
+    let exact = ends(&smoothed(&noisy_cone(0.0, 0), ""));
+    let off = |text: &str| {
+        let own = ends(text);
+        let pairs = own.iter().zip(&exact);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let (mut rough, mut smooth) = (0.0_f64, 0.0_f64);
+    for seed in 1..=8 {
+        let rows = noisy_cone(1.0, seed);
+        // Errors may make the tip thicker than the rest, or no tip at all.
+        let Ok(_) = parse(&smoothed(&rows, "")) else {
+            continue;
+        };
+        rough = rough.max(off(&smoothed(&rows, "")));
+        smooth = smooth.max(off(&smoothed(&rows, "smooth = true")));
+    }
+    // Measured: 4.26 and 1.06 degrees.
+    assert!(rough > 4.0, "{rough}");
+    assert!(smooth < 1.2, "{smooth}");
+}
+
+#[test]
+fn smooth_radii_that_are_refused() {
+    let short = "[[0, 30], [5, 20], [20, 1.5]]";
+    let pointed: Vec<[f64; 2]> = noisy_cone(0.0, 0)
+        .into_iter()
+        .map(|[s, _]| [s, if s < 10.0 { 30.0 - 3.0 * s } else { 0.1 }])
+        .collect();
+    for (profile, why) in [
+        (
+            format!("rows = {short}\nsmooth = true"),
+            "whisker.profile.smooth = true: needs at least 8 rows to choose the degree by cross-validation, has 3",
+        ),
+        (format!("rows = {short}\nsmooth = 3"), "expected a boolean"),
+        (
+            format!("rows = {pointed:?}\nsmooth = true"),
+            "of the fit of degree 6: the radius must be between a thousandth of that at the base",
+        ),
+        ("smooth = true".to_owned(), "missing field `rows`"),
+    ] {
+        let message = refusal(&scene(&format!("[whisker.profile]\n{profile}"), ""));
+        assert!(message.contains(why), "{profile}: {message}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Numbers in another unit: accepted, with a warning.
 
+use whiskmap::random::RandomStream;
 use whiskmap::scene::Scene;
 
 use super::{BASE, with_line};
@@ -125,4 +126,45 @@ fn of_measured_radii_the_largest_counts() {
         "{found:?}"
     );
     assert_eq!(measured("[[0, 30], [10, 8], [20, 0.1]]"), [""; 0]);
+}
+
+/// Rows that jump are named with the size of the jumps; smooth ones and too few are not.
+#[test]
+fn radii_that_scatter_are_named() {
+    let rows = |error: f64, count: u32| -> String {
+        let mut random = RandomStream::new(1, 0);
+        let row = |i: u32| {
+            let s = 20.0 * f64::from(i) / f64::from(count - 1);
+            // A curved profile with errors.
+            [s, 30.0 - 2.0 * s + 0.03 * s * s + error * random.normal()]
+        };
+        format!("{:?}", (0..count).map(row).collect::<Vec<_>>())
+    };
+    let found = |rows: &str, more: &str| {
+        let profile = format!("profile = {{ rows = {rows}{more} }}");
+        let text = BASE.replace("base_radius_um = 30.0", &profile);
+        warnings(&text.replace("tip_radius_um = 1.5", ""))
+    };
+    let rough = found(&rows(0.5, 41), "");
+    assert_eq!(rough.len(), 1, "{rough:?}");
+    let (said, rest) = rough[0].split_once(" um from row to row").unwrap();
+    let scatter = said
+        .strip_prefix("whisker.profile.rows: radii scatter by ")
+        .unwrap();
+    let scatter: f64 = scatter.parse().unwrap();
+    assert!((scatter / 0.5 - 1.0).abs() < 0.3, "{scatter}");
+    assert!(
+        rest.contains("expected at most 0.5 %. Tapers between rows are off by "),
+        "{rest}"
+    );
+    assert!(
+        rough[0].contains(
+            "smooth = true replaces the radii by a polynomial through the rows: degree 2"
+        )
+    );
+    assert_eq!(found(&rows(0.5, 41), ", smooth = true"), [""; 0]);
+    assert_eq!(found(&rows(0.5, 11), ""), [""; 0]);
+    for error in [0.0, 0.05] {
+        assert_eq!(found(&rows(error, 41), ""), [""; 0]);
+    }
 }

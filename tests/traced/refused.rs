@@ -211,3 +211,27 @@ fn errors_name_the_line_of_the_file() {
         scene.notes()
     );
 }
+
+/// Points in pixels have no scale: the scene must give the length.
+#[test]
+fn a_traced_length_of_no_whisker_must_be_given() {
+    let scaled = |scale: f64| {
+        let points: Vec<[f64; 2]> = arc(12).iter().map(|own| own.map(|x| scale * x)).collect();
+        scene(&format!("points = {points:?}"))
+    };
+    let why = refusal(&scaled(39.25));
+    let said = "whisker.rest.points: must be in mm: the curve through them is 785 mm long, and a length outside 1 to 200 mm must be given \
+                by whisker.length_mm. `whiskmap import --mm-per-pixel` converts pixels";
+    assert!(why.contains(said), "{why}");
+    assert!(refusal(&scaled(0.049)).contains("is 0.98 mm long"));
+    for (scale, length) in [(39.25, 785), (39.25, 20)] {
+        let given = scaled(scale).replace("[whisker]", &format!("[whisker]\nlength_mm = {length}"));
+        let read = Scene::parse(&given, "scene.toml").unwrap();
+        assert_eq!(read.whisker.length_mm, f64::from(length));
+        // What is kept with a map has the length.
+        let again = Scene::parse(&read.to_toml(), "scene.toml").unwrap();
+        assert_eq!(again.to_builder().build().unwrap().whisker, read.whisker);
+    }
+    let longest = Scene::parse(&scaled(9.99), "scene.toml").unwrap();
+    assert!((longest.whisker.length_mm - 199.8).abs() < 1e-9);
+}

@@ -24,6 +24,7 @@ mod failure;
 mod files;
 mod fit;
 mod force;
+mod import;
 mod locate;
 mod manual;
 mod map;
@@ -90,6 +91,7 @@ Examples:
   whiskmap sensitivity scenes/cone.toml --distance 15.66
   whiskmap whisk scenes/cone.toml --distance 15.66 --sine 40deg,10,0.2
   whiskmap texture scenes/texture_cone.toml --plot texture.png
+  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --fps 500
   whiskmap force scenes/cone.toml --frames scenes/frames.csv
   whiskmap locate scenes/cone.toml --base-moment 60nNm --base-force-y 6uN
   whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper
@@ -132,6 +134,8 @@ enum Command {
     Whisk(whisk::WhiskArgs),
     /// Compute the course of a whisker behind a rough surface: stuck and slipping phases, and dwell times
     Texture(texture::TextureArgs),
+    /// Convert the file of a whisker tracker: frames for `whisk` and `force`, shapes, detachments
+    Import(import::ImportArgs),
     /// Compute contact forces from the change of curvature in the frames of a film
     Force(force::ForceArgs),
     /// Find the contacts that belong to moment and force at the base
@@ -239,6 +243,7 @@ fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
         Command::Sensitivity(args) => sensitivity::run(args, files),
         Command::Whisk(args) => whisk::run(args, files),
         Command::Texture(args) => texture::run(args, files),
+        Command::Import(args) => import::run(args, files),
         Command::Force(args) => force::run(args, files),
         Command::Locate(args) => locate::run(args, files),
         Command::Design(args) => design::run(args, files),

@@ -21,6 +21,14 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
             fitted(traced, length_mm)
         ));
     }
+    if let Some(smooth) = scene.smooth_radii() {
+        message(&format!(
+            "note: whisker.profile: radii of degree {}, chosen by cross-validation; {} rows, rms residual {} um",
+            smooth.degree,
+            smooth.rows.len(),
+            digits(rounded(smooth.rms_um, 3))
+        ));
+    }
     if let Some(rows) = without_whisker(&scene) {
         message(&format!("warning: {rows}"));
     }

@@ -145,7 +145,10 @@ fn build(
         return Err(SceneFault::new("whisker.curvature", must));
     }
     if let Some(rows) = file.whisker.profile.rows {
-        builder.rows = Some(rows.read(folder, files)?);
+        let rows = rows.read(folder, files)?;
+        builder = builder
+            .profile(rows)
+            .smooth_profile(file.whisker.profile.smooth);
     }
     let rest = file.whisker.rest;
     if let Some(points) = rest.points {

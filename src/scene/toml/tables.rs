@@ -61,6 +61,9 @@ pub(in crate::scene) struct ProfileTable {
     /// Measured rows of arclength in mm and radius in um.
     #[serde(deserialize_with = "rows")]
     pub rows: Option<Pairs>,
+    /// True if a polynomial through the rows replaces their radii.
+    #[serde(default)]
+    pub smooth: bool,
     pub profile_scale: Option<f64>,
     pub tip_extension_mm: Option<f64>,
 }

@@ -15,6 +15,7 @@ use crate::scene::limits::rounded;
 use crate::scene::parameter::Parameter;
 use crate::scene::profile::KEY as ROWS_KEY;
 use crate::scene::shape::{CURVATURE_KEY, DEGREE_KEY, POINTS_KEY};
+use crate::scene::smooth::SMOOTH_KEY;
 use crate::scene::{Scene, SceneBuilder};
 use crate::traced::TracedShape;
 
@@ -118,8 +119,11 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
             put(root, parameter.key(), value);
         }
     }
-    if let Some(rows) = &scene.rows {
-        put(root, ROWS_KEY, pair_array(rows));
+    if let Some(measured) = &scene.measured {
+        put(root, ROWS_KEY, pair_array(&measured.rows));
+        if measured.smooth {
+            put(root, SMOOTH_KEY, true);
+        }
     }
     if let Some(traced) = &scene.traced {
         put(root, POINTS_KEY, pair_array(&traced.points_mm));
@@ -174,7 +178,7 @@ impl SceneBuilder {
         for csv in files {
             let points = self.traced.as_ref().map(|traced| &traced.points_mm);
             let pairs = if csv.key == ROWS_KEY {
-                self.rows.as_ref()
+                self.measured.as_ref().map(|own| &own.rows)
             } else {
                 points
             };

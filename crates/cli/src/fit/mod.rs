@@ -170,6 +170,8 @@ fn document(fit: &Fit) -> Value {
         })
     });
     let pulls: Vec<Value> = pulls.collect();
+    let smooth = fit.scene.smooth_radii();
+    let smooth = smooth.map(|own| json!({ "degree": own.degree, "rms_um": own.rms_um }));
     json!({
         "not_a_fit": fit.not_a_fit.as_ref().map(ToString::to_string),
         "values": keyed(values),
@@ -184,5 +186,6 @@ fn document(fit: &Fit) -> Value {
         "left_out": comparison.left_out().count(),
         "points": comparison.rows,
         "traced": traced,
+        "smooth_radii": smooth,
     })
 }

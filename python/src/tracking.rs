@@ -1,0 +1,123 @@
+//! Files of whisker trackers, as columns.
+
+use crate::columns::{Column, Table};
+use crate::motion::refused;
+use crate::threads;
+use pyo3::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use whiskmap::tracking::{
+    FaceAxis, ImagePole, TrackedDetachment, TrackedFrame, Tracking, TrackingError, TrackingFormat,
+    TrackingOptions,
+};
+
+/// Options by name.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Options {
+    format: Option<String>,
+    mm_per_pixel: f64,
+    fps: f64,
+    whisker: Option<i64>,
+    points: Vec<String>,
+    likelihood: f64,
+    follicle_px: Option<[f64; 2]>,
+    curvature_at_mm: Option<f64>,
+    fit_to_mm: Option<f64>,
+    degree: Option<usize>,
+    mirror: Option<bool>,
+    face_axis: Option<String>,
+    pole: Option<Pole>,
+    contact_within_mm: Option<f64>,
+    zero_s: Option<f64>,
+}
+
+/// Pole: its position in pixels, or the name of a body part.
+#[derive(FromPyObject)]
+enum Pole {
+    Part(String),
+    At([f64; 2]),
+}
+
+impl Options {
+    fn checked(self) -> PyResult<TrackingOptions> {
+        let mut own = TrackingOptions::new(self.mm_per_pixel, self.fps);
+        let format = |name: String| {
+            let mut all = TrackingFormat::ALL.into_iter();
+            all.find(|own| own.name() == name).ok_or_else(|| {
+                let names = TrackingFormat::ALL.map(TrackingFormat::name).join("', '");
+                refused(&format!("format = '{name}': must be one of '{names}'"))
+            })
+        };
+        own.format = self.format.map(format).transpose()?;
+        own.whisker = self.whisker;
+        own.points = self.points;
+        own.likelihood = self.likelihood;
+        own.follicle_px = self.follicle_px;
+        own.curvature_at_mm = self.curvature_at_mm;
+        own.fit_to_mm = self.fit_to_mm;
+        own.degree = self.degree;
+        own.mirror = self.mirror;
+        own.face_axis = match self.face_axis.as_deref() {
+            None => None,
+            Some("x") => Some(FaceAxis::X),
+            Some("y") => Some(FaceAxis::Y),
+            Some(other) => {
+                let why = format!("face_axis = '{other}': must be 'x' or 'y'");
+                return Err(refused(&why));
+            }
+        };
+        own.pole = self.pole.map(|pole| match pole {
+            Pole::Part(name) => ImagePole::Part(name),
+            Pole::At(at) => ImagePole::At(at),
+        });
+        own.contact_within_mm = self.contact_within_mm;
+        own.zero_s = self.zero_s;
+        Ok(own)
+    }
+}
+
+/// Whisker of a film, frame by frame.
+#[pyclass(frozen, module = "whiskmap._whiskmap")]
+pub struct TrackedFilm(Tracking);
+
+#[pymethods]
+impl TrackedFilm {
+    /// Reads the texts of a tracker's files, each with its name in messages.
+    #[staticmethod]
+    fn parse(py: Python<'_>, texts: Vec<(String, String)>, options: Options) -> PyResult<Self> {
+        let options = options.checked()?;
+        let job = |cancel: &Arc<AtomicBool>| Tracking::parse(&texts, &options, cancel);
+        let found = threads::run(py, None, |_| Ok(()), job)?;
+        let found = found.map_err(|why: TrackingError| refused(&why))?;
+        Ok(Self(found))
+    }
+
+    /// Returns the name of the format.
+    fn format(&self) -> &'static str {
+        self.0.format.name()
+    }
+
+    /// Returns the columns of the frames.
+    fn frames<'py>(&self, py: Python<'py>) -> PyResult<Vec<Column<'py>>> {
+        let none = AtomicBool::new(false);
+        Table::new(&self.0.frames, TrackedFrame::COLUMNS, &none).into_columns(py)
+    }
+
+    /// Returns the columns of the detachments.
+    fn detachments<'py>(&self, py: Python<'py>) -> PyResult<Vec<Column<'py>>> {
+        let none = AtomicBool::new(false);
+        Table::new(&self.0.detachments, TrackedDetachment::COLUMNS, &none).into_columns(py)
+    }
+
+    /// Returns notes on what was found.
+    fn notes(&self) -> Vec<String> {
+        self.0.notes.clone()
+    }
+
+    /// Returns the points of a frame from base to tip, `[point][x, y]` in mm.
+    fn shape(&self, frame: u64) -> PyResult<Vec<[f64; 2]>> {
+        let points = self.0.shape(frame).map_err(|why| refused(&why))?;
+        Ok(points.iter().map(|own| [own.x_mm, own.y_mm]).collect())
+    }
+}

@@ -1,0 +1,107 @@
+"""Files of whisker trackers."""
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import whiskmap as wm
+from test_motion import same, table
+
+FILM = ROOT / "scenes/deeplabcut.csv"
+ROWS = ROOT / "scenes/measurements.csv"
+POLE = {"pole": "pole", "contact_within_mm": 0.35}
+SCALE = {"mm_per_pixel": 0.05, "fps": 500}
+
+
+def test_frames_are_those_of_the_program_and_of_force(cone, tmp_path):
+    found = wm.read_tracking(FILM, **SCALE, **POLE, curvature_at_mm=2)
+    assert found.format == "deeplabcut" and found.frames.sizes == {"time_s": 56}
+    options = ["--pole", "pole", "--contact-within", "0.35", "--mm-per-pixel", "0.05", "--fps", "500", "--curvature-at", "2"]
+    rows = table("import", str(FILM), *options)
+    same(found.frames, rows)
+    assert any("56 frames are gaps" in note for note in found.notes)
+    with pytest.warns(wm.SceneWarning, match="3 of 56 frames have no force"):
+        force = wm.force(cone, found.frames, model=True)
+    assert (force.reason == "missing").sum() == 3 and force.attrs["baseline_frames"] > 10
+    assert float(force.force_un.max()) > 1
+    with pytest.warns(wm.SceneWarning, match="missing angles: 3"):
+        whisk = wm.whisk(cone, 15.66, found.frames.time_s, found.frames.angle_deg, bridge_s=0.01)
+    assert "slip-off" in whisk.events.event.values
+
+
+def test_detachments_are_those_of_fit(cone):
+    found = wm.read_tracking(str(FILM), **SCALE, **POLE).detachments
+    assert found.side.values.tolist() == ["cb"] and abs(found.distance_mm.item() - 15.66) < 0.1
+    points = {name: np.repeat(found[name].values, 2) for name in ("side", "distance_mm", "push_angle_deg")}
+    fitted = wm.fit(cone, points, ["tip_radius_um"])
+    assert abs(fitted.points.residual_deg.values).max() < 0.1
+    assert wm.read_tracking(FILM, **SCALE, points=["base", "w2", "w3", "w5", "w7", "tip"]).detachments.sizes["number"] == 0
+
+
+def test_a_shape_is_the_rest_points_of_a_whisker():
+    found = wm.read_tracking(FILM, **SCALE, **POLE)
+    points = found.shape(2)
+    assert points.shape == (9, 2)
+    whisker = wm.Whisker(base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, rest_points=points)
+    scene = wm.Scene(whisker=whisker, grid=wm.Grid(push_angle_deg=[10], distance_mm=[15]))
+    assert abs(scene.whisker.length_mm - 20) < 0.1
+    with pytest.raises(ValueError, match="shape = 4: must be a frame with a whisker"):
+        found.shape(4)
+    with pytest.raises(wm.SceneError, match="must be in mm: the curve through them is 400"):
+        scene.replace(rest_points=points / 0.05, length_mm=None)
+
+
+def test_measurements_come_as_csv_and_as_nwb(tmp_path):
+    found = wm.read_tracking(ROWS, **SCALE)
+    assert found.format == "whisk" and found.frames.reason.values[25] == "missing"
+    pynwb, ndx_whisk = pytest.importorskip("pynwb"), pytest.importorskip("ndx_whisk")
+    from datetime import datetime, timezone
+
+    columns = np.genfromtxt(ROWS, delimiter=",", names=True)
+    names = {"fid": "frame_id", "wid": "whisker_id"}
+    # The extension has no identity -1.
+    kept = columns[columns["label"] >= 0]
+    own = ndx_whisk.WhiskerMeasurementTable(name="whiskers", description="made up")
+    kinds = {"frame_id": np.uint32, "whisker_id": np.uint16, "label": np.uint16, "face_x": np.int32, "face_y": np.int32}
+    for row in kept:
+        cells = {names.get(name, name): row[name] for name in columns.dtype.names}
+        own.add_row({name: kinds.get(name, np.float32)(value) for name, value in cells.items()})
+    file = pynwb.NWBFile(session_description="made up", identifier="1", session_start_time=datetime(2020, 1, 1, tzinfo=timezone.utc))
+    file.create_processing_module(name="behavior", description="whiskers").add(own)
+    path = tmp_path / "film.nwb"
+    with pynwb.NWBHDF5IO(str(path), mode="w") as io:
+        io.write(file)
+    stored = wm.read_tracking(path, **SCALE)
+    assert stored.format == "whisk"
+    for name in ("angle_deg", "curvature_per_mm", "length_mm"):
+        np.testing.assert_allclose(stored.frames[name], found.frames[name], rtol=1e-4, atol=1e-3)
+
+
+def test_an_nwb_file_names_its_extra(tmp_path, monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "ndx_whisk", None)
+    path = tmp_path / "film.nwb"
+    path.write_bytes(b"\x89HDF\r\n\x1a\nmore")
+    with pytest.raises(ImportError, match="install the extra `nwb` of whiskmap"):
+        wm.read_tracking(path, **SCALE)
+
+
+def test_bad_values_are_refused(tmp_path):
+    for options, kind, why in [
+        ({"mm_per_pixel": 0}, ValueError, "mm_per_pixel = 0: must be a number between 1e-9 and 1e9"),
+        ({"format": "csv"}, ValueError, "format = 'csv': must be one of 'deeplabcut', 'whisk', 'xy'"),
+        ({"face_axis": "z"}, ValueError, "face_axis = 'z': must be 'x' or 'y'"),
+        ({"pole": "pole"}, ValueError, "pole = pole: needs contact_within_mm"),
+        ({"pole": [1]}, ValueError, "pole: must be x and y in pixels, has 1 numbers"),
+        ({"points": "base"}, TypeError, "points = 'base': must be a list of names"),
+        ({"whisker": 1.5}, TypeError, "whisker = 1.5: must be a whole number"),
+        ({"degree": -1}, ValueError, "degree = -1: must be between 0 and 6"),
+        ({"fps": "500"}, TypeError, "fps = '500': must be a number, without a unit"),
+        ({"curvature_at_mm": 30}, ValueError, "curvature_at_mm = 30: must be between 0 and "),
+    ]:
+        with pytest.raises(kind) as refused:
+            wm.read_tracking(FILM, **{**SCALE, **options})
+        assert why in str(refused.value)
+    with pytest.raises(OSError):
+        wm.read_tracking(tmp_path / "no.csv", **SCALE)

@@ -1,0 +1,193 @@
+"""Files of whisker trackers: frames for `whisk` and `force`, shapes for scenes, detachments for `fit`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Union
+
+import numpy as np
+import xarray as xr
+
+from whiskmap._datasets import variables
+from whiskmap._values import csv_text, number, numbers
+from whiskmap._warnings import require
+from whiskmap._whiskmap import TrackedFilm
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    PathLike = Union[str, os.PathLike[str]]
+
+# First bytes of an HDF5 file, and so of an NWB file.
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """Whisker of a film, frame by frame.
+
+    Attributes
+    ----------
+    frames : xarray.Dataset
+        Frames by `time_s`, from the first to the last one, as `force` takes them. `angle_deg` is the angle of the base for `whisk`,
+        `curvature_per_mm` the curvature at `at_arc_length_mm`, and `contact` is 1 or 0. Numbers of gaps are NaN, with a `reason`: "missing"
+        (the tracker has lost the whisker or its base, or has too few points) or "no-curve" (the points lie along no smooth curve).
+    detachments : xarray.Dataset
+        Detachments from the pole by `number`, as `fit` takes them: `side`, `distance_mm`, `push_angle_deg` and `time_s`. Empty without a pole.
+    notes : list of str
+        What was found: the base, a mirrored image, the degree of curves, gaps.
+    format : str
+        Format of the file: "deeplabcut", "whisk" (also from NWB) or "xy".
+    """
+
+    frames: xr.Dataset
+    detachments: xr.Dataset
+    notes: list[str]
+    format: str
+    _film: TrackedFilm
+
+    def shape(self, frame: int) -> NDArray[np.float64]:
+        """Return the traced points of a frame from base to tip, of shape (points, 2), in mm, for `rest_points` of a `Whisker`.
+
+        Raises
+        ------
+        ValueError
+            If the frame is a gap or there is none of this number, or the format has no points.
+        """
+        return np.array(self._film.shape(frame), dtype=np.float64)
+
+
+def read_tracking(
+    files: PathLike | Sequence[PathLike],
+    *,
+    mm_per_pixel: float,
+    fps: float,
+    format: Literal["deeplabcut", "whisk", "xy"] | None = None,
+    whisker: int | None = None,
+    points: Sequence[str] = (),
+    likelihood: float = 0.9,
+    follicle_px: Sequence[float] | None = None,
+    curvature_at_mm: float | None = None,
+    fit_to_mm: float | None = None,
+    degree: int | None = None,
+    mirror: bool | None = None,
+    face_axis: Literal["x", "y"] | None = None,
+    pole: str | Sequence[float] | None = None,
+    contact_within_mm: float | None = None,
+    zero_s: float | None = None,
+) -> Tracking:
+    """Read the file of a whisker tracker. Positions in it are in pixels, and the y axis of the image points downward.
+
+    Parameters
+    ----------
+    files : path or sequence of paths
+        A CSV file of DeepLabCut, measurements of Janelia's `whisk` as CSV, an NWB file with a `WhiskerMeasurementTable` of ndx-whisk (extra
+        `nwb`), or points without a header: ``x,y``, a file for each frame, or ``frame,x,y``.
+    mm_per_pixel : float
+        Scale of the image.
+    fps : float
+        Frames per second.
+    format : {"deeplabcut", "whisk", "xy"}, optional
+        Format of the file, which is recognised if left out.
+    whisker : int, optional
+        Identity of the whisker in measurements of `whisk`; needed if there are several.
+    points : sequence of str
+        Body parts of DeepLabCut along the whisker, from base to tip. If left out, they are all but the pole, and their order is found.
+    likelihood : float
+        Least likelihood of a point of DeepLabCut; points below it are lost.
+    follicle_px : (x, y), optional
+        Position of the follicle: the end that is nearer to it is the base. If left out, the base is the end that moves less.
+    curvature_at_mm : float, optional
+        Arclength from the base at which the curvature is given; a quarter of the median length if left out.
+    fit_to_mm : float, optional
+        Distance from the base up to which points give base angle and curvature: 0.6 of the median length, or as far as 8 points reach, if left
+        out.
+    degree : int, optional
+        Degree of the curvature of the curves through the points of a frame, 0 to 6; cross-validation chooses it if left out.
+    mirror : bool, optional
+        Whether to mirror the image. If left out, it is mirrored if the whisker turns clockwise from base to tip.
+    face_axis : {"x", "y"}, optional
+        Axis of the image from which the angles of `whisk` are measured; found if left out.
+    pole : (x, y) or str, optional
+        Centre of the pole in pixels, or the body part of DeepLabCut that is its centre.
+    contact_within_mm : float, optional
+        Largest distance of the whisker from the pole's centre in contact; needed with `pole`.
+    zero_s : float, optional
+        Time of the frame in which the angle of the base is 0. If left out, it is first touch on CB, or else the first frame with a whisker.
+
+    Returns
+    -------
+    Tracking
+
+    Raises
+    ------
+    ValueError
+        If the file has no known format, a cell is no number, an option is out of its range or does not fit the format, or both ends of the
+        whisker move alike.
+    OSError
+        If a file cannot be read.
+    ImportError
+        If an NWB file is read without the extra `nwb`.
+    """
+    paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
+    if isinstance(points, str):
+        raise TypeError(f"points = {points!r}: must be a list of names")
+    options = {
+        "format": format,
+        "mm_per_pixel": number("mm_per_pixel", mm_per_pixel),
+        "fps": number("fps", fps),
+        "whisker": _whole("whisker", whisker),
+        "points": list(points),
+        "likelihood": number("likelihood", likelihood),
+        "follicle_px": None if follicle_px is None else _pair("follicle_px", follicle_px),
+        "curvature_at_mm": None if curvature_at_mm is None else number("curvature_at_mm", curvature_at_mm),
+        "fit_to_mm": None if fit_to_mm is None else number("fit_to_mm", fit_to_mm),
+        "degree": _whole("degree", degree),
+        "mirror": mirror,
+        "face_axis": face_axis,
+        "pole": pole if pole is None or isinstance(pole, str) else _pair("pole", pole),
+        "contact_within_mm": None if contact_within_mm is None else number("contact_within_mm", contact_within_mm),
+        "zero_s": None if zero_s is None else number("zero_s", zero_s),
+    }
+    film = TrackedFilm.parse([(_text(Path(path)), os.fspath(path)) for path in paths], options)
+    frames = xr.Dataset(variables(film.frames(), ("time_s",), (-1,))).set_coords("time_s")
+    detachments = xr.Dataset(variables(film.detachments(), ("number",), (-1,)))
+    return Tracking(frames, detachments, film.notes(), film.format(), film)
+
+
+def _whole(name: str, value: Any) -> int | None:
+    if value is None:
+        return None
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise TypeError(f"{name} = {value!r}: must be a whole number")
+    own = int(value.__index__())
+    if name == "degree" and own < 0:
+        raise ValueError(f"degree = {own}: must be between 0 and 6")
+    return own
+
+
+def _pair(name: str, values: Any) -> list[float]:
+    pair = numbers(name, values)
+    if len(pair) != 2:
+        raise ValueError(f"{name}: must be x and y in pixels, has {len(pair)} numbers")
+    return pair
+
+
+def _text(path: Path) -> str:
+    """Return the text of a CSV file, or the measurements in an NWB file as such a text."""
+    with path.open("rb") as file:
+        if file.read(len(_HDF5)) != _HDF5:
+            return csv_text("files", path)
+    # The library of ndx-whisk registers the type of its tables.
+    for module in ("pynwb", "ndx_whisk"):
+        require(module, "nwb")
+    pynwb: Any = import_module("pynwb")
+    with pynwb.NWBHDF5IO(os.fspath(path), mode="r", load_namespaces=True) as io:
+        tables = [own for own in io.read().objects.values() if own.neurodata_type == "WhiskerMeasurementTable"]
+        if len(tables) != 1:
+            raise ValueError(f"{path}: must have one WhiskerMeasurementTable of ndx-whisk, has {len(tables)}")
+        return csv_text("files", {name: np.asarray(tables[0][name].data[:]) for name in tables[0].colnames})

@@ -1,0 +1,441 @@
+//! Curve of the whisker in each frame, in millimetres with the y axis upward.
+
+use super::options::{FaceAxis, TrackingError, TrackingOptions};
+use super::orient::median;
+use super::{CurvedFrame, ImageFrame, NoFrame};
+use crate::scene::{digits, rounded};
+use crate::traced::{MOST_DEGREE, TracedShape, common_degree};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_2;
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial, Rest, Rod};
+
+/// Points more than the degree that a curve needs.
+pub(super) const MORE_POINTS: usize = 4;
+
+/// Number of points from which on cross-validation chooses the degree.
+const MANY_POINTS: usize = 8;
+
+/// Number of frames, from all over the film, whose points choose the degree together.
+const CHOSEN_FRAMES: usize = 40;
+
+/// Part of the median length, from the base on, whose points give base angle and curvature. A loaded whisker bends most beyond it, where it is
+/// thin; a polynomial that follows the whole whisker has a wrong angle at its end.
+const NEAR: f64 = 0.6;
+
+/// Angle by which a whisker turns from base to tip at least, in radians, to have a concave side.
+const STRAIGHT: f64 = 0.02;
+
+/// Number of places along a curve at which the nearest one to the pole is looked for first.
+const PLACES: u32 = 64;
+
+/// Most Newton steps to the place that is nearest to the pole.
+const MOST_STEPS: usize = 20;
+
+/// Curve in the plane of the image.
+#[derive(Clone, Debug)]
+struct PlaneCurve {
+    /// Position of the base, in mm.
+    base: DVec2,
+    /// Angle of the tangent at the base, in radians, counterclockwise from the x axis.
+    angle: f64,
+    /// Curvature over the length.
+    curvature: CurvaturePolynomial,
+    /// Length of the curve, in mm.
+    length_mm: f64,
+}
+
+/// Curves of a whisker in one frame: near its base, where a low degree of the curvature is enough, and of the whole whisker, which bends more
+/// where it is thin.
+#[derive(Clone, Debug)]
+pub(super) struct FrameCurve {
+    near: PlaneCurve,
+    whole: PlaneCurve,
+    /// Root mean square of the points' distances from the curve of the whole whisker, in mm; `None` without points.
+    pub rms_mm: Option<f64>,
+}
+
+/// Place on a curve that is nearest to the pole's centre.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NearestPlace {
+    /// Position in the frame of the base, in mm.
+    pub at_mm: DVec2,
+    /// Angle of the tangent there from the base's, in radians.
+    pub angle: f64,
+    /// Distance of the pole's centre from the whisker, in mm, positive on its left.
+    pub offset_mm: f64,
+}
+
+impl PlaneCurve {
+    fn of(fit: &TracedShape) -> Self {
+        Self {
+            base: fit.base_mm.into(),
+            angle: fit.base_angle,
+            curvature: fit.curvature,
+            length_mm: fit.length_mm,
+        }
+    }
+
+    fn rest(&self) -> Rest {
+        Rest::new(&Rod {
+            polynomial: Some(Arc::new(self.curvature)),
+            ..Rod::default()
+        })
+    }
+
+    /// Returns the place that is nearest to a point in mm, in lengths of the curve, and the signed distance of the point in mm, positive on
+    /// the left; by Newton's method from the nearest of some places.
+    fn nearest(&self, rest: &Rest, point_mm: DVec2) -> (f64, f64) {
+        let point = DVec2::from_angle(-self.angle).rotate(point_mm - self.base) / self.length_mm;
+        let far = |s: f64| rest.at_arclength(s).0.distance_squared(point);
+        let places = (0..=PLACES).map(|i| f64::from(i) / f64::from(PLACES));
+        let first = places.min_by(|one, other| far(*one).total_cmp(&far(*other)));
+        let mut s = first.unwrap_or_default();
+        for _ in 0..MOST_STEPS {
+            let (own, tangent) = rest.at_arclength(s);
+            let slowed = 1.0 - (point - own).dot(tangent.perp()) * self.curvature.at(s);
+            let next = (s + (point - own).dot(tangent) / slowed.max(0.1)).clamp(0.0, 1.0);
+            let step = (next - s).abs();
+            s = next;
+            if step < 4.0 * f64::EPSILON {
+                break;
+            }
+        }
+        let (own, tangent) = rest.at_arclength(s);
+        let side = tangent.perp_dot(point - own).signum();
+        (s, side * own.distance(point) * self.length_mm)
+    }
+
+    /// Returns the curve with the other sign of the y axis.
+    fn mirrored(self) -> Self {
+        Self {
+            base: DVec2::new(self.base.x, -self.base.y),
+            angle: -self.angle,
+            curvature: CurvaturePolynomial::new(self.curvature.legendre().map(|own| -own)),
+            ..self
+        }
+    }
+}
+
+impl FrameCurve {
+    /// Returns the angle of the tangent at the base, in radians, counterclockwise from the x axis.
+    pub const fn angle(&self) -> f64 {
+        self.near.angle
+    }
+
+    /// Returns the length of the whisker, in mm.
+    pub const fn length_mm(&self) -> f64 {
+        self.whole.length_mm
+    }
+
+    /// Returns the length of the part whose curvature is known best, in mm.
+    pub const fn near_mm(&self) -> f64 {
+        self.near.length_mm
+    }
+
+    /// Returns the curvature at the arclength `s_mm`, in 1/mm.
+    pub fn curvature_per_mm(&self, s_mm: f64) -> f64 {
+        let near = &self.near;
+        near.curvature.at(s_mm / near.length_mm) / near.length_mm
+    }
+
+    /// Returns the position at the arclength `s_mm` in the frame of the base, in mm.
+    pub fn position_mm(&self, s_mm: f64) -> DVec2 {
+        let near = &self.near;
+        near.rest().at_arclength(s_mm / near.length_mm).0 * near.length_mm
+    }
+
+    /// Returns the place of the whole whisker that is nearest to the pole's centre.
+    pub fn nearest(&self, pole_mm: [f64; 2]) -> NearestPlace {
+        let Self { near, whole, .. } = self;
+        let rest = whole.rest();
+        let (s, offset_mm) = whole.nearest(&rest, pole_mm.into());
+        let own = rest.at_arclength(s).0 * whole.length_mm;
+        let at = whole.base + DVec2::from_angle(whole.angle).rotate(own);
+        NearestPlace {
+            at_mm: DVec2::from_angle(-near.angle).rotate(at - near.base),
+            angle: whole.angle + whole.curvature.angle(s) - near.angle,
+            offset_mm,
+        }
+    }
+
+    fn mirrored(self) -> Self {
+        Self {
+            near: self.near.mirrored(),
+            whole: self.whole.mirrored(),
+            ..self
+        }
+    }
+}
+
+/// Frames with what their curves need.
+pub(super) struct Curves<'a> {
+    frames: &'a [ImageFrame],
+    mm_per_pixel: f64,
+    /// Curve of each frame, `[frame]`.
+    curves: Vec<Result<FrameCurve, NoFrame>>,
+    is_mirrored: bool,
+}
+
+impl<'a> Curves<'a> {
+    /// Computes the curve of each frame, and adds notes on how.
+    pub fn new(
+        frames: &'a [ImageFrame],
+        options: &TrackingOptions,
+        cancel: &AtomicBool,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, TrackingError> {
+        let scale = options.mm_per_pixel;
+        let curves = if frames.iter().any(|own| own.bend.is_some()) {
+            let axis = options.face_axis.unwrap_or_else(|| face_axis(frames));
+            let name = match axis {
+                FaceAxis::X => "x",
+                FaceAxis::Y => "y",
+            };
+            let found = if options.face_axis.is_some() {
+                ""
+            } else {
+                ", as the ends of the segments show"
+            };
+            notes.push(format!(
+                "angles are measured from the {name} axis of the image{found}"
+            ));
+            frames.iter().map(|own| arc(own, axis, scale)).collect()
+        } else {
+            if let Some(axis) = options.face_axis {
+                let axis = if axis == FaceAxis::X { "x" } else { "y" };
+                let must = "must be left out: only measurements of whisk have angles".to_owned();
+                return Err(super::refused("face_axis", axis, must));
+            }
+            traced_frames(frames, options, cancel, notes)
+        };
+        let turns = curves
+            .iter()
+            .flatten()
+            .map(|own: &FrameCurve| own.whole.curvature.angle(1.0));
+        let turn = median(turns);
+        let is_mirrored = options.mirror.unwrap_or(turn < -STRAIGHT);
+        if is_mirrored && options.mirror.is_none() {
+            let degrees = -turn.to_degrees();
+            notes.push(format!(
+                "the image is mirrored, so that the concave side is CF: from base to tip, the whisker turns clockwise, by {degrees:.1} deg (median)"
+            ));
+        }
+        Ok(Self {
+            frames,
+            mm_per_pixel: scale,
+            curves,
+            is_mirrored,
+        })
+    }
+
+    /// Returns the frames with these numbers, mirrored if need be; frames that the file does not have are gaps.
+    pub fn of_frames(self, numbers: RangeInclusive<u64>) -> Vec<CurvedFrame> {
+        let y = if self.is_mirrored {
+            self.mm_per_pixel
+        } else {
+            -self.mm_per_pixel
+        };
+        let mm = |[x, own]: [f64; 2]| [self.mm_per_pixel * x, y * own];
+        let mut own = self.frames.iter().zip(self.curves).peekable();
+        let frame = |number: u64| {
+            let lost = CurvedFrame {
+                number,
+                curve: Err(NoFrame::Missing),
+                points_mm: Vec::new(),
+                pole_mm: None,
+            };
+            let Some((frame, curve)) = own.next_if(|(frame, _)| frame.number == number) else {
+                return lost;
+            };
+            let curve = match self.is_mirrored {
+                true => curve.map(FrameCurve::mirrored),
+                false => curve,
+            };
+            let points = frame.points_px.iter().flatten().map(|own| mm(*own));
+            CurvedFrame {
+                points_mm: if curve.is_ok() {
+                    points.collect()
+                } else {
+                    Vec::new()
+                },
+                pole_mm: frame.pole_px.map(mm),
+                curve,
+                ..lost
+            }
+        };
+        numbers.map(frame).collect()
+    }
+}
+
+/// Points of a frame in mm with the y axis upward, from the base on; `None` if the base is lost.
+fn points_mm(frame: &ImageFrame, scale: f64) -> Option<Vec<[f64; 2]>> {
+    (*frame.points_px.first()?)?;
+    let points = frame.points_px.iter().flatten();
+    Some(points.map(|[x, y]| [scale * x, -scale * y]).collect())
+}
+
+/// The curves through the points of all frames: near the base, and whole. All frames have the same degrees.
+fn traced_frames(
+    frames: &[ImageFrame],
+    options: &TrackingOptions,
+    cancel: &AtomicBool,
+    notes: &mut Vec<String>,
+) -> Vec<Result<FrameCurve, NoFrame>> {
+    let points = frames
+        .iter()
+        .map(|own| points_mm(own, options.mm_per_pixel));
+    let points: Vec<Option<Vec<[f64; 2]>>> = points.collect();
+    let known = || points.iter().flatten();
+    let far =
+        |own: &[[f64; 2]], i: usize| libm::hypot(own[i][0] - own[0][0], own[i][1] - own[0][1]);
+    let length = |own: &Vec<[f64; 2]>| {
+        let steps = own.windows(2);
+        steps
+            .map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]))
+            .sum::<f64>()
+    };
+    let length_mm = median(known().map(length));
+    let few = median(known().map(|own| far(own, (MANY_POINTS - 1).min(own.len() - 1))));
+    // A little more, so that rounding leaves no point out.
+    let reach_mm = options
+        .fit_to_mm
+        .unwrap_or_else(|| (NEAR * length_mm).max(few + 1e-3 * length_mm));
+    let near = |own: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+        let first = own
+            .iter()
+            .enumerate()
+            .take_while(|(i, _)| far(own, *i) <= reach_mm);
+        first.map(|(_, point)| *point).collect()
+    };
+    let mut degree_of = |shapes: Vec<Vec<[f64; 2]>>, what: &str| {
+        options
+            .degree
+            .unwrap_or_else(|| degree(&shapes, what, cancel, notes))
+    };
+    let part = digits(rounded(reach_mm, 3));
+    let near_degree = degree_of(
+        known().map(near).collect(),
+        &format!("near the base, up to {part} mm from it,"),
+    );
+    let whole_degree = degree_of(known().cloned().collect(), "of whole whiskers");
+    let frame = |own: &Option<Vec<[f64; 2]>>| {
+        let whole = own.as_ref().ok_or(NoFrame::Missing)?;
+        let fit = |points: Vec<[f64; 2]>, degree: usize| {
+            let is_enough = points.len() >= degree + MORE_POINTS;
+            if !is_enough || cancel.load(Ordering::Relaxed) {
+                return Err(NoFrame::Missing);
+            }
+            TracedShape::fit_until(points, Some(degree), cancel).map_err(|_| NoFrame::NoCurve)
+        };
+        let near = fit(near(whole), near_degree)?;
+        let whole = fit(whole.clone(), whole_degree)?;
+        Ok(FrameCurve {
+            near: PlaneCurve::of(&near),
+            whole: PlaneCurve::of(&whole),
+            rms_mm: Some(whole.rms_mm),
+        })
+    };
+    points.par_iter().map(frame).collect()
+}
+
+/// The degree for all frames: by cross-validation in some frames together, or one that leaves points over.
+fn degree(
+    shapes: &[Vec<[f64; 2]>],
+    what: &str,
+    cancel: &AtomicBool,
+    notes: &mut Vec<String>,
+) -> usize {
+    let many: Vec<_> = shapes
+        .iter()
+        .filter(|own| own.len() >= MANY_POINTS)
+        .collect();
+    // Cross-validation in a few frames does not speak for all.
+    let (degree, how) = if 2 * many.len() <= shapes.len() {
+        let count = median(shapes.iter().map(|own| own.len() as f64)) as usize;
+        let degree = count.saturating_sub(MORE_POINTS) / 2;
+        (degree.min(MOST_DEGREE), format!("for {count} points"))
+    } else {
+        let count = many.len().min(CHOSEN_FRAMES);
+        let some: Vec<_> = (0..count)
+            .map(|i| many[(2 * i + 1) * many.len() / (2 * count)].clone())
+            .collect();
+        let degree = common_degree(&some, cancel).unwrap_or_default();
+        (
+            degree,
+            format!("chosen by cross-validation in {count} frames"),
+        )
+    };
+    notes.push(format!(
+        "curves {what} have a curvature of degree {degree}, {how}"
+    ));
+    degree
+}
+
+/// Follicle, chord and mean curvature (in 1/px) of a measured segment, in the axes of the image; and its angle in degrees.
+fn measured(frame: &ImageFrame) -> Option<(DVec2, DVec2, f64, f64)> {
+    let [Some(follicle), Some(tip)] = frame.points_px[..] else {
+        return None;
+    };
+    let [angle, curvature] = frame.bend?;
+    let follicle = DVec2::from(follicle);
+    Some((follicle, DVec2::from(tip) - follicle, curvature, angle))
+}
+
+/// Half the angle by which an arc of this curvature turns over its chord; `None` if there is no such arc.
+fn half_turn(chord: DVec2, curvature: f64) -> Option<f64> {
+    let sine = 0.5 * curvature * chord.length();
+    (sine.abs() <= 1.0).then(|| libm::asin(sine))
+}
+
+/// Angle of the tangent in radians from the x axis toward the y axis of the image, of an angle in degrees from `axis`.
+fn from_x(angle_deg: f64, axis: FaceAxis) -> f64 {
+    match axis {
+        FaceAxis::X => angle_deg.to_radians(),
+        FaceAxis::Y => FRAC_PI_2 - angle_deg.to_radians(),
+    }
+}
+
+/// The axis with which the angles are nearest to those of arcs through the ends of the segments.
+fn face_axis(frames: &[ImageFrame]) -> FaceAxis {
+    let closeness = |axis: FaceAxis| -> f64 {
+        let each = frames.iter().filter_map(|own| {
+            let (_, chord, curvature, angle) = measured(own)?;
+            let base = libm::atan2(chord.y, chord.x) - half_turn(chord, curvature)?;
+            Some(libm::cos(from_x(angle, axis) - base))
+        });
+        each.sum()
+    };
+    if closeness(FaceAxis::X) > closeness(FaceAxis::Y) {
+        FaceAxis::X
+    } else {
+        FaceAxis::Y
+    }
+}
+
+/// The arc of a measured segment, with the y axis upward.
+fn arc(frame: &ImageFrame, axis: FaceAxis, scale: f64) -> Result<FrameCurve, NoFrame> {
+    let (follicle, chord, curvature, angle) = measured(frame).ok_or(NoFrame::Missing)?;
+    let half = half_turn(chord, curvature).filter(|_| chord.length() > 0.0);
+    let half = half.ok_or(NoFrame::NoCurve)?;
+    let length = match half {
+        0.0 => chord.length(),
+        _ => 2.0 * half / curvature,
+    };
+    let mut legendre = [0.0; CURVATURE_TERMS];
+    legendre[0] = -2.0 * half;
+    let arc = PlaneCurve {
+        base: scale * DVec2::new(follicle.x, -follicle.y),
+        angle: -from_x(angle, axis),
+        curvature: CurvaturePolynomial::new(legendre),
+        length_mm: scale * length,
+    };
+    Ok(FrameCurve {
+        near: arc.clone(),
+        whole: arc,
+        rms_mm: None,
+    })
+}

@@ -1,0 +1,146 @@
+//! CSV files of DeepLabCut: the rows `scorer`, `bodyparts` and `coords`, then a row for each frame.
+
+use super::options::{ImagePole, TrackingError, TrackingOptions, refused, unknown};
+use super::{ImageFrame, ImageFrames, PointOrder};
+use crate::input::{CsvError, CsvLine, CsvLines, each_once, shortened};
+
+/// Names of the rows of the header.
+const HEADER: [&str; 3] = ["scorer", "bodyparts", "coords"];
+
+/// Reads the frames of a file. Points below the likelihood are lost.
+pub(super) fn read(
+    mut lines: CsvLines,
+    origin: &str,
+    options: &TrackingOptions,
+) -> Result<ImageFrames, TrackingError> {
+    if let Some(whisker) = options.whisker {
+        let must = "must be left out: points names the body parts of the whisker".to_owned();
+        return Err(refused("whisker", &whisker.to_string(), must));
+    }
+    for (name, line) in HEADER.iter().zip(&lines.lines) {
+        let found = line.cells.get(0).unwrap_or_default();
+        if found != *name {
+            let hint = if found == "individuals" {
+                "; export the file of one individual"
+            } else {
+                ""
+            };
+            let what = format!(
+                "begins with {}: must begin with {name}{hint}",
+                shortened(found)
+            );
+            return Err(CsvError::at(origin, line.number, what).into());
+        }
+    }
+    if lines.lines.len() <= HEADER.len() {
+        let what = "has no frames: must have at least one row below scorer, bodyparts and coords";
+        return Err(CsvError::whole(origin, what).into());
+    }
+    let header: Vec<CsvLine> = lines.lines.drain(..HEADER.len()).collect();
+    let names = header[1].cells.iter().skip(1);
+    let columns = names.clone().zip(header[2].cells.iter().skip(1));
+    let columns: Vec<String> = columns
+        .map(|(name, coord)| format!("{name} {coord}"))
+        .collect();
+    let parts: Vec<&str> = each_once(&names.collect::<Vec<_>>());
+    let table = lines.table(
+        CsvLine {
+            number: header[2].number,
+            cells: std::iter::once("frame")
+                .chain(columns.iter().map(String::as_str))
+                .collect(),
+        },
+        origin,
+    )?;
+    let pole = match &options.pole {
+        Some(ImagePole::Part(name)) if !parts.contains(&name.as_str()) => {
+            return Err(unknown("pole", name, &parts));
+        }
+        Some(ImagePole::Part(name)) => Some(name.as_str()),
+        _ => None,
+    };
+    let along: Vec<&str> = match options.points.is_empty() {
+        true => parts
+            .iter()
+            .copied()
+            .filter(|own| Some(*own) != pole)
+            .collect(),
+        false => options.points.iter().map(String::as_str).collect(),
+    };
+    if let Some(name) = along.iter().find(|name| !parts.contains(name)) {
+        return Err(unknown("points", name, &parts));
+    }
+    let places = |part: &str| -> Result<Vec<Option<[f64; 2]>>, CsvError> {
+        let column = |coord: &str, must: &str, is_allowed: fn(f64) -> bool| {
+            table.measurements(&format!("{part} {coord}"), must, is_allowed)
+        };
+        let must = "a number between -1e6 and 1e6";
+        let [x, y] = ["x", "y"].map(|coord| {
+            column(coord, must, |own| own.abs() <= 1e6)?.ok_or_else(|| {
+                let what = format!("has no column {coord} of {part}: must have x and y");
+                CsvError::at(origin, header[2].number, what)
+            })
+        });
+        let likelihood = column("likelihood", "a number between 0 and 1", |own| {
+            (0.0..=1.0).contains(&own)
+        })?;
+        let is_known = |i: usize| {
+            likelihood
+                .as_ref()
+                .is_none_or(|own| own[i] >= options.likelihood)
+        };
+        let pairs = x?.into_iter().zip(y?).enumerate();
+        let place = |(i, (x, y)): (usize, (f64, f64))| {
+            Some([x, y]).filter(|_| !x.is_nan() && !y.is_nan() && is_known(i))
+        };
+        Ok(pairs.map(place).collect())
+    };
+    let whiskers = along.iter().map(|part| places(part));
+    let whiskers = whiskers.collect::<Result<Vec<_>, _>>()?;
+    let poles = pole.map(places).transpose()?;
+    let fixed = match options.pole {
+        Some(ImagePole::At(at)) => Some(at),
+        _ => None,
+    };
+    // Labelled images have the names of files instead of numbers.
+    let numbers = table.values("frame", "", |cell| Some(cell.parse::<u64>().ok()))?;
+    let numbers = numbers.unwrap_or_default();
+    let are_numbered = numbers.iter().all(Option::is_some);
+    let mut frames: Vec<ImageFrame> = Vec::with_capacity(numbers.len());
+    for ((i, line), number) in table.lines().enumerate().zip(numbers) {
+        let number = number.filter(|_| are_numbered).unwrap_or(i as u64);
+        if let Some(before) = frames.last().filter(|own| own.number >= number) {
+            let what = format!(
+                "frame {number}: must be more than {} of the line before",
+                before.number
+            );
+            return Err(CsvError::at(origin, line, what).into());
+        }
+        frames.push(ImageFrame {
+            number,
+            points_px: whiskers.iter().map(|own| own[i]).collect(),
+            bend: None,
+            pole_px: poles.as_ref().map_or(fixed, |own| own[i]),
+        });
+    }
+    let is_used = |name: &&str| along.contains(name) || Some(*name) == pole;
+    let unused: Vec<&str> = parts
+        .iter()
+        .copied()
+        .filter(|name| !is_used(name))
+        .collect();
+    let unused = (!unused.is_empty()).then(|| {
+        format!(
+            "{origin}: body parts that are not used: {}",
+            shortened(&unused.join(", "))
+        )
+    });
+    Ok(ImageFrames {
+        frames,
+        order: match options.points.is_empty() {
+            true => PointOrder::Named,
+            false => PointOrder::FromBase,
+        },
+        notes: unused.into_iter().collect(),
+    })
+}

@@ -1,0 +1,191 @@
+//! Measurements of `whisk`, the tracker of Janelia, as CSV: a row for each traced segment.
+//!
+//! Clack et al. (2012), PLoS Comput. Biol. 8, e1002591. A row has the number of the frame (`fid`), the number of the segment in it (`wid`), the
+//! identity of its whisker (`label`, -1 if it is none), position of follicle and tip in pixels, angle at the follicle in degrees, and the mean
+//! curvature in 1/px. Tables of `ndx-whisk` call the first two `frame_id` and `whisker_id`.
+
+use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
+use super::{ImageFrame, ImageFrames, PointOrder};
+use crate::input::{CsvError, CsvTable};
+use std::collections::BTreeMap;
+
+/// Required columns: one of each group.
+const NEEDED: [&[&str]; 7] = [
+    &["fid", "frame_id", "frame"],
+    &["angle"],
+    &["curvature"],
+    &["follicle_x"],
+    &["follicle_y"],
+    &["tip_x"],
+    &["tip_y"],
+];
+
+/// Columns of the identity of a whisker, of which the first one that identifies any counts.
+const IDENTITY: [&str; 3] = ["label", "wid", "whisker_id"];
+
+/// Other columns of the format.
+const OTHERS: [&str; 6] = [
+    "face_x",
+    "face_y",
+    "length",
+    "pixel_length",
+    "score",
+    "chunk_start",
+];
+
+/// Largest size of a position in pixels, and of a curvature in 1/px.
+const MOST: f64 = 1e6;
+
+/// Reads the frames of one whisker. Of several segments in a frame with its identity, the one with the longest chord counts.
+pub(super) fn read(
+    text: &str,
+    origin: &str,
+    options: &TrackingOptions,
+) -> Result<ImageFrames, TrackingError> {
+    refuse_points(options)?;
+    let table = CsvTable::parse(text, origin)?;
+    let note = table.require(&NEEDED, &[&IDENTITY[..], &OTHERS].concat())?;
+    let whole = "a whole number of at least 0";
+    let numbers = NEEDED[0].iter().find_map(|name| {
+        table
+            .values(name, whole, |cell| {
+                whole_number(cell).and_then(|own| u64::try_from(own).ok())
+            })
+            .transpose()
+    });
+    let numbers = numbers.transpose()?.unwrap_or_default();
+    let (column, identities) = identities(&table)?;
+    let whisker = match options.whisker {
+        Some(whisker) if identities.contains(&whisker) => whisker,
+        given => only(given, column, &identities)?,
+    };
+    let number = |name: &str| {
+        let must = "a number between -1e6 and 1e6";
+        let own = table.measurements(name, must, |own| own.abs() <= MOST)?;
+        Ok::<_, CsvError>(own.unwrap_or_default())
+    };
+    let [angle, curvature] = [number("angle")?, number("curvature")?];
+    let [x, y] = [number("follicle_x")?, number("follicle_y")?];
+    let [tip_x, tip_y] = [number("tip_x")?, number("tip_y")?];
+    let pole_px = match options.pole {
+        Some(ImagePole::At(at)) => Some(at),
+        _ => None,
+    };
+    let mut frames: BTreeMap<u64, (f64, ImageFrame)> = BTreeMap::new();
+    let mut doubles = 0;
+    for (i, (frame, identity)) in numbers.into_iter().zip(identities).enumerate() {
+        let (follicle, tip, bend) = ([x[i], y[i]], [tip_x[i], tip_y[i]], [angle[i], curvature[i]]);
+        let is_known = [follicle, tip, bend]
+            .concat()
+            .iter()
+            .all(|own| !own.is_nan());
+        if identity != whisker || !is_known {
+            continue;
+        }
+        let chord = libm::hypot(tip[0] - follicle[0], tip[1] - follicle[1]);
+        let own = ImageFrame {
+            number: frame,
+            points_px: vec![Some(follicle), Some(tip)],
+            bend: Some(bend),
+            pole_px,
+        };
+        let before = frames.get(&frame).map(|(chord, _)| *chord);
+        doubles += usize::from(before.is_some());
+        if before.is_none_or(|before| chord > before) {
+            frames.insert(frame, (chord, own));
+        }
+    }
+    let doubles = (doubles > 0).then(|| {
+        format!("{origin}: {doubles} segments are shorter than another one of whisker {whisker} in their frame, and not used")
+    });
+    Ok(ImageFrames {
+        frames: frames.into_values().map(|(_, frame)| frame).collect(),
+        order: PointOrder::FromBase,
+        notes: note.into_iter().chain(doubles).collect(),
+    })
+}
+
+/// Refuses options of formats with points.
+fn refuse_points(options: &TrackingOptions) -> Result<(), TrackingError> {
+    let must = |why: &str| format!("must be left out with measurements of whisk: {why}");
+    if let Some(mm) = options.curvature_at_mm {
+        return Err(refused(
+            "curvature_at_mm",
+            &mm.to_string(),
+            must("their curvature is the mean of the whisker"),
+        ));
+    }
+    if let Some(mm) = options.fit_to_mm {
+        return Err(refused(
+            "fit_to_mm",
+            &mm.to_string(),
+            must("they have no points"),
+        ));
+    }
+    if let Some(degree) = options.degree {
+        return Err(refused(
+            "degree",
+            &degree.to_string(),
+            must("they have no points"),
+        ));
+    }
+    if let Some([x, y]) = options.follicle_px {
+        return Err(refused(
+            "follicle_px",
+            &format!("{x},{y}"),
+            must("they name the follicle"),
+        ));
+    }
+    if let [first, ..] = &options.points[..] {
+        return Err(refused("points", first, must("they have no body parts")));
+    }
+    if let Some(ImagePole::Part(name)) = &options.pole {
+        return Err(refused(
+            "pole",
+            name,
+            "must be X,Y in pixels: measurements of whisk have no body parts".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+fn whole_number(cell: &str) -> Option<i64> {
+    let number: f64 = cell.parse().ok()?;
+    let is_whole = number.fract() == 0.0 && number.abs() < 1e15;
+    is_whole.then_some(number as i64)
+}
+
+/// Returns the identity of the whisker of each row, with the name of its column. Without such a column, all rows are of one whisker.
+fn identities(table: &CsvTable) -> Result<(&'static str, Vec<i64>), CsvError> {
+    for column in IDENTITY {
+        let own = table.values(column, "a whole number", whole_number)?;
+        if let Some(own) = own.filter(|own| own.iter().any(|label| *label >= 0)) {
+            return Ok((column, own));
+        }
+    }
+    Ok((IDENTITY[0], vec![0; table.lines().count()]))
+}
+
+/// Returns the only whisker among `identities`; -1 is none.
+fn only(given: Option<i64>, column: &str, identities: &[i64]) -> Result<i64, TrackingError> {
+    let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
+    for own in identities.iter().filter(|own| **own >= 0) {
+        *counts.entry(*own).or_default() += 1;
+    }
+    match (given, counts.len()) {
+        (None, 1) => Ok(counts.into_keys().next().unwrap_or_default()),
+        _ => {
+            let shown = counts
+                .iter()
+                .take(10)
+                .map(|(own, count)| format!("{own} ({count} rows)"));
+            let more = if counts.len() > 10 { ", ..." } else { "" };
+            let must = format!(
+                "must be an identity in the column {column}: {}{more}",
+                shown.collect::<Vec<_>>().join(", ")
+            );
+            let given = given.map_or_else(|| "(left out)".to_owned(), |own| own.to_string());
+            Err(refused("whisker", &given, must))
+        }
+    }
+}

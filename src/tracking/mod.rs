@@ -1,0 +1,227 @@
+//! Files of whisker trackers: base angle, curvature and contact of each frame, shapes, and detachments.
+//!
+//! Trackers write positions in pixels, and their y axis points downward. A file is read into [`ImageFrame`]s (`deeplabcut`, `measurements`,
+//! `points`). Then the end at the base is found (`orient`), each frame gets its curve in millimetres (`curve`), and the curves give rows for
+//! `whisk` and `force` (`rows`) and points for `fit` (`detachment`).
+
+mod curve;
+mod deeplabcut;
+mod detachment;
+mod measurements;
+mod options;
+mod orient;
+mod points;
+mod rows;
+
+pub use detachment::TrackedDetachment;
+pub use options::{FaceAxis, ImagePole, TrackingError, TrackingFormat, TrackingOptions};
+pub use rows::{NoFrame, TrackedFrame};
+
+use crate::input::{CsvError, CsvLines, read_bytes, text_of};
+use crate::trace::row;
+use curve::FrameCurve;
+use options::refused;
+use serde::Serialize;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Longest file of a tracker in MiB: 400,000 frames of 10 body parts.
+const TRACKING_MIB: u64 = 256;
+
+/// Largest number of frames from the first to the last one.
+const MOST_FRAMES: u64 = 1_000_000;
+
+/// First bytes of an HDF5 file, and so of an NWB file.
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
+
+/// Frame of a film as a tracker gives it, in pixels with the y axis downward.
+#[derive(Clone, Debug, PartialEq)]
+struct ImageFrame {
+    /// Number of the frame in the film.
+    number: u64,
+    /// Points along the whisker, `[point][x, y]`; `None` where one is lost. Empty in a frame without a whisker.
+    points_px: Vec<Option<[f64; 2]>>,
+    /// Angle at the follicle as the tracker gives it, in degrees, and mean curvature, in 1/px, of a whisker with two points, its ends.
+    bend: Option<[f64; 2]>,
+    /// Centre of the pole; `None` if it is lost or there is none.
+    pole_px: Option<[f64; 2]>,
+}
+
+/// Frames of a file before their calibration.
+#[derive(Debug)]
+struct ImageFrames {
+    /// Frames in the order of time, `[frame]`; numbers grow.
+    frames: Vec<ImageFrame>,
+    /// Order of the points of each frame.
+    order: PointOrder,
+    /// Notes about the file.
+    notes: Vec<String>,
+}
+
+/// Order of the points of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PointOrder {
+    /// Order from base to tip.
+    FromBase,
+    /// Order along the whisker, in either direction, which may change from frame to frame.
+    Along,
+    /// Any order, which is the same in all frames.
+    Named,
+}
+
+/// Whisker of a film, frame by frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tracking {
+    /// Format of the tracker's file.
+    pub format: TrackingFormat,
+    /// Frames from the first to the last one, `[frame]`; lost frames are gaps.
+    pub frames: Vec<TrackedFrame>,
+    /// Detachments from the pole, `[detachment]`; none without a pole.
+    pub detachments: Vec<TrackedDetachment>,
+    /// Notes on what was found: the base, mirrored images, the degree of curves, gaps.
+    pub notes: Vec<String>,
+    /// Number of each frame, and its traced points in millimetres from base to tip, `[frame]`.
+    shapes: Vec<(u64, Vec<[f64; 2]>)>,
+}
+
+row! {
+    /// Point along a traced whisker, from base to tip, with the y axis upward.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct TrackedPoint {
+        /// Position to the right in the image, in mm.
+        pub x_mm: f64,
+        /// Position upward in the image, in mm; downward in a mirrored one.
+        pub y_mm: f64,
+    }
+}
+
+impl Tracking {
+    /// Reads the files of a tracker; `-` is standard input. Only points without a header may come in several files, one for each frame.
+    ///
+    /// # Errors
+    /// If a file cannot be read, is longer than 256 MiB or has no known format, and for the reasons of [`Tracking::parse`].
+    pub fn read(
+        paths: &[impl AsRef<Path>],
+        options: &TrackingOptions,
+        cancel: &AtomicBool,
+    ) -> Result<Self, TrackingError> {
+        let text = |path: &Path| {
+            let origin = path.to_string_lossy().into_owned();
+            let bytes = read_bytes(path, TRACKING_MIB)?;
+            if bytes.starts_with(HDF5) {
+                let what = "is an HDF5 file: NWB files are read in Python, by wm.read_tracking";
+                return Err(CsvError::whole(&origin, what));
+            }
+            Ok((text_of(&bytes, &origin)?, origin))
+        };
+        let texts = paths.iter().map(|path| text(path.as_ref()));
+        let texts = texts.collect::<Result<Vec<_>, _>>()?;
+        Self::parse(&texts, options, cancel)
+    }
+
+    /// Reads texts of a tracker's files, each with its name in messages: `[file][text, name]`. If `cancel` becomes true, the function soon
+    /// returns, and the remaining frames are gaps.
+    ///
+    /// # Errors
+    /// If a text has no known format, a cell is no number, an option does not fit the format or is out of its range, or the data do not show
+    /// which end is the base.
+    pub fn parse(
+        texts: &[(String, String)],
+        options: &TrackingOptions,
+        cancel: &AtomicBool,
+    ) -> Result<Self, TrackingError> {
+        options.check()?;
+        let Some((first, rest)) = texts.split_first() else {
+            return Err(CsvError::whole("tracking", "has no file: must have at least one").into());
+        };
+        let format = match options.format {
+            Some(format) => format,
+            None => TrackingFormat::of(first)?,
+        };
+        if !rest.is_empty() && format != TrackingFormat::Xy {
+            let what = format!(
+                "is a second file: only the format {} may have several, one for each frame",
+                TrackingFormat::Xy.name()
+            );
+            return Err(CsvError::whole(&rest[0].1, what).into());
+        }
+        let (text, origin) = first;
+        let mut image = match format {
+            TrackingFormat::DeepLabCut => {
+                deeplabcut::read(CsvLines::split(text, origin)?, origin, options)?
+            }
+            TrackingFormat::Whisk => measurements::read(text, origin, options)?,
+            TrackingFormat::Xy => points::read(texts, options)?,
+        };
+        let numbers = image.frames.iter().map(|frame| frame.number);
+        let span = numbers.clone().max().zip(numbers.min());
+        let Some((last, from)) = span.filter(|(last, from)| last - from < MOST_FRAMES) else {
+            let what = format!("must have frames whose numbers differ by less than {MOST_FRAMES}");
+            return Err(CsvError::whole(origin, what).into());
+        };
+        orient::order(&mut image, options)?;
+        let curves = curve::Curves::new(&image.frames, options, cancel, &mut image.notes)?;
+        let curves = curves.of_frames(from..=last);
+        if curves.iter().all(|own| own.curve.is_err()) {
+            let what = format!(
+                "has no frame with a curve: must have at least one with the base and {} points along a smooth curve",
+                curve::MORE_POINTS
+            );
+            return Err(CsvError::whole(origin, what).into());
+        }
+        let mut notes = image.notes;
+        let (frames, contacts) = rows::frames(&curves, options, &mut notes)?;
+        let shapes = curves.iter().map(|own| (own.number, own.points_mm.clone()));
+        Ok(Self {
+            format,
+            detachments: detachment::detachments(&frames, &contacts),
+            frames,
+            notes,
+            shapes: shapes.collect(),
+        })
+    }
+
+    /// Returns the traced points of the frame with this number, from base to tip, for `whisker.rest.points` of a scene.
+    ///
+    /// # Errors
+    /// If there is no such frame, it is a gap, or the format has no points.
+    pub fn shape(&self, frame: u64) -> Result<Vec<TrackedPoint>, TrackingError> {
+        let refused = |must: String| refused("shape", &frame.to_string(), must);
+        if self.format == TrackingFormat::Whisk {
+            return Err(refused(
+                "must be left out: measurements of whisk have no points along the whisker"
+                    .to_owned(),
+            ));
+        }
+        let found = self.shapes.iter().find(|(own, _)| *own == frame);
+        let Some((_, points)) = found else {
+            let ends =
+                [self.shapes.first(), self.shapes.last()].map(|own| own.map_or(0, |own| own.0));
+            return Err(refused(format!(
+                "must be between {} and {}, the numbers of the frames",
+                ends[0], ends[1]
+            )));
+        };
+        if points.is_empty() {
+            return Err(refused(
+                "must be a frame with a whisker: this one is a gap".to_owned(),
+            ));
+        }
+        let point = |[x_mm, y_mm]: &[f64; 2]| TrackedPoint {
+            x_mm: *x_mm,
+            y_mm: *y_mm,
+        };
+        Ok(points.iter().map(point).collect())
+    }
+}
+
+/// Curve of a frame, or the reason for its gap.
+#[derive(Debug)]
+struct CurvedFrame {
+    number: u64,
+    curve: Result<FrameCurve, NoFrame>,
+    /// Traced points from base to tip, `[point][x, y]`, in mm; empty in a gap.
+    points_mm: Vec<[f64; 2]>,
+    /// Centre of the pole in mm; `None` if it is lost or there is none.
+    pole_mm: Option<[f64; 2]>,
+}

@@ -1,0 +1,202 @@
+//! Rows of frames, for `whisk` and `force`.
+
+use super::CurvedFrame;
+use super::curve::{FrameCurve, NearestPlace};
+use super::options::{TrackingError, TrackingOptions, refused};
+use super::orient::median;
+use crate::scene::{digits, rounded};
+use crate::trace::row;
+use rayon::prelude::*;
+use serde::Serialize;
+use whiskmap_mechanics::numerics::nearest_turn;
+
+/// Part of the median length at which the curvature is given if no arclength is.
+const CURVATURE_AT: f64 = 0.25;
+
+/// Reason why a frame is a gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoFrame {
+    /// The tracker has lost the whisker or its base, or has too few points.
+    Missing,
+    /// The points lie along no smooth curve.
+    NoCurve,
+}
+
+row! {
+    /// Frame of a film, with the columns that `whisk` and `force` read. Numbers of a gap are empty.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct TrackedFrame {
+        /// Number of the frame in the film.
+        pub frame: u64,
+        /// Time of the frame, in s: its number over the frames per second.
+        pub time_s: f64,
+        /// Angle of the base, in degrees: 0 in the frame that the notes name, positive pushes CB.
+        pub angle_deg: Option<f64>,
+        /// Curvature of the whisker at the arclength of at_arc_length_mm, in 1/mm; positive turns to the left, as a parabola does.
+        pub curvature_per_mm: Option<f64>,
+        /// Arclength from the base to the place of the curvature, in mm.
+        pub at_arc_length_mm: Option<f64>,
+        /// Position of this place along the base's tangent, in mm.
+        pub at_x_mm: Option<f64>,
+        /// Position of this place to the left of the base's tangent, in mm.
+        pub at_y_mm: Option<f64>,
+        /// 1 if the whisker is in contact with the pole, 0 if it is not; empty if that is not known.
+        pub contact: Option<u8>,
+        /// Position of the contact along the base's tangent, in mm; empty without contact.
+        pub contact_x_mm: Option<f64>,
+        /// Position of the contact to the left of the base's tangent, in mm; empty without contact.
+        pub contact_y_mm: Option<f64>,
+        /// Angle of the tangent at the contact, from the base's tangent, in degrees; empty without contact.
+        pub contact_angle_deg: Option<f64>,
+        /// Length of the traced whisker, in mm.
+        pub length_mm: Option<f64>,
+        /// Root mean square of the distances of the points from the curve, in mm.
+        pub rms_mm: Option<f64>,
+        /// Reason of a gap: missing or no-curve.
+        pub reason: Option<NoFrame>,
+    }
+}
+
+/// Computes the rows of all frames, and the nearest place to the pole in each; adds notes.
+pub(super) fn frames(
+    curves: &[CurvedFrame],
+    options: &TrackingOptions,
+    notes: &mut Vec<String>,
+) -> Result<(Vec<TrackedFrame>, Vec<Option<NearestPlace>>), TrackingError> {
+    let known = || curves.iter().filter_map(|own| own.curve.as_ref().ok());
+    let length_mm = median(known().map(|own| own.length_mm()));
+    let near_mm = median(known().map(FrameCurve::near_mm));
+    let is_mean = known().any(|own| own.rms_mm.is_none());
+    let at_mm = match options.curvature_at_mm {
+        Some(mm) if (0.0..=near_mm).contains(&mm) => Some(mm),
+        Some(mm) => {
+            let must = format!(
+                "must be between 0 and {}, the median length in mm of the part that is fitted near the base (fit_to_mm)",
+                digits(rounded(near_mm, 4))
+            );
+            return Err(refused("curvature_at_mm", &digits(mm), must));
+        }
+        None if is_mean => {
+            notes.push(
+                "curvatures are the means of whiskers, given at half their length".to_owned(),
+            );
+            None
+        }
+        None => {
+            let mm = rounded(CURVATURE_AT * length_mm, 2).min(near_mm);
+            notes.push(format!(
+                "curvatures are those at {} mm from the base, a quarter of the median length",
+                digits(mm)
+            ));
+            Some(mm)
+        }
+    };
+    let places = curves.par_iter().map(|own| {
+        let pole = own.pole_mm?;
+        Some(own.curve.as_ref().ok()?.nearest(pole))
+    });
+    let places: Vec<Option<NearestPlace>> = places.collect();
+    let within = options.contact_within_mm.unwrap_or_default();
+    let mut angle = None;
+    let mut angles = Vec::with_capacity(curves.len());
+    for own in curves {
+        let turned = own.curve.as_ref().ok().map(|curve| {
+            // A positive angle pushes CB: the base turns clockwise.
+            let turned = -curve.angle();
+            angle.map_or(turned, |before| nearest_turn(turned, before))
+        });
+        angle = turned.or(angle);
+        angles.push(turned);
+    }
+    let row = |((own, place), angle): ((&CurvedFrame, &Option<NearestPlace>), &Option<f64>)| {
+        let curve = own.curve.as_ref().ok();
+        let at = curve.map(|curve| at_mm.unwrap_or(0.5 * curve.length_mm()));
+        let at = at.filter(|at| curve.is_some_and(|curve| *at <= curve.near_mm()));
+        let position = curve.zip(at).map(|(curve, at)| curve.position_mm(at));
+        let is_near = place.map(|place| place.offset_mm.abs() <= within);
+        let contact = place.filter(|_| is_near == Some(true));
+        TrackedFrame {
+            frame: own.number,
+            time_s: own.number as f64 / options.fps,
+            angle_deg: angle.map(f64::to_degrees),
+            curvature_per_mm: curve.zip(at).map(|(curve, at)| curve.curvature_per_mm(at)),
+            at_arc_length_mm: at,
+            at_x_mm: position.map(|own| own.x),
+            at_y_mm: position.map(|own| own.y),
+            contact: is_near.map(u8::from),
+            contact_x_mm: contact.map(|own| own.at_mm.x),
+            contact_y_mm: contact.map(|own| own.at_mm.y),
+            contact_angle_deg: contact.map(|own| own.angle.to_degrees()),
+            length_mm: curve.map(|own| own.length_mm()),
+            rms_mm: curve.and_then(|own| own.rms_mm),
+            reason: own.curve.as_ref().err().copied(),
+        }
+    };
+    let rows = curves.par_iter().zip(&places).zip(&angles).map(row);
+    let mut rows: Vec<TrackedFrame> = rows.collect();
+    let zero_deg = zero(&rows, options, notes)?;
+    for own in &mut rows {
+        own.angle_deg = own.angle_deg.map(|angle| angle - zero_deg);
+    }
+    count(&rows, notes);
+    Ok((rows, places))
+}
+
+/// Returns the angle of the base in the frame whose angle is 0, in degrees.
+fn zero(
+    rows: &[TrackedFrame],
+    options: &TrackingOptions,
+    notes: &mut Vec<String>,
+) -> Result<f64, TrackingError> {
+    if let Some(time_s) = options.zero_s {
+        let near = rows.iter().min_by(|one, other| {
+            (one.time_s - time_s)
+                .abs()
+                .total_cmp(&(other.time_s - time_s).abs())
+        });
+        let near = near.filter(|own| (own.time_s - time_s).abs() <= 0.5001 / options.fps);
+        return near.and_then(|own| own.angle_deg).ok_or_else(|| {
+            let must = "must be the time of a frame with a whisker".to_owned();
+            refused("zero_s", &digits(time_s), must)
+        });
+    }
+    let touches = || {
+        let pairs = rows.windows(2);
+        pairs.filter(|own| own[0].contact == Some(0) && own[1].contact == Some(1))
+    };
+    // On CB, the base turns on in the positive direction.
+    let is_cb = |own: &&[TrackedFrame]| own[1].angle_deg > own[0].angle_deg;
+    let (row, what) = match touches().find(is_cb).or_else(|| touches().next()) {
+        Some(own) => (Some(&own[1]), "first touch"),
+        None => (
+            rows.iter().find(|own| own.angle_deg.is_some()),
+            "the first frame with a whisker",
+        ),
+    };
+    if let Some(row) = row {
+        notes.push(format!(
+            "angles of the base are 0 in frame {}, {what}",
+            row.frame
+        ));
+    }
+    Ok(row.and_then(|own| own.angle_deg).unwrap_or_default())
+}
+
+/// Adds a note with the numbers of gaps, and of frames in contact.
+fn count(rows: &[TrackedFrame], notes: &mut Vec<String>) {
+    let all = rows.len();
+    let of = |reason: NoFrame| rows.iter().filter(|own| own.reason == Some(reason)).count();
+    let [missing, off] = [NoFrame::Missing, NoFrame::NoCurve].map(of);
+    if missing + off > 0 {
+        notes.push(format!(
+            "{} of {all} frames are gaps: {missing} without base or enough points (missing), {off} along no smooth curve (no-curve)",
+            missing + off
+        ));
+    }
+    let is_known = rows.iter().any(|own| own.contact.is_some());
+    if is_known {
+        let touching = rows.iter().filter(|own| own.contact == Some(1)).count();
+        notes.push(format!("{touching} of {all} frames are in contact"));
+    }
+}

@@ -1,0 +1,294 @@
+//! `whiskmap import`.
+
+use super::{Place, SCENE};
+use crate::shipped::root;
+use std::fs;
+
+/// The shipped film of DeepLabCut, its pole and its scale.
+const FILM: [&str; 8] = [
+    "import",
+    "film.csv",
+    "--mm-per-pixel",
+    "0.05",
+    "--pole",
+    "pole",
+    "--contact-within",
+    "0.35mm",
+];
+
+fn film() -> Place {
+    let place = Place::with(SCENE);
+    for (name, shipped) in [
+        ("film.csv", "deeplabcut.csv"),
+        ("rows.csv", "measurements.csv"),
+    ] {
+        let text = fs::read_to_string(root().join("scenes").join(shipped)).unwrap();
+        place.write(name, &text);
+    }
+    place
+}
+
+#[test]
+fn frames_are_those_that_force_and_whisk_read() {
+    let place = film();
+    let own = [
+        &FILM[..],
+        &["--fps", "500", "-o", "frames.csv", "--curvature-at", "2mm"],
+    ]
+    .concat();
+    let run = place.run(&own);
+    assert_eq!((run.code, &*run.out), (Some(0), "frames.csv\n"), "{run:?}");
+    for note in [
+        "note: base at ",
+        "note: curves near the base, up to 12 mm from it, have a curvature of degree 1, chosen by cross-validation in 40 frames",
+        "note: angles of the base are 0 in frame ",
+        "of 56 frames are gaps: 3 without base or enough points (missing), 0 along no smooth curve",
+        "of 56 frames are in contact",
+    ] {
+        assert!(run.err.contains(note), "{note}: {run:?}");
+    }
+    let table = String::from_utf8(place.bytes("frames.csv")).unwrap();
+    assert!(table.starts_with(
+        "frame,time_s,angle_deg,curvature_per_mm,at_arc_length_mm,at_x_mm,at_y_mm,contact,"
+    ));
+    assert_eq!(table.lines().count(), 57);
+    assert!(
+        table.lines().nth(5).unwrap().starts_with("4,0.008,,,") && table.contains(",missing\n")
+    );
+
+    // The shape of a frame without contact is the whisker's at rest.
+    let shape = [&FILM[..], &["--shape", "2", "-o", "traced.csv"]].concat();
+    let run = place.run(&shape);
+    assert_eq!((run.code, &*run.out), (Some(0), "traced.csv\n"), "{run:?}");
+    let scene = SCENE.replace("length_mm = 20.0\n", "");
+    let scene = scene.replace(
+        "[whisker.curvature]\nparabola_per_mm = 0.02\n",
+        "[whisker.rest]\npoints = \"traced.csv\"\n",
+    );
+    place.write("own.toml", &scene);
+    let run = place.run(&["shape", "own.toml", "--distance", "15", "--push-angle", "0"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(
+        run.err.contains("note: whisker.rest: curvature of degree "),
+        "{run:?}"
+    );
+
+    let run = place.run(&["force", "scene.toml", "--frames", "frames.csv", "--model"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    // The baseline is that of the frames without contact.
+    assert!(run.err.contains("baseline"), "{run:?}");
+    assert_eq!(run.out.matches(",missing").count(), 3, "{run:?}");
+    let run = place.run(&[
+        "whisk",
+        "scene.toml",
+        "--distance",
+        "15.66",
+        "--angles",
+        "frames.csv",
+        "--bridge",
+        "10ms",
+        "--events",
+        "-",
+        "--csv",
+        "samples.csv",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.out.contains(",slip-off,cb,"), "{run:?}");
+}
+
+#[test]
+fn detachments_are_those_that_fit_reads() {
+    let place = film();
+    let own = [
+        &FILM[..],
+        &["--fps", "500", "--detachments", "-o", "points.csv"],
+    ]
+    .concat();
+    let run = place.run(&own);
+    assert_eq!((run.code, &*run.out), (Some(0), "points.csv\n"), "{run:?}");
+    let table = String::from_utf8(place.bytes("points.csv")).unwrap();
+    assert!(
+        table.starts_with("side,distance_mm,push_angle_deg,time_s\ncb,15."),
+        "{table}"
+    );
+    let run = place.run(&["curve", "scene.toml", "--data", "points.csv"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.out.contains("slip-off"), "{run:?}");
+    // A pole that is not reached leaves none.
+    let parts = "base,w1,w2,w3,w4,w5,w6,w7,tip";
+    let mut far = [&own[..], &["--points", parts]].concat();
+    far[5] = "500,500";
+    let run = place.run(&far);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(
+        run.err
+            .contains("warning: no contact ends with the pole on the other side of the whisker"),
+        "{run:?}"
+    );
+}
+
+#[test]
+fn measurements_of_whisk_and_points_are_read() {
+    let place = film();
+    let run = place.run(&[
+        "import",
+        "rows.csv",
+        "--mm-per-pixel",
+        "50um",
+        "--fps",
+        "500",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.err.contains("note: angles are measured from the y axis of the image, as the ends of the segments show"), "{run:?}");
+    assert_eq!(run.out.lines().count(), 57);
+    assert!(run.out.contains("\n25,0.05,,,"), "{run:?}");
+    place.write("a.csv", "0,0\n10,1\n20,3\n30,6\n40,10\n");
+    place.write("b.csv", "0,0\n10,2\n20,5\n30,9\n40,14\n");
+    let run = place.run(&[
+        "import",
+        "a.csv",
+        "b.csv",
+        "--mm-per-pixel",
+        "0.1",
+        "--fps",
+        "100",
+        "--degree",
+        "0",
+    ]);
+    assert_eq!((run.code, run.out.lines().count()), (Some(0), 3), "{run:?}");
+}
+
+#[test]
+fn bad_imports_are_refused() {
+    let place = film();
+    place.write("film.nwb", "\u{89}HDF");
+    fs::write(place.path("film.nwb"), b"\x89HDF\r\n\x1a\nmore").unwrap();
+    let import = |file: &str, more: &[&str]| place.run(&[&["import", file], more].concat());
+    let scaled =
+        |more: &[&'static str]| [&["--mm-per-pixel", "0.05", "--fps", "500"], more].concat();
+    for (file, more, said) in [
+        (
+            "film.csv",
+            vec!["--fps", "500"],
+            "the following required arguments were not provided:\n  --mm-per-pixel <MM>",
+        ),
+        ("film.csv", vec!["--mm-per-pixel", "0.05"], "--fps <HZ>"),
+        (
+            "film.csv",
+            vec!["--mm-per-pixel", "0", "--fps", "500"],
+            "--mm-per-pixel 0: must be a number between 1e-9 and 1e9",
+        ),
+        (
+            "film.csv",
+            vec!["--mm-per-pixel", "0.05px", "--fps", "500"],
+            "unit px: must be mm",
+        ),
+        ("no.csv", scaled(&[]), "no.csv: cannot be read:"),
+        (
+            "film.nwb",
+            scaled(&[]),
+            "film.nwb: is an HDF5 file: NWB files are read in Python, by wm.read_tracking",
+        ),
+        ("scene.toml", scaled(&[]), "scene.toml: has no known format"),
+        (
+            "film.csv",
+            scaled(&["--format", "whisk"]),
+            "film.csv:2: found scorer",
+        ),
+        (
+            "film.csv",
+            scaled(&["--pole", "pole"]),
+            "--contact-within <MM>",
+        ),
+        (
+            "film.csv",
+            scaled(&["--contact-within", "1"]),
+            "--pole <X,Y/NAME>",
+        ),
+        ("film.csv", scaled(&["--detachments"]), "--pole <X,Y/NAME>"),
+        (
+            "film.csv",
+            scaled(&["--pole", "1,x", "--contact-within", "1"]),
+            "must be X,Y in pixels, such as 120.5,80, or a body part",
+        ),
+        (
+            "film.csv",
+            scaled(&["--pole", "bar", "--contact-within", "1"]),
+            "--pole bar: must be one of w3, base, tip",
+        ),
+        (
+            "film.csv",
+            scaled(&["--points", "base,w99"]),
+            "--points w99: must be one of",
+        ),
+        (
+            "film.csv",
+            scaled(&["--points", "base,tip"]),
+            "film.csv: has no frame with a curve: must have at least one with the base and 4 points along a smooth curve",
+        ),
+        (
+            "film.csv",
+            scaled(&["--follicle", "12"]),
+            "must be X,Y in pixels",
+        ),
+        (
+            "film.csv",
+            scaled(&["--curvature-at", "30"]),
+            "--curvature-at 30: must be between 0 and ",
+        ),
+        (
+            "film.csv",
+            scaled(&["--zero", "9s"]),
+            "--zero 9: must be the time of a frame with a whisker",
+        ),
+        (
+            "film.csv",
+            scaled(&["--mirror", "maybe"]),
+            "must be yes or no",
+        ),
+        (
+            "film.csv",
+            scaled(&["--likelihood", "2"]),
+            "--likelihood 2: must be a number between 0 and 1",
+        ),
+        (
+            "film.csv",
+            scaled(&["--degree", "7"]),
+            "must be a whole number between 0 and 6",
+        ),
+        (
+            "film.csv",
+            scaled(&["--shape", "56"]),
+            "--shape 56: must be between 0 and 55, the numbers of the frames",
+        ),
+        (
+            "film.csv",
+            scaled(&["--shape", "4"]),
+            "--shape 4: must be a frame with a whisker: this one is a gap",
+        ),
+        (
+            "rows.csv",
+            scaled(&["--shape", "4"]),
+            "--shape 4: must be left out: measurements of whisk have no points",
+        ),
+        (
+            "rows.csv",
+            scaled(&["--whisker", "7"]),
+            "--whisker 7: must be an identity in the column label: 0 (55 rows)",
+        ),
+        (
+            "film.csv",
+            scaled(&["-o", "film.csv"]),
+            "is the input film.csv; name another file",
+        ),
+    ] {
+        let run = import(file, &more);
+        assert_eq!(run.code, Some(2), "{more:?}: {run:?}");
+        assert!(run.err.contains(said), "{said}: {run:?}");
+    }
+    let run = place.run(&["import", "-", "-", "--mm-per-pixel", "1", "--fps", "1"]);
+    assert!(
+        run.code == Some(2) && run.err.contains("standard input can be read once"),
+        "{run:?}"
+    );
+}
