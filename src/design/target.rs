@@ -3,7 +3,8 @@
 use crate::input::Quantity;
 use crate::scene::Scene;
 use crate::sensitivity::{NoDerivative, Variable, detachments, largest};
-use crate::trace::{DetachmentKind, PushLoad, StableBranch, curve_without_strain};
+use crate::trace::{Detachment, DetachmentKind, PushLoad, StableBranch, curve_without_strain};
+use std::cell::OnceCell;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -152,37 +153,54 @@ impl DesignTarget {
     /// Computes how a push at the only distance of `scene` ends, and the value of the goal's quantity, in its unit. The value is `None`
     /// without a detachment.
     pub(super) fn reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
-        self.reached_by(scene, |branch, load| branch.peak(load).size)
+        ComputedPush::new(scene, self.side).reached(self.goal, exactly)
     }
+}
 
-    /// Computes the end of a push as [`Self::reached`] does, with a largest load that is some percent off.
-    pub(super) fn roughly_reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
-        self.reached_by(scene, StableBranch::rough_peak)
-    }
+/// Largest size of a load of a push.
+pub(super) type LargestOf = fn(&StableBranch, PushLoad) -> f64;
 
-    fn reached_by(
-        &self,
-        scene: &Scene,
-        largest: impl Fn(&StableBranch, PushLoad) -> f64,
-    ) -> (DetachmentKind, Option<f64>) {
-        let (whisker, pole, side) = (&scene.whisker, &scene.pole, self.side);
+/// Computed push of a scene at its only distance: its end, and its stable states once a load needs them.
+pub(super) struct ComputedPush<'a> {
+    scene: &'a Scene,
+    side: Side,
+    end: Option<Detachment>,
+    branch: OnceCell<Option<StableBranch>>,
+}
+
+impl<'a> ComputedPush<'a> {
+    pub fn new(scene: &'a Scene, side: Side) -> Self {
+        let (whisker, pole) = (&scene.whisker, &scene.pole);
         let distances = &scene.grid.distance_mm;
-        let end = || curve_without_strain(Resolution::FINE, whisker, pole, side, distances).pop();
-        let Some(end) = end() else {
-            return (DetachmentKind::Unresolved, None);
-        };
-        let detaches = end.push_angle_deg;
-        let value = match self.goal.load() {
-            None => detaches,
-            Some(load) => detaches.and_then(|_| {
-                let branch = StableBranch::new(whisker, pole, side, distances[0]).ok()?;
-                Some(largest(&branch, load))
-            }),
-        };
-        match value {
-            Some(value) => (end.kind, Some(value)),
-            None if detaches.is_some() => (DetachmentKind::Unresolved, None),
-            None => (end.kind, None),
+        Self {
+            scene,
+            side,
+            end: curve_without_strain(Resolution::FINE, whisker, pole, side, distances).pop(),
+            branch: OnceCell::new(),
         }
     }
+
+    /// Returns how the push ends, and the value of the goal's quantity, in its unit; `None` without a detachment.
+    pub fn reached(&self, goal: DesignGoal, largest: LargestOf) -> (DetachmentKind, Option<f64>) {
+        let Some(end) = &self.end else {
+            return (DetachmentKind::Unresolved, None);
+        };
+        let (kind, detaches) = (end.kind, end.push_angle_deg);
+        let (Some(load), Some(_)) = (goal.load(), detaches) else {
+            return (kind, detaches);
+        };
+        let branch = self.branch.get_or_init(|| {
+            let (whisker, pole) = (&self.scene.whisker, &self.scene.pole);
+            StableBranch::new(whisker, pole, self.side, self.scene.grid.distance_mm[0]).ok()
+        });
+        match branch {
+            Some(branch) => (kind, Some(largest(branch, load))),
+            None => (DetachmentKind::Unresolved, None),
+        }
+    }
+}
+
+/// Returns the largest size of a load of a push.
+pub(super) fn exactly(branch: &StableBranch, load: PushLoad) -> f64 {
+    branch.peak(load).size
 }

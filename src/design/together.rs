@@ -1,12 +1,13 @@
 //! Designs with several parameters and as many targets.
 
 use super::samples::samples;
+use super::target::{ComputedPush, LargestOf, exactly};
 use super::varied::DesignScene;
 use super::{DesignError, DesignTarget, DesignVaried, checked};
 use crate::least_squares::{self, BoundedProblem, FAINT, Svd, norm};
 use crate::scene::Scene;
 use crate::sensitivity::Variable;
-use crate::trace::DetachmentKind;
+use crate::trace::StableBranch;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -186,26 +187,19 @@ impl TogetherSearch<'_> {
     }
 
     /// Returns the values of the quantities of the targets, in their units; `None` if the push ends in another way.
-    fn reached(
-        &self,
-        x: &[f64],
-        reached: fn(&DesignTarget, &Scene) -> (DetachmentKind, Option<f64>),
-    ) -> Option<Vec<f64>> {
+    fn reached(&self, x: &[f64], largest: LargestOf) -> Option<Vec<f64>> {
         let scene = self.at(x)?;
+        let push = ComputedPush::new(&scene, self.targets[0].side);
         let values = self.targets.iter().map(|target| {
-            let (kind, value) = reached(target, &scene);
+            let (kind, value) = push.reached(target.goal, largest);
             value.filter(|value| target.accepts(kind) && !value.is_nan())
         });
         values.collect()
     }
 
     /// Returns the misses of the targets, each relative to its value.
-    fn misses(
-        &self,
-        x: &[f64],
-        reached: fn(&DesignTarget, &Scene) -> (DetachmentKind, Option<f64>),
-    ) -> Option<Vec<f64>> {
-        let reached = self.reached(x, reached)?;
+    fn misses(&self, x: &[f64], largest: LargestOf) -> Option<Vec<f64>> {
+        let reached = self.reached(x, largest)?;
         let pairs = reached.iter().zip(self.targets);
         let misses = pairs.map(|(reached, target)| reached / target.value - 1.0);
         Some(misses.collect())
@@ -243,7 +237,7 @@ impl TogetherSearch<'_> {
         });
         Some(DesignNearest {
             is_at_limit: is_at_limit.collect(),
-            reached: self.reached(x, DesignTarget::reached)?,
+            reached: self.reached(x, exactly)?,
             values,
         })
     }
@@ -274,7 +268,7 @@ impl BoundedProblem for TogetherSearch<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
-        self.misses(x, DesignTarget::reached)
+        self.misses(x, exactly)
     }
 
     fn jacobian(&self, x: &[f64], _residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
@@ -330,7 +324,7 @@ impl Places {
             along.collect()
         };
         let places: Vec<Vec<f64>> = (0..side.pow(count as u32)).map(place).collect();
-        let rough = |x: &Vec<f64>| search.misses(x, DesignTarget::roughly_reached);
+        let rough = |x: &Vec<f64>| search.misses(x, StableBranch::rough_peak);
         let misses = places.par_iter().map(rough).collect();
         Self {
             side,
