@@ -187,7 +187,7 @@ def _text(path: Path) -> str:
         require(module, "nwb")
     pynwb: Any = import_module("pynwb")
     with pynwb.NWBHDF5IO(os.fspath(path), mode="r", load_namespaces=True) as io:
-        tables = [own for own in io.read().objects.values() if own.neurodata_type == "WhiskerMeasurementTable"]
+        tables = [own for own in io.read().objects.values() if getattr(own, "neurodata_type", None) == "WhiskerMeasurementTable"]
         if len(tables) != 1:
             raise ValueError(f"{path}: must have one WhiskerMeasurementTable of ndx-whisk, has {len(tables)}")
         return csv_text("files", {name: np.asarray(tables[0][name].data[:]) for name in tables[0].colnames})

@@ -107,7 +107,9 @@ def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> 
 
     if isinstance(columns, (str, os.PathLike)):
         return Path(columns).read_text(encoding="utf-8-sig")
-    table: Any = columns.reset_coords() if hasattr(columns, "reset_coords") else columns
+    table: Any = columns
+    if hasattr(columns, "data_vars"):
+        table = {own: values for own, values in table.variables.items() if values.ndim}
     if not hasattr(table, "keys"):
         raise TypeError(f"{name} = {columns!r}: must be the path of a CSV file, or columns by name")
     listed = {str(own): list(np.atleast_1d(np.asarray(table[own]))) for own in table.keys()}

@@ -1,6 +1,6 @@
 //! Files of whisker trackers: base angle, curvature and contact of each frame, shapes, and detachments.
 //!
-//! Trackers write positions in pixels, and their y axis points downward. A file is read into [`ImageFrame`]s (`deeplabcut`, `measurements`,
+//! Trackers write positions in pixels, and their y axis points downward. A file is read into frames in pixels (`deeplabcut`, `measurements`,
 //! `points`). Then the end at the base is found (`orient`), each frame gets its curve in millimetres (`curve`), and the curves give rows for
 //! `whisk` and `force` (`rows`) and points for `fit` (`detachment`).
 
