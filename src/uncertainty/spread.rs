@@ -128,23 +128,23 @@ row! {
         pub max_base_moment_p95_nnm: Option<f64>,
         /// Mean of the largest moments at the base of pushes, in nN m.
         pub max_base_moment_mean_nnm: Option<f64>,
-        /// Standard deviation of the largest moments at the base of pushes, in nN m.
+        /// Standard deviation of the largest moments at the base, in nN m.
         pub max_base_moment_sd_nnm: Option<f64>,
         /// Largest bending strain of the scene's push, dimensionless.
         pub max_strain: Option<f64>,
-        /// 5th percentile of the largest bending strains of pushes, dimensionless.
+        /// 5th percentile of the largest strains of pushes, dimensionless.
         pub max_strain_p5: Option<f64>,
-        /// 25th percentile of the largest bending strains of pushes, dimensionless.
+        /// 25th percentile of the largest strains of pushes, dimensionless.
         pub max_strain_p25: Option<f64>,
-        /// Median of the largest bending strains of pushes, dimensionless.
+        /// Median of the largest strains of pushes, dimensionless.
         pub max_strain_p50: Option<f64>,
-        /// 75th percentile of the largest bending strains of pushes, dimensionless.
+        /// 75th percentile of the largest strains of pushes, dimensionless.
         pub max_strain_p75: Option<f64>,
-        /// 95th percentile of the largest bending strains of pushes, dimensionless.
+        /// 95th percentile of the largest strains of pushes, dimensionless.
         pub max_strain_p95: Option<f64>,
-        /// Mean of the largest bending strains of pushes, dimensionless.
+        /// Mean of the largest strains of pushes, dimensionless.
         pub max_strain_mean: Option<f64>,
-        /// Standard deviation of the largest bending strains of pushes, dimensionless.
+        /// Standard deviation of the largest strains of pushes, dimensionless.
         pub max_strain_sd: Option<f64>,
     }
 }

@@ -44,6 +44,7 @@ fn table_scene_and_document_agree() {
         "points",
         "pulls",
         "rms_deg",
+        "smooth_radii",
         "standard_errors",
         "traced",
         "values",

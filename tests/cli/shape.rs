@@ -54,11 +54,11 @@ fn the_state_has_the_loads_of_the_shape() {
     let base = &shape[0];
     assert_eq!((row[1], row[2], row[3]), ("cb", "true", "10.0"));
     assert!(
-        (number(row[10]) / number(base[5]) - 1.0).abs() < 1e-9,
+        (number(row[11]) / number(base[5]) - 1.0).abs() < 1e-9,
         "{row:?} {base:?}"
     );
     let most = shape.iter().map(|row| number(row[6])).fold(0.0, f64::max);
-    let peak = number(row[12]);
+    let peak = number(row[13]);
     assert!((0.999..=1.0).contains(&(most / peak)), "{most} {peak}");
     // In other units; the names of columns end in them.
     let words = [&at[..], &["--csv", "shape.csv", "--units", "mN, Nmm,cm"]].concat();
@@ -168,11 +168,11 @@ fn sliding_toward_the_base_is_reported() {
         &["branch", "scene.toml", "--distance=9", "--side=cf"],
     );
     let rows = cells(&branch.out, BRANCH);
-    assert_eq!([rows[1][16], rows[199][16]], ["base", "tip"]);
+    assert_eq!([rows[1][17], rows[199][17]], ["base", "tip"]);
     let curve = good(&place, &["curve", "scene.toml"]);
     for row in cells(&curve.out, CURVE) {
         let sliding = if row[3] == "out-of-reach" { "" } else { "tip" };
-        assert_eq!(row[17], sliding, "{row:?}");
+        assert_eq!(row[18], sliding, "{row:?}");
     }
     let map = place.map(&["scene.toml", "--no-png"]);
     map.assert_settled();

@@ -108,7 +108,7 @@ fn curves_have_the_reason_of_a_row_without_a_whisker() {
     let lines: Vec<&str> = run.out.lines().collect();
     assert!(lines[0].starts_with("whisker,no_whisker,side,distance_mm,pole_distance_mm,kind,"));
     assert_eq!(lines.len(), 1 + 3 * 2 * 2);
-    let empty = "C2,tip_radius_um is missing,cf,5.0,,no-whisker,,,,,,,,,,,,,,,";
+    let empty = "C2,tip_radius_um is missing,cf,5.0,,no-whisker,,,,,,,,,,,,,,,,";
     assert_eq!(lines[5], empty);
     let one = place.run(&["curve", "scene.toml", "--at", "whisker=C3"]);
     assert_eq!(one.out.lines().skip(1).collect::<Vec<_>>(), lines[9..]);
