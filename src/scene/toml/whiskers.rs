@@ -156,6 +156,9 @@ fn columns() -> impl Iterator<Item = &'static str> + Clone {
     files.chain(Parameter::ALL.map(Parameter::name))
 }
 
+/// Sets the pairs of a row.
+type SetPairs = fn(WhiskerRow, Vec<[f64; 2]>) -> WhiskerRow;
+
 /// Reads the rows of a CSV file. The files that it names are beside it.
 fn read_csv(
     table: &CsvTable,
@@ -183,7 +186,7 @@ fn read_csv(
         lines: table.lines().collect(),
         note,
     });
-    let kinds: [(_, _, fn(WhiskerRow, Vec<[f64; 2]>) -> WhiskerRow); 2] = [
+    let kinds: [(_, _, SetPairs); 2] = [
         (PROFILE, PairKind::ROWS, WhiskerRow::profile),
         (REST_POINTS, PairKind::POINTS, WhiskerRow::rest_points),
     ];
