@@ -72,7 +72,7 @@ fn maps_of_a_class_have_equal_bits() {
 }
 
 /// Hashes with fused arithmetic.
-const FMA: [(&str, u64); 15] = [
+const FMA: [(&str, u64); 16] = [
     ("cone", 0x4ab1_91f2_4bb1_9e17),
     ("cylinder", 0x3a93_1d49_b7ff_0335),
     ("euler_spiral", 0xdc03_9a13_3246_11e7),
@@ -83,6 +83,7 @@ const FMA: [(&str, u64); 15] = [
     ("friction", 0xe9b2_82a4_3dc5_71ac),
     ("measured", 0x2b70_8b80_b7ef_2494),
     ("morphology", 0x7601_9284_ce45_ed12),
+    ("pad", 0x5745_acf9_c49c_1806),
     ("robot", 0x049b_0231_5b3b_aeaf),
     ("texture_cone", 0xb866_295e_d2b5_9984),
     ("texture_hair", 0xd5fb_43b1_7924_e36f),
@@ -91,7 +92,7 @@ const FMA: [(&str, u64); 15] = [
 ];
 
 /// Hashes without fused arithmetic.
-const NO_FMA: [(&str, u64); 15] = [
+const NO_FMA: [(&str, u64); 16] = [
     ("cone", 0x3906_ae21_6734_7b63),
     ("cylinder", 0x6e98_06d8_dbbd_040a),
     ("euler_spiral", 0xd6c1_0260_1f62_f147),
@@ -102,6 +103,7 @@ const NO_FMA: [(&str, u64); 15] = [
     ("friction", 0x0c85_3f40_64d1_fa3d),
     ("measured", 0x996f_b360_c511_b7d0),
     ("morphology", 0xfce9_a54c_e1d0_a6e6),
+    ("pad", 0x70cf_6b49_c142_0ec0),
     ("robot", 0x8577_d649_1900_5997),
     ("texture_cone", 0x9806_fb65_4bf7_8ed8),
     ("texture_hair", 0xe6d4_0b6f_e640_9475),
