@@ -133,7 +133,10 @@ mod tests {
                 );
                 let pull = difference(&|r| loss.weight(r) * r);
                 assert!((loss.curvature(r) - pull).abs() < 1e-8, "{loss:?} {r}");
-                assert!((0.5 * difference(&|r| loss.of(r)) - loss.weight(r) * r).abs() < 1e-8);
+                // The rounding of the difference grows with the loss: measured up to 5e-11 of it.
+                let half = 0.5 * difference(&|r| loss.of(r));
+                let most = 1e-9 * (1.0 + loss.of(r));
+                assert!((half - loss.weight(r) * r).abs() < most, "{loss:?} {r}");
             }
         }
     }
