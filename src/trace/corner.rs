@@ -20,7 +20,7 @@ row! {
         pub distance_mm: Option<f64>,
         /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Reason without a corner: always-slips-off, always-pulls-off, not-found or no-whisker.
+        /// Without a corner: always-slips-off, always-pulls-off, not-found or no-whisker.
         pub reason: Option<NoCorner>,
     }
 }

@@ -69,7 +69,7 @@ fn the_state_has_the_loads_of_the_shape() {
         .replace("_nnm", "_nmm")
         .replace("_mm", "_cm");
     let converted = &cells(&other, &header)[0];
-    for (column, size) in [(7, 1e3), (10, 1e6), (5, 10.0), (3, 1.0)] {
+    for (column, size) in [(7, 1e3), (11, 1e6), (5, 10.0), (3, 1.0)] {
         assert_eq!(
             number(converted[column]),
             number(row[column]) / size,
