@@ -45,7 +45,7 @@ def test_courses_forces_and_fits_are_drawn(cone):
     np.testing.assert_array_equal(line.get_ydata(), found.samples.force_un)
     assert {dot.get_label() for dot in dots} == set(found.events.event.values)
     assert len(wm.plot.whisk(found, y="arc_length_mm", ax=axes[0])) == 1
-    frames = wm.force(cone, ROOT / "scenes/frames.csv", baseline_s=(0, 0.02))
+    frames = wm.force(cone, ROOT / "scenes/frames.csv", baseline_s=(0, 0.005))
     line, band = wm.plot.force(frames, ax=axes[1], linewidth=3)
     np.testing.assert_array_equal(line.get_ydata(), frames.force_un)
     assert line.get_linewidth() == 3 and band.axes is axes[1]

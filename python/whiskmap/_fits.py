@@ -135,7 +135,7 @@ def _pulls(found: Sequence[tuple[int, float, float, str, float]]) -> xr.Dataset:
     names = ("point", "residual_deg", "weight", "parameter", "standard_errors")
     kinds = (np.int64, np.float64, np.float64, np.str_, np.float64)
     values = zip(*found) if found else ((),) * len(names)
-    own = {name: ("pull", np.array(list(all), dtype=kind)) for name, kind, all in zip(names, kinds, values)}
+    own: dict[str, Any] = {name: ("pull", np.array(list(all), dtype=kind)) for name, kind, all in zip(names, kinds, values)}
     return xr.Dataset(own)
 
 
@@ -261,7 +261,7 @@ _Varied = tuple[str, "tuple[float, float] | None"]
 def _varied(parameter: str | Sequence[str] | Mapping[str, tuple[float, float] | None]) -> list[_Varied]:
     if isinstance(parameter, str):
         return [(parameter, None)]
-    if not hasattr(parameter, "items"):
+    if not isinstance(parameter, Mapping):
         return [(name, None) for name in parameter]
     varied: list[_Varied] = []
     for name, limits in parameter.items():

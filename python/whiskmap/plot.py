@@ -279,9 +279,11 @@ def fit(found: Fit, *, ax: Axes | None = None, **line: Any) -> list[Artist]:
         deviation = own["sd_deg"].values
         bars = None if np.isnan(deviation).all() else deviation
         colour = inks()["pull-off" if is_pull_off else "slip-off"]
-        look = {"color": colour, "markerfacecolor": colour if is_pull_off else "none", "linestyle": "none", "marker": "o"}
-        label = "measured pull-off" if is_pull_off else "measured"
-        artists += [axes.errorbar(own["measured_deg"], own["distance_mm"], xerr=bars, label=label, **look).lines[0]]
+        face, label = (colour, "measured pull-off") if is_pull_off else ("none", "measured")
+        drawn = axes.errorbar(
+            own["measured_deg"], own["distance_mm"], xerr=bars, label=label, color=colour, markerfacecolor=face, linestyle="none", marker="o"
+        )
+        artists += [drawn.lines[0]]
     return artists
 
 

@@ -89,7 +89,7 @@ pub fn coordinates(grid: &Grid) -> Vec<AxisCoordinate> {
         },
         AxisCoordinate {
             name: "push_angle_deg",
-            attributes: about(Some("degree"), "push angle; CF < 0 < CB"),
+            attributes: about(Some("degree"), "push angle (positive: CB)"),
             values: numbers(&grid.push_angle_deg),
         },
     ];
