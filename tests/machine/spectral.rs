@@ -166,7 +166,7 @@ fn maps_of_shipped_scenes_are_those_of_the_cpu() {
         let cells = compare(&scene);
         // The cells of a small grid, or of a single row, may take less time than a net.
         let grid = &scene.grid;
-        let is_small = grid.push_angle_deg.len() < 128 || grid.distance_mm.len() < 2;
+        let is_small = grid.push_angle_deg.len() < 128 || grid.distance_mm.len() < 64;
         let has_profile = Plan::new(&scene).unwrap().method.effects.profile;
         let others = cells.fallback() + cells.without_row;
         let part = cells.solved as f64 / (cells.solved + others).max(1) as f64;
