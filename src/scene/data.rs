@@ -6,8 +6,9 @@ use super::parameter::Parameter;
 use super::surface::Surface;
 use super::table::TableWhisker;
 use super::toml::SceneText;
-use super::whisker::{Curvature, Pole, SweptWhisker, Whisker};
+use super::whisker::{Curvature, Pole, Whisker};
 use std::sync::Arc;
+use whiskmap_mechanics::rod::{Rod, Side};
 
 /// Data of a scene. Only a [`Scene`](super::Scene) guarantees that the values are valid.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +31,25 @@ pub struct SceneData {
     pub name: String,
     /// TOML text of the scene.
     pub text: SceneText,
+}
+
+/// One whisker of a sweep, in front of its pole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweptWhisker {
+    /// Place of the whisker in the sweep.
+    pub place: SweepPlace,
+    /// Whisker at this place of the sweep.
+    pub whisker: Whisker,
+    /// Pole in front of the whisker.
+    pub pole: Pole,
+}
+
+impl SweptWhisker {
+    /// Returns the dimensionless rod of the swept whisker with its pole on `side`: lengths are in whisker lengths.
+    #[must_use]
+    pub fn rod(&self, side: Side) -> Rod {
+        self.whisker.rod(&self.pole, side)
+    }
 }
 
 /// Row of a table of whiskers without a whisker, at a place of the sweep.

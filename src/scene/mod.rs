@@ -33,7 +33,7 @@ pub(crate) use grid::NEAREST;
 pub use axis::{AxisScale, AxisValues};
 pub use builder::{Deviations, FrameDeviations, SceneBuilder};
 pub use check::LONGEST_TITLE;
-pub use data::{RefusedWhisker, SceneData};
+pub use data::{RefusedWhisker, SceneData, SweptWhisker};
 
 pub use error::SceneError;
 pub use grid::{Coordinate, Grid, SweepAxis, SweepPlace, SweepVariable};
@@ -46,4 +46,4 @@ pub use smooth::SmoothRadii;
 pub use surface::Surface;
 pub use table::{TableWhisker, WhiskerRow};
 pub use toml::SceneText;
-pub use whisker::{Curvature, EulerSpiral, Pole, SweptWhisker, Whisker};
+pub use whisker::{Curvature, EulerSpiral, Pole, Whisker};

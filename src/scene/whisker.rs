@@ -2,19 +2,7 @@
 
 use std::sync::Arc;
 
-use super::grid::SweepPlace;
 use whiskmap_mechanics::rod::{CurvaturePolynomial, RadiusProfile, Rod, Side, Units};
-
-/// One whisker of a sweep, in front of its pole.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SweptWhisker {
-    /// Place of the whisker in the sweep.
-    pub place: SweepPlace,
-    /// Whisker at this place of the sweep.
-    pub whisker: Whisker,
-    /// Pole in front of the whisker.
-    pub pole: Pole,
-}
 
 /// A whisker at rest: length, radii, moduli and curvature.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,14 +34,6 @@ pub struct Whisker {
     /// Stiffness of the follicle that holds the base, in nN m/rad: the base turns in it by the moment over the stiffness, and a push turns
     /// the follicle. `None` for a clamped base.
     pub follicle_stiffness_nnm_per_rad: Option<f64>,
-}
-
-impl SweptWhisker {
-    /// Returns the dimensionless rod of the swept whisker with its pole on `side`: lengths are in whisker lengths.
-    #[must_use]
-    pub fn rod(&self, side: Side) -> Rod {
-        self.whisker.rod(&self.pole, side)
-    }
 }
 
 impl Whisker {
