@@ -149,7 +149,7 @@ impl<const D: usize> SimdTask for Contraction<'_, D> {
             }
             for (column, in_y) in columns.iter_mut().zip(self.coefficients) {
                 let mut sums = [T::of(0.0); D];
-                for (terms, polynomial) in in_y.iter().zip(polynomials) {
+                for (terms, polynomial) in in_y.iter().zip(&polynomials) {
                     for (sum, term) in sums.iter_mut().zip(terms) {
                         *sum = polynomial.mul_add(T::of(*term), *sum);
                     }
