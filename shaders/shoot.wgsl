@@ -1,5 +1,6 @@
 // Trajectories from the contact to the base, one per invocation, with the 8th-order formula of Dormand, El-Mikkawy and Prince's Nystrom pair.
-// The twin of `integrator/nystrom8.rs`, `intrinsic.rs` and `parabola.rs` in `crates/mechanics/src/shooting/`, where the equations are.
+// The twin of `integrator/nystrom8.rs`, `intrinsic.rs`, `parabola.rs` and `material.rs` in `crates/mechanics/src/shooting/`, where the
+// equations are.
 
 struct Rod {
     taper: real,
@@ -11,20 +12,31 @@ struct Rod {
     high: vec4<real>,
     // tangent at the contact
     tangent: vec2<real>,
-    unused: vec2<real>,
+    // gradient of the modulus
+    gradient: real,
+    unused: real,
 }
 
-// Contact: tau, force, radius and arclength, then the unit tangent of a parabola at rest.
-alias Contact = array<vec4<real>, 2>;
+// Contact of some trajectories: tau, radius and arclength, then the unit tangent of a parabola at rest.
+struct Contact {
+    tau: real,
+    radius: real,
+    arclength: real,
+    unused: real,
+    rest: vec2<real>,
+}
 
-// State at the base: tangent and position, then the energy.
-alias State = array<vec4<real>, 2>;
+// State at the base: tangent, position, then energy and rotation by bending.
+alias State = array<vec2<real>, 3>;
 
 @group(0) @binding(0) var<storage, read> rods: array<Rod>;
-// Rod and number of steps of each trajectory.
+// Rod and number of steps of each contact.
 @group(0) @binding(1) var<storage, read> heads: array<vec2<u32>>;
 @group(0) @binding(2) var<storage, read> contacts: array<Contact>;
-@group(0) @binding(3) var<storage, read_write> states: array<State>;
+// Contact and force of each trajectory.
+@group(0) @binding(3) var<storage, read> contact_of: array<u32>;
+@group(0) @binding(4) var<storage, read> forces: array<real>;
+@group(0) @binding(5) var<storage, read_write> states: array<State>;
 
 // (exp(x) - 1)/x for |x| <= 0.4: Taylor polynomial; of degree 12 in f64 and 7 in f32 truncation is below 1e-16 and 2e-9.
 fn expm1_over_small(x: real) -> real {
@@ -73,12 +85,14 @@ fn stage_at(rod: Rod, h: real, node: real) -> Stage {
 struct Section {
     radius: real,
     arclength: real,
+    // modulus over that at the base
+    modulus: real,
     // unit tangents of the whisker, and of a parabola at rest
     tangent: vec2<real>,
     rest: vec2<real>,
     // rotation by bending since the contact
     bent: real,
-    // h F/rho^3 and h rho
+    // h F/(modulus rho^3) and h rho
     turning: real,
     reach: real,
     // rotation of the whisker at rest, as a polynomial
@@ -148,16 +162,41 @@ fn rest_turn(rod: Rod, section: Section, along: real) -> real {
     return real(0.0);
 }
 
-// Tangent and rotation by bending at a stage, where chi is given.
+// Change of the material from the start of a step to a stage.
+struct Material {
+    // square root of the modulus at the start over that at the stage
+    softer: real,
+    // rate at which the logarithm of the modulus falls toward the base, along tau
+    fall: real,
+}
+
+fn material_at(rod: Rod, section: Section, stage: Stage) -> Material {
+    if GRADIENT {
+        let inverse = 1.0 / (1.0 + rod.gradient * (section.arclength - section.radius * stage.along));
+        return Material(sqrt(section.modulus * inverse), rod.gradient * section.radius * stage.grown * inverse);
+    }
+    return Material(real(1.0), real(0.0));
+}
+
+// Tangent and rotation by bending at a stage, where chi is given, and chi'' there.
 struct Pose {
     tangent: vec2<real>,
     bent: real,
+    pull: real,
 }
 
-fn pose_at(rod: Rod, section: Section, stage: Stage, chi: real) -> Pose {
-    let bend = section.turning * stage.shrunk * stage.shrunk * stage.shrunk * chi;
+fn pose_at(rod: Rod, h: real, section: Section, stage: Stage, chi: real) -> Pose {
+    let material = material_at(rod, section, stage);
+    let bend = section.turning * stage.shrunk * stage.shrunk * stage.shrunk * material.softer * chi;
     let turn = bend + rest_turn(rod, section, stage.along);
-    return Pose(rotated(section.tangent, turn), section.bent + bend);
+    let tangent = rotated(section.tangent, turn);
+    // m''/m
+    var potential = 2.25 * rod.taper * rod.taper;
+    if GRADIENT {
+        potential -= material.fall * (0.25 * material.fall + 2.0 * rod.taper);
+    }
+    let pull = h * h * potential * chi - section.reach * stage.shrunk * material.softer * tangent.x;
+    return Pose(tangent, section.bent + bend, pull);
 }
 
 // Integrands of Y, and of the rotation by bending along -X.
@@ -168,14 +207,14 @@ fn climb(stage: Stage, pose: Pose) -> vec2<real> {
 @compute @workgroup_size(WORKGROUP)
 fn shoot(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let id = invocation.x;
-    if id >= arrayLength(&heads) {
+    if id >= arrayLength(&forces) {
         return;
     }
-    let head = heads[id];
+    let head = heads[contact_of[id]];
     let rod = rods[head.x];
-    let contact = contacts[id];
-    let force = contact[0].y;
-    let h = contact[0].x / real(head.y);
+    let contact = contacts[contact_of[id]];
+    let force = forces[id];
+    let h = contact.tau / real(head.y);
     let s2 = stage_at(rod, h, NODE_2);
     let s3 = stage_at(rod, h, NODE_3);
     let s4 = stage_at(rod, h, NODE_4);
@@ -183,19 +222,20 @@ fn shoot(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let s6 = stage_at(rod, h, NODE_6);
     let s7 = stage_at(rod, h, NODE_7);
     let end = stage_at(rod, h, NODE_8);
-    // m''/m and m'/m, times the step.
-    let potential = 2.25 * rod.taper * rod.taper * h * h;
-    let growth = 1.5 * rod.taper * h;
     var section = Section();
-    section.radius = contact[0].z;
-    section.arclength = contact[0].w;
+    section.radius = contact.radius;
+    section.arclength = contact.arclength;
+    section.modulus = real(1.0);
     section.tangent = rod.tangent;
-    section.rest = contact[1].xy;
+    section.rest = contact.rest;
     var x = real(0.0);
     var y = real(0.0);
     var along = real(0.0);
     for (var step = 0u; step < head.y; step++) {
-        section.turning = h * force / (section.radius * section.radius * section.radius);
+        if GRADIENT {
+            section.modulus = 1.0 + rod.gradient * section.arclength;
+        }
+        section.turning = h * force / (section.modulus * section.radius * section.radius * section.radius);
         section.reach = h * section.radius;
         if CURVATURE {
             section.rest_rate = -section.radius * rod.twice_bend * section.rest.x * section.rest.x;
@@ -208,38 +248,39 @@ fn shoot(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let k1 = -reach * section.tangent.x;
         var rise = SPEED_1 * vec2<real>(-section.tangent.y, section.tangent.x * section.bent);
         var chi = NODE_2 * x + STAGE_2_1 * k1;
-        var pose = pose_at(rod, section, s2, chi);
-        let k2 = potential * chi - reach * s2.shrunk * pose.tangent.x;
+        var pose = pose_at(rod, h, section, s2, chi);
+        let k2 = pose.pull;
         chi = NODE_3 * x + STAGE_3_1 * k1 + STAGE_3_2 * k2;
-        pose = pose_at(rod, section, s3, chi);
-        let k3 = potential * chi - reach * s3.shrunk * pose.tangent.x;
+        pose = pose_at(rod, h, section, s3, chi);
+        let k3 = pose.pull;
         rise += SPEED_3 * climb(s3, pose);
         chi = NODE_4 * x + STAGE_4_1 * k1 + STAGE_4_2 * k2 + STAGE_4_3 * k3;
-        pose = pose_at(rod, section, s4, chi);
-        let k4 = potential * chi - reach * s4.shrunk * pose.tangent.x;
+        pose = pose_at(rod, h, section, s4, chi);
+        let k4 = pose.pull;
         rise += SPEED_4 * climb(s4, pose);
         chi = NODE_5 * x + STAGE_5_1 * k1 + STAGE_5_2 * k2 + STAGE_5_3 * k3 + STAGE_5_4 * k4;
-        pose = pose_at(rod, section, s5, chi);
-        let k5 = potential * chi - reach * s5.shrunk * pose.tangent.x;
+        pose = pose_at(rod, h, section, s5, chi);
+        let k5 = pose.pull;
         rise += SPEED_5 * climb(s5, pose);
         chi = NODE_6 * x + STAGE_6_1 * k1 + STAGE_6_2 * k2 + STAGE_6_3 * k3 + STAGE_6_4 * k4 + STAGE_6_5 * k5;
-        pose = pose_at(rod, section, s6, chi);
-        let k6 = potential * chi - reach * s6.shrunk * pose.tangent.x;
+        pose = pose_at(rod, h, section, s6, chi);
+        let k6 = pose.pull;
         rise += SPEED_6 * climb(s6, pose);
         chi = NODE_7 * x + STAGE_7_1 * k1 + STAGE_7_2 * k2 + STAGE_7_3 * k3 + STAGE_7_4 * k4 + STAGE_7_5 * k5 + STAGE_7_6 * k6;
-        pose = pose_at(rod, section, s7, chi);
-        let k7 = potential * chi - reach * s7.shrunk * pose.tangent.x;
+        pose = pose_at(rod, h, section, s7, chi);
+        let k7 = pose.pull;
         rise += SPEED_7 * climb(s7, pose);
         chi = x + STAGE_8_1 * k1 + STAGE_8_2 * k2 + STAGE_8_3 * k3 + STAGE_8_4 * k4 + STAGE_8_5 * k5 + STAGE_8_6 * k6
             + STAGE_8_7 * k7;
-        pose = pose_at(rod, section, end, chi);
-        let k8 = potential * chi - reach * end.shrunk * pose.tangent.x;
+        pose = pose_at(rod, h, section, end, chi);
+        let k8 = pose.pull;
         rise += SPEED_8 * climb(end, pose);
         chi = x + POSITION_1 * k1 + POSITION_3 * k3 + POSITION_4 * k4 + POSITION_5 * k5 + POSITION_6 * k6 + POSITION_7 * k7;
         let speed = x + SPEED_1 * k1 + SPEED_3 * k3 + SPEED_4 * k4 + SPEED_5 * k5 + SPEED_6 * k6 + SPEED_7 * k7 + SPEED_8 * k8;
-        pose = pose_at(rod, section, end, chi);
+        pose = pose_at(rod, h, section, end, chi);
         // X = m (chi' - (m'/m) chi).
-        x = (speed - growth * chi) * end.grown * end.grown * end.shrunk;
+        let material = material_at(rod, section, end);
+        x = (speed - h * (1.5 * rod.taper - 0.5 * material.fall) * chi) * end.grown * end.grown * end.shrunk / material.softer;
         y += reach * rise.x;
         along += reach * rise.y;
         if CURVATURE {
@@ -252,8 +293,5 @@ fn shoot(@builtin(global_invocation_id) invocation: vec3<u32>) {
         section.radius *= end.grown;
     }
     let energy = 0.5 * force * (x * section.bent + along);
-    states[id] = State(
-        vec4<real>(section.tangent, x, y),
-        vec4<real>(energy, section.bent, real(0.0), real(0.0)),
-    );
+    states[id] = State(section.tangent, vec2<real>(x, y), vec2<real>(energy, section.bent));
 }

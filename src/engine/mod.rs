@@ -9,6 +9,7 @@ mod columns;
 mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod nodes;
 mod row;
 mod side;
 mod spectral;
@@ -19,6 +20,7 @@ pub use batch::{BatchRow, RowBatch};
 pub use cells::{Cell, CellRun, Cells, Outcome};
 pub use columns::{Column, SideColumns};
 pub use cpu::Cpu;
+pub use nodes::Nodes;
 pub use row::RowExpansion;
 pub use side::{FORCE, Values, WhiskerSide};
 pub use spectral::Spectral;
@@ -27,6 +29,7 @@ pub use worker::Worker;
 use std::fmt;
 use std::sync::Arc;
 use whiskmap_mechanics::rod::Effects;
+use whiskmap_mechanics::shooting::PlainState;
 
 /// Floating-point type of the GPU engine's shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -80,6 +83,19 @@ pub trait Engine: Send {
     /// Returns true if the engine waits for a device, so that it works on a thread of its own.
     fn has_device(&self) -> bool {
         false
+    }
+
+    /// Returns true if the engine integrates the trajectories of nets, so that the CPU need not.
+    fn shoots(&self) -> bool {
+        false
+    }
+
+    /// Returns the states of the trajectories of `nodes`, `[trajectory]`, rod by rod; by default from the CPU.
+    ///
+    /// # Errors
+    /// When the device fails; every later call then fails.
+    fn shoot_nodes(&mut self, nodes: &Nodes) -> Result<Vec<PlainState>, EngineError> {
+        Ok(nodes.shoot())
     }
 
     /// Submits a batch to the engine, which starts without waiting for a device.

@@ -5,7 +5,7 @@ use crate::friction::FrictionState;
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
 use crate::scene::Parameter;
-use crate::sheet::net::ValueNet;
+use crate::sheet::net::{ValueDraft, ValueNet};
 use crate::sheet::{Crossing, Sheet};
 use glam::DVec2;
 use std::sync::Arc;
@@ -52,6 +52,11 @@ impl WhiskerSide {
     #[must_use]
     pub fn with_net(self, most: f64) -> Self {
         let net = self.net(most);
+        self.with(net)
+    }
+
+    /// Returns this whisker side with a `net` of its sheet.
+    pub(crate) fn with(self, net: Option<ValueNet>) -> Self {
         let sheet = self.sheet.with_net(net);
         Self { sheet, ..self }
     }
@@ -59,12 +64,20 @@ impl WhiskerSide {
     /// Computes the net of this whisker side, as [`Self::with_net`] adds it.
     #[must_use]
     pub fn net(&self, most: f64) -> Option<ValueNet> {
-        let cells = |row: usize| {
-            let end = self.sheet.crossings[row].first();
-            let end = end.map_or(0.0, |end| end.push);
-            self.columns.magnitudes.partition_point(|push| *push < end)
-        };
-        ValueNet::new(&self.sheet, cells, most)
+        ValueNet::new(&self.sheet, |row| self.cells(row), most)
+    }
+
+    /// Begins the net of this whisker side, as [`Self::net`] computes it, for trajectories that are integrated elsewhere.
+    #[must_use]
+    pub fn draft(&self, most: f64) -> Option<ValueDraft<'_>> {
+        ValueDraft::new(&self.sheet, |row| self.cells(row), most)
+    }
+
+    /// Number of cells of `row` before its end.
+    fn cells(&self, row: usize) -> usize {
+        let end = self.sheet.crossings[row].first();
+        let end = end.map_or(0.0, |end| end.push);
+        self.columns.magnitudes.partition_point(|push| *push < end)
     }
 
     /// Returns the converter of the side's states to map units.

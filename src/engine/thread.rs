@@ -1,52 +1,76 @@
 //! Work of an engine on a thread of its own.
 
-use super::{Cells, Engine, EngineError, RowBatch};
+use super::{Cells, Engine, EngineError, Nodes, RowBatch};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
 use std::time::{Duration, Instant};
+use whiskmap_mechanics::shooting::PlainState;
 
 /// Batches that an engine has at once: it prepares one while it solves another.
 const AT_ONCE: usize = 2;
 
-/// Response to a batch.
-pub struct Response {
-    pub cells: Result<Cells, EngineError>,
+/// Request to an engine.
+pub enum Request {
+    Cells(Arc<RowBatch>),
+    Nodes(Arc<Nodes>),
+}
+
+/// Response to a request.
+pub struct Response<R> {
+    pub result: Result<R, EngineError>,
     /// Busy time since the previous response.
     pub busy: Duration,
 }
 
-/// Solves the `requested` batches by `engine` until the requests end or responses are no longer received. Unless the engine fails, no batch
-/// stays submitted.
-pub fn serve(
-    engine: &mut dyn Engine,
-    requested: &Receiver<Arc<RowBatch>>,
-    respond: &Sender<Response>,
-) {
+/// Senders of responses: cells in the order of their batches, and states of nodes.
+pub struct Responses {
+    pub cells: Sender<Response<Cells>>,
+    pub states: Sender<Response<Vec<PlainState>>>,
+}
+
+/// Serves requests by `engine` until they end or responses are no longer received. Nodes are integrated before batches that wait. Unless the
+/// engine fails, no batch stays submitted.
+pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &Responses) {
     let (mut submitted, mut is_received) = (0, true);
     let mut since = Instant::now();
     loop {
         let mut taken = Ok(());
         while is_received && submitted < AT_ONCE && taken.is_ok() {
-            let batch = match submitted {
+            let request = match submitted {
                 0 => requested.recv().ok(),
                 _ => requested.try_recv().ok(),
             };
-            let Some(batch) = batch else { break };
+            let Some(request) = request else { break };
             if submitted == 0 {
                 since = Instant::now();
             }
-            taken = engine.submit(batch);
-            submitted += 1;
+            match request {
+                Request::Cells(batch) => {
+                    taken = engine.submit(batch);
+                    submitted += 1;
+                }
+                Request::Nodes(nodes) => {
+                    let result = engine.shoot_nodes(&nodes);
+                    let has_failed = result.is_err();
+                    let now = Instant::now();
+                    let busy = now - since;
+                    is_received &= respond.states.send(Response { result, busy }).is_ok();
+                    since = now;
+                    if has_failed {
+                        return;
+                    }
+                }
+            }
         }
         if submitted == 0 {
             return;
         }
-        let cells = taken.and_then(|()| engine.collect());
+        let result = taken.and_then(|()| engine.collect());
         submitted -= 1;
-        let has_failed = cells.is_err();
+        let has_failed = result.is_err();
         let now = Instant::now();
         let busy = now - since;
-        is_received &= respond.send(Response { cells, busy }).is_ok();
+        is_received &= respond.cells.send(Response { result, busy }).is_ok();
         since = now;
         if has_failed {
             return;
@@ -109,13 +133,14 @@ mod tests {
     /// Returns how many of `count` batches stay submitted, how many are collected, and the number of responses.
     fn served(count: usize, most: usize, is_received: bool) -> (usize, usize, usize) {
         let mut engine = counting(most, false);
-        let ((requests, requested), (respond, responses)) = (channel(), channel());
+        let ((requests, requested), (cells, responses)) = (channel(), channel());
         for _ in 0..count {
-            requests.send(nothing()).unwrap_or_default();
+            requests.send(Request::Cells(nothing())).unwrap_or_default();
         }
         drop(requests);
         let responses = is_received.then_some(responses);
-        serve(&mut engine, &requested, &respond);
+        let (states, _) = channel();
+        serve(&mut engine, &requested, &Responses { cells, states });
         let received = responses.map_or(0, |responses| responses.try_iter().count());
         (engine.submitted, engine.collected, received)
     }

@@ -3,21 +3,23 @@
 //!
 //! After its first failure an engine gets no further batch.
 
-use super::thread::{Response, serve};
-use super::{Cells, Engine, EngineError, RowBatch};
+use super::thread::{Request, Response, Responses, serve};
+use super::{Cells, Engine, EngineError, Nodes, RowBatch};
 use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::Duration;
+use whiskmap_mechanics::shooting::PlainState;
 
 /// Connection to an engine.
 enum Connection<'e> {
     /// The engine has a thread of its own.
     Thread {
-        requests: Sender<Arc<RowBatch>>,
-        responses: Receiver<Response>,
+        requests: Sender<Request>,
+        cells: Receiver<Response<Cells>>,
+        states: Receiver<Response<Vec<PlainState>>>,
     },
     /// The engine is called when its cells are collected.
     Call(&'e mut (dyn Engine + 'e)),
@@ -29,6 +31,10 @@ pub struct Worker<'e> {
     connection: Option<Connection<'e>>,
     /// The batches submitted and not collected.
     submitted: VecDeque<Arc<RowBatch>>,
+    /// True if the engine integrates the trajectories of nets.
+    shoots: bool,
+    /// Number of trajectories of nets that the engine has integrated.
+    pub trajectories: u64,
     /// Maximum residual bound of a cell that the engine solves, in whisker lengths; 0 without an engine.
     pub residual_bound: f64,
     /// Failure for which the engine is disabled; `None` if it has not failed.
@@ -46,9 +52,12 @@ impl<'e> Worker<'e> {
         work: impl FnOnce(Self) -> R,
     ) -> R {
         let residual_bound = engine.as_ref().map_or(0.0, |own| own.residual_bound());
+        let shoots = engine.as_ref().is_some_and(|own| own.shoots());
         let worker = |connection| Self {
             connection,
             residual_bound,
+            shoots,
+            trajectories: 0,
             submitted: VecDeque::new(),
             failure: None,
             busy: Duration::ZERO,
@@ -61,11 +70,16 @@ impl<'e> Worker<'e> {
         }
         thread::scope(|scope| {
             let (requests, requested) = channel();
-            let (respond, responses) = channel();
+            let ((to_cells, cells), (to_states, states)) = (channel(), channel());
+            let respond = Responses {
+                cells: to_cells,
+                states: to_states,
+            };
             let thread = scope.spawn(move || serve(engine, &requested, &respond));
             let done = work(worker(Some(Connection::Thread {
                 requests,
-                responses,
+                cells,
+                states,
             })));
             // A panic of the thread is in `failure` by now, or no cells were collected after it.
             let _ = thread.join();
@@ -91,7 +105,7 @@ impl<'e> Worker<'e> {
             None => return,
             // If the thread has ended, its last response is the failure, or `collect` finds none.
             Some(Connection::Thread { requests, .. }) => {
-                let _ = requests.send(Arc::clone(&batch));
+                let _ = requests.send(Request::Cells(Arc::clone(&batch)));
             }
             Some(Connection::Call(_)) => {}
         }
@@ -102,30 +116,64 @@ impl<'e> Worker<'e> {
     pub fn collect(&mut self) -> Option<Cells> {
         let batch = self.submitted.pop_front()?;
         let response = match self.connection.as_mut()? {
-            Connection::Thread { responses, .. } => responses.recv().ok(),
+            Connection::Thread { cells, .. } => cells.recv().ok(),
             Connection::Call(engine) => {
                 let begun = Stopwatch::start();
                 let taken = engine.submit(Arc::clone(&batch));
                 Some(Response {
-                    cells: taken.and_then(|()| engine.collect()),
+                    result: taken.and_then(|()| engine.collect()),
                     busy: begun.elapsed(),
                 })
             }
         };
-        let Some(response) = response else {
-            let ended = "the engine's thread has panicked".to_owned();
-            return self.disable(EngineError::Device(ended));
-        };
-        self.busy += response.busy;
-        match response.cells {
-            Ok(cells) if cells.fit(&batch) => Some(cells),
-            Ok(cells) => {
-                let (found, wanted) = (cells.len(), batch.cells());
-                let short = format!("a response of {found} cells to a request of {wanted}");
-                self.disable(EngineError::Device(short))
-            }
-            Err(failure) => self.disable(failure),
+        let cells = self.result(response)?;
+        if cells.fit(&batch) {
+            return Some(cells);
         }
+        let (found, wanted) = (cells.len(), batch.cells());
+        let short = format!("a response of {found} cells to a request of {wanted}");
+        self.disable(EngineError::Device(short));
+        None
+    }
+
+    /// Returns true if the engine has a thread of its own, and integrates the trajectories of nets.
+    #[must_use]
+    pub const fn shoots(&self) -> bool {
+        self.shoots && self.has_thread()
+    }
+
+    /// Waits for the states of `nodes` from the engine's thread, `[trajectory]`, rod by rod; `None` without it, or if the engine failed.
+    pub fn shoot_nodes(&mut self, nodes: &Arc<Nodes>) -> Option<Vec<PlainState>> {
+        let Some(Connection::Thread {
+            requests, states, ..
+        }) = &self.connection
+        else {
+            return None;
+        };
+        let wanted = nodes.count();
+        let response = match requests.send(Request::Nodes(Arc::clone(nodes))) {
+            Ok(()) => states.recv().ok(),
+            Err(_) => None,
+        };
+        let states = self.result(response)?;
+        if states.len() == wanted {
+            self.trajectories += wanted as u64;
+            return Some(states);
+        }
+        let short = format!("{} states of {wanted} trajectories", states.len());
+        self.disable(EngineError::Device(short));
+        None
+    }
+
+    /// Returns the result of a response; without one, the engine's thread has ended. After a failure, the engine is disabled.
+    fn result<R>(&mut self, response: Option<Response<R>>) -> Option<R> {
+        let ended = || EngineError::Device("the engine's thread has panicked".to_owned());
+        let Some(Response { result, busy }) = response else {
+            self.disable(ended());
+            return None;
+        };
+        self.busy += busy;
+        result.map_err(|failure| self.disable(failure)).ok()
     }
 
     /// Disables the engine after `differing` of `cells` audited cells failed.
@@ -133,10 +181,9 @@ impl<'e> Worker<'e> {
         self.disable(EngineError::FailedAudit { differing, cells });
     }
 
-    fn disable(&mut self, failure: EngineError) -> Option<Cells> {
+    fn disable(&mut self, failure: EngineError) {
         self.connection = None;
         self.submitted.clear();
         self.failure = Some(failure);
-        None
     }
 }

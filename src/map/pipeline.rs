@@ -141,6 +141,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             true => summary.device_seconds = busy.as_secs_f64(),
             false => summary.stages.0[Stage::Cells as usize] = busy,
         }
+        summary.trajectories = self.worker.trajectories;
         summary.engine_failure = self.worker.failure;
         if self.net.is_none() {
             summary.engine_cells = EngineCells::default();
@@ -195,7 +196,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         }
         let net = self.net.filter(|_| self.worker.is_working());
         let of_plan = (self.plan, self.method, net);
-        let sides = || whisker_sides(self.scene, of_plan, &self.columns, &found);
+        let (columns, worker) = (&self.columns, &mut self.worker);
+        let sides = || whisker_sides(self.scene, of_plan, columns, &found, worker);
         Some(Group {
             sides: self.summary.stages.time(Stage::Sheets, sides),
             without_whisker: without_whisker.into(),

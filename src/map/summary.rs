@@ -96,6 +96,8 @@ pub struct Summary {
     pub engine: EngineDescription,
     /// Numbers of cells of the run by their outcome in the engine.
     pub engine_cells: EngineCells,
+    /// Number of trajectories of nets that the engine integrated.
+    pub trajectories: u64,
     /// Result of the audit of the run's engine.
     pub audit: Audit,
     /// Failure of the engine, after which the CPU solved all cells; `None` without one.

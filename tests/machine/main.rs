@@ -36,6 +36,7 @@ mod kinds;
 mod maps;
 #[path = "../hard_cases/named.rs"]
 mod named;
+mod nodes;
 mod pipeline;
 #[path = "../program/mod.rs"]
 mod program;
@@ -85,6 +86,7 @@ fn main() -> ExitCode {
         hard_cases::TESTS,
         maps::TESTS,
         pipeline::TESTS,
+        nodes::TESTS,
         shoot::TESTS,
         spectral::TESTS,
         states::TESTS,

@@ -7,13 +7,14 @@ use whiskmap::engine::EngineError;
 use whiskmap::engine::gpu::{Precision, shoots};
 use whiskmap::mechanics::rod::Effects;
 use whiskmap::mechanics::shooting::PlainState;
-use whiskmap::mechanics::shooting::batch::{Batch, Method};
+use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
 
 tests! {
     Precision:
         trajectories_are_those_of_the_cpu,
         effects_that_a_whisker_lacks_change_rounding_alone,
-        a_modulus_gradient_is_refused;
+        measured_radii_are_refused,
+        fans_are_those_of_the_cpu;
 }
 
 /// Largest differences of base and pole in whisker lengths, of the tangent, and of the energy over force times length.
@@ -83,15 +84,38 @@ fn effects_that_a_whisker_lacks_change_rounding_alone(precision: Precision) {
 }
 
 /// The effects of any rod count, also beside others.
-fn a_modulus_gradient_is_refused(precision: Precision) {
-    let gradient = Effects {
-        gradient: true,
+fn measured_radii_are_refused(precision: Precision) {
+    let profile = Effects {
+        profile: true,
         ..Effects::default()
     };
     let mut mixed = conditions(Effects::default(), 8, 6.0, 3);
     let mut gpu = open(precision);
     assert!(gpu.shoot(Method::fine(), &mixed).is_ok());
-    mixed.extend(conditions(gradient, 8, 6.0, 3));
+    mixed.extend(conditions(profile, 8, 6.0, 3));
     let refused = gpu.shoot(Method::fine(), &mixed);
     assert!(matches!(refused, Err(EngineError::Unsupported { .. })));
+}
+
+/// Neighbours at one contact share its numbers, and have the states of single trajectories.
+fn fans_are_those_of_the_cpu(precision: Precision) {
+    let mut gpu = open(precision);
+    let all = conditions(Effects::default(), 300, 6.0, 5);
+    let fans = all.iter().enumerate().flat_map(|(i, own)| {
+        (0..=i % 5).map(|part| InitialCondition {
+            load: own.load * (1.0 - 0.2 * part as f64),
+            ..*own
+        })
+    });
+    let fans: Vec<InitialCondition> = fans.collect();
+    let found = gpu.shoot(Method::fine(), &fans).unwrap();
+    let wanted = Batch::new(Method::fine()).shoot::<PlainState>(&fans);
+    assert_eq!(found.len(), fans.len());
+    for (found, wanted) in found.iter().zip(&wanted) {
+        let apart = apart(found, wanted);
+        assert!(
+            apart.iter().all(|own| *own < allowed(precision)),
+            "{apart:?}"
+        );
+    }
 }

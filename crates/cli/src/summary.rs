@@ -74,7 +74,11 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
         let name = &summary.engine.engine;
         writeln!(out, "{:>12}  solved by the engine {name}", engine.solved)?;
     }
-    for (cells, what) in [
+    for (count, what) in [
+        (
+            summary.trajectories,
+            "trajectories of nets integrated by the engine",
+        ),
         (
             engine.fallback(),
             "not certified by the engine, and refined in f64",
@@ -95,8 +99,8 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
         (summary.toward_base, "slide toward the base"),
         (summary.sticking, "stick where their last sliding ended"),
     ] {
-        if cells > 0 {
-            writeln!(out, "{cells:>12}  {what}")?;
+        if count > 0 {
+            writeln!(out, "{count:>12}  {what}")?;
         }
     }
     writeln!(

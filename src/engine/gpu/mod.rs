@@ -27,9 +27,10 @@ pub use cells::Planes;
 pub use flight::Times;
 pub use guard::DRIVER_CALL;
 pub use missing::missing;
+use shoot::ShootBuffers;
 pub use shoot::shoots;
 
-use super::{Cells, Engine, EngineDescription, EngineError, RowBatch};
+use super::{Cells, Engine, EngineDescription, EngineError, Nodes, RowBatch};
 use device::Device;
 use flight::{Buffers, Flight};
 use pace::Pace;
@@ -40,6 +41,7 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
 use whiskmap_mechanics::rod::Effects;
+use whiskmap_mechanics::shooting::PlainState;
 
 /// GPU engine on one adapter.
 #[derive(Debug)]
@@ -59,6 +61,7 @@ pub struct Gpu {
     pipelines: HashMap<Planes, (wgpu::ComputePipeline, Pace)>,
     /// For each set of effects, the compiled shader of trajectories.
     shooters: HashMap<Effects, wgpu::ComputePipeline>,
+    shoot_buffers: ShootBuffers,
     /// The batches submitted and not collected.
     pending: VecDeque<PendingBatch>,
     /// The submissions in flight, in order, each with whether it has the last cells of its batch.
@@ -89,6 +92,7 @@ impl Gpu {
             buffers: Vec::new(),
             pipelines: HashMap::new(),
             shooters: HashMap::new(),
+            shoot_buffers: ShootBuffers::default(),
             pending: VecDeque::new(),
             flights: VecDeque::new(),
             idle_since: Instant::now(),
@@ -195,6 +199,14 @@ impl Engine for Gpu {
 
     fn has_device(&self) -> bool {
         true
+    }
+
+    fn shoots(&self) -> bool {
+        self.precision == Precision::F64
+    }
+
+    fn shoot_nodes(&mut self, nodes: &Nodes) -> Result<Vec<PlainState>, EngineError> {
+        self.shoot(nodes.method, &nodes.conditions())
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {

@@ -111,12 +111,13 @@ pub fn shoot(precision: Precision) -> String {
 
 /// Returns the values of the `override` constants of [`shoot`], by name.
 #[must_use]
-pub fn effects(effects: Effects) -> [(&'static str, f64); 4] {
+pub fn effects(effects: Effects) -> [(&'static str, f64); 5] {
     let flag = |on: bool| f64::from(u8::from(on));
     [
         ("TAPER", flag(effects.taper)),
         ("CURVATURE", flag(effects.curvature)),
         ("SPIRAL", flag(effects.spiral)),
         ("POLYNOMIAL", flag(effects.polynomial)),
+        ("GRADIENT", flag(effects.gradient)),
     ]
 }

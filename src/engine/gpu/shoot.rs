@@ -26,14 +26,9 @@ struct GpuRod<T> {
     spiral: [T; 2],
     curvature: [T; 8],
     tangent: [T; 2],
-    unused: [T; 2],
+    gradient: T,
+    unused: T,
 }
-
-/// Contact of a trajectory in the layout of the shaders: `tau`, force, radius, arclength, and the unit tangent of a parabola at rest.
-type GpuContact<T> = [T; 8];
-
-/// Numbers of a state as the shaders write them: tangent, position, energy, and three others.
-const NUMBERS: usize = 8;
 
 impl<T: Scalar> GpuRod<T> {
     fn new(rod: &Rod) -> Self {
@@ -48,27 +43,61 @@ impl<T: Scalar> GpuRod<T> {
             spiral: rod.spiral.unwrap_or_default().map(T::of),
             curvature,
             tangent: rod.contact_tangent().to_array().map(T::of),
-            unused: [T::of(0.0); 2],
+            gradient: T::of(rod.gradient),
+            unused: T::of(0.0),
         }
     }
 }
 
-/// The contact of a trajectory.
-fn contact<T: Scalar>(condition: &InitialCondition) -> GpuContact<T> {
-    let InitialCondition { rod, tau, load } = *condition;
-    let (radius, s) = (rod.radius(tau), arclength(rod, tau));
-    let rest = Rest::parabola_tangent(rod, s);
-    [
-        tau,
-        load * radius * radius,
-        radius,
-        s,
-        rest.x,
-        rest.y,
-        0.0,
-        0.0,
-    ]
-    .map(T::of)
+/// Contact in the layout of the shaders: `tau`, radius, arclength, an unused number, and the unit tangent of a parabola at rest.
+type GpuContact<T> = [T; 6];
+
+/// State in the layout of the shaders: tangent, position, energy, rotation by bending.
+type GpuState<T> = [T; 6];
+
+/// Neighbouring trajectories of a list from one contact of one rod. They take the same number of steps.
+struct Fan {
+    /// Indices of the trajectories in the list.
+    of: Range<usize>,
+    effects: Effects,
+    steps: u32,
+}
+
+impl Fan {
+    /// Returns the fans of `conditions`, in order.
+    fn all(method: Method, conditions: &[InitialCondition]) -> Vec<Self> {
+        let mut end = 0;
+        let fans = conditions.chunk_by(|a, b| std::ptr::eq(a.rod, b.rod) && a.tau == b.tau);
+        let fans: Vec<Range<usize>> = fans
+            .map(|fan| {
+                end += fan.len();
+                end - fan.len()..end
+            })
+            .collect();
+        each(fans.len(), |index| {
+            let of = fans[index].clone();
+            let fan = &conditions[of.clone()];
+            let (rod, tau) = (fan[0].rod, fan[0].tau);
+            // The number of steps grows with the load.
+            let load = fan
+                .iter()
+                .fold(0.0, |most: f64, own| most.max(own.load.abs()));
+            Self {
+                of,
+                effects: method.effects.and(rod),
+                steps: method.resolution.steps(rod, tau, load),
+            }
+        })
+    }
+}
+
+/// Returns the results of `work` for `count` indices, on all threads of the current pool. A thread of no pool, such as that of an engine, works
+/// alone.
+fn each<O: Send>(count: usize, work: impl Fn(usize) -> O + Send + Sync) -> Vec<O> {
+    match rayon::current_thread_index() {
+        Some(_) => (0..count).into_par_iter().map(work).collect(),
+        None => (0..count).map(work).collect(),
+    }
 }
 
 /// Returns `Ok` if the device integrates trajectories of whiskers with these effects.
@@ -76,18 +105,15 @@ fn contact<T: Scalar>(condition: &InitialCondition) -> GpuContact<T> {
 /// # Errors
 /// The effect that only the CPU integrates.
 pub const fn shoots(effects: Effects) -> Result<(), &'static str> {
-    if effects.profile {
-        Err("trajectories along measured radii are integrated on the CPU")
-    } else if effects.gradient {
-        Err("trajectories along a modulus gradient are integrated on the CPU")
-    } else {
-        Ok(())
+    match effects.profile {
+        true => Err("trajectories along measured radii are integrated on the CPU"),
+        false => Ok(()),
     }
 }
 
 impl Gpu {
     /// Integrates trajectories on the device, in the engine's precision, and returns their states: `[trajectory]`. The effects are those of the
-    /// rods and of the method.
+    /// rods and of the method. Neighbours of one rod and one contact are sent and stepped together.
     ///
     /// # Errors
     /// [`EngineError::Unsupported`] if a rod has effects that the shader lacks ([`shoots`]); [`EngineError::Device`] when the device fails.
@@ -96,33 +122,23 @@ impl Gpu {
         method: Method,
         conditions: &[InitialCondition],
     ) -> Result<Vec<PlainState>, EngineError> {
-        let keys = conditions.par_iter().map(|own| {
-            let steps = method.resolution.steps(own.rod, own.tau, own.load);
-            (method.effects.and(own.rod), steps)
-        });
-        let keys: Vec<(Effects, u32)> = keys.collect();
-        for (effects, _) in &keys {
-            shoots(*effects).map_err(|why| EngineError::Unsupported {
+        let mut fans = Fan::all(method, conditions);
+        for fan in &fans {
+            shoots(fan.effects).map_err(|why| EngineError::Unsupported {
                 adapter: self.device.info.name.clone(),
                 what: format!("shoot: {why}"),
             })?;
         }
         // Neighbours share a kernel, and take equal numbers of steps.
-        let mut order: Vec<usize> = (0..conditions.len()).collect();
-        order.par_sort_by_key(|index| keys[*index]);
+        fans.sort_by_key(|fan| (fan.effects, fan.steps));
         let mut states = vec![PlainState::default(); conditions.len()];
         self.working(|gpu| {
-            for group in order.chunk_by(|a, b| keys[*a].0 == keys[*b].0) {
-                let steps: Vec<u32> = group.iter().map(|index| keys[*index].1).collect();
-                for part in submissions(&steps) {
-                    let (part, steps) = (&group[part.clone()], &steps[part]);
-                    let effects = keys[part[0]].0;
-                    let found = match gpu.precision {
-                        Precision::F32 => gpu.shoot_in::<f32>(effects, conditions, part, steps),
-                        Precision::F64 => gpu.shoot_in::<f64>(effects, conditions, part, steps),
-                    };
-                    for (index, state) in part.iter().zip(found?) {
-                        states[*index] = state;
+            for group in fans.chunk_by(|a, b| a.effects == b.effects) {
+                for part in submissions(group) {
+                    let part = (conditions, &group[part]);
+                    match gpu.precision {
+                        Precision::F32 => gpu.shoot_in::<f32>(part, &mut states)?,
+                        Precision::F64 => gpu.shoot_in::<f64>(part, &mut states)?,
                     }
                 }
             }
@@ -130,118 +146,152 @@ impl Gpu {
         })
     }
 
-    /// Integrates `part` of the `conditions` in one submission, each in so many `steps`.
+    /// Integrates some fans of the `conditions` with equal effects in one submission.
     fn shoot_in<T: Scalar>(
         &mut self,
-        effects: Effects,
-        conditions: &[InitialCondition],
-        part: &[usize],
-        steps: &[u32],
-    ) -> Result<Vec<PlainState>, EngineError> {
-        let device = &self.device;
-        let pipeline = match self.shooters.entry(effects) {
+        (conditions, fans): (&[InitialCondition], &[Fan]),
+        states: &mut [PlainState],
+    ) -> Result<(), EngineError> {
+        let pipeline = match self.shooters.entry(fans[0].effects) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
                 let text = shaders::shoot(self.precision);
-                let constants = shaders::effects(effects);
-                new.insert(device.pipeline("shoot", &text, &constants)?)
+                let constants = shaders::effects(fans[0].effects);
+                new.insert(self.device.pipeline("shoot", &text, &constants)?)
             }
         };
-        let mut rods: Vec<(&Rod, GpuRod<T>)> = Vec::new();
-        let mut heads = Vec::with_capacity(part.len());
-        for (index, steps) in part.iter().zip(steps) {
-            let rod = conditions[*index].rod;
-            let is_last = |(last, _): &(&Rod, _)| std::ptr::eq(*last, rod);
-            if !rods.last().is_some_and(is_last) {
-                rods.push((rod, GpuRod::new(rod)));
+        let contacts = each(fans.len(), |fan| {
+            let InitialCondition { rod, tau, .. } = conditions[fans[fan].of.start];
+            let (radius, s) = (rod.radius(tau), arclength(rod, tau));
+            let rest = Rest::parabola_tangent(rod, s);
+            [tau, radius, s, 0.0, rest.x, rest.y]
+        });
+        let (mut last, mut rods): (Option<&Rod>, Vec<GpuRod<T>>) = (None, Vec::new());
+        let (mut heads, mut shots) = (Vec::new(), Vec::new());
+        for (contact, fan) in (0..).zip(fans) {
+            let rod = conditions[fan.of.start].rod;
+            if !last.is_some_and(|last| std::ptr::eq(last, rod)) {
+                rods.push(GpuRod::new(rod));
+                last = Some(rod);
             }
-            // A submission has fewer rods than `u32` can count.
-            heads.push([rods.len() as u32 - 1, *steps]);
+            // A submission has fewer rods and contacts than `u32` can count.
+            heads.push([rods.len() as u32 - 1, fan.steps]);
+            shots.extend(fan.of.clone().map(|index| (contact, index)));
         }
-        let rods: Vec<GpuRod<T>> = rods.into_iter().map(|(_, rod)| rod).collect();
-        let contacts = part.par_iter();
-        let contacts = contacts.map(|index| contact::<T>(&conditions[*index]));
-        let contacts: Vec<GpuContact<T>> = contacts.collect();
-        let inputs = [
+        let force = |(contact, index): (u32, usize)| {
+            let [_, radius, ..] = contacts[contact as usize];
+            conditions[index].load * radius * radius
+        };
+        let rounded: Vec<GpuContact<T>> = contacts.iter().map(|own| own.map(T::of)).collect();
+        let contact_of: Vec<u32> = shots.iter().map(|(contact, _)| *contact).collect();
+        let forces: Vec<T> = shots.iter().map(|shot| T::of(force(*shot))).collect();
+        let inputs: [&[u8]; INPUTS] = [
             bytemuck::cast_slice(&rods),
             bytemuck::cast_slice(&heads),
-            bytemuck::cast_slice(&contacts),
+            bytemuck::cast_slice(&rounded),
+            bytemuck::cast_slice(&contact_of),
+            bytemuck::cast_slice(&forces),
         ];
-        let found: Vec<[T; NUMBERS]> = submit(device, pipeline, inputs, part.len())?;
-        let read = part.par_iter().zip(&contacts).zip(&found);
-        let read = read.map(|((index, contact), found)| {
-            let [cos, sin, x, y, energy, ..] = found.map(Into::into);
-            let (rod, force): (_, f64) = (conditions[*index].rod, contact[1].into());
-            let position = DVec2::new(x, y);
-            // The shader knows no mount.
-            let turn = rod.mount * force * x;
-            let tangent = DVec2::from_angle(turn).rotate(DVec2::new(cos, sin));
-            let to_pole = rod.to_pole() - position;
-            PlainState {
-                pole: DVec2::new(tangent.x, -tangent.y).rotate(to_pole),
-                tangent,
-                position,
-                force,
-                energy: (0.5 * force * x).mul_add(turn, energy),
-            }
+        let buffers = &mut self.shoot_buffers;
+        let found: Vec<GpuState<T>> = buffers.run(&self.device, pipeline, inputs, shots.len())?;
+        let found = each(shots.len(), |i| {
+            let rod = conditions[shots[i].1].rod;
+            state(rod, force(shots[i]), found[i].map(Into::into))
         });
-        Ok(read.collect())
+        for ((_, index), found) in shots.into_iter().zip(found) {
+            states[index] = found;
+        }
+        Ok(())
     }
 }
 
-/// Splits trajectories with these `steps` into submissions of at most [`MOST_STEPS`], or of a single trajectory: ranges of their indices.
-fn submissions(steps: &[u32]) -> Vec<Range<usize>> {
+/// Returns the state of a trajectory of `rod` under a signed `force` from the numbers that the shader `found`, which knows no mount.
+fn state(rod: &Rod, force: f64, found: GpuState<f64>) -> PlainState {
+    let [cos, sin, x, y, energy, _] = found;
+    let position = DVec2::new(x, y);
+    let turn = rod.mount * force * x;
+    let tangent = match turn {
+        0.0 => DVec2::new(cos, sin),
+        _ => DVec2::from_angle(turn).rotate(DVec2::new(cos, sin)),
+    };
+    let to_pole = rod.to_pole() - position;
+    PlainState {
+        pole: DVec2::new(tangent.x, -tangent.y).rotate(to_pole),
+        tangent,
+        position,
+        force,
+        energy: (0.5 * force * x).mul_add(turn, energy),
+    }
+}
+
+/// Splits fans into submissions of at most [`MOST_STEPS`], or of a single fan: ranges of their indices.
+fn submissions(fans: &[Fan]) -> Vec<Range<usize>> {
     let (mut parts, mut from, mut sum) = (Vec::new(), 0, 0);
-    for (index, steps) in steps.iter().enumerate() {
-        sum += u64::from(*steps);
+    for (index, fan) in fans.iter().enumerate() {
+        let steps = u64::from(fan.steps) * fan.of.len() as u64;
+        sum += steps;
         if sum > MOST_STEPS && index > from {
             parts.push(from..index);
-            (from, sum) = (index, u64::from(*steps));
+            (from, sum) = (index, steps);
         }
     }
-    if from < steps.len() {
-        parts.push(from..steps.len());
+    if from < fans.len() {
+        parts.push(from..fans.len());
     }
     parts
 }
 
-/// Runs `pipeline` on `count` invocations with these `inputs`, and returns what it writes for each.
-fn submit<O: Pod>(
-    device: &Device,
-    pipeline: &wgpu::ComputePipeline,
-    inputs: [&[u8]; 3],
-    count: usize,
-) -> Result<Vec<O>, EngineError> {
-    let size = (count * size_of::<O>()) as u64;
-    let mut buffers = [None, None, None];
-    let mut entries = Vec::with_capacity(4);
-    for (own, bytes) in buffers.iter_mut().zip(inputs) {
-        device.upload("trajectories", own, bytes)?;
+/// Number of input buffers of the shader.
+const INPUTS: usize = 5;
+
+/// Buffers of trajectories on the device, which grow when they must.
+#[derive(Debug, Default)]
+pub struct ShootBuffers {
+    inputs: [Option<wgpu::Buffer>; INPUTS],
+    states: Option<wgpu::Buffer>,
+    readback: Option<wgpu::Buffer>,
+}
+
+impl ShootBuffers {
+    /// Runs `pipeline` on `count` invocations with these `inputs`, and returns what it writes for each.
+    fn run<O: Pod>(
+        &mut self,
+        device: &Device,
+        pipeline: &wgpu::ComputePipeline,
+        inputs: [&[u8]; INPUTS],
+        count: usize,
+    ) -> Result<Vec<O>, EngineError> {
+        let size = (count * size_of::<O>()) as u64;
+        let (usage, read) = (
+            Usage::STORAGE | Usage::COPY_SRC,
+            Usage::MAP_READ | Usage::COPY_DST,
+        );
+        let states = device.grown("states", &mut self.states, size, usage)?;
+        let readback = device.grown("states", &mut self.readback, size, read)?;
+        let mut entries = vec![binding(INPUTS as u32, states, Some(size))];
+        for (index, (kept, bytes)) in (0..).zip(self.inputs.iter_mut().zip(inputs)) {
+            let buffer = device.upload("trajectories", kept, bytes)?;
+            entries.push(binding(index, buffer, Some(bytes.len() as u64)));
+        }
+        let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shoot"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        let mut commands = device.handle.create_command_encoder(&Default::default());
+        {
+            let mut pass = commands.begin_compute_pass(&Default::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &bindings, &[]);
+            // A submission has fewer groups than `u32` can count.
+            pass.dispatch_workgroups(count.div_ceil(WORKGROUP as usize) as u32, 1, 1);
+        }
+        copy_back(&mut commands, states, readback, size);
+        let index = device.queue.submit([commands.finish()]);
+        device.check()?;
+        device.wait(index)?;
+        Device::read(readback, size, bytemuck::pod_collect_to_vec)
     }
-    let states = device.buffer("states", size, Usage::STORAGE | Usage::COPY_SRC)?;
-    let readback = device.buffer("readback", size, Usage::MAP_READ | Usage::COPY_DST)?;
-    for (index, (own, bytes)) in (0..).zip(buffers.iter().flatten().zip(inputs)) {
-        entries.push(binding(index, own, Some(bytes.len() as u64)));
-    }
-    entries.push(binding(3, &states, Some(size)));
-    let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("shoot"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &entries,
-    });
-    let mut commands = device.handle.create_command_encoder(&Default::default());
-    {
-        let mut pass = commands.begin_compute_pass(&Default::default());
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &bindings, &[]);
-        // A submission has fewer groups than `u32` can count.
-        pass.dispatch_workgroups(count.div_ceil(WORKGROUP as usize) as u32, 1, 1);
-    }
-    copy_back(&mut commands, &states, &readback, size);
-    let index = device.queue.submit([commands.finish()]);
-    device.check()?;
-    device.wait(index)?;
-    Device::read(&readback, size, bytemuck::pod_collect_to_vec)
 }
 
 #[cfg(test)]
@@ -249,11 +299,44 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_submission_has_few_steps_or_one_trajectory() {
+    fn a_submission_has_few_steps_or_one_fan() {
         let most = MOST_STEPS as u32;
-        assert!(submissions(&[]).is_empty());
-        assert_eq!(submissions(&[1, most]), [0..1, 1..2]);
-        let parts = submissions(&[most - 1, 1, 1, most, most + 9, 5, most - 5, 1]);
+        let parts = |steps: &[u32]| {
+            let fans = steps.iter().map(|steps| Fan {
+                of: 0..1,
+                effects: Effects::default(),
+                steps: *steps,
+            });
+            submissions(&fans.collect::<Vec<_>>())
+        };
+        assert!(parts(&[]).is_empty());
+        assert_eq!(parts(&[1, most]), [0..1, 1..2]);
+        let parts = parts(&[most - 1, 1, 1, most, most + 9, 5, most - 5, 1]);
         assert_eq!(parts, [0..2, 2..3, 3..4, 4..5, 5..7, 7..8]);
+    }
+
+    /// Fans of neighbours take the steps of the largest load.
+    #[test]
+    fn neighbours_at_one_contact_are_a_fan() {
+        let rods = [Rod::default(), Rod::default()];
+        let at = |rod: usize, tau, load| InitialCondition {
+            rod: &rods[rod],
+            tau,
+            load,
+        };
+        let list = [
+            at(0, 0.5, 1.0),
+            at(0, 0.5, -8.0),
+            at(0, 0.6, 1.0),
+            at(1, 0.6, 1.0),
+            at(0, 0.5, 1.0),
+        ];
+        let method = Method::fine();
+        let fans = Fan::all(method, &list);
+        let ranges: Vec<Range<usize>> = fans.iter().map(|fan| fan.of.clone()).collect();
+        assert_eq!(ranges, [0..2, 2..3, 3..4, 4..5]);
+        let steps = |load| method.resolution.steps(&rods[0], 0.5, load);
+        assert_eq!((fans[0].steps, fans[3].steps), (steps(8.0), steps(1.0)));
+        assert!(steps(8.0) > steps(1.0));
     }
 }

@@ -7,7 +7,7 @@
 use super::bound::{MARGIN, larger};
 use super::panel::{NetPanel, TOP, along, contacts_of};
 use super::size::NetSize;
-use super::{PanelRow, PanelRows, Panels};
+use super::{Attempt, PanelQueue, PanelRow, Panels};
 use crate::sheet::case::SheetCase;
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::u_of;
@@ -68,22 +68,26 @@ pub struct GuessPanel(NetPanel<3>);
 impl Panels<GuessPanel> {
     /// Returns the panels of `rows` between `contacts`, with this `error` of `ln D` and `phi`.
     pub fn for_guesses(case: SheetCase, contacts: &ContactNodes, rows: &[Row], error: f64) -> Self {
-        let rows = PanelRows {
-            rod: case.rod,
-            rows,
-            aim: error,
-        };
-        let make = |_: &[PanelRow], range: [f64; 2], size: NetSize| {
-            let along = along(case.rod, contacts, range, size.contacts.max(ALONG));
-            GuessPanel::new(case, range, along, size, error)
-        };
         // The first contact node whose fold is farther than a row is beyond the row's last contact.
-        let last = |_, row: &Row| {
+        let last = |row: &Row| {
             let mut folds = contacts.folds[..contacts.tip].iter();
             let fold = folds.find(|fold| fold.distance() > row.pole_distance);
-            Some(fold.map_or(case.rod.tau_tip(), |fold| fold.tau))
+            fold.map_or(case.rod.tau_tip(), |fold| fold.tau)
         };
-        rows.panels(last, |_, _| true, make)
+        let places = rows.iter().enumerate();
+        let places = places.filter_map(|(i, row)| PanelRow::new(case.rod, i, row, last(row), 0));
+        let mut queue = PanelQueue::new(error, |_, _| true, rows.len(), places);
+        while let Some(attempt) = queue.open.pop() {
+            let Attempt {
+                contacts: range,
+                size,
+                ..
+            } = attempt;
+            let along = along(case.rod, contacts, range, size.contacts.max(ALONG));
+            let made = GuessPanel::new(case, range, along, size, error);
+            queue.settle(attempt, made);
+        }
+        queue.found
     }
 }
 

@@ -20,7 +20,7 @@ mod values;
 
 pub use bound::{MARGIN, VALUE_WEIGHT, larger, largest};
 pub use row::{NetBlock, NetRow};
-pub use values::ValueNet;
+pub use values::{ValueDraft, ValueNet};
 
 use crate::sheet::Row;
 use crate::sheet::fold::coordinate::u_of;
@@ -28,6 +28,7 @@ use crate::sheet::row::REACH_SLACK;
 pub use guesses::PUSH_MARGIN;
 pub(super) use guesses::{FOLD_ERROR, GUESS_ERROR, GuessPanel};
 use size::NetSize;
+use std::ops::Range;
 use whiskmap_mechanics::rod::Rod;
 
 /// Maximum bound on the residual of a state of a net, in whisker lengths, where no tolerance is given.
@@ -52,15 +53,17 @@ struct PanelRow {
     row: usize,
     /// Smallest and largest coordinate `u` of the contacts of the row.
     contacts: [f64; 2],
+    /// Number of cells of the row.
+    cells: usize,
 }
 
 impl PanelRow {
-    /// Returns the range of contacts of the `row` at `place`; `None` if it has none, as the pole is out of reach, or if the base may be inside the
+    /// Returns the `row` at `place` with its range of contacts and its number of `cells`; `None` if it has no contacts, as the pole is out of reach, or if the base may be inside the
     /// pole.
     ///
     /// The contact is at least as far along the whisker as it is from the base, and that is at least the pole's distance without its radius. It
     /// is at most that of first touch, or the `last`.
-    fn new(rod: &Rod, row: usize, place: &Row, last: f64) -> Option<Self> {
+    fn new(rod: &Rod, row: usize, place: &Row, last: f64, cells: usize) -> Option<Self> {
         let reach = place.contact.min(place.end);
         let nearest = place.pole_distance - rod.pole.abs();
         let has_contacts = nearest > 0.0 && nearest <= place.end + REACH_SLACK;
@@ -69,6 +72,7 @@ impl PanelRow {
         has_contacts.then(|| Self {
             row,
             contacts: [u_of(rod, rod.tau(nearest)), u_of(rod, last) + BEYOND],
+            cells,
         })
     }
 }
@@ -83,77 +87,136 @@ pub struct Panels<P> {
     are_complete: bool,
 }
 
-/// Rows of a sheet that panels are made for.
-struct PanelRows<'a> {
-    rod: &'a Rod,
-    /// All rows of the sheet.
-    rows: &'a [Row],
-    /// Error that the first size of a panel is chosen for, in whisker lengths.
-    aim: f64,
+/// Panel that is to be made next.
+#[derive(Clone, Debug)]
+struct Attempt {
+    /// Indices of the panel's rows in its queue: neighbours.
+    rows: Range<usize>,
+    /// Range of the contacts of the rows in `u`.
+    contacts: [f64; 2],
+    size: NetSize,
+    /// Number of sizes that have been tried.
+    tries: usize,
+    /// Number of times that the rows may still be halved.
+    halvings: u32,
 }
 
-impl PanelRows<'_> {
-    /// Makes panels for those rows to which `last` gives the `tau` of a last contact.
-    ///
-    /// `make` computes the panel of a size for neighbouring rows over their range of contacts. If that is not accurate enough, it returns the size
-    /// that is expected to be, if any. Sizes that do not pay are left out. Rows without a panel are halved and tried again.
-    fn panels<P>(
-        &self,
-        last: impl Fn(usize, &Row) -> Option<f64>,
-        pays: impl Fn(NetSize, &[PanelRow]) -> bool,
-        make: impl Fn(&[PanelRow], [f64; 2], NetSize) -> Result<P, Option<NetSize>>,
-    ) -> Panels<P> {
-        let places = self.rows.iter().enumerate().filter_map(|(row, place)| {
-            let last = last(row, place)?;
-            PanelRow::new(self.rod, row, place, last)
-        });
-        // The contacts of a long row go to the tip of a perfect cone.
-        let (mut long, mut places): (Vec<PanelRow>, Vec<PanelRow>) =
-            places.partition(|own| own.contacts[1] - own.contacts[0] > WIDEST);
-        for places in [&mut long, &mut places] {
-            places.sort_by(|a, b| a.contacts[0].total_cmp(&b.contacts[0]));
+/// Panels of a sheet in the making. An attempt that is not accurate enough is followed by one with more states, or by one for each half of its
+/// rows.
+#[derive(Debug)]
+struct PanelQueue<P> {
+    /// Error that the first size of a panel is chosen for, in whisker lengths.
+    aim: f64,
+    /// Returns true if a panel of a size pays for its rows.
+    pays: fn(NetSize, &[PanelRow]) -> bool,
+    /// Rows with contacts, by their smallest contact; the long ones, which go to the tip of a perfect cone, come first.
+    rows: Vec<PanelRow>,
+    open: Vec<Attempt>,
+    found: Panels<P>,
+}
+
+impl<P> PanelQueue<P> {
+    /// Begins panels for some `rows` of a sheet that has `count` rows.
+    fn new(
+        aim: f64,
+        pays: fn(NetSize, &[PanelRow]) -> bool,
+        count: usize,
+        rows: impl Iterator<Item = PanelRow>,
+    ) -> Self {
+        let is_long = |own: &PanelRow| own.contacts[1] - own.contacts[0] > WIDEST;
+        let (mut rows, mut others): (Vec<_>, Vec<_>) = rows.partition(is_long);
+        for rows in [&mut rows, &mut others] {
+            rows.sort_by(|a, b| a.contacts[0].total_cmp(&b.contacts[0]));
         }
-        let mut found = Panels {
-            panels: Vec::new(),
-            panel_of: vec![None; self.rows.len()],
-            are_complete: true,
+        let long = rows.len();
+        rows.append(&mut others);
+        let all = rows.len();
+        let mut queue = Self {
+            aim,
+            pays,
+            rows,
+            open: Vec::new(),
+            found: Panels {
+                panels: Vec::new(),
+                panel_of: vec![None; count],
+                are_complete: true,
+            },
         };
-        let mut open = vec![(&long[..], 0), (&places[..], HALVINGS)];
-        while let Some((rows, halvings)) = open.pop() {
-            let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
-                continue;
-            };
-            let contacts = rows.iter().fold(first.contacts, |[from, to], own| {
-                [from, to.max(own.contacts[1])]
-            });
-            let middle = first.contacts[0].midpoint(last.contacts[0]);
-            let (near, far) = rows.split_at(rows.partition_point(|own| own.contacts[0] < middle));
-            let range = contacts[1] - contacts[0];
-            let may_halve = halvings > 0 && !near.is_empty() && !far.is_empty();
-            if may_halve && range > WIDEST {
-                open.extend([(near, halvings), (far, halvings)]);
-                continue;
-            }
-            let first_size = NetSize::first(self.aim, range);
-            let mut size = Some(first_size);
-            let made = (0..TRIES).find_map(|_| {
-                let next = size.filter(|own| pays(*own, rows))?;
-                make(rows, contacts, next)
-                    .map_err(|enough| size = enough)
-                    .ok()
-            });
-            if let Some(panel) = made {
-                for own in rows {
-                    found.panel_of[own.row] = Some(found.panels.len());
+        queue.begin(0..long, 0);
+        queue.begin(long..all, HALVINGS);
+        queue
+    }
+
+    /// Begins the panel of some `rows`, or those of their halves where contacts are too far apart for one panel.
+    fn begin(&mut self, rows: Range<usize>, halvings: u32) {
+        let own = &self.rows[rows.clone()];
+        let Some(first) = own.first() else { return };
+        let contacts = own.iter().fold(first.contacts, |[from, to], own| {
+            [from, to.max(own.contacts[1])]
+        });
+        let range = contacts[1] - contacts[0];
+        let size = NetSize::first(self.aim, range);
+        match self.halves(&rows, halvings) {
+            Some(halves) if range > WIDEST => {
+                for half in halves {
+                    self.begin(half, halvings);
                 }
-                found.panels.push(panel);
-            } else if may_halve && pays(first_size, rows) {
-                open.extend([(near, halvings - 1), (far, halvings - 1)]);
-            } else {
-                found.are_complete = false;
             }
+            _ if (self.pays)(size, own) => self.open.push(Attempt {
+                rows,
+                contacts,
+                size,
+                tries: 1,
+                halvings,
+            }),
+            _ => self.found.are_complete = false,
         }
-        found
+    }
+
+    /// Returns the two halves of `rows` by their contacts; `None` if one has no rows, or if they may not be halved.
+    fn halves(&self, rows: &Range<usize>, halvings: u32) -> Option<[Range<usize>; 2]> {
+        let own = &self.rows[rows.clone()];
+        let (first, last) = (own.first()?, own.last()?);
+        let middle = first.contacts[0].midpoint(last.contacts[0]);
+        let near = own.partition_point(|row| row.contacts[0] < middle);
+        let between = rows.start + near;
+        let may_halve = halvings > 0 && (1..own.len()).contains(&near);
+        may_halve.then_some([rows.start..between, between..rows.end])
+    }
+
+    /// Returns the rows of an attempt.
+    fn rows_of(&self, attempt: &Attempt) -> &[PanelRow] {
+        &self.rows[attempt.rows.clone()]
+    }
+
+    /// Takes the panel that was `made` of an attempt. If it is not accurate enough, that is the size that is expected to be, if any, and the next
+    /// attempts are opened.
+    fn settle(&mut self, attempt: Attempt, made: Result<P, Option<NetSize>>) {
+        match made {
+            Ok(panel) => {
+                for own in &self.rows[attempt.rows] {
+                    self.found.panel_of[own.row] = Some(self.found.panels.len());
+                }
+                self.found.panels.push(panel);
+            }
+            Err(Some(size))
+                if attempt.tries < TRIES && (self.pays)(size, self.rows_of(&attempt)) =>
+            {
+                self.open.push(Attempt {
+                    size,
+                    tries: attempt.tries + 1,
+                    ..attempt
+                });
+            }
+            Err(_) => match self.halves(&attempt.rows, attempt.halvings) {
+                Some(halves) => {
+                    for half in halves {
+                        self.begin(half, attempt.halvings - 1);
+                    }
+                }
+                None => self.found.are_complete = false,
+            },
+        }
     }
 }
 

@@ -5,10 +5,10 @@ use super::certificate::certified;
 use super::panel::{NetPanel, along, contacts_of};
 use super::row::{FUNCTIONS, NetRow, RowLine};
 use super::size::NetSize;
-use super::{PanelRow, PanelRows, Panels};
+use super::{Attempt, PanelQueue, PanelRow, Panels};
 use crate::plan::net_cost;
-use crate::sheet::case::SheetCase;
-use crate::sheet::{Row, Sheet};
+use crate::sheet::Sheet;
+use crate::sheet::fold::contact_nodes::ContactNodes;
 use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
 use whiskmap_mechanics::numerics::nearest_turn;
 use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
@@ -42,34 +42,116 @@ pub struct ValuePanel {
 /// Panels with the values of states, for the rows of an engine.
 pub type ValueNet = Panels<ValuePanel>;
 
-impl ValueNet {
-    /// Returns the panels of `sheet` for an engine: states with a residual of at most `most` whisker lengths, for rows with `cells(row)` cells,
+/// Panels with values in the making, whose trajectories are integrated elsewhere. In each round, [`ValueDraft::nodes`] are the trajectories that
+/// are needed next, and [`ValueDraft::take`] gets their states.
+#[derive(Debug)]
+pub struct ValueDraft<'a> {
+    sheet: &'a Sheet,
+    contacts: &'a ContactNodes,
+    /// Largest residual of the panels' states, in whisker lengths.
+    most: f64,
+    queue: PanelQueue<ValuePanel>,
+    /// Attempts of this round.
+    grids: Vec<Grid>,
+}
+
+/// Trajectories of a panel: some loads at each of some contacts.
+#[derive(Debug)]
+struct Grid {
+    attempt: Attempt,
+    along: Chebyshev<2>,
+    /// Contacts with their signed loads at the top of the panel: `(tau, load)`.
+    contacts: Vec<(f64, f64)>,
+}
+
+impl Grid {
+    /// Creates the grid of a panel of `sheet`, whose contact nodes are `contacts`.
+    fn new(sheet: &Sheet, contacts: &ContactNodes, attempt: Attempt) -> Self {
+        let along = along(&sheet.rod, contacts, attempt.contacts, ALONG);
+        Self {
+            contacts: contacts_of(sheet.case(), attempt.size, &along),
+            along,
+            attempt,
+        }
+    }
+
+    /// Returns contact and load of each trajectory, `(tau, load)`, contact by contact.
+    fn nodes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let loads = chebyshev_points(self.attempt.size.loads);
+        let contacts = self.contacts.iter();
+        contacts.flat_map(move |(tau, most)| loads.iter().map(move |part| (*tau, part * most)))
+    }
+}
+
+impl<'a> ValueDraft<'a> {
+    /// Begins the panels of `sheet` for an engine: states with a residual of at most `most` whisker lengths, for rows with `cells(row)` cells,
     /// where that takes less time than the trajectories of the cells.
     ///
-    /// `None` without a panel, without samples of the sheet, with measured radii, whose states are not analytic where the contact passes from one radius to the
+    /// `None` without samples of the sheet, with measured radii, whose states are not analytic where the contact passes from one radius to the
     /// next, and where `most` is below the residual of refined states.
     #[must_use]
-    pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
+    pub fn new(sheet: &'a Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
         let samples = sheet.samples.as_deref()?;
         if sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {
             return None;
         }
-        let rows = PanelRows {
-            rod: &sheet.rod,
-            rows: &sheet.rows,
-            aim: most,
-        };
         let pays = |size: NetSize, rows: &[PanelRow]| {
-            let count: usize = rows.iter().map(|own| cells(own.row)).sum();
-            net_cost(size.states(), rows.len()) < count
+            let cells = rows.iter().map(|own| own.cells).sum();
+            net_cost(size.states(), rows.len()) < cells
         };
-        let make = |rows: &[PanelRow], contacts: [f64; 2], size| {
-            let along = along(&sheet.rod, &samples.contacts, contacts, ALONG);
-            ValuePanel::new(sheet, rows, contacts, along, size, most)
-        };
-        let last = |row, _: &Row| Some(sheet.simple_end(row)?.tau);
-        let net = rows.panels(last, pays, make);
+        let rows = sheet.rows.iter().enumerate().filter_map(|(row, place)| {
+            let last = sheet.simple_end(row)?.tau;
+            PanelRow::new(&sheet.rod, row, place, last, cells(row))
+        });
+        Some(Self {
+            sheet,
+            contacts: &samples.contacts,
+            most,
+            queue: PanelQueue::new(most, pays, sheet.rows.len(), rows),
+            grids: Vec::new(),
+        })
+    }
+
+    /// Returns the trajectories that are needed next, `(tau, load)` of the sheet's rod; none if all panels are made.
+    #[must_use]
+    pub fn nodes(&mut self) -> Vec<(f64, f64)> {
+        let open = std::mem::take(&mut self.queue.open).into_iter();
+        let grids = open.map(|attempt| Grid::new(self.sheet, self.contacts, attempt));
+        self.grids = grids.collect();
+        self.grids.iter().flat_map(Grid::nodes).collect()
+    }
+
+    /// Makes the panels of a round from the `states` of its nodes, `[node]`.
+    pub fn take(&mut self, mut states: &[PlainState]) {
+        for grid in std::mem::take(&mut self.grids) {
+            let (own, others) = states.split_at(grid.attempt.size.states());
+            states = others;
+            let rows = self.queue.rows_of(&grid.attempt);
+            let made = ValuePanel::new(self.sheet, rows, &grid, own, self.most);
+            self.queue.settle(grid.attempt, made);
+        }
+    }
+
+    /// Returns the panels that have been made; `None` without one.
+    #[must_use]
+    pub fn finish(self) -> Option<ValueNet> {
+        let net = self.queue.found;
         (!net.panels.is_empty()).then_some(net)
+    }
+}
+
+impl ValueNet {
+    /// Computes the panels of [`ValueDraft::new`] with trajectories on the CPU; `None` without a panel.
+    #[must_use]
+    pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
+        let mut draft = ValueDraft::new(sheet, cells, most)?;
+        loop {
+            let nodes = draft.nodes();
+            if nodes.is_empty() {
+                return draft.finish();
+            }
+            draft.take(&sheet.case().shoot::<PlainState>(nodes));
+        }
     }
 
     /// Returns the states of a `row` of `sheet`, with the bound on their residual in whisker lengths; `None` if the row is not in the net.
@@ -87,22 +169,23 @@ impl ValueNet {
 }
 
 impl ValuePanel {
-    /// Computes the panel of `size` over the range of `contacts` of `rows`.
+    /// Creates the panel of `rows` from the `states` of a grid.
     ///
     /// # Errors
     /// If its bound exceeds `most`, in whisker lengths, the size that is expected to be accurate enough; `None` if there is none.
-    pub(super) fn new(
+    fn new(
         sheet: &Sheet,
         rows: &[PanelRow],
-        contacts: [f64; 2],
-        along: Chebyshev<2>,
-        size: NetSize,
+        grid: &Grid,
+        states: &[PlainState],
         most: f64,
     ) -> Result<Self, Option<NetSize>> {
         let reader = Reader::new(NO_UNITS, &sheet.rod);
-        let tensor = tensor(sheet.case(), &reader, size, &along);
+        let tensor = tensor(&reader, grid, states);
+        let Attempt { contacts, size, .. } = grid.attempt;
+        let panel = NetPanel::new(contacts, grid.along.clone(), size, tensor, size.columns());
         let mut own = Self {
-            panel: NetPanel::new(contacts, along, size, tensor, size.columns()),
+            panel,
             residual: f64::NAN,
             reader,
         };
@@ -162,24 +245,15 @@ impl ValuePanel {
 /// Smallest part of the fold's load at the end of a row. Values of a row with a smaller load are too small beside the errors of the net.
 const SMALLEST_END: f64 = 0.05;
 
-/// Shoots the trajectories of a tensor of this `size`.
-pub(super) fn tensor(
-    case: SheetCase,
-    reader: &Reader,
-    size: NetSize,
-    along: &Chebyshev<2>,
-) -> ChebyshevTensor<FUNCTIONS> {
-    let loads = chebyshev_points(size.loads);
-    let contacts = contacts_of(case, size, along);
-    let nodes = contacts
-        .iter()
-        .flat_map(|(tau, most)| loads.iter().map(move |part| (*tau, part * most)));
-    let states: Vec<PlainState> = case.shoot(nodes);
+/// Returns the tensor of the functions of the `states` of a grid.
+fn tensor(reader: &Reader, grid: &Grid, states: &[PlainState]) -> ChebyshevTensor<FUNCTIONS> {
+    let loads = grid.attempt.size.loads;
     // Directions are continuous along the load, and from contact to contact at the smallest load.
     let mut first = 0.0;
-    let rows = contacts
+    let rows = grid
+        .contacts
         .iter()
-        .zip(states.chunks(size.loads))
+        .zip(states.chunks(loads))
         .map(|((tau, _), states)| {
             let (mut phi, mut chord) = (first, 0.0);
             let values = states.iter().map(|state| {
@@ -230,7 +304,7 @@ mod tests {
         let rows = sheet.rows.iter().enumerate();
         let rows = rows.filter_map(|(row, place)| {
             let end = sheet.simple_end(row)?;
-            PanelRow::new(&rod, row, place, end.tau)
+            PanelRow::new(&rod, row, place, end.tau, 0)
         });
         let rows = rows.collect();
         (sheet, rows)
@@ -241,12 +315,24 @@ mod tests {
         loads: 24,
     };
 
-    fn panel(sheet: &Sheet, rows: &[PanelRow]) -> ValuePanel {
+    /// The grid of all rows, and the states of its nodes.
+    fn grid(sheet: &Sheet, rows: &[PanelRow]) -> (Grid, Vec<PlainState>) {
         let last = rows.iter().map(|own| own.contacts[1]);
-        let contacts = [rows[0].contacts[0], last.fold(0.0, f64::max)];
-        let samples = sheet.samples.as_ref().unwrap();
-        let along = along(&sheet.rod, &samples.contacts, contacts, ALONG);
-        let panel = ValuePanel::new(sheet, rows, contacts, along, SIZE, MOST);
+        let attempt = Attempt {
+            rows: 0..rows.len(),
+            contacts: [rows[0].contacts[0], last.fold(0.0, f64::max)],
+            size: SIZE,
+            tries: 1,
+            halvings: 0,
+        };
+        let grid = Grid::new(sheet, &sheet.samples.as_ref().unwrap().contacts, attempt);
+        let states = sheet.case().shoot(grid.nodes());
+        (grid, states)
+    }
+
+    fn panel(sheet: &Sheet, rows: &[PanelRow]) -> ValuePanel {
+        let (grid, states) = grid(sheet, rows);
+        let panel = ValuePanel::new(sheet, rows, &grid, &states, MOST);
         panel.unwrap_or_else(|_| panic!("refused"))
     }
 
@@ -255,8 +341,9 @@ mod tests {
     }
 
     /// The tensor of a panel with all its coefficients.
-    fn whole(sheet: &Sheet, panel: &ValuePanel) -> ChebyshevTensor<FUNCTIONS> {
-        tensor(sheet.case(), &panel.reader, SIZE, &panel.panel.along)
+    fn whole(sheet: &Sheet, rows: &[PanelRow]) -> ChebyshevTensor<FUNCTIONS> {
+        let (grid, states) = grid(sheet, rows);
+        tensor(&Reader::new(NO_UNITS, &sheet.rod), &grid, &states)
     }
 
     fn with_tensor(panel: &ValuePanel, tensor: ChebyshevTensor<FUNCTIONS>) -> ValuePanel {
@@ -282,7 +369,7 @@ mod tests {
         let sound = panel(&sheet, &rows);
         assert!(bound(&sheet, &rows, &sound) <= sound.residual);
         let NetSize { contacts, loads } = SIZE;
-        let whole = whole(&sheet, &sound);
+        let whole = whole(&sheet, &rows);
         let largest = whole.coefficients.iter().flatten();
         let largest = largest.fold([0.0; FUNCTIONS], |most, own| {
             std::array::from_fn(|i| f64::max(most[i], own[i].abs()))
@@ -309,7 +396,7 @@ mod tests {
     fn a_spoiled_node_is_refused() {
         let (sheet, rows) = cone();
         let sound = panel(&sheet, &rows);
-        let whole = whole(&sheet, &sound);
+        let whole = whole(&sheet, &rows);
         let NetSize { contacts, loads } = SIZE;
         for node in (0..contacts * loads).step_by(29) {
             let (in_u, in_p) = (node / loads, node % loads);

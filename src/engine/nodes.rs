@@ -1,0 +1,49 @@
+//! Nodes: the trajectories of the nets of several whisker sides, as a request to an engine.
+
+use rayon::prelude::*;
+use whiskmap_mechanics::rod::Rod;
+use whiskmap_mechanics::shooting::PlainState;
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+
+/// Trajectories of the nets of several whisker sides.
+#[derive(Clone, Debug)]
+pub struct Nodes {
+    /// Integration method of the trajectories.
+    pub method: Method,
+    /// Rods of the trajectories: `[rod]`.
+    pub rods: Vec<Rod>,
+    /// Contact and signed load of each trajectory, `(tau, load)`: `[rod][trajectory]`.
+    pub points: Vec<Vec<(f64, f64)>>,
+}
+
+impl Nodes {
+    /// Returns the number of trajectories.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.points.iter().map(Vec::len).sum()
+    }
+
+    /// Returns the initial conditions of all trajectories, rod by rod.
+    #[must_use]
+    pub fn conditions(&self) -> Vec<InitialCondition<'_>> {
+        let rods = self.rods.iter().zip(&self.points);
+        let all = rods.flat_map(|(rod, points)| {
+            let points = points.iter();
+            points.map(move |(tau, load)| InitialCondition {
+                rod,
+                tau: *tau,
+                load: *load,
+            })
+        });
+        all.collect()
+    }
+
+    /// Integrates all trajectories on the CPU. Returns their states, `[trajectory]`, rod by rod. Those of a rod do not depend on the others.
+    #[must_use]
+    pub fn shoot(&self) -> Vec<PlainState> {
+        let rods = self.rods.par_iter().zip(&self.points);
+        let batch = Batch::new(self.method).padded();
+        let states = rods.map(|(rod, points)| batch.shoot_at(rod, points.iter().copied()));
+        states.flatten_iter().collect()
+    }
+}
