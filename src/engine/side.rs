@@ -69,7 +69,7 @@ impl WhiskerSide {
 
     /// Begins the net of this whisker side, as [`Self::net`] computes it, for trajectories that are integrated elsewhere.
     #[must_use]
-    pub fn draft(&self, most: f64) -> Option<ValueDraft<'_>> {
+    pub fn draft(&self, most: f64) -> Option<ValueDraft> {
         ValueDraft::new(&self.sheet, |row| self.cells(row), most)
     }
 

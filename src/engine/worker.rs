@@ -142,25 +142,28 @@ impl<'e> Worker<'e> {
         self.shoots && self.has_thread()
     }
 
-    /// Waits for the states of `nodes` from the engine's thread, `[trajectory]`, rod by rod; `None` without it, or if the engine failed.
-    pub fn shoot_nodes(&mut self, nodes: &Arc<Nodes>) -> Option<Vec<PlainState>> {
-        let Some(Connection::Thread {
-            requests, states, ..
-        }) = &self.connection
-        else {
+    /// Submits the trajectories of `nodes` to the engine's thread; does nothing without it.
+    pub fn submit_nodes(&mut self, nodes: &Arc<Nodes>) {
+        if let Some(Connection::Thread { requests, .. }) = &self.connection {
+            // If the thread has ended, `collect_states` finds no response.
+            let _ = requests.send(Request::Nodes(Arc::clone(nodes)));
+        }
+    }
+
+    /// Waits for the states of `nodes`, the oldest ones submitted and not collected: `[trajectory]`, rod by rod. `None` without an engine's
+    /// thread, or if the engine failed.
+    pub fn collect_states(&mut self, nodes: &Nodes) -> Option<Vec<PlainState>> {
+        let Some(Connection::Thread { states, .. }) = &self.connection else {
             return None;
         };
-        let wanted = nodes.count();
-        let response = match requests.send(Request::Nodes(Arc::clone(nodes))) {
-            Ok(()) => states.recv().ok(),
-            Err(_) => None,
-        };
+        let response = states.recv().ok();
         let states = self.result(response)?;
-        if states.len() == wanted {
+        let (found, wanted) = (states.len(), nodes.count());
+        if found == wanted {
             self.trajectories += wanted as u64;
             return Some(states);
         }
-        let short = format!("{} states of {wanted} trajectories", states.len());
+        let short = format!("{found} states of {wanted} trajectories");
         self.disable(EngineError::Device(short));
         None
     }

@@ -4,6 +4,7 @@ mod audit;
 mod doubt;
 mod fallback;
 mod friction;
+mod nets;
 mod panel;
 mod pipeline;
 mod rows;

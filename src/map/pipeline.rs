@@ -5,6 +5,7 @@
 //! the speed of a thread.
 
 use super::fallback::complete;
+use super::nets::NetsInTheMaking;
 use super::panel::Panel;
 use super::rows;
 use super::sides::{side_columns, whisker_sides};
@@ -42,6 +43,8 @@ pub struct Pipeline<'a, 'e> {
     pushes: Arc<[f64]>,
     /// The whiskers of each group of panels whose batches are still to be made.
     groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
+    /// The next group, whose nets a device is working on.
+    drafted: Option<Drafted>,
     /// The group of the last batch, and the number of its rows in batches: band by band, and in a band side by side.
     begun: Option<(Group, usize)>,
     /// The batches made and not completed.
@@ -60,6 +63,12 @@ struct Group {
     /// Sides of the whiskers of the group.
     sides: Arc<[WhiskerSide]>,
     /// Places in the group of rows of a table that have no whisker.
+    without_whisker: Arc<[usize]>,
+}
+
+/// Group whose nets are in the making.
+struct Drafted {
+    nets: NetsInTheMaking,
     without_whisker: Arc<[usize]>,
 }
 
@@ -99,6 +108,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             columns,
             pushes,
             groups: Box::new(plan.groups()),
+            drafted: None,
             begun: None,
             queue: VecDeque::new(),
             worker,
@@ -184,8 +194,46 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         Some((done, completes.is_some()))
     }
 
-    /// Computes the sides of the next group.
+    /// Returns the next group. If a device integrates the trajectories of nets, it begins with those of the group after it.
     fn next_group(&mut self) -> Option<Group> {
+        let drafted = match (self.drafted.take(), self.on_device()) {
+            (Some(drafted), _) => drafted,
+            (None, Some(most)) => self.draft_next(most)?,
+            (None, None) => {
+                let (sides, without_whisker) = self.sides_of_next(self.net)?;
+                return Some(Group {
+                    sides: sides.into(),
+                    without_whisker,
+                });
+            }
+        };
+        let (times, worker) = (&mut self.summary.stages, &mut self.worker);
+        let sides = times.time(Stage::Sheets, || drafted.nets.finish(worker));
+        self.drafted = self.on_device().and_then(|most| self.draft_next(most));
+        Some(Group {
+            sides,
+            without_whisker: drafted.without_whisker,
+        })
+    }
+
+    /// Returns the residual of nets, in whisker lengths, if a device integrates their trajectories.
+    fn on_device(&self) -> Option<f64> {
+        self.net.filter(|_| self.worker.shoots())
+    }
+
+    /// Begins the nets of the next group, with a residual of at most `most` whisker lengths.
+    fn draft_next(&mut self, most: f64) -> Option<Drafted> {
+        let (sides, without_whisker) = self.sides_of_next(None)?;
+        let (method, worker) = (self.method, &mut self.worker);
+        let nets = || NetsInTheMaking::new(sides, method, most, worker);
+        Some(Drafted {
+            nets: self.summary.stages.time(Stage::Sheets, nets),
+            without_whisker,
+        })
+    }
+
+    /// Computes the sides of the next group, with nets of this residual, and returns them with the places of rows without a whisker.
+    fn sides_of_next(&mut self, net: Option<f64>) -> Option<(Vec<WhiskerSide>, Arc<[usize]>)> {
         let whiskers = self.groups.next()?;
         let (mut found, mut without_whisker) = (Vec::new(), Vec::new());
         for (place, index) in whiskers.enumerate() {
@@ -194,14 +242,11 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 Err(_) => without_whisker.push(place),
             }
         }
-        let net = self.net.filter(|_| self.worker.is_working());
+        let net = net.filter(|_| self.worker.is_working());
         let of_plan = (self.plan, self.method, net);
-        let (columns, worker) = (&self.columns, &mut self.worker);
-        let sides = || whisker_sides(self.scene, of_plan, columns, &found, worker);
-        Some(Group {
-            sides: self.summary.stages.time(Stage::Sheets, sides),
-            without_whisker: without_whisker.into(),
-        })
+        let sides = || whisker_sides(self.scene, of_plan, &self.columns, &found);
+        let sides = self.summary.stages.time(Stage::Sheets, sides);
+        Some((sides, without_whisker.into()))
     }
 
     /// Makes the next batch, with expansions of its rows if there is an engine.

@@ -19,7 +19,7 @@ fn auto_does_not_start_a_gpu_for_a_small_map() {
     let said = said(&run);
     assert!(said.starts_with("cpu f64 on "), "{said}");
     let counts =
-        "(auto: at most 288 cells a side, expansions cost 1248; a GPU is not timed below 0.1 s)";
+        "(auto: at most 288 cells a side, expansions cost 672; a GPU is not timed below 0.1 s)";
     assert!(said.ends_with(counts), "{said}");
 }
 
@@ -31,7 +31,7 @@ fn auto_takes_the_net_where_the_counts_say_so() {
     let said = said(&run);
     assert!(said.starts_with("spectral f64 on "), "{said}");
     // What follows depends on how busy the machine is.
-    let counts = "(auto: at most 6144 cells a side, expansions cost 1248; ";
+    let counts = "(auto: at most 6144 cells a side, expansions cost 672; ";
     assert!(said.contains(counts), "{said}");
     let plan = place.run(&["plan", "scene.toml"]);
     let line = "engine        spectral f64: at most 6144 cells a side, expansions cost 1248";

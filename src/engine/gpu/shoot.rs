@@ -167,7 +167,9 @@ impl Gpu {
             [tau, radius, s, 0.0, rest.x, rest.y]
         });
         let (mut last, mut rods): (Option<&Rod>, Vec<GpuRod<T>>) = (None, Vec::new());
-        let (mut heads, mut shots) = (Vec::new(), Vec::new());
+        let mut heads = Vec::with_capacity(fans.len());
+        let count = fans.iter().map(|fan| fan.of.len()).sum();
+        let mut contact_of: Vec<u32> = Vec::with_capacity(count);
         for (contact, fan) in (0..).zip(fans) {
             let rod = conditions[fan.of.start].rod;
             if !last.is_some_and(|last| std::ptr::eq(last, rod)) {
@@ -176,15 +178,19 @@ impl Gpu {
             }
             // A submission has fewer rods and contacts than `u32` can count.
             heads.push([rods.len() as u32 - 1, fan.steps]);
-            shots.extend(fan.of.clone().map(|index| (contact, index)));
+            contact_of.extend(std::iter::repeat_n(contact, fan.of.len()));
         }
-        let force = |(contact, index): (u32, usize)| {
-            let [_, radius, ..] = contacts[contact as usize];
-            conditions[index].load * radius * radius
+        let shots = || {
+            let fans = fans.iter().zip(&contacts);
+            fans.flat_map(|(fan, contact): (&Fan, &[f64; 6])| {
+                let square = contact[1] * contact[1];
+                let force = move |index: usize| (index, conditions[index].load * square);
+                fan.of.clone().map(force)
+            })
         };
         let rounded: Vec<GpuContact<T>> = contacts.iter().map(|own| own.map(T::of)).collect();
-        let contact_of: Vec<u32> = shots.iter().map(|(contact, _)| *contact).collect();
-        let forces: Vec<T> = shots.iter().map(|shot| T::of(force(*shot))).collect();
+        let mut forces: Vec<T> = Vec::with_capacity(count);
+        forces.extend(shots().map(|(_, force)| T::of(force)));
         let inputs: [&[u8]; INPUTS] = [
             bytemuck::cast_slice(&rods),
             bytemuck::cast_slice(&heads),
@@ -192,16 +198,15 @@ impl Gpu {
             bytemuck::cast_slice(&contact_of),
             bytemuck::cast_slice(&forces),
         ];
+        let size = size_of::<GpuState<T>>();
+        let read = |bytes: &[u8]| {
+            for (found, (index, force)) in bytes.chunks_exact(size).zip(shots()) {
+                let found: GpuState<T> = bytemuck::pod_read_unaligned(found);
+                states[index] = state(conditions[index].rod, force, found.map(Into::into));
+            }
+        };
         let buffers = &mut self.shoot_buffers;
-        let found: Vec<GpuState<T>> = buffers.run(&self.device, pipeline, inputs, shots.len())?;
-        let found = each(shots.len(), |i| {
-            let rod = conditions[shots[i].1].rod;
-            state(rod, force(shots[i]), found[i].map(Into::into))
-        });
-        for ((_, index), found) in shots.into_iter().zip(found) {
-            states[index] = found;
-        }
-        Ok(())
+        buffers.run(&self.device, pipeline, inputs, (count, size), read)
     }
 }
 
@@ -253,21 +258,20 @@ pub struct ShootBuffers {
 }
 
 impl ShootBuffers {
-    /// Runs `pipeline` on `count` invocations with these `inputs`, and returns what it writes for each.
-    fn run<O: Pod>(
+    /// Runs `pipeline` on `count` invocations with these `inputs`. Calls `read` with the bytes that it writes, `each` for every invocation.
+    fn run(
         &mut self,
         device: &Device,
         pipeline: &wgpu::ComputePipeline,
         inputs: [&[u8]; INPUTS],
-        count: usize,
-    ) -> Result<Vec<O>, EngineError> {
-        let size = (count * size_of::<O>()) as u64;
-        let (usage, read) = (
-            Usage::STORAGE | Usage::COPY_SRC,
-            Usage::MAP_READ | Usage::COPY_DST,
-        );
-        let states = device.grown("states", &mut self.states, size, usage)?;
-        let readback = device.grown("states", &mut self.readback, size, read)?;
+        (count, each): (usize, usize),
+        read: impl FnOnce(&[u8]),
+    ) -> Result<(), EngineError> {
+        let size = (count * each) as u64;
+        let written = Usage::STORAGE | Usage::COPY_SRC;
+        let states = device.grown("states", &mut self.states, size, written)?;
+        let mapped = Usage::MAP_READ | Usage::COPY_DST;
+        let readback = device.grown("states", &mut self.readback, size, mapped)?;
         let mut entries = vec![binding(INPUTS as u32, states, Some(size))];
         for (index, (kept, bytes)) in (0..).zip(self.inputs.iter_mut().zip(inputs)) {
             let buffer = device.upload("trajectories", kept, bytes)?;
@@ -290,7 +294,7 @@ impl ShootBuffers {
         let index = device.queue.submit([commands.finish()]);
         device.check()?;
         device.wait(index)?;
-        Device::read(readback, size, bytemuck::pod_collect_to_vec)
+        Device::read(readback, size, read)
     }
 }
 

@@ -8,7 +8,6 @@ use super::size::NetSize;
 use super::{Attempt, PanelQueue, PanelRow, Panels};
 use crate::plan::net_cost;
 use crate::sheet::Sheet;
-use crate::sheet::fold::contact_nodes::ContactNodes;
 use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
 use whiskmap_mechanics::numerics::nearest_turn;
 use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
@@ -45,9 +44,7 @@ pub type ValueNet = Panels<ValuePanel>;
 /// Panels with values in the making, whose trajectories are integrated elsewhere. In each round, [`ValueDraft::nodes`] are the trajectories that
 /// are needed next, and [`ValueDraft::take`] gets their states.
 #[derive(Debug)]
-pub struct ValueDraft<'a> {
-    sheet: &'a Sheet,
-    contacts: &'a ContactNodes,
+pub struct ValueDraft {
     /// Largest residual of the panels' states, in whisker lengths.
     most: f64,
     queue: PanelQueue<ValuePanel>,
@@ -65,14 +62,15 @@ struct Grid {
 }
 
 impl Grid {
-    /// Creates the grid of a panel of `sheet`, whose contact nodes are `contacts`.
-    fn new(sheet: &Sheet, contacts: &ContactNodes, attempt: Attempt) -> Self {
+    /// Creates the grid of a panel of `sheet`; `None` without samples of the sheet.
+    fn new(sheet: &Sheet, attempt: Attempt) -> Option<Self> {
+        let contacts = &sheet.samples.as_ref()?.contacts;
         let along = along(&sheet.rod, contacts, attempt.contacts, ALONG);
-        Self {
+        Some(Self {
             contacts: contacts_of(sheet.case(), attempt.size, &along),
             along,
             attempt,
-        }
+        })
     }
 
     /// Returns contact and load of each trajectory, `(tau, load)`, contact by contact.
@@ -83,16 +81,15 @@ impl Grid {
     }
 }
 
-impl<'a> ValueDraft<'a> {
+impl ValueDraft {
     /// Begins the panels of `sheet` for an engine: states with a residual of at most `most` whisker lengths, for rows with `cells(row)` cells,
     /// where that takes less time than the trajectories of the cells.
     ///
     /// `None` without samples of the sheet, with measured radii, whose states are not analytic where the contact passes from one radius to the
     /// next, and where `most` is below the residual of refined states.
     #[must_use]
-    pub fn new(sheet: &'a Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
-        let samples = sheet.samples.as_deref()?;
-        if sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {
+    pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
+        if sheet.is_continued() || sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {
             return None;
         }
         let pays = |size: NetSize, rows: &[PanelRow]| {
@@ -104,30 +101,28 @@ impl<'a> ValueDraft<'a> {
             PanelRow::new(&sheet.rod, row, place, last, cells(row))
         });
         Some(Self {
-            sheet,
-            contacts: &samples.contacts,
             most,
             queue: PanelQueue::new(most, pays, sheet.rows.len(), rows),
             grids: Vec::new(),
         })
     }
 
-    /// Returns the trajectories that are needed next, `(tau, load)` of the sheet's rod; none if all panels are made.
+    /// Returns the trajectories that are needed next, `(tau, load)` of the rod of the draft's `sheet`; none if all panels are made.
     #[must_use]
-    pub fn nodes(&mut self) -> Vec<(f64, f64)> {
+    pub fn nodes(&mut self, sheet: &Sheet) -> Vec<(f64, f64)> {
         let open = std::mem::take(&mut self.queue.open).into_iter();
-        let grids = open.map(|attempt| Grid::new(self.sheet, self.contacts, attempt));
+        let grids = open.filter_map(|attempt| Grid::new(sheet, attempt));
         self.grids = grids.collect();
         self.grids.iter().flat_map(Grid::nodes).collect()
     }
 
-    /// Makes the panels of a round from the `states` of its nodes, `[node]`.
-    pub fn take(&mut self, mut states: &[PlainState]) {
+    /// Makes the panels of a round of the draft's `sheet` from the `states` of its nodes, `[node]`.
+    pub fn take(&mut self, sheet: &Sheet, mut states: &[PlainState]) {
         for grid in std::mem::take(&mut self.grids) {
             let (own, others) = states.split_at(grid.attempt.size.states());
             states = others;
             let rows = self.queue.rows_of(&grid.attempt);
-            let made = ValuePanel::new(self.sheet, rows, &grid, own, self.most);
+            let made = ValuePanel::new(sheet, rows, &grid, own, self.most);
             self.queue.settle(grid.attempt, made);
         }
     }
@@ -146,11 +141,11 @@ impl ValueNet {
     pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
         let mut draft = ValueDraft::new(sheet, cells, most)?;
         loop {
-            let nodes = draft.nodes();
+            let nodes = draft.nodes(sheet);
             if nodes.is_empty() {
                 return draft.finish();
             }
-            draft.take(&sheet.case().shoot::<PlainState>(nodes));
+            draft.take(sheet, &sheet.case().shoot::<PlainState>(nodes));
         }
     }
 
@@ -325,7 +320,7 @@ mod tests {
             tries: 1,
             halvings: 0,
         };
-        let grid = Grid::new(sheet, &sheet.samples.as_ref().unwrap().contacts, attempt);
+        let grid = Grid::new(sheet, attempt).unwrap();
         let states = sheet.case().shoot(grid.nodes());
         (grid, states)
     }

@@ -1,0 +1,76 @@
+//! Nets whose trajectories a device integrates, while the threads complete the panels before them.
+
+use crate::engine::{Nodes, WhiskerSide, Worker};
+use crate::sheet::net::ValueDraft;
+use rayon::prelude::*;
+use std::sync::Arc;
+use whiskmap_mechanics::shooting::PlainState;
+use whiskmap_mechanics::shooting::batch::Method;
+
+/// Whisker sides whose nets are in the making. In each round, the engine integrates the trajectories that the panels of all sides need next.
+pub struct NetsInTheMaking {
+    sides: Vec<WhiskerSide>,
+    drafts: Vec<Option<ValueDraft>>,
+    method: Method,
+    /// The trajectories that the engine integrates; `None` if all panels are made.
+    submitted: Option<Arc<Nodes>>,
+}
+
+impl NetsInTheMaking {
+    /// Begins nets with a residual of at most `most` whisker lengths for `sides`: submits the first trajectories to the engine of `worker`.
+    pub fn new(sides: Vec<WhiskerSide>, method: Method, most: f64, worker: &mut Worker) -> Self {
+        let drafts = sides.par_iter().map(|side| side.draft(most)).collect();
+        let mut nets = Self {
+            sides,
+            drafts,
+            method,
+            submitted: None,
+        };
+        nets.submit(worker);
+        nets
+    }
+
+    /// Submits the trajectories that are needed next, if any.
+    fn submit(&mut self, worker: &mut Worker) {
+        let drafts = self.drafts.par_iter_mut().zip(&self.sides);
+        let points = drafts.map(|(draft, side)| match draft {
+            Some(draft) => draft.nodes(&side.sheet),
+            None => Vec::new(),
+        });
+        let nodes = Arc::new(Nodes {
+            method: self.method,
+            points: points.collect(),
+            rods: self.sides.iter().map(|own| own.sheet.rod.clone()).collect(),
+        });
+        self.submitted = (nodes.count() > 0).then_some(nodes);
+        if let Some(nodes) = &self.submitted {
+            worker.submit_nodes(nodes);
+        }
+    }
+
+    /// Waits for all trajectories. Returns the sides with their nets; without nets, for which there is no use, if the engine failed.
+    pub fn finish(mut self, worker: &mut Worker) -> Arc<[WhiskerSide]> {
+        while let Some(nodes) = self.submitted.take() {
+            let Some(states) = worker.collect_states(&nodes) else {
+                return self.sides.into();
+            };
+            let mut rest = &states[..];
+            let parts = nodes.points.iter().map(|points| {
+                let (own, others) = rest.split_at(points.len());
+                rest = others;
+                own
+            });
+            let parts: Vec<&[PlainState]> = parts.collect();
+            let sides = self.drafts.par_iter_mut().zip(&self.sides);
+            sides.zip(parts).for_each(|((draft, side), states)| {
+                if let Some(draft) = draft {
+                    draft.take(&side.sheet, states);
+                }
+            });
+            self.submit(worker);
+        }
+        let all = self.sides.into_iter().zip(self.drafts);
+        all.map(|(side, draft)| side.with(draft.and_then(ValueDraft::finish)))
+            .collect()
+    }
+}
