@@ -19,6 +19,9 @@ tests! {
 
 type States = Result<Vec<PlainState>, EngineError>;
 
+/// How an engine fails to integrate.
+type Failure = fn(&Nodes) -> States;
+
 /// An engine with a thread of its own, on which it integrates nodes as `shoot` does.
 struct Shooting<F> {
     spectral: Spectral,
@@ -97,7 +100,7 @@ fn nets_do_not_depend_on_who_integrates() {
 /// A failure, too few states, or a panic, in the first group or a later one.
 fn an_engine_that_fails_to_integrate_is_disabled() {
     let (_, by_cpu) = sweep(None);
-    let failures: [(fn(&Nodes) -> States, &str); 3] = [
+    let failures: [(Failure, &str); 3] = [
         (|_| Err(EngineError::Device("lost".to_owned())), "GPU: lost"),
         (|nodes| Ok(nodes.shoot().split_off(1)), "states of"),
         (|_| panic!("a panic on purpose"), "has panicked"),
