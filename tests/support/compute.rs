@@ -1,5 +1,4 @@
 //! Whole maps in memory, how far two of them are apart, and engines that are looked after.
-#![allow(dead_code, reason = "each test program uses its own share")]
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
 use crate::shipped;

@@ -1,5 +1,4 @@
 //! A map made up for tests: it looks like a whisker's and is cheap to make.
-#![allow(dead_code, reason = "each test program uses its own share")]
 
 use serde_json::{Value, json};
 use std::path::Path;
