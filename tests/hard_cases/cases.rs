@@ -97,7 +97,7 @@ fn pushes_up_to_the_edge_and_past_it() {
 }
 
 /// Just before the corner of fold and tip a whisker slips off; just beyond it is pulled off. The corner of a straight cylinder is
-/// at 0.558538 of its length.
+/// at 0.5585395 of its length.
 #[test]
 fn both_sides_of_the_corner() {
     let mut corners = 0;
