@@ -10,9 +10,9 @@ use whiskmap::mechanics::rod::Effects;
 use whiskmap::mechanics::shooting::ShootingMap;
 use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
 
-#[path = "../tests/effect_sets/mod.rs"]
+#[path = "../tests/support/effect_sets.rs"]
 mod effect_sets;
-#[path = "../tests/random_rods/mod.rs"]
+#[path = "../tests/support/random_rods.rs"]
 mod random_rods;
 
 use random_rods::{Random, condition, rod};

@@ -2,10 +2,10 @@
 #![allow(clippy::print_stdout, reason = "the program prints a table")]
 #![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
-#[path = "../tests/cells/mod.rs"]
+#[path = "../tests/support/cells.rs"]
 mod cells;
 mod measure;
-#[path = "../tests/random_rods/mod.rs"]
+#[path = "../tests/support/random_rods.rs"]
 mod random_rods;
 
 use cells::{RandomRows, solve};

@@ -8,7 +8,7 @@
     reason = "a benchmark that fails panics, and it prints its results"
 )]
 
-#[path = "../tests/random_rods/mod.rs"]
+#[path = "../tests/support/random_rods.rs"]
 mod random_rods;
 
 use random_rods::Random;

@@ -9,18 +9,8 @@ use whiskmap::{MapEngine, Options, Regime, Side, map};
 /// Perfect cone of 16 mm with a base radius of 33.5 um, straight, in a follicle.
 fn cone(stiffness_nnm_per_rad: Option<f64>) -> Whisker {
     Whisker {
-        length_mm: 16.0,
-        base_radius_um: 33.5,
-        tip_radius_um: 0.0,
-        youngs_modulus_gpa: 5.0,
-        curvature: None,
-        euler_spiral: None,
-        traced: None,
-        profile: None,
-        profile_scale: 1.0,
-        modulus_tip_to_base: 1.0,
-        arc_stretch: 1.0,
         follicle_stiffness_nnm_per_rad: stiffness_nnm_per_rad,
+        ..Whisker::cone(16.0, [33.5, 0.0], 5.0)
     }
 }
 

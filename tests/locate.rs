@@ -46,22 +46,15 @@ fn off(row: &LocatedState, state: &BranchPoint) -> f64 {
 /// Random whisker with a taper, a parabola and, every third time, a follicle, in front of a pole.
 fn random_whisker(random: &mut Random) -> (Whisker, Pole) {
     let follicle = random.unit() < 0.33;
+    let cone = Whisker::cone(20.0, [40.0, random.between(0.2, 30.0)], 3.0);
     let whisker = Whisker {
-        length_mm: 20.0,
-        base_radius_um: 40.0,
-        tip_radius_um: random.between(0.2, 30.0),
-        youngs_modulus_gpa: 3.0,
         curvature: Some(Curvature {
             parabola_per_mm: random.between(0.0, 0.03),
             vertex_mm: random.between(-2.0, 2.0),
         }),
-        euler_spiral: None,
-        traced: None,
-        profile: None,
-        profile_scale: 1.0,
         modulus_tip_to_base: random.between(0.6, 1.6),
-        arc_stretch: 1.0,
         follicle_stiffness_nnm_per_rad: follicle.then(|| random.between(300.0, 3000.0)),
+        ..cone
     };
     (whisker, Pole::smooth(random.between(0.0, 0.5)))
 }

@@ -5,10 +5,8 @@
 
 mod accuracy;
 mod cli;
-mod compute;
 mod design;
 mod docs;
-mod effect_sets;
 mod effects;
 mod explore;
 mod figures;
@@ -20,19 +18,15 @@ mod hard_cases;
 mod hard_maps;
 mod jumps;
 mod locate;
-mod map;
 mod maps;
 mod plan;
-mod program;
-mod random_rods;
 mod regimes;
 mod render;
 mod scene;
-mod sealed;
 mod sensitivity;
 mod shaders;
-mod shipped;
 mod store;
+mod support;
 mod table;
 mod texture;
 mod ties;
@@ -42,3 +36,5 @@ mod tracking;
 mod uncertainty;
 mod variations;
 mod whisk;
+
+use support::{compute, effect_sets, map, program, random_rods, sealed, shipped};

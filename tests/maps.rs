@@ -4,7 +4,7 @@
 use crate::compute;
 use crate::shipped;
 
-use compute::compute;
+use compute::{compute, is_contact};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ fn shipped_scenes_have_no_doubtful_cell() {
         );
         for panel in panels {
             for (cell, regime) in panel.regime.iter().enumerate() {
-                let contact = matches!(regime, 1 | 4);
+                let contact = is_contact(*regime);
                 let complete = panel.state.iter().all(|channel| channel[cell].is_finite())
                     && panel.residual[cell].is_finite()
                     && panel.margin_deg[cell] >= 0.0;

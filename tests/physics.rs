@@ -32,21 +32,11 @@ fn whisker(
     vertex_mm: f64,
 ) -> Whisker {
     Whisker {
-        length_mm,
-        base_radius_um,
-        tip_radius_um,
-        youngs_modulus_gpa: 3.0,
         curvature: (a > 0.0).then_some(Curvature {
             parabola_per_mm: a,
             vertex_mm,
         }),
-        euler_spiral: None,
-        traced: None,
-        profile: None,
-        profile_scale: 1.0,
-        modulus_tip_to_base: 1.0,
-        arc_stretch: 1.0,
-        follicle_stiffness_nnm_per_rad: None,
+        ..Whisker::cone(length_mm, [base_radius_um, tip_radius_um], 3.0)
     }
 }
 

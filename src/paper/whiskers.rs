@@ -41,27 +41,14 @@ pub const FIG5_RIGHT: Whisker = {
 
 /// Creates a whisker with length (mm), base and tip radius (um), parabola coefficient (1/mm) and vertex of the parabola (mm).
 pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm: f64) -> Whisker {
-    Whisker {
-        length_mm,
-        base_radius_um: base,
-        tip_radius_um: tip,
-        youngs_modulus_gpa: 3.0,
-        curvature: if a_per_mm > 0.0 {
-            Some(Curvature {
-                parabola_per_mm: a_per_mm,
-                vertex_mm,
-            })
-        } else {
-            None
-        },
-        euler_spiral: None,
-        traced: None,
-        profile: None,
-        profile_scale: 1.0,
-        modulus_tip_to_base: 1.0,
-        arc_stretch: 1.0,
-        follicle_stiffness_nnm_per_rad: None,
+    let mut whisker = Whisker::cone(length_mm, [base, tip], 3.0);
+    if a_per_mm > 0.0 {
+        whisker.curvature = Some(Curvature {
+            parabola_per_mm: a_per_mm,
+            vertex_mm,
+        });
     }
+    whisker
 }
 
 /// Returns the distance in mm at which the pole of Figs. 2 and 3 first touches `whisker` on one side: the paper's d = 15.7 mm.

@@ -37,6 +37,41 @@ pub struct Whisker {
 }
 
 impl Whisker {
+    /// Creates a straight whisker in a clamp, whose radius falls linearly from base to tip: from its length in millimetres, its radii `[base, tip]`
+    /// in micrometres, and its Young's modulus in GPa. Other effects are fields.
+    ///
+    /// ```
+    /// use whiskmap::scene::{Curvature, Whisker};
+    ///
+    /// let parabola_per_mm = 0.02;
+    /// let whisker = Whisker {
+    ///     curvature: Some(Curvature { parabola_per_mm, vertex_mm: 0.0 }),
+    ///     ..Whisker::cone(20.0, [30.0, 1.5], 3.0)
+    /// };
+    /// assert_eq!(whisker.taper(), 0.95);
+    /// ```
+    #[must_use]
+    pub const fn cone(
+        length_mm: f64,
+        [base_radius_um, tip_radius_um]: [f64; 2],
+        youngs_modulus_gpa: f64,
+    ) -> Self {
+        Self {
+            length_mm,
+            base_radius_um,
+            tip_radius_um,
+            youngs_modulus_gpa,
+            curvature: None,
+            euler_spiral: None,
+            traced: None,
+            profile: None,
+            profile_scale: 1.0,
+            modulus_tip_to_base: 1.0,
+            arc_stretch: 1.0,
+            follicle_stiffness_nnm_per_rad: None,
+        }
+    }
+
     /// Returns the dimensionless rod of this whisker with `pole` on `side`.
     #[must_use]
     pub fn rod(&self, pole: &Pole, side: Side) -> Rod {

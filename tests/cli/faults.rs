@@ -27,7 +27,7 @@ impl FaultyPlace {
         compiler
             .args(["-shared", "-fPIC", "-O1", "-o"])
             .arg(&preloaded);
-        compiler.arg(shipped::root().join("tests/program/faults.c"));
+        compiler.arg(shipped::root().join("tests/support/faults.c"));
         assert!(compiler.arg("-ldl").status().unwrap().success());
         Self { place, preloaded }
     }

@@ -2,6 +2,7 @@
 
 use super::case::{Case, compute};
 use super::named::named;
+use crate::compute::is_contact;
 use whiskmap::Side;
 use whiskmap::classify::{Regime, Status};
 use whiskmap::map::Panel;
@@ -16,7 +17,7 @@ pub fn is_complete(panel: &Panel) -> bool {
         let finite = panel.state.iter().all(|channel| channel[cell].is_finite());
         let sound = f64::from(panel.residual[cell]) <= TOLERANCE && panel.margin_deg[cell] >= 0.0;
         let has_state = panel.status[cell] != Status::NoState.code();
-        (matches!(regime, 1 | 4) && has_state) == (finite && sound)
+        (is_contact(*regime) && has_state) == (finite && sound)
     })
 }
 
@@ -96,7 +97,7 @@ fn pushes_up_to_the_edge_and_past_it() {
 }
 
 /// Just before the corner of fold and tip a whisker slips off; just beyond it is pulled off. The corner of a straight cylinder is
-/// at 0.558538 of its length.
+/// at 0.5585395 of its length.
 #[test]
 fn both_sides_of_the_corner() {
     let mut corners = 0;
@@ -107,23 +108,19 @@ fn both_sides_of_the_corner() {
                 continue;
             };
             corners += 1;
-            for (by, kind) in [
-                (-1e-6, DetachmentKind::SlipOff),
-                (-1e-8, DetachmentKind::SlipOff),
-                (1e-8, DetachmentKind::PullOff),
-                (1e-6, DetachmentKind::PullOff),
-            ] {
-                let distance = distance + by * case.length_mm;
-                let end = curve(&scene.whisker, &scene.pole, side, &[distance])[0];
+            let beside = [-1e-6, -1e-8, 1e-8, 1e-6];
+            let distances = beside.map(|by| distance + by * case.length_mm);
+            let ends = curve(&scene.whisker, &scene.pole, side, &distances);
+            for (by, end) in beside.iter().zip(ends) {
+                let kind = if *by < 0.0 {
+                    DetachmentKind::SlipOff
+                } else {
+                    DetachmentKind::PullOff
+                };
                 assert_eq!(end.kind, kind, "{name}");
-                if end.push_angle_deg.unwrap().abs() < 359.0 {
-                    ends_at(
-                        name,
-                        &case,
-                        distance / case.length_mm,
-                        end.push_angle_deg.unwrap(),
-                        kind,
-                    );
+                let push = end.push_angle_deg.unwrap();
+                if push.abs() < 359.0 {
+                    ends_at(name, &case, end.distance_mm / case.length_mm, push, kind);
                 }
             }
         }

@@ -18,21 +18,11 @@ struct Away {
 impl Away {
     fn whisker(self) -> Whisker {
         Whisker {
-            length_mm: 1.0,
-            base_radius_um: 1.0,
-            tip_radius_um: 1.0 - self.taper,
-            youngs_modulus_gpa: 3.0,
             curvature: (self.bend > 0.0).then_some(Curvature {
                 parabola_per_mm: self.bend,
                 vertex_mm: 0.0,
             }),
-            euler_spiral: None,
-            traced: None,
-            profile: None,
-            profile_scale: 1.0,
-            modulus_tip_to_base: 1.0,
-            arc_stretch: 1.0,
-            follicle_stiffness_nnm_per_rad: None,
+            ..Whisker::cone(1.0, [1.0, 1.0 - self.taper], 3.0)
         }
     }
 

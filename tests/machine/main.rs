@@ -22,14 +22,8 @@ mod bound;
 mod by_cpu;
 #[path = "../hard_cases/case.rs"]
 mod case;
-#[path = "../cells/mod.rs"]
-mod cells;
 mod choice;
-#[path = "../compute/mod.rs"]
-mod compute;
 mod contract;
-#[path = "../effect_sets/mod.rs"]
-mod effect_sets;
 mod faults;
 mod hard_cases;
 mod kinds;
@@ -38,20 +32,17 @@ mod maps;
 mod named;
 mod nodes;
 mod pipeline;
-#[path = "../program/mod.rs"]
-mod program;
 #[path = "../hard_cases/random.rs"]
 mod random;
-#[path = "../random_rods/mod.rs"]
-mod random_rods;
-#[path = "../shipped/mod.rs"]
-mod shipped;
 mod shoot;
 mod spectral;
 mod states;
+#[path = "../support/mod.rs"]
+mod support;
 
 use libtest_mimic::{Arguments, Completion, Trial};
 use std::process::ExitCode;
+use support::{cells, compute, effect_sets, program, random_rods, shipped};
 use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::engine::{Cpu, Engine, EngineError, Spectral};
 

@@ -55,7 +55,7 @@ const KNOWN: f64 = 1e-6;
 
 /// Central differences by `variable`, extrapolated twice to a step of 0, with an error of the sixth order of the step. `None` where an end
 /// next to `own` has another kind, or the last extrapolation changes a difference by more than [`KNOWN`].
-fn differences(push: &Push, variable: Variable, own: &Detachment) -> Option<[f64; 10]> {
+fn differences(push: &Push, variable: Variable, own: &Detachment) -> Option<[f64; 11]> {
     let h = push.step(variable);
     let at = |h: f64| {
         let Push {
@@ -70,14 +70,14 @@ fn differences(push: &Push, variable: Variable, own: &Detachment) -> Option<[f64
     };
     let central = |h: f64| {
         let (low, high) = (at(-h)?, at(h)?);
-        Some(std::array::from_fn::<f64, 10, _>(|i| {
+        Some(std::array::from_fn::<f64, 11, _>(|i| {
             (high[i] - low[i]) / (2.0 * h)
         }))
     };
     let [d1, d2, d4] = [central(h)?, central(0.5 * h)?, central(0.25 * h)?];
     let values = quantities(own)?;
-    let mut all = [0.0; 10];
-    for i in 0..10 {
+    let mut all = [0.0; 11];
+    for i in 0..11 {
         let [first, second] = [(4.0 * d2[i] - d1[i]) / 3.0, (4.0 * d4[i] - d2[i]) / 3.0];
         all[i] = (16.0 * second - first) / 15.0;
         let scale = all[i].abs() + values[i].abs() / push.size(variable);
@@ -106,7 +106,12 @@ fn has_room(push: &Push, variable: Variable) -> bool {
     }
 }
 
-/// Compares every twelfth derivative of the push with this index, from another one on for each index: differences take most of the time.
+/// Largest push, in turns, up to which the ends of a whisker with measured radii are differentiated: beyond it, each of them has a continuation of
+/// thousands of nodes, which takes some 4 CPU seconds.
+const MEASURED_TURNS: f64 = 2.0;
+
+/// Compares every twelfth derivative of the push with this index, from another one on in turn: differences take most of the time. The last digit of
+/// the index is the kind of whisker, so that the turn is that of the other digits.
 pub fn compare(index: u64) -> Compared {
     let push = push(index);
     let variables = push.variables();
@@ -130,12 +135,13 @@ pub fn compare(index: u64) -> Compared {
         end.kind,
         DetachmentKind::SlipOff | DetachmentKind::PullOff
     ));
+    let turns = values[0].abs() / 360.0;
+    let is_followed = whisker.profile.is_none() || turns < MEASURED_TURNS;
     let all = variables.iter().zip(&ends[0].by);
-    for (variable, by) in all.skip((index % 12) as usize).step_by(12) {
-        let exact = by
-            .as_ref()
-            .ok()
-            .zip(differences(&push, *variable, end).filter(|_| has_room(&push, *variable)));
+    for (variable, by) in all.skip((index / 10 % 12) as usize).step_by(12) {
+        let exact = by.as_ref().ok();
+        let exact = exact.filter(|_| is_followed && has_room(&push, *variable));
+        let exact = exact.and_then(|by| Some((by, differences(&push, *variable, end)?)));
         let Some((by, differences)) = exact else {
             compared.left_out += 1;
             continue;

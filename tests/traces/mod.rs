@@ -15,21 +15,11 @@ use whiskmap::trace::{Branch, Detachment, NoState, curve};
 /// Whisker of 20 mm length with a base radius of 30 um.
 fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
     Whisker {
-        length_mm: 20.0,
-        base_radius_um: 30.0,
-        tip_radius_um,
-        youngs_modulus_gpa: 3.0,
         curvature: (a_per_mm > 0.0).then_some(Curvature {
             parabola_per_mm: a_per_mm,
             vertex_mm: 0.0,
         }),
-        euler_spiral: None,
-        traced: None,
-        profile: None,
-        profile_scale: 1.0,
-        modulus_tip_to_base: 1.0,
-        arc_stretch: 1.0,
-        follicle_stiffness_nnm_per_rad: None,
+        ..Whisker::cone(20.0, [30.0, tip_radius_um], 3.0)
     }
 }
 
@@ -39,9 +29,6 @@ fn everything() -> impl Iterator<Item = (Whisker, Pole)> {
         .into_iter()
         .flat_map(|tip| [0.0, 0.02, 0.04, 0.07].map(|a| whisker(tip, a)))
         .chain([0.1, 10.0].map(|ratio| Whisker {
-            euler_spiral: None,
-            traced: None,
-            profile: None,
             modulus_tip_to_base: ratio,
             ..whisker(1.5, 0.02)
         }))

@@ -1,5 +1,4 @@
 //! Runs of the program in a temporary folder, and their output.
-#![allow(dead_code, reason = "each test program uses its own share")]
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
 use assert_cmd::Command;

@@ -1,5 +1,4 @@
 //! Whole maps in memory, how far two of them are apart, and engines that are looked after.
-#![allow(dead_code, reason = "each test program uses its own share")]
 #![allow(clippy::panic, reason = "a test fails by panicking")]
 
 use crate::shipped;
@@ -7,11 +6,18 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use whiskmap::classify::Regime;
 use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, RowBatch};
 use whiskmap::map::{self, EngineCells, Panel, STATE_CHANNELS, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Parameter, Scene};
+
+/// Returns true for the code of a regime with contact.
+pub fn is_contact(regime: u32) -> bool {
+    let contacts = [Regime::Contact, Regime::Unreachable];
+    contacts.map(Regime::code).contains(&regime)
+}
 
 /// The map of `scene`: by the CPU alone, or with an engine before it.
 pub fn compute(scene: &Scene, engine: Option<&mut dyn Engine>) -> (Summary, Vec<Panel>) {

@@ -1,5 +1,4 @@
 //! A map made up for tests: it looks like a whisker's and is cheap to make.
-#![allow(dead_code, reason = "each test program uses its own share")]
 
 use serde_json::{Value, json};
 use std::path::Path;
@@ -29,20 +28,7 @@ pub fn scene(
         title: "A made-up whisker in front of a pole".to_owned(),
         uncertainty: None,
         surface: None,
-        whisker: Whisker {
-            length_mm: 20.0,
-            base_radius_um: 33.0,
-            tip_radius_um: 2.0,
-            youngs_modulus_gpa: 3.0,
-            curvature: None,
-            euler_spiral: None,
-            traced: None,
-            profile: None,
-            profile_scale: 1.0,
-            modulus_tip_to_base: 1.0,
-            arc_stretch: 1.0,
-            follicle_stiffness_nnm_per_rad: None,
-        },
+        whisker: Whisker::cone(20.0, [33.0, 2.0], 3.0),
         pole: Pole::smooth(0.25),
         grid: Grid {
             push_angle_deg: spread(-60.0, 70.0, push_angles),

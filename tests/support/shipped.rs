@@ -1,5 +1,4 @@
 //! Files of the repository: scenes, pages, and data of tests.
-#![allow(dead_code, reason = "each test program uses its own share")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
