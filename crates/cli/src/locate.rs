@@ -1,13 +1,14 @@
 //! Command `whiskmap locate`.
 
 use super::arguments::column_help;
+use super::data::ColumnArgs;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
 use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
-use whiskmap::input::{ColumnName, CsvTable, Quantity};
+use whiskmap::input::Quantity;
 use whiskmap::locate::{
     self, BaseReading, BaseReadings, LocatedState, Locator, MOST_ANGLE, MOST_LOAD,
     SensorDeviations, SharedState,
@@ -44,16 +45,10 @@ pub struct LocateArgs {
     #[arg(long, conflicts_with_all = LOAD_OPTIONS, conflicts_with_all = ["readings", "moment_sd", "force_sd"])]
     map: bool,
     /// CSV file of readings of the sensor; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = LOAD_OPTIONS)]
+    #[arg(long, value_name = "FILE", group = "table", conflicts_with_all = LOAD_OPTIONS)]
     readings: Option<PathBuf>,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "readings"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     /// Moment of the pole on the base, in nN m or with a unit, such as 0.3uNm: positive turns it to the left
     #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, value_parser = moment)]
     base_moment: Option<f64>,
@@ -133,7 +128,7 @@ impl LocateArgs {
             };
             return Ok(vec![reading]);
         };
-        let table = CsvTable::input(path)?.renamed(&self.columns, &BaseReadings::COLUMNS)?;
+        let table = self.columns.table(path, &BaseReadings::COLUMNS)?;
         let read = BaseReadings::of(&table)?;
         files.input(path);
         if let Some(note) = &read.note {

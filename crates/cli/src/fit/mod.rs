@@ -3,7 +3,7 @@
 mod table;
 
 use super::arguments::parameter;
-use super::data;
+use super::data::{self, ColumnArgs};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::write;
@@ -16,7 +16,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use table::table;
 use whiskmap::fit::{Fit, FitError, FitLoss, fit_until};
-use whiskmap::input::ColumnName;
 use whiskmap::scene::Parameter;
 use whiskmap::store::Output;
 use whiskmap::terminal::StandardOutput;
@@ -46,16 +45,10 @@ pub struct FitArgs {
     #[command(flatten)]
     whisker: WhiskerArgs,
     /// Measured detachments; - is standard input
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "table")]
     data: PathBuf,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "data"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     /// Parameters to fit, separated by commas
     #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = parameter())]
     free: Vec<Parameter>,
