@@ -70,7 +70,7 @@ fn names_of_columns_that_do_not_fit_are_refused() {
         (
             "distanze=d",
             "table.csv:1: columns distanze=d: `distanze` is not known; must be one of side, distance_mm, push_angle_deg, \
-             push_chord_deg, kind, sd_deg; did you mean `distance_mm`?",
+             push_chord_deg, kind, sd_deg, whisker; did you mean `distance_mm`?",
         ),
         (
             "distance=e",

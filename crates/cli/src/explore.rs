@@ -62,8 +62,8 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
     };
     let points = args.data.as_deref().map(|data| {
         data::check_stdin(path, data)?;
-        let points = data::read(files, data, &args.columns)?;
         let whisker = scene.first_whisker();
+        let points = data::read(files, data, &args.columns)?.at(&whisker.place)?;
         points.check_reach(&whisker.whisker, &whisker.pole)?;
         Ok::<_, Failure>(json!({ "name": points.origin, "csv": csv(&points) }))
     });

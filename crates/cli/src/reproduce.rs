@@ -69,6 +69,11 @@ fn points(
         return Ok(Vec::new());
     };
     let points = data::read(files, path, columns)?;
+    if !points.whiskers.is_empty() {
+        let path = path.display();
+        let must = "has a column whisker; the points of a figure belong to one whisker";
+        return Err(Failure::Input(format!("{option} {path}: {must}")));
+    }
     let reach = points.check_reach(whisker, &POLE);
     reach.map_err(|why| Failure::Input(format!("{option} {why}")))?;
     match points.angle {
