@@ -26,7 +26,6 @@ impl PointsTask {
         let free: Vec<Parameter> = free.collect();
         if free.is_empty() {
             let whisker = scene.first_whisker();
-            let points = points.at(&whisker.place).map_err(|why| why.to_string())?;
             let reach = points.check_reach(&whisker.whisker, &whisker.pole);
             reach.map_err(|why| why.to_string())?;
             let beside = points.beside(&whisker.whisker, &whisker.pole);

@@ -1,12 +1,12 @@
 //! Sets of outputs that a batch computes for each trajectory, in lanes.
 
-use super::InitialCondition;
 use super::block::Block;
 use super::block_key::BlockKey;
 use super::gather::Conditions;
 use super::kernel::Trajectories;
 use super::pole::{Complex, PoleCentre, spread};
-use crate::numerics::{Lanes, Unit, WIDTH};
+use super::{FEW_KERNELS, InitialCondition};
+use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{
     Arrival, BaseDerivatives, Energetic, GeneralFirst, GeneralSecond, SecondBaseDerivatives,
@@ -238,6 +238,10 @@ impl OutputSet for PeakStrain {
 
     #[inline(never)]
     fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH] {
-        unit.run(Trajectories::new(key, block))
+        let trajectories = Trajectories::new(key, block);
+        if const { FEW_KERNELS } {
+            return trajectories.run::<f64>();
+        }
+        unit.run(trajectories)
     }
 }
