@@ -72,7 +72,7 @@ fn maps_of_a_class_have_equal_bits() {
 }
 
 /// Hashes with fused arithmetic.
-const FMA: [(&str, u64); 16] = [
+const FMA: [(&str, u64); 17] = [
     ("cone", 0x4ab1_91f2_4bb1_9e17),
     ("cylinder", 0x3a93_1d49_b7ff_0335),
     ("euler_spiral", 0xdc03_9a13_3246_11e7),
@@ -80,6 +80,7 @@ const FMA: [(&str, u64); 16] = [
     ("fig4_whisker", 0xacf4_7ca2_c1ab_603d),
     ("fig5_left", 0x9184_c035_82d8_2bc2),
     ("fig5_right", 0x441e_0702_db59_e3d9),
+    ("follicle", 0x3fbb_0545_b692_fba4),
     ("friction", 0xe9b2_82a4_3dc5_71ac),
     ("measured", 0x2b70_8b80_b7ef_2494),
     ("morphology", 0x7601_9284_ce45_ed12),
@@ -92,7 +93,7 @@ const FMA: [(&str, u64); 16] = [
 ];
 
 /// Hashes without fused arithmetic.
-const NO_FMA: [(&str, u64); 16] = [
+const NO_FMA: [(&str, u64); 17] = [
     ("cone", 0x3906_ae21_6734_7b63),
     ("cylinder", 0x6e98_06d8_dbbd_040a),
     ("euler_spiral", 0xd6c1_0260_1f62_f147),
@@ -100,6 +101,7 @@ const NO_FMA: [(&str, u64); 16] = [
     ("fig4_whisker", 0x0375_43d7_7a0e_e108),
     ("fig5_left", 0x4032_4a9f_bbb7_4cb8),
     ("fig5_right", 0x0654_563e_4f09_0938),
+    ("follicle", 0x2b9c_2bac_fa1b_c65e),
     ("friction", 0x0c85_3f40_64d1_fa3d),
     ("measured", 0x996f_b360_c511_b7d0),
     ("morphology", 0xfce9_a54c_e1d0_a6e6),

@@ -2,7 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::random_rods::Random;
-use whiskmap::scene::{Curvature, Pole, Scene, Whisker};
+use crate::shipped;
+use whiskmap::classify::Status;
+use whiskmap::fit::fit;
+use whiskmap::measured::MeasuredPoints;
+use whiskmap::scene::{Curvature, Parameter, Pole, Scene, Whisker};
 use whiskmap::trace::{Branch, DetachmentKind, WhiskerShape, curve};
 use whiskmap::{MapEngine, Options, Regime, Side, map};
 
@@ -173,4 +177,126 @@ fn engines_agree_from_hinge_to_clamp() {
         contacts.windows(2).all(|pair| pair[0] > pair[1]),
         "{contacts:?}"
     );
+}
+
+/// Largest push angle whose end is found, in turns (`docs/scenes.md`).
+const MOST_TURNS: f64 = 9.0;
+
+/// Push angles of [`soft_scene`], in degrees.
+const PUSHES_DEG: [f64; 8] = [-360.0, -90.0, -5.0, -1e-6, 1e-6, 5.0, 90.0, 360.0];
+
+/// The whisker in a follicle of this stiffness, at a pole of 0.25 mm.
+fn soft_scene(whisker: &Whisker, stiffness: f64, distances_mm: &[f64]) -> Scene {
+    let Whisker {
+        length_mm,
+        base_radius_um,
+        tip_radius_um,
+        youngs_modulus_gpa,
+        ..
+    } = whisker;
+    let bend = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+    let text = format!(
+        "title = 'Soft'\n[whisker]\nlength_mm = {length_mm}\nbase_radius_um = {base_radius_um}\ntip_radius_um = {tip_radius_um}\n\
+         youngs_modulus_gpa = {youngs_modulus_gpa}\ncurvature.parabola_per_mm = {bend}\n\
+         follicle.stiffness_nnm_per_rad = {stiffness:e}\n[pole]\nradius_mm = 0.25\n[grid]\n\
+         push_angle_deg = {PUSHES_DEG:?}\ndistance_mm = {distances_mm:?}\n"
+    );
+    Scene::parse(&text, "soft").unwrap()
+}
+
+/// In soft follicles, down to the smallest stiffness of a scene, pushes end where the branch of the clamped whisker says. Those that end beyond
+/// nine turns are unresolved, and no others; the engines agree on every cell.
+#[test]
+fn pushes_in_soft_follicles_end_within_nine_turns_or_are_unresolved() {
+    let distances = [0.4, 6.0, 14.0, 15.9];
+    let curved = |tip_radius_um: f64| Whisker {
+        tip_radius_um,
+        curvature: Some(Curvature {
+            parabola_per_mm: 0.02,
+            vertex_mm: 0.0,
+        }),
+        ..cone(None)
+    };
+    let mut counts = [0; 2];
+    for clamped in [cone(None), curved(1.5), curved(33.5)] {
+        let pole = Pole::smooth(0.25);
+        let soft = [1.0, 100.0].map(|compliance| clamped.units().moment_nnm / compliance);
+        for stiffness in soft.into_iter().chain([1e-6]) {
+            let held = Whisker {
+                follicle_stiffness_nnm_per_rad: Some(stiffness),
+                ..clamped.clone()
+            };
+            let maps = [MapEngine::Cpu, MapEngine::Spectral].map(|engine| {
+                let mut options = Options::default();
+                options.engine = engine;
+                map(&soft_scene(&held, stiffness, &distances), options).unwrap()
+            });
+            let [own, other] = [&maps[0].panels[0], &maps[1].panels[0]];
+            assert_eq!(
+                (&own.regime, &own.status),
+                (&other.regime, &other.status),
+                "{held:?}"
+            );
+            for (index, distance_mm) in distances.into_iter().enumerate() {
+                for side in Side::BOTH {
+                    let Ok(branch) = Branch::new(&clamped, &pole, side, distance_mm) else {
+                        continue;
+                    };
+                    let points = branch.points(2001).unwrap();
+                    let turns = points.iter().map(|point| {
+                        let turn = (side.sign() * point.base_moment_nnm / stiffness).to_degrees();
+                        (side.sign() * point.push_angle_deg + turn) / 360.0
+                    });
+                    let turns: Vec<f64> = turns.collect();
+                    let top = turns.windows(2).position(|pair| pair[1] < pair[0]);
+                    let end = turns[top.unwrap_or(turns.len() - 1)];
+                    let found = curve(&held, &pole, side, &[distance_mm])[0];
+                    let case = format!("{held:?} {side:?} at {distance_mm} mm: {end} {found:?}");
+                    assert_eq!(found.push_angle_deg.is_some(), end < MOST_TURNS, "{case}");
+                    counts[usize::from(end < MOST_TURNS)] += 1;
+                    if let Some(push_deg) = found.push_angle_deg {
+                        let off = side.sign() * push_deg / 360.0 / end - 1.0;
+                        assert!(off.abs() < 1e-4, "{case}");
+                    }
+                    let cells = index * PUSHES_DEG.len()..(index + 1) * PUSHES_DEG.len();
+                    for (cell, push_deg) in cells.zip(PUSHES_DEG) {
+                        if side.sign() * push_deg <= 0.0 {
+                            continue;
+                        }
+                        let is_open = own.regime[cell] == Regime::Unresolved.code();
+                        assert_eq!(is_open, end > MOST_TURNS, "{case} {push_deg}");
+                        let has_reason = own.status[cell] == Status::NoBoundary.code();
+                        assert_eq!(is_open, has_reason, "{case} {push_deg}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(counts.iter().all(|count| *count > 15), "{counts:?}");
+}
+
+/// The stiffness comes back from detachments of the shipped scene, from far away.
+#[test]
+fn a_fit_recovers_the_stiffness() {
+    let scene = shipped::scene("follicle");
+    let mut points = "side,distance_mm,push_angle_deg\n".to_owned();
+    for side in Side::BOTH {
+        for end in curve(&scene.whisker, &scene.pole, side, &[3.0, 5.0, 8.0]) {
+            let push_deg = end.push_angle_deg.unwrap();
+            let side = if side == Side::Cb { "cb" } else { "cf" };
+            points += &format!("{side},{},{push_deg:.9}\n", end.distance_mm);
+        }
+    }
+    let points = MeasuredPoints::parse(&points, "points.csv").unwrap();
+    let stiffness = Parameter::FollicleStiffness;
+    for start in [300.0, 1e5] {
+        let start = scene.with(stiffness, start).unwrap();
+        let fit = fit(&start, &points, &[stiffness]).unwrap();
+        let found = fit.estimates[0];
+        assert!((found.value / 5000.0 - 1.0).abs() < 1e-7, "{found:?}");
+        assert!(
+            found.standard_error.unwrap() < 1e-6 * found.value,
+            "{found:?}"
+        );
+    }
 }

@@ -380,3 +380,52 @@ fn the_laboratory_is_turned_by_the_angle_of_the_base() {
     );
     assert!((gap - scene.pole.radius_mm).abs() < 1e-12);
 }
+
+/// Cells of a map have the states and conditions of readings, and singular lines separate cells with different orientations: on them, the condition is
+/// large.
+#[test]
+fn a_map_has_the_conditions_of_its_states() {
+    let scene = shipped::scene("cone").thinned_to([96, 48], 1);
+    let (whisker, pole, grid) = (&scene.whisker, &scene.pole, &scene.grid);
+    let locator = Locator::new(whisker, pole);
+    let map = locator.shared_states(whisker, pole, grid);
+    assert!(map.states.len() > 2000, "{}", map.states.len());
+    let state_at = |distance_mm: f64, push_deg: f64| {
+        let side = Side::of_push(push_deg);
+        let branch = Branch::new(whisker, pole, side, distance_mm).unwrap();
+        let state = branch.state(push_deg.to_radians(), true).unwrap();
+        branch.point_of(&state)
+    };
+    let nearest = |state: &BranchPoint, measured: [bool; 3]| {
+        let rows = locator.locate(&[reading(state, measured)], None);
+        let by_off = |one: &&LocatedState, other: &&LocatedState| {
+            off(one, state).total_cmp(&off(other, state))
+        };
+        let nearest = *rows.iter().min_by(by_off).unwrap();
+        (rows.len(), nearest.condition.unwrap())
+    };
+    for own in map.states.iter().step_by(41) {
+        let state = state_at(own.distance_mm, own.push_angle_deg);
+        let found = [
+            (own.moment_x_states, own.moment_x_condition),
+            (own.moment_y_states, own.moment_y_condition),
+            (own.force_states, own.force_condition),
+        ];
+        for ((states, condition), measured) in found.into_iter().zip(MEASURED) {
+            let (expected, of_reading) = nearest(&state, measured);
+            assert_eq!(states, expected, "{own:?} {measured:?}");
+            let off = condition.unwrap() / of_reading - 1.0;
+            assert!(off.abs() < 1e-4, "{own:?} {measured:?}: {of_reading}");
+        }
+    }
+    // Between cells, the line is linear.
+    for (pair, measured) in MEASURED[..3].iter().enumerate() {
+        let segments = &map.singular[pair];
+        assert!(segments.len() > 3, "{pair}: {segments:?}");
+        for [[push_deg, distance_mm], _] in segments {
+            let state = state_at(*distance_mm, *push_deg);
+            let (_, condition) = nearest(&state, *measured);
+            assert!(condition > 50.0, "{pair}: {state:?}: {condition}");
+        }
+    }
+}

@@ -52,11 +52,13 @@ pub fn fit<'py>(
     loss: &str,
     columns: Vec<(String, String)>,
 ) -> PyResult<FitResult<'py>> {
-    single(&scene.0)?;
     let refused = |why: String| PyValueError::new_err(why);
     let table = arguments::table(points, origin, columns, &MeasuredPoints::COLUMNS);
     let points = table.and_then(|table| MeasuredPoints::of(&table));
     let points = points.map_err(|why| refused(why.to_string()))?;
+    if points.whiskers.is_empty() {
+        single(&scene.0)?;
+    }
     let mut losses = FitLoss::ALL.into_iter();
     let loss = losses.find(|own| own.name() == loss).ok_or_else(|| {
         let known = FitLoss::ALL.map(FitLoss::name).join(", ");

@@ -95,7 +95,7 @@ pub fn spectral_warning(scene: &Scene, engine: MapEngine) -> Option<String> {
 fn warnings(summary: &Summary) -> impl Iterator<Item = String> {
     let failure = summary.engine_failure.as_ref();
     let failure = failure.map(|why| format!("{why}; the CPU solved the remaining cells"));
-    let (unresolved, all) = (summary.unresolved(), summary.cells());
+    let [unresolved, all] = summary.unresolved_of_all();
     let unresolved = (unresolved > 0)
         .then(|| format!("{unresolved} of {all} cells are unresolved: see the variable `status`"));
     failure.into_iter().chain(unresolved)

@@ -2,7 +2,7 @@
 
 use super::FitLoss;
 use crate::measured::MeasuredPoints;
-use crate::scene::{Parameter, Scene, SceneError, SweptWhisker};
+use crate::scene::{Parameter, Scene, SceneError};
 use crate::sensitivity::Variable;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -85,9 +85,9 @@ impl<'a> Misfit<'a> {
     /// the parameters, or a point is out of reach or never detaches.
     pub fn residuals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
         let scene = self.accepted(parameters)?;
-        let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-        self.points.check_reach(&whisker, &pole).ok()?;
-        let rows = self.points.compared(&whisker, &pole);
+        let whiskers = self.points.whiskers_in(&scene).ok()?;
+        self.points.check_reach_of(&whiskers).ok()?;
+        let rows = self.points.compared_with(&whiskers);
         let mut residuals = Vec::with_capacity(rows.len());
         for (row, point) in rows.iter().zip(&self.points.points) {
             residuals.push(-row.residual_deg? / point.sd_deg);
@@ -115,10 +115,9 @@ impl<'a> Misfit<'a> {
 
     /// Returns true if a point detaches in another way with these `parameters` than was measured.
     pub fn has_other_kinds(&self, parameters: &[f64]) -> bool {
-        self.scene(parameters).is_ok_and(|scene| {
-            let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-            self.points.beside(&whisker, &pole).of_another_kind() > 0
-        })
+        let scene = self.scene(parameters).ok();
+        let whiskers = scene.and_then(|scene| self.points.whiskers_in(&scene).ok());
+        whiskers.is_some_and(|whiskers| self.points.beside_all(&whiskers).of_another_kind() > 0)
     }
 
     /// Returns the derivative of each point's residual by each scaled parameter, `[parameter][point]`. All are exact, or all are differences
@@ -153,9 +152,9 @@ impl<'a> Misfit<'a> {
 
     /// Returns the exact columns of the Jacobian; `None` where the scene refuses the parameters, or an end has no derivative.
     fn derivatives(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let SweptWhisker { whisker, pole, .. } = self.accepted(parameters)?.first_whisker();
+        let whiskers = self.points.whiskers_in(&*self.accepted(parameters)?).ok()?;
         let variables: Vec<Variable> = self.free.iter().map(|own| (*own).into()).collect();
-        let mut columns = self.points.derivatives(&whisker, &pole, &variables)?;
+        let mut columns = self.points.derivatives_with(&whiskers, &variables)?;
         // With a free taper, the radius at the tip follows the one at the base. No detachment depends on the size of a cone.
         if self.free.contains(&Parameter::Taper) {
             let of_base = self.free.iter().zip(&mut columns);

@@ -20,7 +20,7 @@ pub use verdict::{LikelyCause, NotAFit};
 
 use crate::input::{CsvError, each_once};
 use crate::measured::{Comparison, MeasuredPoints};
-use crate::scene::{Parameter, Scene, SceneError, SweptWhisker, digits, rounded};
+use crate::scene::{Parameter, Scene, SceneError, digits, rounded};
 use bounded::{NO_JACOBIAN, best};
 use covariance::Covariance;
 use misfit::Misfit;
@@ -148,6 +148,9 @@ pub enum FitError {
     /// Two free parameters of the fit are one number of the scene.
     #[error("{} and {}: both are {}; one of them may be free", .0.name(), .1.name(), .0.key())]
     Twice(Parameter, Parameter),
+    /// A free parameter is a column of the table of whiskers, so that they do not share its value.
+    #[error("{}: a column of the table of whiskers gives it; only a number that all whiskers share may be free", .0.name())]
+    Column(Parameter),
     /// The rest of the scene leaves a free parameter no range.
     #[error("{}: the rest of the scene allows no values but {} to {}", .parameter.name(), digits(.range[0]), digits(.range[1]))]
     Held {
@@ -186,6 +189,9 @@ const NARROWEST: f64 = 1e-6;
 /// Fits the `free` parameters of the scene's first whisker and of its pole to `points`, starting at the scene's values. If the scene's
 /// whisker does not reach a point, one free parameter starts at a value with which it does: [`Fit::moved`].
 ///
+/// If the points name their whiskers, each is compared with the whisker of its name in the scene's table, and the whiskers share the free
+/// parameters.
+///
 /// Points whose side never detaches at these values are left out; in [`Fit::comparison`] they have no residual.
 ///
 /// ```
@@ -201,7 +207,8 @@ const NARROWEST: f64 = 1e-6;
 /// ```
 ///
 /// # Errors
-/// If a parameter cannot be free, a point is beyond the whisker for every tried start, points are too few, or the iteration does not converge.
+/// If a parameter cannot be free, a name is not in the table, a point is beyond the whisker for every tried start, points are too few, or the
+/// iteration does not converge.
 pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<Fit, FitError> {
     fit_until(
         scene,
@@ -226,10 +233,10 @@ pub fn fit_until(
     cancel: &AtomicBool,
 ) -> Result<Fit, FitError> {
     let free = &each_once(free)[..];
-    check(scene, free)?;
+    check(scene, points, free)?;
     let (start, moved) = within_reach(scene, points, free)?;
     let scene = &start;
-    let used = used(scene, points);
+    let used = used(scene, points)?;
     if used.points.len() < free.len() {
         return Err(FitError::TooFew {
             origin: points.origin.clone(),
@@ -259,8 +266,7 @@ pub fn fit_until(
         (_, 0) => None,
         (_, freedom) => variance(loss, &here, freedom),
     };
-    let comparison = fitted.first_whisker();
-    let comparison = points.beside(&comparison.whisker, &comparison.pole);
+    let comparison = points.beside_all(&points.whiskers_in(&fitted)?);
     let not_a_fit = NotAFit::new(
         &used,
         scene,
@@ -313,7 +319,7 @@ pub fn fit_until(
 }
 
 /// Checks that the parameters can be free.
-fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
+fn check(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<(), FitError> {
     if free.is_empty() {
         return Err(FitError::NothingFree);
     }
@@ -328,6 +334,9 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
             parameter,
             has: Parameter::given(scene),
         })?;
+        if !points.whiskers.is_empty() && scene.has_column(parameter) {
+            return Err(FitError::Column(parameter));
+        }
         let range @ [least, most] = parameter.range(scene);
         if most - least < NARROWEST * value.abs() {
             return Err(FitError::Held { parameter, range });
@@ -368,14 +377,13 @@ fn rms_deg(loss: FitLoss, residuals: &[f64], used: &MeasuredPoints) -> Option<f6
 }
 
 /// The points that detach at the values of `scene`.
-fn used(scene: &Scene, points: &MeasuredPoints) -> MeasuredPoints {
-    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    let rows = points.compared(&whisker, &pole);
+fn used(scene: &Scene, points: &MeasuredPoints) -> Result<MeasuredPoints, CsvError> {
+    let rows = points.compared_with(&points.whiskers_in(scene)?);
     let detaching = points.points.iter().zip(rows);
     let detaching = detaching.filter(|(_, row)| row.residual_deg.is_some());
-    MeasuredPoints {
+    Ok(MeasuredPoints {
         points: detaching.map(|(point, _)| *point).collect(),
         incomplete: Vec::new(),
         ..points.clone()
-    }
+    })
 }

@@ -2,7 +2,7 @@
 
 use crate::input::CsvError;
 use crate::measured::MeasuredPoints;
-use crate::scene::{Parameter, Scene, SweptWhisker};
+use crate::scene::{Parameter, Scene};
 
 /// Ratio of neighbouring values that are tried.
 const RATIO: f64 = 1.05;
@@ -38,8 +38,7 @@ pub(super) fn within_reach(
     let Err(why) = reach(scene, points) else {
         return Ok((scene.clone(), None));
     };
-    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    let Some(first) = points.first_out_of_reach(&whisker, &pole) else {
+    let Some(first) = points.first_out_of_reach_of(&points.whiskers_in(scene)?) else {
         return Err(why);
     };
     for tries in 1..=MOST_TRIES {
@@ -73,8 +72,7 @@ pub(super) fn within_reach(
     Err(why)
 }
 
-/// Checks that the scene's resting whisker touches the pole at the distance of every point.
+/// Checks that the scene's resting whiskers touch their poles at the distances of all points.
 fn reach(scene: &Scene, points: &MeasuredPoints) -> Result<(), CsvError> {
-    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    points.check_reach(&whisker, &pole)
+    points.check_reach_of(&points.whiskers_in(scene)?)
 }

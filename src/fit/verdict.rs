@@ -1,7 +1,7 @@
 //! Verdict on a fit: refusal of best values with which no whisker of the scene's kind explains the points.
 
 use crate::measured::MeasuredPoints;
-use crate::scene::{Scene, SweptWhisker, digits, rounded};
+use crate::scene::{Scene, digits, rounded};
 use std::fmt;
 
 /// The largest root mean square of residuals, in degrees. Theory and real whiskers differ by a few degrees; the measured
@@ -98,8 +98,8 @@ pub(super) fn is_explained(chi_square: f64, freedom: usize) -> bool {
 impl LikelyCause {
     /// The mistake that a comparison of `points` with the theory of `scene` shows.
     fn of(points: &MeasuredPoints, scene: &Scene) -> Option<Self> {
-        let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-        let own = points.beside(&whisker, &pole);
+        let whiskers = points.whiskers_in(scene).ok()?;
+        let own = points.beside_all(&whiskers);
         let predicted = own.rows.iter().filter_map(|row| row.predicted_deg);
         let has_tens = predicted.fold(0.0, |most: f64, angle| most.max(angle.abs())) >= TENS_DEG;
         if has_tens
@@ -114,8 +114,8 @@ impl LikelyCause {
         for point in &mut farther.points {
             point.distance_mm *= 10.0;
         }
-        farther.check_reach(&whisker, &pole).ok()?;
-        let rms_deg = farther.beside(&whisker, &pole).rms_deg()?;
+        farther.check_reach_of(&whiskers).ok()?;
+        let rms_deg = farther.beside_all(&whiskers).rms_deg()?;
         (rms_deg < own.rms_deg()? / 2.0).then_some(Self::Centimetres)
     }
 
@@ -166,6 +166,7 @@ fn three_digits(number: f64) -> String {
 mod tests {
     use super::*;
     use crate::measured::Comparison;
+    use crate::scene::SweptWhisker;
 
     fn cone() -> Scene {
         Scene::read("scenes/cone.toml").unwrap()

@@ -1,17 +1,16 @@
 //! Map of the readings that determine a contact: stable states over distance and push, with the number of states that share their numbers.
 
-use super::{BaseReading, LocatedState, Locator};
-use crate::scene::{Pole, Whisker};
-use crate::trace::{Branch, BranchPoint, row};
+use super::grid::PAIRS;
+use super::newton::{Triangle, base_derivatives};
+use super::{BaseReading, Locator};
+use crate::scene::{Grid, Pole, Whisker};
+use crate::trace::{Branch, StateAtPush, row};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
-
-/// Number of distances of a map.
-const DISTANCES: u32 = 32;
-
-/// Number of points along a branch, of which the stable ones are in the map.
-const POINTS: usize = 48;
+use whiskmap_mechanics::shooting::FirstVariation;
+use whiskmap_mechanics::shooting::batch::Batch;
 
 row! {
     /// Stable state of a map, with the number of stable states that have the same two numbers at the base.
@@ -40,86 +39,176 @@ row! {
     }
 }
 
+/// Map of the stable states on a grid of distances and push angles, with the lines on which two numbers do not determine them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SharedMap {
+    /// States of the cells in contact, distance by distance: `[state]`.
+    pub states: Vec<SharedState>,
+    /// Segments of the singular lines of moment and axial force, moment and transverse force, and both forces: `[pair][segment][end]`, each end
+    /// as `[push angle (deg), distance (mm)]`.
+    pub singular: [Vec<[[f64; 2]; 2]>; 3],
+}
+
+/// Indices in [`PAIRS`] of the pairs of a [`SharedState`], in its order: moment and axial force, moment and transverse force, both forces.
+const ORDER: [usize; 3] = [1, 0, 2];
+
+/// Cell of a map in contact.
+struct ContactCell {
+    row: usize,
+    column: usize,
+    side: Side,
+    arc_length_mm: f64,
+    reading: BaseReading,
+    /// Condition by each pair of numbers in the [`ORDER`] of states, with the sign of the Jacobian's determinant; `None` if one number follows from the other.
+    conditions: [Option<f64>; 3],
+}
+
 impl Locator {
-    /// Returns the stable states of `whisker` at `pole`, those of the locator, at 32 distances between `from_mm` and `to_mm`, `[state]`. Distances
-    /// out of reach, and first touch, have no state.
+    /// Returns the stable states of `whisker` at `pole`, those of the locator, at the distances and push angles of `grid`. First touch, and cells
+    /// that the whisker does not reach or has left, have no state.
     #[must_use]
-    pub fn shared_states(
+    pub fn shared_states(&self, whisker: &Whisker, pole: &Pole, grid: &Grid) -> SharedMap {
+        let pole = &Pole::smooth(pole.radius_mm);
+        let rows = (0..grid.distance_mm.len()).into_par_iter();
+        let cells = rows.flat_map_iter(|row| {
+            let sides = Side::BOTH.into_iter();
+            sides.flat_map(move |side| self.cells(whisker, pole, grid, (row, side)))
+        });
+        let cells: Vec<ContactCell> = cells.collect();
+        let counts = ORDER.map(|pair| self.counts(&cells, pair));
+        let states = cells.iter().enumerate().map(|(i, cell)| {
+            let shared = |pair: usize| cell.conditions[pair].map_or(0, |_| counts[pair][i]);
+            let condition = |pair: usize| cell.conditions[pair].map(f64::abs);
+            SharedState {
+                distance_mm: grid.distance_mm[cell.row],
+                side: cell.side,
+                push_angle_deg: grid.push_angle_deg[cell.column],
+                arc_length_mm: cell.arc_length_mm,
+                moment_x_states: shared(0),
+                moment_x_condition: condition(0),
+                moment_y_states: shared(1),
+                moment_y_condition: condition(1),
+                force_states: shared(2),
+                force_condition: condition(2),
+            }
+        });
+        SharedMap {
+            states: states.collect(),
+            singular: [0, 1, 2].map(|pair| singular(grid, &cells, pair)),
+        }
+    }
+
+    /// Returns the cells in contact of a row on one side, in the order of growing push angles.
+    fn cells(
         &self,
         whisker: &Whisker,
         pole: &Pole,
-        [from_mm, to_mm]: [f64; 2],
-    ) -> Vec<SharedState> {
-        let distance =
-            |i: u32| from_mm + (to_mm - from_mm) * f64::from(i) / f64::from(DISTANCES - 1);
-        let places = (0..DISTANCES).flat_map(|i| Side::BOTH.map(|side| (distance(i), side)));
-        let states = |(distance_mm, side): (f64, Side)| {
-            let branch = Branch::new(whisker, &Pole::smooth(pole.radius_mm), side, distance_mm);
-            let points = branch.and_then(|branch| branch.points(POINTS));
-            points.unwrap_or_default()
+        grid: &Grid,
+        (row, side): (usize, Side),
+    ) -> Vec<ContactCell> {
+        let Ok(branch) = Branch::new(whisker, pole, side, grid.distance_mm[row]) else {
+            return Vec::new();
         };
-        let places: Vec<(f64, Side)> = places.collect();
-        let states = places.into_par_iter().flat_map_iter(states);
-        let is_inside = |state: &BranchPoint| state.stable && state.mark.is_none();
-        let states: Vec<BranchPoint> = states.filter(is_inside).collect();
-        let [moment_x, moment_y, force] = [
-            [true, true, false],
-            [true, false, true],
-            [false, true, true],
-        ]
-        .map(|measured| self.shared(&states, measured));
-        let rows = states
-            .iter()
-            .zip(moment_x)
-            .zip(moment_y.into_iter().zip(force));
-        let row =
-            |((state, moment_x), (moment_y, force)): ((&BranchPoint, Shared), (Shared, Shared))| {
-                SharedState {
-                    distance_mm: state.distance_mm,
-                    side: state.side,
-                    push_angle_deg: state.push_angle_deg,
-                    arc_length_mm: state.arc_length_mm,
-                    moment_x_states: moment_x.0,
-                    moment_x_condition: moment_x.1,
-                    moment_y_states: moment_y.0,
-                    moment_y_condition: moment_y.1,
-                    force_states: force.0,
-                    force_condition: force.1,
-                }
+        let columns = grid.push_angle_deg.iter().enumerate();
+        let columns = columns.filter(|(_, push_deg)| side.sign() * **push_deg > 0.0);
+        let states = columns.filter_map(|(column, push_deg)| {
+            let state = branch.state(push_deg.to_radians(), true).ok()?;
+            Some((column, state))
+        });
+        let states: Vec<(usize, StateAtPush)> = states.collect();
+        let own = &self.sides[usize::from(side == Side::Cb)];
+        let points = states.iter().map(|(_, state)| (state.tau, state.load));
+        let variations: Vec<FirstVariation> = Batch::new(self.method).shoot_at(&own.rod, points);
+        let cell = |((column, state), here): (&(usize, StateAtPush), FirstVariation)| {
+            let at = DVec2::new(state.tau, state.load);
+            let columns = base_derivatives(&own.rod, at, &here);
+            let condition = |pair: usize| {
+                let [one, other] = PAIRS[pair];
+                let measured = DVec3::from(
+                    [0, 1, 2].map(|number| f64::from(u8::from(number == one || number == other))),
+                );
+                let [by_contact, by_load] = columns;
+                let det = by_contact[one] * by_load[other] - by_contact[other] * by_load[one];
+                let condition = Triangle::new(columns.map(|own| measured * own)).condition();
+                own.is_determined(pair).then_some(condition.copysign(det))
             };
-        rows.map(row).collect()
+            let reading = branch.read(state);
+            ContactCell {
+                row,
+                column: *column,
+                side,
+                arc_length_mm: reading.arc_length_mm,
+                reading: BaseReading {
+                    moment_nnm: Some(reading.base_moment_nnm),
+                    force_x_un: Some(reading.base_force_un.x),
+                    force_y_un: Some(reading.base_force_un.y),
+                    angle_deg: None,
+                },
+                conditions: ORDER.map(condition),
+            }
+        };
+        states.iter().zip(variations).map(cell).collect()
     }
 
-    /// Returns the number of states with the `measured` numbers of each of the `states`, and the condition of the state, `[state]`.
-    fn shared(&self, states: &[BranchPoint], measured: [bool; 3]) -> Vec<Shared> {
-        let [moment, x, y] = measured;
-        let reading = |state: &BranchPoint| BaseReading {
-            moment_nnm: moment.then_some(state.base_moment_nnm),
-            force_x_un: x.then_some(state.base_force_x_un),
-            force_y_un: y.then_some(state.base_force_y_un),
-            angle_deg: None,
-        };
-        let readings: Vec<BaseReading> = states.iter().map(reading).collect();
-        let located = self.locate(&readings, None);
+    /// Returns the number of states that share a pair of numbers of each of the `cells`, by the index of the pair in [`PAIRS`]: `[cell]`.
+    fn counts(&self, cells: &[ContactCell], pair: usize) -> Vec<usize> {
+        let readings = cells.iter().map(|cell| {
+            let mut reading = cell.reading;
+            let numbers = [
+                &mut reading.moment_nnm,
+                &mut reading.force_x_un,
+                &mut reading.force_y_un,
+            ];
+            let others = numbers.into_iter().enumerate();
+            for (_, number) in others.filter(|(number, _)| !PAIRS[pair].contains(number)) {
+                *number = None;
+            }
+            reading
+        });
+        let located = self.locate(&readings.collect::<Vec<_>>(), None);
         let rows = located.chunk_by(|one, other| one.reading == other.reading);
-        let of_state = |(state, rows): (&BranchPoint, &[LocatedState])| {
-            let off = |row: &&LocatedState| {
-                let push = row
-                    .push_angle_deg
-                    .map(|own| (own - state.push_angle_deg).abs());
-                let is_other = row.side != Some(state.side);
-                (is_other, push.unwrap_or(f64::INFINITY))
-            };
-            let nearest = rows.iter().min_by(|one, other| {
-                let [one, other] = [off(one), off(other)];
-                one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
-            });
-            let nearest = nearest.copied();
-            (rows[0].states, nearest.and_then(|row| row.condition))
-        };
-        states.iter().zip(rows).map(of_state).collect()
+        rows.map(|rows| rows[0].states).collect()
     }
 }
 
-/// Number of states with the same numbers, and the condition of a state.
-type Shared = (usize, Option<f64>);
+/// Returns the segments of the singular line of a pair of numbers, by its index in [`ORDER`]: in each square of four neighbouring cells, the line on which the inverse of
+/// the signed condition, linear between the cells, is 0.
+fn singular(grid: &Grid, cells: &[ContactCell], pair: usize) -> Vec<[[f64; 2]; 2]> {
+    let columns = grid.push_angle_deg.len();
+    let mut inverses = vec![None; columns * grid.distance_mm.len()];
+    for cell in cells {
+        let inverse = cell.conditions[pair].map(|condition| (cell.side, 1.0 / condition));
+        inverses[cell.row * columns + cell.column] = inverse;
+    }
+    let mut segments = Vec::new();
+    for row in 1..grid.distance_mm.len() {
+        for column in 1..columns {
+            // The corners of the square, one after the other around it.
+            let corners = [
+                [row - 1, column - 1],
+                [row - 1, column],
+                [row, column],
+                [row, column - 1],
+            ];
+            let known = corners.map(|[row, column]| inverses[row * columns + column]);
+            let [Some((side, _)), ..] = known else {
+                continue;
+            };
+            let known = known.map(|own| own.filter(|(own, _)| *own == side));
+            let mut ends = (0..4).filter_map(|i| {
+                let next = (i + 1) % 4;
+                let [from, to] = [known[i]?.1, known[next]?.1];
+                let place = |[row, column]: [usize; 2]| {
+                    DVec2::new(grid.push_angle_deg[column], grid.distance_mm[row])
+                };
+                let [start, end] = [corners[i], corners[next]].map(place);
+                let is_crossed = (from < 0.0) != (to < 0.0);
+                is_crossed.then(|| start.lerp(end, from / (from - to)).to_array())
+            });
+            while let (Some(one), Some(other)) = (ends.next(), ends.next()) {
+                segments.push([one, other]);
+            }
+        }
+    }
+    segments
+}

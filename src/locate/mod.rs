@@ -9,7 +9,7 @@ mod map;
 mod newton;
 mod readings;
 
-pub use map::SharedState;
+pub use map::{SharedMap, SharedState};
 pub use readings::{BaseReadings, MOST_ANGLE, MOST_LOAD};
 
 use crate::newton::{BatchNewton, NewtonOutcome};

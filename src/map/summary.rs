@@ -88,6 +88,8 @@ pub struct Summary {
     pub worst_residual: f64,
     /// Number of cells whose own verdict contradicts the boundary of their row.
     pub disagreements: u64,
+    /// Number of cells of rows of the table that have no whisker; they are unresolved, too.
+    pub without_whisker: u64,
     /// Number of cells with a state whose contact slides toward the base.
     pub toward_base: u64,
     /// Number of cells with a state whose contact sticks.
@@ -137,6 +139,7 @@ impl Summary {
             self.steps += part.steps;
             self.worst_residual = self.worst_residual.max(part.worst_residual);
             self.disagreements += part.disagreements;
+            self.without_whisker += part.without_whisker;
             self.toward_base += part.toward_base;
             self.sticking += part.sticking;
         }
@@ -154,6 +157,7 @@ impl Summary {
         }
         self.worst_residual = worst.into();
         self.disagreements = of(statuses, Status::Disagreement.code());
+        self.without_whisker = of(statuses, Status::NoWhisker.code());
         self.toward_base = of(statuses, Status::TowardBase.code());
         self.sticking = of(statuses, Status::Sticking.code());
         self.steps = steps.iter().copied().map(u64::from).sum();
@@ -169,6 +173,12 @@ impl Summary {
     #[must_use]
     pub fn unresolved(&self) -> u64 {
         self.regimes[Regime::ALL.len() - 1]
+    }
+
+    /// Returns the numbers of cells without a regime and of all cells of existing whiskers: `[unresolved, all]`.
+    #[must_use]
+    pub fn unresolved_of_all(&self) -> [u64; 2] {
+        [self.unresolved(), self.cells()].map(|cells| cells - self.without_whisker)
     }
 
     /// Returns the wall seconds of `stage`. All stages but [`Stage::Packing`] follow each other.

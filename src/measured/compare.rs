@@ -103,6 +103,11 @@ impl MeasuredPoints {
     /// Compares the points with the detachments of `whisker` at `pole`. Rows of points with a missing value have no prediction.
     #[must_use]
     pub fn beside(&self, whisker: &Whisker, pole: &Pole) -> Comparison {
+        self.with_incomplete(self.compared(whisker, pole))
+    }
+
+    /// Returns compared points together with those that have a missing value, in the order of the file.
+    pub(super) fn with_incomplete(&self, mut rows: Vec<ComparedPoint>) -> Comparison {
         let known = |number: f64| Some(number).filter(|number| !number.is_nan());
         let incomplete = self.incomplete.iter().map(|point| ComparedPoint {
             line: point.line,
@@ -116,7 +121,6 @@ impl MeasuredPoints {
             residual_deg: None,
             reason: Some(NotCompared::Missing),
         });
-        let mut rows = self.compared(whisker, pole);
         rows.extend(incomplete);
         rows.sort_by_key(|row| row.line);
         Comparison { rows }

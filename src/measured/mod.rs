@@ -2,6 +2,7 @@
 
 mod compare;
 mod read;
+mod whiskers;
 
 pub use compare::{ComparedPoint, Comparison, NotCompared};
 
@@ -19,6 +20,8 @@ pub struct MeasuredPoints {
     pub angle: MeasuredAngle,
     /// True if the file of points gives standard deviations.
     pub have_deviations: bool,
+    /// Names of the whiskers to which the points belong, each once, in the order of the file: `[whisker]`. Empty if the file names none.
+    pub whiskers: Vec<String>,
     /// Measured points with all of their values, at least one: `[point]`.
     pub points: Vec<MeasuredPoint>,
     /// Measured points with a missing value, which is NaN. They are not compared: `[point]`.
@@ -30,6 +33,8 @@ pub struct MeasuredPoints {
 pub struct MeasuredPoint {
     /// Line of the measured point in its file, from 1.
     pub line: usize,
+    /// Index of the point's whisker in [`MeasuredPoints::whiskers`]; 0 without names.
+    pub whisker: usize,
     /// Side of the whisker that the pole is on.
     pub side: Side,
     /// Distance from the base to the contact at first touch, in millimetres.

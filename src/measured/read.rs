@@ -16,20 +16,21 @@ const NEEDED: [&[&str]; 3] = [
 ];
 
 /// Optional columns of a file.
-const OPTIONAL: [&str; 2] = ["kind", "sd_deg"];
+const OPTIONAL: [&str; 3] = ["kind", "sd_deg", "whisker"];
 
 /// Least standard deviation of an angle, in degrees: far below what any instrument resolves.
 const LEAST_SD_DEG: f64 = 1e-6;
 
 impl MeasuredPoints {
     /// Names of the columns of a file of points, `[column]`.
-    pub const COLUMNS: [&str; 6] = [
+    pub const COLUMNS: [&str; 7] = [
         "side",
         "distance_mm",
         MeasuredAngle::Push.column(),
         MeasuredAngle::Chord.column(),
         OPTIONAL[0],
         OPTIONAL[1],
+        OPTIONAL[2],
     ];
 
     /// Reads the points of a CSV file; `-` is standard input.
@@ -90,6 +91,19 @@ impl MeasuredPoints {
         let turn = "a number between -360 and 360";
         let angles_deg =
             table.measurements(angle.column(), turn, |number| number.abs() <= 360.0)?;
+        let names = table.values("whisker", "the name of a whisker", |cell| {
+            Some(cell.to_owned()).filter(|name| !name.is_empty())
+        })?;
+        let mut whiskers: Vec<String> = Vec::new();
+        let mut index_of = |name: String| {
+            let index = whiskers.iter().position(|own| *own == name);
+            index.unwrap_or_else(|| {
+                whiskers.push(name);
+                whiskers.len() - 1
+            })
+        };
+        let indices: Option<Vec<usize>> =
+            names.map(|names| names.into_iter().map(&mut index_of).collect());
         let rows = table.lines().zip(sides.unwrap_or_default());
         let rows = rows.zip(
             distances_mm
@@ -101,6 +115,7 @@ impl MeasuredPoints {
             rows.enumerate().map(
                 |(i, ((line, side), (distance_mm, angle_deg)))| MeasuredPoint {
                     line,
+                    whisker: indices.as_ref().map_or(0, |all| all[i]),
                     side,
                     distance_mm,
                     angle_deg,
@@ -124,6 +139,7 @@ impl MeasuredPoints {
             note,
             angle,
             have_deviations: deviations_deg.is_some(),
+            whiskers,
             points,
             incomplete,
         })

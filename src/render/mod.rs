@@ -13,6 +13,7 @@ mod overlays;
 mod plots;
 mod row;
 mod sensitivities;
+mod shared;
 mod textures;
 
 pub use courses::{courses, forces};
@@ -25,9 +26,10 @@ pub use options::MapOptions;
 pub use overlays::{bands, error_bars, measured};
 pub use plots::{
     BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, branches, contacts,
-    curves, designs, shapes, shared_states,
+    curves, designs, shapes,
 };
 pub use sensitivities::sensitivities;
+pub use shared::shared_states;
 pub use textures::{STUCK, TIP, textures, tip_histogram, tip_lines};
 pub use whiskmap_plot::{
     Band, Chart, Disc, Dot, EncodeError, Fill, Ink, Inset, Line, Note, Picture, PictureFormat,

@@ -4,11 +4,11 @@
 
 use super::labels;
 use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
-use crate::locate::{LocatedState, Locator, SharedState};
+use crate::locate::{LocatedState, Locator};
 use crate::scene::digits;
 use crate::sensitivity::Variable;
 use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
-use whiskmap_plot::{Chart, Disc, Dot, Ink, Line, Plot, Stroke};
+use whiskmap_plot::{Disc, Dot, Ink, Line, Plot, Stroke};
 
 /// Axis of a plot of table rows: a label and the value of each row.
 #[derive(Clone, Copy, Debug)]
@@ -170,39 +170,6 @@ pub fn contacts(locator: &Locator, located: &[LocatedState]) -> Plot {
         })
     }));
     plot
-}
-
-/// Returns a chart of the states that two numbers at the base determine, or share with other states, a plot for each two of the numbers.
-#[must_use]
-pub fn shared_states(title: &str, states: &[SharedState]) -> Chart {
-    let plot = |name: &str, count: fn(&SharedState) -> usize| {
-        let mut plot = empty(name, labels::PUSH_ANGLE, labels::DISTANCE);
-        plot.dots.extend(states.iter().map(|state| {
-            let (ink, open, name) = match count(state) {
-                0 => (Ink::Grey, true, "undetermined"),
-                1 => (Ink::Black, false, "one state"),
-                2 => (Ink::Blue, true, "two states"),
-                _ => (Ink::Series(1), true, "more states"),
-            };
-            Dot {
-                at: [state.push_angle_deg, state.distance_mm],
-                ink,
-                open,
-                name: Some(name.to_owned()),
-            }
-        }));
-        plot
-    };
-    Chart {
-        plots: vec![
-            plot("moment and axial force", |state| state.moment_x_states),
-            plot("moment and transverse force", |state| state.moment_y_states),
-            plot("axial and transverse force", |state| state.force_states),
-        ],
-        title: title.to_owned(),
-        columns: 1,
-        ..Chart::default()
-    }
 }
 
 /// Returns a plot of the goal's quantity over the parameter of a design, with its solutions as dots. Axes with a wide range of positive

@@ -269,6 +269,14 @@ impl SweepPlace {
         axes.map(|(variable, value)| (variable.name(), variable.coordinate(*value)))
     }
 
+    /// Returns the name of the whisker in the table of whiskers; `None` without a table.
+    #[must_use]
+    pub fn whisker(&self) -> Option<&str> {
+        let mut axes = self.0.iter();
+        let named = axes.find_map(|(variable, value)| variable.names().get(row_of(*value)));
+        named.map(String::as_str)
+    }
+
     /// Returns the index of the whisker's row in the table of whiskers; `None` without a table.
     #[must_use]
     pub fn row(&self) -> Option<usize> {

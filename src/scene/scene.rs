@@ -103,6 +103,14 @@ impl Scene {
         self.builder.table.as_deref().unwrap_or_default()
     }
 
+    /// Returns true if a row of the table of whiskers gives the parameter, or what would give it: the scene's own number has no effect there.
+    pub(crate) fn has_column(&self, parameter: Parameter) -> bool {
+        self.table_rows().iter().any(|row| {
+            let mut numbers = row.numbers().iter();
+            numbers.any(|(own, _)| own.key() == parameter.key()) || row.replaces(parameter)
+        })
+    }
+
     /// Returns the paths of the CSV files that the scene names, of radii and of traced points: `[file]`.
     #[must_use]
     pub fn csv_files(&self) -> &[PathBuf] {

@@ -5,7 +5,7 @@
 
 use super::layout::{SAMPLE_BYTES, sample_type};
 use super::{ChannelValues, StoreError};
-use crate::classify::Regime;
+use crate::classify::{Regime, Status};
 use crate::engine::{Engine, EngineDescription};
 use crate::map::{self, Panel};
 use crate::plan::Plan;
@@ -179,10 +179,12 @@ impl ComputedMap {
                 {
                     kept.remove(&oldest);
                 }
-                let codes = panel.regime.iter();
-                let cells = codes
-                    .filter(|code| **code == Regime::Unresolved.code())
-                    .count();
+                // Rows without a whisker have their reason before the map.
+                let codes = panel.regime.iter().zip(&panel.status);
+                let is_open = |(regime, status): &(&u32, &u32)| {
+                    **regime == Regime::Unresolved.code() && **status != Status::NoWhisker.code()
+                };
+                let cells = codes.filter(is_open).count();
                 if cells > 0 {
                     unresolved.insert(whisker, cells as u64);
                 }

@@ -12,7 +12,7 @@ use glam::DVec2;
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{Rest, Side, Units};
-use whiskmap_mechanics::shooting::batch::Method;
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{PeakStrain, Reader, Reading};
 
 /// Number of points that are computed between two looks at the flag that cancels.
@@ -207,17 +207,22 @@ impl Branch {
             states.extend(self.pushed(nodes)?);
         }
         states.extend(self.beyond_fold(&nodes[stable..]));
+        let mut peaks = Vec::with_capacity(states.len());
+        for states in states.chunks(POINTS_AT_ONCE) {
+            go_on()?;
+            peaks.extend(self.peaks(states));
+        }
         let is_detachment =
             |mark: &BranchMark| matches!(mark, BranchMark::SlipOff | BranchMark::PullOff);
         let snaps_deg = self.snaps_deg();
-        let points = marked.iter().zip(states).enumerate();
-        let points = points.map(|(i, ((_, mark), state))| {
+        let points = marked.iter().zip(states.iter().zip(peaks)).enumerate();
+        let points = points.map(|(i, ((_, mark), (state, peak)))| {
             go_on()?;
             let mark = mark.filter(|mark| self.detaches() || !is_detachment(mark));
             let point = BranchPoint {
                 mark,
                 snaps_deg: mark.filter(is_detachment).and(snaps_deg),
-                ..self.point(&state, i < stable)
+                ..self.point(state, peak, i < stable)
             };
             Ok((state.node.point, point))
         });
@@ -266,12 +271,25 @@ impl Branch {
         std::iter::once(0.0).chain(rest).collect()
     }
 
-    /// Returns `state` as a point without a mark.
-    pub(super) fn point(&self, state: &BranchState, stable: bool) -> BranchPoint {
+    /// Returns the largest bending strains of `states`, `[state]`.
+    pub(super) fn peaks(&self, states: &[BranchState]) -> Vec<PeakStrain> {
+        let rods: Vec<_> = states.iter().map(|state| self.rod(state.ratio)).collect();
+        let conditions = rods
+            .iter()
+            .zip(states)
+            .map(|(rod, state)| InitialCondition {
+                rod,
+                tau: state.node.point.x,
+                load: state.node.point.y,
+            });
+        Batch::new(self.level.method).shoot(&conditions.collect::<Vec<_>>())
+    }
+
+    /// Returns `state` with its largest bending strain as a point without a mark.
+    pub(super) fn point(&self, state: &BranchState, peak: PeakStrain, stable: bool) -> BranchPoint {
         let LevelCurve { side, row, .. } = &self.level;
         let (node, rod) = (&state.node, &self.rod(state.ratio));
         let reading = self.reading(state);
-        let peak = PeakStrain::new(rod, node.point.x, node.point.y, FINER);
         BranchPoint {
             distance_mm: self.distance_mm,
             side: *side,

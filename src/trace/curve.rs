@@ -169,8 +169,12 @@ pub(crate) fn detachments(
     };
     let ends = crossings(&sheet);
     let points = ends.iter().flatten().map(|end| (end.tau, end.load));
-    let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points);
-    let mut states = states.into_iter();
+    let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points.clone());
+    let peaks: Vec<PeakStrain> = match has_strain {
+        true => Batch::new(method.doubled()).shoot_at(rod, points),
+        false => Vec::new(),
+    };
+    let (mut states, mut peaks) = (states.into_iter(), peaks.into_iter());
     let slidings = match has_strain {
         true => slidings(&sheet),
         false => vec![None; distances.len()],
@@ -190,10 +194,7 @@ pub(crate) fn detachments(
                 let reading = reader.read(end.tau, full, row.touch, push);
                 (push.to_degrees(), end.residual + off, reading)
             });
-            let peak = reached
-                .as_ref()
-                .filter(|_| has_strain)
-                .map(|(end, _)| PeakStrain::new(rod, end.tau, end.load, resolution.doubled()));
+            let peak = reached.as_ref().and_then(|_| peaks.next());
             let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
             let end = Detachment {
                 side,

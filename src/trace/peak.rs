@@ -1,11 +1,9 @@
 //! Largest loads during a push.
 
-use super::contact::BranchState;
 use super::resample::interpolate;
-use super::{Branch, FINER, StableBranch};
+use super::{Branch, StableBranch};
 use crate::sheet::{CurveNode, ON_CURVE};
 use whiskmap_mechanics::numerics::least_between;
-use whiskmap_mechanics::shooting::PeakStrain;
 
 /// Largest excess of a maximum over the value at the end, relative to this, with which it counts as that at the end.
 const AT_END: f64 = 1e-9;
@@ -94,15 +92,11 @@ impl StableBranch {
     /// Returns the size of a load at a node; NaN if the contact's course to it is not found.
     fn size(&self, node: &CurveNode, load: PushLoad) -> f64 {
         let states = self.0.pushed(std::slice::from_ref(node));
-        let size = |state: &BranchState| match load {
-            PushLoad::ContactForce => self.0.reading(state).contact_force_un(),
-            PushLoad::BaseMoment => self.0.reading(state).base_moment_nnm.abs(),
-            PushLoad::Strain => {
-                let (rod, [tau, load]) = (&self.0.rod(state.ratio), state.node.point.to_array());
-                PeakStrain::new(rod, tau, load, FINER).strain * self.0.units.strain
-            }
-        };
-        states.map_or(f64::NAN, |states| size(&states[0]))
+        states.map_or(f64::NAN, |states| match load {
+            PushLoad::ContactForce => self.0.reading(&states[0]).contact_force_un(),
+            PushLoad::BaseMoment => self.0.reading(&states[0]).base_moment_nnm.abs(),
+            PushLoad::Strain => self.0.peaks(&states)[0].strain * self.0.units.strain,
+        })
     }
 }
 

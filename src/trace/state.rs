@@ -53,7 +53,9 @@ impl Branch {
     /// Returns `state` as a point of the branch without a mark.
     #[must_use]
     pub fn point_of(&self, state: &StateAtPush) -> BranchPoint {
-        self.point(&state.on_branch(), state.stable)
+        let on_branch = state.on_branch();
+        let peak = self.peaks(std::slice::from_ref(&on_branch))[0];
+        self.point(&on_branch, peak, state.stable)
     }
 
     /// Returns the state at the signed `push`, in radians, on the stable or the unstable part of the branch.

@@ -70,7 +70,7 @@ fn names_of_columns_that_do_not_fit_are_refused() {
         (
             "distanze=d",
             "table.csv:1: columns distanze=d: `distanze` is not known; must be one of side, distance_mm, push_angle_deg, \
-             push_chord_deg, kind, sd_deg; did you mean `distance_mm`?",
+             push_chord_deg, kind, sd_deg, whisker; did you mean `distance_mm`?",
         ),
         (
             "distance=e",
@@ -99,6 +99,35 @@ fn names_of_columns_that_do_not_fit_are_refused() {
             .run(&[&curve[..], &[names]].concat())
             .assert_refused(&[said]);
     }
-    let no_table = ["curve", "scene.toml", "--columns", "distance=d"];
-    place.run(&no_table).assert_refused(&["--data <FILE>"]);
+}
+
+/// Without a table there are no columns, whatever else the command has.
+#[test]
+fn names_of_columns_need_a_table() {
+    let place = Place::with(SCENE);
+    let commands: [(&[&str], &str); 6] = [
+        (&["curve", "scene.toml"], "<--data <FILE>>"),
+        (
+            &["fit", "scene.toml", "--free", "length_mm"],
+            "--data <FILE>",
+        ),
+        (&["explore", "scene.toml"], "<--data <FILE>>"),
+        (
+            &["texture", "scene.toml", "--sine", "1deg,1,1"],
+            "<--angles <FILE>>",
+        ),
+        (
+            &["locate", "scene.toml", "--base-moment", "60nNm"],
+            "<--readings <FILE>>",
+        ),
+        (
+            &["reproduce", "figures"],
+            "<--fig4d <FILE>|--fig5c-left <FILE>|--fig5c-right <FILE>>",
+        ),
+    ];
+    for (command, options) in commands {
+        let said = place.run(&[command, &["--columns", "distance=d"]].concat());
+        said.assert_refused(&["required arguments were not provided", options]);
+    }
+    assert!(!place.path("figures").exists());
 }

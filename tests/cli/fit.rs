@@ -350,3 +350,55 @@ fn points_with_a_missing_number_are_left_out() {
         "points.csv: has no row with all of its values: must have at least one with side, distance_mm, push_angle_deg or push_chord_deg",
     ]);
 }
+
+/// Points of two whiskers of a table: both together, and those of one alone.
+#[test]
+fn points_of_whiskers_share_the_fitted_values() {
+    let place = place();
+    let table = "[whiskers]\ntable = [{ name = \"C1\", length_mm = 20 }, { name = \"C2\", length_mm = 24 }]\n";
+    let scene = SCENE.replace("length_mm = 20\n", "");
+    assert_ne!(scene, SCENE);
+    place.write("scene.toml", &format!("{scene}{table}"));
+    let mut text = "whisker,side,distance_mm,push_angle_deg\n".to_owned();
+    for (name, distance) in [("C1", "9"), ("C2", "12"), ("C1", "12"), ("C2", "8")] {
+        let at = ["--at", &format!("whisker={name}"), "--distance", distance];
+        let csv = place.run(&[&["curve", "scene.toml"], &at[..]].concat()).out;
+        let mut lines = csv.lines().map(|line| line.split(','));
+        let header: Vec<&str> = lines.next().unwrap().collect();
+        let column = |name: &str| header.iter().position(|own| *own == name).unwrap();
+        for line in lines {
+            let cells: Vec<&str> = line.collect();
+            let push_deg = cells[column("push_angle_deg")];
+            text += &format!("{name},{},{distance},{push_deg}\n", cells[column("side")]);
+        }
+    }
+    place.write("points.csv", &text);
+    let free = ["--free", "tip_radius_um,pole_radius_mm"];
+    let files = ["-o", "fitted.toml", "--json", "fit.json"];
+    fit(&place, &[&free[..], &files].concat());
+    let found = json(&place, "fit.json");
+    assert_eq!(found["points"].as_array().unwrap().len(), 8);
+    let start = Scene::read(place.path("scene.toml")).unwrap();
+    let tip_um = found["values"]["tip_radius_um"].as_f64().unwrap();
+    assert!((tip_um / start.whisker.tip_radius_um - 1.0).abs() < 1e-6);
+    let fitted = Scene::read(place.path("fitted.toml")).unwrap();
+    assert_eq!(fitted.whisker.tip_radius_um, tip_um);
+    assert_eq!(fitted.table_rows(), start.table_rows());
+    fit(
+        &place,
+        &[&free[..], &files, &["--at", "whisker=C2"]].concat(),
+    );
+    assert_eq!(
+        json(&place, "fit.json")["points"].as_array().unwrap().len(),
+        4
+    );
+    let curve = ["curve", "scene.toml", "--data", "points.csv"];
+    let beside = place.run(&[&curve[..], &["--at", "whisker=C1"]].concat());
+    assert_eq!((beside.code, beside.out.lines().count()), (Some(0), 5));
+    place
+        .run(&curve)
+        .assert_refused(&["curve --data needs one; select it by --at whisker=VALUE"]);
+    place
+        .run(&["reproduce", "figures", "--fig4d", "points.csv"])
+        .assert_refused(&["--fig4d points.csv: has a column whisker"]);
+}

@@ -103,11 +103,14 @@ fn figures_show_measured_points() {
         picture.matches("<circle").count()
     };
     good(&place, &["reproduce", "theory"]);
-    place.write(
+    place.write("points.csv", "side,d,angle\ncb,9,21\ncf,9,-33\n");
+    let points = [
+        "--fig4d",
         "points.csv",
-        "side,distance_mm,push_angle_deg\ncb,9,21\ncf,9,-33\n",
-    );
-    good(&place, &["reproduce", "both", "--fig4d", "points.csv"]);
+        "--columns",
+        "distance=d,push=angle",
+    ];
+    good(&place, &[&["reproduce", "both"], &points[..]].concat());
     // Two points, and one in the legend.
     assert_eq!(circles("both"), circles("theory") + 3);
     place.write("chord.csv", "side,distance_mm,push_chord_deg\ncb,9,21\n");

@@ -30,6 +30,7 @@ fn maps_name_their_whiskers() {
     let place = place();
     let run = place.map(&["scene.toml", "-o", "."]);
     assert!(run.err.contains(&format!("warning: {REFUSED}")), "{run:?}");
+    assert!(!run.err.contains("are unresolved"), "{run:?}");
     place.map(&["scene.toml", "-o", ".", "--format", "zarr"]);
     let map = StoredMap::open(&place.path("scene.exr")).unwrap();
     assert_eq!(map.grid.sweep[0].variable.names(), ["C1", "C2", "C3"]);
@@ -58,6 +59,7 @@ fn maps_name_their_whiskers() {
         let run = place.run(&part);
         assert_eq!(run.code, Some(0), "{run:?}");
         assert!(run.err.contains("whisker = C3"), "{run:?}");
+        assert!(!run.err.contains("are unresolved"), "{run:?}");
         let table = String::from_utf8(place.bytes("c3.csv")).unwrap();
         let mut lines = table.lines();
         assert!(
@@ -94,8 +96,11 @@ fn maps_name_their_whiskers() {
         "regime=0,force_un=0",
     ]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    let run = place.run(&["render", "scene.zarr", "-o", "pad.svg"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    for source in ["scene.toml", "scene.zarr"] {
+        let run = place.run(&["render", source, "-o", "pad.svg"]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        assert!(!run.err.contains("are unresolved"), "{run:?}");
+    }
     let picture = String::from_utf8(place.bytes("pad.svg")).unwrap();
     assert!(picture.contains(">C2<") && picture.contains("whisker"));
 }

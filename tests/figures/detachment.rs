@@ -52,6 +52,7 @@ fn detachment_curves_enclose_the_stable_region() {
 fn measured_ends_are_circles_over_the_theory() {
     let end = |angle_deg, kind| MeasuredPoint {
         line: 1,
+        whisker: 0,
         side: Side::of_push(angle_deg),
         distance_mm: 9.0,
         angle_deg,

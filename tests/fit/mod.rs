@@ -9,6 +9,7 @@ mod refused;
 mod robust;
 mod start;
 mod verdict;
+mod whiskers;
 
 use whiskmap::Side;
 use whiskmap::measured::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
@@ -34,6 +35,7 @@ fn detachments(scene: &Scene, angle: MeasuredAngle, distances_mm: &[f64]) -> Mea
     let ends = Side::BOTH.into_iter().flat_map(side);
     let points = ends.enumerate().map(|(i, end)| MeasuredPoint {
         line: i + 2,
+        whisker: 0,
         side: end.side,
         distance_mm: end.distance_mm,
         angle_deg: match angle {
@@ -48,6 +50,7 @@ fn detachments(scene: &Scene, angle: MeasuredAngle, distances_mm: &[f64]) -> Mea
         note: None,
         angle,
         have_deviations: false,
+        whiskers: Vec::new(),
         points: points.collect(),
         incomplete: Vec::new(),
     }

@@ -1,6 +1,7 @@
 //! Parameters of a scene with one whisker and a few pole distances, in whisker lengths.
 #![allow(dead_code, reason = "each test program uses a part of this module")]
 
+use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write;
 use whiskmap::engine::Engine;
 use whiskmap::map::{Panel, Summary};
@@ -17,6 +18,8 @@ pub struct Case {
     pub friction: f64,
     pub tip_to_base: f64,
     pub stretch: f64,
+    /// Turn of the base in its follicle under the moment `E I_base/L_w`, in radians; 0 for a clamp.
+    pub compliance: f64,
     /// Measured radii that replace the taper, as `[arclength, radius]` over length and base radius; empty for a cone.
     pub rows: Vec<[f64; 2]>,
     pub pushes_deg: Vec<f64>,
@@ -56,6 +59,15 @@ impl Case {
         if self.tip_to_base != 1.0 {
             let ratio = self.tip_to_base;
             let _ = writeln!(text, "[whisker.modulus_gradient]\ntip_to_base = {ratio:?}");
+        }
+        if self.compliance > 0.0 {
+            // `E I_base/L_w` in nN m.
+            let moment = 3e18 * FRAC_PI_4 * (1e-6 * base_um).powi(4) / (1e-3 * length);
+            let stiffness = moment / self.compliance;
+            let _ = writeln!(
+                text,
+                "[whisker.follicle]\nstiffness_nnm_per_rad = {stiffness:?}"
+            );
         }
         if self.pole > 0.0 {
             let radius = self.pole * length;

@@ -107,6 +107,7 @@ fn whiskers() -> impl Strategy<Value = Case> {
                 friction,
                 tip_to_base,
                 stretch: 1.0,
+                compliance: 0.0,
                 rows,
                 pushes_deg: vec![0.0],
                 distances,

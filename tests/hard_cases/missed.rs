@@ -21,6 +21,7 @@ fn cylinder(bend: f64, friction: f64, tip_to_base: f64, distance: f64) -> Case {
         friction,
         tip_to_base,
         stretch: 1.0,
+        compliance: 0.0,
         rows: Vec::new(),
         pushes_deg: vec![0.0],
         distances: vec![distance],
@@ -108,6 +109,7 @@ fn close_folds_are_not_missed() {
             friction: 0.0,
             tip_to_base: 1.0 + gradient,
             stretch: 1.0,
+            compliance: 0.0,
             rows: Vec::new(),
             pushes_deg: vec![0.0],
             distances: [0.5, 0.8, 0.9, 0.95, 0.98, 1.0, 1.02, 1.05]

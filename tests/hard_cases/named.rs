@@ -11,6 +11,7 @@ const PLAIN: Case = Case {
     friction: 0.0,
     tip_to_base: 1.0,
     stretch: 1.0,
+    compliance: 0.0,
     rows: Vec::new(),
     pushes_deg: Vec::new(),
     distances: Vec::new(),
@@ -154,6 +155,21 @@ pub fn named() -> Vec<(&'static str, Case)> {
             "cylinder, stiff tip, friction 0.5",
             Case {
                 tip_to_base: 10.0,
+                friction: 0.5,
+                ..PLAIN
+            },
+        ),
+        (
+            "soft follicle",
+            Case {
+                compliance: 0.3,
+                ..cone.clone()
+            },
+        ),
+        (
+            "cylinder, soft follicle, friction 0.5",
+            Case {
+                compliance: 0.2,
                 friction: 0.5,
                 ..PLAIN
             },

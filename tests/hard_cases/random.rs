@@ -59,6 +59,7 @@ pub fn cases() -> impl Strategy<Value = Case> {
                 friction,
                 tip_to_base,
                 stretch: 1.0,
+                compliance: 0.0,
                 rows: Vec::new(),
                 pushes_deg,
                 distances,

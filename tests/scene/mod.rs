@@ -87,6 +87,7 @@ fn every_shipped_scene_is_accepted() {
         "fig4_whisker",
         "fig5_left",
         "fig5_right",
+        "follicle",
         "friction",
         "measured",
         "morphology",

@@ -1,27 +1,21 @@
 //! Arguments of commands over time: the course of the angle of the base.
 
 use super::arguments::{angle, length};
+use super::data::ColumnArgs;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use whiskmap::input::{ColumnName, CsvTable};
 use whiskmap::scene::digits;
 use whiskmap::whisk::AngleCourse;
 
 #[derive(Debug, Args)]
 pub struct CourseArgs {
     /// CSV file of the angle over time, with the columns time_s and angle_deg; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with = "sine")]
+    #[arg(long, value_name = "FILE", group = "table", conflicts_with = "sine")]
     angles: Option<PathBuf>,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "angles"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     /// Sine of the angle: amplitude in degrees or with a unit, frequency in Hz, duration in s
     #[arg(long, value_name = "AMPLITUDE,HZ,SECONDS", allow_hyphen_values = true, value_parser = sine)]
     sine: Option<Sine>,
@@ -77,7 +71,7 @@ impl CourseArgs {
             return sine.map_err(|why| Failure::Input(format!("{}: {why}", self.source())));
         }
         let path = self.angles.as_deref().unwrap_or(Path::new(STDOUT));
-        let table = CsvTable::input(path)?.renamed(&self.columns, &AngleCourse::COLUMNS)?;
+        let table = self.columns.table(path, &AngleCourse::COLUMNS)?;
         let course = AngleCourse::of(&table)?;
         files.input(path);
         if let Some(note) = &course.note {

@@ -1,11 +1,32 @@
-//! Option `--data`: measured detachments, and messages about them.
+//! Tables that commands read: own names of columns, measured detachments, and messages about them.
 
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
+use clap::Args;
 use std::path::Path;
 use whiskmap::input::{ColumnName, CsvTable};
 use whiskmap::measured::{Comparison, MeasuredPoints};
 use whiskmap::scene::{digits, rounded};
+
+/// Option of all commands that read a table. In each of them, the options that name a table are the group `table`.
+#[derive(Debug, Args)]
+pub struct ColumnArgs {
+    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
+    #[arg(
+        long,
+        value_name = "NAME=OWN",
+        value_delimiter = ',',
+        requires = "table"
+    )]
+    columns: Vec<ColumnName>,
+}
+
+impl ColumnArgs {
+    /// Reads the table of the input `path`, whose columns have the names `expected` in place of own ones.
+    pub fn table(&self, path: &Path, expected: &[&str]) -> Result<CsvTable, Failure> {
+        Ok(CsvTable::input(path)?.renamed(&self.columns, expected)?)
+    }
+}
 
 /// Returns an error if both the scene and the points are standard input.
 pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
@@ -16,14 +37,14 @@ pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads measured points from the input `path`, of which columns may have own names. Prints unused columns, and the number of points with a missing value, and of those whose angle
-/// has the other side's sign.
+/// Reads measured points from the input `path`, whose `columns` may have own names. Prints unused columns, the number of points with a
+/// missing value, and that of points whose angle has the other side's sign.
 pub fn read(
     files: &mut Files,
     path: &Path,
-    columns: &[ColumnName],
+    columns: &ColumnArgs,
 ) -> Result<MeasuredPoints, Failure> {
-    let table = CsvTable::input(path)?.renamed(columns, &MeasuredPoints::COLUMNS)?;
+    let table = columns.table(path, &MeasuredPoints::COLUMNS)?;
     let points = MeasuredPoints::of(&table)?;
     files.input(path);
     if let Some(note) = &points.note {

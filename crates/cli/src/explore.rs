@@ -1,6 +1,6 @@
 //! Command `whiskmap explore`.
 
-use super::data;
+use super::data::{self, ColumnArgs};
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::outputs::write;
@@ -10,7 +10,6 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use whiskmap::Side;
-use whiskmap::input::ColumnName;
 use whiskmap::measured::{MeasuredPoint, MeasuredPoints};
 use whiskmap::store::MapSource;
 use whiskmap::terminal::StandardOutput;
@@ -42,16 +41,10 @@ pub struct ExploreArgs {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Put measured detachments on the page, in the format of curve --data
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "table")]
     data: Option<PathBuf>,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "data"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     /// Do not open the browser
     #[arg(long)]
     no_open: bool,
@@ -69,8 +62,8 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
     };
     let points = args.data.as_deref().map(|data| {
         data::check_stdin(path, data)?;
-        let points = data::read(files, data, &args.columns)?;
         let whisker = scene.first_whisker();
+        let points = data::read(files, data, &args.columns)?.at(&whisker.place)?;
         points.check_reach(&whisker.whisker, &whisker.pole)?;
         Ok::<_, Failure>(json!({ "name": points.origin, "csv": csv(&points) }))
     });

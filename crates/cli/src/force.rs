@@ -1,6 +1,7 @@
 //! Command `whiskmap force`.
 
 use super::arguments::{column_help, span};
+use super::data::ColumnArgs;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::OutputArgs;
@@ -9,7 +10,6 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{self, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until};
-use whiskmap::input::{ColumnName, CsvTable};
 use whiskmap::render::forces as chart;
 
 const EXAMPLES: &str = "\
@@ -39,16 +39,10 @@ pub struct ForceArgs {
     #[command(flatten)]
     whisker: WhiskerArgs,
     /// CSV file of the curvature over time; - is standard input
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "table")]
     frames: PathBuf,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "frames"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     /// Compute the state of the full model instead of the moment over the lever
     #[arg(long)]
     model: bool,
@@ -69,7 +63,9 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         true => ForceMethod::Model,
         false => ForceMethod::Lever,
     };
-    let table = CsvTable::input(&args.frames)?.renamed(&args.columns, &CurvatureFrames::COLUMNS)?;
+    let table = args
+        .columns
+        .table(&args.frames, &CurvatureFrames::COLUMNS)?;
     let read = CurvatureFrames::of(&table, whisker.length_mm, method)?;
     files.input(&args.frames);
     if let Some(note) = &read.note {

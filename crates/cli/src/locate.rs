@@ -1,13 +1,14 @@
 //! Command `whiskmap locate`.
 
 use super::arguments::column_help;
+use super::data::ColumnArgs;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
 use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
-use whiskmap::input::{ColumnName, CsvTable, Quantity};
+use whiskmap::input::Quantity;
 use whiskmap::locate::{
     self, BaseReading, BaseReadings, LocatedState, Locator, MOST_ANGLE, MOST_LOAD,
     SensorDeviations, SharedState,
@@ -19,7 +20,7 @@ const EXAMPLES: &str = "\
 Examples:
   whiskmap locate scenes/cone.toml --base-moment 60nNm --base-force-y 6uN --angle 30deg
   whiskmap locate scenes/cone.toml --readings scenes/readings.csv --moment-sd 0.5nNm --force-sd 0.05uN --plot locate.svg
-  whiskmap locate scenes/cone.toml --map --plot determined.svg
+  whiskmap locate scenes/cone.toml --map --plot determined.png
 
 FILE has at least two of the columns base_moment_nnm, base_force_x_un and base_force_y_un, and may have angle_deg, the angle of the base \
 in the laboratory. A number that was not measured is an empty cell. Moment and force are those of the pole on the base, in the frame of \
@@ -27,6 +28,9 @@ the base: the first axis is the base's tangent. In a follicle, the frame is that
 
 Each stable state with the numbers of a reading is a row. With all three numbers, it is the state nearest to them, by the standard \
 deviations if these are given.";
+
+/// Most push angles and distances of --map.
+const MAP_SIZE: [usize; 2] = [96, 48];
 
 /// Options of a single reading.
 const LOAD_OPTIONS: [&str; 4] = ["base_moment", "base_force_x", "base_force_y", "angle"];
@@ -40,20 +44,14 @@ const LOAD_OPTIONS: [&str; 4] = ["base_moment", "base_force_x", "base_force_y", 
 pub struct LocateArgs {
     #[command(flatten)]
     whisker: WhiskerArgs,
-    /// Show where two numbers determine the contact, and where several states share them
+    /// Show where two numbers determine the contact, and where several states share them, over the push angles and distances of the scene
     #[arg(long, conflicts_with_all = LOAD_OPTIONS, conflicts_with_all = ["readings", "moment_sd", "force_sd"])]
     map: bool,
     /// CSV file of readings of the sensor; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = LOAD_OPTIONS)]
+    #[arg(long, value_name = "FILE", group = "table", conflicts_with_all = LOAD_OPTIONS)]
     readings: Option<PathBuf>,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "readings"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     /// Moment of the pole on the base, in nN m or with a unit, such as 0.3uNm: positive turns it to the left
     #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, value_parser = moment)]
     base_moment: Option<f64>,
@@ -133,7 +131,7 @@ impl LocateArgs {
             };
             return Ok(vec![reading]);
         };
-        let table = CsvTable::input(path)?.renamed(&self.columns, &BaseReadings::COLUMNS)?;
+        let table = self.columns.table(path, &BaseReadings::COLUMNS)?;
         let read = BaseReadings::of(&table)?;
         files.input(path);
         if let Some(note) = &read.note {
@@ -178,11 +176,17 @@ pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
     if args.map {
         let mut outputs = args.outputs.open(files)?;
         let locator = Locator::new(&whisker, &scene.pole);
-        let distances = &scene.grid.distance_mm;
-        let range = [distances[0], distances[distances.len() - 1]];
-        let states = locator.shared_states(&whisker, &scene.pole, range);
-        outputs.rows(&states)?;
-        return outputs.finish_chart(|| shared_states(&scene.title, &states), []);
+        let grid = &scene.thinned_to(MAP_SIZE, 1).grid;
+        let map = locator.shared_states(&whisker, &scene.pole, grid);
+        if map.states.is_empty() {
+            let why = "--map: no distance and push angle of the grid has a stable state";
+            return Err(Failure::Input(why.to_owned()));
+        }
+        outputs.rows(&map.states)?;
+        let is_straight = scene.is_straight();
+        return outputs.finish_picture(|size| {
+            Ok(shared_states(&scene.title, grid, &map, is_straight, size)?)
+        });
     }
     let readings = args.readings(files)?;
     let mut outputs = args.outputs.open(files)?;

@@ -163,12 +163,29 @@ impl OpenOutputs {
         chart: impl FnOnce() -> Chart,
         tables: impl IntoIterator<Item = PathBuf>,
     ) -> Result<(), Failure> {
+        self.finish_files(|file| file.chart(&chart()), tables)
+    }
+
+    /// Finishes the CSV table, draws a picture of the size of the plot, and prints the names of regular files.
+    pub fn finish_picture(
+        self,
+        picture: impl FnOnce(PictureSize) -> Result<Picture, Failure>,
+    ) -> Result<(), Failure> {
+        let draw = |file: PictureFile| {
+            let picture = picture(file.size)?;
+            file.write(&picture)
+        };
+        self.finish_files(draw, [])
+    }
+
+    fn finish_files(
+        self,
+        draw: impl FnOnce(PictureFile) -> Result<Option<PathBuf>, Failure>,
+        tables: impl IntoIterator<Item = PathBuf>,
+    ) -> Result<(), Failure> {
         let is_alone = self.table.as_ref().is_some_and(OutputTable::is_stdout);
         let table = self.table.map(OutputTable::finish).transpose()?;
-        let plot = self
-            .plot
-            .map(|picture| picture.chart(&chart()))
-            .transpose()?;
+        let plot = self.plot.map(draw).transpose()?;
         if is_alone {
             return Ok(());
         }

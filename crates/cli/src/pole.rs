@@ -18,9 +18,14 @@ pub struct WhiskerArgs {
 }
 
 impl WhiskerArgs {
+    /// Reads the scene, and the selected part of its sweep.
+    pub fn selected(&self, files: &mut Files) -> Result<Scene, Failure> {
+        self.selection.of_scene(&files.scene(&self.scene)?)
+    }
+
     /// Reads the scene of `command`, which needs one whisker.
     pub fn read(&self, files: &mut Files, command: &str) -> Result<Scene, Failure> {
-        let scene = self.selection.of_scene(&files.scene(&self.scene)?)?;
+        let scene = self.selected(files)?;
         check_single(&scene, command)?;
         // The values of axes and tables become those of the scene.
         Ok(scene.of_whisker(0)?)

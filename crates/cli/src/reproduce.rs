@@ -1,14 +1,13 @@
 //! Command `whiskmap reproduce`.
 
-use super::data;
+use super::data::{self, ColumnArgs};
 use super::failure::Failure;
 use super::files::Files;
 use super::outputs::{OutputTable, PictureFile};
 use super::size::SizeArgs;
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use whiskmap::input::ColumnName;
 use whiskmap::measured::{MeasuredAngle, MeasuredPoint};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::PictureFormat;
@@ -16,7 +15,7 @@ use whiskmap::scene::Whisker;
 use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
-#[command(after_help = "\
+#[command(group(ArgGroup::new("table").multiple(true)), after_help = "\
 Examples:
   whiskmap reproduce
   whiskmap reproduce /tmp/figures --size 180mm
@@ -30,22 +29,16 @@ pub struct ReproduceArgs {
     #[arg(value_name = "DIR", default_value = "outputs")]
     folder: PathBuf,
     /// Add measured detachments to Fig. 4D, in the format of curve --data: slip-offs as open circles, pull-offs as filled ones
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "table")]
     fig4d: Option<PathBuf>,
     /// Add measured detachments to the left panel of Fig. 5C
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "table")]
     fig5c_left: Option<PathBuf>,
     /// Add measured detachments to the right panel of Fig. 5C
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "table")]
     fig5c_right: Option<PathBuf>,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "points"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     #[command(flatten)]
     size: SizeArgs,
 }
@@ -53,7 +46,7 @@ pub struct ReproduceArgs {
 impl ReproduceArgs {
     fn measurements(&self, files: &mut Files) -> Result<Measurements, Failure> {
         let mut read = |option, path: &Option<_>, whisker| {
-            let table = path.as_deref().map(|path| (path, &self.columns[..]));
+            let table = path.as_deref().map(|path| (path, &self.columns));
             points(files, option, table, whisker)
         };
         Ok(Measurements {
@@ -69,13 +62,18 @@ impl ReproduceArgs {
 fn points(
     files: &mut Files,
     option: &str,
-    table: Option<(&Path, &[ColumnName])>,
+    table: Option<(&Path, &ColumnArgs)>,
     whisker: &Whisker,
 ) -> Result<Vec<MeasuredPoint>, Failure> {
     let Some((path, columns)) = table else {
         return Ok(Vec::new());
     };
     let points = data::read(files, path, columns)?;
+    if !points.whiskers.is_empty() {
+        let path = path.display();
+        let must = "has a column whisker; the points of a figure belong to one whisker";
+        return Err(Failure::Input(format!("{option} {path}: {must}")));
+    }
     let reach = points.check_reach(whisker, &POLE);
     reach.map_err(|why| Failure::Input(format!("{option} {why}")))?;
     match points.angle {

@@ -50,7 +50,8 @@ pub fn report(
 ) -> Result<(), Failure> {
     print(scene, summary, start.elapsed().as_secs_f64(), files)?;
     let see = "the channel `status`";
-    check_resolved(summary.unresolved(), summary.cells(), "cells", see)
+    let [unresolved, all] = summary.unresolved_of_all();
+    check_resolved(unresolved, all, "cells", see)
 }
 
 fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> io::Result<()> {

@@ -4,7 +4,7 @@ mod plot;
 mod points;
 
 use super::arguments::{column_help, length};
-use super::data;
+use super::data::{self, ColumnArgs};
 use super::derivatives::{DerivativeArgs, DerivativeColumns};
 use super::failure::{Failure, check_resolved};
 use super::files::Files;
@@ -20,7 +20,6 @@ use plot::{CurveColumn, scene_curve};
 use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::Side;
-use whiskmap::input::ColumnName;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{Plot, bands};
@@ -84,16 +83,10 @@ pub struct CurveArgs {
     #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples", "derivatives"])]
     corner: bool,
     /// Compare the measured detachments in FILE with the curve; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["corner", "tolerance", "derivatives"])]
+    #[arg(long, value_name = "FILE", group = "table", conflicts_with_all = ["corner", "tolerance", "derivatives"])]
     data: Option<PathBuf>,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "data"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     /// Column on the horizontal axis of the plot
     #[arg(
         long,

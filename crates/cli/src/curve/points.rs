@@ -22,8 +22,12 @@ pub fn compare(
     files: &mut Files,
 ) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
-    let points = data::read(files, path, &args.columns)?;
-    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
+    let SweptWhisker {
+        whisker,
+        pole,
+        place,
+    } = scene.first_whisker();
+    let points = data::read(files, path, &args.columns)?.at(&place)?;
     points.check_reach(&whisker, &pole)?;
     let measured_mm = points.points.iter().map(|point| point.distance_mm);
     let distances = covering(&scene.grid.distance_mm, measured_mm);

@@ -3,11 +3,11 @@
 mod table;
 
 use super::arguments::parameter;
-use super::data;
+use super::data::{self, ColumnArgs};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::write;
-use super::pole::WhiskerArgs;
+use super::pole::{WhiskerArgs, check_single};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::{Map, Value, json};
@@ -16,7 +16,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use table::table;
 use whiskmap::fit::{Fit, FitError, FitLoss, fit_until};
-use whiskmap::input::ColumnName;
 use whiskmap::scene::Parameter;
 use whiskmap::store::Output;
 use whiskmap::terminal::StandardOutput;
@@ -29,7 +28,8 @@ Examples:
 
 Minimizes the squares of measured minus predicted angles, or the --loss of these, from the values of the scene and within its limits. The columns of \
 the data are side (cb or cf), distance_mm, push_angle_deg or push_chord_deg, and optionally kind (slip-off, pull-off or empty) \
-and sd_deg, the standard deviation of the angle. Without sd_deg, the residuals give the standard deviation. If the scene's whisker \
+and sd_deg, the standard deviation of the angle. Without sd_deg, the residuals give the standard deviation. A column whisker names \
+the row of the scene's table of whiskers that a point belongs to; all whiskers share the fitted values. If the scene's whisker \
 does not reach a point, a free parameter such as length_mm starts at a value with which it does; a note gives the value.
 
 With --loss soft-l1 or huber, a point pulls less the more standard deviations it is off: 1 degree without sd_deg. Outliers are \
@@ -46,16 +46,10 @@ pub struct FitArgs {
     #[command(flatten)]
     whisker: WhiskerArgs,
     /// Measured detachments; - is standard input
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "table")]
     data: PathBuf,
-    /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=OWN",
-        value_delimiter = ',',
-        requires = "data"
-    )]
-    columns: Vec<ColumnName>,
+    #[command(flatten)]
+    columns: ColumnArgs,
     /// Parameters to fit, separated by commas
     #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = parameter())]
     free: Vec<Parameter>,
@@ -81,8 +75,17 @@ fn loss() -> impl TypedValueParser<Value = FitLoss> {
 
 pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     data::check_stdin(&args.whisker.scene, &args.data)?;
-    let scene = args.whisker.read(files, "fit")?;
+    let scene = args.whisker.selected(files)?;
     let points = data::read(files, &args.data, &args.columns)?;
+    // Points that name their whiskers belong to several whiskers of a table.
+    let (scene, points) = match points.whiskers.is_empty() || scene.whisker_count() == 1 {
+        true => {
+            check_single(&scene, "fit")?;
+            let points = points.at(&scene.first_whisker().place)?;
+            (scene.of_whisker(0)?, points)
+        }
+        false => (scene, points),
+    };
     let mut open = |option, path: &Option<PathBuf>| {
         let output = path.as_deref().map(|path| files.output(option, path));
         output.transpose()
@@ -92,9 +95,10 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     let never = AtomicBool::new(false);
     let found =
         fit_until(&scene, &points, &args.free, args.loss, &never).map_err(|why| match why {
-            FitError::Lacking { .. } | FitError::Twice(..) | FitError::Held { .. } => {
-                Failure::Input(format!("--free {why}"))
-            }
+            FitError::Lacking { .. }
+            | FitError::Twice(..)
+            | FitError::Column(..)
+            | FitError::Held { .. } => Failure::Input(format!("--free {why}")),
             _ => why.into(),
         })?;
     if let Some(note) = found.moved_start(&scene, &points) {

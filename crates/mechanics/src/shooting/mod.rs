@@ -25,7 +25,8 @@ mod strain;
 
 pub use derivative::{TrajectoryVariable, VariationDerivative, differentiate};
 pub use integrator::{
-    BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, StepStage, collocate, integrate,
+    BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, StepObserver, StepStage, collocate,
+    integrate,
 };
 pub use intrinsic::{Intrinsic, Polynomial, Spiral, Straight};
 pub use map::{
@@ -37,4 +38,4 @@ pub use parabola::{Bent, TANGENT as REST_TANGENT, TERMS as REST_TERMS};
 pub use reading::{Reader, Reading, StateNumbers};
 pub use resolution::{PieceSteps, Resolution};
 pub use rhs::{Carried, NoSensitivity, Planar, RodSystem, Section, Sensitivity, TrajectoryState};
-pub use strain::{PeakStrain, bending_strain};
+pub use strain::{PeakStrain, StepNodes, bending_strain};

@@ -181,7 +181,14 @@ impl<'a> ShapeTrajectory<'a> {
             let system = self.system(intrinsic, Graded { gradient });
             let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
             let section = self.section(from);
-            return integrate::<Nystrom8, f64, _, _, S>(&system, &scales, section, steps, state);
+            return integrate::<Nystrom8, f64, _, _, S>(
+                &system,
+                &scales,
+                section,
+                steps,
+                state,
+                &mut (),
+            );
         };
         let mut ahead = self.tau;
         let last = self.rod.piece(self.contact);

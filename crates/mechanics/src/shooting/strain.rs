@@ -1,15 +1,15 @@
 //! Bending strain at the surface of a deflected whisker, `r |kappa - kappa_rest| = r |M| / (E I)`, and its maximum.
 //!
-//! Between neighbouring samples of a trajectory, the lever of the force is the quintic polynomial with their positions, tangents and
-//! curvatures. Samples are as dense as integration steps of 8th order, so that the polynomial is as accurate as they are.
+//! Between the ends of an integration step, the lever of the force is the quintic polynomial with their positions, tangents and
+//! curvatures. Steps are of 8th order, so that the polynomial is as accurate as they are with half their length.
 
-use super::Resolution;
-use super::shape::{RodPoint, profile};
-use crate::numerics::Bracket;
-use crate::rod::{Rod, arclength};
+use super::{Planar, Section, StepObserver};
+use crate::numerics::{Bracket, LaneNumbers, Lanes};
+use crate::rod::{Rest, Rod, arclength};
+use glam::DVec2;
 
-/// Largest bending strain of a state, and the arclength at which it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Largest bending strain of a state, and the arclength at which it is. A [`Batch`](super::batch::Batch) computes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakStrain {
     /// Arclength from the base to the largest bending strain, in whisker lengths. Without a load it is the limit for small loads.
     pub arclength: f64,
@@ -17,35 +17,93 @@ pub struct PeakStrain {
     pub strain: f64,
 }
 
+/// Numbers of a point of a trajectory, in the frame of the contact: arclength from the base, lever of the force and unit tangent, in whisker
+/// lengths.
+type NodeNumbers<T> = [T; 4];
+
+/// Points at which the integration steps of trajectories end, in lanes, from the contact to the base.
+#[derive(Clone, Debug)]
+pub struct StepNodes<T>(Vec<NodeNumbers<T>>);
+
+impl<T> Default for StepNodes<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T: Lanes> StepObserver<T> for StepNodes<T> {
+    #[inline(always)]
+    fn take(&mut self, section: &Section<T>, &[cos, sin, lever, ..]: &Planar<T>) {
+        self.0.push([section.arclength, lever, cos, sin]);
+    }
+}
+
+impl<T: Lanes> StepNodes<T> {
+    /// Returns the numbers of the points, `[point]`, each with those of all lanes.
+    #[inline(always)]
+    pub(super) fn unpacked(&self) -> Vec<NodeNumbers<LaneNumbers>> {
+        let mut unpacked = Vec::with_capacity(self.0.len());
+        for [s, lever, cos, sin] in &self.0 {
+            unpacked.push([s.unpack(), lever.unpack(), cos.unpack(), sin.unpack()]);
+        }
+        unpacked
+    }
+}
+
+/// Point of a trajectory, see [`NodeNumbers`].
+#[derive(Clone, Copy)]
+struct StrainNode {
+    arclength: f64,
+    lever: f64,
+    tangent: DVec2,
+}
+
 impl PeakStrain {
-    /// Finds the largest bending strain of `rod` with the contact at `tau` under `load`.
-    #[must_use]
-    pub fn new(rod: &Rod, tau: f64, load: f64, resolution: Resolution) -> Self {
-        let points = profile(
-            rod,
-            tau,
-            load,
-            resolution,
-            &samples(rod, tau, load, resolution),
-        );
-        // Under a force of 1, the moment is the lever.
-        let strain = |point: &RodPoint| bending_strain(rod, point.arclength, point.position.x);
-        let mut best = (points[0].arclength, 0.0);
-        let mut at = 0;
-        for (i, point) in points.iter().enumerate() {
-            if strain(point) > best.1 {
-                (best, at) = ((point.arclength, strain(point)), i);
+    /// Finds the largest bending strain of `rod` with the contact at `tau` under `load`, from the `nodes` of its trajectory in the order of the
+    /// integration. In a lane that waits for others, nodes are repeated, or lie beyond the contact; these are left out.
+    pub(super) fn along(
+        rod: &Rod,
+        tau: f64,
+        load: f64,
+        nodes: impl Iterator<Item = NodeNumbers<f64>>,
+    ) -> Self {
+        let mut last = StrainNode {
+            arclength: arclength(rod, tau),
+            lever: 0.0,
+            tangent: rod.contact_tangent(),
+        };
+        let mut path = vec![last];
+        for [arclength, lever, cos, sin] in nodes {
+            if arclength < last.arclength {
+                last = StrainNode {
+                    arclength,
+                    lever,
+                    tangent: DVec2::new(cos, sin),
+                };
+                path.push(last);
             }
         }
-        let ends = &points[at.saturating_sub(1)..(at + 2).min(points.len())];
-        for pair in ends.windows(2) {
-            let lever = Lever::new(&pair[0], &pair[1]);
+        // Under a force of 1, the moment is the lever. Of equal strains, that nearest to the base counts.
+        let (mut best, mut at) = ((last.arclength, 0.0), path.len() - 1);
+        for (i, node) in path.iter().enumerate().rev() {
+            let strain = bending_strain(rod, node.arclength, node.lever);
+            if strain > best.1 {
+                (best, at) = ((node.arclength, strain), i);
+            }
+        }
+        let force = load * rod.radius(tau).powi(2);
+        let rest = Rest::new(rod);
+        let ends = &path[at.saturating_sub(1)..(at + 2).min(path.len())];
+        for pair in ends.windows(2).rev() {
+            let [to, from] = [&pair[0], &pair[1]];
+            let lever = Lever::new([from, to], |node| {
+                rest.curvature(node.arclength) - force * node.lever / rod.stiffness(node.arclength)
+            });
             let growth = |s: f64| lever.growth(rod, s);
-            let [from, to] = [0, 1].map(|end: usize| pair[end].arclength);
-            if growth(from) > 0.0 && growth(to) < 0.0 {
+            if growth(from.arclength) > 0.0 && growth(to.arclength) < 0.0 {
                 let bracket = Bracket {
-                    below: to,
-                    above: from,
+                    below: to.arclength,
+                    above: from.arclength,
                 };
                 let s = bracket.bisect(growth);
                 let peak = bending_strain(rod, s, lever.at(s)[0]);
@@ -55,39 +113,11 @@ impl PeakStrain {
             }
         }
         let (arclength, of_unit_force) = best;
-        let force = load * rod.radius(tau).powi(2);
         Self {
             arclength,
             strain: force.abs() * of_unit_force,
         }
     }
-}
-
-/// Arclengths from the base to the contact, in whisker lengths, `[sample]`: as many as the integrator takes steps, evenly spaced in `tau`
-/// along the cone or along each piece of a profile.
-fn samples(rod: &Rod, tau: f64, load: f64, resolution: Resolution) -> Vec<f64> {
-    let mut at = Vec::new();
-    let mut part = |from: f64, to: f64, steps: u32| {
-        let step = (to - from) / f64::from(steps);
-        at.extend((0..steps).map(|i| arclength(rod, from + step * f64::from(i))));
-    };
-    let contact = arclength(rod, tau);
-    match &rod.profile {
-        None => part(0.0, tau, resolution.steps(rod, tau, load)),
-        Some(profile) => {
-            let last = rod.piece(contact);
-            let steps = resolution.of_pieces(rod, tau, load);
-            for (k, piece) in profile.pieces[..=last].iter().enumerate() {
-                let to = match k == last {
-                    true => tau,
-                    false => profile.pieces[k + 1].tau,
-                };
-                part(piece.tau, to, steps.of(profile, k));
-            }
-        }
-    }
-    at.push(contact);
-    at
 }
 
 /// Returns the bending strain at the surface of `rod` at the arclength `s` under a bending moment in `E I_base/L_w`. It is in base radii
@@ -121,16 +151,13 @@ struct Lever {
 }
 
 impl Lever {
-    fn new(from: &RodPoint, to: &RodPoint) -> Self {
+    /// The lever between two nodes, the first one nearer to the base. `curvature` is that of the whisker at a node.
+    fn new([from, to]: [&StrainNode; 2], curvature: impl Fn(&StrainNode) -> f64) -> Self {
         let width = to.arclength - from.arclength;
         // Lever and its derivatives, by the part of the interval.
-        let ends = [from, to].map(|point| {
-            let turn = -point.tangent.y * point.curvature;
-            [
-                point.position.x,
-                width * point.tangent.x,
-                width * width * turn,
-            ]
+        let ends = [from, to].map(|node| {
+            let turn = -node.tangent.y * curvature(node);
+            [node.lever, width * node.tangent.x, width * width * turn]
         });
         let [[a0, a1, twice], [x, slope, bend]] = ends;
         let a2 = 0.5 * twice;

@@ -102,8 +102,14 @@ fn end<M: Integrator>(load: f64, steps: u32) -> DVec2 {
     };
     let contact = ((), ([1.0, 0.0, 0.0, 0.0, 0.0], NOTHING));
     let scales = Scales::cylinder::<M>(h);
-    let (_, ([_, _, x, y, _], _)) =
-        integrate::<M, f64, _, _, NoSensitivity>(&system, &scales, section, steps, contact);
+    let (_, ([_, _, x, y, _], _)) = integrate::<M, f64, _, _, NoSensitivity>(
+        &system,
+        &scales,
+        section,
+        steps,
+        contact,
+        &mut (),
+    );
     DVec2::new(x, y)
 }
 

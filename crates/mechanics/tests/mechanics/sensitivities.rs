@@ -87,6 +87,7 @@ fn ln_pole_of(
         from,
         steps,
         ((), (contact, NOTHING)),
+        &mut (),
     );
     let [c, s, x, y, _] = end.map(|dual| dual.0);
     let (wx, wy) = (-x + rod.to_pole().x, -y + rod.to_pole().y);

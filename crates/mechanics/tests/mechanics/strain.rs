@@ -1,12 +1,19 @@
 //! The largest bending strain along a whisker.
 
+use super::effects::rods;
 use std::sync::Arc;
+use whiskmap_mechanics::numerics::Unit;
 use whiskmap_mechanics::rod::{RadiusProfile, Rod};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::shape::profile;
 use whiskmap_mechanics::shooting::{PeakStrain, Resolution, bending_strain};
 
 /// Resolution of branches and shapes.
 const FINER: Resolution = Resolution::FINE.doubled();
+
+fn peak_of(rod: &Rod, tau: f64, load: f64) -> PeakStrain {
+    Batch::new(Method::new(FINER)).shoot_at(rod, [(tau, load)])[0]
+}
 
 /// Under a small load the lever is the distance to the contact at `c`. On a cone of taper `b`, `(c - s)/(1 - b s)^3` is largest at
 /// `s = (3 b c - 1)/(2 b)`, or at the base.
@@ -25,12 +32,12 @@ fn small_loads_have_the_peak_of_the_straight_cone() {
             };
             let force = load * (1.0 - taper * contact).powi(2);
             let strain = force * (contact - place) / (1.0 - taper * place).powi(3);
-            let peak = PeakStrain::new(&rod, tau, load, FINER);
+            let peak = peak_of(&rod, tau, load);
             let case = format!("{taper} {contact}: {peak:?} {place} {strain}");
             assert!((peak.arclength - place).abs() < 1e-7, "{case}");
             assert!((peak.strain / strain - 1.0).abs() < 1e-9, "{case}");
             // Without a load, the place is the limit.
-            let none = PeakStrain::new(&rod, tau, 0.0, FINER);
+            let none = peak_of(&rod, tau, 0.0);
             assert_eq!(none.strain, 0.0, "{case}");
             assert!((none.arclength - place).abs() < 1e-7, "{case}");
         }
@@ -72,7 +79,7 @@ fn no_point_of_a_shape_has_a_larger_strain() {
             for turn in [-6.0, -1.0, 0.5, 3.0, 9.0] {
                 let tau = rod.tau(contact);
                 let load = turn / (contact * contact * rod.softness(tau));
-                let peak = PeakStrain::new(&rod, tau, load, FINER);
+                let peak = peak_of(&rod, tau, load);
                 let strain = |at: &[f64]| -> Vec<f64> {
                     let points = profile(&rod, tau, load, FINER, at);
                     let strains = points
@@ -91,4 +98,45 @@ fn no_point_of_a_shape_has_a_larger_strain() {
         }
     }
     assert!(inside > 20, "{inside} peaks beyond the base");
+}
+
+/// Peaks of a batch on rods with each effect have the errors that `docs/commands.md` states, by a run with eight times as many steps.
+#[test]
+fn peaks_of_batches_are_those_of_much_finer_steps() {
+    let mut rods = rods();
+    let more = rods.iter().map(|rod| Rod {
+        friction: 0.4,
+        mount: 0.2,
+        gradient: -0.5,
+        pole: -0.02,
+        ..rod.clone()
+    });
+    rods.extend(more.collect::<Vec<_>>());
+    let mut conditions = Vec::new();
+    for rod in &rods {
+        for i in 1..100 {
+            let contact = 0.0099 * f64::from(i);
+            let tau = rod.tau(contact);
+            // Loads of both signs, spread over those of stable states and beyond.
+            let turn = 12.0 * (f64::from(i * 37 % 99) / 49.0 - 1.0);
+            let load = turn / (contact * contact * rod.softness(tau));
+            conditions.push(InitialCondition { rod, tau, load });
+        }
+    }
+    let peaks = |resolution: Resolution, unit| -> Vec<PeakStrain> {
+        let batch = Batch::new(Method::new(resolution)).on(unit);
+        batch.shoot(&conditions)
+    };
+    let finest = peaks(FINER.doubled().doubled().doubled(), Unit::detect());
+    let (mut strain, mut place, mut inside) = (0.0_f64, 0.0_f64, 0);
+    for unit in Unit::all() {
+        let found = peaks(FINER, unit);
+        for (found, finest) in found.iter().zip(&finest) {
+            strain = strain.max((found.strain / finest.strain - 1.0).abs());
+            place = place.max((found.arclength - finest.arclength).abs());
+            inside += u32::from(found.arclength > 0.0);
+        }
+    }
+    assert!(strain < 1e-9 && place < 1e-7, "{strain:e} {place:e}");
+    assert!(inside > 300, "{inside} peaks beyond the base");
 }

@@ -6,7 +6,7 @@ use crate::shooting::batch::{FEW_KERNELS, InitialCondition};
 use crate::shooting::contact::arc;
 use crate::shooting::{
     Bent, Graded, Integrator, Intrinsic, Material, Polynomial, Resolution, RodSystem, Scales,
-    Section, Sensitivity, Spiral, Straight, TrajectoryState, Uniform, integrate,
+    Section, Sensitivity, Spiral, StepObserver, Straight, TrajectoryState, Uniform, integrate,
 };
 
 /// Initial conditions of the trajectories of a block, one for each lane: `[lane]`.
@@ -54,11 +54,12 @@ pub trait GatherMaterial<T: Lanes> {
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T;
 
     /// Returns the state of the trajectories at the base, from their `state` at the `contacts`. `ADVANCES` is true for rods that change
-    /// along their length.
+    /// along their length. `observer` gets the rods after each step.
     fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
         state: TrajectoryState<T, I, S>,
+        observer: &mut impl StepObserver<T>,
     ) -> TrajectoryState<T, I, S>;
 }
 
@@ -76,6 +77,7 @@ fn evenly<
     intrinsic: I,
     material: C,
     state: TrajectoryState<T, I, S>,
+    observer: &mut impl StepObserver<T>,
 ) -> TrajectoryState<T, I, S> {
     let one = T::of(1.0);
     let h = contacts.tau / T::of(f64::from(contacts.steps));
@@ -94,7 +96,7 @@ fn evenly<
         intrinsic,
         material,
     };
-    integrate::<M, _, I, C, S>(&system, &scales, section, contacts.steps, state)
+    integrate::<M, _, I, C, S>(&system, &scales, section, contacts.steps, state, observer)
 }
 
 impl<T: Lanes> GatherMaterial<T> for Uniform {
@@ -108,8 +110,9 @@ impl<T: Lanes> GatherMaterial<T> for Uniform {
         contacts: &Contacts<T>,
         intrinsic: I,
         state: TrajectoryState<T, I, S>,
+        observer: &mut impl StepObserver<T>,
     ) -> TrajectoryState<T, I, S> {
-        evenly::<M, T, I, Self, S, ADVANCES>(contacts, intrinsic, Self, state)
+        evenly::<M, T, I, Self, S, ADVANCES>(contacts, intrinsic, Self, state, observer)
     }
 }
 
@@ -125,9 +128,16 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
         contacts: &Contacts<T>,
         intrinsic: I,
         state: TrajectoryState<T, I, S>,
+        observer: &mut impl StepObserver<T>,
     ) -> TrajectoryState<T, I, S> {
         let gradient = lanes(contacts.conditions, |condition| condition.rod.gradient);
-        evenly::<M, T, I, Self, S, ADVANCES>(contacts, intrinsic, Self { gradient }, state)
+        evenly::<M, T, I, Self, S, ADVANCES>(
+            contacts,
+            intrinsic,
+            Self { gradient },
+            state,
+            observer,
+        )
     }
 }
 

@@ -198,7 +198,9 @@ where
             force: contact.force,
         };
         let start = (at_rest, (rod, S::start(&contact)));
-        let (_, (rod, carried)) = C::to_base::<M, I, S, ADVANCES>(&contacts, intrinsic, start);
+        let mut observer = O::Observer::<T>::default();
+        let (_, (rod, carried)) =
+            C::to_base::<M, I, S, ADVANCES>(&contacts, intrinsic, start, &mut observer);
         let mount = numbers(conditions, |condition| condition.rod.mount);
         let (rod, carried) = if mount == [0.0; WIDTH] {
             (rod, carried)
@@ -213,6 +215,7 @@ where
         let pole: T = lanes(conditions, |condition| condition.rod.pole);
         // See `Rod::to_pole`.
         let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
-        O::answers(&arrival, to_pole, S::at_base(&arrival, carried))
+        let at_base = S::at_base(&arrival, carried);
+        O::answers(&arrival, to_pole, at_base, (conditions, observer))
     }
 }

@@ -11,7 +11,7 @@ use crate::numerics::{Lanes, Vector, WIDTH};
 use crate::rod::RadiusProfile;
 use crate::shooting::{
     BackwardCompliance, Integrator, Intrinsic, Measured, Nystrom8, PieceSteps, RodSystem, Scales,
-    Section, Sensitivity, StepStage, TrajectoryState, collocate,
+    Section, Sensitivity, StepObserver, StepStage, TrajectoryState, collocate,
 };
 
 /// Integration along one piece: its extent and its steps in each lane.
@@ -146,6 +146,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
         contacts: &Contacts<T>,
         intrinsic: I,
         start: TrajectoryState<T, I, S>,
+        observer: &mut impl StepObserver<T>,
     ) -> TrajectoryState<T, I, S> {
         let (zero, one) = (T::of(0.0), T::of(1.0));
         let [tau, s] = [contacts.tau.unpack(), contacts.s.unpack()];
@@ -204,6 +205,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                 let stepped = collocate::<T, I, S>(&system, &end, &section, &weights, state);
                 state = state.times(one - takes).plus(takes, stepped);
                 section = section.at(&end);
+                observer.take(&section, &state.1.0);
             }
         }
         state

@@ -2,17 +2,19 @@
 
 use super::block::Block;
 use super::block_key::BlockKey;
+use super::gather::Conditions;
 use super::kernel::Trajectories;
 use super::pole::{Complex, PoleCentre, spread};
-use crate::numerics::{Lanes, Unit, WIDTH};
+use super::{FEW_KERNELS, InitialCondition};
+use crate::numerics::{Lanes, SimdTask, Unit, WIDTH};
 use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{
     Arrival, BaseDerivatives, Energetic, GeneralFirst, GeneralSecond, SecondBaseDerivatives,
     SensitivitySet, SimilarFirst, SimilarSecond, Triple,
 };
 use crate::shooting::{
-    FirstVariation, FullState, NoSensitivity, PlainState, SecondVariation, ShootingMap,
-    StateDerivative,
+    FirstVariation, FullState, NoSensitivity, PeakStrain, PlainState, SecondVariation, ShootingMap,
+    StateDerivative, StepNodes, StepObserver,
 };
 use glam::DVec2;
 
@@ -27,11 +29,16 @@ pub trait OutputSet: Copy + Default + Send + 'static {
     /// Derivatives that trajectories carry for this output set on straight cones and cylinders with a constant modulus.
     type Similar<T: Lanes>: SensitivitySet<T, AtBase = <Self::General<T> as SensitivitySet<T>>::AtBase>;
 
-    /// Returns the outputs of each lane. `pole` is the vector from the contact to the pole's centre.
+    /// Observer of the trajectories; `()` if the outputs depend on their ends alone.
+    type Observer<T: Lanes>: StepObserver<T> + Default;
+
+    /// Returns the outputs of each lane. `pole` is the vector from the contact to the pole's centre. The initial conditions come with the
+    /// observer of the trajectories from them.
     fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         at_base: <Self::General<T> as SensitivitySet<T>>::AtBase,
+        observed: (&Conditions, Self::Observer<T>),
     ) -> [Self; WIDTH];
 
     /// Runs `Trajectories::new(key, block)` on a SIMD `unit` and returns the outputs, `[lane]`. Each output set implements it, so that its kernels
@@ -56,12 +63,14 @@ impl OutputSet for PlainState {
     type OnOneLane = FirstVariation;
     type General<T: Lanes> = Energetic<NoSensitivity>;
     type Similar<T: Lanes> = Energetic<NoSensitivity>;
+    type Observer<T: Lanes> = ();
 
     #[inline(always)]
     fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         ((), energy): ((), T),
+        _: (&Conditions, ()),
     ) -> [Self; WIDTH] {
         let Complex { re, im } = PoleCentre::new(arrival, pole).pole;
         let [cos, sin, x, y, _] = arrival.rod;
@@ -88,12 +97,14 @@ impl OutputSet for ShootingMap {
     type OnOneLane = FirstVariation;
     type General<T: Lanes> = GeneralFirst;
     type Similar<T: Lanes> = SimilarFirst;
+    type Observer<T: Lanes> = ();
 
     #[inline(always)]
     fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         first: BaseDerivatives<T>,
+        _: (&Conditions, ()),
     ) -> [Self; WIDTH] {
         PoleCentre::new(arrival, pole).maps(&first)
     }
@@ -108,12 +119,14 @@ impl OutputSet for FirstVariation {
     type OnOneLane = Self;
     type General<T: Lanes> = Energetic<GeneralFirst>;
     type Similar<T: Lanes> = Energetic<SimilarFirst>;
+    type Observer<T: Lanes> = ();
 
     #[inline(always)]
     fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         (first, energy): (BaseDerivatives<T>, T),
+        _: (&Conditions, ()),
     ) -> [FirstVariation; WIDTH] {
         let maps = PoleCentre::new(arrival, pole).maps(&first);
         let [cos, sin, x, y, _] = arrival.rod;
@@ -169,12 +182,14 @@ impl OutputSet for SecondVariation {
     type OnOneLane = Self;
     type General<T: Lanes> = GeneralSecond;
     type Similar<T: Lanes> = SimilarSecond;
+    type Observer<T: Lanes> = ();
 
     #[inline(always)]
     fn answers<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         second: SecondBaseDerivatives<T>,
+        _: (&Conditions, ()),
     ) -> [SecondVariation; WIDTH] {
         let centre = PoleCentre::new(arrival, pole);
         let maps = centre.maps(&second.first);
@@ -195,5 +210,38 @@ impl OutputSet for SecondVariation {
     #[inline(never)]
     fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH] {
         unit.run(Trajectories::new(key, block))
+    }
+}
+
+impl OutputSet for PeakStrain {
+    type OnOneLane = Self;
+    type General<T: Lanes> = NoSensitivity;
+    type Similar<T: Lanes> = NoSensitivity;
+    type Observer<T: Lanes> = StepNodes<T>;
+
+    #[inline(always)]
+    fn answers<T: Lanes>(
+        _: &Arrival<T>,
+        _: [T; 2],
+        (): (),
+        (conditions, nodes): (&Conditions, StepNodes<T>),
+    ) -> [Self; WIDTH] {
+        let nodes = nodes.unpacked();
+        let mut peaks = [Self::default(); WIDTH];
+        for (lane, peak) in peaks[..T::LANES].iter_mut().enumerate() {
+            let InitialCondition { rod, tau, load } = conditions[lane];
+            let nodes = nodes.iter().map(|numbers| numbers.map(|own| own[lane]));
+            *peak = Self::along(rod, *tau, *load, nodes);
+        }
+        peaks
+    }
+
+    #[inline(never)]
+    fn shoot(unit: Unit, key: BlockKey, block: &Block) -> [Self; WIDTH] {
+        let trajectories = Trajectories::new(key, block);
+        if const { FEW_KERNELS } {
+            return trajectories.run::<f64>();
+        }
+        unit.run(trajectories)
     }
 }

@@ -84,7 +84,7 @@ impl<I> Kernel<'_, I> {
         let steps = self.resolution.steps(rod, at, load);
         let h = tau * Dual::of(1.0 / f64::from(steps));
         let scales = Scales::tapered::<Nystrom8>(taper, h);
-        integrate::<Nystrom8, _, R, _, Carried>(system, &scales, contact, steps, state)
+        integrate::<Nystrom8, _, R, _, Carried>(system, &scales, contact, steps, state, &mut ())
     }
 
     /// The state at the base after `state` at the contact, along the pieces of a measured `profile`.

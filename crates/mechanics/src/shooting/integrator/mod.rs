@@ -128,7 +128,19 @@ impl<T: Real> Section<T> {
     }
 }
 
-/// Returns the state after `steps` integration steps of `system` from `state` at the section `from`.
+/// Observer of a trajectory, which gets the rod after each integration step. The observer `()` ignores it.
+pub trait StepObserver<T> {
+    /// Takes the state of the rod at the cross-section at which a step ends.
+    fn take(&mut self, section: &Section<T>, rod: &Planar<T>);
+}
+
+impl<T> StepObserver<T> for () {
+    #[inline(always)]
+    fn take(&mut self, _: &Section<T>, _: &Planar<T>) {}
+}
+
+/// Returns the state after `steps` integration steps of `system` from `state` at the section `from`. `observer` gets the rod after each
+/// step.
 #[inline(always)]
 pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, C>,
@@ -136,12 +148,15 @@ pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sen
     from: Section<T>,
     steps: u32,
     mut state: TrajectoryState<T, I, S>,
+    observer: &mut impl StepObserver<T>,
 ) -> TrajectoryState<T, I, S> {
     let mut section = from;
     for _ in 0..steps {
         let (rest, (rod, carried)) = M::step::<T, I, C, S>(system, scales, section, state);
-        state = (rest, (upright(rod), carried));
+        let rod = upright(rod);
+        state = (rest, (rod, carried));
         section = section.at(scales.end());
+        observer.take(&section, &rod);
     }
     state
 }
