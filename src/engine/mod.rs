@@ -85,17 +85,22 @@ pub trait Engine: Send {
         false
     }
 
-    /// Returns true if the engine integrates the trajectories of nets, so that the CPU need not.
-    fn shoots(&self) -> bool {
+    /// Returns true if the engine integrates the trajectories of nets of whiskers with these effects ([`Engine::shoot_nodes`]); by default it
+    /// does not.
+    fn integrates_nodes(&self, effects: Effects) -> bool {
+        let _ = effects;
         false
     }
 
-    /// Returns the states of the trajectories of `nodes`, `[trajectory]`, rod by rod; by default from the CPU.
+    /// Returns the states of the trajectories of `nodes`, `[trajectory]`, rod by rod.
     ///
     /// # Errors
-    /// When the device fails; every later call then fails.
+    /// When the device fails; every later call then fails. By default always.
     fn shoot_nodes(&mut self, nodes: &Nodes) -> Result<Vec<PlainState>, EngineError> {
-        Ok(nodes.shoot())
+        Err(EngineError::Unsupported {
+            adapter: self.describe().adapter,
+            what: format!("integrate {} trajectories of nets", nodes.count()),
+        })
     }
 
     /// Submits a batch to the engine, which starts without waiting for a device.

@@ -1,9 +1,7 @@
 //! Nodes: the trajectories of the nets of several whisker sides, as a request to an engine.
 
-use rayon::prelude::*;
 use whiskmap_mechanics::rod::Rod;
-use whiskmap_mechanics::shooting::PlainState;
-use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap_mechanics::shooting::batch::{InitialCondition, Method};
 
 /// Trajectories of the nets of several whisker sides.
 #[derive(Clone, Debug)]
@@ -36,14 +34,5 @@ impl Nodes {
             })
         });
         all.collect()
-    }
-
-    /// Integrates all trajectories on the CPU. Returns their states, `[trajectory]`, rod by rod. Those of a rod do not depend on the others.
-    #[must_use]
-    pub fn shoot(&self) -> Vec<PlainState> {
-        let rods = self.rods.par_iter().zip(&self.points);
-        let batch = Batch::new(self.method).padded();
-        let states = rods.map(|(rod, points)| batch.shoot_at(rod, points.iter().copied()));
-        states.flatten_iter().collect()
     }
 }

@@ -52,11 +52,11 @@ impl WhiskerSide {
     #[must_use]
     pub fn with_net(self, most: f64) -> Self {
         let net = self.net(most);
-        self.with(net)
+        self.with_value_net(net)
     }
 
     /// Returns this whisker side with a `net` of its sheet.
-    pub(crate) fn with(self, net: Option<ValueNet>) -> Self {
+    pub(crate) fn with_value_net(self, net: Option<ValueNet>) -> Self {
         let sheet = self.sheet.with_net(net);
         Self { sheet, ..self }
     }
@@ -68,8 +68,7 @@ impl WhiskerSide {
     }
 
     /// Begins the net of this whisker side, as [`Self::net`] computes it, for trajectories that are integrated elsewhere.
-    #[must_use]
-    pub fn draft(&self, most: f64) -> Option<ValueDraft> {
+    pub(crate) fn draft(&self, most: f64) -> Option<ValueDraft> {
         ValueDraft::new(&self.sheet, |row| self.cells(row), most)
     }
 

@@ -28,8 +28,23 @@ pub struct Responses {
     pub states: Sender<Response<Vec<PlainState>>>,
 }
 
-/// Serves requests by `engine` until they end or responses are no longer received. Nodes are integrated before batches that wait. Unless the
-/// engine fails, no batch stays submitted.
+impl Responses {
+    /// Sends a failure, whatever the caller waits for.
+    fn fail(&self, failure: &EngineError, busy: Duration) {
+        let cells = Response {
+            result: Err(failure.clone()),
+            busy,
+        };
+        let states = Response {
+            result: Err(failure.clone()),
+            busy: Duration::ZERO,
+        };
+        // A caller that no longer receives has ended.
+        let _ = (self.cells.send(cells), self.states.send(states));
+    }
+}
+
+/// Serves requests by `engine` until they end or responses are no longer received. Unless the engine fails, no batch stays submitted.
 pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &Responses) {
     let (mut submitted, mut is_received) = (0, true);
     let mut since = Instant::now();
@@ -51,14 +66,13 @@ pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &R
                 }
                 Request::Nodes(nodes) => {
                     let result = engine.shoot_nodes(&nodes);
-                    let has_failed = result.is_err();
                     let now = Instant::now();
                     let busy = now - since;
+                    if let Err(failure) = &result {
+                        return respond.fail(failure, busy);
+                    }
                     is_received &= respond.states.send(Response { result, busy }).is_ok();
                     since = now;
-                    if has_failed {
-                        return;
-                    }
                 }
             }
         }
@@ -67,14 +81,13 @@ pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &R
         }
         let result = taken.and_then(|()| engine.collect());
         submitted -= 1;
-        let has_failed = result.is_err();
         let now = Instant::now();
         let busy = now - since;
+        if let Err(failure) = &result {
+            return respond.fail(failure, busy);
+        }
         is_received &= respond.cells.send(Response { result, busy }).is_ok();
         since = now;
-        if has_failed {
-            return;
-        }
     }
 }
 

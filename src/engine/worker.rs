@@ -31,8 +31,6 @@ pub struct Worker<'e> {
     connection: Option<Connection<'e>>,
     /// The batches submitted and not collected.
     submitted: VecDeque<Arc<RowBatch>>,
-    /// True if the engine integrates the trajectories of nets.
-    shoots: bool,
     /// Number of trajectories of nets that the engine has integrated.
     pub trajectories: u64,
     /// Maximum residual bound of a cell that the engine solves, in whisker lengths; 0 without an engine.
@@ -52,11 +50,9 @@ impl<'e> Worker<'e> {
         work: impl FnOnce(Self) -> R,
     ) -> R {
         let residual_bound = engine.as_ref().map_or(0.0, |own| own.residual_bound());
-        let shoots = engine.as_ref().is_some_and(|own| own.shoots());
         let worker = |connection| Self {
             connection,
             residual_bound,
-            shoots,
             trajectories: 0,
             submitted: VecDeque::new(),
             failure: None,
@@ -134,12 +130,6 @@ impl<'e> Worker<'e> {
         let short = format!("a response of {found} cells to a request of {wanted}");
         self.disable(EngineError::Device(short));
         None
-    }
-
-    /// Returns true if the engine has a thread of its own, and integrates the trajectories of nets.
-    #[must_use]
-    pub const fn shoots(&self) -> bool {
-        self.shoots && self.has_thread()
     }
 
     /// Submits the trajectories of `nodes` to the engine's thread; does nothing without it.

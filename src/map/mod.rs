@@ -46,9 +46,13 @@ pub fn run<E: Send>(
     let (start, cpu_start) = (Stopwatch::start(), process_seconds());
     let net = engine.as_ref().map(|own| own.row_residual());
     let has_device = engine.as_ref().is_some_and(|own| own.has_device());
+    let effects = plan.method.effects;
+    let integrates = engine
+        .as_ref()
+        .is_some_and(|own| own.integrates_nodes(effects));
     let mut packing = StageTimes::default();
     let mut summary = Worker::with(engine, has_device, |worker| {
-        let mut pipeline = Pipeline::new(scene, plan, worker, net);
+        let mut pipeline = Pipeline::new(scene, plan, worker, (net, integrates));
         let mut finished: Vec<Panel> = Vec::new();
         let mut is_open = true;
         while is_open {

@@ -2,13 +2,15 @@
 
 use crate::engine::{Nodes, WhiskerSide, Worker};
 use crate::sheet::net::ValueDraft;
+use crate::stopwatch::Stopwatch;
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::time::Duration;
 use whiskmap_mechanics::shooting::PlainState;
 use whiskmap_mechanics::shooting::batch::Method;
 
 /// Whisker sides whose nets are in the making. In each round, the engine integrates the trajectories that the panels of all sides need next.
-pub struct NetsInTheMaking {
+pub struct PendingNets {
     sides: Vec<WhiskerSide>,
     drafts: Vec<Option<ValueDraft>>,
     method: Method,
@@ -16,7 +18,7 @@ pub struct NetsInTheMaking {
     submitted: Option<Arc<Nodes>>,
 }
 
-impl NetsInTheMaking {
+impl PendingNets {
     /// Begins nets with a residual of at most `most` whisker lengths for `sides`: submits the first trajectories to the engine of `worker`.
     pub fn new(sides: Vec<WhiskerSide>, method: Method, most: f64, worker: &mut Worker) -> Self {
         let drafts = sides.par_iter().map(|side| side.draft(most)).collect();
@@ -48,11 +50,16 @@ impl NetsInTheMaking {
         }
     }
 
-    /// Waits for all trajectories. Returns the sides with their nets; without nets, for which there is no use, if the engine failed.
-    pub fn finish(mut self, worker: &mut Worker) -> Arc<[WhiskerSide]> {
+    /// Completes all nets. Returns the sides with their nets, and the time of waiting for the engine. If the engine failed, there is no use for
+    /// nets, and the sides have none.
+    pub fn finish(mut self, worker: &mut Worker) -> (Arc<[WhiskerSide]>, Duration) {
+        let mut waited = Duration::ZERO;
         while let Some(nodes) = self.submitted.take() {
-            let Some(states) = worker.collect_states(&nodes) else {
-                return self.sides.into();
+            let begun = Stopwatch::start();
+            let states = worker.collect_states(&nodes);
+            waited += begun.elapsed();
+            let Some(states) = states else {
+                return (self.sides.into(), waited);
             };
             let mut rest = &states[..];
             let parts = nodes.points.iter().map(|points| {
@@ -70,7 +77,7 @@ impl NetsInTheMaking {
             self.submit(worker);
         }
         let all = self.sides.into_iter().zip(self.drafts);
-        all.map(|(side, draft)| side.with(draft.and_then(ValueDraft::finish)))
-            .collect()
+        let all = all.map(|(side, draft)| side.with_value_net(draft.and_then(ValueDraft::finish)));
+        (all.collect(), waited)
     }
 }

@@ -5,7 +5,7 @@
 //! the speed of a thread.
 
 use super::fallback::complete;
-use super::nets::NetsInTheMaking;
+use super::nets::PendingNets;
 use super::panel::Panel;
 use super::rows;
 use super::sides::{side_columns, whisker_sides};
@@ -53,6 +53,8 @@ pub struct Pipeline<'a, 'e> {
     /// True if the engine has a thread of its own, beside the stages.
     has_device: bool,
     cpu: Cpu,
+    /// True if the engine integrates the trajectories of nets.
+    engine_integrates: bool,
     /// Maximum residual of the rows of an engine, in whisker lengths; `None` without an engine.
     net: Option<f64>,
     summary: Summary,
@@ -68,7 +70,7 @@ struct Group {
 
 /// Group whose nets are in the making.
 struct Drafted {
-    nets: NetsInTheMaking,
+    nets: PendingNets,
     without_whisker: Arc<[usize]>,
 }
 
@@ -81,8 +83,14 @@ struct Queued {
 }
 
 impl<'a, 'e> Pipeline<'a, 'e> {
-    /// Creates the pipeline of a run. With an engine, the residual of a `net` is at most this, in whisker lengths.
-    pub fn new(scene: &'a Scene, plan: &'a Plan, worker: Worker<'e>, net: Option<f64>) -> Self {
+    /// Creates the pipeline of a run. With an engine, the residual of a `net` is at most this, in whisker lengths, and the engine may integrate
+    /// the trajectories of nets.
+    pub fn new(
+        scene: &'a Scene,
+        plan: &'a Plan,
+        worker: Worker<'e>,
+        (net, engine_integrates): (Option<f64>, bool),
+    ) -> Self {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
         let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
@@ -115,6 +123,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             cpu: Cpu::default(),
             net,
             has_device,
+            engine_integrates,
             summary: Summary::default(),
         }
     }
@@ -173,6 +182,12 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             }
             self.queue.push_back(queued);
         }
+        // While the device works on these batches, the threads begin the nets of the next group.
+        if self.drafted.is_none()
+            && let Some(most) = self.on_device()
+        {
+            self.drafted = self.draft_next(most);
+        }
         let Queued { batch, completes } = self.queue.pop_front()?;
         let mut done = 0;
         if let Some(batch) = batch {
@@ -194,7 +209,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         Some((done, completes.is_some()))
     }
 
-    /// Returns the next group. If a device integrates the trajectories of nets, it begins with those of the group after it.
+    /// Returns the next group.
     fn next_group(&mut self) -> Option<Group> {
         let drafted = match (self.drafted.take(), self.on_device()) {
             (Some(drafted), _) => drafted,
@@ -207,9 +222,10 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 });
             }
         };
-        let (times, worker) = (&mut self.summary.stages, &mut self.worker);
-        let sides = times.time(Stage::Sheets, || drafted.nets.finish(worker));
-        self.drafted = self.on_device().and_then(|most| self.draft_next(most));
+        let begun = Stopwatch::start();
+        let (sides, waited) = drafted.nets.finish(&mut self.worker);
+        self.summary.waiting_seconds += waited.as_secs_f64();
+        self.summary.stages.0[Stage::Sheets as usize] += begun.elapsed() - waited;
         Some(Group {
             sides,
             without_whisker: drafted.without_whisker,
@@ -218,14 +234,15 @@ impl<'a, 'e> Pipeline<'a, 'e> {
 
     /// Returns the residual of nets, in whisker lengths, if a device integrates their trajectories.
     fn on_device(&self) -> Option<f64> {
-        self.net.filter(|_| self.worker.shoots())
+        let integrates = self.engine_integrates && self.worker.has_thread();
+        self.net.filter(|_| integrates)
     }
 
     /// Begins the nets of the next group, with a residual of at most `most` whisker lengths.
     fn draft_next(&mut self, most: f64) -> Option<Drafted> {
         let (sides, without_whisker) = self.sides_of_next(None)?;
         let (method, worker) = (self.method, &mut self.worker);
-        let nets = || NetsInTheMaking::new(sides, method, most, worker);
+        let nets = || PendingNets::new(sides, method, most, worker);
         Some(Drafted {
             nets: self.summary.stages.time(Stage::Sheets, nets),
             without_whisker,

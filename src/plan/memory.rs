@@ -24,9 +24,12 @@ pub const BYTES_PER_THREAD: u64 = 4 << 20;
 /// Threads beyond which cells in flight take no more memory: [`CELLS_IN_FLIGHT`](super::CELLS_IN_FLIGHT) are shared by all.
 const THREADS_IN_FLIGHT: u64 = 16;
 
-/// Bytes per cell in flight with a GPU: the expansions and cells of three row batches, and the trajectories of nets. Measured on an NVIDIA H100:
-/// 90 to 380, beside 156 MB of the driver.
-pub const BYTES_ON_GPU: u64 = 384;
+/// Bytes per cell in flight with a GPU: the expansions and cells of three row batches, and the trajectories of nets. Four maps on an NVIDIA H100
+/// took 90 to 380.
+pub const BYTES_ON_GPU: u64 = 512;
+
+/// Bytes of the driver of a GPU: 156 MB of an NVIDIA H100.
+pub const DRIVER_BYTES: u64 = 160 << 20;
 
 /// Returns true if a run with `bytes` for panels and `gpu_bytes` for a GPU takes at most [`MEMORY_LIMIT`], on any number of threads.
 pub const fn fits(bytes: u64, gpu_bytes: u64) -> bool {

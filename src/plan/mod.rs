@@ -17,7 +17,9 @@ pub use expansions::{ExpansionCount, USUAL_NET, net_cost};
 pub use memory::{BYTES_PER_THREAD, MEMORY_LIMIT};
 
 use crate::scene::Scene;
-use memory::{BYTES_ON_GPU, BYTES_PER_CELL, PACKED_BYTES_PER_CELL, bytes_of_sheets, fits};
+use memory::{
+    BYTES_ON_GPU, BYTES_PER_CELL, DRIVER_BYTES, PACKED_BYTES_PER_CELL, bytes_of_sheets, fits,
+};
 use std::ops::Range;
 use whiskmap_mechanics::rod::{Effects, Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
@@ -85,7 +87,7 @@ pub struct Plan {
     pub cells_at_once: usize,
     /// Memory of panels, computed and packed, and of sheets, in bytes. Each thread adds [`BYTES_PER_THREAD`].
     pub bytes: u64,
-    /// Memory of the row batches in flight with a GPU, in bytes.
+    /// Memory of a GPU's driver and of what is in flight with it, in bytes.
     pub gpu_bytes: u64,
 }
 
@@ -134,7 +136,7 @@ impl Plan {
         let bytes = computed as u64 * BYTES_PER_CELL
             + packed as u64 * PACKED_BYTES_PER_CELL
             + bytes_of_sheets(scene, panels_at_once);
-        let gpu_bytes = CELLS_IN_FLIGHT.max(push_angles) as u64 * BYTES_ON_GPU;
+        let gpu_bytes = DRIVER_BYTES + CELLS_IN_FLIGHT.max(push_angles) as u64 * BYTES_ON_GPU;
         if !fits(bytes, gpu_bytes) {
             return Err(PlanError::Panel {
                 push_angles,

@@ -34,7 +34,7 @@ fn auto_takes_the_net_where_the_counts_say_so() {
     let counts = "(auto: at most 6144 cells a side, expansions cost 672; ";
     assert!(said.contains(counts), "{said}");
     let plan = place.run(&["plan", "scene.toml"]);
-    let line = "engine        spectral f64: at most 6144 cells a side, expansions cost 1248";
+    let line = "engine        spectral f64: at most 6144 cells a side, expansions cost 672";
     assert!(plan.out.contains(line), "{plan:?}");
 }
 

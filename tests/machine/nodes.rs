@@ -6,15 +6,20 @@ use std::sync::Arc;
 use whiskmap::engine::gpu::Precision;
 use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, Nodes, RowBatch, Spectral};
 use whiskmap::map::{Panel, Summary};
+use whiskmap::mechanics::rod::Effects;
 use whiskmap::mechanics::shooting::PlainState;
+use whiskmap::mechanics::shooting::batch::Batch;
 use whiskmap::plan::Plan;
+use whiskmap::scene::Scene;
 
 tests! {
     Nothing:
         nets_do_not_depend_on_who_integrates,
-        an_engine_that_fails_to_integrate_is_disabled;
+        an_engine_that_fails_to_integrate_is_disabled,
+        a_failure_keeps_its_reason_whatever_waits;
     Adapter:
-        the_device_integrates_the_nets_of_a_sweep;
+        the_device_integrates_the_nets_of_a_sweep,
+        a_table_with_measured_radii_keeps_the_device;
 }
 
 type States = Result<Vec<PlainState>, EngineError>;
@@ -28,6 +33,18 @@ struct Shooting<F> {
     /// Gets the number of batches that were collected before.
     shoot: F,
     collected: usize,
+    /// Number of batches that it solves before it fails.
+    most: usize,
+}
+
+/// The states of nodes by the CPU, each rod's alone.
+fn by_cpu(nodes: &Nodes) -> Vec<PlainState> {
+    let batch = Batch::new(nodes.method).padded();
+    let rods = nodes.rods.iter().zip(&nodes.points);
+    let states = rods.flat_map(|(rod, points)| {
+        batch.shoot_at::<PlainState>(rod, points.iter().copied())
+    });
+    states.collect()
 }
 
 impl<F: FnMut(&Nodes, usize) -> States + Send> Shooting<F> {
@@ -36,6 +53,7 @@ impl<F: FnMut(&Nodes, usize) -> States + Send> Shooting<F> {
             spectral: Spectral::default(),
             shoot,
             collected: 0,
+            most: usize::MAX,
         }
     }
 }
@@ -53,7 +71,7 @@ impl<F: FnMut(&Nodes, usize) -> States + Send> Engine for Shooting<F> {
         true
     }
 
-    fn shoots(&self) -> bool {
+    fn integrates_nodes(&self, _: Effects) -> bool {
         true
     }
 
@@ -66,16 +84,25 @@ impl<F: FnMut(&Nodes, usize) -> States + Send> Engine for Shooting<F> {
     }
 
     fn collect(&mut self) -> Result<Cells, EngineError> {
+        if self.collected == self.most {
+            return Err(EngineError::Device("lost".to_owned()));
+        }
         self.collected += 1;
         self.spectral.collect()
     }
 }
 
-/// Panels of 16 whiskers, in groups of 2, by `engine`.
+/// Panels of 16 whiskers, in groups of 2, by `engine`: each group in one batch.
 fn sweep(engine: Option<&mut dyn Engine>) -> (Summary, Vec<Panel>) {
+    sweep_in_batches(1 << 10, engine)
+}
+
+/// The same panels, in batches of so many rows.
+fn sweep_in_batches(rows: usize, engine: Option<&mut dyn Engine>) -> (Summary, Vec<Panel>) {
     let scene = shipped::scene("morphology").thinned(96, 4);
     let mut plan = Plan::new(&scene).unwrap();
     plan.panels_at_once = 2;
+    plan.rows_at_once = rows;
     compute_as(&scene, &plan, engine)
 }
 
@@ -84,7 +111,7 @@ fn nets_do_not_depend_on_who_integrates() {
     assert_eq!(alone.trajectories, 0);
     let mut shot = 0;
     let mut engine = Shooting::new(|nodes: &Nodes, _| {
-        let states = nodes.shoot();
+        let states = by_cpu(nodes);
         assert_eq!(states.len(), nodes.count());
         shot += states.len() as u64;
         Ok(states)
@@ -99,10 +126,10 @@ fn nets_do_not_depend_on_who_integrates() {
 
 /// A failure, too few states, or a panic, in the first group or a later one.
 fn an_engine_that_fails_to_integrate_is_disabled() {
-    let (_, by_cpu) = sweep(None);
+    let (_, wanted) = sweep(None);
     let failures: [(Failure, &str); 3] = [
         (|_| Err(EngineError::Device("lost".to_owned())), "GPU: lost"),
-        (|nodes| Ok(nodes.shoot().split_off(1)), "states of"),
+        (|nodes| Ok(by_cpu(nodes).split_off(1)), "states of"),
         (|_| panic!("a panic on purpose"), "has panicked"),
     ];
     // At most three batches that were collected from the engine may be lost.
@@ -114,7 +141,7 @@ fn an_engine_that_fails_to_integrate_is_disabled() {
                 has_failed = collected >= sound;
                 match has_failed {
                     true => fail(nodes),
-                    false => Ok(nodes.shoot()),
+                    false => Ok(by_cpu(nodes)),
                 }
             });
             let (summary, panels) = sweep(Some(&mut engine));
@@ -122,19 +149,55 @@ fn an_engine_that_fails_to_integrate_is_disabled() {
             assert!(failure.contains(what), "{failure}");
             assert_eq!(summary.engine_cells.solved > 0, sound > 0, "{what}");
             assert!(summary.engine_cells.on_cpu_instead > 0);
-            assert_close(&by_cpu, &panels, what);
+            assert_close(&wanted, &panels, what);
         }
     }
 }
 
+/// A batch that fails while nodes of the next group wait, and nodes that fail while batches wait: both report why.
+fn a_failure_keeps_its_reason_whatever_waits() {
+    let (_, wanted) = sweep(None);
+    for rows in [16, 100, 1 << 10] {
+        for (most, sound) in [(0, usize::MAX), (3, usize::MAX), (usize::MAX, 0), (usize::MAX, 5)] {
+            let mut engine = Shooting::new(|nodes: &Nodes, collected| match collected < sound {
+                true => Ok(by_cpu(nodes)),
+                false => Err(EngineError::Device("lost".to_owned())),
+            });
+            engine.most = most;
+            let (summary, panels) = sweep_in_batches(rows, Some(&mut engine));
+            let failure = summary.engine_failure.unwrap().to_string();
+            assert_eq!(failure, "GPU: lost", "{rows} {most} {sound}");
+            assert!(summary.engine_cells.on_cpu_instead > 0);
+            assert_close(&wanted, &panels, "after a failure");
+        }
+    }
+}
+
+/// Next to whiskers with measured radii, which the shaders lack, the device evaluates rows whose nets the CPU computes.
+fn a_table_with_measured_radii_keeps_the_device() {
+    let text = "[whisker]\nlength_mm = 20\nbase_radius_um = 30\nyoungs_modulus_gpa = 3\n\
+        [whiskers]\ntable = [{ name = \"cone\", tip_radius_um = 3 }, \
+        { name = \"measured\", profile = [[0, 30], [10, 18], [20, 2]] }]\n\
+        [pole]\nradius_mm = 0.25\n[grid]\n\
+        push_angle_deg = { from = 1, to = 60, count = 128 }\ndistance_mm = { from = 5, to = 20, count = 128 }\n";
+    let scene = Scene::parse(text, "table.toml").unwrap();
+    let plan = Plan::new(&scene).unwrap();
+    let (_, wanted) = compute_as(&scene, &plan, None);
+    let (summary, panels) = compute_as(&scene, &plan, Some(&mut open(Precision::F64)));
+    assert!(summary.engine_failure.is_none(), "{:?}", summary.engine_failure);
+    assert!(summary.engine_cells.solved > 1000);
+    assert_eq!(summary.trajectories, 0);
+    assert_close(&wanted, &panels, "a table");
+}
+
 /// In `f64`. Nets in `f32` would not be accurate enough, so that the CPU integrates them.
 fn the_device_integrates_the_nets_of_a_sweep() {
-    let (_, by_cpu) = sweep(None);
+    let (_, wanted) = sweep(None);
     let (summary, panels) = sweep(Some(&mut open(Precision::F64)));
     assert!(summary.trajectories > 10_000, "{}", summary.trajectories);
     assert!(summary.engine_cells.solved > 0);
     assert_eq!(summary.audit.differing, 0);
-    assert_close(&by_cpu, &panels, "f64");
+    assert_close(&wanted, &panels, "f64");
     let (summary, _) = sweep(Some(&mut open(Precision::F32)));
     assert_eq!(summary.trajectories, 0);
 }

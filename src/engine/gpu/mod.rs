@@ -201,8 +201,8 @@ impl Engine for Gpu {
         true
     }
 
-    fn shoots(&self) -> bool {
-        self.precision == Precision::F64
+    fn integrates_nodes(&self, effects: Effects) -> bool {
+        self.precision == Precision::F64 && shoots(effects).is_ok()
     }
 
     fn shoot_nodes(&mut self, nodes: &Nodes) -> Result<Vec<PlainState>, EngineError> {

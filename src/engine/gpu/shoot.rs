@@ -74,7 +74,7 @@ impl Fan {
                 end - fan.len()..end
             })
             .collect();
-        each(fans.len(), |index| {
+        results(fans.len(), |index| {
             let of = fans[index].clone();
             let fan = &conditions[of.clone()];
             let (rod, tau) = (fan[0].rod, fan[0].tau);
@@ -88,12 +88,27 @@ impl Fan {
                 steps: method.resolution.steps(rod, tau, load),
             }
         })
+        .into_iter()
+        .flat_map(Self::parts)
+        .collect()
+    }
+
+    /// Divides this fan into fans of at most [`MOST_STEPS`].
+    fn parts(self) -> impl Iterator<Item = Self> {
+        // A trajectory has far fewer steps than a submission.
+        let most = (MOST_STEPS / u64::from(self.steps.max(1))).max(1) as usize;
+        let Self { of, effects, steps } = self;
+        of.clone().step_by(most).map(move |from| Self {
+            of: from..of.end.min(from + most),
+            effects,
+            steps,
+        })
     }
 }
 
-/// Returns the results of `work` for `count` indices, on all threads of the current pool. A thread of no pool, such as that of an engine, works
-/// alone.
-fn each<O: Send>(count: usize, work: impl Fn(usize) -> O + Send + Sync) -> Vec<O> {
+/// Returns the results of `work` for `count` indices, on all threads of the pool of this thread. A thread of no pool, such as that of an engine,
+/// works alone.
+fn results<O: Send>(count: usize, work: impl Fn(usize) -> O + Send + Sync) -> Vec<O> {
     match rayon::current_thread_index() {
         Some(_) => (0..count).into_par_iter().map(work).collect(),
         None => (0..count).map(work).collect(),
@@ -160,7 +175,7 @@ impl Gpu {
                 new.insert(self.device.pipeline("shoot", &text, &constants)?)
             }
         };
-        let contacts = each(fans.len(), |fan| {
+        let contacts = results(fans.len(), |fan| {
             let InitialCondition { rod, tau, .. } = conditions[fans[fan].of.start];
             let (radius, s) = (rod.radius(tau), arclength(rod, tau));
             let rest = Rest::parabola_tangent(rod, s);
@@ -210,7 +225,8 @@ impl Gpu {
     }
 }
 
-/// Returns the state of a trajectory of `rod` under a signed `force` from the numbers that the shader `found`, which knows no mount.
+/// Returns the state of a trajectory of `rod` under a signed `force` from the numbers that the shader `found`. The mount turns the base here; the
+/// shader has none.
 fn state(rod: &Rod, force: f64, found: GpuState<f64>) -> PlainState {
     let [cos, sin, x, y, energy, _] = found;
     let position = DVec2::new(x, y);
@@ -229,7 +245,7 @@ fn state(rod: &Rod, force: f64, found: GpuState<f64>) -> PlainState {
     }
 }
 
-/// Splits fans into submissions of at most [`MOST_STEPS`], or of a single fan: ranges of their indices.
+/// Splits fans of at most [`MOST_STEPS`] into submissions of as many: ranges of their indices.
 fn submissions(fans: &[Fan]) -> Vec<Range<usize>> {
     let (mut parts, mut from, mut sum) = (Vec::new(), 0, 0);
     for (index, fan) in fans.iter().enumerate() {
@@ -271,7 +287,7 @@ impl ShootBuffers {
         let written = Usage::STORAGE | Usage::COPY_SRC;
         let states = device.grown("states", &mut self.states, size, written)?;
         let mapped = Usage::MAP_READ | Usage::COPY_DST;
-        let readback = device.grown("states", &mut self.readback, size, mapped)?;
+        let readback = device.grown("readback", &mut self.readback, size, mapped)?;
         let mut entries = vec![binding(INPUTS as u32, states, Some(size))];
         for (index, (kept, bytes)) in (0..).zip(self.inputs.iter_mut().zip(inputs)) {
             let buffer = device.upload("trajectories", kept, bytes)?;
@@ -283,6 +299,8 @@ impl ShootBuffers {
             entries: &entries,
         });
         let mut commands = device.handle.create_command_encoder(&Default::default());
+        // An invocation that does not write must not keep the state of another submission.
+        commands.clear_buffer(states, 0, Some(size));
         {
             let mut pass = commands.begin_compute_pass(&Default::default());
             pass.set_pipeline(pipeline);
@@ -303,20 +321,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_submission_has_few_steps_or_one_fan() {
+    fn a_submission_has_few_steps() {
         let most = MOST_STEPS as u32;
         let parts = |steps: &[u32]| {
-            let fans = steps.iter().map(|steps| Fan {
-                of: 0..1,
-                effects: Effects::default(),
-                steps: *steps,
-            });
+            let fans = steps.iter().map(|steps| fan(1, *steps));
             submissions(&fans.collect::<Vec<_>>())
         };
         assert!(parts(&[]).is_empty());
         assert_eq!(parts(&[1, most]), [0..1, 1..2]);
         let parts = parts(&[most - 1, 1, 1, most, most + 9, 5, most - 5, 1]);
         assert_eq!(parts, [0..2, 2..3, 3..4, 4..5, 5..7, 7..8]);
+    }
+
+    #[test]
+    fn large_fans_are_divided() {
+        let ranges = |count, steps| fan(count, steps).parts().map(|part| part.of).collect();
+        let most = MOST_STEPS as usize / 16;
+        let parts: Vec<Range<usize>> = ranges(2 * most + 1, 16);
+        assert_eq!(parts, [0..most, most..2 * most, 2 * most..2 * most + 1]);
+        let whole: Vec<Range<usize>> = ranges(most, 16);
+        assert_eq!(whole, [0..most]);
+    }
+
+    fn fan(count: usize, steps: u32) -> Fan {
+        Fan {
+            of: 0..count,
+            effects: Effects::default(),
+            steps,
+        }
     }
 
     /// Fans of neighbours take the steps of the largest load.

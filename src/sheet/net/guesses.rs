@@ -85,7 +85,7 @@ impl Panels<GuessPanel> {
             } = attempt;
             let along = along(case.rod, contacts, range, size.contacts.max(ALONG));
             let made = GuessPanel::new(case, range, along, size, error);
-            queue.settle(attempt, made);
+            queue.store(attempt, made);
         }
         queue.found
     }

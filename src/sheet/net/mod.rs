@@ -20,7 +20,8 @@ mod values;
 
 pub use bound::{MARGIN, VALUE_WEIGHT, larger, largest};
 pub use row::{NetBlock, NetRow};
-pub use values::{ValueDraft, ValueNet};
+pub(crate) use values::ValueDraft;
+pub use values::ValueNet;
 
 use crate::sheet::Row;
 use crate::sheet::fold::coordinate::u_of;
@@ -58,8 +59,8 @@ struct PanelRow {
 }
 
 impl PanelRow {
-    /// Returns the `row` at `place` with its range of contacts and its number of `cells`; `None` if it has no contacts, as the pole is out of reach, or if the base may be inside the
-    /// pole.
+    /// Returns the `row` at `place` with its range of contacts and its number of `cells`. `None` if it has no contacts: the pole is out of reach,
+    /// or the base may be inside the pole.
     ///
     /// The contact is at least as far along the whisker as it is from the base, and that is at least the pole's distance without its radius. It
     /// is at most that of first touch, or the `last`.
@@ -189,9 +190,9 @@ impl<P> PanelQueue<P> {
         &self.rows[attempt.rows.clone()]
     }
 
-    /// Takes the panel that was `made` of an attempt. If it is not accurate enough, that is the size that is expected to be, if any, and the next
-    /// attempts are opened.
-    fn settle(&mut self, attempt: Attempt, made: Result<P, Option<NetSize>>) {
+    /// Stores the panel that was `made`, or opens the next attempts: the size that is expected to be accurate enough, or else both halves of the
+    /// rows.
+    fn store(&mut self, attempt: Attempt, made: Result<P, Option<NetSize>>) {
         match made {
             Ok(panel) => {
                 for own in &self.rows[attempt.rows] {

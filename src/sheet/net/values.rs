@@ -8,6 +8,8 @@ use super::size::NetSize;
 use super::{Attempt, PanelQueue, PanelRow, Panels};
 use crate::plan::net_cost;
 use crate::sheet::Sheet;
+use crate::sheet::samples::SheetSamples;
+use std::sync::Arc;
 use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
 use whiskmap_mechanics::numerics::nearest_turn;
 use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
@@ -45,6 +47,7 @@ pub type ValueNet = Panels<ValuePanel>;
 /// are needed next, and [`ValueDraft::take`] gets their states.
 #[derive(Debug)]
 pub struct ValueDraft {
+    samples: Arc<SheetSamples>,
     /// Largest residual of the panels' states, in whisker lengths.
     most: f64,
     queue: PanelQueue<ValuePanel>,
@@ -62,15 +65,14 @@ struct Grid {
 }
 
 impl Grid {
-    /// Creates the grid of a panel of `sheet`; `None` without samples of the sheet.
-    fn new(sheet: &Sheet, attempt: Attempt) -> Option<Self> {
-        let contacts = &sheet.samples.as_ref()?.contacts;
-        let along = along(&sheet.rod, contacts, attempt.contacts, ALONG);
-        Some(Self {
+    /// Creates the grid of a panel of `sheet`, which has these `samples`.
+    fn new(sheet: &Sheet, samples: &SheetSamples, attempt: Attempt) -> Self {
+        let along = along(&sheet.rod, &samples.contacts, attempt.contacts, ALONG);
+        Self {
             contacts: contacts_of(sheet.case(), attempt.size, &along),
             along,
             attempt,
-        })
+        }
     }
 
     /// Returns contact and load of each trajectory, `(tau, load)`, contact by contact.
@@ -87,9 +89,9 @@ impl ValueDraft {
     ///
     /// `None` without samples of the sheet, with measured radii, whose states are not analytic where the contact passes from one radius to the
     /// next, and where `most` is below the residual of refined states.
-    #[must_use]
     pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
-        if sheet.is_continued() || sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {
+        let samples = Arc::clone(sheet.samples.as_ref()?);
+        if sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {
             return None;
         }
         let pays = |size: NetSize, rows: &[PanelRow]| {
@@ -101,6 +103,7 @@ impl ValueDraft {
             PanelRow::new(&sheet.rod, row, place, last, cells(row))
         });
         Some(Self {
+            samples,
             most,
             queue: PanelQueue::new(most, pays, sheet.rows.len(), rows),
             grids: Vec::new(),
@@ -108,27 +111,29 @@ impl ValueDraft {
     }
 
     /// Returns the trajectories that are needed next, `(tau, load)` of the rod of the draft's `sheet`; none if all panels are made.
-    #[must_use]
     pub fn nodes(&mut self, sheet: &Sheet) -> Vec<(f64, f64)> {
         let open = std::mem::take(&mut self.queue.open).into_iter();
-        let grids = open.filter_map(|attempt| Grid::new(sheet, attempt));
+        let grids = open.map(|attempt| Grid::new(sheet, &self.samples, attempt));
         self.grids = grids.collect();
         self.grids.iter().flat_map(Grid::nodes).collect()
     }
 
     /// Makes the panels of a round of the draft's `sheet` from the `states` of its nodes, `[node]`.
+    ///
+    /// # Panics
+    ///
+    /// If there are fewer states than nodes.
     pub fn take(&mut self, sheet: &Sheet, mut states: &[PlainState]) {
         for grid in std::mem::take(&mut self.grids) {
             let (own, others) = states.split_at(grid.attempt.size.states());
             states = others;
             let rows = self.queue.rows_of(&grid.attempt);
             let made = ValuePanel::new(sheet, rows, &grid, own, self.most);
-            self.queue.settle(grid.attempt, made);
+            self.queue.store(grid.attempt, made);
         }
     }
 
     /// Returns the panels that have been made; `None` without one.
-    #[must_use]
     pub fn finish(self) -> Option<ValueNet> {
         let net = self.queue.found;
         (!net.panels.is_empty()).then_some(net)
@@ -320,7 +325,7 @@ mod tests {
             tries: 1,
             halvings: 0,
         };
-        let grid = Grid::new(sheet, attempt).unwrap();
+        let grid = Grid::new(sheet, sheet.samples.as_ref().unwrap(), attempt);
         let states = sheet.case().shoot(grid.nodes());
         (grid, states)
     }
