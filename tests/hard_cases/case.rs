@@ -27,13 +27,18 @@ pub struct Case {
 }
 
 impl Case {
-    /// Text of the scene file.
+    /// Text of the scene file, with a modulus of 3 GPa.
     pub fn text(&self) -> String {
+        self.text_at(3.0)
+    }
+
+    /// Text of the scene file with a Young's modulus of so many `gpa`.
+    pub fn text_at(&self, gpa: f64) -> String {
         let length = self.length_mm;
         let base_um = 1.5 * length;
         let tip_um = base_um * (1.0 - self.taper);
         let mut text = format!(
-            "title = \"hard\"\n[whisker]\nlength_mm = {length:?}\nyoungs_modulus_gpa = 3\n"
+            "title = \"hard\"\n[whisker]\nlength_mm = {length:?}\nyoungs_modulus_gpa = {gpa:?}\n"
         );
         let rows: Vec<[f64; 2]> = self
             .rows
@@ -62,7 +67,7 @@ impl Case {
         }
         if self.compliance > 0.0 {
             // `E I_base/L_w` in nN m.
-            let moment = 3e18 * FRAC_PI_4 * (1e-6 * base_um).powi(4) / (1e-3 * length);
+            let moment = 1e18 * gpa * FRAC_PI_4 * (1e-6 * base_um).powi(4) / (1e-3 * length);
             let stiffness = moment / self.compliance;
             let _ = writeln!(
                 text,

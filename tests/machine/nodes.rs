@@ -41,9 +41,8 @@ struct Shooting<F> {
 fn by_cpu(nodes: &Nodes) -> Vec<PlainState> {
     let batch = Batch::new(nodes.method).padded();
     let rods = nodes.rods.iter().zip(&nodes.points);
-    let states = rods.flat_map(|(rod, points)| {
-        batch.shoot_at::<PlainState>(rod, points.iter().copied())
-    });
+    let states =
+        rods.flat_map(|(rod, points)| batch.shoot_at::<PlainState>(rod, points.iter().copied()));
     states.collect()
 }
 
@@ -158,7 +157,12 @@ fn an_engine_that_fails_to_integrate_is_disabled() {
 fn a_failure_keeps_its_reason_whatever_waits() {
     let (_, wanted) = sweep(None);
     for rows in [16, 100, 1 << 10] {
-        for (most, sound) in [(0, usize::MAX), (3, usize::MAX), (usize::MAX, 0), (usize::MAX, 5)] {
+        for (most, sound) in [
+            (0, usize::MAX),
+            (3, usize::MAX),
+            (usize::MAX, 0),
+            (usize::MAX, 5),
+        ] {
             let mut engine = Shooting::new(|nodes: &Nodes, collected| match collected < sound {
                 true => Ok(by_cpu(nodes)),
                 false => Err(EngineError::Device("lost".to_owned())),
@@ -173,9 +177,9 @@ fn a_failure_keeps_its_reason_whatever_waits() {
     }
 }
 
-/// Next to whiskers with measured radii, which the shaders lack, the device evaluates rows whose nets the CPU computes.
+/// Whiskers with measured radii, which the shaders lack, have no nets; the device works for the others of their table.
 fn a_table_with_measured_radii_keeps_the_device() {
-    let text = "[whisker]\nlength_mm = 20\nbase_radius_um = 30\nyoungs_modulus_gpa = 3\n\
+    let text = "title = \"Two\"\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\nyoungs_modulus_gpa = 3\n\
         [whiskers]\ntable = [{ name = \"cone\", tip_radius_um = 3 }, \
         { name = \"measured\", profile = [[0, 30], [10, 18], [20, 2]] }]\n\
         [pole]\nradius_mm = 0.25\n[grid]\n\
@@ -184,9 +188,13 @@ fn a_table_with_measured_radii_keeps_the_device() {
     let plan = Plan::new(&scene).unwrap();
     let (_, wanted) = compute_as(&scene, &plan, None);
     let (summary, panels) = compute_as(&scene, &plan, Some(&mut open(Precision::F64)));
-    assert!(summary.engine_failure.is_none(), "{:?}", summary.engine_failure);
+    assert!(
+        summary.engine_failure.is_none(),
+        "{:?}",
+        summary.engine_failure
+    );
     assert!(summary.engine_cells.solved > 1000);
-    assert_eq!(summary.trajectories, 0);
+    assert!(summary.trajectories > 0);
     assert_close(&wanted, &panels, "a table");
 }
 

@@ -153,8 +153,8 @@ pub fn sabotaged(
 
 /// How far the states of an engine may be from those of the CPU, in parts of a channel's largest value along a whisker: at worst, and
 /// in the median over the cells that the engine solved. In `f32`, a pole is missed by up to 6e-7 of the length. At worst, a component of the
-/// force that is half as large as the force is then off by 1.01e-6 (`scenes/traced.toml`).
-pub const WORST: f32 = 1.2e-6;
+/// force that is smaller than the force is then off by 1.4e-6 (`scenes/follicle.toml`).
+pub const WORST: f32 = 1.5e-6;
 pub const MEDIAN: f32 = 1e-7;
 
 /// So many cells tell a median from chance.

@@ -284,7 +284,7 @@ impl ShootBuffers {
         read: impl FnOnce(&[u8]),
     ) -> Result<(), EngineError> {
         let size = (count * each) as u64;
-        let written = Usage::STORAGE | Usage::COPY_SRC;
+        let written = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
         let states = device.grown("states", &mut self.states, size, written)?;
         let mapped = Usage::MAP_READ | Usage::COPY_DST;
         let readback = device.grown("readback", &mut self.readback, size, mapped)?;

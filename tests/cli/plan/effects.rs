@@ -39,7 +39,7 @@ fn a_straight_cylinder_has_no_effects() {
     assert_eq!(fact(&run, "GPU calls"), calls);
     assert_eq!(
         fact(&run, "GPU memory"),
-        "192 MiB more than below, on the host"
+        "224 MiB more than below, on the host"
     );
     // 4 MiB for each thread, 256 KiB for the sheet of the only side, and 16 cells.
     let threads = std::thread::available_parallelism().unwrap();
