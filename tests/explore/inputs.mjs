@@ -195,6 +195,17 @@ export const inputs = {
         await until('the sweep', () => page.title(), (own) => !own.startsWith('Conical'));
         await finished(page);
         await compare();
+        const rows = [['C1', 20], ['none', 'nan'], ['C2', 14]].map(([name, length]) => `{ name = "${name}", length_mm = ${length} }`);
+        await drop(page, 'table.toml', `${sceneText(`${root}/scenes/cone.toml`)}\n[whiskers]\ntable = [${rows.join(', ')}]\n`);
+        await until('the table', () => page.$$eval('#row option', (all) => all.map((own) => own.textContent).join()), (own) => own === 'C1,C2');
+        await finished(page);
+        await compare();
+        await page.selectOption('#row', 'C2');
+        await until('the length', () => page.$eval('#field-length_mm', (field) => field.value), (own) => own === '14');
+        await finished(page);
+        await move(page, 0.6, 0.2);
+        await compare();
+        assert((await page.$eval('#row', (own) => own.value)) === 'C2', 'the selected whisker');
         await page.context().close();
     },
 

@@ -33,7 +33,7 @@ Examples:
   whiskmap explore outputs/morphology.zarr
 
 The page is one file that computes in the browser: it needs no installation and no network, and sends nothing. Of a sweep, it \
-shows the first whisker. The browser opens if standard output is a terminal.")]
+shows the first whisker; a list selects the whisker of a table. The browser opens if standard output is a terminal.")]
 pub struct ExploreArgs {
     /// Scene file, or a map or store written by `whiskmap map`; - is a scene on standard input
     file: PathBuf,

@@ -30,7 +30,9 @@ const rows = new Map();
 
 // Makes the controls of a scene that has just been opened.
 export function makeControls() {
-    const { parameters } = known.scene;
+    const { parameters, whiskers, whisker } = known.scene;
+    find('row').parentElement.hidden = !whiskers.length;
+    find('row').replaceChildren(...whiskers.map((name) => el('option', { selected: name === whisker }, name)));
     const of = { length_mm: known.scene.length_mm, ...Object.fromEntries(parameters.map(({ name, value }) => [name, value])) };
     rows.clear();
     const names = Object.keys(PARAMETERS).filter((name) => parameters.some((own) => own.name === name));
@@ -60,8 +62,9 @@ export function showValues() {
     find('warnings').textContent = known.scene.warnings.join('\n');
 }
 
-// Buttons for all values: back to the file, and a second whisker for comparison.
+// The list of the whiskers of a table, and buttons for all values: back to the file, and a second whisker for comparison.
 export function startControls() {
+    find('row').addEventListener('change', ({ target }) => adopt('scene', (whisker) => ({ ...whisker, values: {}, row: target.value }), { view: null, pointer: null }));
     find('reset').addEventListener('click', () => {
         for (const { entry } of rows.values()) entry.clear();
         adopt('scene', (whisker) => ({ ...whisker, values: {} }));

@@ -36,7 +36,7 @@ export async function link() {
 const isRange = (ends) => Array.isArray(ends) && ends.length === 2 && ends.every(Number.isFinite) && ends[0] <= ends[1];
 
 const isWhisker = (own) =>
-    typeof own?.text === 'string' && typeof own.origin === 'string' && own.values && Object.values(own.values).every(Number.isFinite);
+    typeof own?.text === 'string' && typeof own.origin === 'string' && own.values && Object.values(own.values).every(Number.isFinite) && ['string', 'undefined'].includes(typeof own.row);
 
 // The state in a link, with the names of its parts that are not valid, which are left out.
 export async function fromLink(hash) {

@@ -15,7 +15,7 @@ import { CHANNELS, UNITS, inUnit, sizeOf, titled } from './text.js';
 import { drawCourse, showCourse, startWhisk } from './whisk.js';
 import { drawWhisker } from './whisker.js';
 
-// The scene whose controls are on the page.
+// The scene and the whisker whose controls are on the page.
 let opened = null;
 let ranges;
 
@@ -24,8 +24,9 @@ function showScene() {
     const { title } = known.scene;
     find('title').textContent = title;
     document.title = `${title} \u00b7 whiskmap`;
-    if (opened === state.whisker.text) return showValues();
-    opened = state.whisker.text;
+    const own = JSON.stringify([state.whisker.text, known.scene.whisker]);
+    if (opened === own) return showValues();
+    opened = own;
     makeControls();
 }
 

@@ -69,9 +69,5 @@ export function startPoints() {
         for (const file of event.dataTransfer.files) open(file);
     });
     find('fit').addEventListener('click', fitted);
-    find('forget').addEventListener('click', () => {
-        find('estimates').replaceChildren();
-        find('points-name').textContent = '';
-        change({ points: null });
-    });
+    find('forget').addEventListener('click', () => (find('estimates').replaceChildren(), (find('points-name').textContent = ''), change({ points: null })));
 }

@@ -7,10 +7,7 @@ import { known, state } from './state.js';
 import { CHANNELS, exact, inUnit, sideOf, spoken, unit, withUnit } from './text.js';
 
 // The values of a state.
-function values(own) {
-    if (!own) return {};
-    return { ...own.verdict.values, ...own.stable.state };
-}
+const values = (own) => (own ? { ...own.verdict.values, ...own.stable.state } : {});
 
 const reason = (own) => (own.stable.points ? null : own.stable.none);
 

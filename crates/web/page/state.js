@@ -1,6 +1,6 @@
 // State of the page: the whisker, what is shown of it, and the place of the pointer. Listeners are called when a part changes.
 
-// `whisker` is `{ text, origin, values }`: a valid scene, and the values that replace those in it.
+// `whisker` is `{ text, origin, values, row }`: a valid scene, the values that replace those in it, and the name of a whisker of its table.
 export const state = {
     whisker: null, pinned: null, view: null, channel: null, scale: 'auto', range: [null, null], pointer: null, points: null,
     whisk: { amplitude_deg: 25, frequency_hz: 10 },
@@ -42,7 +42,7 @@ export function withValues(whisker, values) {
 }
 
 // A request to the solver for a whisker.
-export const request = (task, { text, origin, values } = state.whisker) => ({ text, origin, values: Object.entries(values), task });
+export const request = (task, { text, origin, values, row } = state.whisker) => ({ text, origin, values: Object.entries(values), whisker: row, task });
 
 // The narrowest views: in degrees, and as a part of the greatest distance.
 const NARROW_DEG = 1e-4;

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::{Value, json};
 use whiskmap::measured::{Comparison, MeasuredPoints};
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::{Parameter, Scene, SweepPlace};
 
 /// Task: compare measured detachments with a scene, or fit the scene to them.
 #[derive(Deserialize)]
@@ -18,9 +18,10 @@ pub struct PointsTask {
 }
 
 impl PointsTask {
-    /// Returns the points with the predictions of `scene`, or of its best fit.
-    pub fn respond(&self, scene: &Scene) -> Result<Value, String> {
+    /// Returns the points with the predictions of `scene`, or of its best fit. Of points that name their whiskers, those of `place` count.
+    pub fn respond(&self, scene: &Scene, place: &SweepPlace) -> Result<Value, String> {
         let points = MeasuredPoints::parse(&self.csv, &self.name);
+        let points = points.and_then(|points| points.at(place));
         let points = points.map_err(|why| why.to_string())?;
         let free = self.free.iter().filter_map(|name| Parameter::named(name));
         let free: Vec<Parameter> = free.collect();

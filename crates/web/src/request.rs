@@ -4,7 +4,7 @@ use crate::response::{MOST, Response};
 use crate::{course, map, points, scene, traces};
 use serde::Deserialize;
 use serde_json::json;
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::{Parameter, Scene, SweepPlace};
 use whiskmap::sensitivity::effects;
 
 /// Request: a scene, values that replace those in it, and a task.
@@ -17,6 +17,9 @@ pub struct Request {
     origin: String,
     /// Names of parameters with other values, in their units.
     values: Vec<(String, f64)>,
+    /// Name of the whisker in the table of the scene; `None` for the first whisker.
+    #[serde(default)]
+    whisker: Option<String>,
     /// What is to be computed.
     task: Task,
 }
@@ -76,7 +79,7 @@ impl Request {
     fn respond(&self) -> Result<Response, String> {
         let scene = self.scene()?;
         Ok(match &self.task {
-            Task::Scene => scene::description(&scene, self.parsed()?.is_sweep())?.into(),
+            Task::Scene => scene::description(&scene, &self.parsed()?, &self.place()?)?.into(),
             Task::Toml => {
                 json!({ "toml": scene::toml(&self.one(Vec::new())?, &self.changes()?)? }).into()
             }
@@ -100,22 +103,40 @@ impl Request {
                 json!({ "distance_mm": distance_mm, "rows": effects(&scene, *distance_mm) }).into()
             }
             Task::Whisk(task) => task.respond(&scene)?,
-            Task::Points(task) => task.respond(&scene)?.into(),
+            Task::Points(task) => task.respond(&scene, &self.place()?)?.into(),
         })
     }
 
-    /// The one whisker of the request: the first one of a sweep, with its values.
+    /// The one whisker of the request, with its values: that of the name, or the first one of a sweep.
     fn scene(&self) -> Result<Scene, String> {
         self.one(self.changes()?)
     }
 
     fn one(&self, values: Vec<(Parameter, f64)>) -> Result<Scene, String> {
-        let scene = self.parsed()?.of_whisker(0);
+        let sweep = self.parsed()?;
+        let scene = sweep.of_whisker(self.index(&sweep)?);
         let scene = scene.and_then(|scene| match values.is_empty() {
             true => Ok(scene),
             false => scene.with_parameters(&values),
         });
         scene.map_err(|why| why.to_string())
+    }
+
+    /// Index of the whisker in the sweep.
+    fn index(&self, sweep: &Scene) -> Result<usize, String> {
+        let mut indices = 0..sweep.whisker_count();
+        let found = indices.find(|index| match &self.whisker {
+            Some(name) => sweep.grid.place(*index).whisker() == Some(name),
+            None => sweep.whisker(*index).is_ok(),
+        });
+        let name = || self.whisker.as_deref().unwrap_or_default();
+        found.ok_or_else(|| format!("whisker = {}: is not in the table of whiskers", name()))
+    }
+
+    /// Place of the whisker in the sweep.
+    fn place(&self) -> Result<SweepPlace, String> {
+        let sweep = self.parsed()?;
+        Ok(sweep.grid.place(self.index(&sweep)?))
     }
 
     fn parsed(&self) -> Result<Scene, String> {

@@ -3,10 +3,12 @@
 use serde_json::{Value, json};
 use whiskmap::classify::{Regime, Status};
 use whiskmap::plan::{Plan, STATE_CHANNELS, effects};
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::{Parameter, Scene, SweepPlace};
 
-/// Returns title, units, numbers, effects and axes of a scene, the names of codes and channels, and whether it is one whisker of a sweep.
-pub fn description(scene: &Scene, is_of_sweep: bool) -> Result<Value, String> {
+/// Returns title, units, numbers, effects and axes of a scene, the names of codes and channels, whether it is one whisker of a sweep, and the
+/// names of the whiskers of its table with its own, of this place.
+pub fn description(scene: &Scene, sweep: &Scene, place: &SweepPlace) -> Result<Value, String> {
+    let whiskers = sweep.table.iter().filter(|row| row.found.is_ok());
     let parameters = Parameter::ALL.into_iter();
     let parameters = parameters.filter_map(|parameter| {
         Some(json!({
@@ -27,7 +29,9 @@ pub fn description(scene: &Scene, is_of_sweep: bool) -> Result<Value, String> {
     Ok(json!({
         "title": scene.title,
         "name": scene.name,
-        "is_of_sweep": is_of_sweep,
+        "is_of_sweep": sweep.is_sweep(),
+        "whiskers": whiskers.map(|row| &row.name).collect::<Vec<_>>(),
+        "whisker": place.whisker(),
         "length_mm": units.length_mm,
         "unit_force_un": units.force_un,
         "parameters": parameters.collect::<Vec<_>>(),
