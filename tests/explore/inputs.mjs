@@ -30,6 +30,8 @@ async function saved(page, id) {
 
 // Runs the command that the page copies in a shell, with other words after that of the command.
 async function copied(page, words = '') {
+    // The message of the last copy would end the wait for this one.
+    await page.$eval('#saved', (own) => (own.textContent = ''));
     await page.click('#copy-command');
     await until('the copy', () => text(page, 'saved'), (own) => own === 'command copied');
     const command = await page.evaluate(() => navigator.clipboard.readText());
