@@ -84,11 +84,7 @@ impl Grid {
 }
 
 impl ValueDraft {
-    /// Begins the panels of `sheet` for an engine: states with a residual of at most `most` whisker lengths, for rows with `cells(row)` cells,
-    /// where that takes less time than the trajectories of the cells.
-    ///
-    /// `None` without samples of the sheet, with measured radii, whose states are not analytic where the contact passes from one radius to the
-    /// next, and where `most` is below the residual of refined states.
+    /// Begins the panels of [`ValueNet::new`]; `None` where none is possible.
     pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
         let samples = Arc::clone(sheet.samples.as_ref()?);
         if sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {
@@ -141,7 +137,11 @@ impl ValueDraft {
 }
 
 impl ValueNet {
-    /// Computes the panels of [`ValueDraft::new`] with trajectories on the CPU; `None` without a panel.
+    /// Computes the panels of `sheet` for an engine: states with a residual of at most `most` whisker lengths, for rows with `cells(row)` cells,
+    /// where that takes less time than the trajectories of the cells.
+    ///
+    /// `None` without a panel, without samples of the sheet, with measured radii, whose states are not analytic where the contact passes from one
+    /// radius to the next, and where `most` is below the residual of refined states.
     #[must_use]
     pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
         let mut draft = ValueDraft::new(sheet, cells, most)?;
