@@ -2,6 +2,8 @@
 
 mod compare;
 mod read;
+#[cfg(feature = "fit")]
+mod together;
 mod whiskers;
 
 pub use compare::{ComparedPoint, Comparison, NotCompared};

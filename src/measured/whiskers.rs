@@ -1,10 +1,8 @@
 //! Points of several whiskers, which a column of their file names.
 
-use super::{ComparedPoint, Comparison, MeasuredPoint, MeasuredPoints};
-use crate::input::{CsvError, did_you_mean, shortened};
-use crate::scene::{SceneData, SweepPlace, SweptWhisker};
-use crate::sensitivity::Variable;
-use rayon::prelude::*;
+use super::{MeasuredPoint, MeasuredPoints};
+use crate::input::{CsvError, shortened};
+use crate::scene::SweepPlace;
 
 impl MeasuredPoints {
     /// Returns the points of the whisker at a place of a sweep, as points without names; all points if their file names no whiskers.
@@ -27,7 +25,7 @@ impl MeasuredPoints {
     }
 
     /// Returns the points of the whisker with this index, as points without names.
-    fn of_whisker(&self, index: usize) -> Self {
+    pub(super) fn of_whisker(&self, index: usize) -> Self {
         let own = |points: &[MeasuredPoint]| {
             let own = points.iter().filter(|point| point.whisker == index);
             own.map(|point| MeasuredPoint {
@@ -44,104 +42,8 @@ impl MeasuredPoints {
         }
     }
 
-    fn without_table(&self) -> CsvError {
+    pub(super) fn without_table(&self) -> CsvError {
         let must = "has a column whisker: the scene must have a table of whiskers, and no other sweep axis";
         CsvError::whole(&self.origin, must)
-    }
-
-    /// Returns the whisker of `scene` for each name of the points, `[whisker]`; without names, the first whisker of the scene.
-    ///
-    /// # Errors
-    /// The scene has no table of whiskers or another axis, or its table has no row, or a row without a whisker, of a name.
-    pub(crate) fn whiskers_in(&self, scene: &SceneData) -> Result<Vec<SweptWhisker>, CsvError> {
-        if self.whiskers.is_empty() {
-            return Ok(vec![scene.first_whisker()]);
-        }
-        let names = match &*scene.grid.sweep {
-            [axis] if !axis.variable.names().is_empty() => axis.variable.names(),
-            _ => return Err(self.without_table()),
-        };
-        let of_name = |(index, name): (usize, &String)| {
-            let refused = |why: String| {
-                let all = self.points.iter().chain(&self.incomplete);
-                let lines = all.filter(|point| point.whisker == index);
-                let line = lines.map(|point| point.line).min().unwrap_or_default();
-                let what = format!("whisker = {}: {why}", shortened(name));
-                CsvError::at(&self.origin, line, what)
-            };
-            let place = (0..scene.whisker_count()).map(|index| scene.grid.place(index));
-            let mut places = place.filter(|place| place.whisker() == Some(name));
-            let place = places.next().ok_or_else(|| {
-                let hint = did_you_mean(name, names.iter().map(String::as_str));
-                let must = "must be a whisker of the scene's table";
-                refused(format!("{must}, such as {}{hint}", shortened(&names[0])))
-            })?;
-            scene
-                .whisker_at(place)
-                .map_err(|own| refused(format!("its row has no whisker: {}", own.reason)))
-        };
-        self.whiskers.iter().enumerate().map(of_name).collect()
-    }
-
-    /// Checks that each of the resting `whiskers`, which [`Self::whiskers_in`] returns, touches its pole at the distances of its points.
-    ///
-    /// # Errors
-    /// The first point that is out of reach.
-    pub(crate) fn check_reach_of(&self, whiskers: &[SweptWhisker]) -> Result<(), CsvError> {
-        let mut own = whiskers.iter().enumerate();
-        own.try_for_each(|(index, own)| {
-            let points = self.of_whisker(index);
-            points.check_reach(&own.whisker, &own.pole)
-        })
-    }
-
-    /// Returns the first point at whose distance its resting whisker does not touch its pole; `None` if all are within reach.
-    pub(crate) fn first_out_of_reach_of(&self, whiskers: &[SweptWhisker]) -> Option<MeasuredPoint> {
-        let mut own = whiskers.iter().enumerate();
-        own.find_map(|(index, own)| {
-            let points = self.of_whisker(index);
-            points.first_out_of_reach(&own.whisker, &own.pole).copied()
-        })
-    }
-
-    /// Compares the points with the detachments of their `whiskers`, as [`Self::beside`] does.
-    pub(crate) fn beside_all(&self, whiskers: &[SweptWhisker]) -> Comparison {
-        self.with_incomplete(self.compared_with(whiskers))
-    }
-
-    /// Returns the points that have all of their values, with the predictions for their `whiskers`: `[point]`.
-    pub(crate) fn compared_with(&self, whiskers: &[SweptWhisker]) -> Vec<ComparedPoint> {
-        let compared = whiskers.par_iter().enumerate().map(|(index, own)| {
-            let points = self.of_whisker(index);
-            points.compared(&own.whisker, &own.pole)
-        });
-        self.in_order(compared.collect())
-    }
-
-    /// Returns the derivatives of the predicted angles as [`Self::derivatives`] does, each for the point's own whisker.
-    pub(crate) fn derivatives_with(
-        &self,
-        whiskers: &[SweptWhisker],
-        variables: &[Variable],
-    ) -> Option<Vec<Vec<f64>>> {
-        let own = whiskers.par_iter().enumerate().map(|(index, own)| {
-            let points = self.of_whisker(index);
-            points.derivatives(&own.whisker, &own.pole, variables)
-        });
-        let own: Vec<Vec<Vec<f64>>> = own.collect::<Option<_>>()?;
-        let of_variable = |variable: usize| {
-            let own = own.iter().map(|own| own[variable].clone());
-            self.in_order(own.collect())
-        };
-        Some((0..variables.len()).map(of_variable).collect())
-    }
-
-    /// Returns values of the points of each whisker, `[whisker][point]`, in the order of all points: `[point]`.
-    fn in_order<T>(&self, values: Vec<Vec<T>>) -> Vec<T> {
-        let mut values: Vec<_> = values.into_iter().map(Vec::into_iter).collect();
-        let points = self.points.iter();
-        points
-            .filter_map(|point| values[point.whisker].next())
-            .collect()
     }
 }

@@ -104,6 +104,7 @@ impl Scene {
     }
 
     /// Returns true if a row of the table of whiskers gives the parameter, or what would give it: the scene's own number has no effect there.
+    #[cfg(feature = "fit")]
     pub(crate) fn has_column(&self, parameter: Parameter) -> bool {
         self.table_rows().iter().any(|row| {
             let mut numbers = row.numbers().iter();
