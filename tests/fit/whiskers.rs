@@ -72,7 +72,7 @@ fn whiskers_of_a_table_share_the_fitted_values() {
     assert_eq!(found.comparison.count(), 18);
 }
 
-/// Of the points of all whiskers, those of one are compared with it alone.
+/// A whisker is compared with the points that name it, and with no others.
 #[test]
 fn points_of_one_whisker_are_taken_out() {
     let table = table();

@@ -23,7 +23,8 @@ tests! {
 /// The part of the cells that a GPU solves at least where rows have expansions.
 const SOLVED: f64 = 0.9;
 
-/// The same part in `f32` on a perfect cone: contacts near its point may be at the tip, within the bound on the residual. Measured 0.71.
+/// The part of the cells that a GPU solves in `f32` on a perfect cone, measured 0.71. The bound on the residual does not tell contacts near the
+/// point from the tip, so the CPU solves these.
 const SOLVED_AT_POINT: f64 = 0.7;
 
 fn engines_agree_on_every_cell(precision: Precision) {

@@ -91,12 +91,12 @@ impl<F: FnMut(&Nodes, usize) -> States + Send> Engine for Shooting<F> {
     }
 }
 
-/// Panels of 16 whiskers, in groups of 2, by `engine`: each group in one batch.
+/// Computes the panels of 16 whiskers by `engine`, in groups of 2 whiskers with one batch each.
 fn sweep(engine: Option<&mut dyn Engine>) -> (Summary, Vec<Panel>) {
     sweep_in_batches(1 << 10, engine)
 }
 
-/// The same panels, in batches of so many rows.
+/// Computes the panels of [`sweep`] by `engine`, in batches of at most this number of `rows`.
 fn sweep_in_batches(rows: usize, engine: Option<&mut dyn Engine>) -> (Summary, Vec<Panel>) {
     let scene = shipped::scene("morphology").thinned(96, 4);
     let mut plan = Plan::new(&scene).unwrap();
