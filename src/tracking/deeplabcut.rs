@@ -138,7 +138,7 @@ pub(super) fn read(
     Ok(ImageFrames {
         frames,
         order: match options.points.is_empty() {
-            true => PointOrder::Named,
+            true => PointOrder::Named(along.iter().map(|own| (*own).to_owned()).collect()),
             false => PointOrder::FromBase,
         },
         notes: unused.into_iter().collect(),

@@ -59,14 +59,14 @@ struct ImageFrames {
 }
 
 /// Order of the points of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 enum PointOrder {
     /// Order from base to tip.
     FromBase,
     /// Order along the whisker, in either direction, which may change from frame to frame.
     Along,
-    /// Any order, which is the same in all frames.
-    Named,
+    /// Any order, which is the same in all frames, of points with these names: `[point]`.
+    Named(Vec<String>),
 }
 
 /// Whisker of a film, frame by frame.

@@ -10,6 +10,13 @@ const STEADIER: f64 = 2.0;
 /// Number of frames, from all over the film, from which the order of named points is found.
 const ORDER_FRAMES: usize = 1000;
 
+/// Detour over a point between its two neighbours, in parts of the way past it, from which on the point may be beside the whisker: a turn by 35
+/// degrees.
+const DETOUR: f64 = 0.05;
+
+/// Median detours of a film by which that over a point beside the whisker is larger at least.
+const DETOURS: f64 = 10.0;
+
 /// Orders the points of all frames from base to tip.
 ///
 /// # Errors
@@ -18,9 +25,16 @@ pub(super) fn order(
     image: &mut ImageFrames,
     options: &TrackingOptions,
 ) -> Result<(), TrackingError> {
-    match image.order {
+    match &image.order {
         PointOrder::FromBase => return Ok(()),
-        PointOrder::Named => chain(&mut image.frames),
+        PointOrder::Named(names) => {
+            let beside = chain(&mut image.frames, names);
+            image.notes.extend(beside.into_iter().map(|name| {
+                format!(
+                    "body part {name} is beside the whisker in most frames: give the parts along the whisker by --points, and the pole by --pole"
+                )
+            }));
+        }
         PointOrder::Along => align(&mut image.frames),
     }
     let ends = [0, 1].map(|end| places(&image.frames, end));
@@ -63,8 +77,8 @@ pub(super) fn order(
 }
 
 /// Orders named points along the whisker, from one of the two that are farthest apart. The first point of the file stays in the first half.
-/// Points that are lost in all frames are left out.
-fn chain(frames: &mut [ImageFrame]) {
+/// Points that are lost in all frames are left out. Returns those of their `names` whose points are beside the line of the others.
+fn chain<'a>(frames: &mut [ImageFrame], names: &'a [String]) -> Vec<&'a str> {
     let count = frames.first().map_or(0, |own| own.points_px.len());
     let is_seen = |i: &usize| frames.iter().any(|own| own.points_px[*i].is_some());
     let seen: Vec<usize> = (0..count).filter(is_seen).collect();
@@ -78,16 +92,35 @@ fn chain(frames: &mut [ImageFrame]) {
         .flat_map(|a| seen.iter().filter(move |b| a < *b).map(move |b| (*a, *b)));
     let pairs = pairs.map(|(a, b)| (a, far(a, b)));
     let farthest = pairs.max_by(|(_, one), (_, other)| one.total_cmp(other));
-    let Some((end, _)) = farthest else { return };
+    let Some((end, _)) = farthest else {
+        return Vec::new();
+    };
     let mut order: Vec<(usize, f64)> = seen.iter().map(|i| (*i, far(end, *i))).collect();
     order.sort_by(|(_, one), (_, other)| one.total_cmp(other));
     let first = order.iter().position(|(i, _)| *i == seen[0]);
     if first.is_some_and(|first| 2 * first >= order.len()) {
         order.reverse();
     }
+    let order: Vec<usize> = order.into_iter().map(|(i, _)| i).collect();
+    let detours = order.windows(3).map(|three| {
+        let detour = |own: &ImageFrame| {
+            let [before, at, after] = [0, 1, 2].map(|i| own.points_px[three[i]]);
+            let (before, at, after) = (before?, at?, after?);
+            let way = distance(before, at) + distance(at, after);
+            Some(way / distance(before, after) - 1.0)
+        };
+        let some = frames.iter().step_by(step);
+        (three[1], median(some.filter_map(detour)))
+    });
+    let detours: Vec<(usize, f64)> = detours.collect();
+    let usual = median(detours.iter().map(|(_, detour)| *detour));
+    let is_beside = |(_, detour): &&(usize, f64)| *detour > DETOUR.max(DETOURS * usual);
+    let beside = detours.iter().filter(is_beside);
+    let beside = beside.map(|(i, _)| &*names[*i]).collect();
     for frame in frames {
-        frame.points_px = order.iter().map(|(i, _)| frame.points_px[*i]).collect();
+        frame.points_px = order.iter().map(|i| frame.points_px[*i]).collect();
     }
+    beside
 }
 
 /// Turns the points of frames around whose ends are nearer to the other ends of the frame before.
