@@ -31,6 +31,9 @@ impl CsvError {
     }
 }
 
+/// Cells of measurements that stand for a missing value, in either case, beside `NaN`.
+const MISSING: [&str; 5] = ["", "NA", "N/A", "null", "none"];
+
 /// CSV file as text: a header, and at least one row below it.
 ///
 /// Columns are separated by `;`, tabs or `,`: the one that a first line such as `sep=;` declares, or that the header has most
@@ -222,8 +225,7 @@ impl CsvTable {
         })
     }
 
-    /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A missing value, an empty cell, `NaN`
-    /// or `NA`, is NaN.
+    /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A [missing value](MISSING) is NaN.
     ///
     /// # Errors
     /// Fails as [`CsvTable::numbers`] does, but for missing values.
@@ -235,7 +237,7 @@ impl CsvTable {
     ) -> Result<Option<Vec<f64>>, CsvError> {
         let must = format!("{must}, or empty where it is missing");
         self.parsed(column, &must, |cell| match cell {
-            "" | "NA" => Some(f64::NAN),
+            cell if MISSING.iter().any(|own| cell.eq_ignore_ascii_case(own)) => Some(f64::NAN),
             cell => {
                 let number = cell.parse().ok();
                 number.filter(|number: &f64| number.is_nan() || is_allowed(*number))

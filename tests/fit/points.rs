@@ -56,6 +56,15 @@ fn lines_are_counted_as_an_editor_does() {
 }
 
 #[test]
+fn missing_values_have_several_spellings() {
+    for missing in ["", "NA", "n/a", "NaN", "nan", "null", "None"] {
+        let text = format!("side,distance_mm,push_angle_deg\ncb,15.5,16\ncb,15.6,{missing}\n");
+        let points = MeasuredPoints::parse(&text, "p.csv").unwrap();
+        assert_eq!(points.points.len(), 1, "{missing}");
+    }
+}
+
+#[test]
 fn errors_name_the_line_the_value_and_what_is_allowed() {
     let with = |old: &str, new: &str| {
         let text = GOOD.replacen(old, new, 1);
