@@ -1,9 +1,10 @@
 //! Charts of courses: angle of the base, force and moment over time.
 
 use super::labels::{TIME, axis_title};
-use super::{Chart, Dot, Ink, Line, Plot, Stroke};
+use super::{Band, Chart, Dot, Ink, Line, Plot, Stroke};
 use crate::force::FrameForce;
 use crate::whisk::{Whisk, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
+use whiskmap_plot::Shade;
 
 /// Quantity of a course over time.
 struct Curve {
@@ -54,24 +55,46 @@ pub fn courses(title: &str, whisk: &Whisk) -> Chart {
     }
 }
 
-/// Returns a chart of measured forces: contact force and moment at the base over time. Lines break where there is no force.
+/// Value of a frame with its standard deviation.
+type WithDeviation = fn(&FrameForce) -> [Option<f64>; 2];
+
+/// Returns a chart of measured forces: contact force and moment at the base over time, with a band of one standard deviation if there is
+/// one. Lines break where there is no force.
 #[must_use]
 pub fn forces(title: &str, forces: &[FrameForce]) -> Chart {
-    let plot = |name: &str, value: fn(&FrameForce) -> Option<f64>| {
-        let points = forces
-            .iter()
-            .map(|force| [force.time_s, value(force).unwrap_or(f64::NAN)]);
+    let plot = |name: &str, number: WithDeviation| {
+        let frames = forces.iter().map(|force| {
+            let [value, deviation] = number(force).map(|own| own.unwrap_or(f64::NAN));
+            (force.time_s, value, deviation)
+        });
+        let line = frames.clone().map(|(time, value, _)| [time, value]);
+        let band = frames.map(|(time, value, deviation)| {
+            [value - deviation, value + deviation].map(|end| [time, end])
+        });
+        let band = Band {
+            points: band.collect(),
+            shade: Shade::Dark,
+            name: Some("\u{b1} standard deviation".to_owned()),
+        };
+        let has_band = |band: &Band| band.points.iter().any(|[low, _]| low[1].is_finite());
         Plot {
             x_label: TIME.to_owned(),
             y_label: axis_title(name),
-            lines: vec![Line::new(points.collect(), Ink::Black, Stroke::Solid)],
+            bands: Some(band).filter(has_band).into_iter().collect(),
+            lines: vec![Line::new(line.collect(), Ink::Black, Stroke::Solid)],
             ..Plot::default()
         }
     };
     let mut plots = vec![
-        plot("force_un", |force| force.force_un),
-        plot("base_moment_nnm", |force| force.base_moment_nnm),
+        plot("force_un", |own| [own.force_un, own.force_sd_un]),
+        plot("base_moment_nnm", |own| {
+            [own.base_moment_nnm, own.base_moment_sd_nnm]
+        }),
     ];
+    // The first plot has the legend.
+    for band in plots.iter_mut().skip(1).flat_map(|plot| &mut plot.bands) {
+        band.name = None;
+    }
     share_times(&mut plots, forces.iter().map(|force| force.time_s));
     Chart {
         plots,

@@ -1,6 +1,6 @@
 //! `whiskmap force`.
 
-use super::traces::cells;
+use super::traces::{cells, good};
 use super::{Place, SCENE};
 
 const HEADER: &str =
@@ -47,6 +47,18 @@ fn both_methods_agree_on_the_example() {
         svg.contains(">contact force (\u{b5}N)<")
             && svg.contains(">bending moment at the base (nN m)<")
     );
+    // Frames have no standard deviations yet.
+    assert!(!svg.contains("standard deviation"), "{svg}");
+    place.write(
+        "sd.toml",
+        &format!("{SCENE}\n[uncertainty]\ncurvature_sd_per_mm = 1e-3\n"),
+    );
+    good(
+        &place,
+        &["force", "sd.toml", "--frames", "f.csv", "--plot", "sd.svg"],
+    );
+    let svg = String::from_utf8(place.bytes("sd.svg")).unwrap();
+    assert_eq!(svg.matches(">\u{b1} standard deviation<").count(), 1);
 }
 
 #[test]
