@@ -3,10 +3,10 @@
 use super::boundary::stretches;
 use super::marks::{MARKED, has_marks, is_mark};
 use super::{MapOptions, RenderError, labels, row};
-use crate::classify::Regime;
+use crate::classify::{Regime, Status};
 use crate::scene::{SweepAxis, SweepVariable};
 use crate::store::{ChannelValues, MapSlice, NOT_COMPUTED};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use whiskmap_plot::{
     CellAxis, ColourScale, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, Rgb,
     ScaleOptions, Shading, ValueSummary,
@@ -29,8 +29,12 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
     if row::is_row(map) && map.names(channel).is_none() {
         return row::chart(map, channel, is_straight, options);
     }
+    let without_whisker = match channel {
+        "regime" => without_whisker(map)?,
+        _ => BTreeSet::new(),
+    };
     let (shading, mut legend) = match map.names(channel) {
-        Some(names) => codes(map, channel, names, options)?,
+        Some(names) => codes(map, channel, names, &without_whisker, options)?,
         None => quantities(map, channel, options)?,
     };
     let is_log = matches!(&shading, Shading::Quantities(scale) if scale.is_log());
@@ -50,6 +54,14 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
         regions: Some(labels::regions(is_straight)),
     };
     heat_map.picture(options.size, |index| {
+        if without_whisker.contains(&index) {
+            let count = grid.distance_mm.len() * grid.push_angle_deg.len();
+            return Ok(PanelCells {
+                values: vec![f64::from(NOT_COMPUTED); count],
+                hatched: vec![true; count],
+                ..PanelCells::default()
+            });
+        }
         let values = map.read_panel(channel, index)?;
         let mut cells = PanelCells {
             values: shown(&values, has_sizes).collect(),
@@ -76,11 +88,30 @@ fn panel_axis(axis: &SweepAxis) -> PanelAxis {
     }
 }
 
-/// The fills of a channel of codes, and the legend of the codes that occur.
+/// Returns the panels of rows of a table without a whisker.
+fn without_whisker(map: &MapSlice) -> Result<BTreeSet<usize>, RenderError> {
+    let axes = map.grid().sweep.iter();
+    let mut variables = axes.map(|axis| &axis.variable);
+    let has_table = variables.any(|own| matches!(own, SweepVariable::Whisker(_)));
+    let mut panels = BTreeSet::new();
+    if has_table && map.channels().contains(&"status") {
+        for index in 0..map.layout().panels() {
+            if let ChannelValues::U32(codes) = map.read_panel("status", index)?
+                && codes.first() == Some(&Status::NoWhisker.code())
+            {
+                panels.insert(index);
+            }
+        }
+    }
+    Ok(panels)
+}
+
+/// The fills of a channel of codes, and the legend of the codes that occur. Panels without a whisker have their own entry.
 fn codes(
     map: &MapSlice,
     channel: &str,
     names: BTreeMap<u32, String>,
+    without_whisker: &BTreeSet<usize>,
     options: &MapOptions<'_>,
 ) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
     if options.log.is_some() || options.range.is_some() {
@@ -92,10 +123,24 @@ fn codes(
         _ => (code, Fill::qualitative(place)),
     };
     let fills: BTreeMap<u32, Fill> = names.keys().enumerate().map(fill).collect();
-    let codes = map.codes(channel)?;
+    let mut codes = BTreeSet::new();
+    if without_whisker.is_empty() {
+        codes = map.codes(channel)?;
+    } else {
+        let panels = 0..map.layout().panels();
+        for index in panels.filter(|index| !without_whisker.contains(index)) {
+            if let ChannelValues::U32(own) = map.read_panel(channel, index)? {
+                codes.extend(own);
+            }
+        }
+    }
     let present = names.into_iter().filter(|(code, _)| codes.contains(code));
     let entry = |(code, name)| LegendEntry::swatch(fills[&code], name);
-    let legend = present.map(entry).collect();
+    let mut legend: Vec<LegendEntry> = present.map(entry).collect();
+    if !without_whisker.is_empty() {
+        let fill = Fill::BLANK.hatched();
+        legend.push(LegendEntry::swatch(fill, "no whisker"));
+    }
     let other = regime_fill(Regime::Unresolved.code());
     Ok((Shading::Codes { fills, other }, legend))
 }
