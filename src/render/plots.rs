@@ -26,17 +26,20 @@ pub type CurveAxis = PlotAxis<Detachment, Option<f64>>;
 pub type BranchAxis = PlotAxis<BranchPoint, f64>;
 
 /// Detachments to draw with one stroke and one name, as a line for each whisker, side and kind of detachment.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct DrawnCurve<'a> {
     /// Detachments of the curve, one whisker and side after the other, each in order of increasing distance.
     pub rows: &'a [Detachment],
-    /// Distance in mm at which the tip of the resting whisker touches the pole. If both sides have a detachment there, a grey line between
-    /// them closes the region of stable states.
+    /// Distance in mm at which the tip of the resting whisker touches the pole. If both sides have a detachment there, a line between them
+    /// closes the region of stable states: grey, or in the colour of the whisker.
     pub reach_mm: f64,
     /// Dash pattern of the curve: solid or dashed.
     pub stroke: Stroke,
     /// Name of the curve's whisker, before the kind of detachment in the legend; may be empty.
     pub name: &'a str,
+    /// Colour of the curve's whisker, which its name in the legend has without the kind of detachment; pull-offs are then dashed. `None` for the
+    /// colour of each kind.
+    pub ink: Option<Ink>,
 }
 
 /// Returns a plot of detachment curves, with a line for each kind of detachment.
@@ -44,32 +47,46 @@ pub struct DrawnCurve<'a> {
 pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
+    let mut has_dashes = false;
     for DrawnCurve {
         rows,
         reach_mm,
         stroke,
         name,
+        ink: of_whisker,
     } in all
     {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let kinds = side.chunk_by(|a, b| a.kind == b.kind);
             let parts = kinds.filter_map(|part| {
                 let (ink, kind) = look(part[0].kind)?;
-                let name = match *name {
-                    "" => kind.to_owned(),
-                    name => format!("{name}: {kind}"),
-                };
                 let points = part.iter().filter_map(place).collect();
-                Some(Line::new(points, ink, *stroke).named(name))
+                Some(match (of_whisker, *name) {
+                    (Some(ink), name) if part[0].kind == DetachmentKind::PullOff => {
+                        has_dashes = true;
+                        Line::new(points, *ink, Stroke::Dashed).named(name)
+                    }
+                    (Some(ink), name) => Line::new(points, *ink, *stroke).named(name),
+                    (None, "") => Line::new(points, ink, *stroke).named(kind),
+                    (None, name) => {
+                        Line::new(points, ink, *stroke).named(format!("{name}: {kind}"))
+                    }
+                })
             });
             plot.lines.extend(joined(parts));
         }
         let at_reach = rows.iter().filter(|row| row.distance_mm == *reach_mm);
         let tip: Vec<_> = at_reach.filter_map(place).collect();
         if tip.len() > 1 {
-            let line = Line::new(tip, Ink::Grey, *stroke);
-            plot.lines.push(line.named("first touch at the tip"));
+            plot.lines.push(match of_whisker {
+                Some(ink) => Line::new(tip, *ink, *stroke),
+                None => Line::new(tip, Ink::Grey, *stroke).named("first touch at the tip"),
+            });
         }
+    }
+    if has_dashes {
+        let symbol = Line::new(Vec::new(), Ink::Black, Stroke::Dashed);
+        plot.lines.push(symbol.named("pull-off"));
     }
     plot
 }

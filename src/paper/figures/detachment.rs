@@ -75,6 +75,7 @@ pub fn panel(
         reach_mm: rows.last().map_or(0.0, |end| end.distance_mm),
         stroke: *stroke,
         name: if whiskers.len() > 1 { name } else { "" },
+        ink: None,
     });
     let mut plot = curves(title, &drawn.collect::<Vec<_>>(), AXES);
     plot.regions =

@@ -16,7 +16,7 @@ use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
 use clap::Args;
-use plot::{CurveColumn, scene_curve};
+use plot::{CurveColumn, MOST_WHISKERS, scene_curves};
 use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::Side;
@@ -37,6 +37,7 @@ Examples:
   whiskmap curve scenes/cone.toml --derivatives=taper,length_mm --csv curve.csv
   whiskmap curve scenes/cone.toml --corner
   whiskmap curve scenes/morphology.toml --at taper=0.95 --at curvature_per_mm=0.02 --plot curve.svg
+  whiskmap curve scenes/pad.toml --csv pad.csv --plot pad.svg
   whiskmap curve scenes/pad.toml --at whisker=C2 --plot C2.svg
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
@@ -46,8 +47,8 @@ Examples:
 The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
 Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \
 sweep axes, such as grid.taper, the table has the curve of every whisker, with a leading column for each axis. With a table of \
-whiskers, the column whisker has their names, and no_whisker the reason why a row has no whisker. A plot shows one whisker, which \
---at selects.
+whiskers, the column whisker has their names, and no_whisker the reason why a row has no whisker. The colours of a plot \
+show the values of the first sweep axis, or the whiskers of the table.
 
 With --derivatives, columns such as d_push_d_taper follow: exact derivatives of the push angle, force, moment, energy, arc length \
 and contact angle at detachment, each in the unit of its quantity per unit of the variable. Without a derivative, they are empty.
@@ -130,7 +131,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let variables = args.derivatives.variables(&scene, &[])?;
     let whiskers = scene.whisker_count();
-    if args.outputs.has_plot() && whiskers > 1 {
+    if args.outputs.has_plot() && whiskers > MOST_WHISKERS {
         let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
         let (keys, values): (Vec<_>, Vec<_>) = axes
             .map(|axis| {
@@ -140,7 +141,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             })
             .unzip();
         return Err(Failure::Input(format!(
-            "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows one: choose it, such as by {}",
+            "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows at most {MOST_WHISKERS}: choose some, such as by {}",
             keys.join(", "),
             values.join(" ")
         )));
@@ -161,7 +162,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         }
         outputs.finish(scene.title.clone(), || Plot {
             bands: bands(&rows, args.x.percentiles()),
-            ..scene_curve(&scene, resolution, args.x.axis())
+            ..scene_curves(&scene, resolution, args.x.axis())
         })?;
         return uncertainty::check(&rows, &draws);
     }
@@ -212,7 +213,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     }
     bar.finish();
     outputs.finish(scene.title.clone(), || {
-        scene_curve(&scene, resolution, args.x.axis())
+        scene_curves(&scene, resolution, args.x.axis())
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }

@@ -1,23 +1,94 @@
 //! Plots of detachment curves: the push angle or a load to the right, the distance upward.
 
 use clap::ValueEnum;
+use rayon::prelude::*;
 use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{
-    CurveAxis, DISTANCE, DrawnCurve, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, Plot, Stroke,
+    CurveAxis, DISTANCE, DrawnCurve, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, Ink, Plot, Stroke,
     curves, regions,
 };
-use whiskmap::scene::{Scene, SweptWhisker};
+use whiskmap::scene::{Scene, SweepVariable, SweptWhisker};
 use whiskmap::trace::{self, Detachment};
 use whiskmap::uncertainty::EndSpread;
 
 /// Rows between the farthest distance of the grid and the reach of the whisker; push angles grow like a root near the reach.
 const AT_TIP: usize = 16;
 
-/// Plots the detachment curve of the scene's first whisker. Where the grid goes as far as the tip, the curve does so too.
-pub fn scene_curve(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot {
-    let SweptWhisker { whisker, pole, .. } = scene.first_whisker();
-    let reach_mm = trace::reach_mm(&whisker, &pole, Side::Cb);
+/// Largest number of whiskers in one plot.
+pub const MOST_WHISKERS: usize = 2000;
+
+/// Number of significant digits of values in the legend.
+const NAME_DIGITS: usize = 4;
+
+/// Number of values of an axis up to which each has its own colour.
+const MOST_COLOURS: usize = 7;
+
+/// Names of values in the legend if there are more than [`MOST_COLOURS`].
+const NAMED: usize = 5;
+
+/// Plots the detachment curves of all whiskers of the scene. The colour shows the value on the first sweep axis with several values, or the row of
+/// the table. A single curve has the colours of the kinds of detachment.
+pub fn scene_curves(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot {
+    let axes = scene.grid.sweep.iter();
+    let coloured = axes
+        .enumerate()
+        .find(|(_, axis)| axis.values.len() > 1)
+        .map(|(index, axis)| (index, axis, axis.coordinates().collect::<Vec<_>>()));
+    let whiskers: Vec<SweptWhisker> = scene.whiskers().flatten().collect();
+    let drawn: Vec<(f64, Vec<Detachment>)> = whiskers
+        .par_iter()
+        .map(|own| detachments(scene, resolution, own))
+        .collect();
+    let looks = whiskers.iter().map(|own| {
+        let Some((index, axis, values)) = &coloured else {
+            return (None, String::new());
+        };
+        let value = own.place.coordinates().nth(*index).map(|(_, value)| value);
+        let place = values
+            .iter()
+            .position(|known| Some(known) == value.as_ref());
+        let (place, last) = (place.unwrap_or_default(), values.len() - 1);
+        let step = last as f64 / (NAMED - 1) as f64;
+        let is_named = |i: usize| (step * i as f64).round() as usize == place;
+        let name = match (&axis.variable, value) {
+            (SweepVariable::Whisker(_), Some(name)) => name.to_string(),
+            (variable, Some(value)) => {
+                format!("{} = {}", variable.name(), value.rounded(NAME_DIGITS))
+            }
+            (_, None) => String::new(),
+        };
+        let is_few = last < MOST_COLOURS;
+        let ink = match is_few {
+            true => Ink::Series(place),
+            false => Ink::Ordered((255 * place / last) as u8),
+        };
+        let is_shown = is_few || (0..NAMED).any(is_named);
+        (Some(ink), if is_shown { name } else { String::new() })
+    });
+    let looks: Vec<(Option<Ink>, String)> = looks.collect();
+    let all = drawn.iter().zip(&looks);
+    let all = all.map(|((reach_mm, rows), (ink, name))| DrawnCurve {
+        rows,
+        reach_mm: *reach_mm,
+        stroke: Stroke::Solid,
+        name,
+        ink: *ink,
+    });
+    Plot {
+        regions: Some(regions(scene.is_straight())),
+        ..curves("", &all.collect::<Vec<_>>(), [x, UPWARD])
+    }
+}
+
+/// Returns the reach of a whisker in mm, and its detachments on both sides. Where the grid goes as far as the tip, they do so too.
+fn detachments(
+    scene: &Scene,
+    resolution: Resolution,
+    swept: &SweptWhisker,
+) -> (f64, Vec<Detachment>) {
+    let SweptWhisker { whisker, pole, .. } = swept;
+    let reach_mm = trace::reach_mm(whisker, pole, Side::Cb);
     let grid = scene.grid.distance_mm.iter().copied();
     let mut distances: Vec<f64> = grid
         .clone()
@@ -31,18 +102,8 @@ pub fn scene_curve(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot 
         };
         distances.extend((1..=AT_TIP).map(near));
     }
-    let of_side = |side| trace::curve_at(resolution, &whisker, &pole, side, &distances);
-    let rows: Vec<Detachment> = Side::BOTH.into_iter().flat_map(of_side).collect();
-    let drawn = DrawnCurve {
-        rows: &rows,
-        reach_mm,
-        stroke: Stroke::Solid,
-        name: "",
-    };
-    Plot {
-        regions: Some(regions(scene.is_straight())),
-        ..curves("", &[drawn], [x, UPWARD])
-    }
+    let of_side = |side| trace::curve_at(resolution, whisker, pole, side, &distances);
+    (reach_mm, Side::BOTH.into_iter().flat_map(of_side).collect())
 }
 
 /// Rows between an end of the grid and a measured point beyond it.

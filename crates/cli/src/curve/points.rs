@@ -6,7 +6,7 @@ use super::super::files::Files;
 use super::super::pole::check_single;
 use super::super::uncertainty;
 use super::CurveArgs;
-use super::plot::{CHORD, CurveColumn, covering, scene_curve};
+use super::plot::{CHORD, CurveColumn, covering, scene_curves};
 use std::path::Path;
 use whiskmap::measured::{ComparedPoint, MeasuredAngle};
 use whiskmap::mechanics::shooting::Resolution;
@@ -57,7 +57,7 @@ pub fn compare(
             MeasuredAngle::Push => CurveColumn::PushAngleDeg.axis(),
             MeasuredAngle::Chord => CHORD,
         };
-        let mut plot = scene_curve(scene, Resolution::FINE, x);
+        let mut plot = scene_curves(scene, Resolution::FINE, x);
         plot.bands = bands(&spread, CurveColumn::PushAngleDeg.percentiles());
         plot.bars = error_bars(rows);
         plot.dots = measured(rows);

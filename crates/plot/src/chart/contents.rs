@@ -1,6 +1,9 @@
 //! Contents of a plot as plain data: lines, dots, discs, notes, insets and bands, with their colours.
 
-use crate::picture::palette::{BLUE, GREY, INK, Rgb, SERIES};
+use crate::picture::palette::{BLUE, GREY, INK, Rgb, SERIES, sequential};
+
+/// Part of the sequential scale that inks use: its end is too light on white.
+const DARK: f64 = 0.85;
 
 /// The colour of a line, a dot or an arrow of a chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,17 +17,20 @@ pub enum Ink {
     Grey,
     /// The ink of a series among several, counted from 0; after seven inks they repeat.
     Series(usize),
+    /// The ink of one of many ordered lines, by its place among them: dark at 0, light at 255.
+    Ordered(u8),
 }
 
 impl Ink {
     /// Returns the sRGB colour of the ink.
     #[must_use]
-    pub const fn rgb(self) -> Rgb {
+    pub fn rgb(self) -> Rgb {
         match self {
             Self::Black => INK,
             Self::Blue => BLUE,
             Self::Grey => GREY,
             Self::Series(index) => SERIES[index % SERIES.len()],
+            Self::Ordered(place) => sequential(DARK * f64::from(place) / 255.0),
         }
     }
 }

@@ -24,7 +24,7 @@ const fn ground(shade: Shade) -> Rgb {
 }
 
 /// The pen of an open dot.
-const fn rim(dot: &Dot) -> Pen {
+fn rim(dot: &Dot) -> Pen {
     Pen::solid(LINE, dot.ink.rgb())
 }
 
