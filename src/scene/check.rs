@@ -26,7 +26,7 @@ const MOST_CELLS: u128 = 1 << 44;
 /// Largest number of characters of a title: many times what fits on a picture.
 pub const LONGEST_TITLE: usize = 1000;
 
-/// Largest yield strain. Keratin fibres and spring steels yield at 0.005 to 0.03; with more than 1, a fibre would be stretched to twice its length.
+/// Largest yield strain: at 1, the whisker's surface would be stretched to twice its length.
 const MOST_YIELD_STRAIN: f64 = 1.0;
 
 /// Longest name of outputs in bytes: file systems allow 255, and outputs add endings.

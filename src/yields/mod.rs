@@ -2,8 +2,9 @@
 //!
 //! Beyond its yield strain a whisker is not elastic, so that the state is not that of a real whisker. The marks change no state.
 
+use crate::design::DesignVaried;
 use crate::locate::LocatedState;
-use crate::scene::{Pole, Whisker};
+use crate::scene::{Pole, Scene, Whisker};
 use crate::sensitivity::VariableEffect;
 use crate::texture::TextureSample;
 use crate::trace::{BranchPoint, Detachment, PushLoad, ShapePoint, StableBranch, row};
@@ -85,6 +86,12 @@ impl YieldMark {
         let yields = row.strain().and_then(|strain| whisker.yields(strain));
         Some(Self { yields })
     }
+
+    /// Returns the marks of the rows of `whisker`, `[row]`; `None` without a yield strain.
+    #[must_use]
+    pub fn of_rows(whisker: &Whisker, rows: &[impl StrainRow]) -> Option<Vec<Self>> {
+        rows.iter().map(|row| Self::new(whisker, row)).collect()
+    }
 }
 
 /// Contact of a state with the force of the pole, as tables have them.
@@ -100,42 +107,77 @@ pub struct ContactLoad {
     pub contact_angle_deg: f64,
 }
 
+/// Contact of a row's state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RowContact {
+    /// The row has no state.
+    Unknown,
+    /// The whisker is at rest.
+    Free,
+    /// The pole bends the whisker.
+    Loaded(ContactLoad),
+}
+
 /// Row of a table that has the contact of a state with its load.
 pub trait ContactRow {
-    /// Returns the contact of the row's state with its load; `None` without a state.
-    fn contact(&self) -> Option<ContactLoad>;
+    /// Returns the contact of the row's state.
+    fn contact(&self) -> RowContact;
 }
 
 impl ContactRow for WhiskSample {
-    fn contact(&self) -> Option<ContactLoad> {
-        Some(ContactLoad {
-            side: self.side?,
-            arc_length_mm: self.arc_length_mm?,
-            base_force_un: DVec2::new(self.base_force_x_un?, self.base_force_y_un?),
-            contact_angle_deg: self.contact_angle_deg?,
-        })
+    fn contact(&self) -> RowContact {
+        RowContact::of(
+            (self.side, self.force_un),
+            self.arc_length_mm,
+            [self.base_force_x_un, self.base_force_y_un],
+            self.contact_angle_deg,
+        )
     }
 }
 
 impl ContactRow for TextureSample {
-    fn contact(&self) -> Option<ContactLoad> {
-        Some(ContactLoad {
-            side: self.side?,
-            arc_length_mm: self.arc_length_mm?,
-            base_force_un: DVec2::new(self.base_force_x_un?, self.base_force_y_un?),
-            contact_angle_deg: 0.0,
-        })
+    fn contact(&self) -> RowContact {
+        // Asperities have no friction, so that the angle does not count.
+        RowContact::of(
+            (self.side, self.force_un),
+            self.arc_length_mm,
+            [self.base_force_x_un, self.base_force_y_un],
+            Some(0.0),
+        )
     }
 }
 
 impl ContactRow for LocatedState {
-    fn contact(&self) -> Option<ContactLoad> {
-        Some(ContactLoad {
-            side: self.side?,
-            arc_length_mm: self.arc_length_mm?,
-            base_force_un: DVec2::new(self.base_force_x_un?, self.base_force_y_un?),
-            contact_angle_deg: self.contact_angle_deg?,
-        })
+    fn contact(&self) -> RowContact {
+        RowContact::of(
+            (self.side, self.force_un),
+            self.arc_length_mm,
+            [self.base_force_x_un, self.base_force_y_un],
+            self.contact_angle_deg,
+        )
+    }
+}
+
+impl RowContact {
+    /// Creates the contact of a row with these columns. A row without a side and with a force of 0 has a free whisker.
+    fn of(
+        (side, force_un): (Option<Side>, Option<f64>),
+        arc_length_mm: Option<f64>,
+        [x, y]: [Option<f64>; 2],
+        contact_angle_deg: Option<f64>,
+    ) -> Self {
+        if (side, force_un) == (None, Some(0.0)) {
+            return Self::Free;
+        }
+        let load = || {
+            Some(ContactLoad {
+                side: side?,
+                arc_length_mm: arc_length_mm?,
+                base_force_un: DVec2::new(x?, y?),
+                contact_angle_deg: contact_angle_deg?,
+            })
+        };
+        load().map_or(Self::Unknown, Self::Loaded)
     }
 }
 
@@ -163,9 +205,11 @@ impl StrainMark {
     pub fn of_rows(whisker: &Whisker, pole: &Pole, rows: &[impl ContactRow]) -> Option<Vec<Self>> {
         whisker.yield_strain?;
         let contacts = rows.iter().map(ContactRow::contact);
-        let contacts: Vec<Option<ContactLoad>> = contacts.collect();
-        let loaded = contacts.iter().flatten();
-        let loaded = loaded.map(|contact| contact.condition(whisker, pole));
+        let contacts: Vec<RowContact> = contacts.collect();
+        let loaded = contacts.iter().filter_map(|contact| match contact {
+            RowContact::Loaded(load) => Some(load.condition(whisker, pole)),
+            RowContact::Free | RowContact::Unknown => None,
+        });
         let loaded: Vec<(Rod, DVec2)> = loaded.collect();
         let conditions = loaded.iter().map(|(rod, point)| InitialCondition {
             rod,
@@ -177,8 +221,11 @@ impl StrainMark {
         let mut peaks = peaks.into_iter();
         let unit = whisker.units().strain;
         let marks = contacts.iter().map(|contact| {
-            let peak = contact.and_then(|_| peaks.next());
-            let strain = peak.map(|peak| peak.strain * unit);
+            let strain = match contact {
+                RowContact::Unknown => None,
+                RowContact::Free => Some(0.0),
+                RowContact::Loaded(_) => peaks.next().map(|peak| peak.strain * unit),
+            };
             Self {
                 peak_strain: strain,
                 yields: strain.and_then(|strain| whisker.yields(strain)),
@@ -210,6 +257,24 @@ impl PushMark {
             Some(_) => Self::new(whisker, pole, end.side, end.distance_mm),
             None => whisker.yield_strain.map(|_| Self::default()),
         }
+    }
+
+    /// Marks the push of a design's solution: the scene with these `values` of the `varied` numbers, `[variable]`, with the pole on a side at a
+    /// distance in mm unless that varies. `None` without a yield strain.
+    #[must_use]
+    pub fn of_solution(
+        scene: &Scene,
+        varied: &DesignVaried,
+        (side, distance_mm): (Side, f64),
+        values: &[f64],
+    ) -> Option<Self> {
+        scene.whisker.yield_strain?;
+        let solution = varied.scene_at(scene, distance_mm, values);
+        let mark = solution.ok().and_then(|own| {
+            let distance_mm = own.grid.distance_mm[0];
+            Self::new(&own.whisker, &own.pole, side, distance_mm)
+        });
+        Some(mark.unwrap_or_default())
     }
 
     /// Marks a push of `whisker` at `pole`, whose first touch is at `distance_mm` from the base, until it detaches: empty cells without states.

@@ -404,30 +404,20 @@ fn name_strains(
         let named = varied.variables.iter().zip(values);
         let named = named.map(|(own, value)| format!("{} = {}", own.variable, digits(*value)));
         let named = named.collect::<Vec<_>>().join(", ");
-        let at = varied.scene_at(scene, distance_mm, values);
-        let mark = at.ok().and_then(|at| {
-            let distance_mm = at.grid.distance_mm[0];
-            PushMark::new(&at.whisker, &at.pole, side, distance_mm)
-        });
-        let strain = mark.and_then(|mark| mark.max_strain);
+        let mark = PushMark::of_solution(scene, varied, (side, distance_mm), values);
+        let PushMark { max_strain, yields } = mark.unwrap_or_default();
+        let strain = max_strain.map(|strain| digits(rounded(strain, SOLUTION_DIGITS)));
         let most = digits(most);
-        message(
-            &match strain.map(|strain| (digits(rounded(strain, SOLUTION_DIGITS)), mark)) {
-                None => format!("{named}: the largest strain of the push is not known"),
-                Some((
-                    strain,
-                    Some(PushMark {
-                        yields: Some(true), ..
-                    }),
-                )) => format!(
-                    "warning: {named}: yields, as the largest strain of the push, {strain}, exceeds whisker.yield_strain = {most}; \
+        message(&match (strain, yields) {
+            (None, _) => format!("{named}: the largest strain of the push is not known"),
+            (Some(strain), Some(true)) => format!(
+                "warning: {named}: the whisker yields: the largest strain of the push, {strain}, exceeds whisker.yield_strain = {most}; \
                  --max-strain finds values within it"
-                ),
-                Some((strain, _)) => format!(
-                    "{named}: the largest strain of the push is {strain}, within whisker.yield_strain = {most}"
-                ),
-            },
-        );
+            ),
+            (Some(strain), _) => format!(
+                "{named}: the largest strain of the push is {strain}, within whisker.yield_strain = {most}"
+            ),
+        });
     }
 }
 
