@@ -5,8 +5,10 @@ use crate::compute::{compute, compute_as, is_contact};
 use whiskmap::engine::{Engine, Spectral};
 use whiskmap::friction::Sliding;
 use whiskmap::map::Panel;
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Parameter, Scene, Whisker};
+use whiskmap::sheet::Sheet;
 use whiskmap::trace::{Branch, BranchPoint, WhiskerShape, curve};
 use whiskmap::yields::{ContactLoad, ContactRow, PushMark, RowContact, StrainMark, YieldMark};
 use whiskmap::{Channel, Channels, Side};
@@ -34,6 +36,7 @@ const ROUGH_IN_FOLLICLE: &str = "base_radius_um = 30\ntip_radius_um = 1.5\ncurva
      follicle.stiffness_nnm_per_rad = 500\n[pole]\nradius_mm = 0.25\n[contact]\nfriction = 0.3";
 const MEASURED: &str =
     "profile.rows = [[0, 30], [5, 20], [12, 14], [20, 2]]\n[pole]\nradius_mm = 0.2";
+const SWELLING: &str = "profile.rows = [[0, 30], [6, 10], [9, 28], [14, 6], [17, 12], [20, 2]]\n[pole]\nradius_mm = 0.2";
 const PERFECT: &str = "base_radius_um = 30\ntip_radius_um = 0\n[pole]\nradius_mm = 0.1";
 
 /// Largest strain of a straight whisker in one state, from its bent shape alone: radius times curvature at 20,001 points.
@@ -184,6 +187,22 @@ fn a_push_is_marked_by_its_largest_strain() {
     );
 }
 
+/// Returns true if the rows of a side of the scene's whisker are followed by continuation.
+fn is_continued(scene: &Scene) -> bool {
+    let length = scene.whisker.length_mm;
+    let distances: Vec<f64> = scene
+        .grid
+        .distance_mm
+        .iter()
+        .map(|own| own / length)
+        .collect();
+    let rod = |side| scene.whisker.rod(&scene.pole, side);
+    let mut sheets = Side::BOTH
+        .map(|side| Sheet::new(Method::fine(), &rod(side), side, &distances))
+        .into_iter();
+    sheets.any(|sheet| sheet.is_continued())
+}
+
 fn panel(scene: &Scene, engine: Option<&mut dyn Engine>) -> Panel {
     compute(scene, engine).1.remove(0)
 }
@@ -192,10 +211,13 @@ fn panel(scene: &Scene, engine: Option<&mut dyn Engine>) -> Panel {
 /// direction of friction.
 #[test]
 fn cells_have_the_strains_of_their_states() {
-    for more in [CONE, CURVED, ROUGH, MEASURED, PERFECT] {
+    for more in [CONE, CURVED, ROUGH, MEASURED, SWELLING, PERFECT] {
         let scene = scene(more, Some(0.003));
         let mut spectral = Spectral::default();
         let panels = [panel(&scene, None), panel(&scene, Some(&mut spectral))];
+        if more == SWELLING {
+            assert!(is_continued(&scene));
+        }
         let pushes = &scene.grid.push_angle_deg;
         let mut compared = 0;
         for (row, distance) in scene.grid.distance_mm.iter().enumerate() {
