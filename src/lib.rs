@@ -70,6 +70,7 @@ pub mod traced;
 pub mod tracking;
 pub mod uncertainty;
 pub mod whisk;
+pub mod yields;
 
 // Stages of a computation.
 pub mod accuracy;

@@ -14,6 +14,7 @@ use whiskmap::trace::{BranchPoint, Corner, Detachment, ShapePoint};
 use whiskmap::tracking::{TrackedDetachment, TrackedFrame, TrackedPoint};
 use whiskmap::uncertainty::{EndSpread, LargestSpread, PointSpread};
 use whiskmap::whisk::{WhiskEvent, WhiskSample};
+use whiskmap::yields::{PushMark, StrainMark, YieldMark};
 
 /// Returns all files below `folder` with this extension, in order.
 fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
@@ -110,6 +111,9 @@ fn every_column_is_on_the_page_of_the_commands() {
         TrackedFrame::COLUMNS,
         TrackedDetachment::COLUMNS,
         TrackedPoint::COLUMNS,
+        YieldMark::COLUMNS,
+        StrainMark::COLUMNS,
+        PushMark::COLUMNS,
     ];
     for (name, meaning) in tables.into_iter().flatten() {
         let line = format!("| `{name}` | {} |", meaning.trim());

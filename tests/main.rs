@@ -36,5 +36,6 @@ mod tracking;
 mod uncertainty;
 mod variations;
 mod whisk;
+mod yields;
 
 use support::{compute, effect_sets, map, program, random_rods, sealed, shipped};

@@ -23,6 +23,9 @@ const TEXTS: [&str; 11] = [
     "end",
 ];
 
+/// Columns that are true or false, and have no value in rows without a state.
+const TRUTHS: [&str; 1] = ["yields"];
+
 /// Number of rows that are converted between two looks at the flag that cancels.
 const ROWS_AT_ONCE: usize = 1 << 13;
 
@@ -58,6 +61,7 @@ impl Table {
         let empty = |&(name, meaning): &(&'static str, &'static str)| {
             let values = match &first[name] {
                 _ if TEXTS.contains(&name) => Values::Texts(Vec::new()),
+                _ if TRUTHS.contains(&name) => Values::Truths(Vec::new()),
                 Value::Bool(_) => Values::Truths(Vec::new()),
                 _ => Values::Numbers(Vec::with_capacity(rows.len())),
             };
@@ -85,6 +89,20 @@ impl Table {
             });
         }
         Self { columns }
+    }
+
+    /// Adds the columns of marks, `[row]`; `None` adds none.
+    pub fn marked<Mark: Serialize + Sync>(
+        mut self,
+        marks: Option<Vec<Mark>>,
+        about: &[(&'static str, &'static str)],
+        cancel: &AtomicBool,
+    ) -> Self {
+        if let Some(marks) = marks {
+            self.columns
+                .extend(Self::new(&marks, about, cancel).columns);
+        }
+        self
     }
 
     /// Returns the columns as arrays of `f64` or `bool`, and lists of texts.

@@ -17,7 +17,8 @@ use whiskmap::design::{
 };
 use whiskmap::fit::{FitError, FitLoss, fit_until};
 use whiskmap::measured::{ComparedPoint, MeasuredAngle, MeasuredPoints};
-use whiskmap::scene::{Parameter, Scene};
+use whiskmap::scene::{Parameter, Scene, digits, rounded};
+use whiskmap::yields::PushMark;
 
 /// Name, unit, value, standard error, and whether the value is at a limit, of a fitted parameter.
 type Estimate = (&'static str, &'static str, f64, Option<f64>, bool);
@@ -126,8 +127,15 @@ pub fn fit<'py>(
     })
 }
 
-/// Solutions, range, and value, kind and reached quantity of the ends over the range.
-type DesignResult = (Vec<f64>, [f64; 2], Vec<f64>, Vec<String>, Vec<Option<f64>>);
+/// Solutions, range, value, kind and reached quantity of the ends over the range, and warnings.
+type DesignResult = (
+    Vec<f64>,
+    [f64; 2],
+    Vec<f64>,
+    Vec<String>,
+    Vec<Option<f64>>,
+    Vec<String>,
+);
 
 /// Varied number by its name, with limits.
 type Varied = (String, Option<[f64; 2]>);
@@ -135,8 +143,40 @@ type Varied = (String, Option<[f64; 2]>);
 /// Values, reached quantities and whether each value is at a limit, of what is nearest to several targets.
 type Nearest = (Vec<f64>, Vec<f64>, Vec<bool>);
 
-/// Solutions `[solution][variable]`, ranges `[variable]`, whether the targets do not determine them, and what is nearest without a solution.
-type DesignsResult = (Vec<Vec<f64>>, Vec<[f64; 2]>, bool, Option<Nearest>);
+/// Solutions `[solution][variable]`, ranges `[variable]`, whether the targets do not determine them, what is nearest without a solution, and
+/// warnings.
+type DesignsResult = (
+    Vec<Vec<f64>>,
+    Vec<[f64; 2]>,
+    bool,
+    Option<Nearest>,
+    Vec<String>,
+);
+
+/// Returns a warning for each solution of a design whose whisker yields.
+fn yielding(
+    scene: &Scene,
+    varied: &DesignVaried,
+    push: (Side, f64),
+    solutions: &[Vec<f64>],
+) -> Vec<String> {
+    let Some(most) = scene.whisker.yield_strain else {
+        return Vec::new();
+    };
+    let warning = |values: &Vec<f64>| {
+        let mark = PushMark::of_solution(scene, varied, push, values)?;
+        let strain = mark.max_strain.filter(|_| mark.yields == Some(true))?;
+        let named = varied.variables.iter().zip(values);
+        let named = named.map(|(own, value)| format!("{} = {}", own.variable, digits(*value)));
+        let named = named.collect::<Vec<_>>().join(", ");
+        Some(format!(
+            "{named}: the whisker yields: the largest strain of the push, {}, exceeds yield_strain = {}",
+            digits(rounded(strain, 6)),
+            digits(most)
+        ))
+    };
+    solutions.iter().filter_map(warning).collect()
+}
 
 /// Returns what a design of `scene` varies, and its distance in mm before that. `distance` is in mm, or in whisker lengths if `is_part` is true.
 fn varied(
@@ -202,9 +242,15 @@ pub fn design(
         goal,
         value,
     };
-    let job = |cancel: &Arc<AtomicBool>| design_until(&scene.0, varied, &target, cancel);
+    let push = (target.side, distance_mm);
+    let job = |cancel: &Arc<AtomicBool>| {
+        let found = design_until(&scene.0, varied.clone(), &target, cancel)?;
+        let solutions: Vec<Vec<f64>> = found.values.iter().map(|value| vec![*value]).collect();
+        let warnings = yielding(&scene.0, &varied, push, &solutions);
+        Ok((found, warnings))
+    };
     let found = threads::run(py, None, |_| Ok(()), job)?;
-    let found = found.map_err(|why| of_design(py, why))?;
+    let (found, warnings) = found.map_err(|why| of_design(py, why))?;
     let ends = found.ends.iter();
     let kind = |kind| serde_json::to_value(kind).ok()?.as_str().map(str::to_owned);
     let kinds = ends.clone().map(|end| kind(end.kind).unwrap_or_default());
@@ -215,6 +261,7 @@ pub fn design(
         ends.map(|end| end.value).collect(),
         kinds.collect(),
         reached.collect(),
+        warnings,
     ))
 }
 
@@ -242,9 +289,14 @@ pub fn designs(
         })
     };
     let targets: Vec<DesignTarget> = targets.iter().map(target).collect::<PyResult<_>>()?;
-    let job = |cancel: &Arc<AtomicBool>| designs_until(&scene.0, &varied, &targets, cancel);
+    let job = |cancel: &Arc<AtomicBool>| {
+        let found = designs_until(&scene.0, &varied, &targets, cancel)?;
+        let push = (targets[0].side, distance_mm);
+        let warnings = yielding(&scene.0, &varied, push, &found.solutions);
+        Ok((found, warnings))
+    };
     let found = threads::run(py, None, |_| Ok(()), job)?;
-    let found = found.map_err(|why| of_design(py, why))?;
+    let (found, warnings) = found.map_err(|why| of_design(py, why))?;
     let nearest = found.nearest;
     let nearest = nearest.map(|own| (own.values, own.reached, own.is_at_limit));
     Ok((
@@ -252,6 +304,7 @@ pub fn designs(
         found.ranges,
         found.is_undetermined,
         nearest,
+        warnings,
     ))
 }
 

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::locate::{BaseReadings, LocatedState, Locator, SensorDeviations, warning};
+use whiskmap::yields::StrainMark;
 
 /// Columns of located states, and a warning.
 type LocateColumns<'py> = (Vec<Column<'py>>, Option<String>);
@@ -38,7 +39,9 @@ pub fn locate<'py>(
     let job = |cancel: &Arc<AtomicBool>| {
         let locator = Locator::new(&scene.first_whisker().whisker, &scene.pole);
         let located = locator.locate_until(&read.readings, deviations, cancel);
+        let marks = StrainMark::of_rows(&scene.first_whisker().whisker, &scene.pole, &located);
         let table = Table::new(&located, LocatedState::COLUMNS, cancel);
+        let table = table.marked(marks, StrainMark::COLUMNS, cancel);
         (table, warning(&located))
     };
     let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;

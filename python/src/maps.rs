@@ -43,7 +43,9 @@ pub fn map<'py>(
 ) -> PyResult<MapArrays<'py>> {
     let scene = &scene.0;
     let mut options = arguments::options(engine, tolerance_deg, channels)?;
-    let channels = options.channels.unwrap_or(Channels::STANDARD);
+    let channels = options
+        .channels
+        .unwrap_or_else(|| Channels::of_scene(scene));
     let done = Arc::new(AtomicUsize::new(0));
     let cells = Arc::clone(&done);
     options.on_progress = Some(Arc::new(move |finished, _| {
@@ -132,6 +134,7 @@ fn taken(panel: &mut Panel, name: &str) -> ChannelArray {
         "status" => ChannelArray::Codes(codes(&panel.status)),
         "newton_steps" => ChannelArray::Counts(std::mem::take(&mut panel.newton_steps)),
         "residual" => ChannelArray::Quantities(std::mem::take(&mut panel.residual)),
+        "peak_strain" => ChannelArray::Quantities(std::mem::take(&mut panel.peak_strain)),
         "margin_deg" => ChannelArray::Quantities(std::mem::take(&mut panel.margin_deg)),
         _ => {
             let place = Channel::ALL.iter().position(|own| own.name() == name);

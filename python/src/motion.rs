@@ -19,6 +19,7 @@ use whiskmap::texture::{
     AsperityStay, TextureError, TextureEvent, TextureSample, TipBin, texture_until,
 };
 use whiskmap::whisk::{AngleCourse, WhiskError, WhiskEvent, WhiskOptions, WhiskSample, whisk_with};
+use whiskmap::yields::StrainMark;
 
 /// Columns of samples and events, lost and dissipated energy in nJ, angle of the first touch on CF in degrees, and warnings.
 type WhiskColumns<'py> = (
@@ -59,7 +60,9 @@ pub fn whisk<'py>(
         (options.start, options.cancel) = (start, Some(Arc::clone(cancel)));
         (options.bridge_s, options.curvature_at_mm) = (bridge_s, curvature_at_mm);
         let found = whisk_with(&scene.whisker, &scene.pole, distance_mm, &course, &options)?;
+        let marks = StrainMark::of_rows(&scene.whisker, &scene.pole, &found.samples);
         let samples = Table::new(&found.samples, WhiskSample::COLUMNS, cancel);
+        let samples = samples.marked(marks, StrainMark::COLUMNS, cancel);
         let events = Table::new(&found.events, WhiskEvent::COLUMNS, cancel);
         Ok((found, samples, events))
     };
@@ -111,8 +114,10 @@ pub fn texture<'py>(
     let course = course(&time_s, &angle_deg)?;
     let job = |cancel: &Arc<AtomicBool>| {
         let found = texture_until(&scene.whisker, &surface, &course, curvature_at_mm, cancel)?;
+        let marks = StrainMark::of_rows(&scene.whisker, &surface.asperity(), &found.samples);
+        let samples = Table::new(&found.samples, TextureSample::COLUMNS, cancel);
         let tables = [
-            Table::new(&found.samples, TextureSample::COLUMNS, cancel),
+            samples.marked(marks, StrainMark::COLUMNS, cancel),
             Table::new(&found.events, TextureEvent::COLUMNS, cancel),
             Table::new(&found.stays(), AsperityStay::COLUMNS, cancel),
             Table::new(&found.tip_histogram(), TipBin::COLUMNS, cancel),

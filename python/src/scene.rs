@@ -62,6 +62,9 @@ type Description = (
     Option<String>,
 );
 
+/// Name of the yield strain among the numbers, of which it is no parameter.
+const YIELD_STRAIN: &str = "yield_strain";
+
 #[pymethods]
 impl CheckedScene {
     /// Reads a scene file.
@@ -86,7 +89,10 @@ impl CheckedScene {
         let (title, numbers, rows, traced, axes, deviations, surface, table, name) = description;
         let mut builder = Scene::builder(title);
         for (name, value) in numbers {
-            builder = builder.set(parameter("whisker", &name)?, value);
+            builder = match &*name {
+                YIELD_STRAIN => builder.yield_strain(value),
+                _ => builder.set(parameter("whisker", &name)?, value),
+            };
         }
         if let Some((rows, smooth)) = rows {
             builder = builder.profile(rows).smooth_profile(smooth);
@@ -135,6 +141,8 @@ impl CheckedScene {
             .into_iter()
             .filter(|own| *own != Parameter::Taper);
         let given = given.filter_map(|own| Some((own.name().to_owned(), builder.number(own)?)));
+        let yield_strain = self.0.whisker.yield_strain;
+        let given = given.chain(yield_strain.map(|own| (YIELD_STRAIN.to_owned(), own)));
         let axes = builder.axes();
         (
             self.0.title.clone(),

@@ -7,11 +7,13 @@ use crate::scene::CheckedScene;
 use crate::threads::{self, ThreadCount};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap::Side;
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Scene, SweepPlace};
 use whiskmap::trace::{BranchPoint, Detachment, ShapePoint, WhiskerShape};
+use whiskmap::yields::{PushMark, YieldMark};
 use whiskmap::{Options, branch as branch_of};
 
 /// Maximum number of points of a branch or a shape.
@@ -30,8 +32,18 @@ pub fn curve<'py>(
     let job = |cancel: &Arc<AtomicBool>| {
         options.cancel = Some(Arc::clone(cancel));
         let ends = whiskmap::curve(&scene.0, options)?;
+        let marks = scene.0.whisker.yield_strain.map(|_| {
+            let ends = ends.par_iter();
+            let ends = ends.filter(|_| !cancel.load(Ordering::Relaxed));
+            let mark = |(place, end): &(SweepPlace, Detachment)| {
+                let own = scene.0.whisker_at(place.clone()).ok()?;
+                PushMark::of_end(&own.whisker, &own.pole, end)
+            };
+            ends.map(|end| mark(end).unwrap_or_default()).collect()
+        });
         let ends: Vec<Detachment> = ends.into_iter().map(|(_, end)| end).collect();
-        Ok(Table::new(&ends, Detachment::COLUMNS, cancel))
+        let table = Table::new(&ends, Detachment::COLUMNS, cancel);
+        Ok(table.marked::<PushMark>(marks, PushMark::COLUMNS, cancel))
     };
     let table = threads::run(py, threads, |_| Ok(()), job)?;
     table.map_err(|why| of_front(&why))?.into_columns(py)
@@ -51,7 +63,9 @@ pub fn branch<'py>(
     let scene = at_pole(py, scene, distance_mm)?;
     let job = |cancel: &Arc<AtomicBool>| {
         let points = branch_of(&scene, distance_mm, side)?.points_until(points, cancel)?;
-        Ok(Table::new(&points, BranchPoint::COLUMNS, cancel))
+        let marks = YieldMark::of_rows(&scene.whisker, &points);
+        let table = Table::new(&points, BranchPoint::COLUMNS, cancel);
+        Ok(table.marked(marks, YieldMark::COLUMNS, cancel))
     };
     let table = threads::run(py, None, |_| Ok(()), job)?;
     table.map_err(of_state)?.into_columns(py)
@@ -80,8 +94,12 @@ pub fn shape<'py>(
         let branch = branch_of(&scene, distance_mm, Side::of_push(push_angle_deg))?;
         let state = branch.state(push_angle_deg.to_radians(), stable)?;
         let shape = WhiskerShape::new(&branch, &state, points);
+        let marks = YieldMark::of_rows(&scene.whisker, &shape.points);
         let points = Table::new(&shape.points, ShapePoint::COLUMNS, cancel);
+        let points = points.marked(marks, YieldMark::COLUMNS, cancel);
+        let mark = YieldMark::of_rows(&scene.whisker, &[shape.state]);
         let state = Table::new(&[shape.state], BranchPoint::COLUMNS, cancel);
+        let state = state.marked(mark, YieldMark::COLUMNS, cancel);
         Ok((shape, points, state))
     };
     let found = threads::run(py, None, |_| Ok(()), job)?;

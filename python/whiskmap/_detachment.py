@@ -58,6 +58,10 @@ class Detachment:
         the names, such as degrees per um. NaN where slip-off turns into pull-off, and where the push ends at first touch.
     refused : dict of tuple of int to str
         Reasons of the elements without a whisker, by their indices.
+    max_strain : array of float or None
+        Largest bending strain of the push until it ends; None if the scene has no yield strain.
+    yields : array of bool or None
+        True where the largest strain of the push exceeds the yield strain of the scene; None without one.
     """
 
     kind: NDArray[np.str_]
@@ -77,6 +81,8 @@ class Detachment:
     variables: tuple[str, ...]
     jac: dict[str, NDArray[np.float64]]
     refused: dict[tuple[int, ...], str]
+    max_strain: NDArray[np.float64] | None = None
+    yields: NDArray[np.bool_] | None = None
 
 
 def detachment(
@@ -168,7 +174,7 @@ def detachment(
     flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items() if name not in fixed}
     missing = {int(place): f"{name} is missing" for name, array in flat.items() for place in np.flatnonzero(np.isnan(array))}
     present = np.setdiff1d(np.arange(flat["distance_mm"].size), np.array(list(missing), dtype=np.intp))
-    kinds, residual, snaps, quantities, refused = _whiskmap.detachment(
+    kinds, residual, snaps, strains, quantities, refused = _whiskmap.detachment(
         None if scene is None else _checked(scene),
         fixed,
         {name: array[present] for name, array in flat.items() if name != "distance_mm"},
@@ -189,10 +195,14 @@ def detachment(
         array[present] = values.reshape((present.size, *more))
         return array.reshape((*shape, *more))
 
+    most = None if scene is None else scene.whisker.yield_strain
+    max_strain = None if strains is None else full(strains, np.nan)
     return Detachment(
         kind=_KINDS[full(kinds, len(_KINDS) - 1)],
         residual=full(residual, np.nan),
         snaps_deg=full(snaps, np.nan),
+        max_strain=max_strain,
+        yields=None if max_strain is None else np.asarray(max_strain > most),
         variables=variables,
         jac={name: full(by, np.nan, len(variables)) for name, _, by in quantities} if variables else {},
         refused={tuple(map(int, np.unravel_index(own, shape))): reasons[own] for own in sorted(reasons)},

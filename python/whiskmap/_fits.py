@@ -213,7 +213,8 @@ def design(
     Warns
     -----
     SceneWarning
-        If several targets do not determine the parameters, so that solutions form a line.
+        If several targets do not determine the parameters, so that solutions form a line, or the largest strain of a solution exceeds the
+        `yield_strain` of the scene.
     """
     targets = {
         "slip_off_deg": slip_off_deg,
@@ -250,8 +251,9 @@ def design(
             {"kind": ("value", kinds), "reached": ("value", np.array(reached, dtype=np.float64))},
             {"value": np.array(at), "side": ("value", [name] * len(at))},
         )
-        for name, (_, _, _, at, kinds, reached) in zip(names, parts)
+        for name, (_, _, _, at, kinds, reached, _) in zip(names, parts)
     ]
+    warn([text for part in parts for text in part[-1]])
     [least, greatest] = parts[0][2]
     return Design(values[order], found_on[order], (least, greatest), xr.concat(ends, "value"), None)
 
@@ -304,9 +306,10 @@ def _several(
         raise ValueError("side = 'both': must be 'cb' or 'cf' with several parameters")
     if angles and side in (None, "both"):
         side = "cb" if angles[0] > 0 else "cf"
-    found, ranges, is_undetermined, near = _whiskmap.designs(
+    found, ranges, is_undetermined, near, warnings = _whiskmap.designs(
         _checked(scene), varied, list(given.items()), distance, side, keeps_taper
     )
+    warn(warnings)
     if is_undetermined:
         warn(["the targets do not determine these parameters: one can replace another along a line of values"])
     nearest = None

@@ -88,6 +88,8 @@ class Whisker(_Parts):
         Modulus at the tip over that at the base; real arclength over that in the plane of contact. Both are 1 if left out.
     follicle_stiffness_nnm_per_rad : float, optional
         Stiffness of the follicle, in which the base turns by the moment over the stiffness. The base is clamped if left out.
+    yield_strain : float, optional
+        Largest bending strain at the surface that the whisker bears elastically, more than 0 and at most 1. States beyond it are marked.
     """
 
     youngs_modulus_gpa: float
@@ -108,6 +110,7 @@ class Whisker(_Parts):
     modulus_tip_to_base: float | None = None
     arc_stretch: float | None = None
     follicle_stiffness_nnm_per_rad: float | None = None
+    yield_strain: float | None = None
 
     def __post_init__(self) -> None:
         for own in fields(self):

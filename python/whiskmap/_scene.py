@@ -146,7 +146,7 @@ class Scene:
         **changes
             A number sets a parameter, such as ``taper=0.5`` or ``pole_radius_mm=1``; it ends a sweep of it. A `Range`, a list or
             an array makes the parameter a sweep axis. None leaves a value out. Also `push_angle_deg`, `distance_mm`, `profile`,
-            `profile_smooth`, `rest_points`, `rest_degree`, `title`, `name`, `uncertainty`, `surface` and `table`. Their order does not
+            `profile_smooth`, `rest_points`, `rest_degree`, `yield_strain`, `title`, `name`, `uncertainty`, `surface` and `table`. Their order does not
             matter.
 
         Raises
@@ -169,6 +169,8 @@ class Scene:
                 texts[key] = value
             elif key in ("push_angle_deg", "distance_mm"):
                 axes[key] = axis_of(key, value)
+            elif key == "yield_strain":
+                changed[key] = None if value is None else number(key, value)
             elif key in PARAMETERS:
                 set_parameter(PARAMETERS[key], value, changed, axes)
             else:

@@ -147,11 +147,11 @@ def fit(
 def design(
     scene: CheckedScene, parameter: tuple[str, tuple[float, float] | None], goal: str, value: float,
     distance: tuple[float, bool] | None, side: str | None, keeps_taper: bool,
-) -> tuple[list[float], list[float], list[float], list[str], list[float | None]]: ...
+) -> tuple[list[float], list[float], list[float], list[str], list[float | None], list[str]]: ...
 def designs(
     scene: CheckedScene, parameters: Sequence[tuple[str, tuple[float, float] | None]], targets: Sequence[tuple[str, float]],
     distance: tuple[float, bool] | None, side: str | None, keeps_taper: bool,
-) -> tuple[list[list[float]], list[list[float]], bool, tuple[list[float], list[float], list[bool]] | None]: ...
+) -> tuple[list[list[float]], list[list[float]], bool, tuple[list[float], list[float], list[bool]] | None, list[str]]: ...
 def detachment(
     scene: CheckedScene | None,
     fixed: Mapping[str, float],
@@ -164,6 +164,7 @@ def detachment(
     NDArray[uint8],
     NDArray[float64],
     NDArray[float64],
+    NDArray[float64] | None,
     list[tuple[str, NDArray[float64], NDArray[float64]]],
     list[SceneError],
 ]: ...

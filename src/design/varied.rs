@@ -82,6 +82,28 @@ impl DesignVaried {
     }
 }
 
+impl DesignVaried {
+    /// Returns the scene with these `values` of the varied numbers, `[variable]`, in front of its pole alone: at `distance_mm`, unless the design
+    /// varies the distance or gives it as a part of the length.
+    ///
+    /// # Errors
+    /// If the scene would be refused with them.
+    pub fn scene_at(
+        &self,
+        scene: &Scene,
+        distance_mm: f64,
+        values: &[f64],
+    ) -> Result<Scene, SceneError> {
+        let varied = self;
+        DesignScene {
+            scene,
+            varied,
+            distance_mm,
+        }
+        .at(values)
+    }
+}
+
 /// Scene of a design with its varied numbers, in front of one pole.
 pub(super) struct DesignScene<'a> {
     /// Scene of which the numbers vary.

@@ -9,8 +9,9 @@ use crate::sheet::net::{ValueDraft, ValueNet};
 use crate::sheet::{Crossing, Sheet};
 use glam::DVec2;
 use std::sync::Arc;
-use whiskmap_mechanics::rod::{Units, arclength};
-use whiskmap_mechanics::shooting::{FullState, Reader, Reading};
+use whiskmap_mechanics::rod::{Rod, Units, arclength};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
+use whiskmap_mechanics::shooting::{FullState, PeakStrain, Reader, Reading};
 
 /// Channel values of a state in map units, `[channel]`, in the order of [`STATE_CHANNELS`].
 pub type Values = [f64; STATE_CHANNELS.len()];
@@ -30,6 +31,8 @@ pub struct WhiskerSide {
     /// Derivatives of the push angle at the detachment of each row, in degrees per unit of the parameter: `[row][parameter]`. Empty
     /// without such channels.
     pub push_derivatives: Vec<Vec<(Parameter, f32)>>,
+    /// Unit of bending strain.
+    unit_strain: f64,
     reader: Reader,
 }
 
@@ -43,6 +46,7 @@ impl WhiskerSide {
             columns,
             sheet,
             push_derivatives: Vec::new(),
+            unit_strain: units.strain,
             reader,
         }
     }
@@ -108,6 +112,41 @@ impl WhiskerSide {
         let reader = self.reader.with_contact(&rod);
         let touch = self.sheet.rows[row].touch;
         values(&reader.read(state.at.point.x, &state.full, touch, push))
+    }
+
+    /// Returns the largest bending strains of states with contact and load `(tau, load)`, whose friction is that of the side: `[point]`. Each
+    /// takes a trajectory.
+    #[must_use]
+    pub fn peak_strains(&self, points: impl Iterator<Item = DVec2>) -> Vec<f32> {
+        let peaks: Vec<PeakStrain> = self.strains().shoot_at(&self.sheet.rod, points);
+        peaks.iter().map(|peak| self.strain(peak)).collect()
+    }
+
+    /// Returns the largest bending strains of states with friction, `[state]`.
+    #[must_use]
+    pub fn peak_strains_with_friction(&self, states: &[&FrictionState]) -> Vec<f32> {
+        let rods = states.iter().map(|state| state.rod(&self.sheet.rod));
+        let rods: Vec<Rod> = rods.collect();
+        let conditions = rods
+            .iter()
+            .zip(states)
+            .map(|(rod, state)| InitialCondition {
+                rod,
+                tau: state.at.point.x,
+                load: state.at.point.y,
+            });
+        let conditions: Vec<InitialCondition> = conditions.collect();
+        let peaks: Vec<PeakStrain> = self.strains().shoot(&conditions);
+        peaks.iter().map(|peak| self.strain(peak)).collect()
+    }
+
+    /// Integrator of trajectories with their largest strains.
+    fn strains(&self) -> Batch {
+        Batch::new(self.sheet.method())
+    }
+
+    fn strain(&self, peak: &PeakStrain) -> f32 {
+        (peak.strain * self.unit_strain) as f32
     }
 
     /// Returns the size of each channel's values along a row with this `end`, `[channel]`. For a component of the force it is the force, for

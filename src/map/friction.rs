@@ -27,6 +27,8 @@ struct FrictionCell {
     /// State of the cell and its channel values `[channel]`; `None` at first touch, where friction changes nothing, and if no state is
     /// found.
     state: Option<(FrictionState, Values)>,
+    /// Largest bending strain of the state; NaN without a state, and if it is not computed.
+    strain: f32,
 }
 
 /// Replaces the states of `rows` of `side` that do not slide toward the tip, in a `panel` that is `width` cells wide and begins with the
@@ -38,10 +40,14 @@ pub fn replace(
     [width, first_row]: [usize; 2],
     panel: &mut Panel,
 ) {
+    let has_strain = !panel.peak_strain.is_empty();
     let found = rows.par_chunks(rows_per_batch(rows.len())).map(|rows| {
         let levels: Vec<LevelCurve> = rows.iter().map(|row| side.sheet.level(row.row)).collect();
         let histories = ContactHistory::of(&levels);
-        let cells = cells(side, rows, &histories, [width, first_row]);
+        let mut cells = cells(side, rows, &histories, [width, first_row]);
+        if has_strain {
+            add_strains(side, &mut cells);
+        }
         let ends = rows.iter().zip(histories).filter(|(row, history)| {
             let sliding = history.as_ref().and_then(|own| own.sliding_at_end(row.end));
             sliding.is_some_and(|sliding| sliding != Sliding::Tip)
@@ -95,6 +101,7 @@ fn cells(
                     cell,
                     sliding,
                     state: None,
+                    strain: f32::NAN,
                 });
             }
         }
@@ -106,9 +113,22 @@ fn cells(
             cell,
             sliding: state.as_ref().map(|(state, _)| state.sliding),
             state,
+            strain: f32::NAN,
         }
     });
     unsolved.into_iter().chain(solved).collect()
+}
+
+/// Adds the largest bending strains of the states of `cells`.
+fn add_strains(side: &WhiskerSide, cells: &mut [FrictionCell]) {
+    let states = cells
+        .iter()
+        .filter_map(|cell| Some(&cell.state.as_ref()?.0));
+    let strains = side.peak_strains_with_friction(&states.collect::<Vec<_>>());
+    let solved = cells.iter_mut().filter(|cell| cell.state.is_some());
+    for (cell, strain) in solved.zip(strains) {
+        cell.strain = strain;
+    }
 }
 
 /// Writes a cell into the `panel`.
@@ -134,12 +154,15 @@ fn write(found: &FrictionCell, panel: &mut Panel) {
             *own = *value as f32;
         }
     }
+    if let Some(own) = panel.peak_strain.get_mut(cell) {
+        *own = found.strain;
+    }
 }
 
 /// Removes the state of a cell from the `panel`.
 fn clear(cell: usize, panel: &mut Panel) {
     panel.residual[cell] = f32::NAN;
-    for channel in &mut panel.state {
+    for channel in panel.state.iter_mut().chain([&mut panel.peak_strain]) {
         if let Some(own) = channel.get_mut(cell) {
             *own = f32::NAN;
         }

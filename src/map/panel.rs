@@ -32,6 +32,8 @@ pub struct Panel {
     pub residual: Vec<f32>,
     /// Margin of each cell: push angle left until detachment, in degrees, `[distance][push_angle]`; NaN without contact.
     pub margin_deg: Vec<f32>,
+    /// Largest bending strain at the surface in each cell: `[distance][push_angle]`. NaN without contact; empty if it is not computed.
+    pub peak_strain: Vec<f32>,
     /// Derivative of the push angle at detachment by each parameter, in degrees per unit of the parameter:
     /// `[parameter][distance][push_angle]`, in the order of [`Parameter::ALL`]. NaN without contact; empty if it is not computed.
     pub push_derivatives: [Vec<f32>; Parameter::ALL.len()],
@@ -49,7 +51,7 @@ impl Panel {
         panel.status.fill(Status::NotConverged.code());
         let numbers = [&mut panel.residual, &mut panel.margin_deg];
         let on_demand = panel.state.iter_mut().chain(&mut panel.push_derivatives);
-        for numbers in on_demand.chain(numbers) {
+        for numbers in on_demand.chain(numbers).chain([&mut panel.peak_strain]) {
             numbers.fill(f32::NAN);
         }
         panel
@@ -71,8 +73,9 @@ impl Panel {
             numbers.resize(cells, 0.0);
         }
         let names = STATE_CHANNELS.into_iter().chain(DERIVATIVES);
+        let names = names.chain([Channel::PeakStrain.name()]);
         let on_demand = self.state.iter_mut().chain(&mut self.push_derivatives);
-        for (name, numbers) in names.zip(on_demand) {
+        for (name, numbers) in names.zip(on_demand.chain([&mut self.peak_strain])) {
             let cells = if channels.contains(name) { cells } else { 0 };
             numbers.resize(cells, 0.0);
         }
@@ -91,6 +94,7 @@ impl Panel {
             state: STATE_CHANNELS.map(on_demand),
             residual: vec![0.0; cells],
             margin_deg: vec![0.0; cells],
+            peak_strain: on_demand(Channel::PeakStrain.name()),
             push_derivatives: DERIVATIVES.map(on_demand),
             newton_steps: vec![0; cells],
         }
@@ -103,6 +107,7 @@ impl Panel {
         match channel {
             Channel::Residual => &self.residual,
             Channel::Margin => &self.margin_deg,
+            Channel::PeakStrain => &self.peak_strain,
             state => &self.state[state as usize],
         }
     }
@@ -155,6 +160,7 @@ impl Panel {
             .push_derivatives
             .each_mut()
             .map(|own| rows_of(own, &cells, width));
+        let mut peak_strain = rows_of(&mut self.peak_strain, &cells, width);
         let [regime, status, newton_steps] =
             [&mut self.regime, &mut self.status, &mut self.newton_steps]
                 .map(|codes| codes[cells.clone()].chunks_mut(width));
@@ -171,6 +177,7 @@ impl Panel {
                     .map(|channel| channel.next().unwrap_or_default()),
                 residual,
                 margin_deg,
+                peak_strain: peak_strain.next().unwrap_or_default(),
                 push_derivatives: push_derivatives
                     .each_mut()
                     .map(|channel| channel.next().unwrap_or_default()),
@@ -189,6 +196,8 @@ pub(super) struct RowMut<'a> {
     pub state: [&'a mut [f32]; STATE_CHANNELS.len()],
     pub residual: &'a mut [f32],
     pub margin_deg: &'a mut [f32],
+    /// Largest bending strains of the row: `[push_angle]`; empty if not computed.
+    pub peak_strain: &'a mut [f32],
     /// Derivatives of the row: `[parameter][push_angle]`; empty if not computed.
     pub push_derivatives: [&'a mut [f32]; Parameter::ALL.len()],
     pub newton_steps: &'a mut [u32],

@@ -5,6 +5,7 @@ use super::panel::RowMut;
 use super::{Panel, doubt};
 use crate::classify::{Regime, RowBoundary, Status, TIE};
 use crate::engine::{Cell, CellRun, Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
+use glam::DVec2;
 use rayon::prelude::*;
 
 /// Classifies the `cells` of a batch of whole rows and writes them into `panels`, which are `width` cells wide and begin with the row
@@ -35,6 +36,7 @@ pub fn fill(
                     boundary: RowBoundary::new(side.sheet.touches(row.row), crossings),
                     into,
                     contacts: Vec::new(),
+                    points: Vec::new(),
                     doubtful: Vec::new(),
                 };
                 writer.write(cells, row.first)
@@ -70,6 +72,8 @@ struct RowWriter<'a> {
     into: RowMut<'a>,
     /// Cells in contact with friction that a push from first touch reaches: column of the side, and magnitude of the push in radians.
     contacts: Vec<(usize, f64)>,
+    /// Contact and load `(tau, load)` of the cells with a state, with their columns of the side; empty without the channel of strains.
+    points: Vec<(usize, DVec2)>,
     /// Cells whose regime may be found by continuation, with their columns of the side.
     doubtful: Vec<(usize, Cell)>,
 }
@@ -106,9 +110,15 @@ impl RowWriter<'_> {
         if !doubtful.is_empty() {
             for (index, cell) in doubt::solve(side, row, &self.boundary, doubtful) {
                 self.contacts.retain(|(own, _)| *own != index);
+                self.points.retain(|(own, _)| *own != index);
                 self.write_run(index, cell.run());
             }
             self.contacts.sort_unstable_by_key(|(index, _)| *index);
+        }
+        let points = self.points.iter().map(|(_, point)| *point);
+        let strains = side.peak_strains(points);
+        for ((index, _), strain) in self.points.iter().zip(strains) {
+            self.into.peak_strain[columns[*index].index] = strain;
         }
         // Without a push from first touch there is no history.
         let end = self.boundary.detachment().map(|span| span.to);
@@ -162,9 +172,15 @@ impl RowWriter<'_> {
                 for (channel, values) in into.state.iter_mut().zip(cells.values) {
                     columns.write(channel, &run, |i| values[i]);
                 }
+                if !into.peak_strain.is_empty() {
+                    let points = run.clone().zip(cells.points);
+                    self.points
+                        .extend(points.map(|(index, point)| (index, *point)));
+                }
             }
             None => {
                 clear(into.margin_deg);
+                clear(into.peak_strain);
                 let on_demand = into.state.iter_mut().chain(&mut into.push_derivatives);
                 on_demand.for_each(|channel| clear(channel));
             }

@@ -1,7 +1,7 @@
 //! Channels of a map, and the selection that is computed and stored.
 
 use crate::input::did_you_mean;
-use crate::scene::Parameter;
+use crate::scene::{Parameter, SceneData};
 use std::fmt;
 use std::str::FromStr;
 
@@ -44,11 +44,13 @@ pub enum Channel {
     Residual,
     /// Margin: push angle left until detachment, in degrees.
     Margin,
+    /// Largest bending strain at the surface of the whisker, dimensionless; computed on demand.
+    PeakStrain,
 }
 
 impl Channel {
     /// All channels of a map, those of a state in the order of [`STATE_CHANNELS`] first, `[channel]`.
-    pub const ALL: [Self; STATE_CHANNELS.len() + 2] = [
+    pub const ALL: [Self; STATE_CHANNELS.len() + 3] = [
         Self::ArcLength,
         Self::ContactAngle,
         Self::Force,
@@ -60,6 +62,7 @@ impl Channel {
         Self::Energy,
         Self::Residual,
         Self::Margin,
+        Self::PeakStrain,
     ];
 
     /// Returns the name of the channel in files, with the unit at its end, such as `force_un`.
@@ -68,6 +71,7 @@ impl Channel {
         match self {
             Self::Residual => "residual",
             Self::Margin => "margin_deg",
+            Self::PeakStrain => PEAK_STRAIN,
             state => STATE_CHANNELS[state as usize],
         }
     }
@@ -76,15 +80,22 @@ impl Channel {
 /// Names of the channels that are not of a state.
 const OTHERS: [&str; 5] = ["regime", "status", "margin_deg", "newton_steps", "residual"];
 
+/// Name of the channel of the largest bending strain, which takes a trajectory more for each cell.
+const PEAK_STRAIN: &str = "peak_strain";
+
 /// Number of channels of a map unless others are selected.
 const STANDARD: usize = OTHERS.len() + STATE_CHANNELS.len();
 
+/// Number of channels before the derivatives.
+const BEFORE_DERIVATIVES: usize = STANDARD + 1;
+
 /// Number of channels.
-const COUNT: usize = STANDARD + Parameter::ALL.len();
+const COUNT: usize = BEFORE_DERIVATIVES + Parameter::ALL.len();
 
 /// Selection of the channels of a map.
 ///
-/// Derivatives, such as `d_push_d_taper`, are computed on demand: of the push angle at detachment, and so of the margin, by a parameter.
+/// Derivatives, such as `d_push_d_taper`, are computed on demand: of the push angle at detachment, and so of the margin, by a parameter. The
+/// largest bending strain, `peak_strain`, is computed on demand, too, and for a scene with a yield strain.
 ///
 /// ```
 /// use whiskmap::plan::Channels;
@@ -99,7 +110,7 @@ const COUNT: usize = STANDARD + Parameter::ALL.len();
 pub struct Channels([bool; COUNT]);
 
 impl Channels {
-    /// The selection of all channels but derivatives.
+    /// The selection of all channels but derivatives and the largest bending strain.
     pub const STANDARD: Self = {
         let (mut chosen, mut place) = ([false; COUNT], 0);
         while place < STANDARD {
@@ -108,6 +119,16 @@ impl Channels {
         }
         Self(chosen)
     };
+
+    /// Returns the channels of a map of `scene` unless others are selected: [`Self::STANDARD`], and the largest bending strain if the scene has
+    /// a yield strain.
+    #[must_use]
+    pub fn of_scene(scene: &SceneData) -> Self {
+        match scene.whisker.yield_strain {
+            Some(_) => Self::STANDARD.with(PEAK_STRAIN),
+            None => Self::STANDARD,
+        }
+    }
 
     /// Selects the channels for which `is_wanted` returns true.
     #[must_use]
@@ -133,12 +154,19 @@ impl Channels {
 
     /// Returns the parameters by which the selection has derivatives.
     pub fn derivatives(&self) -> impl Iterator<Item = Parameter> {
-        let chosen = self.0.into_iter().skip(STANDARD);
+        let chosen = self.0.into_iter().skip(BEFORE_DERIVATIVES);
         let all = Parameter::ALL.into_iter().zip(chosen);
         all.filter_map(|(parameter, is_chosen)| is_chosen.then_some(parameter))
     }
 
-    /// Returns the names of the selected channels: regime and status, channels of a state, channels of the numerics, derivatives.
+    /// Returns true if the selection has the largest bending strain.
+    #[must_use]
+    pub const fn has_strain(&self) -> bool {
+        self.0[STANDARD]
+    }
+
+    /// Returns the names of the selected channels: regime and status, channels of a state, channels of the numerics, the largest bending
+    /// strain, derivatives.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         let chosen = names().zip(self.0);
         chosen.filter_map(|(name, is_chosen)| is_chosen.then_some(name))
@@ -156,7 +184,7 @@ pub fn names() -> impl Iterator<Item = &'static str> + Clone {
     let (verdict, numerics) = OTHERS.split_at(2);
     let standard = verdict.iter().chain(&STATE_CHANNELS).chain(numerics);
     let derivatives = Parameter::ALL.into_iter().map(Parameter::push_derivative);
-    standard.copied().chain(derivatives)
+    standard.copied().chain([PEAK_STRAIN]).chain(derivatives)
 }
 
 impl fmt::Display for Channels {
@@ -173,7 +201,7 @@ impl FromStr for Channels {
         let wanted: Vec<&str> = list.split(',').map(str::trim).collect();
         match wanted.iter().find(|name| !names().any(|own| own == **name)) {
             Some(unknown) => Err(format!(
-                "must be names with commas between them, out of {}, and derivatives such as d_push_d_taper{}",
+                "must be names with commas between them, out of {}, {PEAK_STRAIN}, and derivatives such as d_push_d_taper{}",
                 Self::STANDARD,
                 did_you_mean(unknown, names())
             )),

@@ -160,7 +160,7 @@ impl Plan {
                 + calls(whiskers % panels_at_once),
             cells: cells * whiskers,
             parts: std::iter::once(0..whiskers).collect(),
-            channels: Channels::STANDARD,
+            channels: Channels::of_scene(scene),
             digits: Digits::ALL,
             sides,
             panels_at_once,

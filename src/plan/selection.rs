@@ -22,7 +22,8 @@ impl Plan {
             });
         }
         let derivatives = channels.derivatives().count();
-        self.bytes += (derivatives * self.cells_at_once) as u64 * BYTES_PER_VALUE;
+        let on_demand = derivatives + usize::from(channels.has_strain());
+        self.bytes += (on_demand * self.cells_at_once) as u64 * BYTES_PER_VALUE;
         if !fits(self.bytes, self.gpu_bytes) {
             return Err(PlanError::Derivatives {
                 derivatives,

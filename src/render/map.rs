@@ -1,7 +1,7 @@
 //! Pictures of stored maps: the regimes, or any channel.
 
 use super::boundary::stretches;
-use super::marks::{MARKED, has_marks, is_mark};
+use super::marks::MapMarks;
 use super::{MapOptions, RenderError, labels, row};
 use crate::classify::{Regime, Status};
 use crate::scene::{SweepAxis, SweepVariable};
@@ -35,15 +35,18 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
     };
     let (shading, mut legend) = match map.names(channel) {
         Some(names) => codes(map, channel, names, &without_whisker, options)?,
-        None => quantities(map, channel, options)?,
+        None => (quantities(map, channel, options)?, Vec::new()),
     };
     let is_log = matches!(&shading, Shading::Quantities(scale) if scale.is_log());
     let has_sizes = is_log && is_moment(channel);
+    let marks = MapMarks::new(map, channel)?;
+    if let Some(name) = marks.name() {
+        legend.push(LegendEntry::swatch(Fill::BLANK.hatched(), name));
+    }
     let has_boundary = has_boundary(map)?;
     if has_boundary {
         legend.push(LegendEntry::curve("detachment boundary"));
     }
-    let has_marks = has_marks(map, channel)?;
     let heat_map = HeatMap {
         title: options.title(map),
         x: CellAxis::new(labels::PUSH_ANGLE, &grid.push_angle_deg),
@@ -65,11 +68,9 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
         let values = map.read_panel(channel, index)?;
         let mut cells = PanelCells {
             values: shown(&values, has_sizes).collect(),
+            hatched: marks.hatched(map, index)?,
             ..PanelCells::default()
         };
-        if has_marks && let ChannelValues::U32(codes) = map.read_panel("status", index)? {
-            cells.hatched = codes.into_iter().map(is_mark).collect();
-        }
         if has_boundary {
             cells.curves = stretches(grid, &map.read_panel("margin_deg", index)?);
         }
@@ -173,17 +174,17 @@ pub fn regime_fill(code: u32) -> Fill {
     }
 }
 
-/// The colour scale of a channel of quantities, common to all panels, and its legend.
+/// The colour scale of a channel of quantities, common to all panels.
 fn quantities(
     map: &MapSlice,
     channel: &str,
     options: &MapOptions<'_>,
-) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
+) -> Result<Shading, RenderError> {
     // Both sides of a moment share the scale of its size, unless the ends of the colour bar have signs.
     let is_positive = options.range.is_none_or(|[low, _]| low > 0.0);
     if is_moment(channel) && options.log != Some(false) && is_positive {
         let sizes = scaled(map, channel, options, true)?;
-        if matches!(&sizes.0, Shading::Quantities(scale) if scale.is_log()) {
+        if matches!(&sizes, Shading::Quantities(scale) if scale.is_log()) {
             return Ok(sizes);
         }
     }
@@ -201,13 +202,13 @@ fn shown(values: &ChannelValues, has_sizes: bool) -> impl Iterator<Item = f64> +
     values.values().map(shown)
 }
 
-/// The colour scale of a channel of quantities, or of their sizes, and its legend.
+/// The colour scale of a channel of quantities, or of their sizes.
 fn scaled(
     map: &MapSlice,
     channel: &str,
     options: &MapOptions<'_>,
     has_sizes: bool,
-) -> Result<(Shading, Vec<LegendEntry>), RenderError> {
+) -> Result<Shading, RenderError> {
     let mut summary = ValueSummary::default();
     let mut whole = false;
     for index in 0..map.layout().panels() {
@@ -231,9 +232,5 @@ fn scaled(
         channel: channel.to_owned(),
         cause,
     })?;
-    let marks = has_marks(map, channel)?.then(|| {
-        let fill = Fill::BLANK.hatched();
-        LegendEntry::swatch(fill, MARKED)
-    });
-    Ok((Shading::Quantities(scale), marks.into_iter().collect()))
+    Ok(Shading::Quantities(scale))
 }

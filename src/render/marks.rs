@@ -1,11 +1,15 @@
-//! Marks of states whose contact does not slide toward the tip.
+//! Marks of states whose contact does not slide toward the tip, and of states beyond the yield strain.
 
 use super::RenderError;
 use crate::classify::Status;
-use crate::store::{MapSlice, STATE_CHANNELS};
+use crate::plan::Channel;
+use crate::store::{ChannelValues, MapSlice, STATE_CHANNELS};
 
 /// Name in legends of states whose contact does not slide toward the tip.
-pub const MARKED: &str = "slides to base, or sticks";
+const MARKED: &str = "slides to base, or sticks";
+
+/// Name in legends of states beyond the yield strain.
+const YIELDING: &str = "beyond the yield strain";
 
 /// Returns true if the states in `channel` include some whose contact does not slide toward the tip.
 pub fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
@@ -13,8 +17,71 @@ pub fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
     Ok(is_marked && map.codes("status")?.into_iter().any(is_mark))
 }
 
+/// Hatched cells of a map, and their name in its legend.
+pub struct MapMarks {
+    /// True if states whose contact does not slide toward the tip are marked.
+    has_marks: bool,
+    /// Yield strain beyond which states are marked; `None` if none is.
+    yield_strain: Option<f64>,
+}
+
+impl MapMarks {
+    /// Finds the marks of a picture of `channel`: those that occur.
+    pub fn new(map: &MapSlice, channel: &str) -> Result<Self, RenderError> {
+        let mut marks = Self {
+            has_marks: has_marks(map, channel)?,
+            yield_strain: None,
+        };
+        if !map.channels().contains(&Channel::PeakStrain.name()) {
+            return Ok(marks);
+        }
+        if let Some(most) = map.yield_strain()? {
+            for index in 0..map.layout().panels() {
+                if beyond(map, most, index)?.contains(&true) {
+                    marks.yield_strain = Some(most);
+                    break;
+                }
+            }
+        }
+        Ok(marks)
+    }
+
+    /// Returns the name of the marks in a legend; `None` without marks.
+    pub fn name(&self) -> Option<String> {
+        match (self.has_marks, self.yield_strain) {
+            (true, Some(_)) => Some(format!("{MARKED}, or {YIELDING}")),
+            (true, None) => Some(MARKED.to_owned()),
+            (false, Some(_)) => Some(YIELDING.to_owned()),
+            (false, None) => None,
+        }
+    }
+
+    /// Returns true for each hatched cell of a panel, `[distance][push_angle]`; nothing without marks.
+    pub fn hatched(&self, map: &MapSlice, index: usize) -> Result<Vec<bool>, RenderError> {
+        let mut hatched = match self.yield_strain {
+            Some(most) => beyond(map, most, index)?,
+            None => Vec::new(),
+        };
+        if self.has_marks
+            && let ChannelValues::U32(codes) = map.read_panel("status", index)?
+        {
+            hatched.resize(codes.len(), false);
+            for (own, code) in hatched.iter_mut().zip(codes) {
+                *own |= is_mark(code);
+            }
+        }
+        Ok(hatched)
+    }
+}
+
+/// Returns true for each cell of a panel with a strain of more than `most`, `[distance][push_angle]`.
+fn beyond(map: &MapSlice, most: f64, index: usize) -> Result<Vec<bool>, RenderError> {
+    let strains = map.read_panel(Channel::PeakStrain.name(), index)?;
+    Ok(strains.values().map(|strain| strain > most).collect())
+}
+
 /// Returns true if the code of a status marks a state whose contact does not slide toward the tip.
-pub fn is_mark(code: u32) -> bool {
+fn is_mark(code: u32) -> bool {
     let mut marks = Status::NOT_TOWARD_TIP.iter();
     marks.any(|status| status.code() == code)
 }

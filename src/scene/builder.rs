@@ -138,6 +138,8 @@ pub struct SceneBuilder {
     pub(super) sweep: Vec<(Parameter, AxisValues)>,
     pub(super) uncertainty: Option<Deviations>,
     pub(super) surface: Option<Surface>,
+    /// Largest bending strain that the whiskers bear elastically; `None` if it is not known.
+    pub(super) yield_strain: Option<f64>,
     /// Stem of the names of the output files; `None` if the scene does not give it.
     pub(super) name: Option<String>,
     /// Stem of the names of the output files if the scene does not give one.
@@ -276,6 +278,14 @@ impl SceneBuilder {
     #[must_use]
     pub const fn surface(mut self, surface: Surface) -> Self {
         self.surface = Some(surface);
+        self
+    }
+
+    /// Sets the largest bending strain at the surface that the whiskers bear elastically: more than 0 and at most 1. States beyond it are
+    /// marked, and not changed. `None` marks none.
+    #[must_use]
+    pub fn yield_strain(mut self, strain: impl Into<Option<f64>>) -> Self {
+        self.yield_strain = strain.into();
         self
     }
 

@@ -14,7 +14,7 @@ use super::profile;
 use super::shape;
 use super::smooth::MeasuredRadii;
 use super::sweep;
-use super::toml::SceneText;
+use super::toml::{SceneText, YIELD_KEY};
 use super::warnings::{LENGTH_MM, LENGTH_UNITS, MODULUS_GPA, MODULUS_UNITS, other_unit};
 use super::whisker::{Curvature, Pole, Whisker};
 use crate::traced::TracedShape;
@@ -25,6 +25,9 @@ const MOST_CELLS: u128 = 1 << 44;
 
 /// Largest number of characters of a title: many times what fits on a picture.
 pub const LONGEST_TITLE: usize = 1000;
+
+/// Largest yield strain: at 1, the whisker's surface would be stretched to twice its length.
+const MOST_YIELD_STRAIN: f64 = 1.0;
 
 /// Longest name of outputs in bytes: file systems allow 255, and outputs add endings.
 const LONGEST_NAME: usize = 200;
@@ -51,6 +54,7 @@ impl SceneBuilder {
 
     /// Checks the whiskers of a scene without a table, and returns the first one, its pole, and the grid.
     pub(super) fn first(&self) -> Result<(Whisker, Pole, Grid), SceneFault> {
+        self.yield_strain.map(check_yield_strain).transpose()?;
         if let Some(traced) = self.traced.as_ref().filter(|_| self.is_length_traced) {
             shape::check_unit(traced)?;
         }
@@ -58,7 +62,10 @@ impl SceneBuilder {
         let grid = grid(self, lengths_mm)?;
         sweep::refuse_at_odds(self)?;
         let at = |numbers: &Numbers| {
-            let whisker = whisker(numbers, self.measured.as_ref(), self.traced.as_deref())?;
+            let whisker = Whisker {
+                yield_strain: self.yield_strain,
+                ..whisker(numbers, self.measured.as_ref(), self.traced.as_deref())?
+            };
             let pole = pole(numbers, &whisker, &grid)?;
             Ok((whisker, pole))
         };
@@ -85,6 +92,16 @@ impl SceneBuilder {
             name: self.name.as_ref().unwrap_or(&self.stem).clone(),
             text,
         })
+    }
+}
+
+fn check_yield_strain(strain: f64) -> Result<f64, SceneFault> {
+    match 0.0 < strain && strain <= MOST_YIELD_STRAIN {
+        true => Ok(strain),
+        false => {
+            let must = format!("must be more than 0 and at most {MOST_YIELD_STRAIN}");
+            Err(SceneFault::of_value(YIELD_KEY, digits(strain), must))
+        }
     }
 }
 
@@ -169,6 +186,7 @@ fn whisker(
         modulus_tip_to_base,
         arc_stretch,
         follicle_stiffness_nnm_per_rad,
+        yield_strain: None,
     })
 }
 

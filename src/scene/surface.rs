@@ -3,7 +3,7 @@
 use super::error::{SceneError, SceneFault};
 use super::grid::{FARTHEST, NEAREST};
 use super::limits::NumberLimits;
-use super::whisker::Whisker;
+use super::whisker::{Pole, Whisker};
 use crate::random::RandomStream;
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +43,12 @@ impl Surface {
             spacing_mm * (f64::from(asperity) - 0.5 * last + shift)
         };
         (0..=last as u32).map(position).collect()
+    }
+
+    /// Returns an asperity as a pole.
+    #[must_use]
+    pub const fn asperity(&self) -> Pole {
+        Pole::smooth(1e-3 * self.asperity_radius_um)
     }
 
     /// Checks the numbers of the surface in front of `whisker`.

@@ -34,6 +34,9 @@ pub struct Whisker {
     /// Stiffness of the follicle that holds the base, in nN m/rad: the base turns in it by the moment over the stiffness, and a push turns
     /// the follicle. `None` for a clamped base.
     pub follicle_stiffness_nnm_per_rad: Option<f64>,
+    /// Largest bending strain at the surface that the whisker bears elastically, dimensionless; `None` if it is not known. It marks states
+    /// and changes none.
+    pub yield_strain: Option<f64>,
 }
 
 impl Whisker {
@@ -69,6 +72,7 @@ impl Whisker {
             modulus_tip_to_base: 1.0,
             arc_stretch: 1.0,
             follicle_stiffness_nnm_per_rad: None,
+            yield_strain: None,
         }
     }
 
@@ -109,6 +113,12 @@ impl Whisker {
     #[must_use]
     pub fn taper(&self) -> f64 {
         1.0 - self.tip_radius_um / self.base_radius_um
+    }
+
+    /// Returns true if a bending `strain` exceeds the yield strain, and false for a strain that is not known; `None` without a yield strain.
+    #[must_use]
+    pub fn yields(&self, strain: f64) -> Option<bool> {
+        self.yield_strain.map(|most| strain > most)
     }
 
     /// Returns the largest curvature of the whisker at rest, in radians per millimetre.

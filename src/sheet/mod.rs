@@ -170,6 +170,12 @@ impl Sheet {
         self.samples.is_none()
     }
 
+    /// Returns the method of the trajectories of the sheet.
+    #[must_use]
+    pub const fn method(&self) -> Method {
+        self.method
+    }
+
     /// Returns the level curve `D = const` of the row with index `row`.
     #[must_use]
     pub fn level(&self, row: usize) -> LevelCurve {

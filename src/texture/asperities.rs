@@ -43,7 +43,7 @@ impl Asperities {
         surface: &Surface,
         tips: &TipFrame,
     ) -> Result<(Self, BothSides), TextureError> {
-        let pole = Pole::smooth(1e-3 * surface.asperity_radius_um);
+        let pole = surface.asperity();
         let rests = [Side::Cb, Side::Cf].map(|side| Rest::new(&whisker.rod(&pole, side)));
         let farthest_mm = whisker.length_mm + pole.radius_mm;
         let places = surface.asperities_mm().into_iter().enumerate();

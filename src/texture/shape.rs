@@ -2,7 +2,7 @@
 
 use super::TextureSample;
 use super::tip::TipFrame;
-use crate::scene::{Pole, Surface, Whisker};
+use crate::scene::{Surface, Whisker};
 use crate::trace::{Branch, NoState, WhiskerShape};
 use glam::DVec2;
 use whiskmap_mechanics::rod::Rest;
@@ -29,7 +29,7 @@ pub fn shape(
         let points = (0..=last).map(|i| tips.resting(i as f64 / last as f64, angle).to_array());
         return Ok(points.collect());
     };
-    let pole = Pole::smooth(1e-3 * surface.asperity_radius_um);
+    let pole = surface.asperity();
     let centre = DVec2::new(surface.asperities_mm()[asperity], surface.distance_mm);
     let rest = Rest::new(&whisker.rod(&pole, side));
     let distance = rest.distance_of_pole(centre.length() / whisker.length_mm);

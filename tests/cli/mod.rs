@@ -66,5 +66,6 @@ mod verdict;
 mod whisk;
 #[cfg(windows)]
 mod windows;
+mod yields;
 
 use program::{Place, Run, SCENE, names, no_file, no_folder};

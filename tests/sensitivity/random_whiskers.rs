@@ -73,6 +73,7 @@ pub fn push(index: u64) -> Push {
             modulus_tip_to_base: between(0.3, 3.0),
             arc_stretch,
             follicle_stiffness_nnm_per_rad: None,
+            yield_strain: None,
         },
         pole: Pole {
             radius_mm: between(0.0, 0.03) * length_mm,

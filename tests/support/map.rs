@@ -72,6 +72,7 @@ pub fn panel(scene: &SceneData, index: usize) -> Panel {
         state: [const { Vec::new() }; STATE_CHANNELS.len()],
         residual: Vec::with_capacity(cells),
         margin_deg: Vec::with_capacity(cells),
+        peak_strain: Vec::new(),
         push_derivatives: Default::default(),
         newton_steps: Vec::with_capacity(cells),
     };

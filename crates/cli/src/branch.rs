@@ -4,6 +4,7 @@ use super::arguments::{column_help, whole};
 use super::derivatives::{DerivativeArgs, DerivativeColumns};
 use super::failure::Failure;
 use super::files::Files;
+use super::marks::{MARKS, Marked};
 use super::outputs::OutputArgs;
 use super::pole::{self, PolesArgs, refuse, title};
 use clap::{Args, ValueEnum};
@@ -13,6 +14,7 @@ use whiskmap::render::{BranchAxis, DrawnBranch, Ink, PUSH_ANGLE, Plot, branches,
 use whiskmap::scene::Scene;
 use whiskmap::sensitivity::{Variable, branch};
 use whiskmap::trace::BranchPoint;
+use whiskmap::yields::YieldMark;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -32,7 +34,7 @@ angle at a fixed push angle. At a fold they are infinite, and the columns are em
 #[derive(Debug, Args)]
 #[command(
     after_help = EXAMPLES,
-    after_long_help = column_help(EXAMPLES, &[("Columns", BranchPoint::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", BranchPoint::COLUMNS), MARKS])
 )]
 pub struct BranchArgs {
     #[command(flatten)]
@@ -153,7 +155,7 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
             by: own.by,
             first: 1,
         };
-        (own.point, columns)
+        Marked((own.point, columns), YieldMark::new(&whisker, &own.point))
     }))?;
     outputs.finish(title(&scene, distances), || plot(&scene, &points, args))
 }

@@ -1,7 +1,7 @@
 //! Command `whiskmap design`.
 
 use super::arguments::{length, side};
-use super::failure::Failure;
+use super::failure::{Failure, message};
 use super::files::Files;
 use super::outputs::{PlotArgs, open, write};
 use super::pole::{self, WhiskerArgs, title};
@@ -19,6 +19,7 @@ use whiskmap::scene::{Parameter, Scene, digits, rounded};
 use whiskmap::sensitivity::Variable;
 use whiskmap::terminal::StandardOutput;
 use whiskmap::trace::DetachmentKind;
+use whiskmap::yields::PushMark;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -355,6 +356,8 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let short = solutions.iter();
     let short = short.map(|values| written(&scene, &varied, values, most_digits));
     let short: Vec<Vec<f64>> = short.collect();
+    let side = asked[0].target.side;
+    name_strains(&scene, &varied, (side, distance_mm), &short);
     if let Some(output) = better {
         let own: Vec<f64> = variables
             .iter()
@@ -385,6 +388,37 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
         writeln!(out, "{}", values.join(","))?;
     }
     Ok(())
+}
+
+/// Prints the largest bending strain of the push of each solution beside the yield strain of the scene, if it has one.
+fn name_strains(
+    scene: &Scene,
+    varied: &DesignVaried,
+    (side, distance_mm): (Side, f64),
+    solutions: &[Vec<f64>],
+) {
+    let Some(most) = scene.whisker.yield_strain else {
+        return;
+    };
+    for values in solutions {
+        let named = varied.variables.iter().zip(values);
+        let named = named.map(|(own, value)| format!("{} = {}", own.variable, digits(*value)));
+        let named = named.collect::<Vec<_>>().join(", ");
+        let mark = PushMark::of_solution(scene, varied, (side, distance_mm), values);
+        let PushMark { max_strain, yields } = mark.unwrap_or_default();
+        let strain = max_strain.map(|strain| digits(rounded(strain, SOLUTION_DIGITS)));
+        let most = digits(most);
+        message(&match (strain, yields) {
+            (None, _) => format!("{named}: the largest strain of the push is not known"),
+            (Some(strain), Some(true)) => format!(
+                "warning: {named}: the whisker yields: the largest strain of the push, {strain}, exceeds whisker.yield_strain = {most}; \
+                 --max-strain finds values within it"
+            ),
+            (Some(strain), _) => format!(
+                "{named}: the largest strain of the push is {strain}, within whisker.yield_strain = {most}"
+            ),
+        });
+    }
 }
 
 fn distance_is_varied(varied: &DesignVaried) -> bool {

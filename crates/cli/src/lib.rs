@@ -29,6 +29,7 @@ mod locate;
 mod manual;
 mod map;
 mod map_format;
+mod marks;
 mod outputs;
 mod plan;
 mod pole;

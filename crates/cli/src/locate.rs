@@ -4,6 +4,7 @@ use super::arguments::column_help;
 use super::data::ColumnArgs;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
+use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
 use clap::{ArgGroup, Args};
@@ -15,6 +16,7 @@ use whiskmap::locate::{
 };
 use whiskmap::render::{contacts, shared_states};
 use whiskmap::scene::digits;
+use whiskmap::yields::StrainMark;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -39,7 +41,7 @@ const LOAD_OPTIONS: [&str; 4] = ["base_moment", "base_force_x", "base_force_y", 
 #[command(
     group(ArgGroup::new("numbers").required(true).multiple(true).args(["map", "readings", "base_moment", "base_force_x", "base_force_y"])),
     after_help = EXAMPLES,
-    after_long_help = column_help(EXAMPLES, &[("Columns", LocatedState::COLUMNS), ("Columns with --map", SharedState::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", LocatedState::COLUMNS), STRAIN_MARKS, ("Columns with --map", SharedState::COLUMNS)])
 )]
 pub struct LocateArgs {
     #[command(flatten)]
@@ -200,6 +202,7 @@ pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(warning) = locate::warning(&located) {
         message(&format!("warning: {warning}"));
     }
-    outputs.rows(&located)?;
+    let marks = StrainMark::of_rows(&whisker, &scene.pole, &located);
+    outputs.rows(marked(&located, marks))?;
     outputs.finish(scene.title.clone(), || contacts(&locator, &located))
 }

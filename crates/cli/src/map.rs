@@ -138,7 +138,7 @@ impl MapArgs {
     /// If the options contradict each other, the scene or the format.
     pub fn plan<'a>(&self, scene: &'a Scene, format: MapFormat) -> Result<PlannedMap<'a>, Failure> {
         self.check(scene, format)?;
-        let channels = self.channels.unwrap_or(Channels::STANDARD);
+        let channels = self.channels.unwrap_or_else(|| Channels::of_scene(scene));
         let mut map = self.solver.plan(scene, format.plan(scene)?, channels)?;
         map.plan.digits = self.digits.of(channels)?;
         Ok(map)

@@ -13,6 +13,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
+use whiskmap::scene::Scene;
 use whiskmap::store::{MapSlice, MapSource};
 use whiskmap::terminal::StandardOutput;
 
@@ -87,12 +88,13 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
 
 pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     let channel = args.channel.as_deref();
-    let wanted = ["regime", "status", "margin_deg"]
-        .into_iter()
-        .chain(channel);
-    let wanted: Vec<&str> = wanted.collect();
+    let wanted = |scene: &Scene| {
+        let strain = scene.whisker.yield_strain.map(|_| "peak_strain");
+        let wanted = ["regime", "status", "margin_deg"].into_iter();
+        wanted.chain(channel).chain(strain).collect()
+    };
     let (file, solver) = (&args.file, &args.solver);
-    let mut map = args.selection.open(files, file, solver, &wanted)?;
+    let mut map = args.selection.open(files, file, solver, wanted)?;
     if map.grid().sweep.len() > 2 {
         map.fix_single_axes();
     }
@@ -132,6 +134,11 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     }
     if !map.channels().contains(&"margin_deg") {
         message("note: no detachment line is drawn: the map has no channel margin_deg");
+    }
+    if map.yield_strain()?.is_some() && !map.channels().contains(&"peak_strain") {
+        message(
+            "note: no cell is hatched beyond the yield strain: the map has no channel peak_strain",
+        );
     }
     if path != Path::new(STDOUT) {
         writeln!(StandardOutput::open(), "{}", path.display())?;

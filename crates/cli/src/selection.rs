@@ -23,22 +23,23 @@ pub struct SelectionArgs {
 }
 
 impl SelectionArgs {
-    /// Opens the selected part of the input `path`, a stored map or a scene, and prints the selected values. Of a scene, the `wanted` channels
-    /// are computed, or all but derivatives if there are none.
-    pub fn open(
+    /// Opens the selected part of the input `path`, a stored map or a scene, and prints the selected values. Of a scene, the channels that are
+    /// `wanted` of it are computed, or those of a map without a selection if there are none.
+    pub fn open<'n>(
         &self,
         files: &mut Files,
         path: &Path,
         solver: &SolverArgs,
-        wanted: &[&str],
+        wanted: impl FnOnce(&Scene) -> Vec<&'n str>,
     ) -> Result<MapSlice, Failure> {
         let (source, part) = match is_scene(path) {
             true => {
                 let scene = files.scene(path)?;
                 let part = self.part(&scene.grid)?;
-                channels(&channel_names(&scene), wanted)?;
-                let channels = match wanted {
-                    [] => Channels::STANDARD,
+                let wanted = wanted(&scene);
+                channels(&channel_names(&scene), &wanted)?;
+                let channels = match &wanted[..] {
+                    [] => Channels::of_scene(&scene),
                     _ => Channels::those(|name| wanted.contains(&name)),
                 };
                 let map = computed(scene, solver, channels, part.grid.whisker_count())?;

@@ -3,12 +3,14 @@
 use super::arguments::{column_help, length};
 use super::failure::{Failure, check_resolved};
 use super::files::Files;
+use super::marks::{MARKS, Marked};
 use super::outputs::OutputArgs;
 use super::pole::{self, WhiskerArgs, title};
 use clap::Args;
 use whiskmap::render::sensitivities;
 use whiskmap::sensitivity::{VariableEffect, effects};
 use whiskmap::trace::DetachmentKind;
+use whiskmap::yields::YieldMark;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -23,7 +25,7 @@ variables of value 0 or without an effect are left out.";
 #[derive(Debug, Args)]
 #[command(
     after_help = EXAMPLES,
-    after_long_help = column_help(EXAMPLES, &[("Columns", VariableEffect::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", VariableEffect::COLUMNS), MARKS])
 )]
 pub struct SensitivityArgs {
     #[command(flatten)]
@@ -37,12 +39,15 @@ pub struct SensitivityArgs {
 
 pub fn run(args: &SensitivityArgs, files: &mut Files) -> Result<(), Failure> {
     let distance: Vec<f64> = args.distance.into_iter().collect();
-    let (scene, _) = pole::read(files, &args.whisker, "sensitivity", &distance)?;
+    let (scene, whisker) = pole::read(files, &args.whisker, "sensitivity", &distance)?;
     let distances = &scene.grid.distance_mm;
     let distance = args.distance.unwrap_or(distances[distances.len() / 2]);
     let mut outputs = args.outputs.open(files)?;
     let rows = effects(&scene, distance);
-    outputs.rows(&rows)?;
+    let marked = rows
+        .iter()
+        .map(|row| Marked(row, YieldMark::new(&whisker, row)));
+    outputs.rows(marked)?;
     outputs.finish(title(&scene, &[distance]), || sensitivities(&rows))?;
     let unresolved = rows
         .iter()

@@ -3,6 +3,7 @@
 use super::arguments::{angle, column_help, side, whole};
 use super::failure::Failure;
 use super::files::Files;
+use super::marks::{MARKS, Marked};
 use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{Args, ValueEnum};
@@ -11,6 +12,7 @@ use whiskmap::Side;
 use whiskmap::render::{Chart, Dot, DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::scene::digits;
 use whiskmap::trace::{Branch, NoState, ShapePoint, WhiskerShape};
+use whiskmap::yields::YieldMark;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -25,7 +27,7 @@ the push angle, and the pole is fixed.";
 #[derive(Debug, Args)]
 #[command(
     after_help = EXAMPLES,
-    after_long_help = column_help(EXAMPLES, &[("Columns", ShapePoint::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", ShapePoint::COLUMNS), MARKS])
 )]
 pub struct ShapeArgs {
     #[command(flatten)]
@@ -88,9 +90,11 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let state = branch.state(push_deg.to_radians(), stable);
     let count = args.points as usize;
     let shape = WhiskerShape::new(&branch, &state.map_err(refused)?, count);
-    outputs.rows(&shape.points)?;
+    let points = shape.points.iter();
+    outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point))))?;
     let state_file = state_table.map(|mut table| {
-        table.rows([&shape.state])?;
+        let mark = YieldMark::new(&whisker, &shape.state);
+        table.rows([Marked(&shape.state, mark)])?;
         table.finish()
     });
     let state_file = state_file.transpose()?.flatten();

@@ -4,7 +4,7 @@ use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::solver::SolverArgs;
 use std::path::Path;
-use whiskmap::plan::{Channels, Plan};
+use whiskmap::plan::{Channel, Channels, Plan};
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::store::{ComputedMap, MapSource};
 
@@ -32,7 +32,9 @@ pub fn channel_names(scene: &Scene) -> Vec<&'static str> {
     let derivatives = Parameter::ALL.into_iter();
     let derivatives = derivatives.filter(|own| own.has_derivative(scene));
     let derivatives = derivatives.map(Parameter::push_derivative);
-    Channels::STANDARD.names().chain(derivatives).collect()
+    let others = Channels::STANDARD.with(Channel::PeakStrain.name());
+    let names = others.names().collect::<Vec<_>>();
+    names.into_iter().chain(derivatives).collect()
 }
 
 /// Opens the map of `scene`, which is computed when it is read, and prints its engine. The engine is selected for a map of so many `whiskers`.

@@ -4,6 +4,7 @@ use super::arguments::column_help;
 use super::course::CourseArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
+use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::{OutputArgs, OutputTable};
 use super::pole::WhiskerArgs;
 use clap::Args;
@@ -16,6 +17,7 @@ use whiskmap::texture::{
     texture_until,
 };
 use whiskmap::whisk::WhiskEventKind;
+use whiskmap::yields::StrainMark;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -33,6 +35,7 @@ and lets one asperity at a time bend the whisker, which passes between them.";
     after_help = EXAMPLES,
     after_long_help = column_help(EXAMPLES, &[
         ("Columns", TextureSample::COLUMNS),
+        STRAIN_MARKS,
         ("Columns of --events", TextureEvent::COLUMNS),
         ("Columns of --dwells", AsperityStay::COLUMNS),
         ("Columns of --histogram", TipBin::COLUMNS),
@@ -97,7 +100,8 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
         }
         why => Failure::Input(format!("{}: {why}", args.course.source())),
     })?;
-    outputs.rows(&found.samples)?;
+    let marks = StrainMark::of_rows(&scene.whisker, &surface.asperity(), &found.samples);
+    outputs.rows(marked(&found.samples, marks))?;
     let paths = [
         written(events, &found.events)?,
         written(dwells, &found.stays())?,

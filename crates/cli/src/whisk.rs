@@ -4,6 +4,7 @@ use super::arguments::{column_help, duration};
 use super::course::CourseArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
+use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{ArgGroup, Args, ValueEnum};
@@ -13,6 +14,7 @@ use whiskmap::scene::{digits, rounded};
 use whiskmap::whisk::{
     self, CourseStart, Whisk, WhiskError, WhiskEvent, WhiskEventKind, WhiskOptions, WhiskSample,
 };
+use whiskmap::yields::StrainMark;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -39,7 +41,7 @@ enum StartChoice {
 #[command(
     group(ArgGroup::new("course").required(true).args(["angles", "sine"])),
     after_help = EXAMPLES,
-    after_long_help = column_help(EXAMPLES, &[("Columns", WhiskSample::COLUMNS), ("Columns of --events", WhiskEvent::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", WhiskSample::COLUMNS), STRAIN_MARKS, ("Columns of --events", WhiskEvent::COLUMNS)])
 )]
 pub struct WhiskArgs {
     #[command(flatten)]
@@ -82,7 +84,8 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
         WhiskError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
         why => Failure::Input(format!("{}: {why}", args.course.source())),
     })?;
-    outputs.rows(&found.samples)?;
+    let marks = StrainMark::of_rows(&whisker, &scene.pole, &found.samples);
+    outputs.rows(marked(&found.samples, marks))?;
     let events = events.map(|mut table| {
         table.rows(&found.events)?;
         table.finish()

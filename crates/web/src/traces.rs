@@ -54,11 +54,12 @@ fn cell(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, String>
     let panel = &map.panels[0];
     let mut status = Status::ALL.into_iter();
     let status = status.find(|status| status.code() == panel.status[0]);
-    let channels = Channel::ALL.map(|channel| (channel.name(), panel.channel(channel)[0]));
+    let value = |channel: Channel| Some((channel.name(), *panel.channel(channel).first()?));
+    let channels = Channel::ALL.into_iter().filter_map(value);
     Ok(json!({
         "regime": map.regime(0, 0, 0).map(Regime::name),
         "status": status.map(Status::name),
-        "values": BTreeMap::from(channels),
+        "values": channels.collect::<BTreeMap<_, _>>(),
     }))
 }
 

@@ -9,7 +9,7 @@ use crate::threads::{self, ThreadCount};
 use crate::traces::single;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use rows::{DetachmentRows, RefusedRow};
+use rows::{DetachmentRows, RefusedRow, RowEnd};
 use std::collections::BTreeMap;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sensitivity::Derivatives;
@@ -48,11 +48,13 @@ type QuantityArrays<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// Kinds of the ends, residuals, push angles up to which a whisker may snap, quantities, and exceptions of refused rows in order.
+/// Kinds of the ends, residuals, push angles up to which a whisker may snap, largest strains of pushes of a scene with a yield strain, quantities,
+/// and exceptions of refused rows in order.
 type DetachmentArrays<'py> = (
     Bound<'py, PyArray1<u8>>,
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<f64>>,
+    Option<Bound<'py, PyArray1<f64>>>,
     Vec<QuantityArrays<'py>>,
     Vec<PyErr>,
 );
@@ -77,6 +79,7 @@ pub fn detachment<'py>(
         }
         None => Scene::builder("detachment"),
     };
+    let is_marked = scene.is_some_and(|scene| scene.0.whisker.yield_strain.is_some());
     for (name, value) in &fixed {
         base = base.set(parameter("argument", name)?, *value);
     }
@@ -106,13 +109,14 @@ pub fn detachment<'py>(
     for own in &ends {
         kinds[own.row] = own.end.kind as u8;
     }
-    let values = |value: fn(&Detachment) -> Option<f64>| {
+    let of_rows = |value: &dyn Fn(&RowEnd) -> Option<f64>| {
         let mut values = vec![f64::NAN; count];
         for own in &ends {
-            values[own.row] = value(&own.end).unwrap_or(f64::NAN);
+            values[own.row] = value(own).unwrap_or(f64::NAN);
         }
         PyArray1::from_vec(py, values)
     };
+    let values = |value: fn(&Detachment) -> Option<f64>| of_rows(&|own| value(&own.end));
     let quantities = QUANTITIES.map(|(name, value, derivative)| {
         let mut by = vec![f64::NAN; count * width];
         for own in &ends {
@@ -125,10 +129,12 @@ pub fn detachment<'py>(
     let kinds = PyArray1::from_vec(py, kinds);
     let snaps = values(|end| end.snaps_deg);
     let residuals = values(|end| end.residual);
+    let strains = is_marked.then(|| of_rows(&|own| own.mark?.max_strain));
     Ok((
         kinds,
         residuals,
         snaps,
+        strains,
         quantities.into(),
         refused.collect(),
     ))

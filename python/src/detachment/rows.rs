@@ -11,6 +11,7 @@ use whiskmap::Side;
 use whiskmap::scene::{Parameter, Scene, SceneBuilder};
 use whiskmap::sensitivity::{Derivatives, DetachmentDerivatives, Variable, detachments};
 use whiskmap::trace::Detachment;
+use whiskmap::yields::PushMark;
 
 /// Maximum number of distances of one sheet.
 const MOST_DISTANCES: usize = 4096;
@@ -34,7 +35,12 @@ pub struct RowEnd {
     pub row: usize,
     pub end: Detachment,
     pub by: Vec<Option<Derivatives>>,
+    /// Mark of the push; `None` without a yield strain.
+    pub mark: Option<PushMark>,
 }
+
+/// End of a push with its derivatives, and the mark of the push.
+type MarkedEnd = (Detachment, Vec<Option<Derivatives>>, Option<PushMark>);
 
 /// Error of a row whose numbers a scene refuses.
 pub struct RefusedRow {
@@ -118,20 +124,14 @@ impl DetachmentRows<'_> {
         let found = self.differentiated(&scene, side, &distances);
         ends.extend(rows.into_iter().map(|row| {
             let place = distances.partition_point(|distance| *distance < self.distance_mm[row]);
-            let (end, by) = &found[place];
-            let (end, by) = (*end, by.clone());
-            Ok(RowEnd { row, end, by })
+            let (end, by, mark) = found[place].clone();
+            Ok(RowEnd { row, end, by, mark })
         }));
         ends
     }
 
-    /// The ends of one whisker and side with their derivatives, `[distance]`.
-    fn differentiated(
-        &self,
-        scene: &Scene,
-        side: Side,
-        distances: &[f64],
-    ) -> Vec<(Detachment, Vec<Option<Derivatives>>)> {
+    /// The ends of one whisker and side with their derivatives and marks, `[distance]`.
+    fn differentiated(&self, scene: &Scene, side: Side, distances: &[f64]) -> Vec<MarkedEnd> {
         let (whisker, pole) = (&scene.whisker, &scene.pole);
         let base = Variable::from(Parameter::BaseRadiusUm);
         let base = self
@@ -149,7 +149,8 @@ impl DetachmentRows<'_> {
                     .zip(tip)
                     .map(|(base, tip)| base.plus(1.0 - whisker.taper(), &tip));
             }
-            (own.end, by)
+            let mark = PushMark::of_end(whisker, pole, &own.end);
+            (own.end, by, mark)
         };
         ends.into_iter().map(end).collect()
     }

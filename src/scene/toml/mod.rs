@@ -16,6 +16,9 @@ use toml_edit::{Document, Item};
 /// Key of the taper, which a scene file may give instead of the radius at the tip.
 const TAPER_KEY: &str = "whisker.taper";
 
+/// Key of the yield strain, which marks states and changes none.
+pub(in crate::scene) const YIELD_KEY: &str = "whisker.yield_strain";
+
 /// Returns the place of the value of `key` in the text of a scene, such as `grid.distance_mm[1]` or `grid.friction.from`.
 fn place_in(text: &str, key: &str) -> Option<Range<usize>> {
     place(Document::parse(text).ok()?.as_item(), key)

@@ -130,6 +130,7 @@ fn build(
         distance_mm: file.grid.distance_mm,
         sweep,
         surface: file.surface,
+        yield_strain: file.whisker.yield_strain,
         name: file.output.name,
         ..SceneBuilder::default()
     };

@@ -41,6 +41,8 @@ pub(in crate::scene) struct WhiskerTable {
     /// Taper instead of the radius at the tip, which it determines.
     pub taper: Option<f64>,
     pub youngs_modulus_gpa: Option<f64>,
+    /// Largest bending strain that the whisker bears elastically.
+    pub yield_strain: Option<f64>,
     #[serde(default)]
     pub profile: ProfileTable,
     #[serde(default)]

@@ -21,7 +21,7 @@ use crate::traced::TracedShape;
 
 use super::pairs::{PairsCsv, pair_array};
 use super::whiskers::row_array;
-use super::{TAPER_KEY, place_in};
+use super::{TAPER_KEY, YIELD_KEY, place_in};
 
 /// Significant digits with which every `f64` is parsed exactly, and of a number that follows from others: the last ones would be rounding.
 const EXACT_DIGITS: usize = 17;
@@ -118,6 +118,9 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
         if let Some(value) = scene.numbers.get(parameter) {
             put(root, parameter.key(), value);
         }
+    }
+    if let Some(strain) = scene.yield_strain {
+        put(root, YIELD_KEY, strain);
     }
     if let Some(measured) = &scene.measured {
         put(root, ROWS_KEY, pair_array(&measured.rows));

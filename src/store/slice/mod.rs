@@ -143,6 +143,15 @@ impl MapSlice {
         Ok(scene.is_some_and(|scene| scene.is_straight()))
     }
 
+    /// Returns the yield strain of the whiskers of the whole map or store; `None` without one, or if this version cannot read the scene.
+    ///
+    /// # Errors
+    /// The map or store has no scene.
+    pub fn yield_strain(&self) -> Result<Option<f64>, StoreError> {
+        let scene = self.scene()?;
+        Ok(scene.and_then(|scene| scene.whisker.yield_strain))
+    }
+
     /// The scene of the map or store; `None` if this version cannot read it.
     fn scene(&self) -> Result<Option<Scene>, StoreError> {
         Ok(self.source.scene()?.ok())

@@ -62,6 +62,7 @@ impl MapSlice {
                 (ChannelValues::F32(values), _, Some(place)) => panel.state[place] = values,
                 (ChannelValues::F32(values), "margin_deg", _) => panel.margin_deg = values,
                 (ChannelValues::F32(values), "residual", _) => panel.residual = values,
+                (ChannelValues::F32(values), "peak_strain", _) => panel.peak_strain = values,
                 (ChannelValues::F32(values), ..) => {
                     if let Some(own) = panel.push_derivative_mut(name) {
                         *own = values;

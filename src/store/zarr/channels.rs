@@ -12,7 +12,7 @@ type ChannelLine = (&'static str, ValueKind, Option<&'static str>, &'static str)
 
 /// Name, kind, unit and meaning of every channel but the derivatives.
 #[rustfmt::skip]
-pub(super) const CHANNELS: [ChannelLine; 14] = [
+pub(super) const CHANNELS: [ChannelLine; 15] = [
     ("regime", Code, None, "what happens to the whisker"),
     ("status", Code, None, "how the regime was found"),
     ("arc_length_mm", Quantity, Some("mm"), "arclength from base to contact"),
@@ -27,6 +27,7 @@ pub(super) const CHANNELS: [ChannelLine; 14] = [
     ("margin_deg", Quantity, Some("degree"), "push angle left until detachment"),
     ("newton_steps", Count, None, "Newton steps"),
     ("residual", Quantity, Some("1"), "distance from pole over whisker length"),
+    ("peak_strain", Quantity, Some("1"), "largest bending strain at the surface"),
 ];
 
 /// Returns the attributes of a channel of maps, by the CF conventions: unit, meaning, and flags of codes; `None` for another name.
@@ -90,7 +91,7 @@ mod tests {
     #[test]
     fn every_channel_of_a_map_has_a_line() {
         let names = CHANNELS.iter().map(|(name, ..)| *name);
-        assert!(names.eq(Channels::STANDARD.names()));
+        assert!(names.eq(Channels::STANDARD.with("peak_strain").names()));
         assert!(channel_names().all(|name| channel(name).is_some()));
     }
 }

@@ -45,7 +45,8 @@ pub(super) fn arrays(
             continue;
         };
         // Columns make quantities 8 % smaller, but a line of margins is the one before it, shifted, and derivatives are equal along a line.
-        let is_turned = STATE_CHANNELS.contains(&name) || name == "residual";
+        let is_turned =
+            STATE_CHANNELS.contains(&name) || ["residual", "peak_strain"].contains(&name);
         let kept_bits = digits.mantissa_bits(name);
         let encoding = ChunkEncoding {
             width: is_turned.then_some(push_angles),

@@ -8,6 +8,7 @@ use super::data::{self, ColumnArgs};
 use super::derivatives::{DerivativeArgs, DerivativeColumns};
 use super::failure::{Failure, check_resolved};
 use super::files::Files;
+use super::marks::{Marked, PUSH_MARKS};
 use super::outputs::{OpenOutputs, OutputArgs};
 use super::pole;
 use super::progress::Progress;
@@ -27,6 +28,7 @@ use whiskmap::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
 use whiskmap::sensitivity::{DetachmentDerivatives, NoDerivative, detachments_at};
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
 use whiskmap::uncertainty::{EndSpread, LargestSpread, PointSpread};
+use whiskmap::yields::{PushMark, YieldMark};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -65,10 +67,15 @@ Percentiles are linear between neighbouring samples. The samples depend on the s
 
 const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns", Detachment::COLUMNS),
+    PUSH_MARKS,
     ("Columns with --corner", Corner::COLUMNS),
     ("Columns with --data", ComparedPoint::COLUMNS),
     ("Columns with --samples", EndSpread::COLUMNS),
     ("More columns with --largest", LargestSpread::COLUMNS),
+    (
+        "More columns with --largest and whisker.yield_strain",
+        YieldMark::COLUMNS,
+    ),
     (
         "More columns with --data and --samples",
         PointSpread::COLUMNS,
@@ -157,7 +164,13 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(draws) = draws {
         let rows = uncertainty::spread(&draws, resolution);
         match args.sampling.largest {
-            true => outputs.rows(rows.iter().zip(uncertainty::largest(&draws)))?,
+            true => {
+                let largest = uncertainty::largest(&draws).into_iter();
+                let mark = |own: &LargestSpread| YieldMark::new(&scene.whisker, own);
+                let largest = largest.map(|own| (mark(&own), own));
+                let rows = rows.iter().zip(largest);
+                outputs.rows(rows.map(|(row, (mark, own))| Marked((row, own), mark)))?;
+            }
             false => outputs.rows(&rows)?,
         }
         outputs.finish(scene.title.clone(), || Plot {
@@ -183,30 +196,35 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
             continue;
         }
-        let row = |DetachmentDerivatives { end, by }| {
+        let row = |DetachmentDerivatives { end, by }, mark: Option<PushMark>| {
             let columns = DerivativeColumns {
                 variables: &variables,
                 by,
                 first: 0,
             };
-            (end, columns)
+            Marked((end, columns), mark)
         };
         let ends = |own: Result<&SweptWhisker, &RefusedWhisker>, side| {
             bar.inc(distances.len());
             let Ok(own) = own else {
                 let ends = Detachment::without_whisker(side, distances).into_iter();
                 let by = || vec![Err(NoDerivative::NoDetachment); variables.len()];
+                let mark = scene.whisker.yield_strain.map(|_| PushMark::default());
                 return ends
-                    .map(|end| row(DetachmentDerivatives { end, by: by() }))
+                    .map(|end| row(DetachmentDerivatives { end, by: by() }, mark))
                     .collect();
             };
             let (whisker, pole) = (&own.whisker, &own.pole);
             let ends = detachments_at(resolution, whisker, pole, side, distances, &variables);
-            ends.into_iter().map(row).collect()
+            let marks = PushMark::of_ends(whisker, pole, ends.iter().map(|own| &own.end));
+            ends.into_iter()
+                .zip(marks)
+                .map(|(end, mark)| row(end, mark))
+                .collect()
         };
-        let rows: Vec<(SweepPlace, (Detachment, DerivativeColumns))> = trace::sides(&group, ends);
+        let rows: Vec<(SweepPlace, MarkedEnd)> = trace::sides(&group, ends);
         write(&scene, &mut outputs, &rows)?;
-        let kinds = rows.iter().map(|(_, (end, _))| end.kind);
+        let kinds = rows.iter().map(|(_, Marked((end, _), _))| end.kind);
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
         all += rows.len() as u64;
@@ -217,6 +235,9 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
+
+/// Detachment with its derivatives, and its mark.
+type MarkedEnd<'a> = Marked<(Detachment, DerivativeColumns<'a>), PushMark>;
 
 /// Column of a table with the reason why a row of the table of whiskers has no whisker.
 #[derive(Serialize)]

@@ -55,7 +55,7 @@ pub fn run(args: &ExtractArgs, files: &mut Files) -> Result<(), Failure> {
     let regime = (!named.is_empty()).then_some("regime");
     let wanted: Vec<&str> = named.iter().copied().chain(regime).collect();
     let (source, solver) = (&args.source, &args.solver);
-    let slice = args.selection.open(files, source, solver, &wanted)?;
+    let slice = args.selection.open(files, source, solver, |_| wanted)?;
     let channels = channels(&slice.channels(), &named)?;
     let path = &args.output;
     match path.extension().and_then(|ending| ending.to_str()) {

@@ -1,0 +1,303 @@
+//! `whisker.yield_strain`: marks in tables, maps, pictures and designs.
+
+use super::{Place, Run, SCENE};
+use whiskmap::store::MapSource;
+
+/// Scene with a yield strain, which some of its states exceed.
+fn yielding(strain: f64) -> String {
+    SCENE.replace(
+        "[whisker]\n",
+        &format!("[whisker]\nyield_strain = {strain}\n"),
+    )
+}
+
+fn good(place: &Place, words: &[&str]) -> Run {
+    let run = place.run(words);
+    assert_eq!(run.code, Some(0), "{words:?}: {run:?}");
+    run
+}
+
+/// Returns the cells of a column of a table, `[row]`; `None` without the column. Names of files below the table are left out.
+fn column(text: &str, name: &str) -> Option<Vec<String>> {
+    let lines = text.lines().filter(|line| line.contains(','));
+    let mut lines = lines.map(|line| line.split(','));
+    let place = lines.next()?.position(|own| own == name)?;
+    lines
+        .map(|mut line| Some(line.nth(place)?.to_owned()))
+        .collect()
+}
+
+/// Every table of states or pushes has the mark at its end, by its own largest strain; without a yield strain, it has the other columns alone.
+#[test]
+fn tables_have_a_mark() {
+    let surface =
+        "[surface]\ndistance_mm = 14\nspacing_um = 800\nasperity_radius_um = 20\nlength_mm = 12\n";
+    let uncertain = "[uncertainty]\nlength_mm = 0.5\n";
+    let extra = format!("{surface}{uncertain}");
+    let place = Place::with(&format!("{}{extra}", yielding(0.002)));
+    place.write("elastic.toml", &format!("{SCENE}{extra}"));
+    let at = "--distance=10";
+    for (words, value, last) in [
+        (&["curve", at][..], "max_strain", "max_strain,yields"),
+        (
+            &["curve", at, "--derivatives=taper"],
+            "max_strain",
+            "max_strain,yields",
+        ),
+        (
+            &["curve", at, "--units=mN,Nmm"],
+            "max_strain",
+            "max_strain,yields",
+        ),
+        (
+            &["curve", at, "--samples=3", "--largest"],
+            "max_strain",
+            "yields",
+        ),
+        (&["branch", at], "peak_strain", "yields"),
+        (&["shape", at, "--push-angle=30"], "strain", "yields"),
+        (
+            &["shape", at, "--push-angle=30", "--csv=s.csv", "--state=-"],
+            "peak_strain",
+            "yields",
+        ),
+        (&["sensitivity", at], "max_strain", "yields"),
+        (
+            &["whisk", at, "--sine=45deg,1,1", "--rate=40"],
+            "peak_strain",
+            "peak_strain,yields",
+        ),
+        (
+            &["texture", "--sine=15deg,1,1", "--rate=40"],
+            "peak_strain",
+            "peak_strain,yields",
+        ),
+        (
+            &["locate", "--base-moment=260nNm", "--base-force-y=26uN"],
+            "peak_strain",
+            "peak_strain,yields",
+        ),
+    ] {
+        let of = |scene: &str| {
+            let words = [&words[..1], &[scene], &words[1..]].concat();
+            good(&place, &words).out
+        };
+        let (marked, elastic) = (of("scene.toml"), of("elastic.toml"));
+        let [header, other] =
+            [&marked, &elastic].map(|text| text.lines().next().unwrap().to_owned());
+        assert_eq!(header, format!("{other},{last}"), "{words:?}");
+        let strains = column(&marked, value).unwrap();
+        let yields = column(&marked, "yields").unwrap();
+        let mut seen = [0, 0];
+        for (strain, mark) in strains.iter().zip(&yields) {
+            let wanted = strain.parse().ok().map(|own: f64| own > 0.002);
+            assert_eq!(
+                *mark,
+                wanted.map_or(String::new(), |own| own.to_string()),
+                "{words:?}"
+            );
+            if let Some(own) = wanted {
+                seen[usize::from(own)] += 1;
+            }
+        }
+        assert!(
+            seen[1] > 0 || words[0] == "texture" && seen[0] > 0,
+            "{words:?} {seen:?}"
+        );
+        // The other columns have the same cells.
+        for (own, other) in marked.lines().zip(elastic.lines()) {
+            assert!(own.starts_with(other), "{words:?}:\n{own}\n{other}");
+        }
+    }
+}
+
+/// A row of a table of whiskers without a whisker has no mark.
+#[test]
+fn a_row_without_a_whisker_has_no_mark() {
+    let table =
+        "[whiskers]\ntable = [{ name = 'a', length_mm = 20 }, { name = 'b', length_mm = nan }]\n";
+    let place = Place::with(&format!("{}{table}", yielding(0.002)));
+    let run = good(&place, &["curve", "scene.toml", "--distance=10"]);
+    assert_eq!(
+        column(&run.out, "yields").unwrap(),
+        ["true", "true", "", ""]
+    );
+    assert_eq!(column(&run.out, "whisker").unwrap(), ["a", "a", "b", "b"]);
+    // It is no column of the table: whiskers of one scene have one material.
+    let column = table.replace("length_mm = 20", "yield_strain = 0.01");
+    let place = Place::with(&format!("{}{column}", yielding(0.002)));
+    let run = place.run(&["curve", "scene.toml"]);
+    run.assert_refused(&["whiskers.table[0]: yield_strain: is not known; must be one of name,"]);
+}
+
+/// Maps and stores have the channel, and pictures hatch cells beyond the yield strain.
+#[test]
+fn maps_have_strains_and_hatched_cells() {
+    const LEGEND: &str = "beyond the yield strain";
+    let place = Place::with(&yielding(0.002));
+    place.write("elastic.toml", &SCENE.replace("A small map", "elastic"));
+    place.write("strong.toml", &yielding(0.9));
+    let svg = |words: &[&str]| {
+        let run = good(&place, &[words, &["-o", "s.svg"]].concat());
+        (String::from_utf8(place.bytes("s.svg")).unwrap(), run.err)
+    };
+    place.map(&["scene.toml"]);
+    place.map(&["elastic.toml", "-o", "elastic"]);
+    for (name, has_strain) in [("outputs/scene.exr", true), ("elastic/elastic.exr", false)] {
+        let map = MapSource::open(&place.path(name)).unwrap();
+        assert_eq!(
+            map.channels().contains(&"peak_strain"),
+            has_strain,
+            "{name}"
+        );
+    }
+    for channel in [&[][..], &["--channel=force_un"], &["--channel=peak_strain"]] {
+        for map in ["outputs/scene.exr", "scene.toml"] {
+            let (picture, _) = svg(&[&["render", map], channel].concat());
+            assert!(picture.contains(LEGEND), "{map} {channel:?}");
+        }
+        // No state of it is so strained.
+        let (picture, _) = svg(&[&["render", "strong.toml"], channel].concat());
+        assert!(!picture.contains(LEGEND), "{channel:?}");
+    }
+    let (bar, _) = svg(&["render", "outputs/scene.exr", "--channel=peak_strain"]);
+    assert!(bar.contains("largest bending strain"), "{bar}");
+    // The cells are hatched, not only the legend.
+    let body = |picture: &str| {
+        let mut rasters = picture.split("<image");
+        let body = rasters.find(|raster| raster.contains("width=\"1280\" height=\"880\""));
+        body.unwrap().split_once("/>").unwrap().0.to_owned()
+    };
+    let [marked, plain, strong] =
+        ["scene.toml", "elastic.toml", "strong.toml"].map(|scene| body(&svg(&["render", scene]).0));
+    assert!(marked != plain && strong == plain);
+    // On demand, and left out.
+    good(
+        &place,
+        &[
+            "map",
+            "elastic.toml",
+            "-o",
+            "asked",
+            "--channels=regime,peak_strain",
+        ],
+    );
+    let asked = MapSource::open(&place.path("asked/elastic.exr")).unwrap();
+    assert_eq!(asked.channels(), ["regime", "peak_strain"]);
+    good(
+        &place,
+        &[
+            "map",
+            "scene.toml",
+            "-o",
+            "few",
+            "--channels=regime,margin_deg",
+        ],
+    );
+    let (picture, err) = svg(&["render", "few/scene.exr"]);
+    let note =
+        "note: no cell is hatched beyond the yield strain: the map has no channel peak_strain";
+    assert!(err.contains(note) && !picture.contains(LEGEND), "{err}");
+    let run = place.run(&["render", "elastic/elastic.exr", "--channel=peak_strain"]);
+    run.assert_refused(&["--channel peak_strain: must be one of regime"]);
+}
+
+/// With friction, the two kinds of hatched cells have one line in the legend.
+#[test]
+fn both_marks_are_in_one_line_of_the_legend() {
+    let rough = yielding(0.002).replace("[grid]", "[contact]\nfriction = 0.3\n[grid]");
+    let place = Place::with(&rough);
+    good(
+        &place,
+        &["render", "scene.toml", "--channel=force_un", "-o", "s.svg"],
+    );
+    let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+    assert!(
+        picture.contains("slides to base, or sticks, or beyond the yield strain"),
+        "{picture}"
+    );
+}
+
+/// An EXR map, a store and a table have the same strains, and a run of a store with another yield strain is refused.
+#[test]
+fn a_store_has_the_strains_of_the_map() {
+    let place = Place::with(&yielding(0.002));
+    place.map(&["scene.toml"]);
+    let zarr = [
+        "map",
+        "scene.toml",
+        "--engine=cpu",
+        "--format=zarr",
+        "-o",
+        "out",
+    ];
+    good(&place, &zarr);
+    // Parts of maps and stores have them, too.
+    good(&place, &["extract", "outputs/scene.exr", "-o", "part.zarr"]);
+    good(&place, &["extract", "out/scene.zarr", "-o", "part.exr"]);
+    let maps = [
+        "outputs/scene.exr",
+        "out/scene.zarr",
+        "part.zarr",
+        "part.exr",
+    ];
+    let tables = maps.map(|map| {
+        good(
+            &place,
+            &["extract", map, "--channel=peak_strain", "-o", "t.csv"],
+        );
+        String::from_utf8(place.bytes("t.csv")).unwrap()
+    });
+    assert!(tables.iter().all(|table| *table == tables[0]));
+    let strains = column(&tables[0], "peak_strain").unwrap();
+    assert!(strains.iter().filter(|own| !own.is_empty()).count() > 100);
+    place.write("scene.toml", &yielding(0.003));
+    let resumed = place.run(&[&zarr[..], &["--resume"]].concat());
+    resumed.assert_said(2, "differs in `scene`");
+}
+
+/// A design names the largest strain of each solution, and marks one that yields. Its values stay alone on standard output.
+#[test]
+fn a_design_names_the_strain_of_a_solution() {
+    let design = |strain: f64, more: &[&str]| {
+        let place = Place::with(&yielding(strain));
+        let words = ["design", "scene.toml", "--distance=15.66"];
+        good(&place, &[&words[..], more].concat())
+    };
+    let one = ["--slip-off=20deg", "--for=taper"];
+    let plain = good(
+        &Place::with(SCENE),
+        &[&["design", "scene.toml", "--distance=15.66"], &one[..]].concat(),
+    );
+    assert_eq!(plain.err, "");
+    let (within, beyond) = (design(0.0025, &one), design(0.002, &one));
+    assert_eq!([&within.out, &beyond.out], [&plain.out; 2]);
+    let taper = plain.out.trim();
+    assert_eq!(
+        within.err,
+        format!(
+            "taper = {taper}: the largest strain of the push is 0.00212405, within whisker.yield_strain = 0.0025\n"
+        )
+    );
+    assert_eq!(
+        beyond.err,
+        format!(
+            "warning: taper = {taper}: the whisker yields: the largest strain of the push, 0.00212405, exceeds whisker.yield_strain = \
+             0.002; --max-strain finds values within it\n"
+        )
+    );
+    // Of several parameters, the strain is the target.
+    let several = design(
+        0.003,
+        &[
+            "--slip-off=20deg",
+            "--max-strain=0.004",
+            "--for=base_radius_um,taper",
+        ],
+    );
+    assert!(
+        several.err.contains("base_radius_um = 56.")
+            && several.err.contains("of the push, 0.004, exceeds"),
+        "{several:?}"
+    );
+}
