@@ -10,7 +10,7 @@ use crate::sheet::{Crossing, Sheet};
 use glam::DVec2;
 use std::sync::Arc;
 use whiskmap_mechanics::rod::{Units, arclength};
-use whiskmap_mechanics::shooting::{FullState, Reader, Reading};
+use whiskmap_mechanics::shooting::{FullState, Reader};
 
 /// Channel values of a state in map units, `[channel]`, in the order of [`STATE_CHANNELS`].
 pub type Values = [f64; STATE_CHANNELS.len()];
@@ -39,7 +39,7 @@ impl WhiskerSide {
     pub fn new(columns: Arc<SideColumns>, units: Units, sheet: Sheet) -> Self {
         let reader = Reader::new(units, &sheet.rod);
         Self {
-            unit_values: values(&reader.of_one(sheet.side.sign())),
+            unit_values: reader.of_one(sheet.side.sign()),
             columns,
             sheet,
             push_derivatives: Vec::new(),
@@ -94,11 +94,8 @@ impl WhiskerSide {
     /// Returns the channel values `[channel]` of a state of `row` at the signed `push`, in radians.
     #[must_use]
     pub fn values(&self, row: usize, tau: f64, full: &FullState, push: f64) -> Values {
-        values(
-            &self
-                .reader
-                .read(tau, full, self.sheet.rows[row].touch, push),
-        )
+        let touch = self.sheet.rows[row].touch;
+        self.reader.read(tau, full, touch, push).channels()
     }
 
     /// Returns the channel values `[channel]` of a state with friction of `row` at the signed `push`, in radians.
@@ -107,7 +104,9 @@ impl WhiskerSide {
         let rod = state.rod(&self.sheet.rod);
         let reader = self.reader.with_contact(&rod);
         let touch = self.sheet.rows[row].touch;
-        values(&reader.read(state.at.point.x, &state.full, touch, push))
+        reader
+            .read(state.at.point.x, &state.full, touch, push)
+            .channels()
     }
 
     /// Returns the size of each channel's values along a row with this `end`, `[channel]`. For a component of the force it is the force, for
@@ -157,24 +156,9 @@ impl WhiskerSide {
             .at_first_touch(row.contact.min(row.end), row.touch);
         Cell {
             residual: 0.0,
-            values: values(&reading).map(|value| value as f32),
+            values: reading.channels().map(|value| value as f32),
             point: row.first_touch(&self.sheet.rod),
             ..Cell::new(Outcome::Solved, steps)
         }
     }
-}
-
-/// The channels of a reading, in the order of [`STATE_CHANNELS`].
-fn values(reading: &Reading) -> Values {
-    [
-        reading.arc_length_mm,
-        reading.contact_angle_deg,
-        reading.force_un,
-        reading.base_force_un.x,
-        reading.base_force_un.y,
-        reading.base_moment_nnm,
-        reading.push_chord_deg,
-        reading.contact_distance_mm,
-        reading.energy_nj,
-    ]
 }

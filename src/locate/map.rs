@@ -16,13 +16,9 @@ row! {
     /// Stable state of a map, with the number of stable states that have the same two numbers at the base.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct SharedState {
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: f64,
-        /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: f64,
         /// Number of states with this moment and axial force; 0 if one follows from the other.
         pub moment_x_states: usize,
@@ -140,8 +136,8 @@ impl Locator {
                 arc_length_mm: reading.arc_length_mm,
                 reading: BaseReading {
                     moment_nnm: Some(reading.base_moment_nnm),
-                    force_x_un: Some(reading.base_force_un.x),
-                    force_y_un: Some(reading.base_force_un.y),
+                    force_x_un: Some(reading.base_force_x_un),
+                    force_y_un: Some(reading.base_force_y_un),
                     angle_deg: None,
                 },
                 conditions: ORDER.map(condition),

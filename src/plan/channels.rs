@@ -4,19 +4,10 @@ use crate::input::did_you_mean;
 use crate::scene::Parameter;
 use std::fmt;
 use std::str::FromStr;
+use whiskmap_mechanics::shooting::Reading;
 
 /// Names of the channels of a state, `[channel]`.
-pub const STATE_CHANNELS: [&str; 9] = [
-    "arc_length_mm",
-    "contact_angle_deg",
-    "force_un",
-    "base_force_x_un",
-    "base_force_y_un",
-    "base_moment_nnm",
-    "push_chord_deg",
-    "contact_distance_mm",
-    "energy_nj",
-];
+pub const STATE_CHANNELS: [&str; 9] = Reading::CHANNELS;
 
 /// Channel of a map: one number for each cell.
 #[non_exhaustive]

@@ -10,9 +10,7 @@ row! {
     /// Effect of one variable on a detachment.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct VariableEffect {
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
         /// End of the push: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,

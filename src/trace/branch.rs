@@ -1,6 +1,6 @@
 //! Solution branch at one pole: stable states from first touch to the fold, then unstable states.
 
-use super::columns::row;
+use super::columns::{StateRow, row};
 use super::contact::BranchState;
 use super::curve::snaps_deg;
 use super::resample::{interpolate, targets};
@@ -31,37 +31,23 @@ pub struct Branch {
 
 row! {
     /// Point of a branch: a state in mm, deg, uN and nN m.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct BranchPoint {
-        /// Distance from the base to the contact at first touch, in mm.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct BranchPoint of a state {
         pub distance_mm: f64,
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
         /// True if the state is stable; at the fold, true for the last stable state.
         pub stable: bool,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: f64,
-        /// Chord angle: from the resting whisker as far away to the contact, in degrees.
-        pub push_chord_deg: f64,
-        /// Arclength from the base to the contact, in mm.
-        pub arc_length_mm: f64,
-        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-        pub contact_angle_deg: f64,
-        /// Normal part of the force between pole and whisker, in uN; never negative.
-        pub force_un: f64,
-        /// Size of the whole force between pole and whisker, with friction, in uN.
-        pub contact_force_un: f64,
-        /// Force that the pole puts on the base, along the base's tangent, in uN.
-        pub base_force_x_un: f64,
-        /// Force that the pole puts on the base, to the left of its tangent, in uN.
-        pub base_force_y_un: f64,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: f64,
-        /// Bending energy of the whisker, in nJ.
-        pub energy_nj: f64,
-        /// Largest bending strain at the surface: radius times change of curvature.
+        pub push_chord_deg: f64 = place,
+        pub arc_length_mm: f64 = place,
+        pub contact_angle_deg: f64 = place,
+        pub force_un: f64 = load,
+        pub contact_force_un: f64 = load,
+        pub base_force_x_un: f64 = load,
+        pub base_force_y_un: f64 = load,
+        pub base_moment_nnm: f64 = load,
+        pub energy_nj: f64 = load,
         pub peak_strain: f64,
-        /// Arclength from the base to the largest bending strain, in mm.
         pub peak_strain_mm: f64,
         /// Determinant of d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
@@ -69,7 +55,6 @@ row! {
         pub mark: Option<BranchMark>,
         /// Sliding direction of the contact, with friction: tip, base or sticks.
         pub sliding: Option<Sliding>,
-        /// Push up to which the whisker may snap to other stable states, in degrees.
         pub snaps_deg: Option<f64>,
     }
 }
@@ -289,30 +274,20 @@ impl Branch {
     pub(super) fn point(&self, state: &BranchState, peak: PeakStrain, stable: bool) -> BranchPoint {
         let LevelCurve { side, row, .. } = &self.level;
         let (node, rod) = (&state.node, &self.rod(state.ratio));
-        let reading = self.reading(state);
         BranchPoint {
             distance_mm: self.distance_mm,
             side: *side,
             stable,
             push_angle_deg: node.push.to_degrees(),
-            push_chord_deg: reading.push_chord_deg,
-            arc_length_mm: reading.arc_length_mm,
             contact_angle_deg: node.angle.to_degrees(),
-            force_un: reading.force_un,
-            contact_force_un: reading.contact_force_un(),
-            base_force_x_un: reading.base_force_un.x,
-            base_force_y_un: reading.base_force_un.y,
-            base_moment_nnm: reading.base_moment_nnm,
-            energy_nj: reading.energy_nj,
             peak_strain: peak.strain * self.units.strain,
             peak_strain_mm: peak.arclength * self.units.length_mm,
             // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
             // normal component of the force.
             det: node.full.map.det() * row.pole_distance
                 / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
-            mark: None,
             sliding: state.sliding,
-            snaps_deg: None,
+            ..BranchPoint::default().with_state(Some(&self.reading(state)))
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Detachment curves: the ends of pushes from first touch, for each distance.
 
-use super::columns::row;
+use super::columns::{StateRow, row};
 use crate::classify::{RowBoundary, TIE};
 use crate::friction::{ContactHistory, Sliding, surely_slides_to_end};
 use crate::scene::{Pole, Whisker};
@@ -8,10 +8,10 @@ use crate::sheet::{Crossing, Edge, Sheet};
 use serde::{Deserialize, Serialize};
 use whiskmap_mechanics::rod::{Rest, Side};
 use whiskmap_mechanics::shooting::batch::{Batch, Method};
-use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
+use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Resolution};
 
 /// Kind of the end of a push from first touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DetachmentKind {
     /// The push ends at the fold.
@@ -21,6 +21,7 @@ pub enum DetachmentKind {
     /// The push does not begin: the resting whisker does not reach the pole.
     OutOfReach,
     /// The end of the push is unknown: the boundary of the row was not found.
+    #[default]
     Unresolved,
     /// There is no push: the row of the table of whiskers has no whisker.
     NoWhisker,
@@ -28,47 +29,31 @@ pub enum DetachmentKind {
 
 row! {
     /// End of a push at one distance; the values are `None` if no end exists or was found.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct Detachment {
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct Detachment of a state {
         pub side: Side,
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
         /// Distance from the base to the pole's centre, in mm, constant in a push.
         pub pole_distance_mm: Option<f64>,
         /// End of the push: slip-off, pull-off, out-of-reach, unresolved or no-whisker.
         pub kind: DetachmentKind,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Chord angle: from the resting whisker as far away to the contact, in degrees.
-        pub push_chord_deg: Option<f64>,
-        /// Straight distance from the base to the contact, in mm.
-        pub contact_distance_mm: Option<f64>,
-        /// Arclength from the base to the contact, in mm.
-        pub arc_length_mm: Option<f64>,
-        /// Normal part of the force between pole and whisker, in uN; never negative.
-        pub force_un: Option<f64>,
-        /// Size of the whole force between pole and whisker, with friction, in uN.
-        pub contact_force_un: Option<f64>,
-        /// Force that the pole puts on the base, along the base's tangent, in uN.
-        pub base_force_x_un: Option<f64>,
-        /// Force that the pole puts on the base, to the left of its tangent, in uN.
-        pub base_force_y_un: Option<f64>,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: Option<f64>,
-        /// Bending energy of the whisker, in nJ.
-        pub energy_nj: Option<f64>,
-        /// Largest bending strain at the surface: radius times change of curvature.
+        pub push_chord_deg: Option<f64> = place,
+        pub contact_distance_mm: Option<f64> = place,
+        pub arc_length_mm: Option<f64> = place,
+        pub force_un: Option<f64> = load,
+        pub contact_force_un: Option<f64> = load,
+        pub base_force_x_un: Option<f64> = load,
+        pub base_force_y_un: Option<f64> = load,
+        pub base_moment_nnm: Option<f64> = load,
+        pub energy_nj: Option<f64> = load,
         pub peak_strain: Option<f64>,
-        /// Arclength from the base to the largest bending strain, in mm.
         pub peak_strain_mm: Option<f64>,
-        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-        pub contact_angle_deg: Option<f64>,
+        pub contact_angle_deg: Option<f64> = place,
         /// Remaining error of the detachment, relative to the distance of the pole.
         pub residual: Option<f64>,
         /// Sliding direction, with friction; the end assumes tip.
         pub sliding: Option<Sliding>,
-        /// Push up to which the whisker may snap to other stable states, in degrees.
         pub snaps_deg: Option<f64>,
     }
 }
@@ -80,24 +65,8 @@ impl Detachment {
         let end = |distance_mm: &f64| Self {
             side,
             distance_mm: *distance_mm,
-            pole_distance_mm: None,
             kind: DetachmentKind::NoWhisker,
-            push_angle_deg: None,
-            push_chord_deg: None,
-            contact_distance_mm: None,
-            arc_length_mm: None,
-            force_un: None,
-            contact_force_un: None,
-            base_force_x_un: None,
-            base_force_y_un: None,
-            base_moment_nnm: None,
-            energy_nj: None,
-            peak_strain: None,
-            peak_strain_mm: None,
-            contact_angle_deg: None,
-            residual: None,
-            sliding: None,
-            snaps_deg: None,
+            ..Self::default()
         };
         distances_mm.iter().map(end).collect()
     }
@@ -195,7 +164,6 @@ pub(crate) fn detachments(
                 (push.to_degrees(), end.residual + off, reading)
             });
             let peak = reached.as_ref().and_then(|_| peaks.next());
-            let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
             let end = Detachment {
                 side,
                 distance_mm: *distance_mm,
@@ -206,22 +174,14 @@ pub(crate) fn detachments(
                     Err(kind) => kind,
                 },
                 push_angle_deg: reading.as_ref().map(|(push_deg, ..)| *push_deg),
-                push_chord_deg: value(|reading| reading.push_chord_deg),
-                contact_distance_mm: value(|reading| reading.contact_distance_mm),
-                arc_length_mm: value(|reading| reading.arc_length_mm),
-                force_un: value(|reading| reading.force_un),
-                contact_force_un: value(Reading::contact_force_un),
-                base_force_x_un: value(|reading| reading.base_force_un.x),
-                base_force_y_un: value(|reading| reading.base_force_un.y),
-                base_moment_nnm: value(|reading| reading.base_moment_nnm),
-                energy_nj: value(|reading| reading.energy_nj),
                 peak_strain: peak.map(|peak| peak.strain * units.strain),
                 peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
-                contact_angle_deg: value(|reading| reading.contact_angle_deg),
                 residual: reading.as_ref().map(|(_, residual, _)| *residual),
                 sliding,
                 snaps_deg: crossing.ok().and_then(|_| snaps_deg(&sheet, index)),
+                ..Detachment::default()
             };
+            let end = end.with_state(reading.as_ref().map(|(.., reading)| reading));
             let crossing = crossing.ok().copied();
             DetachmentEnd { end, crossing }
         })

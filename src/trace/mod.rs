@@ -23,7 +23,7 @@ pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;
 pub use state::StateAtPush;
 
-pub(crate) use columns::row;
+pub(crate) use columns::{StateRow, column, row};
 
 use crate::scene::{RefusedWhisker, SweepPlace, SweptWhisker};
 use rayon::prelude::*;
