@@ -1,10 +1,9 @@
 //! Solution branch at one pole: stable states from first touch to the fold, then unstable states.
 
 use super::columns::{StateRow, row};
-use super::contact::BranchState;
 use super::curve::snaps_deg;
 use super::resample::{interpolate, targets};
-use super::{BranchMark, FINER, NoState};
+use super::{BranchMark, FINER, NoState, StateAtPush};
 use crate::friction::{ContactHistory, Sliding};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row, Sheet, Stretch};
@@ -12,8 +11,8 @@ use glam::DVec2;
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{Rest, Side, Units};
+use whiskmap_mechanics::shooting::PeakStrain;
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap_mechanics::shooting::{PeakStrain, Reader, Reading};
 
 /// Number of points that are computed between two looks at the flag that cancels.
 const POINTS_AT_ONCE: usize = 1 << 10;
@@ -141,12 +140,12 @@ impl Branch {
         Ok(states.into_iter().map(|(_, point)| point).collect())
     }
 
-    /// Returns the points of [`Branch::points_until`], each with `(tau, load)` of its contact.
+    /// Returns the points of [`Branch::points_until`], each with its state.
     pub(crate) fn states(
         &self,
         count: usize,
         cancel: &AtomicBool,
-    ) -> Result<Vec<(DVec2, BranchPoint)>, NoState> {
+    ) -> Result<Vec<(StateAtPush, BranchPoint)>, NoState> {
         let go_on = || match cancel.load(Ordering::Relaxed) {
             true => Err(self.failed()),
             false => Ok(()),
@@ -200,16 +199,16 @@ impl Branch {
         let is_detachment =
             |mark: &BranchMark| matches!(mark, BranchMark::SlipOff | BranchMark::PullOff);
         let snaps_deg = self.snaps_deg();
-        let points = marked.iter().zip(states.iter().zip(peaks)).enumerate();
-        let points = points.map(|(i, ((_, mark), (state, peak)))| {
+        let points = marked.iter().zip(states.iter().zip(peaks));
+        let points = points.map(|((_, mark), (state, peak))| {
             go_on()?;
             let mark = mark.filter(|mark| self.detaches() || !is_detachment(mark));
             let point = BranchPoint {
                 mark,
                 snaps_deg: mark.filter(is_detachment).and(snaps_deg),
-                ..self.point(state, peak, i < stable)
+                ..self.point(state, peak)
             };
-            Ok((state.node.point, point))
+            Ok((*state, point))
         });
         points.collect()
     }
@@ -231,13 +230,6 @@ impl Branch {
         sliding.is_none_or(|sliding| sliding == Sliding::Tip)
     }
 
-    /// Returns the `state` of the branch in mm, deg, uN and nN m.
-    pub(super) fn reading(&self, state: &BranchState) -> Reading {
-        let (node, touch) = (&state.node, self.level.row.touch);
-        let reader = Reader::new(self.units, &self.rod(state.ratio));
-        reader.read(node.point.x, &node.full, touch, node.push)
-    }
-
     /// Returns the error of a failed continuation or corrector.
     pub(super) fn failed(&self) -> NoState {
         let nodes = &self.continuation.nodes;
@@ -257,37 +249,37 @@ impl Branch {
     }
 
     /// Returns the largest bending strains of `states`, `[state]`.
-    pub(super) fn peaks(&self, states: &[BranchState]) -> Vec<PeakStrain> {
+    pub(super) fn peaks(&self, states: &[StateAtPush]) -> Vec<PeakStrain> {
         let rods: Vec<_> = states.iter().map(|state| self.rod(state.ratio)).collect();
         let conditions = rods
             .iter()
             .zip(states)
             .map(|(rod, state)| InitialCondition {
                 rod,
-                tau: state.node.point.x,
-                load: state.node.point.y,
+                tau: state.tau,
+                load: state.load,
             });
         Batch::new(self.level.method).shoot(&conditions.collect::<Vec<_>>())
     }
 
     /// Returns `state` with its largest bending strain as a point without a mark.
-    pub(super) fn point(&self, state: &BranchState, peak: PeakStrain, stable: bool) -> BranchPoint {
+    pub(super) fn point(&self, state: &StateAtPush, peak: PeakStrain) -> BranchPoint {
         let LevelCurve { side, row, .. } = &self.level;
-        let (node, rod) = (&state.node, &self.rod(state.ratio));
+        let rod = &self.rod(state.ratio);
         BranchPoint {
             distance_mm: self.distance_mm,
             side: *side,
-            stable,
-            push_angle_deg: node.push.to_degrees(),
-            contact_angle_deg: node.angle.to_degrees(),
+            stable: state.stable,
+            push_angle_deg: state.push.to_degrees(),
+            contact_angle_deg: state.angle.to_degrees(),
             peak_strain: peak.strain * self.units.strain,
             peak_strain_mm: peak.arclength * self.units.length_mm,
             // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
             // normal component of the force.
-            det: node.full.map.det() * row.pole_distance
-                / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
+            det: state.full.map.det() * row.pole_distance
+                / (rod.radius(state.tau).powi(3) * rod.contact_tangent().x),
             sliding: state.sliding,
-            ..BranchPoint::default().with_state(Some(&self.reading(state)))
+            ..BranchPoint::default().with_state(Some(&self.read(state)))
         }
     }
 }
