@@ -8,7 +8,7 @@ use crate::sheet::{Crossing, Edge, Sheet};
 use serde::{Deserialize, Serialize};
 use whiskmap_mechanics::rod::{Rest, Side};
 use whiskmap_mechanics::shooting::batch::{Batch, Method};
-use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Resolution};
+use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 
 /// Kind of the end of a push from first touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -136,56 +136,94 @@ pub(crate) fn detachments(
         true => Sheet::new(method, rod, side, &distances),
         false => Sheet::of_ends(method, rod, side, &distances),
     };
-    let ends = crossings(&sheet);
-    let points = ends.iter().flatten().map(|end| (end.tau, end.load));
-    let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points.clone());
+    let ends = PushEnd::of(method, &sheet);
+    let points = ends.iter().flatten();
+    let points = points.map(|PushEnd { crossing, .. }| (crossing.tau, crossing.load));
     let peaks: Vec<PeakStrain> = match has_strain {
         true => Batch::new(method.doubled()).shoot_at(rod, points),
         false => Vec::new(),
     };
-    let (mut states, mut peaks) = (states.into_iter(), peaks.into_iter());
+    let mut peaks = peaks.into_iter();
     let slidings = match has_strain {
         true => slidings(&sheet),
         false => vec![None; distances.len()],
     };
-    let rows = distances_mm.iter().zip(&sheet.rows).zip(&ends);
-    rows.zip(slidings)
-        .enumerate()
-        .map(|(index, (((distance_mm, row), crossing), sliding))| {
-            let reached = crossing.ok().and_then(|end| Some((end, states.next()?)));
-            let sliding = reached
-                .as_ref()
-                .and_then(|(end, variation)| sliding.or(Sliding::of(variation, rod, end.tau)));
-            let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
-                let push = side.sign() * end.push;
-                // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
-                let off = libm::log(row.pole_distance / full.map.pole.length()).abs();
-                let reading = reader.read(end.tau, full, row.touch, push);
-                (push.to_degrees(), end.residual + off, reading)
-            });
-            let peak = reached.as_ref().and_then(|_| peaks.next());
-            let end = Detachment {
-                side,
-                distance_mm: *distance_mm,
-                pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
-                kind: match crossing.map(|end| end.edge) {
-                    Ok(Edge::Fold) => DetachmentKind::SlipOff,
-                    Ok(Edge::Tip) => DetachmentKind::PullOff,
-                    Err(kind) => kind,
-                },
-                push_angle_deg: reading.as_ref().map(|(push_deg, ..)| *push_deg),
-                peak_strain: peak.map(|peak| peak.strain * units.strain),
-                peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
-                residual: reading.as_ref().map(|(_, residual, _)| *residual),
-                sliding,
-                snaps_deg: crossing.ok().and_then(|_| snaps_deg(&sheet, index)),
-                ..Detachment::default()
-            };
-            let end = end.with_state(reading.as_ref().map(|(.., reading)| reading));
-            let crossing = crossing.ok().copied();
-            DetachmentEnd { end, crossing }
-        })
-        .collect()
+    let rows = distances_mm.iter().zip(&sheet.rows).zip(ends).zip(slidings);
+    let rows = rows.enumerate();
+    let ends = rows.map(|(index, (((distance_mm, row), found), sliding))| {
+        let none = Detachment {
+            side,
+            distance_mm: *distance_mm,
+            pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
+            ..Detachment::default()
+        };
+        let own: PushEnd = match found {
+            Ok(own) => own,
+            Err(kind) => {
+                return DetachmentEnd {
+                    end: Detachment { kind, ..none },
+                    crossing: None,
+                };
+            }
+        };
+        // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
+        let off = libm::log(row.pole_distance / own.state.full.map.pole.length()).abs();
+        let peak = peaks.next();
+        let end = Detachment {
+            kind: own.kind(),
+            push_angle_deg: Some((side.sign() * own.crossing.push).to_degrees()),
+            peak_strain: peak.map(|peak| peak.strain * units.strain),
+            peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
+            residual: Some(own.crossing.residual + off),
+            sliding: sliding.or(Sliding::of(&own.state, rod, own.crossing.tau)),
+            snaps_deg: snaps_deg(&sheet, index),
+            ..none.with_state(Some(&own.reading(&reader, &sheet, index)))
+        };
+        DetachmentEnd {
+            end,
+            crossing: Some(own.crossing),
+        }
+    });
+    ends.collect()
+}
+
+/// End of a push from first touch, with its state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PushEnd {
+    /// Crossing of the row over the edge of the sheet.
+    pub crossing: Crossing,
+    /// State at the crossing, with its derivatives.
+    pub state: FirstVariation,
+}
+
+impl PushEnd {
+    /// Computes the ends of pushes in the rows of `sheet` with the integration `method`, `[row]`, or the reasons why there are none.
+    pub fn of(method: Method, sheet: &Sheet) -> Vec<Result<Self, DetachmentKind>> {
+        let crossings = crossings(sheet);
+        let points = crossings.iter().flatten().map(|end| (end.tau, end.load));
+        let mut states = Batch::new(method).shoot_at(&sheet.rod, points).into_iter();
+        let end = |own: Result<&Crossing, _>| {
+            let (crossing, state) = (*own?, states.next());
+            let state = state.ok_or(DetachmentKind::Unresolved)?;
+            Ok(Self { crossing, state })
+        };
+        crossings.into_iter().map(end).collect()
+    }
+
+    /// Returns the kind of the end.
+    pub fn kind(&self) -> DetachmentKind {
+        match self.crossing.edge {
+            Edge::Fold => DetachmentKind::SlipOff,
+            Edge::Tip => DetachmentKind::PullOff,
+        }
+    }
+
+    /// Returns the state in physical units, as the end of this `row` of `sheet`.
+    pub fn reading(&self, reader: &Reader, sheet: &Sheet, row: usize) -> Reading {
+        let Crossing { tau, push, .. } = self.crossing;
+        let (touch, push) = (sheet.rows[row].touch, sheet.side.sign() * push);
+        reader.read(tau, &self.state.full, touch, push)
+    }
 }
 
 /// Returns the crossing of each row of `sheet` at which a push from first touch ends, `[row]`, or the reason why there is none.
