@@ -8,7 +8,7 @@ mod expansions;
 mod memory;
 mod selection;
 
-pub(crate) use channels::names as channel_names;
+pub(crate) use channels::{CHANNELS, names as channel_names};
 pub use channels::{Channel, Channels, STATE_CHANNELS};
 pub use digits::{Digits, rounded};
 pub use effects::{Cost, Effect, effects};

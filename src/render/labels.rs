@@ -1,5 +1,6 @@
 //! Labels of axes, channels and regions in words, with their units.
 
+use crate::plan::CHANNELS;
 use crate::scene::{Parameter, SweepVariable};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_plot::Region;
@@ -75,23 +76,12 @@ pub fn channel(name: &str) -> String {
         let (title, _) = own.title().split_once(" (").unwrap_or((own.title(), ""));
         return format!("d(push angle at detachment) / d({title}) ({unit})");
     }
+    let channel = CHANNELS.iter().find(|(own, ..)| *own == name);
     let label = match name {
-        "arc_length_mm" => "arc length from base to contact (mm)",
-        "contact_angle_deg" => "contact angle (deg)",
-        "force_un" => "contact force (\u{b5}N)",
         "contact_force_un" => "contact force with friction (\u{b5}N)",
-        "base_force_x_un" => "force on the base along the whisker (\u{b5}N)",
-        "base_force_y_un" => "force on the base across the whisker (\u{b5}N)",
-        "base_moment_nnm" => "bending moment at the base (nN m)",
-        "push_chord_deg" => "chord angle (deg)",
-        "contact_distance_mm" => "distance from base to contact (mm)",
-        "energy_nj" => "bending energy (nJ)",
-        "margin_deg" => "push angle left until detachment (deg)",
         "peak_strain" => "largest bending strain",
         "peak_strain_mm" => "arc length to the largest bending strain (mm)",
-        "residual" => "residual (whisker lengths)",
-        "newton_steps" => "Newton steps",
-        other => other,
+        name => channel.map_or(name, |(.., label)| *label),
     };
     label.to_owned()
 }
