@@ -6,7 +6,7 @@
 
 use super::Sliding;
 use super::limit::SlidingLimit;
-use crate::sheet::LevelCurve;
+use crate::sheet::{Continuation, LevelCurve};
 use std::collections::BTreeSet;
 use whiskmap_mechanics::rod::Rod;
 
@@ -65,7 +65,18 @@ impl ContactHistory {
     /// method, and their trajectories share batches.
     #[must_use]
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
-        let tips = SlidingLimit::of(levels);
+        Self::of_tips(levels, SlidingLimit::of(levels))
+    }
+
+    /// Computes the sliding history of the row of a `level` that has been followed from first touch; `None` where a continuation fails.
+    #[must_use]
+    pub fn along(level: &LevelCurve, followed: &Continuation) -> Option<Self> {
+        let tip = SlidingLimit::along(level, followed);
+        Self::of_tips(std::slice::from_ref(level), vec![tip]).pop()?
+    }
+
+    /// Computes the sliding histories of rows with these tip limits, `[row]`.
+    fn of_tips(levels: &[LevelCurve], tips: Vec<Option<SlidingLimit>>) -> Vec<Option<Self>> {
         let falls = |tip: &Option<SlidingLimit>| tip.as_ref().is_some_and(SlidingLimit::falls);
         let falling = levels.iter().zip(&tips).filter(|(_, tip)| falls(tip));
         let opposed: Vec<LevelCurve> = falling.map(|(level, _)| opposed(level)).collect();

@@ -94,11 +94,13 @@ impl Branch {
             true => NoState::PulledOff { at_deg: 0.0 },
             false => NoState::Failed { push_deg: 0.0 },
         };
+        let continuation = followed.ok_or(none)?;
         let has_friction = rod.friction != 0.0;
-        let histories = has_friction.then(|| ContactHistory::of(std::slice::from_ref(&level)));
         Ok(Self {
-            history: histories.and_then(|mut histories| histories.pop()?),
-            continuation: followed.ok_or(none)?,
+            history: has_friction
+                .then(|| ContactHistory::along(&level, &continuation))
+                .flatten(),
+            continuation,
             units: whisker.units(),
             level,
             distance_mm,
