@@ -4,7 +4,7 @@ use super::grid::PAIRS;
 use super::newton::{Triangle, base_derivatives};
 use super::{BaseReading, Locator};
 use crate::scene::{Grid, Pole, Whisker};
-use crate::trace::{Branch, StateAtPush, row};
+use crate::trace::{StableBranch, StateAtPush, row};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -102,13 +102,13 @@ impl Locator {
         grid: &Grid,
         (row, side): (usize, Side),
     ) -> Vec<ContactCell> {
-        let Ok(branch) = Branch::new(whisker, pole, side, grid.distance_mm[row]) else {
+        let Ok(branch) = StableBranch::new(whisker, pole, side, grid.distance_mm[row]) else {
             return Vec::new();
         };
         let columns = grid.push_angle_deg.iter().enumerate();
         let columns = columns.filter(|(_, push_deg)| side.sign() * **push_deg > 0.0);
         let states = columns.filter_map(|(column, push_deg)| {
-            let state = branch.state(push_deg.to_radians(), true).ok()?;
+            let state = branch.state(push_deg.to_radians()).ok()?;
             Some((column, state))
         });
         let states: Vec<(usize, StateAtPush)> = states.collect();

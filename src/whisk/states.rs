@@ -5,7 +5,7 @@ use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, S
 use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
-use crate::trace::{Branch, DetachmentKind, PushEnd, snaps_deg};
+use crate::trace::{DetachmentKind, PushEnd, StableBranch, snaps_deg};
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
@@ -228,7 +228,7 @@ impl SideStates {
     /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation.
     fn fill(&self, contacts: &[RowPush], states: &mut [Option<ContactState>]) {
         let side = self.sheet.side;
-        let mut last: Option<(usize, Option<Branch>)> = None;
+        let mut last: Option<(usize, Option<StableBranch>)> = None;
         for (state, &(row, push)) in states.iter_mut().zip(contacts) {
             if push <= 0.0 {
                 *state = Some(self.at_touch(row));
@@ -238,10 +238,10 @@ impl SideStates {
                 let distance = self.distances_mm[row];
                 let branch = match last.take() {
                     Some((own, branch)) if own == row => branch,
-                    _ => Branch::new(&self.whisker, &self.pole, side, distance).ok(),
+                    _ => StableBranch::new(&self.whisker, &self.pole, side, distance).ok(),
                 };
                 *state = branch.as_ref().and_then(|branch| {
-                    let state = branch.state(side.sign() * push, true).ok()?;
+                    let state = branch.state(side.sign() * push).ok()?;
                     let reading = branch.read(&state);
                     Some(ContactState::smooth(reading, state.tau, state.load))
                 });
