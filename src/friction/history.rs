@@ -6,9 +6,9 @@
 
 use super::Sliding;
 use super::limit::SlidingLimit;
+use super::target::with_friction;
 use crate::sheet::{Continuation, LevelCurve};
 use std::collections::BTreeSet;
-use whiskmap_mechanics::rod::Rod;
 
 /// Sliding history of the contact of one row, along a push from first touch.
 #[derive(Clone, Debug)]
@@ -261,9 +261,5 @@ pub struct ContactQuery<'a> {
 
 /// Level curve of the row of `level` with the opposite sign of friction.
 fn opposed(level: &LevelCurve) -> LevelCurve {
-    let rod = Rod {
-        friction: -level.rod.friction,
-        ..level.rod.clone()
-    };
-    LevelCurve::new(level.method, &rod, level.side, &level.row)
+    with_friction(level, -level.rod.friction)
 }

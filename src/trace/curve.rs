@@ -136,9 +136,9 @@ pub(crate) fn detachments(
         true => Sheet::new(method, rod, side, &distances),
         false => Sheet::of_ends(method, rod, side, &distances),
     };
-    let ends = PushEnd::of(method, &sheet);
+    let ends = RowEnd::of(method, &sheet);
     let points = ends.iter().flatten();
-    let points = points.map(|PushEnd { crossing, .. }| (crossing.tau, crossing.load));
+    let points = points.map(|RowEnd { crossing, .. }| (crossing.tau, crossing.load));
     let peaks: Vec<PeakStrain> = match has_strain {
         true => Batch::new(method.doubled()).shoot_at(rod, points),
         false => Vec::new(),
@@ -157,7 +157,7 @@ pub(crate) fn detachments(
             pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
             ..Detachment::default()
         };
-        let own: PushEnd = match found {
+        let own: RowEnd = match found {
             Ok(own) => own,
             Err(kind) => {
                 return DetachmentEnd {
@@ -189,14 +189,14 @@ pub(crate) fn detachments(
 
 /// End of a push from first touch, with its state.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PushEnd {
+pub(crate) struct RowEnd {
     /// Crossing of the row over the edge of the sheet.
     pub crossing: Crossing,
     /// State at the crossing, with its derivatives.
     pub state: FirstVariation,
 }
 
-impl PushEnd {
+impl RowEnd {
     /// Computes the ends of pushes in the rows of `sheet` with the integration `method`, `[row]`, or the reasons why there are none.
     pub fn of(method: Method, sheet: &Sheet) -> Vec<Result<Self, DetachmentKind>> {
         let crossings = crossings(sheet);

@@ -5,7 +5,7 @@ use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, S
 use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
-use crate::trace::{DetachmentKind, PushEnd, StableBranch, snaps_deg};
+use crate::trace::{DetachmentKind, RowEnd, StableBranch, snaps_deg};
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
@@ -19,7 +19,7 @@ pub struct SideStates {
     distances_mm: Vec<f64>,
     sheet: Sheet,
     reader: Reader,
-    ends: Vec<PushEnd>,
+    ends: Vec<RowEnd>,
     /// Limits of sliding, `[row]`; empty without friction.
     limits: Vec<CourseLimits>,
 }
@@ -68,10 +68,10 @@ impl SideStates {
         let method = Method::new(Resolution::FINE);
         let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
         let sheet = Sheet::new(method, &rod, side, &distances);
-        let ends = PushEnd::of(method, &sheet).into_iter().enumerate();
+        let ends = RowEnd::of(method, &sheet).into_iter().enumerate();
         let ends = ends.map(|(row, end)| end.map_err(|_| row));
-        let ends: Vec<PushEnd> = ends.collect::<Result<_, _>>()?;
-        let limits = |(row, end): (usize, &PushEnd)| {
+        let ends: Vec<RowEnd> = ends.collect::<Result<_, _>>()?;
+        let limits = |(row, end): (usize, &RowEnd)| {
             let limits = CourseLimits::new(&sheet.level(row));
             let limits = limits.filter(|limits| limits.detaches_at(end.crossing.push));
             limits.ok_or(row)
