@@ -76,14 +76,19 @@ pub fn channel(name: &str) -> String {
         let (title, _) = own.title().split_once(" (").unwrap_or((own.title(), ""));
         return format!("d(push angle at detachment) / d({title}) ({unit})");
     }
-    let channel = CHANNELS.iter().find(|(own, ..)| *own == name);
-    let label = match name {
-        "contact_force_un" => "contact force with friction (\u{b5}N)",
-        "peak_strain" => "largest bending strain",
-        "peak_strain_mm" => "arc length to the largest bending strain (mm)",
-        name => channel.map_or(name, |(.., label)| *label),
-    };
-    label.to_owned()
+    column_label(name).unwrap_or(name).to_owned()
+}
+
+/// Returns the label of a column of states or a channel without a parameter; `None` for another name.
+#[must_use]
+pub fn column_label(name: &str) -> Option<&'static str> {
+    let label = || CHANNELS.iter().find(|(own, ..)| *own == name);
+    match name {
+        "contact_force_un" => Some("contact force with friction (\u{b5}N)"),
+        "peak_strain" => Some("largest bending strain"),
+        "peak_strain_mm" => Some("arc length to the largest bending strain (mm)"),
+        _ => label().map(|(.., label)| *label),
+    }
 }
 
 /// Returns the title of the axis that shows a column or a channel of this name, with its unit.
