@@ -1,6 +1,6 @@
 //! Plan of a run: what will be computed, decided without a device, a disk or a clock.
 
-mod channels;
+pub(crate) mod channels;
 mod digits;
 mod effects;
 mod error;
@@ -8,7 +8,7 @@ mod expansions;
 mod memory;
 mod selection;
 
-pub(crate) use channels::{CHANNELS, names as channel_names};
+pub(crate) use channels::names as channel_names;
 pub use channels::{Channel, Channels, STATE_CHANNELS};
 pub use digits::{Digits, rounded};
 pub use effects::{Cost, Effect, effects};

@@ -1,6 +1,6 @@
 //! Labels of axes, channels and regions in words, with their units.
 
-use crate::plan::CHANNELS;
+use crate::plan::channels::CHANNELS;
 use crate::scene::{Parameter, SweepVariable};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_plot::Region;

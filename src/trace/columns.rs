@@ -70,3 +70,61 @@ pub(crate) trait StateRow {
     /// Returns the row with all loads 0, as those of a free whisker.
     fn unloaded(self) -> Self;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::{BranchPoint, Detachment};
+
+    /// The force on the base is (3, 4) uN, so that the whole force is 5 uN.
+    #[test]
+    fn rows_have_the_values_of_their_state() {
+        let reading = Reading::of([7.0, 8.0, 2.0, 3.0, 4.0, 9.0, 10.0, 11.0, 12.0]);
+        let point = BranchPoint::default().with_state(Some(&reading));
+        let places = [
+            point.arc_length_mm,
+            point.contact_angle_deg,
+            point.push_chord_deg,
+        ];
+        assert_eq!(places, [7.0, 8.0, 10.0]);
+        let loads = [
+            point.force_un,
+            point.base_moment_nnm,
+            point.energy_nj,
+            point.contact_force_un,
+        ];
+        assert_eq!(loads, [2.0, 9.0, 12.0, 5.0]);
+        let end = Detachment::default().with_state(Some(&reading));
+        assert_eq!(
+            [end.base_force_x_un, end.base_force_y_un],
+            [Some(3.0), Some(4.0)]
+        );
+        let free = end.unloaded();
+        assert_eq!(
+            [free.force_un, free.contact_force_un, free.energy_nj],
+            [Some(0.0); 3]
+        );
+        assert_eq!(free.contact_distance_mm, Some(11.0));
+        assert_eq!(
+            Detachment::default().with_state(None),
+            Detachment::default()
+        );
+    }
+
+    /// Rows share the description of a field of [`Reading`], but for those with their own.
+    #[test]
+    fn columns_have_their_descriptions() {
+        let about = |columns: &[(&str, &str)], name: &str| {
+            let found = columns.iter().find(|(own, _)| *own == name);
+            found.map(|(_, about)| (*about).to_owned())
+        };
+        let energy = about(Detachment::COLUMNS, "energy_nj");
+        assert_eq!(
+            energy.as_deref(),
+            Some(" Bending energy of the whisker, in nJ.")
+        );
+        assert_eq!(energy, about(BranchPoint::COLUMNS, "energy_nj"));
+        let event = about(crate::whisk::WhiskEvent::COLUMNS, "energy_nj");
+        assert!(event.is_some_and(|own| own.ends_with("it is lost if the whisker detaches.")));
+    }
+}

@@ -3,7 +3,7 @@
 use super::array::about;
 use super::encoding::ValueKind::{self, Code, Count, Quantity};
 use crate::classify::{Regime, Status};
-use crate::plan::CHANNELS;
+use crate::plan::channels::CHANNELS;
 use crate::scene::Parameter;
 use crate::store::NOT_COMPUTED;
 use serde_json::{Value, json};
