@@ -124,7 +124,7 @@ mod tests {
             Some(" Bending energy of the whisker, in nJ.")
         );
         assert_eq!(energy, about(BranchPoint::COLUMNS, "energy_nj"));
-        let event = about(crate::whisk::WhiskEvent::COLUMNS, "energy_nj");
-        assert!(event.is_some_and(|own| own.ends_with("it is lost if the whisker detaches.")));
+        let stable = about(BranchPoint::COLUMNS, "stable");
+        assert!(stable.is_some_and(|own| own.starts_with(" True if the state is stable")));
     }
 }
