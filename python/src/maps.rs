@@ -137,9 +137,8 @@ fn taken(panel: &mut Panel, name: &str) -> ChannelArray {
         "peak_strain" => ChannelArray::Quantities(std::mem::take(&mut panel.peak_strain)),
         "margin_deg" => ChannelArray::Quantities(std::mem::take(&mut panel.margin_deg)),
         _ => {
-            let place = Channel::ALL.iter().position(|own| own.name() == name);
-            let own = match place {
-                Some(place) => panel.state.get_mut(place),
+            let own = match Channel::of(name) {
+                Some(channel) => panel.state.get_mut(channel as usize),
                 None => panel.push_derivative_mut(name),
             };
             ChannelArray::Quantities(own.map(std::mem::take).unwrap_or_default())

@@ -2,7 +2,9 @@
 
 use super::{Error, Options, accuracy};
 use crate::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
-use crate::trace::{Branch, Detachment, NoState, WhiskerShape, curve_at, sides, whiskers_at_once};
+use crate::trace::{
+    Branch, Detachment, NoState, StableBranch, WhiskerShape, curve_at, sides, whiskers_at_once,
+};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -86,7 +88,8 @@ pub fn shape(
     distance_mm: f64,
     push_angle_deg: f64,
 ) -> Result<WhiskerShape, NoState> {
-    let branch = branch(scene, distance_mm, Side::of_push(push_angle_deg))?;
-    let state = branch.state(push_angle_deg.to_radians(), true)?;
-    Ok(WhiskerShape::new(&branch, &state, 200))
+    let first = scene.first_whisker();
+    let side = Side::of_push(push_angle_deg);
+    let branch = StableBranch::new(&first.whisker, &first.pole, side, distance_mm)?;
+    Ok(branch.shape(&branch.state(push_angle_deg.to_radians())?, 200))
 }

@@ -11,7 +11,7 @@ use glam::DVec2;
 use std::sync::Arc;
 use whiskmap_mechanics::rod::{Rod, Units, arclength};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
-use whiskmap_mechanics::shooting::{FullState, PeakStrain, Reader, Reading};
+use whiskmap_mechanics::shooting::{FullState, PeakStrain, Reader};
 
 /// Channel values of a state in map units, `[channel]`, in the order of [`STATE_CHANNELS`].
 pub type Values = [f64; STATE_CHANNELS.len()];
@@ -42,7 +42,7 @@ impl WhiskerSide {
     pub fn new(columns: Arc<SideColumns>, units: Units, sheet: Sheet) -> Self {
         let reader = Reader::new(units, &sheet.rod);
         Self {
-            unit_values: values(&reader.of_one(sheet.side.sign())),
+            unit_values: reader.of_one(sheet.side.sign()),
             columns,
             sheet,
             push_derivatives: Vec::new(),
@@ -98,11 +98,8 @@ impl WhiskerSide {
     /// Returns the channel values `[channel]` of a state of `row` at the signed `push`, in radians.
     #[must_use]
     pub fn values(&self, row: usize, tau: f64, full: &FullState, push: f64) -> Values {
-        values(
-            &self
-                .reader
-                .read(tau, full, self.sheet.rows[row].touch, push),
-        )
+        let touch = self.sheet.rows[row].touch;
+        self.reader.read(tau, full, touch, push).channels()
     }
 
     /// Returns the channel values `[channel]` of a state with friction of `row` at the signed `push`, in radians.
@@ -111,7 +108,9 @@ impl WhiskerSide {
         let rod = state.rod(&self.sheet.rod);
         let reader = self.reader.with_contact(&rod);
         let touch = self.sheet.rows[row].touch;
-        values(&reader.read(state.at.point.x, &state.full, touch, push))
+        reader
+            .read(state.at.point.x, &state.full, touch, push)
+            .channels()
     }
 
     /// Returns the largest bending strains of states with contact and load `(tau, load)`, whose friction is that of the side: `[point]`. Each
@@ -196,24 +195,9 @@ impl WhiskerSide {
             .at_first_touch(row.contact.min(row.end), row.touch);
         Cell {
             residual: 0.0,
-            values: values(&reading).map(|value| value as f32),
+            values: reading.channels().map(|value| value as f32),
             point: row.first_touch(&self.sheet.rod),
             ..Cell::new(Outcome::Solved, steps)
         }
     }
-}
-
-/// The channels of a reading, in the order of [`STATE_CHANNELS`].
-fn values(reading: &Reading) -> Values {
-    [
-        reading.arc_length_mm,
-        reading.contact_angle_deg,
-        reading.force_un,
-        reading.base_force_un.x,
-        reading.base_force_un.y,
-        reading.base_moment_nnm,
-        reading.push_chord_deg,
-        reading.contact_distance_mm,
-        reading.energy_nj,
-    ]
 }

@@ -3,6 +3,7 @@
 use super::deviation::LoadDerivatives;
 use super::{CurvatureFrame, FrameContact, FrameForce, NoForce};
 use crate::scene::{FrameDeviations, Pole, Whisker};
+use crate::trace::StateRow;
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rest, Side};
 
@@ -58,12 +59,8 @@ impl Bending {
     /// Returns the row of a frame without contact at `time_s`, in s: all loads are 0.
     pub fn free(&self, time_s: f64) -> FrameForce {
         FrameForce {
-            force_un: Some(0.0),
-            base_force_x_un: Some(0.0),
-            base_force_y_un: Some(0.0),
-            base_moment_nnm: Some(0.0),
             reason: None,
-            ..self.none(time_s, NoForce::NoLever)
+            ..self.none(time_s, NoForce::NoLever).unloaded()
         }
     }
 
@@ -73,17 +70,8 @@ impl Bending {
             time_s,
             curvature_change_per_mm: known(self.change_per_mm),
             moment_nnm: known(self.moment_nnm()),
-            force_un: None,
-            base_force_x_un: None,
-            base_force_y_un: None,
-            base_moment_nnm: None,
-            contact_angle_deg: None,
-            contact_off_mm: None,
-            force_sd_un: None,
-            base_force_x_sd_un: None,
-            base_force_y_sd_un: None,
-            base_moment_sd_nnm: None,
             reason: Some(reason),
+            ..FrameForce::default()
         }
     }
 

@@ -80,8 +80,8 @@ pub enum NoForce {
 
 row! {
     /// Force in a frame. All values are 0 without contact.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct FrameForce {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct FrameForce of a state {
         /// Time of the frame, in s.
         pub time_s: f64,
         /// Change of the curvature at the measured point from that at rest, less the baseline if there is one, in 1/mm.
@@ -89,15 +89,11 @@ row! {
         /// Bending moment at the measured point, in nN m: positive turns the tip to the left.
         pub moment_nnm: Option<f64>,
         /// Size of the force between pole and whisker, normal to both, in uN.
-        pub force_un: Option<f64>,
-        /// Force that the pole puts on the base, along the base's tangent, in uN.
-        pub base_force_x_un: Option<f64>,
-        /// Force that the pole puts on the base, to the left of its tangent, in uN.
-        pub base_force_y_un: Option<f64>,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: Option<f64>,
-        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-        pub contact_angle_deg: Option<f64>,
+        pub force_un: Option<f64> = load,
+        pub base_force_x_un: Option<f64> = load,
+        pub base_force_y_un: Option<f64> = load,
+        pub base_moment_nnm: Option<f64> = load,
+        pub contact_angle_deg: Option<f64> = place,
         /// Distance of the measured contact from that of the model, in mm; with --model.
         pub contact_off_mm: Option<f64>,
         /// Standard deviation of the size of the force, in uN; with a baseline or standard deviations of frames.

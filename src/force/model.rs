@@ -6,12 +6,13 @@ use super::state_curve::{Measured, ModelState, StateCurve};
 use super::{CurvatureFrame, FrameContact, FrameForce, NoForce};
 use crate::scene::{FrameDeviations, Pole, Whisker};
 use crate::sheet::Sheet;
+use crate::trace::StateRow;
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
-use whiskmap_mechanics::shooting::Resolution;
 use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::sensitivity::BaseDerivatives;
 use whiskmap_mechanics::shooting::shape::{RodPoint, varied_profile};
+use whiskmap_mechanics::shooting::{Reader, Resolution};
 
 /// Number of intervals between the rows of a sheet.
 const ROWS: u32 = 16;
@@ -86,19 +87,13 @@ impl Model {
         let Some((rod, state)) = nearest else {
             return none(NoForce::NoState);
         };
-        let ModelState { point, base, .. } = state;
-        let units = &self.units;
-        let force = point.y * rod.radius(point.x).powi(2);
-        let on_base = force * DVec2::new(base.tangent.y, base.tangent.x) * units.force_un;
+        let ModelState { point, full, .. } = state;
+        let reader = Reader::new(self.units, rod);
+        let reading = reader.read(point.x, &full, full.map.pole.to_angle(), 0.0);
         let found = FrameForce {
-            force_un: Some((force * units.force_un).abs()),
-            base_force_x_un: Some(on_base.x),
-            base_force_y_un: Some(on_base.y),
-            base_moment_nnm: Some(-force * base.position.x * units.moment_nnm),
-            contact_angle_deg: Some(-base.tangent.to_angle().to_degrees()),
             contact_off_mm: Some(off(&state) * length),
             reason: None,
-            ..none(NoForce::NoState)
+            ..none(NoForce::NoState).with_state(Some(&reading))
         };
         match self.derivatives(rod, point, &measured) {
             Some(derivatives) => derivatives.deviate(found, sd),

@@ -3,13 +3,14 @@
 //! Along these states the row parameter `w = |load| tau^2` grows from first touch on. The curvature first grows, too, and may then fall again,
 //! so that several states can have it. They are bracketed between samples of `w`, and on both sides of an extremum.
 
+use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::sheet::Sheet;
 use glam::DVec2;
 use whiskmap_mechanics::numerics::illinois;
 use whiskmap_mechanics::rod::{Rod, arclength};
-use whiskmap_mechanics::shooting::batch::{Batch, Method};
-use whiskmap_mechanics::shooting::shape::{RodPoint, profile};
-use whiskmap_mechanics::shooting::{FirstVariation, Resolution};
+use whiskmap_mechanics::shooting::batch::Method;
+use whiskmap_mechanics::shooting::shape::profile;
+use whiskmap_mechanics::shooting::{FirstVariation, FullState, Resolution};
 
 /// Resolution of the states.
 const FINE: Resolution = Resolution::FINE;
@@ -26,15 +27,11 @@ const LAST_PART: f64 = 1e-9;
 /// Maximum number of samples, those after a halved step included.
 const SAMPLES: usize = 160;
 
-/// Maximum number of Newton steps to a state.
-const STEPS: u32 = 20;
+/// Maximum number of trajectories to a state.
+const TRAJECTORIES: u32 = 20;
 
-/// Newton step, relative to the contact, after which a state counts as found. The next one is at most 1e-6 of it: that is the error of the
-/// difference.
-const LAST_STEP: f64 = 1e-9;
-
-/// Relative change of the contact from which the derivative of Newton's method follows.
-const DIFFERENCE: f64 = 1e-7;
+/// Newton step, relative to the contact, whose end is extrapolated. The remaining error is about its square.
+const LAST_STEP: f64 = 1e-8;
 
 /// Miss of the curvature, in parts of its change, at which the search for a state ends.
 const SAME_CURVATURE: f64 = 1e-15;
@@ -65,8 +62,8 @@ pub struct Measured {
 pub struct ModelState {
     /// Contact and load, `(tau, load)`.
     pub point: DVec2,
-    /// Base in the frame of the contact.
-    pub base: RodPoint,
+    /// Pole of the state with first derivatives, pose of the base, force and energy.
+    pub full: FullState,
     /// Position of the contact in the frame of the base, in whisker lengths.
     pub contact: DVec2,
     /// Change of the curvature at the measured point, in radians per whisker length.
@@ -124,10 +121,8 @@ impl StateCurve<'_> {
     }
 
     fn is_stable(&self, sample: &CurveSample) -> bool {
-        let (tau, load) = sample.state.point.into();
-        let shot: Vec<FirstVariation> =
-            Batch::new(Method::new(FINE)).shoot_at(self.rod, [(tau, load)]);
-        self.sheet.is_stable(tau, load, &shot[0].full.map)
+        let ModelState { point, full, .. } = &sample.state;
+        self.sheet.is_stable(point.x, point.y, &full.map)
     }
 
     /// Returns the state with the measured curvature between two samples, if one of them has less and the other more.
@@ -179,38 +174,66 @@ impl StateCurve<'_> {
         is_there.then_some(least.state).into_iter().collect()
     }
 
-    /// Returns the state at `w` with the measured distance of the contact, by Newton's method from the contact `tau`.
-    fn at(&self, w: f64, mut tau: f64) -> Option<CurveSample> {
-        let load = |tau: f64| self.sheet.side.sign() * w / (tau * tau);
-        let distance = self.measured.contact.length();
-        for _ in 0..STEPS {
-            let state = |tau: f64| self.state(DVec2::new(tau, load(tau)));
-            let [here, beside] = [tau, tau * (1.0 - DIFFERENCE)].map(state);
-            let [here, beside] = [here?, beside?].map(|state| state.contact.length());
-            let slope = (here - beside) / (tau * DIFFERENCE);
-            let step = (distance - here) / slope;
-            tau += step.clamp(-0.5 * tau, 0.5 * tau);
-            if step.abs() < LAST_STEP * tau {
-                let state = state(tau)?;
-                let miss = state.change - self.measured.change;
-                return Some(CurveSample { w, state, miss });
-            }
-        }
-        None
+    /// Returns the state at `w` with the measured distance of the contact, by Newton's method from the contact `tau`; `None` if it is not found,
+    /// or if the measured point is not before the contact.
+    fn at(&self, w: f64, tau: f64) -> Option<CurveSample> {
+        let mut problems = [DistanceProblem {
+            rod: self.rod,
+            distance: self.measured.contact.length(),
+            w: self.sheet.side.sign() * w,
+        }];
+        let start = problems[0].point(tau);
+        let newton = BatchNewton::new(Method::new(FINE), TRAJECTORIES);
+        let found = newton.solve(&mut problems, [start]).pop()?;
+        let (point, full, at) = (found.point, found.state, self.measured.at);
+        let is_before = at < arclength(self.rod, point.x);
+        let at = (found.outcome == NewtonOutcome::Converged && is_before).then_some([at])?;
+        let [measured] = profile(self.rod, point.x, point.y, FINE, &at)
+            .try_into()
+            .ok()?;
+        let state = ModelState {
+            point,
+            full,
+            contact: DVec2::new(full.tangent.x, -full.tangent.y).rotate(-full.position),
+            change: measured.moment / self.rod.stiffness(self.measured.at),
+        };
+        let miss = state.change - self.measured.change;
+        Some(CurveSample { w, state, miss })
+    }
+}
+
+/// Search for the state with a given distance of its contact from the base, at a value of `w`.
+struct DistanceProblem<'a> {
+    rod: &'a Rod,
+    /// Distance of the contact from the base, in whisker lengths.
+    distance: f64,
+    /// Row parameter with the sign of the side: `load tau^2`.
+    w: f64,
+}
+
+impl DistanceProblem<'_> {
+    /// Returns `(tau, load)` at the contact `tau`.
+    fn point(&self, tau: f64) -> DVec2 {
+        DVec2::new(tau, self.w / (tau * tau))
+    }
+}
+
+impl<'a> NewtonProblem<'a> for DistanceProblem<'a> {
+    type Output = FirstVariation;
+
+    fn rod(&self) -> &'a Rod {
+        self.rod
     }
 
-    /// Returns the state of a contact at `point`, `(tau, load)`; `None` if the measured point is not before the contact.
-    fn state(&self, point: DVec2) -> Option<ModelState> {
-        let (rod, at) = (self.rod, self.measured.at);
-        let is_before = point.is_finite() && point.x > 0.0 && at < arclength(rod, point.x);
-        let at = is_before.then_some([0.0, at])?;
-        let [base, measured] = profile(rod, point.x, point.y, FINE, &at).try_into().ok()?;
-        let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
-        Some(ModelState {
-            point,
-            contact: to_base.rotate(-base.position),
-            base,
-            change: measured.moment / rod.stiffness(self.measured.at),
-        })
+    fn step(&mut self, at: DVec2, here: &FirstVariation) -> NewtonStep {
+        let position = here.full.position;
+        let by_tau = here.by_tau.position - 2.0 * at.y / at.x * here.by_load.position;
+        let length = position.length();
+        let step = (self.distance - length) * length / position.dot(by_tau);
+        let next = self.point(at.x + step.clamp(-0.5 * at.x, 0.5 * at.x));
+        match step.abs() < LAST_STEP * at.x {
+            true => NewtonStep::Extrapolate(next - at),
+            false => NewtonStep::Shoot(next),
+        }
     }
 }

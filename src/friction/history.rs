@@ -6,9 +6,9 @@
 
 use super::Sliding;
 use super::limit::SlidingLimit;
-use crate::sheet::LevelCurve;
+use super::target::with_friction;
+use crate::sheet::{Continuation, LevelCurve};
 use std::collections::BTreeSet;
-use whiskmap_mechanics::rod::Rod;
 
 /// Sliding history of the contact of one row, along a push from first touch.
 #[derive(Clone, Debug)]
@@ -65,7 +65,18 @@ impl ContactHistory {
     /// method, and their trajectories share batches.
     #[must_use]
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
-        let tips = SlidingLimit::of(levels);
+        Self::of_tips(levels, SlidingLimit::of(levels))
+    }
+
+    /// Computes the sliding history of the row of a `level` that has been followed from first touch; `None` where a continuation fails.
+    #[must_use]
+    pub fn along(level: &LevelCurve, followed: &Continuation) -> Option<Self> {
+        let tip = SlidingLimit::along(level, followed);
+        Self::of_tips(std::slice::from_ref(level), vec![tip]).pop()?
+    }
+
+    /// Computes the sliding histories of rows with these tip limits, `[row]`.
+    fn of_tips(levels: &[LevelCurve], tips: Vec<Option<SlidingLimit>>) -> Vec<Option<Self>> {
         let falls = |tip: &Option<SlidingLimit>| tip.as_ref().is_some_and(SlidingLimit::falls);
         let falling = levels.iter().zip(&tips).filter(|(_, tip)| falls(tip));
         let opposed: Vec<LevelCurve> = falling.map(|(level, _)| opposed(level)).collect();
@@ -250,9 +261,5 @@ pub struct ContactQuery<'a> {
 
 /// Level curve of the row of `level` with the opposite sign of friction.
 fn opposed(level: &LevelCurve) -> LevelCurve {
-    let rod = Rod {
-        friction: -level.rod.friction,
-        ..level.rod.clone()
-    };
-    LevelCurve::new(level.method, &rod, level.side, &level.row)
+    with_friction(level, -level.rod.friction)
 }

@@ -28,16 +28,14 @@ impl SlidingLimit {
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
         let starts = levels.iter().map(|level| Some((level, level.touch())));
         let continued = continuations(&starts.collect::<Vec<_>>(), Stretch::Stable, NODE_MISS);
-        let parts = levels.iter().zip(continued).map(|(level, continued)| {
-            let Continuation { nodes, fold, .. } = continued?;
-            Some(LimitPart {
-                level,
-                nodes,
-                has_fold: fold.is_some(),
-                is_stable: true,
-            })
-        });
+        let parts = levels.iter().zip(&continued);
+        let parts = parts.map(|(level, own)| Some(LimitPart::stable(level, own.as_ref()?)));
         through(&parts.collect::<Vec<_>>())
+    }
+
+    /// Creates the sliding limit of a `level` that has been followed from first touch.
+    pub fn along(level: &LevelCurve, followed: &Continuation) -> Option<Self> {
+        through(&[Some(LimitPart::stable(level, followed))]).pop()?
     }
 
     /// Computes the sliding limit of `level`, and the limit of its unstable states up to the fold if there is one; `None` if the
@@ -45,19 +43,12 @@ impl SlidingLimit {
     pub fn with_unstable(level: &LevelCurve) -> Option<(Self, Option<Self>)> {
         let start = Some((level, level.touch()));
         let continued = continuations(&[start], Stretch::PastFold, NODE_MISS).pop()??;
-        let Continuation { nodes, fold, .. } = continued;
-        let has_fold = fold.is_some();
-        let part = |nodes: &[CurveNode], is_stable| LimitPart {
-            level,
-            nodes: nodes.to_vec(),
-            has_fold,
-            is_stable,
-        };
-        let stable = part(&nodes[..fold.map_or(nodes.len(), |fold| fold + 1)], true);
-        let unstable = fold.map(|fold| {
-            let mut unstable = part(&nodes[fold..], false);
-            unstable.nodes.reverse();
-            unstable
+        let stable = LimitPart::stable(level, &continued);
+        let Continuation { nodes, fold, .. } = &continued;
+        let unstable = fold.map(|fold| LimitPart {
+            nodes: nodes[fold..].iter().rev().copied().collect(),
+            is_stable: false,
+            ..stable.clone()
         });
         let mut limits = through(&[Some(stable), unstable]).into_iter();
         Some((limits.next()??, limits.next()?))
@@ -130,6 +121,19 @@ pub struct LimitPart<'a> {
     /// True if the last node is a fold.
     pub has_fold: bool,
     pub is_stable: bool,
+}
+
+impl<'a> LimitPart<'a> {
+    /// Returns the stable states of a `level` that has been followed from first touch.
+    fn stable(level: &'a LevelCurve, followed: &Continuation) -> Self {
+        let Continuation { nodes, fold, .. } = followed;
+        Self {
+            level,
+            nodes: nodes[..fold.map_or(nodes.len(), |fold| fold + 1)].to_vec(),
+            has_fold: fold.is_some(),
+            is_stable: true,
+        }
+    }
 }
 
 /// Makes limits through the nodes of `parts`, `[part]`. Trajectories share batches.

@@ -43,10 +43,15 @@ impl<'a> FrictionTarget<'a> {
 
     /// Returns the level curve of the target with the force ratio `ratio`.
     pub fn level(&self, ratio: f64) -> LevelCurve {
-        let rod = Rod {
-            friction: ratio,
-            ..self.level.rod.clone()
-        };
-        LevelCurve::new(self.level.method, &rod, self.level.side, &self.level.row)
+        with_friction(self.level, ratio)
     }
+}
+
+/// Returns the level curve of the row of `level` with this friction.
+pub fn with_friction(level: &LevelCurve, friction: f64) -> LevelCurve {
+    let rod = Rod {
+        friction,
+        ..level.rod.clone()
+    };
+    LevelCurve::new(level.method, &rod, level.side, &level.row)
 }

@@ -4,7 +4,7 @@ use super::grid::PAIRS;
 use super::newton::{Triangle, base_derivatives};
 use super::{BaseReading, Locator};
 use crate::scene::{Grid, Pole, Whisker};
-use crate::trace::{Branch, StateAtPush, row};
+use crate::trace::{StableBranch, StateAtPush, row};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,13 +16,9 @@ row! {
     /// Stable state of a map, with the number of stable states that have the same two numbers at the base.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct SharedState {
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: f64,
-        /// Arclength from the base to the contact, in mm.
         pub arc_length_mm: f64,
         /// Number of states with this moment and axial force; 0 if one follows from the other.
         pub moment_x_states: usize,
@@ -106,13 +102,13 @@ impl Locator {
         grid: &Grid,
         (row, side): (usize, Side),
     ) -> Vec<ContactCell> {
-        let Ok(branch) = Branch::new(whisker, pole, side, grid.distance_mm[row]) else {
+        let Ok(branch) = StableBranch::new(whisker, pole, side, grid.distance_mm[row]) else {
             return Vec::new();
         };
         let columns = grid.push_angle_deg.iter().enumerate();
         let columns = columns.filter(|(_, push_deg)| side.sign() * **push_deg > 0.0);
         let states = columns.filter_map(|(column, push_deg)| {
-            let state = branch.state(push_deg.to_radians(), true).ok()?;
+            let state = branch.state(push_deg.to_radians()).ok()?;
             Some((column, state))
         });
         let states: Vec<(usize, StateAtPush)> = states.collect();
@@ -140,8 +136,8 @@ impl Locator {
                 arc_length_mm: reading.arc_length_mm,
                 reading: BaseReading {
                     moment_nnm: Some(reading.base_moment_nnm),
-                    force_x_un: Some(reading.base_force_un.x),
-                    force_y_un: Some(reading.base_force_un.y),
+                    force_x_un: Some(reading.base_force_x_un),
+                    force_y_un: Some(reading.base_force_y_un),
                     angle_deg: None,
                 },
                 conditions: ORDER.map(condition),

@@ -14,7 +14,7 @@ pub use readings::{BaseReadings, MOST_ANGLE, MOST_LOAD};
 
 use crate::newton::{BatchNewton, NewtonOutcome};
 use crate::scene::{Pole, Whisker};
-use crate::trace::row;
+use crate::trace::{StateRow, row};
 use glam::{DVec2, DVec3};
 use grid::{PAIRS, SheetGrid};
 use newton::{BaseProblem, Triangle, base_derivatives, base_numbers, by_logarithms};
@@ -63,40 +63,30 @@ pub enum NoLocation {
 
 row! {
     /// Stable state with the numbers of a reading. A reading without such a state has one row with the reason.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct LocatedState {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct LocatedState of a state {
         /// Number of the reading, from 1.
         pub reading: usize,
         /// Number of stable states with the numbers of the reading.
         pub states: usize,
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Option<Side>,
-        /// Arclength from the base to the contact, in mm.
-        pub arc_length_mm: Option<f64>,
+        pub arc_length_mm: Option<f64> = place,
         /// Position of the contact along the base's tangent, in mm.
         pub contact_x_mm: Option<f64>,
         /// Position of the contact to the left of the base's tangent, in mm.
         pub contact_y_mm: Option<f64>,
-        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-        pub contact_angle_deg: Option<f64>,
+        pub contact_angle_deg: Option<f64> = place,
         /// Position of the pole's centre along the base's tangent, in mm.
         pub pole_x_mm: Option<f64>,
         /// Position of the pole's centre to the left of the base's tangent, in mm.
         pub pole_y_mm: Option<f64>,
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: Option<f64>,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Normal part of the force between pole and whisker, in uN; never negative.
-        pub force_un: Option<f64>,
-        /// Size of the whole force between pole and whisker, with friction, in uN.
-        pub contact_force_un: Option<f64>,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: Option<f64>,
-        /// Force that the pole puts on the base, along the base's tangent, in uN.
-        pub base_force_x_un: Option<f64>,
-        /// Force that the pole puts on the base, to the left of its tangent, in uN.
-        pub base_force_y_un: Option<f64>,
+        pub force_un: Option<f64> = load,
+        pub contact_force_un: Option<f64> = load,
+        pub base_moment_nnm: Option<f64> = load,
+        pub base_force_x_un: Option<f64> = load,
+        pub base_force_y_un: Option<f64> = load,
         /// Difference of the state's numbers from the reading: over the reading's size, or in standard deviations if these are given.
         pub misfit: Option<f64>,
         /// Largest over smallest change of the measured numbers for equal relative changes of contact and load; infinite on a singular line.
@@ -385,19 +375,12 @@ impl Locator {
             [contact, pole].map(|at| turn.map(|turn| DVec2::from_angle(turn).rotate(at)));
         LocatedState {
             side: Some(grid.side),
-            arc_length_mm: Some(reading.arc_length_mm),
             contact_x_mm: Some(contact.x),
             contact_y_mm: Some(contact.y),
-            contact_angle_deg: Some(reading.contact_angle_deg),
             pole_x_mm: Some(pole.x),
             pole_y_mm: Some(pole.y),
             distance_mm: Some(distance * units.length_mm),
             push_angle_deg: Some(push.to_degrees()),
-            force_un: Some(reading.force_un),
-            contact_force_un: Some(reading.contact_force_un()),
-            base_moment_nnm: Some(reading.base_moment_nnm),
-            base_force_x_un: Some(reading.base_force_un.x),
-            base_force_y_un: Some(reading.base_force_un.y),
             misfit: Some(found.misfit),
             condition: Some(condition),
             arc_length_sd_mm: deviation(DVec2::new(arclength, 0.0), units.length_mm),
@@ -409,7 +392,7 @@ impl Locator {
             lab_pole_x_mm: lab_pole.map(|at| at.x),
             lab_pole_y_mm: lab_pole.map(|at| at.y),
             reason: None,
-            ..row
+            ..row.with_state(Some(&reading))
         }
     }
 }
@@ -437,35 +420,11 @@ impl Wanted<'_> {
 
 impl LocatedState {
     /// Returns the row of the reading with this `number` without a state.
-    const fn without(number: usize, reason: NoLocation) -> Self {
+    fn without(number: usize, reason: NoLocation) -> Self {
         Self {
             reading: number,
-            states: 0,
-            side: None,
-            arc_length_mm: None,
-            contact_x_mm: None,
-            contact_y_mm: None,
-            contact_angle_deg: None,
-            pole_x_mm: None,
-            pole_y_mm: None,
-            distance_mm: None,
-            push_angle_deg: None,
-            force_un: None,
-            contact_force_un: None,
-            base_moment_nnm: None,
-            base_force_x_un: None,
-            base_force_y_un: None,
-            misfit: None,
-            condition: None,
-            arc_length_sd_mm: None,
-            distance_sd_mm: None,
-            push_angle_sd_deg: None,
-            force_sd_un: None,
-            lab_contact_x_mm: None,
-            lab_contact_y_mm: None,
-            lab_pole_x_mm: None,
-            lab_pole_y_mm: None,
             reason: Some(reason),
+            ..Self::default()
         }
     }
 }

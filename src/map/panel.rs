@@ -127,10 +127,8 @@ impl Panel {
             "status" => &self.status,
             "newton_steps" => &self.newton_steps,
             _ => {
-                let mut own = Channel::ALL.into_iter();
-                let own = own.find(|own| own.name() == name);
                 let by = || DERIVATIVES.iter().position(|own| *own == name);
-                let values = match own {
+                let values = match Channel::of(name) {
                     Some(channel) => self.channel(channel),
                     None => by().map_or(&[][..], |place| &self.push_derivatives[place]),
                 };

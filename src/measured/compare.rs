@@ -16,9 +16,7 @@ row! {
     pub struct ComparedPoint {
         /// Line of the measured point in its file, from 1.
         pub line: usize,
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: Option<f64>,
         /// Measured angle, in degrees: of the push or of the chord, as in the file.
         pub measured_deg: Option<f64>,

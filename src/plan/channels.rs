@@ -4,19 +4,10 @@ use crate::input::did_you_mean;
 use crate::scene::{Parameter, SceneData};
 use std::fmt;
 use std::str::FromStr;
+use whiskmap_mechanics::shooting::Reading;
 
 /// Names of the channels of a state, `[channel]`.
-pub const STATE_CHANNELS: [&str; 9] = [
-    "arc_length_mm",
-    "contact_angle_deg",
-    "force_un",
-    "base_force_x_un",
-    "base_force_y_un",
-    "base_moment_nnm",
-    "push_chord_deg",
-    "contact_distance_mm",
-    "energy_nj",
-];
+pub const STATE_CHANNELS: [&str; 9] = Reading::CHANNELS;
 
 /// Channel of a map: one number for each cell.
 #[non_exhaustive]
@@ -75,22 +66,50 @@ impl Channel {
             state => STATE_CHANNELS[state as usize],
         }
     }
+
+    /// Returns the channel with this name; `None` for codes, counts, derivatives and other names.
+    #[must_use]
+    pub fn of(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|own| own.name() == name)
+    }
 }
 
-/// Names of the channels that are not of a state.
-const OTHERS: [&str; 5] = ["regime", "status", "margin_deg", "newton_steps", "residual"];
+/// Line of the table of channels: name, unit, meaning, and label in pictures.
+pub(crate) type ChannelLine = (
+    &'static str,
+    Option<&'static str>,
+    &'static str,
+    &'static str,
+);
+
+/// All channels but the derivatives, in their order in files. Codes and counts have no unit.
+#[rustfmt::skip]
+pub(crate) const CHANNELS: [ChannelLine; 15] = [
+    ("regime", None, "what happens to the whisker", "regime"),
+    ("status", None, "how the regime was found", "status"),
+    ("arc_length_mm", Some("mm"), "arclength from base to contact", "arc length from base to contact (mm)"),
+    ("contact_angle_deg", Some("degree"), "angle of tangent at contact", "contact angle (deg)"),
+    ("force_un", Some("uN"), "normal part of the contact force", "contact force (\u{b5}N)"),
+    ("base_force_x_un", Some("uN"), "force on base along its tangent", "force on the base along the whisker (\u{b5}N)"),
+    ("base_force_y_un", Some("uN"), "force on base across its tangent", "force on the base across the whisker (\u{b5}N)"),
+    ("base_moment_nnm", Some("nN m"), "moment of pole on the base", "bending moment at the base (nN m)"),
+    ("push_chord_deg", Some("degree"), "chord angle between contact and rest", "chord angle (deg)"),
+    ("contact_distance_mm", Some("mm"), "straight distance from base to contact", "distance from base to contact (mm)"),
+    ("energy_nj", Some("nJ"), "energy of bending", "bending energy (nJ)"),
+    ("margin_deg", Some("degree"), "push angle left until detachment", "push angle left until detachment (deg)"),
+    ("newton_steps", None, "Newton steps", "Newton steps"),
+    ("residual", Some("1"), "distance from pole over whisker length", "residual (whisker lengths)"),
+    (PEAK_STRAIN, Some("1"), "largest bending strain at the surface", "largest bending strain"),
+];
 
 /// Name of the channel of the largest bending strain, which takes a trajectory more for each cell.
 const PEAK_STRAIN: &str = "peak_strain";
 
-/// Number of channels of a map unless others are selected.
-const STANDARD: usize = OTHERS.len() + STATE_CHANNELS.len();
-
-/// Number of channels before the derivatives.
-const BEFORE_DERIVATIVES: usize = STANDARD + 1;
+/// Number of channels of a map unless others are selected: all but the largest bending strain and the derivatives.
+const STANDARD: usize = CHANNELS.len() - 1;
 
 /// Number of channels.
-const COUNT: usize = BEFORE_DERIVATIVES + Parameter::ALL.len();
+const COUNT: usize = CHANNELS.len() + Parameter::ALL.len();
 
 /// Selection of the channels of a map.
 ///
@@ -154,7 +173,7 @@ impl Channels {
 
     /// Returns the parameters by which the selection has derivatives.
     pub fn derivatives(&self) -> impl Iterator<Item = Parameter> {
-        let chosen = self.0.into_iter().skip(BEFORE_DERIVATIVES);
+        let chosen = self.0.into_iter().skip(CHANNELS.len());
         let all = Parameter::ALL.into_iter().zip(chosen);
         all.filter_map(|(parameter, is_chosen)| is_chosen.then_some(parameter))
     }
@@ -181,10 +200,9 @@ impl Channels {
 
 /// Returns the names of all channels.
 pub fn names() -> impl Iterator<Item = &'static str> + Clone {
-    let (verdict, numerics) = OTHERS.split_at(2);
-    let standard = verdict.iter().chain(&STATE_CHANNELS).chain(numerics);
+    let others = CHANNELS.iter().map(|(name, ..)| *name);
     let derivatives = Parameter::ALL.into_iter().map(Parameter::push_derivative);
-    standard.copied().chain([PEAK_STRAIN]).chain(derivatives)
+    others.chain(derivatives)
 }
 
 impl fmt::Display for Channels {
@@ -207,5 +225,26 @@ impl FromStr for Channels {
             )),
             None => Ok(Self::those(|name| wanted.contains(&name))),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Stores name the columns of states by the table, and the values are in the order of [`STATE_CHANNELS`].
+    #[test]
+    fn the_table_has_the_channels_of_a_state_in_their_order() {
+        let names = CHANNELS.iter().map(|(name, ..)| *name);
+        assert!(
+            names
+                .filter(|name| STATE_CHANNELS.contains(name))
+                .eq(STATE_CHANNELS)
+        );
+        assert!(
+            Channel::ALL
+                .iter()
+                .all(|own| Channel::of(own.name()) == Some(*own))
+        );
     }
 }

@@ -55,7 +55,7 @@ impl Digits {
     /// `n` is `N log2(10)`, rounded up.
     #[must_use]
     pub fn mantissa_bits(&self, name: &str) -> Option<u32> {
-        let place = Channel::ALL.iter().position(|own| own.name() == name)?;
+        let place = Channel::of(name)? as usize;
         let digits = u32::from(self.named[place].unwrap_or(self.others));
         let bits = 10_u32.pow(digits).next_power_of_two().ilog2();
         (bits < MANTISSA_BITS).then_some(bits)
@@ -128,9 +128,8 @@ impl FromStr for Digits {
                     "`{entry}`: must be N or NAME=N, N a whole number between {least} and {most}"
                 )
             })?;
-            let place = Channel::ALL.iter().position(|own| own.name() == name);
-            let own = match place {
-                Some(place) => &mut named[place],
+            let own = match Channel::of(name) {
+                Some(channel) => &mut named[channel as usize],
                 None if name.is_empty() && !entry.contains('=') => &mut others,
                 None => return Err(refused(name)),
             };

@@ -1,6 +1,6 @@
 //! Plan of a run: what will be computed, decided without a device, a disk or a clock.
 
-mod channels;
+pub(crate) mod channels;
 mod digits;
 mod effects;
 mod error;

@@ -1,5 +1,6 @@
 //! Labels of axes, channels and regions in words, with their units.
 
+use crate::plan::channels::CHANNELS;
 use crate::scene::{Parameter, SweepVariable};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_plot::Region;
@@ -75,25 +76,18 @@ pub fn channel(name: &str) -> String {
         let (title, _) = own.title().split_once(" (").unwrap_or((own.title(), ""));
         return format!("d(push angle at detachment) / d({title}) ({unit})");
     }
-    let label = match name {
-        "arc_length_mm" => "arc length from base to contact (mm)",
-        "contact_angle_deg" => "contact angle (deg)",
-        "force_un" => "contact force (\u{b5}N)",
-        "contact_force_un" => "contact force with friction (\u{b5}N)",
-        "base_force_x_un" => "force on the base along the whisker (\u{b5}N)",
-        "base_force_y_un" => "force on the base across the whisker (\u{b5}N)",
-        "base_moment_nnm" => "bending moment at the base (nN m)",
-        "push_chord_deg" => "chord angle (deg)",
-        "contact_distance_mm" => "distance from base to contact (mm)",
-        "energy_nj" => "bending energy (nJ)",
-        "margin_deg" => "push angle left until detachment (deg)",
-        "peak_strain" => "largest bending strain",
-        "peak_strain_mm" => "arc length to the largest bending strain (mm)",
-        "residual" => "residual (whisker lengths)",
-        "newton_steps" => "Newton steps",
-        other => other,
-    };
-    label.to_owned()
+    column_label(name).unwrap_or(name).to_owned()
+}
+
+/// Returns the label of a column of states or a channel without a parameter; `None` for another name.
+#[must_use]
+pub fn column_label(name: &str) -> Option<&'static str> {
+    let label = || CHANNELS.iter().find(|(own, ..)| *own == name);
+    match name {
+        "contact_force_un" => Some("contact force with friction (\u{b5}N)"),
+        "peak_strain_mm" => Some("arc length to the largest bending strain (mm)"),
+        _ => label().map(|(.., label)| *label),
+    }
 }
 
 /// Returns the title of the axis that shows a column or a channel of this name, with its unit.

@@ -18,8 +18,8 @@ mod textures;
 
 pub use courses::{courses, forces};
 pub use labels::{
-    DISTANCE, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, PUSH_ANGLE, axis_title, end_title,
-    regions,
+    DISTANCE, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, PUSH_ANGLE, axis_title, column_label,
+    end_title, regions,
 };
 pub use map::{map, regime_fill};
 pub use options::MapOptions;

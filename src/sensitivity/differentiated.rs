@@ -6,6 +6,7 @@ use super::{Derivatives, NoDerivative, Variable};
 use crate::friction::Sliding;
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge};
+use crate::trace::StateAtPush;
 use whiskmap_mechanics::rod::{Rest, Rod, Side};
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -78,18 +79,17 @@ impl<'a> Differentiated<'a> {
         }
     }
 
-    /// Returns the derivatives, `[variable]`, of a state of a branch at `(tau, load)` with this sliding direction. First touch is at
-    /// `distance_mm`.
+    /// Returns the derivatives, `[variable]`, of a state of a branch. First touch is at `distance_mm`.
     pub fn of_state(
         &self,
-        point: [f64; 2],
-        sliding: Option<Sliding>,
-        is_stable: bool,
+        state: &StateAtPush,
         distance_mm: f64,
     ) -> Vec<Result<Derivatives, NoDerivative>> {
-        match sliding {
-            Some(Sliding::Base | Sliding::Sticks) if is_stable => self.none(NoDerivative::Course),
-            _ => self.at(Equations::Push, point, distance_mm),
+        match state.sliding {
+            Some(Sliding::Base | Sliding::Sticks) if state.stable => {
+                self.none(NoDerivative::Course)
+            }
+            _ => self.at(Equations::Push, [state.tau, state.load], distance_mm),
         }
     }
 

@@ -1,8 +1,9 @@
 //! Effects of single variables on the push angle at detachment, as rows of a table.
 
-use super::{LargestLoad, NoDerivative, Variable, detachments, largest};
+use super::largest::largest_along;
+use super::{LargestLoad, NoDerivative, Variable, detachments};
 use crate::scene::{Scene, SweptWhisker};
-use crate::trace::{DetachmentKind, PushLoad, row};
+use crate::trace::{DetachmentKind, PushLoad, StableBranch, row};
 use serde::{Serialize, Serializer};
 use whiskmap_mechanics::rod::Side;
 
@@ -10,9 +11,7 @@ row! {
     /// Effect of one variable on a detachment.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct VariableEffect {
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
         /// End of the push: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,
@@ -58,26 +57,20 @@ impl Serialize for NoDerivative {
 #[must_use]
 pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
     let variables = Variable::of_detachments(scene);
-    let whisker = scene.first_whisker();
+    let SweptWhisker { whisker, pole, .. } = &scene.first_whisker();
     let of_side = |side: Side| {
-        let largest = |load| {
-            let SweptWhisker { whisker, pole, .. } = &whisker;
-            largest(whisker, pole, side, distance_mm, load, &variables).ok()
-        };
-        let loads = PushLoad::ALL.map(largest);
+        let ends = detachments(whisker, pole, side, &[distance_mm], &variables);
+        let branch = StableBranch::new(whisker, pole, side, distance_mm).ok();
+        let loads = PushLoad::ALL.map(|load| {
+            let (branch, end) = (branch.as_ref()?, || ends.first().cloned());
+            largest_along(branch, (whisker, pole), distance_mm, load, &variables, end).ok()
+        });
         let [force, moment, strain] = &loads;
         let size = |load: &Option<LargestLoad>| {
             let size = load.as_ref().map(|own| own.peak.size);
             size.filter(|size| !size.is_nan())
         };
         let slope = |load: &Option<LargestLoad>, i: usize| load.as_ref()?.by.get(i)?.ok();
-        let ends = detachments(
-            &whisker.whisker,
-            &whisker.pole,
-            side,
-            &[distance_mm],
-            &variables,
-        );
         let row = |own: super::DetachmentDerivatives| {
             let rows: Vec<VariableEffect> = variables
                 .iter()

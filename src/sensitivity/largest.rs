@@ -1,6 +1,6 @@
 //! Derivatives of the largest loads of pushes.
 
-use super::{Derivatives, NoDerivative, Variable, detachments, state};
+use super::{Derivatives, DetachmentDerivatives, NoDerivative, Variable, detachments, state};
 use crate::scene::{Pole, Whisker};
 use crate::trace::{NoState, PushLoad, PushPeak, StableBranch};
 use whiskmap_mechanics::rod::Side;
@@ -31,16 +31,27 @@ pub fn largest(
     load: PushLoad,
     variables: &[Variable],
 ) -> Result<LargestLoad, NoState> {
-    let peak = StableBranch::new(whisker, pole, side, distance_mm)?.peak(load);
+    let branch = StableBranch::new(whisker, pole, side, distance_mm)?;
+    let end = || detachments(whisker, pole, side, &[distance_mm], variables).pop();
+    largest_along(&branch, (whisker, pole), distance_mm, load, variables, end)
+}
+
+/// Computes the largest size of `load` along a `branch` as [`largest`] does; `end` returns the detachment with its derivatives.
+pub(super) fn largest_along(
+    branch: &StableBranch,
+    (whisker, pole): (&Whisker, &Pole),
+    distance_mm: f64,
+    load: PushLoad,
+    variables: &[Variable],
+    end: impl FnOnce() -> Option<DetachmentDerivatives>,
+) -> Result<LargestLoad, NoState> {
+    let peak = branch.peak(load);
     let none = |why| (0.0, vec![Err(why); variables.len()]);
     let (moment, by) = match peak.before_end_deg {
-        None => {
-            let end = detachments(whisker, pole, side, &[distance_mm], variables).pop();
-            end.map_or_else(
-                || none(NoDerivative::NoDetachment),
-                |own| (own.end.base_moment_nnm.unwrap_or_default(), own.by),
-            )
-        }
+        None => end().map_or_else(
+            || none(NoDerivative::NoDetachment),
+            |own| (own.end.base_moment_nnm.unwrap_or_default(), own.by),
+        ),
         Some(push_deg) => {
             let found = state(whisker, pole, distance_mm, push_deg, variables)?;
             (found.point.base_moment_nnm, found.by)

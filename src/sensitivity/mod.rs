@@ -172,8 +172,8 @@ pub fn branch(
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
     let states =
         Branch::new(whisker, pole, side, distance_mm)?.states(count, &AtomicBool::new(false))?;
-    let states = states.into_iter().map(|(at, point)| StateDerivatives {
-        by: differentiated.of_state(at.into(), point.sliding, point.stable, distance_mm),
+    let states = states.into_iter().map(|(state, point)| StateDerivatives {
+        by: differentiated.of_state(&state, distance_mm),
         point,
     });
     Ok(states.collect())
@@ -206,7 +206,7 @@ pub fn state(
     let state = branch.state(push_angle_deg.to_radians(), true)?;
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
     Ok(StateDerivatives {
-        by: differentiated.of_state([state.tau, state.load], state.sliding, true, distance_mm),
+        by: differentiated.of_state(&state, distance_mm),
         point: branch.point_of(&state),
     })
 }

@@ -2,10 +2,10 @@
 
 use super::rows::TextureEvent;
 use super::sample::{Crossing, Held};
+use crate::trace::StateRow;
 use crate::whisk::phase::Passage;
 use crate::whisk::{WhiskEventKind, signed_deg};
 use whiskmap_mechanics::rod::Side;
-use whiskmap_mechanics::shooting::Reading;
 
 /// Returns the events of a course up to the first crossing, `[event]`.
 pub fn events(
@@ -14,7 +14,7 @@ pub fn events(
     held: &[Option<Held>],
     crossed: Option<Crossing>,
 ) -> Vec<TextureEvent> {
-    let energy = |i: usize| held[i].and_then(|own| own.value(|state| state.energy_nj));
+    let energy = |i: usize| Some(held[i].as_ref()?.reading()?.energy_nj);
     let is_before = |time_s: f64| crossed.is_none_or(|own| time_s < own.time_s);
     let before = (0..passages.len()).take_while(|i| is_before(passages[*i].time_s));
     let events = before.map(|i| {
@@ -57,9 +57,8 @@ impl TextureEvent {
         side: Side,
         held: Option<Held>,
     ) -> Self {
-        let value = |of: fn(&Reading) -> f64| held.and_then(|own| own.value(of));
         let tip = held.and_then(|own| own.state).map(|(_, tip)| tip);
-        Self {
+        let event = Self {
             time_s,
             event,
             asperity: held.map(|own| own.asperity),
@@ -67,10 +66,8 @@ impl TextureEvent {
             angle_deg: angle.to_degrees(),
             push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
             tip_x_mm: tip.map(|tip| tip.x_mm),
-            force_un: value(|state| state.force_un),
-            base_moment_nnm: value(|state| state.base_moment_nnm),
-            energy_nj: value(|state| state.energy_nj),
-            lost_nj: None,
-        }
+            ..Self::default()
+        };
+        event.with_state(held.as_ref().and_then(Held::reading))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::rows::{NoTextureState, TexturePhase, TextureSample};
 use super::tip::{TipFrame, TipPlace};
+use crate::trace::StateRow;
 use crate::whisk::phase::{Passage, Phase};
 use crate::whisk::{AngleCourse, Undecided, signed_deg};
 use whiskmap_mechanics::rod::Side;
@@ -22,8 +23,9 @@ pub struct Held {
 }
 
 impl Held {
-    pub fn value(&self, of: fn(&Reading) -> f64) -> Option<f64> {
-        self.state.as_ref().map(|(reading, _)| of(reading))
+    /// Returns the loads of the held whisker; `None` where no state was found.
+    pub fn reading(&self) -> Option<&Reading> {
+        self.state.as_ref().map(|(reading, _)| reading)
     }
 }
 
@@ -92,9 +94,9 @@ pub fn samples(
         };
         let held = held.filter(|_| !crosses);
         let is_free = reason.is_none() && held.is_none();
-        let load = |of: fn(&Reading) -> f64| match is_free {
-            true => Some(0.0),
-            false => held.and_then(|own| own.value(of)),
+        let loads = match is_free {
+            true => TextureSample::default().unloaded(),
+            false => TextureSample::default().with_state(held.as_ref().and_then(Held::reading)),
         };
         let tip = match is_free {
             true => Some(tips.free(angle_deg.to_radians())),
@@ -117,18 +119,13 @@ pub fn samples(
             asperity: held.map(|own| own.asperity),
             side: held.map(|own| own.side),
             push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
-            arc_length_mm: held.and_then(|own| own.value(|state| state.arc_length_mm)),
             contact_x_mm: contact.map(|own| own.x),
             contact_y_mm: contact.map(|own| own.y),
             curvature_per_mm,
             tip_x_mm: tip.map(|tip| tip.x_mm),
             tip_height_mm: tip.map(|tip| tip.height_mm),
-            force_un: load(|state| state.force_un),
-            base_force_x_un: load(|state| state.base_force_un.x),
-            base_force_y_un: load(|state| state.base_force_un.y),
-            base_moment_nnm: load(|state| state.base_moment_nnm),
-            energy_nj: load(|state| state.energy_nj),
             reason,
+            ..loads
         }
     });
     samples.collect()

@@ -3,7 +3,7 @@
 use super::TextureSample;
 use super::tip::TipFrame;
 use crate::scene::{Surface, Whisker};
-use crate::trace::{Branch, NoState, WhiskerShape};
+use crate::trace::{NoState, StableBranch};
 use glam::DVec2;
 use whiskmap_mechanics::rod::Rest;
 
@@ -33,9 +33,8 @@ pub fn shape(
     let centre = DVec2::new(surface.asperities_mm()[asperity], surface.distance_mm);
     let rest = Rest::new(&whisker.rod(&pole, side));
     let distance = rest.distance_of_pole(centre.length() / whisker.length_mm);
-    let branch = Branch::new(whisker, &pole, side, distance * whisker.length_mm)?;
-    let state = branch.state(push_deg.to_radians(), true)?;
-    let shape = WhiskerShape::new(&branch, &state, count);
+    let branch = StableBranch::new(whisker, &pole, side, distance * whisker.length_mm)?;
+    let shape = branch.shape(&branch.state(push_deg.to_radians())?, count);
     // From the axes of first touch to those of the surface.
     let turn = centre.to_angle() - DVec2::from(shape.pole_mm).to_angle();
     let turn = DVec2::from_angle(turn);

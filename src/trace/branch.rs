@@ -1,10 +1,9 @@
 //! Solution branch at one pole: stable states from first touch to the fold, then unstable states.
 
-use super::columns::row;
-use super::contact::BranchState;
+use super::columns::{StateRow, row};
 use super::curve::snaps_deg;
 use super::resample::{interpolate, targets};
-use super::{BranchMark, FINER, NoState};
+use super::{BranchMark, FINER, NoState, StateAtPush};
 use crate::friction::{ContactHistory, Sliding};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row, Sheet, Stretch};
@@ -12,8 +11,8 @@ use glam::DVec2;
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{Rest, Side, Units};
+use whiskmap_mechanics::shooting::PeakStrain;
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
-use whiskmap_mechanics::shooting::{PeakStrain, Reader, Reading};
 
 /// Number of points that are computed between two looks at the flag that cancels.
 const POINTS_AT_ONCE: usize = 1 << 10;
@@ -31,37 +30,23 @@ pub struct Branch {
 
 row! {
     /// Point of a branch: a state in mm, deg, uN and nN m.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct BranchPoint {
-        /// Distance from the base to the contact at first touch, in mm.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct BranchPoint of a state {
         pub distance_mm: f64,
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
         /// True if the state is stable; at the fold, true for the last stable state.
         pub stable: bool,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: f64,
-        /// Chord angle: from the resting whisker as far away to the contact, in degrees.
-        pub push_chord_deg: f64,
-        /// Arclength from the base to the contact, in mm.
-        pub arc_length_mm: f64,
-        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-        pub contact_angle_deg: f64,
-        /// Normal part of the force between pole and whisker, in uN; never negative.
-        pub force_un: f64,
-        /// Size of the whole force between pole and whisker, with friction, in uN.
-        pub contact_force_un: f64,
-        /// Force that the pole puts on the base, along the base's tangent, in uN.
-        pub base_force_x_un: f64,
-        /// Force that the pole puts on the base, to the left of its tangent, in uN.
-        pub base_force_y_un: f64,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: f64,
-        /// Bending energy of the whisker, in nJ.
-        pub energy_nj: f64,
-        /// Largest bending strain at the surface: radius times change of curvature.
+        pub push_chord_deg: f64 = place,
+        pub arc_length_mm: f64 = place,
+        pub contact_angle_deg: f64 = place,
+        pub force_un: f64 = load,
+        pub contact_force_un: f64 = load,
+        pub base_force_x_un: f64 = load,
+        pub base_force_y_un: f64 = load,
+        pub base_moment_nnm: f64 = load,
+        pub energy_nj: f64 = load,
         pub peak_strain: f64,
-        /// Arclength from the base to the largest bending strain, in mm.
         pub peak_strain_mm: f64,
         /// Determinant of d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
@@ -69,7 +54,6 @@ row! {
         pub mark: Option<BranchMark>,
         /// Sliding direction of the contact, with friction: tip, base or sticks.
         pub sliding: Option<Sliding>,
-        /// Push up to which the whisker may snap to other stable states, in degrees.
         pub snaps_deg: Option<f64>,
     }
 }
@@ -110,11 +94,13 @@ impl Branch {
             true => NoState::PulledOff { at_deg: 0.0 },
             false => NoState::Failed { push_deg: 0.0 },
         };
+        let continuation = followed.ok_or(none)?;
         let has_friction = rod.friction != 0.0;
-        let histories = has_friction.then(|| ContactHistory::of(std::slice::from_ref(&level)));
         Ok(Self {
-            history: histories.and_then(|mut histories| histories.pop()?),
-            continuation: followed.ok_or(none)?,
+            history: has_friction
+                .then(|| ContactHistory::along(&level, &continuation))
+                .flatten(),
+            continuation,
             units: whisker.units(),
             level,
             distance_mm,
@@ -156,12 +142,12 @@ impl Branch {
         Ok(states.into_iter().map(|(_, point)| point).collect())
     }
 
-    /// Returns the points of [`Branch::points_until`], each with `(tau, load)` of its contact.
+    /// Returns the points of [`Branch::points_until`], each with its state.
     pub(crate) fn states(
         &self,
         count: usize,
         cancel: &AtomicBool,
-    ) -> Result<Vec<(DVec2, BranchPoint)>, NoState> {
+    ) -> Result<Vec<(StateAtPush, BranchPoint)>, NoState> {
         let go_on = || match cancel.load(Ordering::Relaxed) {
             true => Err(self.failed()),
             false => Ok(()),
@@ -215,16 +201,16 @@ impl Branch {
         let is_detachment =
             |mark: &BranchMark| matches!(mark, BranchMark::SlipOff | BranchMark::PullOff);
         let snaps_deg = self.snaps_deg();
-        let points = marked.iter().zip(states.iter().zip(peaks)).enumerate();
-        let points = points.map(|(i, ((_, mark), (state, peak)))| {
+        let points = marked.iter().zip(states.iter().zip(peaks));
+        let points = points.map(|((_, mark), (state, peak))| {
             go_on()?;
             let mark = mark.filter(|mark| self.detaches() || !is_detachment(mark));
             let point = BranchPoint {
                 mark,
                 snaps_deg: mark.filter(is_detachment).and(snaps_deg),
-                ..self.point(state, peak, i < stable)
+                ..self.point(state, peak)
             };
-            Ok((state.node.point, point))
+            Ok((*state, point))
         });
         points.collect()
     }
@@ -246,13 +232,6 @@ impl Branch {
         sliding.is_none_or(|sliding| sliding == Sliding::Tip)
     }
 
-    /// Returns the `state` of the branch in mm, deg, uN and nN m.
-    pub(super) fn reading(&self, state: &BranchState) -> Reading {
-        let (node, touch) = (&state.node, self.level.row.touch);
-        let reader = Reader::new(self.units, &self.rod(state.ratio));
-        reader.read(node.point.x, &node.full, touch, node.push)
-    }
-
     /// Returns the error of a failed continuation or corrector.
     pub(super) fn failed(&self) -> NoState {
         let nodes = &self.continuation.nodes;
@@ -272,47 +251,37 @@ impl Branch {
     }
 
     /// Returns the largest bending strains of `states`, `[state]`.
-    pub(super) fn peaks(&self, states: &[BranchState]) -> Vec<PeakStrain> {
+    pub(super) fn peaks(&self, states: &[StateAtPush]) -> Vec<PeakStrain> {
         let rods: Vec<_> = states.iter().map(|state| self.rod(state.ratio)).collect();
         let conditions = rods
             .iter()
             .zip(states)
             .map(|(rod, state)| InitialCondition {
                 rod,
-                tau: state.node.point.x,
-                load: state.node.point.y,
+                tau: state.tau,
+                load: state.load,
             });
         Batch::new(self.level.method).shoot(&conditions.collect::<Vec<_>>())
     }
 
     /// Returns `state` with its largest bending strain as a point without a mark.
-    pub(super) fn point(&self, state: &BranchState, peak: PeakStrain, stable: bool) -> BranchPoint {
+    pub(super) fn point(&self, state: &StateAtPush, peak: PeakStrain) -> BranchPoint {
         let LevelCurve { side, row, .. } = &self.level;
-        let (node, rod) = (&state.node, &self.rod(state.ratio));
-        let reading = self.reading(state);
+        let rod = &self.rod(state.ratio);
         BranchPoint {
             distance_mm: self.distance_mm,
             side: *side,
-            stable,
-            push_angle_deg: node.push.to_degrees(),
-            push_chord_deg: reading.push_chord_deg,
-            arc_length_mm: reading.arc_length_mm,
-            contact_angle_deg: node.angle.to_degrees(),
-            force_un: reading.force_un,
-            contact_force_un: reading.contact_force_un(),
-            base_force_x_un: reading.base_force_un.x,
-            base_force_y_un: reading.base_force_un.y,
-            base_moment_nnm: reading.base_moment_nnm,
-            energy_nj: reading.energy_nj,
+            stable: state.stable,
+            push_angle_deg: state.push.to_degrees(),
+            contact_angle_deg: state.angle.to_degrees(),
             peak_strain: peak.strain * self.units.strain,
             peak_strain_mm: peak.arclength * self.units.length_mm,
             // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
             // normal component of the force.
-            det: node.full.map.det() * row.pole_distance
-                / (rod.radius(node.point.x).powi(3) * rod.contact_tangent().x),
-            mark: None,
+            det: state.full.map.det() * row.pole_distance
+                / (rod.radius(state.tau).powi(3) * rod.contact_tangent().x),
             sliding: state.sliding,
-            snaps_deg: None,
+            ..BranchPoint::default().with_state(Some(&self.read(state)))
         }
     }
 }

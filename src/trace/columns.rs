@@ -1,20 +1,130 @@
 //! Table rows whose columns are defined once, for the documentation and `--help`.
 
+use whiskmap_mechanics::shooting::Reading;
+
+/// Expands to the description of a column: its own, that which all tables have, or that of the field of [`Reading`] with its name.
+macro_rules! column {
+    ($column:ident $($text:literal)+) => { concat!($($text),+) };
+    (side) => { " Side of the whisker that the pole is on: cb (convex) or cf (concave)." };
+    (distance_mm) => { " Distance from the base to the contact at first touch, in mm." };
+    (push_angle_deg) => { " Rotation of the base since first touch, in degrees: positive CB, negative CF." };
+    (snaps_deg) => { " Push up to which the whisker may snap to other stable states, in degrees." };
+    (peak_strain) => { " Largest bending strain at the surface: radius times change of curvature." };
+    (peak_strain_mm) => { " Arclength from the base to the largest bending strain, in mm." };
+    ($field:ident) => { whiskmap_mechanics::state_column!($field) };
+}
+
 /// Defines a struct whose fields are the columns of a table. Their doc comments are the descriptions in
-/// [`COLUMNS`](crate::trace::Detachment::COLUMNS).
+/// [`COLUMNS`](crate::trace::Detachment::COLUMNS); without one, the description is that of all tables.
+///
+/// A row `of a state` is a [`StateRow`]: fields marked `= place` and `= load` have the values of a [`Reading`].
 macro_rules! row {
     ($(#[$outer:meta])* pub struct $name:ident {
-        $($(#[doc = $text:literal])+ pub $column:ident: $kind:ty,)*
+        $($(#[doc = $text:literal])* pub $column:ident: $kind:ty,)*
     }) => {
         $(#[$outer])* pub struct $name {
-            $($(#[doc = $text])+ pub $column: $kind,)*
+            $(#[doc = $crate::trace::column!($column $($text)*)] pub $column: $kind,)*
         }
 
         impl $name {
             /// Names and descriptions of the columns of the table, `[column]`, in order.
-            pub const COLUMNS: &[(&str, &str)] = &[$((stringify!($column), concat!($($text),+))),*];
+            pub const COLUMNS: &[(&str, &str)] =
+                &[$((stringify!($column), $crate::trace::column!($column $($text)*))),*];
         }
     };
+    ($(#[$outer:meta])* pub struct $name:ident of a state {
+        $($(#[doc = $text:literal])* pub $column:ident: $kind:ty $(= $part:ident)?,)*
+    }) => {
+        $crate::trace::row! {
+            $(#[$outer])* pub struct $name {
+                $($(#[doc = $text])* pub $column: $kind,)*
+            }
+        }
+
+        impl $crate::trace::StateRow for $name {
+            fn with_state(mut self, state: Option<&whiskmap_mechanics::shooting::Reading>) -> Self {
+                if let Some(state) = state {
+                    $($($crate::trace::row!(@value $part self.$column = state.$column);)?)*
+                }
+                self
+            }
+
+            fn unloaded(mut self) -> Self {
+                $($($crate::trace::row!(@zero $part self.$column);)?)*
+                self
+            }
+        }
+    };
+    (@value $part:ident $row:ident.$column:ident = $state:ident.$field:ident) => { $row.$column = $state.$field.into() };
+    (@zero place $row:ident.$column:ident) => {};
+    (@zero load $row:ident.$column:ident) => { $row.$column = 0.0.into() };
 }
 
-pub(crate) use row;
+pub(crate) use {column, row};
+
+/// Row with columns of a state, by the names of the fields of [`Reading`].
+pub(crate) trait StateRow {
+    /// Returns the row with the values of `state`; unchanged without one.
+    fn with_state(self, state: Option<&Reading>) -> Self;
+
+    /// Returns the row with all loads 0, as those of a free whisker.
+    fn unloaded(self) -> Self;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::{BranchPoint, Detachment};
+
+    /// The force on the base is (3, 4) uN, so that the whole force is 5 uN.
+    #[test]
+    fn rows_have_the_values_of_their_state() {
+        let reading = Reading::of([7.0, 8.0, 2.0, 3.0, 4.0, 9.0, 10.0, 11.0, 12.0]);
+        let point = BranchPoint::default().with_state(Some(&reading));
+        let places = [
+            point.arc_length_mm,
+            point.contact_angle_deg,
+            point.push_chord_deg,
+        ];
+        assert_eq!(places, [7.0, 8.0, 10.0]);
+        let loads = [
+            point.force_un,
+            point.base_moment_nnm,
+            point.energy_nj,
+            point.contact_force_un,
+        ];
+        assert_eq!(loads, [2.0, 9.0, 12.0, 5.0]);
+        let end = Detachment::default().with_state(Some(&reading));
+        assert_eq!(
+            [end.base_force_x_un, end.base_force_y_un],
+            [Some(3.0), Some(4.0)]
+        );
+        let free = end.unloaded();
+        assert_eq!(
+            [free.force_un, free.contact_force_un, free.energy_nj],
+            [Some(0.0); 3]
+        );
+        assert_eq!(free.contact_distance_mm, Some(11.0));
+        assert_eq!(
+            Detachment::default().with_state(None),
+            Detachment::default()
+        );
+    }
+
+    /// Rows share the description of a field of [`Reading`], but for those with their own.
+    #[test]
+    fn columns_have_their_descriptions() {
+        let about = |columns: &[(&str, &str)], name: &str| {
+            let found = columns.iter().find(|(own, _)| *own == name);
+            found.map(|(_, about)| (*about).to_owned())
+        };
+        let energy = about(Detachment::COLUMNS, "energy_nj");
+        assert_eq!(
+            energy.as_deref(),
+            Some(" Bending energy of the whisker, in nJ.")
+        );
+        assert_eq!(energy, about(BranchPoint::COLUMNS, "energy_nj"));
+        let stable = about(BranchPoint::COLUMNS, "stable");
+        assert!(stable.is_some_and(|own| own.starts_with(" True if the state is stable")));
+    }
+}

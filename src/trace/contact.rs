@@ -1,22 +1,11 @@
 //! States of a branch with friction: those of the course of the contact in place of those that slide toward the tip.
 
-use super::{Branch, NoState};
+use super::{Branch, NoState, StateAtPush};
 use crate::friction::{ContactPhase, ContactQuery, FrictionState, Sliding, states};
 use crate::sheet::CurveNode;
 use glam::DVec2;
 use std::borrow::Cow;
 use whiskmap_mechanics::rod::Rod;
-
-/// State of a branch with the friction of its contact.
-#[derive(Clone, Copy, Debug)]
-pub struct BranchState {
-    /// Contact, load, pose and angles of the state.
-    pub node: CurveNode,
-    /// Force ratio of the state: tangential over normal force, with the sign of the side.
-    pub ratio: f64,
-    /// Sliding direction of the contact; `None` without friction.
-    pub sliding: Option<Sliding>,
-}
 
 impl Branch {
     /// Returns the stable states of a push at the push angles of `nodes`, `[node]`. A node is the state of a contact that slides toward the
@@ -24,14 +13,10 @@ impl Branch {
     ///
     /// # Errors
     /// With friction, the course of the contact up to a push angle, or the state there, is not found.
-    pub(super) fn pushed(&self, nodes: &[CurveNode]) -> Result<Vec<BranchState>, NoState> {
+    pub(super) fn pushed(&self, nodes: &[CurveNode]) -> Result<Vec<StateAtPush>, NoState> {
         let sign = self.level.side.sign();
         let friction = self.level.rod.friction;
-        let unmoved = |node: &CurveNode, sliding| BranchState {
-            node: *node,
-            ratio: friction,
-            sliding,
-        };
+        let unmoved = |node, sliding| StateAtPush::of(node, true, friction, sliding);
         if friction == 0.0 {
             return Ok(nodes.iter().map(|node| unmoved(node, None)).collect());
         }
@@ -60,23 +45,25 @@ impl Branch {
                 return Ok(unmoved(node, Some(phase.sliding())));
             }
             let state: FrictionState = found.next().flatten().ok_or_else(|| lost(node))?;
-            Ok(BranchState {
-                node: CurveNode {
-                    point: state.at.point,
-                    full: state.full,
-                    push: node.push,
-                    angle: state.at.angle,
-                },
-                ratio: state.at.ratio,
-                sliding: Some(state.sliding),
-            })
+            let node = CurveNode {
+                point: state.at.point,
+                full: state.full,
+                push: node.push,
+                angle: state.at.angle,
+            };
+            Ok(StateAtPush::of(
+                &node,
+                true,
+                state.at.ratio,
+                Some(state.sliding),
+            ))
         });
         pushed.collect()
     }
 
     /// Returns the unstable states `nodes` with the direction in which their contact slides in the direction of continuation, `[node]`.
     /// They have the friction of a contact that slides toward the tip.
-    pub(super) fn beyond_fold(&self, nodes: &[CurveNode]) -> Vec<BranchState> {
+    pub(super) fn beyond_fold(&self, nodes: &[CurveNode]) -> Vec<StateAtPush> {
         let level = &self.level;
         let points: Vec<DVec2> = nodes.iter().map(|node| node.point).collect();
         let slidings = match level.rod.friction {
@@ -84,12 +71,10 @@ impl Branch {
             _ => Sliding::at(level.method, &level.rod, &points),
         };
         let states = nodes.iter().zip(slidings);
-        let states = states.map(|(node, sliding)| BranchState {
-            node: *node,
-            ratio: level.rod.friction,
-            sliding,
-        });
-        states.collect()
+        let friction = level.rod.friction;
+        states
+            .map(|(node, sliding)| StateAtPush::of(node, false, friction, sliding))
+            .collect()
     }
 
     /// Returns the rod of the branch with the force ratio `ratio` as its friction.

@@ -14,11 +14,8 @@ row! {
     /// Corner of a detachment curve: the end at which slip-off turns into pull-off, the fold with the contact at the tip.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct Corner {
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: Option<f64>,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
         /// Without a corner: always-slips-off, always-pulls-off, not-found or no-whisker.
         pub reason: Option<NoCorner>,

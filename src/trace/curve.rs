@@ -1,6 +1,6 @@
 //! Detachment curves: the ends of pushes from first touch, for each distance.
 
-use super::columns::row;
+use super::columns::{StateRow, row};
 use crate::classify::{RowBoundary, TIE};
 use crate::friction::{ContactHistory, Sliding, surely_slides_to_end};
 use crate::scene::{Pole, Whisker};
@@ -11,7 +11,7 @@ use whiskmap_mechanics::shooting::batch::{Batch, Method};
 use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 
 /// Kind of the end of a push from first touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DetachmentKind {
     /// The push ends at the fold.
@@ -21,6 +21,7 @@ pub enum DetachmentKind {
     /// The push does not begin: the resting whisker does not reach the pole.
     OutOfReach,
     /// The end of the push is unknown: the boundary of the row was not found.
+    #[default]
     Unresolved,
     /// There is no push: the row of the table of whiskers has no whisker.
     NoWhisker,
@@ -28,47 +29,31 @@ pub enum DetachmentKind {
 
 row! {
     /// End of a push at one distance; the values are `None` if no end exists or was found.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct Detachment {
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct Detachment of a state {
         pub side: Side,
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
         /// Distance from the base to the pole's centre, in mm, constant in a push.
         pub pole_distance_mm: Option<f64>,
         /// End of the push: slip-off, pull-off, out-of-reach, unresolved or no-whisker.
         pub kind: DetachmentKind,
-        /// Rotation of the base since first touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Chord angle: from the resting whisker as far away to the contact, in degrees.
-        pub push_chord_deg: Option<f64>,
-        /// Straight distance from the base to the contact, in mm.
-        pub contact_distance_mm: Option<f64>,
-        /// Arclength from the base to the contact, in mm.
-        pub arc_length_mm: Option<f64>,
-        /// Normal part of the force between pole and whisker, in uN; never negative.
-        pub force_un: Option<f64>,
-        /// Size of the whole force between pole and whisker, with friction, in uN.
-        pub contact_force_un: Option<f64>,
-        /// Force that the pole puts on the base, along the base's tangent, in uN.
-        pub base_force_x_un: Option<f64>,
-        /// Force that the pole puts on the base, to the left of its tangent, in uN.
-        pub base_force_y_un: Option<f64>,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: Option<f64>,
-        /// Bending energy of the whisker, in nJ.
-        pub energy_nj: Option<f64>,
-        /// Largest bending strain at the surface: radius times change of curvature.
+        pub push_chord_deg: Option<f64> = place,
+        pub contact_distance_mm: Option<f64> = place,
+        pub arc_length_mm: Option<f64> = place,
+        pub force_un: Option<f64> = load,
+        pub contact_force_un: Option<f64> = load,
+        pub base_force_x_un: Option<f64> = load,
+        pub base_force_y_un: Option<f64> = load,
+        pub base_moment_nnm: Option<f64> = load,
+        pub energy_nj: Option<f64> = load,
         pub peak_strain: Option<f64>,
-        /// Arclength from the base to the largest bending strain, in mm.
         pub peak_strain_mm: Option<f64>,
-        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-        pub contact_angle_deg: Option<f64>,
+        pub contact_angle_deg: Option<f64> = place,
         /// Remaining error of the detachment, relative to the distance of the pole.
         pub residual: Option<f64>,
         /// Sliding direction, with friction; the end assumes tip.
         pub sliding: Option<Sliding>,
-        /// Push up to which the whisker may snap to other stable states, in degrees.
         pub snaps_deg: Option<f64>,
     }
 }
@@ -80,24 +65,8 @@ impl Detachment {
         let end = |distance_mm: &f64| Self {
             side,
             distance_mm: *distance_mm,
-            pole_distance_mm: None,
             kind: DetachmentKind::NoWhisker,
-            push_angle_deg: None,
-            push_chord_deg: None,
-            contact_distance_mm: None,
-            arc_length_mm: None,
-            force_un: None,
-            contact_force_un: None,
-            base_force_x_un: None,
-            base_force_y_un: None,
-            base_moment_nnm: None,
-            energy_nj: None,
-            peak_strain: None,
-            peak_strain_mm: None,
-            contact_angle_deg: None,
-            residual: None,
-            sliding: None,
-            snaps_deg: None,
+            ..Self::default()
         };
         distances_mm.iter().map(end).collect()
     }
@@ -167,65 +136,94 @@ pub(crate) fn detachments(
         true => Sheet::new(method, rod, side, &distances),
         false => Sheet::of_ends(method, rod, side, &distances),
     };
-    let ends = crossings(&sheet);
-    let points = ends.iter().flatten().map(|end| (end.tau, end.load));
-    let states: Vec<FirstVariation> = Batch::new(method).shoot_at(rod, points.clone());
+    let ends = RowEnd::of(method, &sheet);
+    let points = ends.iter().flatten();
+    let points = points.map(|RowEnd { crossing, .. }| (crossing.tau, crossing.load));
     let peaks: Vec<PeakStrain> = match has_strain {
         true => Batch::new(method.doubled()).shoot_at(rod, points),
         false => Vec::new(),
     };
-    let (mut states, mut peaks) = (states.into_iter(), peaks.into_iter());
+    let mut peaks = peaks.into_iter();
     let slidings = match has_strain {
         true => slidings(&sheet),
         false => vec![None; distances.len()],
     };
-    let rows = distances_mm.iter().zip(&sheet.rows).zip(&ends);
-    rows.zip(slidings)
-        .enumerate()
-        .map(|(index, (((distance_mm, row), crossing), sliding))| {
-            let reached = crossing.ok().and_then(|end| Some((end, states.next()?)));
-            let sliding = reached
-                .as_ref()
-                .and_then(|(end, variation)| sliding.or(Sliding::of(variation, rod, end.tau)));
-            let reading = reached.as_ref().map(|(end, FirstVariation { full, .. })| {
-                let push = side.sign() * end.push;
-                // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
-                let off = libm::log(row.pole_distance / full.map.pole.length()).abs();
-                let reading = reader.read(end.tau, full, row.touch, push);
-                (push.to_degrees(), end.residual + off, reading)
-            });
-            let peak = reached.as_ref().and_then(|_| peaks.next());
-            let value = |of: fn(&Reading) -> f64| reading.as_ref().map(|(.., reading)| of(reading));
-            let end = Detachment {
-                side,
-                distance_mm: *distance_mm,
-                pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
-                kind: match crossing.map(|end| end.edge) {
-                    Ok(Edge::Fold) => DetachmentKind::SlipOff,
-                    Ok(Edge::Tip) => DetachmentKind::PullOff,
-                    Err(kind) => kind,
-                },
-                push_angle_deg: reading.as_ref().map(|(push_deg, ..)| *push_deg),
-                push_chord_deg: value(|reading| reading.push_chord_deg),
-                contact_distance_mm: value(|reading| reading.contact_distance_mm),
-                arc_length_mm: value(|reading| reading.arc_length_mm),
-                force_un: value(|reading| reading.force_un),
-                contact_force_un: value(Reading::contact_force_un),
-                base_force_x_un: value(|reading| reading.base_force_un.x),
-                base_force_y_un: value(|reading| reading.base_force_un.y),
-                base_moment_nnm: value(|reading| reading.base_moment_nnm),
-                energy_nj: value(|reading| reading.energy_nj),
-                peak_strain: peak.map(|peak| peak.strain * units.strain),
-                peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
-                contact_angle_deg: value(|reading| reading.contact_angle_deg),
-                residual: reading.as_ref().map(|(_, residual, _)| *residual),
-                sliding,
-                snaps_deg: crossing.ok().and_then(|_| snaps_deg(&sheet, index)),
-            };
-            let crossing = crossing.ok().copied();
-            DetachmentEnd { end, crossing }
-        })
-        .collect()
+    let rows = distances_mm.iter().zip(&sheet.rows).zip(ends).zip(slidings);
+    let rows = rows.enumerate();
+    let ends = rows.map(|(index, (((distance_mm, row), found), sliding))| {
+        let none = Detachment {
+            side,
+            distance_mm: *distance_mm,
+            pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
+            ..Detachment::default()
+        };
+        let own: RowEnd = match found {
+            Ok(own) => own,
+            Err(kind) => {
+                return DetachmentEnd {
+                    end: Detachment { kind, ..none },
+                    crossing: None,
+                };
+            }
+        };
+        // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
+        let off = libm::log(row.pole_distance / own.state.full.map.pole.length()).abs();
+        let peak = peaks.next();
+        let end = Detachment {
+            kind: own.kind(),
+            push_angle_deg: Some((side.sign() * own.crossing.push).to_degrees()),
+            peak_strain: peak.map(|peak| peak.strain * units.strain),
+            peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
+            residual: Some(own.crossing.residual + off),
+            sliding: sliding.or(Sliding::of(&own.state, rod, own.crossing.tau)),
+            snaps_deg: snaps_deg(&sheet, index),
+            ..none.with_state(Some(&own.reading(&reader, &sheet, index)))
+        };
+        DetachmentEnd {
+            end,
+            crossing: Some(own.crossing),
+        }
+    });
+    ends.collect()
+}
+
+/// End of a push from first touch, with its state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowEnd {
+    /// Crossing of the row over the edge of the sheet.
+    pub crossing: Crossing,
+    /// State at the crossing, with its derivatives.
+    pub state: FirstVariation,
+}
+
+impl RowEnd {
+    /// Computes the ends of pushes in the rows of `sheet` with the integration `method`, `[row]`, or the reasons why there are none.
+    pub fn of(method: Method, sheet: &Sheet) -> Vec<Result<Self, DetachmentKind>> {
+        let crossings = crossings(sheet);
+        let points = crossings.iter().flatten().map(|end| (end.tau, end.load));
+        let mut states = Batch::new(method).shoot_at(&sheet.rod, points).into_iter();
+        let end = |own: Result<&Crossing, _>| {
+            let (crossing, state) = (*own?, states.next());
+            let state = state.ok_or(DetachmentKind::Unresolved)?;
+            Ok(Self { crossing, state })
+        };
+        crossings.into_iter().map(end).collect()
+    }
+
+    /// Returns the kind of the end.
+    pub fn kind(&self) -> DetachmentKind {
+        match self.crossing.edge {
+            Edge::Fold => DetachmentKind::SlipOff,
+            Edge::Tip => DetachmentKind::PullOff,
+        }
+    }
+
+    /// Returns the state in physical units, as the end of this `row` of `sheet`.
+    pub fn reading(&self, reader: &Reader, sheet: &Sheet, row: usize) -> Reading {
+        let Crossing { tau, push, .. } = self.crossing;
+        let (touch, push) = (sheet.rows[row].touch, sheet.side.sign() * push);
+        reader.read(tau, &self.state.full, touch, push)
+    }
 }
 
 /// Returns the crossing of each row of `sheet` at which a push from first touch ends, `[row]`, or the reason why there is none.

@@ -17,13 +17,13 @@ mod state;
 pub use branch::{Branch, BranchPoint};
 pub use corner::{Corner, NoCorner, corner};
 pub use curve::{Detachment, DetachmentKind, curve, curve_at, curve_without_strain, reach_mm};
-pub(crate) use curve::{DetachmentEnd, crossings, detachments, snaps_deg};
+pub(crate) use curve::{DetachmentEnd, RowEnd, crossings, detachments, snaps_deg};
 pub use peak::{PushLoad, PushPeak};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;
 pub use state::StateAtPush;
 
-pub(crate) use columns::row;
+pub(crate) use columns::{StateRow, column, row};
 
 use crate::scene::{RefusedWhisker, SweepPlace, SweptWhisker};
 use rayon::prelude::*;

@@ -93,8 +93,8 @@ impl StableBranch {
     fn size(&self, node: &CurveNode, load: PushLoad) -> f64 {
         let states = self.0.pushed(std::slice::from_ref(node));
         states.map_or(f64::NAN, |states| match load {
-            PushLoad::ContactForce => self.0.reading(&states[0]).contact_force_un(),
-            PushLoad::BaseMoment => self.0.reading(&states[0]).base_moment_nnm.abs(),
+            PushLoad::ContactForce => self.0.read(&states[0]).contact_force_un,
+            PushLoad::BaseMoment => self.0.read(&states[0]).base_moment_nnm.abs(),
             PushLoad::Strain => self.0.peaks(&states)[0].strain * self.0.units.strain,
         })
     }

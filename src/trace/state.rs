@@ -1,11 +1,9 @@
 //! State of a branch at a push angle.
 
-use super::contact::BranchState;
 use super::{Branch, BranchPoint, NoState};
 use crate::friction::Sliding;
 use crate::sheet::{Continuation, CurveNode};
-use glam::DVec2;
-use whiskmap_mechanics::shooting::{FullState, Reading};
+use whiskmap_mechanics::shooting::{FullState, Reader, Reading};
 
 /// State of a branch at a push angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,16 +27,17 @@ pub struct StateAtPush {
 }
 
 impl StateAtPush {
-    fn on_branch(&self) -> BranchState {
-        BranchState {
-            node: CurveNode {
-                point: DVec2::new(self.tau, self.load),
-                full: self.full,
-                push: self.push,
-                angle: self.angle,
-            },
-            ratio: self.ratio,
-            sliding: self.sliding,
+    /// Creates the state of a node on the stable or the unstable part of a branch, with this force ratio and sliding direction.
+    pub(super) fn of(node: &CurveNode, stable: bool, ratio: f64, sliding: Option<Sliding>) -> Self {
+        Self {
+            tau: node.point.x,
+            load: node.point.y,
+            push: node.push,
+            angle: node.angle,
+            stable,
+            ratio,
+            sliding,
+            full: node.full,
         }
     }
 }
@@ -47,15 +46,14 @@ impl Branch {
     /// Returns the values of `state` in mm, deg, uN and nN m.
     #[must_use]
     pub fn read(&self, state: &StateAtPush) -> Reading {
-        self.reading(&state.on_branch())
+        let reader = Reader::new(self.units, &self.rod(state.ratio));
+        reader.read(state.tau, &state.full, self.level.row.touch, state.push)
     }
 
     /// Returns `state` as a point of the branch without a mark.
     #[must_use]
     pub fn point_of(&self, state: &StateAtPush) -> BranchPoint {
-        let on_branch = state.on_branch();
-        let peak = self.peaks(std::slice::from_ref(&on_branch))[0];
-        self.point(&on_branch, peak, state.stable)
+        self.point(state, self.peaks(std::slice::from_ref(state))[0])
     }
 
     /// Returns the state at the signed `push`, in radians, on the stable or the unstable part of the branch.
@@ -100,20 +98,9 @@ impl Branch {
             });
         };
         let node = CurveNode { push, ..node };
-        let state = match stable {
+        Ok(match stable {
             true => self.pushed(&[node])?[0],
             false => self.beyond_fold(&[node])[0],
-        };
-        let node = state.node;
-        Ok(StateAtPush {
-            tau: node.point.x,
-            load: node.point.y,
-            push,
-            angle: node.angle,
-            stable,
-            ratio: state.ratio,
-            sliding: state.sliding,
-            full: node.full,
         })
     }
 }

@@ -10,7 +10,6 @@ row! {
     /// Detachment between two frames, with the columns that `fit` reads.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct TrackedDetachment {
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
         /// Distance from the base to the contact at first touch, in mm: in the first frame in contact.
         pub distance_mm: f64,

@@ -9,9 +9,7 @@ row! {
     /// Spread of the ends of pushes at one distance. Percentiles are those of the detachments, of either kind.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
     pub struct EndSpread {
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
-        /// Distance from the base to the contact at first touch, in mm.
         pub distance_mm: f64,
         /// End of the scene's own push: slip-off, pull-off, out-of-reach or unresolved.
         pub kind: DetachmentKind,

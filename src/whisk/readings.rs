@@ -6,11 +6,10 @@ use super::phase::Phase;
 use super::rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 use super::states::{ContactState, SideStates, SolveContacts};
 use crate::friction::{ContactPhase, held, states};
-use crate::trace::DetachmentKind;
+use crate::trace::{DetachmentKind, StateRow};
 use glam::DVec2;
 use rayon::prelude::*;
 use whiskmap_mechanics::rod::{Rest, Side};
-use whiskmap_mechanics::shooting::Reading;
 
 /// Stable states of the whisker on both sides, CB and CF.
 pub struct Found<'a> {
@@ -131,8 +130,7 @@ impl Found<'_> {
             let CourseContact { side, push, .. } = event.contact;
             let end = self.of(side).map(|states| states.kind(0));
             let push = Some(push).filter(|push| !push.is_nan());
-            let reading = reading.map(|own| own.reading);
-            WhiskEvent {
+            let event = WhiskEvent {
                 time_s: event.time_s,
                 event: event.kind.unwrap_or(match end {
                     Some(DetachmentKind::PullOff) => WhiskEventKind::PullOff,
@@ -141,15 +139,13 @@ impl Found<'_> {
                 side,
                 angle_deg: event.angle.to_degrees(),
                 push_angle_deg: push.map(|push| signed_deg(side, push)),
-                force_un: reading.map(|state| state.force_un),
-                contact_force_un: reading.as_ref().map(Reading::contact_force_un),
-                base_moment_nnm: reading.map(|state| state.base_moment_nnm),
-                energy_nj: reading.map(|state| state.energy_nj),
                 snaps_deg: match event.kind {
                     None => self.of(side).and_then(SideStates::snaps_deg),
                     Some(_) => None,
                 },
-            }
+                ..WhiskEvent::default()
+            };
+            event.with_state(reading.as_ref().map(|own| &own.reading))
         });
         events.collect()
     }
@@ -184,15 +180,12 @@ fn sample(own: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSampl
         Phase::Contact { .. } if state.is_none() => Some(Undecided::NotFound),
         _ => None,
     };
-    let (reading, sliding) = state.map(|own| (own.reading, own.sliding)).unzip();
-    let load = |of: fn(&Reading) -> f64| match phase {
-        Phase::Free { .. } => Some(0.0),
-        _ => reading.as_ref().map(of),
+    let loads = match phase {
+        Phase::Free { .. } => WhiskSample::default().unloaded(),
+        _ => WhiskSample::default().with_state(state.as_ref().map(|own| &own.reading)),
     };
     let is_known = dissipated.is_finite() && reason != Some(Undecided::Stuck);
     WhiskSample {
-        time_s: f64::NAN,
-        angle_deg: None,
         regime: match (phase, reason) {
             (_, Some(_)) => WhiskRegime::Undecided,
             (Phase::Free { .. }, _) => WhiskRegime::Free,
@@ -200,22 +193,12 @@ fn sample(own: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSampl
         },
         side: contact.map(|own| own.side),
         push_angle_deg: contact.map(|own| signed_deg(own.side, own.push)),
-        arc_length_mm: reading.map(|state| state.arc_length_mm),
-        contact_x_mm: None,
-        contact_y_mm: None,
-        curvature_per_mm: None,
-        contact_angle_deg: reading.map(|state| state.contact_angle_deg),
-        force_un: load(|state| state.force_un),
-        contact_force_un: load(Reading::contact_force_un),
-        base_force_x_un: load(|state| state.base_force_un.x),
-        base_force_y_un: load(|state| state.base_force_un.y),
-        base_moment_nnm: load(|state| state.base_moment_nnm),
-        energy_nj: load(|state| state.energy_nj),
         dissipated_nj: is_known.then_some(dissipated * unit),
-        sliding: sliding.flatten().or_else(|| {
-            let phase = contact?.phase.filter(|_| reading.is_some());
-            phase.map(ContactPhase::sliding)
+        sliding: state.and_then(|own| {
+            let phase = || contact?.phase.map(ContactPhase::sliding);
+            own.sliding.or_else(phase)
         }),
         reason,
+        ..loads
     }
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
 
 /// Regime of a sample: whether the whisker touches the pole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WhiskRegime {
     /// The whisker is at rest in the frame of its base.
@@ -14,6 +14,7 @@ pub enum WhiskRegime {
     /// The pole bends the whisker.
     Contact,
     /// The model does not say where the whisker is.
+    #[default]
     Undecided,
 }
 
@@ -39,8 +40,8 @@ pub enum Undecided {
 
 row! {
     /// Sample of a course: the state of the whisker at one time. Loads are 0 if the whisker is free.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct WhiskSample {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct WhiskSample of a state {
         /// Time of the sample, in s.
         pub time_s: f64,
         /// Angle of the base, in degrees: 0 at first touch on CB, positive pushes CB.
@@ -51,28 +52,20 @@ row! {
         pub side: Option<Side>,
         /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Arclength from the base to the contact, in mm.
-        pub arc_length_mm: Option<f64>,
+        pub arc_length_mm: Option<f64> = place,
         /// Position of the contact along the base's tangent at first touch on CB, in mm; the base is at 0.
         pub contact_x_mm: Option<f64>,
         /// Position of the contact to the left of the base's tangent at first touch on CB, in mm.
         pub contact_y_mm: Option<f64>,
-        /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-        pub contact_angle_deg: Option<f64>,
+        pub contact_angle_deg: Option<f64> = place,
         /// Curvature of the whisker at the arclength of --curvature-at, in 1/mm.
         pub curvature_per_mm: Option<f64>,
-        /// Normal part of the force between pole and whisker, in uN; never negative.
-        pub force_un: Option<f64>,
-        /// Size of the whole force between pole and whisker, with friction, in uN.
-        pub contact_force_un: Option<f64>,
-        /// Force that the pole puts on the base, along the base's tangent, in uN.
-        pub base_force_x_un: Option<f64>,
-        /// Force that the pole puts on the base, to the left of its tangent, in uN.
-        pub base_force_y_un: Option<f64>,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: Option<f64>,
-        /// Bending energy of the whisker, in nJ.
-        pub energy_nj: Option<f64>,
+        pub force_un: Option<f64> = load,
+        pub contact_force_un: Option<f64> = load,
+        pub base_force_x_un: Option<f64> = load,
+        pub base_force_y_un: Option<f64> = load,
+        pub base_moment_nnm: Option<f64> = load,
+        pub energy_nj: Option<f64> = load,
         /// Energy that friction has dissipated since the start, in nJ.
         pub dissipated_nj: Option<f64>,
         /// Sliding direction of a contact with friction: tip, base or sticks.
@@ -83,7 +76,7 @@ row! {
 }
 
 /// Kind of an event of a course.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WhiskEventKind {
     /// The whisker touches the pole.
@@ -97,32 +90,28 @@ pub enum WhiskEventKind {
     /// With friction, the contact that stuck snaps toward the base, and stays on the pole.
     Snap,
     /// The model does not say where the whisker is from here on.
+    #[default]
     Undecided,
 }
 
 row! {
     /// Event of a course, between samples. Its loads and energy are those of the last state before it, and of the first one after a touch.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-    pub struct WhiskEvent {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct WhiskEvent of a state {
         /// Time of the event, in s, from the straight line between two samples.
         pub time_s: f64,
         /// Kind of the event: touch, release, slip-off, pull-off, snap or undecided.
         pub event: WhiskEventKind,
-        /// Side of the whisker that the pole is on: cb (convex) or cf (concave).
         pub side: Side,
         /// Angle of the base, in degrees: 0 at first touch on CB, positive pushes CB.
         pub angle_deg: f64,
         /// Rotation of the base since the touch, in degrees: positive CB, negative CF.
         pub push_angle_deg: Option<f64>,
-        /// Normal part of the force between pole and whisker, in uN; never negative.
-        pub force_un: Option<f64>,
-        /// Size of the whole force between pole and whisker, with friction, in uN.
-        pub contact_force_un: Option<f64>,
-        /// Moment of the pole on the base, in nN m: positive turns it to the left.
-        pub base_moment_nnm: Option<f64>,
+        pub force_un: Option<f64> = load,
+        pub contact_force_un: Option<f64> = load,
+        pub base_moment_nnm: Option<f64> = load,
         /// Bending energy of the whisker, in nJ; it is lost if the whisker detaches.
-        pub energy_nj: Option<f64>,
-        /// Push up to which the whisker may snap to other stable states, in degrees.
+        pub energy_nj: Option<f64> = load,
         pub snaps_deg: Option<f64>,
     }
 }

@@ -4,13 +4,13 @@ use super::contact::CourseContact;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Crossing, Edge, Sheet};
-use crate::trace::{Branch, DetachmentKind, crossings, snaps_deg};
+use crate::sheet::Sheet;
+use crate::trace::{DetachmentKind, RowEnd, StableBranch, snaps_deg};
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rod, Side};
-use whiskmap_mechanics::shooting::batch::{Batch, Method};
+use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::shape::profile;
-use whiskmap_mechanics::shooting::{FirstVariation, Reader, Reading, Resolution};
+use whiskmap_mechanics::shooting::{Reader, Reading, Resolution};
 
 /// Stable states on one side of poles at several distances, from first touch to the end of the push.
 pub struct SideStates {
@@ -52,13 +52,6 @@ impl ContactState {
 /// is found.
 pub type SolveContacts = fn(&[ContactQuery]) -> Vec<Option<FrictionState>>;
 
-/// End of the pushes of one row.
-struct RowEnd {
-    crossing: Crossing,
-    /// State at the end of the push, where the contact slides.
-    state: ContactState,
-}
-
 /// Contact with a pole: index of the pole's row, and the push in radians, as a magnitude.
 pub type RowPush = (usize, f64);
 
@@ -75,12 +68,12 @@ impl SideStates {
         let method = Method::new(Resolution::FINE);
         let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
         let sheet = Sheet::new(method, &rod, side, &distances);
-        let ends = crossings(&sheet).into_iter().enumerate();
-        let ends = ends.map(|(row, end)| end.copied().map_err(|_| row));
-        let ends: Vec<Crossing> = ends.collect::<Result<_, _>>()?;
-        let limits = |(row, end): (usize, &Crossing)| {
+        let ends = RowEnd::of(method, &sheet).into_iter().enumerate();
+        let ends = ends.map(|(row, end)| end.map_err(|_| row));
+        let ends: Vec<RowEnd> = ends.collect::<Result<_, _>>()?;
+        let limits = |(row, end): (usize, &RowEnd)| {
             let limits = CourseLimits::new(&sheet.level(row));
-            let limits = limits.filter(|limits| limits.detaches_at(end.push));
+            let limits = limits.filter(|limits| limits.detaches_at(end.crossing.push));
             limits.ok_or(row)
         };
         let limits = ends.iter().enumerate().map(limits);
@@ -88,29 +81,14 @@ impl SideStates {
             0.0 => Vec::new(),
             _ => limits.collect::<Result<_, _>>()?,
         };
-        let reader = Reader::new(whisker.units(), &rod);
-        let points = ends.iter().map(|end| (end.tau, end.load));
-        let at_ends: Vec<FirstVariation> = Batch::new(method).shoot_at(&rod, points);
-        let ends = ends.into_iter().zip(&sheet.rows).zip(at_ends);
-        let ends = ends.map(|((crossing, row), at_end)| {
-            let push = side.sign() * crossing.push;
-            let reading = reader.read(crossing.tau, &at_end.full, row.touch, push);
-            RowEnd {
-                state: ContactState {
-                    ratio: rod.friction,
-                    ..ContactState::smooth(reading, crossing.tau, crossing.load)
-                },
-                crossing,
-            }
-        });
         Ok(Self {
-            ends: ends.collect(),
+            ends,
             limits,
+            reader: Reader::new(whisker.units(), &rod),
             whisker: whisker.clone(),
             pole: *pole,
             distances_mm,
             sheet,
-            reader,
         })
     }
 
@@ -121,10 +99,7 @@ impl SideStates {
 
     /// Returns the kind of the detachment from the pole of `row`.
     pub fn kind(&self, row: usize) -> DetachmentKind {
-        match self.ends[row].crossing.edge {
-            Edge::Fold => DetachmentKind::SlipOff,
-            Edge::Tip => DetachmentKind::PullOff,
-        }
+        self.ends[row].kind()
     }
 
     /// Returns the push angle, in degrees, up to which the first row has other stable states at its detachment.
@@ -188,13 +163,23 @@ impl SideStates {
                 });
             }
             let state = match own.push > 0.0 {
-                true => self.ends[0].state,
+                true => self.at_end(0),
                 false => self.at_touch(0),
             };
             let sliding = own.phase.map(|phase| phase.sliding());
             Some(ContactState { sliding, ..state })
         });
         states.collect()
+    }
+
+    /// Returns the state at the end of the push of `row`, where the contact slides.
+    fn at_end(&self, row: usize) -> ContactState {
+        let end = &self.ends[row];
+        let reading = end.reading(&self.reader, &self.sheet, row);
+        ContactState {
+            ratio: self.sheet.rod.friction,
+            ..ContactState::smooth(reading, end.crossing.tau, end.crossing.load)
+        }
     }
 
     fn at_touch(&self, row: usize) -> ContactState {
@@ -243,20 +228,20 @@ impl SideStates {
     /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation.
     fn fill(&self, contacts: &[RowPush], states: &mut [Option<ContactState>]) {
         let side = self.sheet.side;
-        let mut last: Option<(usize, Option<Branch>)> = None;
+        let mut last: Option<(usize, Option<StableBranch>)> = None;
         for (state, &(row, push)) in states.iter_mut().zip(contacts) {
             if push <= 0.0 {
                 *state = Some(self.at_touch(row));
             } else if push >= self.end(row) {
-                *state = Some(self.ends[row].state);
+                *state = Some(self.at_end(row));
             } else if state.is_none() {
                 let distance = self.distances_mm[row];
                 let branch = match last.take() {
                     Some((own, branch)) if own == row => branch,
-                    _ => Branch::new(&self.whisker, &self.pole, side, distance).ok(),
+                    _ => StableBranch::new(&self.whisker, &self.pole, side, distance).ok(),
                 };
                 *state = branch.as_ref().and_then(|branch| {
-                    let state = branch.state(side.sign() * push, true).ok()?;
+                    let state = branch.state(side.sign() * push).ok()?;
                     let reading = branch.read(&state);
                     Some(ContactState::smooth(reading, state.tau, state.load))
                 });

@@ -46,8 +46,8 @@ fn cells_have_the_states_of_their_phase() {
                         (Channel::ArcLength, wanted.arc_length_mm),
                         (Channel::ContactAngle, wanted.contact_angle_deg),
                         (Channel::Force, wanted.force_un),
-                        (Channel::BaseForceX, wanted.base_force_un.x),
-                        (Channel::BaseForceY, wanted.base_force_un.y),
+                        (Channel::BaseForceX, wanted.base_force_x_un),
+                        (Channel::BaseForceY, wanted.base_force_y_un),
                         (Channel::BaseMoment, wanted.base_moment_nnm),
                         (Channel::Energy, wanted.energy_nj),
                     ] {

@@ -10,7 +10,9 @@ use super::pole::{self, PolesArgs, refuse, title};
 use clap::{Args, ValueEnum};
 use whiskmap::Side;
 use whiskmap::input::each_once;
-use whiskmap::render::{BranchAxis, DrawnBranch, Ink, PUSH_ANGLE, Plot, branches, regions};
+use whiskmap::render::{
+    BranchAxis, DrawnBranch, Ink, PUSH_ANGLE, Plot, branches, column_label, regions,
+};
 use whiskmap::scene::Scene;
 use whiskmap::sensitivity::{Variable, branch};
 use whiskmap::trace::BranchPoint;
@@ -98,27 +100,20 @@ impl BranchColumn {
     }
 
     fn axis(self) -> BranchAxis {
+        macro_rules! column {
+            ($name:ident) => {
+                BranchAxis {
+                    label: column_label(stringify!($name)).unwrap_or_default(),
+                    value: |point| point.$name,
+                }
+            };
+        }
         match self {
-            Self::ForceUn => BranchAxis {
-                label: "contact force (\u{b5}N)",
-                value: |point| point.force_un,
-            },
-            Self::ContactForceUn => BranchAxis {
-                label: "contact force with friction (\u{b5}N)",
-                value: |point| point.contact_force_un,
-            },
-            Self::BaseMomentNnm => BranchAxis {
-                label: "bending moment at the base (nN m)",
-                value: |point| point.base_moment_nnm,
-            },
-            Self::ContactAngleDeg => BranchAxis {
-                label: "contact angle (deg)",
-                value: |point| point.contact_angle_deg,
-            },
-            Self::ArcLengthMm => BranchAxis {
-                label: "arc length from base to contact (mm)",
-                value: |point| point.arc_length_mm,
-            },
+            Self::ForceUn => column!(force_un),
+            Self::ContactForceUn => column!(contact_force_un),
+            Self::BaseMomentNnm => column!(base_moment_nnm),
+            Self::ContactAngleDeg => column!(contact_angle_deg),
+            Self::ArcLengthMm => column!(arc_length_mm),
         }
     }
 }

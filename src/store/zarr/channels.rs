@@ -3,32 +3,10 @@
 use super::array::about;
 use super::encoding::ValueKind::{self, Code, Count, Quantity};
 use crate::classify::{Regime, Status};
+use crate::plan::channels::CHANNELS;
 use crate::scene::Parameter;
 use crate::store::NOT_COMPUTED;
 use serde_json::{Value, json};
-
-/// Name, kind, unit and meaning of a channel.
-type ChannelLine = (&'static str, ValueKind, Option<&'static str>, &'static str);
-
-/// Name, kind, unit and meaning of every channel but the derivatives.
-#[rustfmt::skip]
-pub(super) const CHANNELS: [ChannelLine; 15] = [
-    ("regime", Code, None, "what happens to the whisker"),
-    ("status", Code, None, "how the regime was found"),
-    ("arc_length_mm", Quantity, Some("mm"), "arclength from base to contact"),
-    ("contact_angle_deg", Quantity, Some("degree"), "angle of tangent at contact"),
-    ("force_un", Quantity, Some("uN"), "normal part of the contact force"),
-    ("base_force_x_un", Quantity, Some("uN"), "force on base along its tangent"),
-    ("base_force_y_un", Quantity, Some("uN"), "force on base across its tangent"),
-    ("base_moment_nnm", Quantity, Some("nN m"), "moment of pole on the base"),
-    ("push_chord_deg", Quantity, Some("degree"), "chord angle between contact and rest"),
-    ("contact_distance_mm", Quantity, Some("mm"), "straight distance from base to contact"),
-    ("energy_nj", Quantity, Some("nJ"), "energy of bending"),
-    ("margin_deg", Quantity, Some("degree"), "push angle left until detachment"),
-    ("newton_steps", Count, None, "Newton steps"),
-    ("residual", Quantity, Some("1"), "distance from pole over whisker length"),
-    ("peak_strain", Quantity, Some("1"), "largest bending strain at the surface"),
-];
 
 /// Returns the attributes of a channel of maps, by the CF conventions: unit, meaning, and flags of codes; `None` for another name.
 #[must_use]
@@ -38,8 +16,13 @@ pub fn channel_attributes(name: &str) -> Option<Value> {
 
 /// Returns kind and attributes of a channel; `None` for another name.
 pub(super) fn channel(name: &str) -> Option<(ValueKind, Value)> {
-    if let Some((_, kind, units, meaning)) = CHANNELS.iter().find(|(own, ..)| *own == name) {
-        return Some((*kind, with_flags(name, about(*units, meaning))));
+    if let Some((_, units, meaning, _)) = CHANNELS.iter().find(|(own, ..)| *own == name) {
+        let kind = match (name, units) {
+            (_, Some(_)) => Quantity,
+            ("newton_steps", None) => Count,
+            _ => Code,
+        };
+        return Some((kind, with_flags(name, about(*units, meaning))));
     }
     let mut all = Parameter::ALL.into_iter();
     let parameter = all.find(|own| own.push_derivative() == name)?;
@@ -79,19 +62,4 @@ fn word(name: &str) -> String {
     let parts = name.split(|c: char| !c.is_ascii_alphanumeric());
     let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
     parts.join("_")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::channel_names;
-    use crate::store::Channels;
-
-    /// A channel that is missing here would be missing in every store.
-    #[test]
-    fn every_channel_of_a_map_has_a_line() {
-        let names = CHANNELS.iter().map(|(name, ..)| *name);
-        assert!(names.eq(Channels::STANDARD.with("peak_strain").names()));
-        assert!(channel_names().all(|name| channel(name).is_some()));
-    }
 }

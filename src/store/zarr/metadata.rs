@@ -2,11 +2,12 @@
 
 use super::array::{ZarrArray, about};
 use super::blocks::Blocks;
-use super::channels::{CHANNELS, channel, with_flags};
+use super::channels::{channel, with_flags};
 use super::encoding::ChunkEncoding;
 use super::encoding::ValueKind::{self, Code, Count};
 use super::identity::{AGREED, IDENTITY, StoreIdentity};
 use crate::classify::Regime;
+use crate::plan::channels::CHANNELS;
 use crate::plan::{Digits, STATE_CHANNELS};
 use crate::scene::{Coordinate, Grid, Parameter, SceneData};
 use crate::store::attributes::{DIGITS, digits};
@@ -115,7 +116,7 @@ pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)
         all.push((array, bytes));
     }
     let codes = Regime::ALL.map(|regime| regime.code() as u8).to_vec();
-    let (_, _, units, meaning) = CHANNELS[0];
+    let (_, units, meaning, _) = CHANNELS[0];
     let about = with_flags("regime", about(units, meaning));
     all.push((ZarrArray::of_axis(CODES, Code, codes.len(), about), codes));
     if digits != Digits::ALL {

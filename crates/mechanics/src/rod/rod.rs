@@ -6,10 +6,11 @@ use glam::DVec2;
 use serde_core::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// The side of the whisker that the pole is on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// The side of the whisker that the pole is on. The default is that of the push angle 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Concave backward: the pole is on the convex side, the force bends the whisker further.
+    #[default]
     Cb,
     /// Concave forward: the pole is on the concave side.
     Cf,

@@ -5,36 +5,66 @@ use crate::numerics::{LaneNumbers, Lanes, Real, keep, nearest_turn, pack};
 use crate::rod::{Rest, Rod, Units, arclength_at};
 use glam::DVec2;
 
-/// A reading: a state of the whisker in physical units. The first axis of the base frame is the base's tangent. Force and moment are
-/// those that the pole exerts at the base.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
-    /// Arc length from the base to the contact, in millimetres.
-    pub arc_length_mm: f64,
-    /// Angle of the whisker's tangent at the contact from the base's tangent, in degrees.
-    pub contact_angle_deg: f64,
-    /// Normal force between pole and whisker, in micronewtons.
-    pub force_un: f64,
-    /// Force `[x, y]` on the base, in the base frame, in micronewtons.
-    pub base_force_un: DVec2,
-    /// Moment on the base, in nanonewton metres, positive if it turns the base's tangent toward its normal.
-    pub base_moment_nnm: f64,
-    /// Chord angle of the paper's Fig. 1D, in degrees: between the directions from the base to the contact and to the point of the
-    /// resting whisker at the same distance.
-    pub push_chord_deg: f64,
-    /// Straight distance from the base to the contact, in millimetres.
-    pub contact_distance_mm: f64,
-    /// Bending energy of the whisker, in nanojoules.
-    pub energy_nj: f64,
+/// Defines [`Reading`] by its columns, and the macro `state_column`, which has their descriptions for tables.
+macro_rules! reading {
+    ($($(#[doc = $text:literal])+ $column:ident,)*; $(#[doc = $derived:literal])+ $last:ident = $value:expr) => {
+        /// A reading: a state of the whisker in physical units. The first axis of the base frame is the base's tangent. Force and moment are
+        /// those that the pole exerts at the base.
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct Reading {
+            $($(#[doc = $text])+ pub $column: f64,)*
+            $(#[doc = $derived])+ pub $last: f64,
+        }
+
+        impl Reading {
+            /// Names of the channels of a state, `[channel]`: the fields but the last one.
+            pub const CHANNELS: [&str; [$(stringify!($column)),*].len()] = [$(stringify!($column)),*];
+
+            /// Returns the values of the channels, in the order of [`Reading::CHANNELS`].
+            #[must_use]
+            pub const fn channels(&self) -> [f64; Self::CHANNELS.len()] {
+                [$(self.$column),*]
+            }
+
+            /// Creates the reading with the values of [`Reading::CHANNELS`].
+            #[must_use]
+            pub fn of([$($column),*]: [f64; Self::CHANNELS.len()]) -> Self {
+                let $last = $value;
+                Self { $($column,)* $last }
+            }
+        }
+
+        /// Expands to the description of a field of [`Reading`], for tables that have it as a column.
+        #[macro_export]
+        macro_rules! state_column {
+            $(($column) => { concat!($($text),+) };)*
+            ($last) => { concat!($($derived),+) };
+        }
+    };
 }
 
-impl Reading {
-    /// Returns the size of the whole force between pole and whisker, in micronewtons: its normal part is [`Reading::force_un`], the other one
-    /// is friction. The pole alone puts a force on the whisker, so that it is the force on the base.
-    #[must_use]
-    pub fn contact_force_un(&self) -> f64 {
-        self.base_force_un.length()
-    }
+reading! {
+    /// Arclength from the base to the contact, in mm.
+    arc_length_mm,
+    /// Angle of the tangent at the contact, from the base's tangent, in degrees.
+    contact_angle_deg,
+    /// Normal part of the force between pole and whisker, in uN; never negative.
+    force_un,
+    /// Force that the pole puts on the base, along the base's tangent, in uN.
+    base_force_x_un,
+    /// Force that the pole puts on the base, to the left of its tangent, in uN.
+    base_force_y_un,
+    /// Moment of the pole on the base, in nN m: positive turns it to the left.
+    base_moment_nnm,
+    /// Chord angle: from the resting whisker as far away to the contact, in degrees.
+    push_chord_deg,
+    /// Straight distance from the base to the contact, in mm.
+    contact_distance_mm,
+    /// Bending energy of the whisker, in nJ.
+    energy_nj,
+    ;
+    /// Size of the whole force between pole and whisker, with friction, in uN.
+    contact_force_un = DVec2::new(base_force_x_un, base_force_y_un).length()
 }
 
 /// Dimensionless numbers of a state from which its reading follows, or of several states in SIMD lanes. Lengths are in whisker lengths,
@@ -130,22 +160,28 @@ impl Reader {
         }
     }
 
-    /// Returns the change of a reading for a change of 1 in each dimensionless number of a state: lengths in whisker lengths, angles in
-    /// radians, whole forces with the sign `side`.
+    /// Returns the changes of [`Reading::CHANNELS`] for a change of 1 in each dimensionless number of a state: lengths in whisker lengths, angles
+    /// in radians, whole forces with the sign `side`.
     #[must_use]
-    pub fn of_one(&self, side: f64) -> Reading {
-        let units = &self.units;
+    pub fn of_one(&self, side: f64) -> [f64; Reading::CHANNELS.len()] {
+        let Units {
+            length_mm,
+            force_un,
+            moment_nnm,
+            ..
+        } = self.units;
         let degrees = 1f64.to_degrees();
-        Reading {
-            arc_length_mm: units.length_mm,
-            contact_angle_deg: degrees,
-            force_un: side * self.normal * units.force_un,
-            base_force_un: DVec2::splat(units.force_un),
-            base_moment_nnm: units.moment_nnm,
-            push_chord_deg: degrees,
-            contact_distance_mm: units.length_mm,
-            energy_nj: units.moment_nnm,
-        }
+        [
+            length_mm,
+            degrees,
+            side * self.normal * force_un,
+            force_un,
+            force_un,
+            moment_nnm,
+            degrees,
+            length_mm,
+            moment_nnm,
+        ]
     }
 
     /// Returns the reading at first touch: the resting whisker without a load. The contact is at arclength `contact`, in whisker lengths,
@@ -156,12 +192,8 @@ impl Reader {
         Reading {
             arc_length_mm: contact * self.units.length_mm,
             contact_angle_deg: nearest_turn(tangent.to_angle(), touch).to_degrees(),
-            force_un: 0.0,
-            base_force_un: DVec2::ZERO,
-            base_moment_nnm: 0.0,
-            push_chord_deg: 0.0,
             contact_distance_mm: point.length() * self.units.length_mm,
-            energy_nj: 0.0,
+            ..Reading::default()
         }
     }
 
@@ -169,18 +201,7 @@ impl Reader {
     /// direction `touch`. Both angles are in radians.
     #[must_use]
     pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
-        let numbers = self.numbers(tau, &full.plain(), touch + push, push);
-        let [arc, angle, force, x, y, moment, chord, distance, energy] = self.channels(numbers);
-        Reading {
-            arc_length_mm: arc,
-            contact_angle_deg: angle,
-            force_un: force,
-            base_force_un: DVec2::new(x, y),
-            base_moment_nnm: moment,
-            push_chord_deg: chord,
-            contact_distance_mm: distance,
-            energy_nj: energy,
-        }
+        Reading::of(self.channels(self.numbers(tau, &full.plain(), touch + push, push)))
     }
 
     /// Returns the numbers of a `state` with the contact at `tau`. The pole is in the direction `phi` from the base, and `chord` is near the
@@ -203,10 +224,10 @@ impl Reader {
         }
     }
 
-    /// Returns the channels of a state from its `numbers`, in the order and the units of the fields of [`Reading`].
+    /// Returns the channels of a state from its `numbers`, in the order and the units of [`Reading::CHANNELS`].
     #[must_use]
     #[inline(always)]
-    pub fn channels<T: Real>(&self, numbers: StateNumbers<T>) -> [T; 9] {
+    pub fn channels<T: Real>(&self, numbers: StateNumbers<T>) -> [T; Reading::CHANNELS.len()] {
         let StateNumbers {
             force,
             tangent: [cos, sin],
