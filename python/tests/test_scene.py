@@ -41,7 +41,7 @@ def test_values_make_the_scene_of_the_file(cone):
 
 
 def test_every_parameter_of_rust_is_an_argument():
-    own = {field.name for field in fields(wm.Whisker)} - {"profile", "profile_smooth", "rest_points", "rest_degree"}
+    own = {field.name for field in fields(wm.Whisker)} - {"profile", "profile_smooth", "rest_points", "rest_degree", "yield_strain"}
     pole = {"pole_radius_mm", "friction"}
     assert own | pole == {name for name, *_ in _whiskmap.parameters()}
     assert "curvature_per_mm" in PARAMETERS

@@ -76,4 +76,4 @@ def test_maps_have_strains(scene: wm.Scene) -> None:
 
 def test_a_design_that_yields_is_warned_of(scene: wm.Scene) -> None:
     with pytest.warns(wm.SceneWarning, match=r"taper = 0\.\d+: the whisker yields: the largest strain of the push, 0\.\d+, exceeds"):
-        wm.design(scene, "taper", distance_mm=12, slip_off_deg=30)
+        wm.design(scene, "taper", distance_mm=8, slip_off_deg=60)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from whiskmap._description import PARAMETERS, build, order_of, range_of, resembling, set_parameter
 from whiskmap._parts import PAIRS, Grid, Pole, Surface, Whisker, axis_of, degree_of, is_smooth, pairs_of, rows_of
+from whiskmap._values import number
 from whiskmap._warnings import warn
 from whiskmap._whiskmap import CheckedScene, coordinates
 
