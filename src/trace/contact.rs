@@ -14,17 +14,23 @@ impl Branch {
     /// # Errors
     /// With friction, the course of the contact up to a push angle, or the state there, is not found.
     pub(super) fn pushed(&self, nodes: &[CurveNode]) -> Result<Vec<StateAtPush>, NoState> {
+        self.each_pushed(nodes).into_iter().collect()
+    }
+
+    /// Returns the stable state of a push at the push angle of each of the `nodes`, as [`Branch::pushed`] does: `[node]`. With friction, an entry is the
+    /// reason why the course of the contact, or the state, is not found.
+    pub(super) fn each_pushed(&self, nodes: &[CurveNode]) -> Vec<Result<StateAtPush, NoState>> {
         let sign = self.level.side.sign();
         let friction = self.level.rod.friction;
         let unmoved = |node, sliding| StateAtPush::of(node, true, friction, sliding);
         if friction == 0.0 {
-            return Ok(nodes.iter().map(|node| unmoved(node, None)).collect());
+            return nodes.iter().map(|node| Ok(unmoved(node, None))).collect();
         }
         let lost = |node: &CurveNode| NoState::NoCourse {
             push_deg: node.push.to_degrees(),
         };
         let Some(history) = &self.history else {
-            return Err(lost(&nodes[0]));
+            return nodes.iter().map(|node| Err(lost(node))).collect();
         };
         let phases = nodes.iter().map(|node| history.phase(sign * node.push));
         let phases: Vec<ContactPhase> = phases.collect();

@@ -1,12 +1,18 @@
 //! Largest loads during a push.
 
 use super::resample::interpolate;
-use super::{Branch, StableBranch};
+use super::{Branch, StableBranch, StateAtPush};
 use crate::sheet::{CurveNode, ON_CURVE};
-use whiskmap_mechanics::numerics::least_between;
+use glam::DVec2;
 
 /// Largest excess of a maximum over the value at the end, relative to this, with which it counts as that at the end.
 const AT_END: f64 = 1e-9;
+
+/// Number of states between two others in a round of the search for a maximum: about as many as a block of trajectories has.
+const BETWEEN: usize = 15;
+
+/// Number of rounds of the search. The last states are 1e-8 of the interval apart, in which a smooth function is flat to rounding.
+const ROUNDS: usize = 9;
 
 /// Load of a whisker, of which a push has a largest size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +41,7 @@ pub struct PushPeak {
 
 impl StableBranch {
     /// Returns the largest size of `load` from first touch to the end of the stable states. The nodes of the continuation enclose the
-    /// maximum, and the golden section finds it between them. A larger maximum between two other nodes can be missed.
+    /// maximum, and ever closer states between them find it. A larger maximum between two other nodes can be missed.
     #[must_use]
     pub fn peak(&self, load: PushLoad) -> PushPeak {
         let Branch {
@@ -43,60 +49,81 @@ impl StableBranch {
             level,
             ..
         } = &self.0;
-        let (nodes, sizes) = (&continuation.nodes, self.sizes(load));
+        let nodes = &continuation.nodes;
+        let sizes = self.sizes(nodes, load);
         let Some(best) = best(&sizes) else {
             return PushPeak {
                 size: f64::NAN,
                 before_end_deg: None,
             };
         };
+        let (last, mut found) = (sizes[sizes.len() - 1], (sizes[best], nodes[best]));
         let lengths = self.0.lengths();
         let ends = [best.saturating_sub(1), (best + 1).min(sizes.len() - 1)];
-        let node = |length: f64| {
-            let (near, start) = interpolate(nodes, &lengths, length);
-            let CurveNode { push, angle, .. } = nodes[near];
-            let corrected = level.correct(&[start], ON_CURVE).pop().flatten();
-            corrected.map(|(point, full)| level.node(point, &full, push, angle))
-        };
-        let ends = ends.map(|end| lengths[end]);
-        let [at, inside] = least_between(ends, f64::NEG_INFINITY, |length| {
-            node(length).map_or(f64::NAN, |node| -self.size(&node, load))
-        });
-        let (last, inside) = (sizes[sizes.len() - 1], -inside);
-        let size = sizes[best].max(inside);
+        let mut ends = ends.map(|end| lengths[end]);
+        for _ in 0..ROUNDS {
+            let step = (ends[1] - ends[0]) / (BETWEEN + 1) as f64;
+            let targets = (1..=BETWEEN).map(|i| step.mul_add(i as f64, ends[0]));
+            let between = targets.map(|length| (length, interpolate(nodes, &lengths, length)));
+            let between: Vec<(f64, (usize, DVec2))> = between.collect();
+            let starts: Vec<DVec2> = between.iter().map(|(_, (_, start))| *start).collect();
+            let corrected = level.correct(&starts, ON_CURVE);
+            let states = between.iter().zip(corrected);
+            let states = states.filter_map(|((length, (near, _)), corrected)| {
+                let (point, full) = corrected?;
+                let CurveNode { push, angle, .. } = nodes[*near];
+                Some((*length, level.node(point, &full, push, angle)))
+            });
+            let (places, states): (Vec<f64>, Vec<CurveNode>) = states.unzip();
+            let sizes = self.sizes(&states, load);
+            let Some(best) = self::best(&sizes) else {
+                break;
+            };
+            if sizes[best] > found.0 {
+                found = (sizes[best], states[best]);
+            }
+            ends = [places[best] - step, places[best] + step];
+        }
         // Next to the end, the push angle of a maximum is known to the root of the rounding errors.
+        let (size, node) = found;
         let is_before = size > last * (1.0 + AT_END);
-        let before = is_before.then(|| match inside >= sizes[best] {
-            true => node(at).unwrap_or(nodes[best]),
-            false => nodes[best],
-        });
         PushPeak {
             size,
-            before_end_deg: before.map(|node| node.push.to_degrees()),
+            before_end_deg: is_before.then(|| node.push.to_degrees()),
         }
     }
 
     /// Returns the largest size of `load` at the nodes of the continuation, some percent below that of [`Self::peak`]; NaN if no state is known.
     #[must_use]
     pub fn rough_peak(&self, load: PushLoad) -> f64 {
-        let sizes = self.sizes(load);
+        let sizes = self.sizes(&self.0.continuation.nodes, load);
         best(&sizes).map_or(f64::NAN, |best| sizes[best])
     }
 
-    /// Sizes of a load at the nodes of the continuation, `[node]`.
-    fn sizes(&self, load: PushLoad) -> Vec<f64> {
-        let nodes = self.0.continuation.nodes.iter();
-        nodes.map(|node| self.size(node, load)).collect()
-    }
-
-    /// Returns the size of a load at a node; NaN if the contact's course to it is not found.
-    fn size(&self, node: &CurveNode, load: PushLoad) -> f64 {
-        let states = self.0.pushed(std::slice::from_ref(node));
-        states.map_or(f64::NAN, |states| match load {
-            PushLoad::ContactForce => self.0.read(&states[0]).contact_force_un,
-            PushLoad::BaseMoment => self.0.read(&states[0]).base_moment_nnm.abs(),
-            PushLoad::Strain => self.0.peaks(&states)[0].strain * self.0.units.strain,
-        })
+    /// Returns the sizes of a load at `nodes`, `[node]`; NaN where the contact's course is not found.
+    fn sizes(&self, nodes: &[CurveNode], load: PushLoad) -> Vec<f64> {
+        let states = self.0.each_pushed(nodes);
+        let known: Vec<StateAtPush> = states.iter().flatten().copied().collect();
+        let size = |state: &StateAtPush| match load {
+            PushLoad::BaseMoment => self.0.read(state).base_moment_nnm.abs(),
+            _ => self.0.read(state).contact_force_un,
+        };
+        let sizes: Vec<f64> = match load {
+            PushLoad::Strain => {
+                let peaks = self.0.peaks(&known).into_iter();
+                peaks
+                    .map(|peak| peak.strain * self.0.units.strain)
+                    .collect()
+            }
+            _ => known.iter().map(size).collect(),
+        };
+        let mut sizes = sizes.into_iter();
+        let size = |state: &Result<_, _>| state.as_ref().ok().and_then(|_| sizes.next());
+        states
+            .iter()
+            .map(size)
+            .map(|own| own.unwrap_or(f64::NAN))
+            .collect()
     }
 }
 
