@@ -280,7 +280,7 @@ impl PushMark {
     /// Marks a push of `whisker` at `pole`, whose first touch is at `distance_mm` from the base, until it detaches: empty cells without states.
     /// `None` without a yield strain.
     ///
-    /// The stable states up to the end are followed, which takes some milliseconds.
+    /// The stable states up to the end are followed, which takes one or two milliseconds.
     #[must_use]
     pub fn new(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Option<Self> {
         whisker.yield_strain?;
