@@ -73,7 +73,13 @@ impl Whisk {
         let (spans, undecided) = (spans.count(), undecided.count());
         let without = (undecided > 0 || spans > 0).then(|| {
             let all = self.samples.len();
-            format!("{undecided} of {all} samples are undecided, for the reasons in the table; {spans} such spans begin")
+            let begin = match spans {
+                0 => String::new(),
+                _ => format!("; {spans} such spans begin"),
+            };
+            format!(
+                "{undecided} of {all} samples are undecided, for the reasons in the table{begin}"
+            )
         });
         let gaps = gaps::warnings(&self.gaps);
         start.into_iter().chain(gaps).chain(without).collect()
