@@ -225,7 +225,8 @@ impl CsvTable {
         })
     }
 
-    /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A [missing value](MISSING) is NaN.
+    /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A missing value, an empty cell, `NaN`,
+    /// `NA`, `N/A`, `null` or `none` in either case, is NaN.
     ///
     /// # Errors
     /// Fails as [`CsvTable::numbers`] does, but for missing values.
