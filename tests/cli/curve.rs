@@ -172,9 +172,12 @@ fn a_part_of_a_sweep_is_selected() {
 #[test]
 fn a_plot_shows_all_whiskers() {
     let tapers = SCENE.replace("tip_radius_um = 1.5\n", "");
-    let (few, many) = ("[0, 0.5, 1]", "{ from = 0, to = 1, count = 16 }");
+    let (few, many) = (
+        "[0, 0.1, 0.2, 0.4, 0.6, 0.8, 1]",
+        "{ from = 0, to = 1, count = 16 }",
+    );
     for (axis, names, count) in [
-        (few, &["0", "0.5", "1"][..], 3),
+        (few, &["0", "0.1", "0.2", "0.4", "0.6", "0.8", "1"][..], 7),
         (many, &["0", "0.2667", "0.5333", "0.7333", "1"], 16),
     ] {
         let place = Place::with(&format!("{tapers}taper = {axis}\nfriction = [0, 0.2]\n"));
