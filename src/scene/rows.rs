@@ -44,12 +44,37 @@ impl SceneBuilder {
         one.with_tip_of_taper()
     }
 
+    /// Refuses sweep axes of parameters that a column of the table gives, or determines.
+    fn refuse_columns(&self, rows: &[WhiskerRow]) -> Result<(), SceneFault> {
+        use Parameter::{BaseRadiusUm, Taper, TipRadiusUm};
+        for (parameter, _) in &self.sweep {
+            let others: &[Parameter] = match parameter {
+                BaseRadiusUm | TipRadiusUm => &[Taper],
+                Taper => &[TipRadiusUm],
+                _ => &[],
+            };
+            let is_at_odds = |own: &Parameter| own == parameter || others.contains(own);
+            let columns = rows.iter().flat_map(|row| &row.numbers);
+            let mut columns = columns.map(|(column, _)| *column);
+            if let Some(column) = columns.find(is_at_odds) {
+                let must = format!(
+                    "must be left out: {} has the column {}",
+                    SweepVariable::TABLE,
+                    column.name()
+                );
+                return Err(SceneFault::new(parameter.axis_key(), must));
+            }
+        }
+        Ok(())
+    }
+
     /// Returns the whiskers of the table, `[row]`, and the builder of the first row that has one.
     pub(super) fn table_whiskers(
         &self,
         rows: &[WhiskerRow],
     ) -> Result<(Vec<TableWhisker>, Self), SceneFault> {
         check_names(rows)?;
+        self.refuse_columns(rows)?;
         let mut first = None;
         let whiskers = rows.iter().map(|row| {
             let one = self.of_row(row);

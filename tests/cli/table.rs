@@ -170,6 +170,36 @@ fn a_plot_names_the_whiskers() {
     assert_eq!(shown, [true, false, true]);
 }
 
+/// An axis would replace the numbers of a column, or leave the tip of a row where its taper does not put it.
+#[test]
+fn axes_of_columns_are_refused() {
+    for (column, axis, said) in [
+        (
+            "base_radius_um",
+            "base_radius_um = [20, 40]",
+            "grid.base_radius_um: must be left out: whiskers.table has the column base_radius_um",
+        ),
+        (
+            "taper",
+            "base_radius_um = [20, 40]",
+            "grid.base_radius_um: must be left out: whiskers.table has the column taper",
+        ),
+        (
+            "tip_radius_um",
+            "taper = [0.5, 0.9]",
+            "grid.taper: must be left out: whiskers.table has the column tip_radius_um",
+        ),
+    ] {
+        let scene = PAD.replace(
+            "youngs_modulus_gpa = 3.0",
+            "youngs_modulus_gpa = 3.0\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = 1",
+        );
+        let place = Place::with(&format!("{scene}{axis}\n"));
+        place.write("pad.csv", &format!("name,{column}\nC1,0.9\n"));
+        place.run(&["curve", "scene.toml"]).assert_refused(&[said]);
+    }
+}
+
 #[test]
 fn wrong_uses_of_tables_are_refused() {
     let place = place();

@@ -143,4 +143,13 @@ fn the_shipped_film_has_a_slip_off() {
     let notes = without_pole.notes.iter().filter(|note| is_beside(note));
     let named = "body part pole is beside the whisker in most frames: give the parts along the whisker by --points, and the pole by --pole";
     assert_eq!(notes.collect::<Vec<_>>(), [named]);
+    let are_few = |note: &String| note.contains("points along the whisker are few");
+    assert!(!found.notes.iter().any(are_few), "{:?}", found.notes);
+    let some = with(&|own| {
+        own.points = ["base", "w3", "w6", "w9", "w12", "tip"]
+            .map(str::to_owned)
+            .to_vec()
+    });
+    let some = parse(text, &some).unwrap();
+    assert!(some.notes.iter().any(are_few), "{:?}", some.notes);
 }
