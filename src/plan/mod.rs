@@ -100,10 +100,10 @@ impl Plan {
         Self::in_blocks(scene, 1)
     }
 
-    /// Creates the plan of a run for `scene` that keeps the packed panels of a block of `whiskers`, until the block is written.
+    /// Creates the plan of a run for `scene` that keeps the packed panels of so many `whiskers`, until their blocks are written.
     ///
     /// # Errors
-    /// When one panel, or one block, takes more than [`MEMORY_LIMIT`].
+    /// When one panel, or the blocks, take more than [`MEMORY_LIMIT`].
     pub fn in_blocks(scene: &Scene, whiskers: usize) -> Result<Self, PlanError> {
         Self::with_band(scene, scene.grid.distance_mm.len(), whiskers)
     }

@@ -33,6 +33,14 @@ enum OutputPlace {
     Device(File),
 }
 
+/// Time at which the name of a finished file is brought to the disk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum NameSync {
+    Now,
+    #[cfg(feature = "zarr")]
+    Later,
+}
+
 impl Output {
     /// Creates an output that writes to standard output at once; its path is `-`.
     #[must_use]
@@ -94,7 +102,7 @@ impl Output {
     /// # Errors
     /// The file cannot be brought to the disk or renamed, or the device takes no more.
     pub fn finish(self) -> io::Result<()> {
-        self.complete(true).map(drop)
+        self.complete(true, NameSync::Now).map(drop)
     }
 
     /// Finishes a regular file like [`Output::finish`], unless a file of its name is there: of several processes that
@@ -104,7 +112,17 @@ impl Output {
     /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), or an error of [`Output::finish`].
     #[cfg(feature = "zarr")]
     pub(super) fn finish_new(self) -> io::Result<()> {
-        self.complete(false).map(drop)
+        self.complete(false, NameSync::Now).map(drop)
+    }
+
+    /// Finishes the output like [`Output::finish`], but leaves the name of a regular file to a later [`sync_folder`]. Until then, a crash of the
+    /// machine may leave the old file.
+    ///
+    /// # Errors
+    /// An error of [`Output::finish`].
+    #[cfg(feature = "zarr")]
+    pub(super) fn finish_before_sync(self) -> io::Result<()> {
+        self.complete(true, NameSync::Later).map(drop)
     }
 
     /// Finishes the output like [`Output::finish`], and returns its file. That is still the file of this output when another one has
@@ -113,17 +131,19 @@ impl Output {
     /// # Errors
     /// An error of [`Output::finish`], or the output is standard output.
     pub(super) fn finish_open(self) -> io::Result<File> {
-        self.complete(true)?
+        self.complete(true, NameSync::Now)?
             .ok_or(io::ErrorKind::NotSeekable.into())
     }
 
     /// Finishes the output, and returns the file that has its bytes; `None` for standard output.
-    fn complete(self, may_replace: bool) -> io::Result<Option<File>> {
+    fn complete(self, may_replace: bool, sync: NameSync) -> io::Result<Option<File>> {
         match self.place {
             OutputPlace::Stdout(mut stdout) => stdout.flush().map(|()| None),
             OutputPlace::Regular { file, target } => {
                 let file = file.persist(&target, may_replace)?;
-                sync_folder(folder_of(&target))?;
+                if sync == NameSync::Now {
+                    sync_folder(folder_of(&target))?;
+                }
                 Ok(Some(file))
             }
             OutputPlace::Device(mut kept) => {

@@ -82,6 +82,33 @@ fn every_file_is_on_the_disk_before_it_has_its_name() {
     assert_eq!(place.bytes("x.exr"), b"old");
 }
 
+/// Each file of a store is brought to the disk, and each folder once, after them; the root's name is there before the other files. A
+/// failure at any of these is one of the command.
+#[test]
+fn a_store_is_on_the_disk_when_its_command_ends() {
+    let faulty = FaultyPlace::new();
+    let store = [&MAP[..], &["new", "--format=zarr", "--channels=regime"]].concat();
+    for after in 0.. {
+        let run = faulty.run(&store, "fsync", EIO, after);
+        if run.code != Some(0) {
+            run.assert_said(1, "error: cannot write new/scene.zarr");
+            run.assert_said(1, "Input/output error (os error 5)\n");
+            assert!(!run.err.contains("panicked"), "{run:?}");
+            fs::remove_dir_all(faulty.place.path("new")).unwrap();
+            continue;
+        }
+        let root = faulty.place.path("new/scene.zarr");
+        let (folders, files): (Vec<PathBuf>, Vec<PathBuf>) = fs::read_dir(&root)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .partition(|path| path.is_dir());
+        let inside = folders.iter().map(|folder| names(folder).len());
+        let files = files.len() + inside.sum::<usize>();
+        assert_eq!(after, files + folders.len() + 2);
+        break;
+    }
+}
+
 /// Another path helps against a read-only file system, not against the other errors.
 #[test]
 fn errors_at_the_first_check_of_an_output_are_failures_while_running() {
@@ -112,4 +139,21 @@ fn threads_that_cannot_be_started_are_a_failure_while_running() {
         assert_eq!(run.err.lines().count(), 1, "{run:?}");
     }
     assert!(!faulty.place.path("maps").exists());
+}
+
+/// Files without a thread are written on that of their block; a block without one is an error, not a panic.
+#[test]
+fn a_store_needs_no_thread_for_each_file() {
+    let faulty = FaultyPlace::new();
+    let store = [&MAP[..], &["new", "--format=zarr", "--threads=1"]].concat();
+    let enough = (0..200).find(|after| {
+        let run = faulty.run(&store, "thread", EAGAIN, *after);
+        let _ = fs::remove_dir_all(faulty.place.path("new"));
+        assert!(!run.err.contains("panicked"), "{run:?}");
+        if run.code != Some(0) {
+            run.assert_said(1, "error: cannot ");
+        }
+        run.code == Some(0)
+    });
+    assert!(enough.is_some());
 }

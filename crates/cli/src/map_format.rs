@@ -28,7 +28,9 @@ impl MapFormat {
             (Self::Exr, _) | (_, 1) => Plan::in_bands(scene),
             (Self::Zarr, _) => {
                 let whiskers = ZarrStore::blocks(&scene.grid).map(|block| block.len());
-                Plan::in_blocks(scene, whiskers.max().unwrap_or(1))
+                // One block is written while the next one is computed.
+                let most = whiskers.max().unwrap_or(1);
+                Plan::in_blocks(scene, scene.whisker_count().min(2 * most))
             }
         }
     }

@@ -9,13 +9,16 @@ use super::summary::{compute, report};
 use clap::Args;
 use rayon::prelude::*;
 use std::iter::Sum;
+use std::mem;
+use std::panic::resume_unwind;
 use std::path::Path;
 use std::str::FromStr;
+use std::thread::{self, ScopedJoinHandle};
 use std::time::Instant;
 use whiskmap::map::Panel;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{BlockState, CheckDepth, MapDescription, PackedPanel, ZarrStore};
+use whiskmap::store::{BlockState, CheckDepth, MapDescription, PackedPanel, StoreError, ZarrStore};
 
 /// Shard of a store: the blocks of one of `count` processes, every `count`-th block.
 #[derive(Clone, Copy, Debug)]
@@ -149,38 +152,57 @@ pub fn fill(
         .map(|block| (*block, store.whiskers(*block).len()));
     let mut next = due.next();
     let mut packed: Vec<PackedPanel> = Vec::new();
-    let keep = |panels: &mut Vec<Panel>| {
-        let bands = panels.par_iter().map(|panel| store.pack(panel));
-        for band in bands.collect::<Vec<_>>() {
-            match packed
-                .last_mut()
-                .filter(|last| last.cells() < cells_of_panel)
-            {
-                Some(begun) => begun.append(band),
-                None => packed.push(band),
+    let store = &store;
+    let summary = thread::scope(|scope| {
+        let mut writing = None;
+        let keep = |panels: &mut Vec<Panel>| {
+            let bands = panels.par_iter().map(|panel| store.pack(panel));
+            for band in bands.collect::<Vec<_>>() {
+                match packed
+                    .last_mut()
+                    .filter(|last| last.cells() < cells_of_panel)
+                {
+                    Some(begun) => begun.append(band),
+                    None => packed.push(band),
+                }
             }
-        }
-        let is_whole = packed
-            .last()
-            .is_some_and(|last| last.cells() == cells_of_panel);
-        if let Some((block, whiskers)) = next
-            && is_whole
-            && packed.len() == whiskers
-        {
-            store.write(block, &packed, temporary)?;
-            packed.clear();
-            next = due.next();
-        }
-        Ok(())
-    };
-    let summary = compute(
-        scene,
-        &plan,
-        engine.as_mut().map(|engine| &mut **engine as _),
-        cells_of_panel * whiskers,
-        keep,
-    )?;
+            let is_whole = packed
+                .last()
+                .is_some_and(|last| last.cells() == cells_of_panel);
+            if let Some((block, whiskers)) = next
+                && is_whole
+                && packed.len() == whiskers
+            {
+                // The disk takes longer than the next panels, so it has a thread of its own.
+                let panels = mem::take(&mut packed);
+                let write = move || store.write(block, &panels, temporary);
+                let thread = thread::Builder::new().spawn_scoped(scope, write);
+                let thread = thread.map_err(|why| StoreError::Write(path.to_owned(), why))?;
+                written(writing.replace(thread))?;
+                next = due.next();
+            }
+            Ok(())
+        };
+        let summary = compute(
+            scene,
+            &plan,
+            engine.as_mut().map(|engine| &mut **engine as _),
+            cells_of_panel * whiskers,
+            keep,
+        )?;
+        written(writing)?;
+        Ok::<_, Failure>(summary)
+    })?;
+    store.sync()?;
     report(scene, &summary, start, &[path.to_owned()])
+}
+
+/// Waits until a thread has written its block.
+fn written(thread: Option<ScopedJoinHandle<'_, Result<(), StoreError>>>) -> Result<(), StoreError> {
+    thread.map_or(Ok(()), |thread| {
+        let ended = thread.join();
+        ended.unwrap_or_else(|panic| resume_unwind(panic))
+    })
 }
 
 /// Returns the missing and damaged ones of `blocks`, and warns of each damaged file.

@@ -165,6 +165,7 @@ fn repair(
     for block in &found.damaged {
         removed += usize::from(store.remove_damaged(*block)?);
     }
+    store.sync()?;
     let mut out = StandardOutput::open();
     writeln!(out, "metadata rewritten: {metadata}")?;
     writeln!(out, "blocks removed: {removed}")?;

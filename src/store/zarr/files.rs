@@ -4,11 +4,14 @@ use super::array::ZarrArray;
 use super::metadata;
 use super::read::open_regular;
 use super::{METADATA, ZarrStore};
+use crate::store::temporary::sync_folder;
 use crate::store::{Output, StoreError, TemporaryFiles};
 use serde_json::{Map, Value};
 use std::fs;
 use std::io::{self, Read, Write};
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread::{self, ScopedJoinHandle};
 
 /// Most bytes of a metadata file: a scene of 1 MiB with its radii, in JSON, needs less.
 const MOST_METADATA: u64 = 16 << 20;
@@ -50,20 +53,31 @@ impl ZarrStore {
     /// # Errors
     /// A file cannot be read or written.
     pub fn restore_metadata(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
-        let (mut damaged, mut failures) = (Vec::new(), Vec::new());
-        for (path, bytes) in self.metadata_files() {
-            let restored = match metadata_fault(&path, &bytes) {
-                None => continue,
-                Some(StoreError::Damaged(..)) => restore(&path, &bytes, temporary),
-                Some(why) => Err(why),
-            };
-            match restored {
-                Ok(true) => damaged.push(path),
-                Ok(false) => {}
-                Err(why) => failures.push(why),
+        let files = self.metadata_files();
+        let restored = on_threads(&files, |(path, bytes)| match metadata_fault(path, bytes) {
+            None => Ok(None),
+            Some(StoreError::Damaged(..)) => {
+                let was_there = restore(path, bytes, temporary)?;
+                Ok(was_there.then(|| path.clone()))
             }
+            Some(why) => Err(why),
+        });
+        restored.into_iter().filter_map(Result::transpose).collect()
+    }
+
+    /// Brings the names of all files of the store to the disk. Before that, a crash of the machine may take the last blocks back: they are
+    /// missing then, not damaged. One call for all blocks takes the place of one for each file, of 1 to 5 ms.
+    ///
+    /// # Errors
+    /// A folder cannot be brought to the disk.
+    pub fn sync(&self) -> Result<(), StoreError> {
+        let arrays = self.constants().into_iter().map(|(array, _)| array.name);
+        let arrays = arrays.chain(self.arrays.iter().map(|array| array.name.clone()));
+        let folders = arrays.map(|name| self.path.join(name));
+        for folder in folders.chain([self.path.clone()]) {
+            sync_folder(&folder).map_err(StoreError::at(&folder, StoreError::Write))?;
         }
-        failures.into_iter().next().map_or(Ok(damaged), Err)
+        Ok(())
     }
 
     /// Returns every file of metadata and coordinates of the store with its bytes; the root's is the last.
@@ -156,13 +170,31 @@ fn json(value: &Value) -> Vec<u8> {
     value.to_string().into_bytes()
 }
 
-/// Writes a file as a whole, piece by piece, into an existing folder.
+/// Calls `write` for each file on a thread of its own, because it waits for the disk, and returns the results. Without more threads it calls
+/// `write` on this one.
+pub(super) fn on_threads<T: Sync, R: Send>(files: &[T], write: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let write = &write;
+    thread::scope(|scope| {
+        let begun = files.iter().map(|file| {
+            let thread = thread::Builder::new().spawn_scoped(scope, move || write(file));
+            thread.map_err(|_| write(file))
+        });
+        let begun: Vec<Result<ScopedJoinHandle<'_, R>, R>> = begun.collect();
+        let ended = begun.into_iter().map(|begun| match begun {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+            Err(written) => written,
+        });
+        ended.collect()
+    })
+}
+
+/// Writes a file as a whole, piece by piece, into an existing folder. [`ZarrStore::sync`] brings its name to the disk.
 pub(super) fn write(
     path: &Path,
     pieces: &[impl AsRef<[u8]>],
     temporary: &TemporaryFiles,
 ) -> Result<(), StoreError> {
-    let written = finish(path, pieces, temporary, Output::finish);
+    let written = finish(path, pieces, temporary, Output::finish_before_sync);
     written.map_err(StoreError::at(path, StoreError::Write))
 }
 

@@ -1,7 +1,7 @@
 //! Packing and writing of panels as the files of a block.
 
 use super::array::ZarrArray;
-use super::files::write;
+use super::files::{on_threads, write};
 use super::metadata::CELLS;
 use super::{ZarrStore, shard};
 use crate::classify::Regime;
@@ -70,7 +70,7 @@ impl ZarrStore {
         chunks.map(|chunk| chunk.len() as u64).sum()
     }
 
-    /// Writes the panels of a block into the store.
+    /// Writes the panels of a block into the store. [`ZarrStore::sync`] ends a run.
     ///
     /// # Errors
     /// The disk is full, the folder is not writable, or the store is no longer at its path.
@@ -81,7 +81,7 @@ impl ZarrStore {
         temporary: &TemporaryFiles,
     ) -> Result<(), StoreError> {
         self.check_place()?;
-        let put = |(index, array): (usize, &ZarrArray)| {
+        let put = |(index, array): &(usize, &ZarrArray)| {
             let file = self.file(array, block);
             let room = self.blocks.slots();
             let missing = (panels.len() < room).then(|| array.pack_fill(room));
@@ -91,17 +91,20 @@ impl ZarrStore {
             let counts: Vec<Vec<Vec<u8>>> = counts.collect();
             let mut slots = vec![&missing; room];
             for (place, panel) in panels.iter().enumerate() {
-                let packed = counts.get(place).unwrap_or(&panel.chunks[index]);
+                let packed = counts.get(place).unwrap_or(&panel.chunks[*index]);
                 slots[self.blocks.slot(block, place)] = packed;
             }
             let chunks = slots.into_iter().flatten().map(Vec::as_slice);
             let identity = self.expected(array, &file).identity;
             write(&file, &shard::assemble(identity, chunks), temporary)
         };
-        let last = self.arrays.len() - 1;
-        let others = self.arrays[..last].par_iter().enumerate();
-        others.try_for_each(put)?;
-        put((last, &self.arrays[last]))
+        let arrays: Vec<(usize, &ZarrArray)> = self.arrays.iter().enumerate().collect();
+        let Some((last, others)) = arrays.split_last() else {
+            return Ok(());
+        };
+        let written = on_threads(others, put);
+        written.into_iter().collect::<Result<(), _>>()?;
+        put(last)
     }
 }
 

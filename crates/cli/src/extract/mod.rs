@@ -152,6 +152,7 @@ fn store(
             temporary,
         )?;
     }
+    store.sync()?;
     let finished = folder.map_or(Ok(()), |folder| folder.finish(path));
     finished.map_err(unwritten(path))
 }
