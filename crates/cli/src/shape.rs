@@ -76,7 +76,9 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let side = args.side.unwrap_or(Side::of_push(push_deg));
     let stable = args.branch == BranchPart::Stable;
     let refused = |why| match why {
-        NoState::OutOfReach { .. } | NoState::Failed { .. } => refuse(distance, why),
+        NoState::OutOfReach { .. } | NoState::BeyondTurns | NoState::Failed { .. } => {
+            refuse(distance, why)
+        }
         NoState::SlippedOff { at_deg } | NoState::PulledOff { at_deg }
             if (at_deg - push_deg).abs() < 1e-8 =>
         {
