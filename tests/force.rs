@@ -11,6 +11,7 @@ use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::random::RandomStream;
 use whiskmap::scene::{FrameDeviations, Scene, Whisker};
 use whiskmap::trace::{Branch, BranchPoint, NoState, WhiskerPart, WhiskerShape, curve};
+use whiskmap::yields::StrainMark;
 
 /// The frame of a stable or unstable state: its curvature at the point next to `part` of the length, and its contact. With the frame, the
 /// state.
@@ -215,6 +216,42 @@ fn forces_of_a_follicle_come_back_in_both_frames() {
         }
     }
     assert_eq!(beyond, 2);
+}
+
+/// The model's rows have side, contact and strain of their states, in both frames of a follicle.
+#[test]
+fn forces_of_the_model_have_the_strains_of_their_states() {
+    for name in ["cone", "follicle"] {
+        let scene = shipped::scene(name)
+            .to_builder()
+            .yield_strain(0.01)
+            .build()
+            .unwrap();
+        for push in [-20.0, 15.0] {
+            let (frame, state) = frame(&scene, 9.0, push, 0.1);
+            let options = ForceOptions {
+                axis: BaseAxis::Follicle,
+                ..ForceOptions::new(ForceMethod::Model)
+            };
+            let free = CurvatureFrame {
+                contact: None,
+                ..frame
+            };
+            let rows = forces_of(&scene, &[frame, free], &options);
+            let marks = StrainMark::of_rows(&scene.whisker, &scene.pole, &rows).unwrap();
+            let context = format!("{name} {push} {rows:?} {marks:?} {state:?}");
+            assert_eq!(rows[0].side, Some(Side::of_push(push)), "{context}");
+            let place = rows[0].arc_length_mm.unwrap() / state.arc_length_mm;
+            assert!((place - 1.0).abs() < 1e-9, "{context}");
+            let strain = marks[0].peak_strain.unwrap() / state.peak_strain;
+            assert!((strain - 1.0).abs() < 1e-8, "{context}");
+            assert_eq!(marks[0].yields, Some(state.peak_strain > 0.01), "{context}");
+            assert_eq!(
+                (marks[1].peak_strain, marks[1].yields),
+                (Some(0.0), Some(false))
+            );
+        }
+    }
 }
 
 #[test]

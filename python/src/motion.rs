@@ -193,7 +193,12 @@ pub fn force<'py>(
     };
     let job = |cancel: &Arc<AtomicBool>| {
         let found = forces_until(&whisker, &scene.pole, &read.frames, &options, cancel);
+        let marks = match method {
+            ForceMethod::Model => StrainMark::of_rows(&whisker, &scene.pole, &found),
+            ForceMethod::Lever => None,
+        };
         let table = Table::new(&found, FrameForce::COLUMNS, cancel);
+        let table = table.marked(marks, StrainMark::COLUMNS, cancel);
         (table, force_warning(&found))
     };
     let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;

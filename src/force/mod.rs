@@ -20,6 +20,7 @@ use model::Model;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::Side;
 
 /// Contact in a frame, in the frame of the base with the first axis [`ForceOptions::axis`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +105,10 @@ row! {
         pub base_force_y_sd_un: Option<f64>,
         /// Standard deviation of the moment on the base, in nN m.
         pub base_moment_sd_nnm: Option<f64>,
+        /// Side of the whisker that the pole is on, with --model: cb (convex) or cf (concave).
+        pub side: Option<Side>,
+        /// Arclength from the base to the contact, in mm; with --model.
+        pub arc_length_mm: Option<f64> = place,
         /// Reason of a frame without a force: missing, no-lever, out-of-reach or no-state.
         pub reason: Option<NoForce>,
     }

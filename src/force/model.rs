@@ -80,10 +80,10 @@ impl Model {
                 measured,
             };
             let states = curve.states(rod.tau(s)).into_iter();
-            states.map(move |state| (rod, state))
+            states.map(move |state| (rod, sheet.side, state))
         });
-        let nearest = found.min_by(|(_, one), (_, other)| off(one).total_cmp(&off(other)));
-        let Some((rod, state)) = nearest else {
+        let nearest = found.min_by(|(.., one), (.., other)| off(one).total_cmp(&off(other)));
+        let Some((rod, side, state)) = nearest else {
             return none(NoForce::NoState);
         };
         let ModelState { point, full, .. } = state;
@@ -99,6 +99,7 @@ impl Model {
             ..reading
         };
         let found = FrameForce {
+            side: Some(side),
             contact_off_mm: Some(off(&state) * length),
             reason: None,
             ..none(NoForce::NoState).with_state(Some(&reading))

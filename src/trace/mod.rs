@@ -23,6 +23,7 @@ pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;
 pub use state::StateAtPush;
 
+pub use columns::{ContactColumns, ContactRow};
 pub(crate) use columns::{StateRow, column, row};
 
 use crate::scene::{RefusedWhisker, SweepPlace, SweptWhisker};

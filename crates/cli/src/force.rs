@@ -4,6 +4,7 @@ use super::arguments::{column_help, span};
 use super::data::ColumnArgs;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
+use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
 use clap::{Args, ValueEnum};
@@ -13,6 +14,7 @@ use whiskmap::force::{
     self, BaseAxis, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until,
 };
 use whiskmap::render::forces as chart;
+use whiskmap::yields::StrainMark;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,7 +37,7 @@ gives a standard deviation of each force. The scene's [uncertainty] may give cur
 #[derive(Debug, Args)]
 #[command(
     after_help = EXAMPLES,
-    after_long_help = column_help(EXAMPLES, &[("Columns", FrameForce::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", FrameForce::COLUMNS), STRAIN_MARKS])
 )]
 pub struct ForceArgs {
     #[command(flatten)]
@@ -113,6 +115,10 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(warning) = force::warning(&found) {
         message(&format!("warning: {warning}"));
     }
-    outputs.rows(&found)?;
+    let marks = match method {
+        ForceMethod::Model => StrainMark::of_rows(&whisker, &scene.pole, &found),
+        ForceMethod::Lever => None,
+    };
+    outputs.rows(marked(&found, marks))?;
     outputs.finish_chart(|| chart(&scene.title, &found), [])
 }

@@ -93,9 +93,9 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let count = args.points as usize;
     let shape = WhiskerShape::new(&branch, &state.map_err(refused)?, count);
     let points = shape.points.iter();
-    outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point))))?;
+    outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point.strain))))?;
     let state_file = state_table.map(|mut table| {
-        let mark = YieldMark::new(&whisker, &shape.state);
+        let mark = YieldMark::new(&whisker, shape.state.peak_strain);
         table.rows([Marked(&shape.state, mark)])?;
         table.finish()
     });
