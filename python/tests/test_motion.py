@@ -264,4 +264,4 @@ def test_forces_of_a_follicle_refer_to_its_axis_or_to_the_base():
         np.testing.assert_allclose(found.base_force_x_un + 1j * found.base_force_y_un, [force], rtol=1e-8)
         assert found.contact_off_mm[0] < 1e-8 and found.side[0] == "cb"
     with pytest.raises(ValueError, match="axis = 'base': must be 'tangent' or 'follicle'"):
-        wm.force(scene, frame, axis="base")
+        wm.force(scene, frame, model=True, axis="base")
