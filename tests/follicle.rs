@@ -7,7 +7,7 @@ use whiskmap::classify::Status;
 use whiskmap::fit::fit;
 use whiskmap::measured::MeasuredPoints;
 use whiskmap::scene::{Curvature, Parameter, Pole, Scene, Whisker};
-use whiskmap::trace::{Branch, DetachmentKind, WhiskerShape, curve};
+use whiskmap::trace::{Branch, BranchMark, DetachmentKind, NoState, WhiskerShape, curve};
 use whiskmap::{MapEngine, Options, Regime, Side, map};
 
 /// Perfect cone of 16 mm with a base radius of 33.5 um, straight, in a follicle.
@@ -299,4 +299,36 @@ fn a_fit_recovers_the_stiffness() {
             "{found:?}"
         );
     }
+}
+
+/// The base turns with the moment over the stiffness: far more than nine times, or so only along the unstable states.
+#[test]
+fn states_beyond_nine_turns_are_left_out() {
+    let branch = |stiffness| Branch::new(&cone(Some(stiffness)), &Pole::smooth(0.0), Side::Cb, 5.0);
+    let why = branch(5.0).unwrap_err();
+    assert_eq!(why, NoState::BeyondTurns);
+    assert!(
+        why.to_string()
+            .contains("nine turns of the base (3240 deg)")
+    );
+    let kinds = [5.0, 25.0].map(|stiffness| {
+        let end = curve(&cone(Some(stiffness)), &Pole::smooth(0.0), Side::Cb, &[5.0])[0];
+        (end.kind, end.push_angle_deg)
+    });
+    assert_eq!(kinds[0], (DetachmentKind::Unresolved, None));
+    let cut = branch(25.0).unwrap();
+    let end = cut.stable_end_deg();
+    assert!((end - kinds[1].1.unwrap()).abs() < 1e-6, "{end} {kinds:?}");
+    let marks = |branch: &Branch| {
+        let points = branch.points(200).unwrap();
+        let largest = points.iter().map(|own| own.push_angle_deg.abs());
+        let marks: Vec<BranchMark> = points.iter().filter_map(|own| own.mark).collect();
+        (marks, largest.fold(0.0, f64::max))
+    };
+    let (cut, largest) = marks(&cut);
+    assert_eq!(cut, [BranchMark::FirstTouch, BranchMark::SlipOff]);
+    assert!(3240.0 < largest && largest < 3250.0, "{largest}");
+    let (whole, largest) = marks(&branch(60.0).unwrap());
+    assert_eq!(whole.last(), Some(&BranchMark::SecondFold));
+    assert!(largest < 3240.0, "{largest}");
 }

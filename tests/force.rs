@@ -1,15 +1,17 @@
 //! Forces from curvature against the states that have it.
 
 use crate::shipped;
+use glam::DVec2;
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{
-    CurvatureFrame, CurvatureFrames, ForceMethod, ForceOptions, FrameContact, FrameForce, NoForce,
-    forces, forces_until,
+    BaseAxis, CurvatureFrame, CurvatureFrames, ForceMethod, ForceOptions, FrameContact, FrameForce,
+    NoForce, forces, forces_until,
 };
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::random::RandomStream;
-use whiskmap::scene::{FrameDeviations, Scene};
-use whiskmap::trace::{Branch, BranchPoint, NoState, WhiskerPart, WhiskerShape};
+use whiskmap::scene::{FrameDeviations, Scene, Whisker};
+use whiskmap::trace::{Branch, BranchPoint, NoState, WhiskerPart, WhiskerShape, curve};
+use whiskmap::yields::StrainMark;
 
 /// The frame of a stable or unstable state: its curvature at the point next to `part` of the length, and its contact. With the frame, the
 /// state.
@@ -121,6 +123,137 @@ fn forces_of_states_come_back() {
 }
 
 /// What has no force says why.
+/// Pushes in a follicle, in both frames of the base; the first and the last push lie beyond the fold of a clamp.
+#[test]
+fn forces_of_a_follicle_come_back_in_both_frames() {
+    let scene = shipped::scene("follicle");
+    let clamp = Whisker {
+        follicle_stiffness_nnm_per_rad: None,
+        ..scene.whisker.clone()
+    };
+    let at_fold = curve(&clamp, &scene.pole, Side::Cb, &[5.0])[0].base_moment_nnm;
+    let compliance = 1.0 / scene.whisker.follicle_stiffness_nnm_per_rad.unwrap();
+    let mut beyond = 0;
+    for push in [-60.0, -20.0, 20.0, 64.9] {
+        let (in_follicle, state) = frame(&scene, 5.0, push, 0.1);
+        // The moment turns the base by this angle from the follicle's axis.
+        let turn = -state.base_moment_nnm * compliance;
+        let turned = |[x, y]: [f64; 2]| DVec2::from_angle(turn).rotate(DVec2::new(x, y)).to_array();
+        let contact = in_follicle.contact.unwrap();
+        let angle = contact.contact_angle_deg.unwrap() + turn.to_degrees();
+        let in_film = CurvatureFrame {
+            at_mm: in_follicle.at_mm.map(turned),
+            contact: Some(FrameContact {
+                contact_mm: turned(contact.contact_mm),
+                contact_angle_deg: Some(angle),
+            }),
+            ..in_follicle
+        };
+        let on_base = [state.base_force_x_un, state.base_force_y_un];
+        beyond += usize::from(state.base_moment_nnm.abs() > at_fold.unwrap().abs());
+        for (axis, frame, on_base, angle) in [
+            (
+                BaseAxis::Follicle,
+                &in_follicle,
+                on_base,
+                state.contact_angle_deg,
+            ),
+            (BaseAxis::Tangent, &in_film, turned(on_base), angle),
+        ] {
+            for method in [ForceMethod::Lever, ForceMethod::Model] {
+                let options = ForceOptions {
+                    axis,
+                    deviations: FrameDeviations {
+                        curvature_per_mm: Some(1e-4),
+                        contact_mm: Some(0.01),
+                        angle_deg: None,
+                    },
+                    ..ForceOptions::new(method)
+                };
+                let own = forces_of(&scene, std::slice::from_ref(frame), &options)[0];
+                let context = format!("{push} {axis:?} {method:?} {own:?} {state:?}");
+                let size = state.force_un;
+                for (found, wanted, size) in [
+                    (own.force_un, size, size),
+                    (own.base_force_x_un, on_base[0], size),
+                    (own.base_force_y_un, on_base[1], size),
+                    (own.base_moment_nnm, state.base_moment_nnm, 16.0 * size),
+                    (own.contact_angle_deg, angle, 1.0),
+                ] {
+                    let found = found.unwrap_or_else(|| panic!("{context}"));
+                    assert!((found - wanted).abs() < 1e-8 * size, "{wanted} {context}");
+                }
+                // The first-order deviation of each load is that of a small change of the curvature and of each coordinate.
+                let by = |step: [f64; 4]| {
+                    let [to, from] = [1.0, -1.0].map(|sign| {
+                        let frame = off(frame, step.map(|own| sign * own));
+                        loads(&forces_of(&scene, &[frame], &options)[0])
+                    });
+                    [0, 1, 2, 3].map(|i| (to[i] - from[i]) / 2e-3)
+                };
+                let steps = [
+                    [1e-7, 0.0, 0.0, 0.0],
+                    [0.0, 1e-5, 0.0, 0.0],
+                    [0.0, 0.0, 1e-5, 0.0],
+                ];
+                let by = steps.map(by);
+                let sds = [
+                    own.force_sd_un,
+                    own.base_force_x_sd_un,
+                    own.base_force_y_sd_un,
+                    own.base_moment_sd_nnm,
+                ];
+                for (i, sd) in sds.into_iter().enumerate() {
+                    let wanted = by
+                        .map(|own| own[i])
+                        .iter()
+                        .map(|own| own * own)
+                        .sum::<f64>();
+                    let relative = sd.unwrap() / wanted.sqrt() - 1.0;
+                    assert!(relative.abs() < 1e-4, "{i} {relative:e} {context}");
+                }
+            }
+        }
+    }
+    assert_eq!(beyond, 2);
+}
+
+/// The model's rows have side, contact and strain of their states, in both frames of a follicle.
+#[test]
+fn forces_of_the_model_have_the_strains_of_their_states() {
+    for name in ["cone", "follicle"] {
+        let scene = shipped::scene(name)
+            .to_builder()
+            .yield_strain(0.01)
+            .build()
+            .unwrap();
+        for push in [-20.0, 15.0] {
+            let (frame, state) = frame(&scene, 9.0, push, 0.1);
+            let options = ForceOptions {
+                axis: BaseAxis::Follicle,
+                ..ForceOptions::new(ForceMethod::Model)
+            };
+            let free = CurvatureFrame {
+                contact: None,
+                ..frame
+            };
+            let rows = forces_of(&scene, &[frame, free], &options);
+            let marks = StrainMark::of_rows(&scene.whisker, &scene.pole, &rows).unwrap();
+            let context = format!("{name} {push} {rows:?} {marks:?} {state:?}");
+            assert_eq!(rows[0].side, Some(Side::of_push(push)), "{context}");
+            let place = rows[0].arc_length_mm.unwrap() / state.arc_length_mm;
+            assert!((place - 1.0).abs() < 1e-9, "{context}");
+            let strain = marks[0].peak_strain.unwrap() / state.peak_strain;
+            assert!((strain - 1.0).abs() < 1e-8, "{context}");
+            assert_eq!(marks[0].yields, Some(state.peak_strain > 0.01), "{context}");
+            assert_eq!(
+                (marks[1].peak_strain, marks[1].yields),
+                (Some(0.0), Some(false))
+            );
+        }
+    }
+}
+
 #[test]
 fn frames_without_a_force_have_a_reason() {
     let scene = shipped::scene("cone");

@@ -206,11 +206,11 @@ fn branches_agree_with_curves_on_random_rows() {
             // A fold whose push changes by 1e-11 for an error of 1e-14 in `ln D` has a slope of at most 1000 radians.
             let off = (side.sign() * last.push - end.push).abs();
             assert!(
-                off < 1e-8 && found.end == end.edge,
+                off < 1e-8 && found.end == Some(end.edge),
                 "{rod:?} {side:?} {distance} {off:e}"
             );
             for pair in found.nodes.windows(2) {
-                let is_last = std::ptr::eq(&pair[1], last) && found.end == Edge::Fold;
+                let is_last = std::ptr::eq(&pair[1], last) && found.end == Some(Edge::Fold);
                 assert!(
                     is_last || pair[1].full.map.det() > 0.0,
                     "{rod:?} {side:?} {distance}"

@@ -206,6 +206,45 @@ fn moment_and_axial_force_of_a_cylinder_determine_no_contact() {
     }
 }
 
+/// Moment and axial force nearly follow from each other, up to a condition of a million.
+#[test]
+fn states_of_nearly_straight_cylinders_come_back() {
+    let mut random = Random::new(7);
+    let mut most: f64 = 0.0;
+    for i in 0..40 {
+        let tip_radius_um = match i % 2 {
+            0 => 8.0,
+            _ => 8.0 * (1.0 - 10f64.powf(random.between(-5.0, -2.0))),
+        };
+        let whisker = Whisker {
+            curvature: Some(Curvature {
+                parabola_per_mm: 10f64.powf(random.between(-2.5, -0.5)) / 53.0,
+                vertex_mm: random.between(-20.0, 20.0),
+            }),
+            ..Whisker::cone(53.0, [8.0, tip_radius_um], 3.8)
+        };
+        let pole = Pole::smooth(random.between(0.0, 0.5));
+        let distances = [random.between(0.15, 0.5), random.between(0.5, 0.93)];
+        let states = states(&whisker, &pole, &distances, &[0.05, 0.4, 0.95]);
+        check_round_trips(
+            &format!("{i} {whisker:?} {pole:?}"),
+            &whisker,
+            &pole,
+            &states,
+        );
+        let readings: Vec<BaseReading> = states
+            .iter()
+            .map(|state| reading(state, [true, true, false]))
+            .collect();
+        let rows = Locator::new(&whisker, &pole).locate(&readings, None);
+        most = rows
+            .iter()
+            .filter_map(|row| row.condition)
+            .fold(most, f64::max);
+    }
+    assert!(most > 1e5, "{most:e}");
+}
+
 /// The condition of moment and axial force grows as a cone becomes a cylinder, for which they determine nothing.
 #[test]
 fn the_condition_grows_toward_a_singular_line() {

@@ -200,7 +200,7 @@ fn wrong_tables_are_refused() {
         ("[{ length_mm = 20 }]", "missing field `name`"),
         (
             "[{ name = \" \" }]",
-            "the name of a whisker must be one line of text",
+            "whiskers.table[0]: the name of the whisker is missing",
         ),
         (
             "[{ name = \"A\", lenght_mm = 20 }]",
@@ -242,4 +242,81 @@ fn wrong_tables_are_refused() {
         reason.contains("must be between length_mm / 1000 (0.001) and 10 * length_mm (10)"),
         "{reason}"
     );
+}
+
+/// A number of the scene has no effect where a column gives it, and a taper of the scene is that of its own base.
+#[test]
+fn numbers_that_a_column_gives_are_refused() {
+    let numbers = "length_mm = 20\nbase_radius_um = 30\ntip_radius_um = 1.5\n";
+    let text = scene("[{ name = \"A\", COLUMN }, { name = \"B\" }]")
+        .replace("[whisker]\n", &format!("[whisker]\n{numbers}"));
+    let with = |column: &str| parse(&text.replace("COLUMN", column)).unwrap();
+    let bent = text.replace(
+        "[pole]",
+        "[whisker.curvature]\nparabola_per_mm = 0.02\n[pole]",
+    );
+    let bent = parse(&bent.replace("COLUMN", "spiral_per_mm = 0.01, spiral_per_mm2 = 0.001"));
+    for (table, parameter, value, said) in [
+        (
+            &with("length_mm = 18"),
+            Parameter::LengthMm,
+            15.0,
+            "whisker.length_mm = 15",
+        ),
+        (
+            &with("taper = 0.9"),
+            Parameter::TipRadiusUm,
+            2.0,
+            "whisker.tip_radius_um = 2",
+        ),
+        (
+            &with("tip_radius_um = 2"),
+            Parameter::Taper,
+            0.5,
+            "whisker.taper = 0.5",
+        ),
+        (
+            &with("base_radius_um = 40"),
+            Parameter::Taper,
+            0.5,
+            "whisker.taper = 0.5",
+        ),
+        (
+            &bent.unwrap(),
+            Parameter::ParabolaPerMm,
+            0.01,
+            "whisker.curvature.parabola_per_mm = 0.01",
+        ),
+    ] {
+        let (column, _) = table.table_rows()[0].numbers()[0];
+        let said = format!(
+            "{said}: must be left out: whiskers.table has the column {}",
+            column.name()
+        );
+        let why = table.with(parameter, value).unwrap_err().to_string();
+        assert_eq!(why, format!("error: {said}"));
+        // The whisker of a row is a scene without a table.
+        assert!(table.of_whisker(1).unwrap().with(parameter, value).is_ok());
+    }
+    let tapers = with("taper = 0.9").with(Parameter::BaseRadiusUm, 40.0);
+    let tapers = tapers.unwrap().whisker(0).unwrap().whisker;
+    assert!((tapers.tip_radius_um - 4.0).abs() < 1e-12);
+    let own = Scene::builder("A pad")
+        .set(Parameter::LengthMm, 20.0)
+        .set(Parameter::Taper, 0.5);
+    let rows = [WhiskerRow::new("A").set(Parameter::BaseRadiusUm, 30.0)];
+    let why = own.whiskers(rows).build().unwrap_err().to_string();
+    let said = "must be left out: whiskers.table has the column base_radius_um";
+    assert_eq!(why, format!("error: whisker.taper = 0.5: {said}"));
+    let tapered = text.replace("tip_radius_um = 1.5", "taper = 0.95");
+    let why = parse(&tapered.replace("COLUMN", "base_radius_um = 40")).unwrap_err();
+    assert!(why.contains(said), "{why}");
+    let measured = scene("[{ name = \"A\", length_mm = 16 }]");
+    let measured = measured.replace(
+        "[whisker]\n",
+        "[whisker]\nprofile.rows = [[0, 33], [16, 2]]\n",
+    );
+    let measured = parse(&measured).unwrap().with(Parameter::Taper, 0.5);
+    let said = "whisker.taper = 0.5: must be left out: the radii are those of whisker.profile";
+    assert_eq!(measured.unwrap_err().to_string(), format!("error: {said}"));
 }

@@ -9,8 +9,8 @@ use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Parameter, Scene, Whisker};
 use whiskmap::sheet::Sheet;
-use whiskmap::trace::{Branch, BranchPoint, WhiskerShape, curve};
-use whiskmap::yields::{ContactLoad, ContactRow, PushMark, RowContact, StrainMark, YieldMark};
+use whiskmap::trace::{Branch, BranchPoint, WhiskerShape, corner, curve};
+use whiskmap::yields::{PushMark, StrainMark, YieldMark};
 use whiskmap::{Channel, Channels, Side};
 
 /// Scene of a whisker with these lines more in its file, and this yield strain.
@@ -72,36 +72,18 @@ fn states_are_marked_from_the_yield_strain_on() {
     );
     let mark = |push_deg: f64| {
         let state = branch.state(f64::to_radians(push_deg), true).unwrap();
-        YieldMark::new(&scene.whisker, &branch.point_of(&state)).unwrap()
+        YieldMark::new(&scene.whisker, branch.point_of(&state).peak_strain).unwrap()
     };
     for (push_deg, yields) in [(below - 1e-6, false), (above + 1e-6, true)] {
         assert_eq!(mark(push_deg).yields, Some(yields), "{push_deg}");
     }
     let elastic = without_yield_strain(&scene);
-    assert_eq!(
-        YieldMark::of_rows(&elastic.whisker, &branch.points(9).unwrap()),
-        None
-    );
+    assert_eq!(YieldMark::of_rows(&elastic.whisker, [0.1; 9]), None);
 }
 
 /// The scene without a yield strain.
 fn without_yield_strain(scene: &Scene) -> Scene {
     scene.to_builder().yield_strain(None).build().unwrap()
-}
-
-/// Row with the columns that samples of courses have.
-struct Sample(BranchPoint);
-
-impl ContactRow for Sample {
-    fn contact(&self) -> RowContact {
-        let point = &self.0;
-        RowContact::Loaded(ContactLoad {
-            side: point.side,
-            arc_length_mm: point.arc_length_mm,
-            base_force_un: [point.base_force_x_un, point.base_force_y_un].into(),
-            contact_angle_deg: point.contact_angle_deg,
-        })
-    }
 }
 
 /// Contact and force on the base of a row give the strain of its state, also with friction, whatever its direction. The difference is
@@ -122,10 +104,10 @@ fn contact_and_force_of_a_row_give_its_strain() {
             let branch = Branch::new(&scene.whisker, &scene.pole, side, 15.66).unwrap();
             let points = branch.points(120).unwrap();
             let points = points.into_iter().filter(|point| point.stable);
-            let rows: Vec<Sample> = points.map(Sample).collect();
+            let rows: Vec<BranchPoint> = points.collect();
             let marks = StrainMark::of_rows(&scene.whisker, &scene.pole, &rows).unwrap();
             assert_eq!(marks.len(), rows.len());
-            for (Sample(point), mark) in rows.iter().zip(marks) {
+            for (point, mark) in rows.iter().zip(marks) {
                 let strain = mark.peak_strain.unwrap();
                 let apart = (strain - point.peak_strain).abs();
                 assert!(
@@ -142,7 +124,7 @@ fn contact_and_force_of_a_row_give_its_strain() {
             StrainMark::of_rows(
                 &without_yield_strain(&scene).whisker,
                 &scene.pole,
-                &[] as &[Sample]
+                &[] as &[BranchPoint]
             ),
             None
         );
@@ -163,11 +145,12 @@ fn a_push_is_marked_by_its_largest_strain() {
     let strains = pushes.map(|push_deg| strain_of_shape(&elastic.whisker, &branch, push_deg));
     let largest = strains.fold(0.0, f64::max);
     assert!(end.peak_strain.unwrap() < 0.98 * largest);
+    let cylinder = |yield_strain| scene(CYLINDER, Some(yield_strain));
     for (yield_strain, yields) in [
         (largest * (1.0 - 1e-4), true),
         (largest * (1.0 + 1e-4), false),
     ] {
-        let scene = scene(CYLINDER, Some(yield_strain));
+        let scene = cylinder(yield_strain);
         let mark = PushMark::of_end(&scene.whisker, &scene.pole, &end).unwrap();
         // 400 pushes miss the maximum by 3e-6.
         assert!(
@@ -176,8 +159,25 @@ fn a_push_is_marked_by_its_largest_strain() {
         );
         assert_eq!(mark.yields, Some(yields), "{mark:?}");
     }
+    // A corner has the mark of the push that ends at it.
+    let scene = scene(CONE, Some(largest));
+    let corner = corner(&scene.whisker, &scene.pole, Side::Cb);
+    let end = curve(
+        &scene.whisker,
+        &scene.pole,
+        Side::Cb,
+        &[corner.distance_mm.unwrap()],
+    )[0];
+    let marks = [
+        PushMark::of_corner(&scene.whisker, &scene.pole, &corner),
+        PushMark::of_end(&scene.whisker, &scene.pole, &end),
+    ];
+    assert!(
+        marks[0].unwrap().max_strain.unwrap() > 1e-4 && marks[0] == marks[1],
+        "{marks:?}"
+    );
     // Without a detachment there is no push.
-    let scene = scene(CYLINDER, Some(1e-3));
+    let scene = cylinder(1e-3);
     let beyond = curve(&scene.whisker, &scene.pole, Side::Cb, &[20.5])[0];
     let none = PushMark::of_end(&scene.whisker, &scene.pole, &beyond);
     assert_eq!(none, Some(PushMark::default()));
@@ -256,6 +256,28 @@ fn cells_have_the_strains_of_their_states() {
                     .all(|(strain, force)| strain.is_nan() == force.is_nan())
             );
         }
+    }
+}
+
+/// A run counts the cells beyond the yield strain.
+#[test]
+fn cells_beyond_the_yield_strain_are_counted() {
+    for more in [CONE, ROUGH] {
+        let marked = scene(more, Some(0.003));
+        let (summary, panels) = compute(&marked, None);
+        let beyond = panels[0].peak_strain.iter().filter(|own| **own > 0.003);
+        assert_eq!(summary.yielding, beyond.count() as u64);
+        assert!(
+            0 < summary.yielding && summary.yielding < summary.refined,
+            "{more}"
+        );
+        let channels: Channels = "regime,peak_strain".parse().unwrap();
+        let plain = scene(more, None);
+        let plan = Plan::new(&plain)
+            .unwrap()
+            .with_channels(channels, &plain)
+            .unwrap();
+        assert_eq!(compute_as(&plain, &plan, None).0.yielding, 0);
     }
 }
 

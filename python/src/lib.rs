@@ -47,7 +47,7 @@ mod _whiskmap {
     #[pymodule_export]
     use super::plan::plan;
     #[pymodule_export]
-    use super::scene::CheckedScene;
+    use super::scene::{CheckedScene, unused_columns};
     #[pymodule_export]
     use super::stored::StoredMap;
     #[pymodule_export]

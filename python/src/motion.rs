@@ -12,7 +12,8 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{
-    CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until, warning as force_warning,
+    BaseAxis, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until,
+    warning as force_warning,
 };
 use whiskmap::scene::Scene;
 use whiskmap::texture::{
@@ -158,6 +159,7 @@ pub fn force<'py>(
     columns: Vec<(String, String)>,
     model: bool,
     baseline_s: Option<[f64; 2]>,
+    axis: &str,
 ) -> PyResult<ForceColumns<'py>> {
     let scene = &scene.0;
     single(scene)?;
@@ -176,11 +178,27 @@ pub fn force<'py>(
     let options = ForceOptions {
         baseline,
         deviations: deviations.unwrap_or_default(),
+        axis: match axis {
+            "tangent" => BaseAxis::Tangent,
+            "follicle" => BaseAxis::Follicle,
+            _ => {
+                return Err(arguments::refused(
+                    "axis",
+                    axis,
+                    "must be 'tangent' or 'follicle'",
+                ));
+            }
+        },
         ..ForceOptions::new(method)
     };
     let job = |cancel: &Arc<AtomicBool>| {
         let found = forces_until(&whisker, &scene.pole, &read.frames, &options, cancel);
+        let marks = match method {
+            ForceMethod::Model => StrainMark::of_rows(&whisker, &scene.pole, &found),
+            ForceMethod::Lever => None,
+        };
         let table = Table::new(&found, FrameForce::COLUMNS, cancel);
+        let table = table.marked(marks, StrainMark::COLUMNS, cancel);
         (table, force_warning(&found))
     };
     let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;

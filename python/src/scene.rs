@@ -5,13 +5,14 @@ use crate::errors::of_scene;
 use crate::threads;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use whiskmap::input::did_you_mean;
 use whiskmap::scene::{
-    AxisScale, AxisValues, Coordinate, Deviations, FrameDeviations, Parameter, Scene, Surface,
-    SweepVariable, WhiskerRow,
+    AxisScale, AxisValues, Coordinate, Deviations, FrameDeviations, Parameter, Scene, SceneBuilder,
+    Surface, SweepVariable, WhiskerRow,
 };
 use whiskmap::store::{AxisValue, scene_at};
 use whiskmap::traced::TracedShape;
@@ -83,17 +84,22 @@ impl CheckedScene {
         scene.map(Self).map_err(|why| of_scene(py, &why))
     }
 
-    /// Checks the description of a scene.
+    /// Checks the description of a scene. Numbers with the names `changed` are refused if a column of the table gives them.
     #[staticmethod]
-    fn build(py: Python<'_>, description: Description) -> PyResult<Self> {
+    fn build(
+        py: Python<'_>,
+        description: Description,
+        changed: BTreeSet<String>,
+    ) -> PyResult<Self> {
         let (title, numbers, rows, traced, axes, deviations, surface, table, name) = description;
         let mut builder = Scene::builder(title);
-        for (name, value) in numbers {
-            builder = match &*name {
-                YIELD_STRAIN => builder.yield_strain(value),
-                _ => builder.set(parameter("whisker", &name)?, value),
-            };
-        }
+        let set = |builder: SceneBuilder, (name, value): (&String, &f64)| {
+            Ok::<_, PyErr>(match &**name {
+                YIELD_STRAIN => builder.yield_strain(*value),
+                _ => builder.set(parameter("whisker", name)?, *value),
+            })
+        };
+        builder = numbers.iter().try_fold(builder, set)?;
         if let Some((rows, smooth)) = rows {
             builder = builder.profile(rows).smooth_profile(smooth);
         }
@@ -127,6 +133,9 @@ impl CheckedScene {
             let rows = rows.into_iter().map(whisker_row);
             builder = builder.whiskers(rows.collect::<PyResult<Vec<_>>>()?);
         }
+        // The builder refuses numbers that are set after the table.
+        let mut changed = numbers.iter().filter(|(name, _)| changed.contains(*name));
+        builder = changed.try_fold(builder, set)?;
         if let Some(name) = name {
             builder = builder.name(name);
         }
@@ -226,6 +235,20 @@ impl CheckedScene {
             && own.surface == other.surface
             && own.name == other.name
     }
+}
+
+/// Returns a note about those of the columns `names` that a table of whiskers does not have; `None` without such a column.
+#[pyfunction]
+pub fn unused_columns(names: Vec<String>) -> Option<String> {
+    let known = WhiskerRow::columns;
+    let unused = names.iter().filter(|name| known().all(|own| own != *name));
+    let unused: Vec<&str> = unused.map(String::as_str).collect();
+    let hints = unused.iter().filter_map(|name| {
+        let hint = did_you_mean(name, known());
+        (!hint.is_empty()).then(|| format!("; `{name}` is not known{hint}"))
+    });
+    let hint = hints.take(1).collect::<String>();
+    (!unused.is_empty()).then(|| format!("columns that are not used: {}{hint}", unused.join(", ")))
 }
 
 fn whisker_row((name, numbers, rows, points): RowTuple) -> PyResult<WhiskerRow> {

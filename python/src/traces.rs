@@ -63,7 +63,7 @@ pub fn branch<'py>(
     let scene = at_pole(py, scene, distance_mm)?;
     let job = |cancel: &Arc<AtomicBool>| {
         let points = branch_of(&scene, distance_mm, side)?.points_until(points, cancel)?;
-        let marks = YieldMark::of_rows(&scene.whisker, &points);
+        let marks = YieldMark::of_rows(&scene.whisker, points.iter().map(|own| own.peak_strain));
         let table = Table::new(&points, BranchPoint::COLUMNS, cancel);
         Ok(table.marked(marks, YieldMark::COLUMNS, cancel))
     };
@@ -94,10 +94,10 @@ pub fn shape<'py>(
         let branch = branch_of(&scene, distance_mm, Side::of_push(push_angle_deg))?;
         let state = branch.state(push_angle_deg.to_radians(), stable)?;
         let shape = WhiskerShape::new(&branch, &state, points);
-        let marks = YieldMark::of_rows(&scene.whisker, &shape.points);
+        let marks = YieldMark::of_rows(&scene.whisker, shape.points.iter().map(|own| own.strain));
         let points = Table::new(&shape.points, ShapePoint::COLUMNS, cancel);
         let points = points.marked(marks, YieldMark::COLUMNS, cancel);
-        let mark = YieldMark::of_rows(&scene.whisker, &[shape.state]);
+        let mark = YieldMark::of_rows(&scene.whisker, [shape.state.peak_strain]);
         let state = Table::new(&[shape.state], BranchPoint::COLUMNS, cancel);
         let state = state.marked(mark, YieldMark::COLUMNS, cancel);
         Ok((shape, points, state))

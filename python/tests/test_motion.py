@@ -243,3 +243,25 @@ def test_samples_have_the_curvature_at_an_arclength(cone):
     assert np.isfinite(wm.texture(rough, time, angle, curvature_at_mm=2).samples.curvature_per_mm).all()
     with pytest.raises(ValueError, match="curvature_at_mm = 21: must be between 0 and 20"):
         wm.whisk(cone, 15.66, time, angle, curvature_at_mm=21)
+
+
+def test_forces_of_a_follicle_refer_to_its_axis_or_to_the_base():
+    scene = wm.Scene.read(ROOT / "scenes/follicle.toml")
+    pushed = wm.shape(scene, 5, 40)
+    contact = int(np.flatnonzero(pushed.part == "contact")[0])
+    places = np.exp(1j * np.radians(40)) * (pushed.x_mm + 1j * pushed.y_mm).values
+    wanted = pushed.attrs["base_force_x_un"] + 1j * pushed.attrs["base_force_y_un"]
+    turn = np.exp(-1j * pushed.attrs["base_moment_nnm"] / 5000)
+    for axis, place, force in [("follicle", places[contact], wanted), ("tangent", turn * places[contact], turn * wanted)]:
+        frame = {
+            "time_s": [0.0],
+            "curvature_per_mm": [float(pushed.curvature_per_mm[20])],
+            "at_arc_length_mm": [float(pushed.arc_length_mm[20])],
+            "contact_x_mm": [place.real],
+            "contact_y_mm": [place.imag],
+        }
+        found = wm.force(scene, frame, model=True, axis=axis)
+        np.testing.assert_allclose(found.base_force_x_un + 1j * found.base_force_y_un, [force], rtol=1e-8)
+        assert found.contact_off_mm[0] < 1e-8 and found.side[0] == "cb"
+    with pytest.raises(ValueError, match="axis = 'base': must be 'tangent' or 'follicle'"):
+        wm.force(scene, frame, model=True, axis="base")

@@ -69,16 +69,33 @@ def test_wrong_tables_are_refused(pad):
         ([3], TypeError, r"table\[0\] = 3: must be a mapping"),
         ({"name": ["A"], "length_mm": [20, 21]}, ValueError, "table: columns must be equally long, have 1 and 2 values"),
         ({"name": ["A"], "length_mm": ["20 mm"]}, TypeError, r"table\[0\]\['length_mm'\] = '20 mm': must be a number"),
-        ({"name": ["A"], "lenght_mm": [20]}, ValueError, "table = 'lenght_mm'.*did you mean `length_mm`"),
+        ({"name": ["A", None], "length_mm": [20, 20]}, wm.SceneError, r"whiskers.table\[1\]: the name of the whisker is missing"),
+        (pd.DataFrame({"name": ["A", np.nan]}), wm.SceneError, r"whiskers.table\[1\]: the name of the whisker is missing"),
+        (pd.DataFrame([["A", 20, 21]], columns=["name", "length_mm", "length_mm"]), ValueError, "table: has the column length_mm 2 times"),
         ({"name": ["A"], "length_mm": [np.nan]}, wm.SceneError, "must have a row with a whisker; row 1: length_mm is missing"),
         ({"name": ["A", "A"], "length_mm": [20, 20]}, wm.SceneError, "the name of a whisker must be unlike those before it"),
     ]:
         with pytest.raises(error, match=said):
             pad.replace(table=table)
+    for number in ("length_mm", "tip_radius_um"):
+        with pytest.raises(wm.SceneError, match=f"{number} = 1: must be left out: whiskers.table has the column {number}"):
+            pad.replace(**{number: 1})
+    with pytest.raises(wm.SceneError, match="whisker.taper = 0.5: must be left out: whiskers.table has the column tip_radius_um"):
+        pad.replace(taper=0.5)
+    assert pad.replace(youngs_modulus_gpa=4, length_mm=None).whisker.youngs_modulus_gpa == 4
     with pytest.raises(KeyError, match="there is no whisker D1"):
         pad.select("D1")
     with pytest.raises(KeyError, match="C2: base_radius_um is missing"):
         pad.select("C2")
+
+
+def test_other_columns_are_named(pad):
+    numbers = {"name": ["A"], "length_mm": [20], "base_radius_um": [30], "tip_radius_um": [2]}
+    with pytest.warns(wm.SceneWarning, match="table: columns that are not used: remark, tapper; `tapper` is not known; did you mean `taper`"):
+        named = pad.replace(table=pd.DataFrame(numbers | {"remark": ["good"], "tapper": [0.9]}))
+    assert named.table == pad.replace(table=numbers).table
+    with pytest.warns(wm.SceneWarning, match="`length_cm` is not known; values must be in mm"), pytest.raises(wm.SceneError, match="is left out"):
+        pad.replace(table=[{"name": "A", "length_cm": 2}])
 
 
 def test_missing_elements_leave_the_others():

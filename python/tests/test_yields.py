@@ -64,6 +64,25 @@ def test_samples_have_the_strains_of_their_states(scene: wm.Scene) -> None:
     np.testing.assert_array_equal(course.samples.yields, [False, False, True])
 
 
+def test_forces_of_the_model_have_the_strains_of_their_states(scene: wm.Scene) -> None:
+    pushed = wm.shape(scene.replace(pole_radius_mm=None), 8, 30)
+    contact = int(np.flatnonzero(pushed.part == "contact")[0])
+    turn = np.radians(30) * np.array([1, 1])
+    x, y = (float(pushed[own][contact]) for own in ("x_mm", "y_mm"))
+    (cos, _), (sin, _) = np.cos(turn), np.sin(turn)
+    frames = {
+        "time_s": [0.0, 0.1],
+        "curvature_per_mm": [0.0, float(pushed.curvature_per_mm[20])],
+        "at_arc_length_mm": [2.0, float(pushed.arc_length_mm[20])],
+        "contact_x_mm": [None, cos * x - sin * y],
+        "contact_y_mm": [None, sin * x + cos * y],
+    }
+    found = wm.force(scene.replace(pole_radius_mm=None), frames, model=True)
+    np.testing.assert_allclose(found.peak_strain, [0, float(pushed.strain.max())], rtol=1e-3)
+    np.testing.assert_array_equal(found.yields, [False, True])
+    assert "yields" not in wm.force(scene.replace(yield_strain=None), frames, model=True)
+
+
 def test_maps_have_strains(scene: wm.Scene) -> None:
     found = wm.map(scene)
     lazy = wm.map(scene, lazy=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import astuple
 from typing import Any
 
@@ -33,8 +33,10 @@ def build(
     surface: Surface | None,
     table: Any,
     name: str | None,
+    changed: Iterable[str] = (),
 ) -> CheckedScene:
-    """Check the plain values of a scene. `measured` is the rows of radii and whether they are smoothed, `rest` the traced points with their degree."""
+    """Check the plain values of a scene. `measured` is the rows of radii and whether they are smoothed, `rest` the traced points with their degree.
+    `changed` names numbers that no column of the table may give."""
     for argument, text in (("title", title), ("name", name)):
         if not isinstance(text, str):
             raise TypeError(f"{argument} = {text!r}: must be a text")
@@ -59,7 +61,7 @@ def build(
         raise ValueError(f"rest_degree = {degree}: must be left out without rest_points")
     traced = None if points is None else ([list(point) for point in points], degree)
     rough = None if surface is None else astuple(surface)
-    return CheckedScene.build((title, present, profile, traced, listed, deviations, rough, table, name))
+    return CheckedScene.build((title, present, profile, traced, listed, deviations, rough, table, name), set(changed))
 
 
 def set_parameter(parameter: str, value: Any, given: dict[str, Any], axes: dict[str, Any]) -> None:

@@ -178,6 +178,7 @@ def force(
     model: bool = False,
     baseline_s: tuple[float, float] | None = None,
     columns: Mapping[str, str] | None = None,
+    axis: str = "tangent",
 ) -> xr.Dataset:
     """Compute the contact force in frames of a film from the change of curvature at one point of the whisker.
 
@@ -187,7 +188,7 @@ def force(
         A scene of one whisker without friction. Its grid is not used.
     frames : path, mapping or pandas.DataFrame
         A CSV file, or columns of equal length: `time_s`, `curvature_per_mm`, `at_arc_length_mm`, `contact_x_mm`, `contact_y_mm` in the
-        frame of the base, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. The position of the contact
+        frame of the base with the first axis `axis`, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. The position of the contact
         is NaN or None in frames without contact, or a column `contact` is 0 there and 1 elsewhere. Other numbers are NaN or None where
         they are missing.
     model : bool
@@ -197,6 +198,9 @@ def force(
         is 0 are the baseline, if there is such a column.
     columns : mapping of str, optional
         Own names of columns by the expected ones, such as ``{"time_s": "t"}``. An expected name may be shortened at an underscore.
+    axis : str
+        First axis of the frame of the base, in the frames and in the dataset: "tangent", that of the whisker at the base, as a film shows it,
+        or "follicle", the axis of the follicle, as in all other datasets. Without a follicle they are one.
 
     Returns
     -------
@@ -222,7 +226,7 @@ def force(
         span = (ends[0], ends[1])
     with naming_rows("frames", frames):
         text, origin = csv_text("frames", frames), origin_of("frames", frames)
-        found, warning, baseline = _whiskmap.force(checked, text, origin, own_names(columns), bool(model), span)
+        found, warning, baseline = _whiskmap.force(checked, text, origin, own_names(columns), bool(model), span, axis)
     warn([warning])
     names = ("baseline_per_mm", "baseline_sd_per_mm", "baseline_frames")
     return _over_time(found, scene, dict(zip(names, baseline or ())))

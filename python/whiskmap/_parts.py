@@ -7,10 +7,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Literal, Union
 
-from whiskmap._values import number, number_or_nan, numbers
+from whiskmap._values import is_missing, number, number_or_nan, numbers, unique_names
+from whiskmap._warnings import warn
+from whiskmap._whiskmap import parameters, unused_columns
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+# Columns of numbers of a table of whiskers.
+_NUMBERS = {name for name, *_ in parameters()}
 
 # Columns of the numbers that come in pairs.
 PAIRS = {"profile": ("arc_length_mm", "radius_um"), "rest_points": ("x_mm", "y_mm")}
@@ -237,13 +242,17 @@ def rows_of(table: Any) -> list[Any] | None:
     if table is None:
         return None
     if hasattr(table, "keys"):
-        columns = {str(own): list(table[own]) for own in table.keys()}
+        columns = {str(own): list(table[own]) for own in unique_names("table", table)}
         counts = {len(values) for values in columns.values()}
         if len(counts) > 1:
             raise ValueError(f"table: columns must be equally long, have {' and '.join(map(str, sorted(counts)))} values")
         table = [dict(zip(columns, values)) for values in zip(*columns.values())]
     if isinstance(table, (str, bytes)) or not isinstance(table, Iterable):
         raise TypeError(f"table = {table!r}: must be a DataFrame, a mapping of columns, or a list of mappings")
+    table = list(table)
+    names = dict.fromkeys(str(own) for row in table if isinstance(row, Mapping) for own in row)
+    unused = unused_columns(list(names))
+    warn([None if unused is None else f"table: {unused}"])
     return [_row(f"table[{index}]", row) for index, row in enumerate(table)]
 
 
@@ -252,14 +261,15 @@ def _row(place: str, row: Any) -> tuple[str, list[tuple[str, float]], Any, Any]:
         raise TypeError(f"{place} = {row!r}: must be a mapping")
     if "name" not in row:
         raise ValueError(f"{place}: must have a name")
-    numbers = [(own, number_or_nan(f"{place}[{own!r}]", value)) for own, value in row.items() if own not in (*PAIRS, "name")]
+    numbers = [(own, number_or_nan(f"{place}[{own!r}]", value)) for own, value in row.items() if own in _NUMBERS]
     profile, points = (_pairs_or_none(f"{place}[{own!r}]", own, row.get(own)) for own in PAIRS)
-    return str(row["name"]), numbers, profile, points
+    name = "" if is_missing(row["name"]) else str(row["name"])
+    return name, numbers, profile, points
 
 
 def _pairs_or_none(place: str, name: str, value: Any) -> list[list[float]] | None:
-    is_missing = not isinstance(value, Iterable) and math.isnan(number_or_nan(place, value))
-    return None if is_missing else pairs_of(name, value)
+    is_absent = not isinstance(value, Iterable) and math.isnan(number_or_nan(place, value))
+    return None if is_absent else pairs_of(name, value)
 
 
 def is_smooth(value: Any) -> bool:

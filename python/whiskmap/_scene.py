@@ -155,7 +155,7 @@ class Scene:
         TypeError
             If a name is unknown, or two names set one number: `taper` and `tip_radius_um`, `parabola_per_mm` and `curvature_per_mm`.
         SceneError
-            If a value is out of its range or contradicts another one.
+            If a value is out of its range or contradicts another one, or a column of the table gives the number.
         """
         title, given, measured, traced, listed, uncertainty, _, table, name = self._checked.description()
         axes: dict[str, Any] = dict(listed)
@@ -181,7 +181,8 @@ class Scene:
         rest = (points, None if is_dropped else degree_of(texts["rest_degree"]))
         smooth = is_smooth(texts["profile_smooth"]) and (rows is not None or "profile_smooth" in changes)
         rough, whiskers = texts["surface"], rows_of(texts["table"]) if "table" in changes else table
-        built = build(texts["title"], changed, (rows, smooth), rest, axes, texts["uncertainty"], rough, whiskers, texts["name"])
+        names = [PARAMETERS[key] for key in changes if key in PARAMETERS]
+        built = build(texts["title"], changed, (rows, smooth), rest, axes, texts["uncertainty"], rough, whiskers, texts["name"], names)
         return Scene._of(built)._warned()
 
     @property

@@ -25,8 +25,21 @@ def number(name: str, value: Any) -> float:
 
 def number_or_nan(name: str, value: Any) -> float:
     """Return a number as `number` does, and NaN for a missing one: None, or NA of pandas."""
-    is_missing = value is None or type(value).__name__ in ("NAType", "NaTType")
-    return float("nan") if is_missing else number(name, value)
+    return float("nan") if is_missing(value) else number(name, value)
+
+
+def is_missing(value: Any) -> bool:
+    """Return True for a missing value: None, NaN, or NA of pandas."""
+    return value is None or type(value).__name__ in ("NAType", "NaTType") or (isinstance(value, float) and value != value)
+
+
+def unique_names(name: str, table: Any) -> list[Any]:
+    """Return the names of the columns of a table; a name that is given twice is refused."""
+    names = list(table.keys())
+    for own in names:
+        if names.count(own) > 1:
+            raise ValueError(f"{name}: has the column {own} {names.count(own)} times: must have it once")
+    return names
 
 
 def numbers(name: str, values: Any) -> list[float]:
@@ -112,7 +125,7 @@ def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> 
         table = {own: values for own, values in table.variables.items() if values.ndim}
     if not hasattr(table, "keys"):
         raise TypeError(f"{name} = {columns!r}: must be the path of a CSV file, or columns by name")
-    listed = {str(own): list(np.atleast_1d(np.asarray(table[own]))) for own in table.keys()}
+    listed = {str(own): list(np.atleast_1d(np.asarray(table[own]))) for own in unique_names(name, table)}
     lengths = {own: len(values) for own, values in listed.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"{name}: columns must be equally long, have {lengths}")

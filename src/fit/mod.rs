@@ -149,8 +149,8 @@ pub enum FitError {
     #[error("{} and {}: both are {}; one of them may be free", .0.name(), .1.name(), .0.key())]
     Twice(Parameter, Parameter),
     /// A free parameter is a column of the table of whiskers, so that they do not share its value.
-    #[error("{}: a column of the table of whiskers gives it; only a number that all whiskers share may be free", .0.name())]
-    Column(Parameter),
+    #[error("{}: whiskers.table has the column {}; only a number that all whiskers share may be free", .0.name(), .1)]
+    Column(Parameter, &'static str),
     /// The rest of the scene leaves a free parameter no range.
     #[error("{}: the rest of the scene allows no values but {} to {}", .parameter.name(), digits(.range[0]), digits(.range[1]))]
     Held {
@@ -233,7 +233,7 @@ pub fn fit_until(
     cancel: &AtomicBool,
 ) -> Result<Fit, FitError> {
     let free = &each_once(free)[..];
-    check(scene, points, free)?;
+    check(scene, free)?;
     let (start, moved) = within_reach(scene, points, free)?;
     let scene = &start;
     let used = used(scene, points)?;
@@ -319,7 +319,7 @@ pub fn fit_until(
 }
 
 /// Checks that the parameters can be free.
-fn check(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<(), FitError> {
+fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
     if free.is_empty() {
         return Err(FitError::NothingFree);
     }
@@ -334,8 +334,8 @@ fn check(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<(
             parameter,
             has: Parameter::given(scene),
         })?;
-        if !points.whiskers.is_empty() && scene.has_column(parameter) {
-            return Err(FitError::Column(parameter));
+        if let Some(column) = scene.column_of(parameter) {
+            return Err(FitError::Column(parameter, column));
         }
         let range @ [least, most] = parameter.range(scene);
         if most - least < NARROWEST * value.abs() {

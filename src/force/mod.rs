@@ -20,8 +20,9 @@ use model::Model;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::Side;
 
-/// Contact in a frame, in the frame of the base: the first axis is the base's tangent.
+/// Contact in a frame, in the frame of the base with the first axis [`ForceOptions::axis`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameContact {
     /// Position of the contact, `[x, y]` in mm; NaN where it is missing.
@@ -104,6 +105,10 @@ row! {
         pub base_force_y_sd_un: Option<f64>,
         /// Standard deviation of the moment on the base, in nN m.
         pub base_moment_sd_nnm: Option<f64>,
+        /// Side of the whisker that the pole is on, with --model: cb (convex) or cf (concave).
+        pub side: Option<Side>,
+        /// Arclength from the base to the contact, in mm; with --model.
+        pub arc_length_mm: Option<f64> = place,
         /// Reason of a frame without a force: missing, no-lever, out-of-reach or no-state.
         pub reason: Option<NoForce>,
     }
@@ -118,6 +123,16 @@ pub enum ForceMethod {
     Model,
 }
 
+/// First axis of the frame of the base, to which positions, angles and forces of frames refer. Without a follicle both axes are one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BaseAxis {
+    /// Tangent of the bent whisker at its base, as a film shows it.
+    #[default]
+    Tangent,
+    /// Axis of the follicle, which a push turns: the base's tangent in all other tables.
+    Follicle,
+}
+
 /// Method, baseline and standard deviations with which forces follow from frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceOptions {
@@ -127,16 +142,19 @@ pub struct ForceOptions {
     pub baseline: Option<CurvatureBaseline>,
     /// Standard deviations of what a frame measures. Without one of the curvature, the scatter of the baseline is it.
     pub deviations: FrameDeviations,
+    /// First axis of the frame of the base.
+    pub axis: BaseAxis,
 }
 
 impl ForceOptions {
-    /// Creates options without a baseline and standard deviations.
+    /// Creates options without a baseline and standard deviations, in the frame of the base's tangent.
     #[must_use]
     pub fn new(method: ForceMethod) -> Self {
         Self {
             method,
             baseline: None,
             deviations: FrameDeviations::default(),
+            axis: BaseAxis::default(),
         }
     }
 
@@ -189,7 +207,8 @@ pub fn forces_until(
     let distances = frames.iter().filter_map(|frame| frame.contact);
     let distances = distances.map(|contact| DVec2::from(contact.contact_mm).length());
     let nearest = distances.fold(whisker.length_mm, f64::min);
-    let model = (method == ForceMethod::Model).then(|| Model::new(whisker, pole, nearest));
+    let model = || Model::new(whisker, pole, nearest, options.axis);
+    let model = (method == ForceMethod::Model).then(model);
     let force = |frame: &CurvatureFrame| {
         let lever = lever::Bending::new(whisker, frame).less(baseline_per_mm);
         if frame.is_missing(method) {

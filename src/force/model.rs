@@ -3,7 +3,7 @@
 use super::deviation::{LoadDerivatives, Loads};
 use super::lever::Bending;
 use super::state_curve::{Measured, ModelState, StateCurve};
-use super::{CurvatureFrame, FrameContact, FrameForce, NoForce};
+use super::{BaseAxis, CurvatureFrame, FrameContact, FrameForce, NoForce};
 use crate::scene::{FrameDeviations, Pole, Whisker};
 use crate::sheet::Sheet;
 use crate::trace::StateRow;
@@ -12,7 +12,7 @@ use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
 use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::sensitivity::BaseDerivatives;
 use whiskmap_mechanics::shooting::shape::{RodPoint, varied_profile};
-use whiskmap_mechanics::shooting::{Reader, Resolution};
+use whiskmap_mechanics::shooting::{Reader, Reading, Resolution};
 
 /// Number of intervals between the rows of a sheet.
 const ROWS: u32 = 16;
@@ -21,28 +21,26 @@ const ROWS: u32 = 16;
 pub struct Model {
     sides: [(Rod, Sheet); 2],
     units: Units,
+    axis: BaseAxis,
 }
 
 impl Model {
-    /// Creates the model; contacts are at least `nearest_mm` from the base. Frames show the whisker from its base on, so that it does not
-    /// matter how the follicle holds the base.
-    pub fn new(whisker: &Whisker, pole: &Pole, nearest_mm: f64) -> Self {
+    /// Creates the model in the frame with this `axis`; contacts are at least `nearest_mm` from the base.
+    pub fn new(whisker: &Whisker, pole: &Pole, nearest_mm: f64, axis: BaseAxis) -> Self {
         let method = Method::new(Resolution::FINE);
         // A sheet is certified at the contacts of its rows: those from the nearest to the tip.
         let nearest = (nearest_mm / whisker.length_mm).min(1.0);
         let distance = |i| nearest * libm::pow(1.0 / nearest, f64::from(i) / f64::from(ROWS));
         let distances: Vec<f64> = (0..=ROWS).map(distance).collect();
         let sides = [Side::Cb, Side::Cf].map(|side| {
-            let rod = Rod {
-                mount: 0.0,
-                ..whisker.rod(&Pole::smooth(pole.radius_mm), side)
-            };
+            let rod = whisker.rod(&Pole::smooth(pole.radius_mm), side);
             let sheet = Sheet::of_ends(method, &rod, side, &distances);
             (rod, sheet)
         });
         Self {
             sides,
             units: whisker.units(),
+            axis,
         }
     }
 
@@ -60,6 +58,7 @@ impl Model {
             contact: DVec2::from(contact.contact_mm) / length,
             at: frame.at_arc_length_mm / length,
             change: bending.change_per_mm * length,
+            axis: self.axis,
         };
         let [(rod, _), _] = &self.sides;
         let rest = Rest::new(&Rod {
@@ -81,16 +80,26 @@ impl Model {
                 measured,
             };
             let states = curve.states(rod.tau(s)).into_iter();
-            states.map(move |state| (rod, state))
+            states.map(move |state| (rod, sheet.side, state))
         });
-        let nearest = found.min_by(|(_, one), (_, other)| off(one).total_cmp(&off(other)));
-        let Some((rod, state)) = nearest else {
+        let nearest = found.min_by(|(.., one), (.., other)| off(one).total_cmp(&off(other)));
+        let Some((rod, side, state)) = nearest else {
             return none(NoForce::NoState);
         };
         let ModelState { point, full, .. } = state;
         let reader = Reader::new(self.units, rod);
         let reading = reader.read(point.x, &full, full.map.pole.to_angle(), 0.0);
+        let turn = self.axis.turn(rod, &full);
+        let on_base = DVec2::new(reading.base_force_x_un, reading.base_force_y_un);
+        let on_base = DVec2::from_angle(turn).rotate(on_base);
+        let reading = Reading {
+            contact_angle_deg: reading.contact_angle_deg + turn.to_degrees(),
+            base_force_x_un: on_base.x,
+            base_force_y_un: on_base.y,
+            ..reading
+        };
         let found = FrameForce {
+            side: Some(side),
             contact_off_mm: Some(off(&state) * length),
             reason: None,
             ..none(NoForce::NoState).with_state(Some(&reading))
@@ -117,6 +126,10 @@ impl Model {
             base,
             middle,
             stiffness: rod.stiffness(measured.at),
+            mount: match self.axis {
+                BaseAxis::Tangent => 0.0,
+                BaseAxis::Follicle => rod.mount,
+            },
         };
         let [by_tau, by_load] = [0, 1].map(|i| state.by(i, force_by[i]));
         let [of_tau, of_load] = [by_tau.constraints, by_load.constraints];
@@ -154,6 +167,8 @@ struct VariedState {
     middle: (RodPoint, BaseDerivatives<f64>),
     /// Bending stiffness at the measured point over that at the base.
     stiffness: f64,
+    /// Compliance of the mount from the base's tangent to the first axis of the frame.
+    mount: f64,
 }
 
 /// Derivatives of a state by one of its coordinates.
@@ -175,7 +190,9 @@ impl VariedState {
         let (middle, [_, middle_by, _]) = of(&self.middle);
         let (force, position) = (self.force, base.position);
         let moment_by = |x: f64, x_by: f64| -(force_by * x + force * x_by);
-        let [cos, sin] = base.tangent.to_array();
+        let axis = DVec2::from_angle(self.mount * force * position.x).rotate(base.tangent);
+        let axis_by = angle_by - self.mount * moment_by(position.x, x_by);
+        let [cos, sin] = axis.to_array();
         StateBy {
             constraints: DVec2::new(
                 position.dot(DVec2::new(x_by, y_by)) / position.length(),
@@ -183,8 +200,8 @@ impl VariedState {
             ),
             loads: [
                 force_by,
-                force_by * sin + force * angle_by * cos,
-                force_by * cos - force * angle_by * sin,
+                force_by * sin + force * axis_by * cos,
+                force_by * cos - force * axis_by * sin,
                 moment_by(position.x, x_by),
             ],
         }

@@ -3,6 +3,7 @@
 //! Along these states the row parameter `w = |load| tau^2` grows from first touch on. The curvature first grows, too, and may then fall again,
 //! so that several states can have it. They are bracketed between samples of `w`, and on both sides of an extremum.
 
+use super::BaseAxis;
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::sheet::Sheet;
 use glam::DVec2;
@@ -46,6 +47,16 @@ const EXTREMUM_WIDTH: f64 = 1e-6;
 /// extremum counts as the state. Rounding decides there whether two states next to the extremum have the measured curvature, or none.
 const AT_EXTREMUM: f64 = 1e-11;
 
+impl BaseAxis {
+    /// Returns the angle from this axis to that of the follicle in a state of `rod`, in radians.
+    pub fn turn(self, rod: &Rod, full: &FullState) -> f64 {
+        match self {
+            Self::Tangent => rod.mount * full.force * full.position.x,
+            Self::Follicle => 0.0,
+        }
+    }
+}
+
 /// Contact and curvature of a frame, in whisker lengths.
 #[derive(Clone, Copy)]
 pub struct Measured {
@@ -55,6 +66,8 @@ pub struct Measured {
     pub at: f64,
     /// Change of the curvature there, in radians per whisker length.
     pub change: f64,
+    /// First axis of the frame of the base.
+    pub axis: BaseAxis,
 }
 
 /// State of the model.
@@ -191,10 +204,13 @@ impl StateCurve<'_> {
         let [measured] = profile(self.rod, point.x, point.y, FINE, &at)
             .try_into()
             .ok()?;
+        let axis = full
+            .tangent
+            .rotate(DVec2::from_angle(-self.measured.axis.turn(self.rod, &full)));
         let state = ModelState {
             point,
             full,
-            contact: DVec2::new(full.tangent.x, -full.tangent.y).rotate(-full.position),
+            contact: DVec2::new(axis.x, -axis.y).rotate(-full.position),
             change: measured.moment / self.rod.stiffness(self.measured.at),
         };
         let miss = state.change - self.measured.change;

@@ -5,9 +5,9 @@ use glam::DVec2;
 use serde::Serialize;
 use whiskmap_mechanics::rod::{Rod, arclength};
 use whiskmap_mechanics::shooting::FirstVariation;
-use whiskmap_mechanics::shooting::batch::{Batch, Method};
 
-/// Sliding direction of the contact along the whisker as the push grows; on unstable states, in the direction of continuation.
+/// Sliding direction of the contact along the whisker as the push grows. Unstable states have the friction of a contact that slides toward the
+/// tip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sliding {
@@ -26,16 +26,6 @@ impl Sliding {
         // The sign of the side is that of the friction coefficient and of the change of the pole's direction.
         let rate = ContactRate::new(variation, rod, tau).slid * rod.friction;
         (rod.friction != 0.0).then_some(if rate < 0.0 { Self::Base } else { Self::Tip })
-    }
-
-    /// Returns whether the contact slides to the tip or the base at `points` `(tau, load)` of `rod`, `[point]`; `None` without friction.
-    /// Integrates one trajectory for each point.
-    #[must_use]
-    pub fn at(method: Method, rod: &Rod, points: &[DVec2]) -> Vec<Option<Self>> {
-        let shot = Batch::new(method).shoot_at(rod, points.iter().copied());
-        let states = shot.iter().zip(points);
-        let states = states.map(|(variation, point)| Self::of(variation, rod, point.x));
-        states.collect()
     }
 }
 

@@ -125,6 +125,13 @@ impl CsvTable {
         });
         let hint = hints.next().unwrap_or_default();
         let line = self.header.number;
+        if let Some(twice) = known().find(|name| count(&[name]) > 1) {
+            let what = format!(
+                "has the column {twice} {} times: must have it once",
+                count(&[twice])
+            );
+            return Err(CsvError::at(&self.origin, line, what));
+        }
         if !is_right {
             let groups: Vec<String> = needed.iter().map(|group| group.join(" or ")).collect();
             let found: Vec<&str> = found().collect();

@@ -12,6 +12,15 @@ use whiskmap_mechanics::shooting::{FirstVariation, FullState, StateDerivative};
 /// Longest Newton step in the logarithms of contact and load.
 const LONGEST: f64 = 0.5;
 
+/// Condition from which on a search goes along a valley.
+const NARROW: f64 = 1e3;
+
+/// Part of the weak step that the strong one may change before a search goes along a valley.
+const INTO_VALLEY: f64 = 0.1;
+
+/// Longest step along a valley in the logarithms of contact and load.
+const LONGEST_IN_VALLEY: f64 = 0.1;
+
 /// Newton step in the logarithms of contact and load whose end is extrapolated. The remaining error is its square.
 const LAST: f64 = 1e-7;
 
@@ -68,11 +77,23 @@ impl Triangle {
         }
     }
 
-    /// Returns the step whose image is nearest to `residual`.
-    fn solve(&self, residual: DVec3) -> DVec2 {
-        let [along, across] = self.pair.map(|axis| axis.dot(residual));
-        let y = across / self.second;
-        DVec2::new((along - self.mixed * y) / self.first, y)
+    /// Returns the step whose image is nearest to `residual`, as a sum of its parts in the directions of the largest and of the smallest
+    /// change of the image.
+    fn solve(&self, residual: DVec3) -> [DVec2; 2] {
+        let residual = DVec2::from(self.pair.map(|axis| axis.dot(residual)));
+        let image = |step: DVec2| {
+            DVec2::new(
+                self.first * step.x + self.mixed * step.y,
+                self.second * step.y,
+            )
+        };
+        // Half the angle of the ellipse of the steps with an image of length 1.
+        let squares = self.first.powi(2) - self.mixed.powi(2) - self.second.powi(2);
+        let strong = DVec2::from_angle(0.5 * libm::atan2(2.0 * self.first * self.mixed, squares));
+        [strong, strong.perp()].map(|direction| {
+            let image = image(direction);
+            direction * (image.dot(residual) / image.length_squared())
+        })
     }
 
     /// Returns the ratio of the largest to the smallest singular value; infinite for a singular Jacobian.
@@ -91,6 +112,23 @@ impl Triangle {
         let y = (gradient.y - self.mixed * x) / self.second;
         libm::hypot(x, y)
     }
+}
+
+/// Returns the step of Newton's method from its `strong` and `weak` part, in the logarithms of contact and load.
+///
+/// Nearly dependent numbers have a curved valley of states that almost have them. The curvature of the valley changes the residual by the
+/// square of the strong part, and the weak part by that times the condition. So a search first goes into the valley, and then along it.
+fn step_in_valley([strong, weak]: [DVec2; 2], condition: f64) -> DVec2 {
+    let limited = |step: DVec2, longest: f64| step * (longest / step.abs().max_element()).min(1.0);
+    if condition < NARROW {
+        return limited(strong + weak, LONGEST);
+    }
+    let is_in_valley = condition * strong.length_squared() < INTO_VALLEY * weak.length();
+    let weak = match is_in_valley {
+        true => limited(weak, LONGEST_IN_VALLEY),
+        false => DVec2::ZERO,
+    };
+    limited(strong, LONGEST) + weak
 }
 
 /// Search for the state whose numbers at the base are `wanted`, or nearest to them by `weights`; a number of weight 0 does not enter.
@@ -113,10 +151,11 @@ impl<'a> NewtonProblem<'a> for BaseProblem<'a> {
         self.last = *here;
         let columns = base_derivatives(self.rod, at, here).map(|column| self.weights * column);
         let residual = self.weights * (self.wanted - base_numbers(&here.full));
-        let step = Triangle::new(columns).solve(residual);
+        let triangle = Triangle::new(columns);
+        let step = step_in_valley(triangle.solve(residual), triangle.condition());
         let length = step.abs().max_element();
         let [tau, load] = by_logarithms(self.rod, at);
-        let in_plane = step * (LONGEST / length).min(1.0) * DVec2::new(tau, load);
+        let in_plane = step * DVec2::new(tau, load);
         if length < LAST {
             NewtonStep::Extrapolate(in_plane)
         } else if in_plane.is_finite() {

@@ -35,7 +35,7 @@ pub fn solve(
         let end = piece.nodes.last()?.point;
         let exit = sheet.crossings[row].iter().find(|c| c.push == span.to)?;
         let apart = (end.x / exit.tau - 1.0).abs() + (end.y / exit.load - 1.0).abs();
-        (apart < SAME_END && piece.end == span.edge).then_some(piece.nodes)
+        (apart < SAME_END && piece.end == Some(span.edge)).then_some(piece.nodes)
     });
     let pieces: Vec<Option<Vec<CurveNode>>> = pieces.collect();
     for (index, cell) in &mut cells {

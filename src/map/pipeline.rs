@@ -144,7 +144,12 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             return None;
         }
         let mut times = self.summary.stages;
-        let count = || panels.iter().for_each(|panel| self.summary.count(panel));
+        let yield_strain = self.scene.whisker.yield_strain;
+        let count = || {
+            panels
+                .iter()
+                .for_each(|panel| self.summary.count(panel, yield_strain))
+        };
         times.time(Stage::Classification, count);
         self.summary.stages = times;
         Some(panels)

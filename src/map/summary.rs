@@ -94,6 +94,8 @@ pub struct Summary {
     pub toward_base: u64,
     /// Number of cells with a state whose contact sticks.
     pub sticking: u64,
+    /// Number of cells beyond the yield strain; 0 if the largest strains are not computed, or the scene has no yield strain.
+    pub yielding: u64,
     /// Engine of the run, and its hardware.
     pub engine: EngineDescription,
     /// Numbers of cells of the run by their outcome in the engine.
@@ -118,8 +120,13 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Adds the cells of a finished panel to the counts.
-    pub(super) fn count(&mut self, panel: &Panel) {
+    /// Adds the cells of a finished panel of whiskers with this yield strain to the counts.
+    pub(super) fn count(&mut self, panel: &Panel, yield_strain: Option<f64>) {
+        if let Some(most) = yield_strain {
+            let strains = panel.peak_strain.par_iter();
+            let beyond = strains.filter(|strain| f64::from(**strain) > most);
+            self.yielding += beyond.count() as u64;
+        }
         let codes = [&panel.regime, &panel.status, &panel.newton_steps];
         let [regimes, statuses, steps] = codes.map(|codes| codes.par_chunks(AT_ONCE));
         let parts = (regimes, statuses, panel.residual.par_chunks(AT_ONCE), steps);

@@ -9,15 +9,28 @@ use crate::store::{ChannelValues, MapSlice, STATE_CHANNELS};
 const MARKED: &str = "slides to base, or sticks";
 
 /// Name in legends of states beyond the yield strain.
-const YIELDING: &str = "beyond the yield strain";
+pub const YIELDING: &str = "beyond the yield strain";
 
 /// Returns true if the states in `channel` include some whose contact does not slide toward the tip.
-pub fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
+fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
     let is_marked = STATE_CHANNELS.contains(&channel) && map.channels().contains(&"status");
-    Ok(is_marked && map.codes("status")?.into_iter().any(is_mark))
+    Ok(is_marked
+        && map
+            .codes("status")?
+            .into_iter()
+            .any(|code| status(code).is_some()))
 }
 
-/// Hatched cells of a map, and their name in its legend.
+/// Mark of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellMark {
+    /// The contact does not slide toward the tip.
+    Status(Status),
+    /// The largest strain exceeds the yield strain.
+    Yields,
+}
+
+/// Marked cells of a map, and their name in its legend.
 pub struct MapMarks {
     /// True if states whose contact does not slide toward the tip are marked.
     has_marks: bool,
@@ -56,21 +69,32 @@ impl MapMarks {
         }
     }
 
-    /// Returns true for each hatched cell of a panel, `[distance][push_angle]`; nothing without marks.
-    pub fn hatched(&self, map: &MapSlice, index: usize) -> Result<Vec<bool>, RenderError> {
-        let mut hatched = match self.yield_strain {
-            Some(most) => beyond(map, most, index)?,
-            None => Vec::new(),
-        };
+    /// Returns the mark of each cell of a panel, `[distance][push_angle]`; nothing without marks. A cell with both marks has that of its status.
+    pub fn of_panel(
+        &self,
+        map: &MapSlice,
+        index: usize,
+    ) -> Result<Vec<Option<CellMark>>, RenderError> {
+        let mut marks = Vec::new();
+        if let Some(most) = self.yield_strain {
+            let beyond = beyond(map, most, index)?.into_iter();
+            marks.extend(beyond.map(|yields| yields.then_some(CellMark::Yields)));
+        }
         if self.has_marks
             && let ChannelValues::U32(codes) = map.read_panel("status", index)?
         {
-            hatched.resize(codes.len(), false);
-            for (own, code) in hatched.iter_mut().zip(codes) {
-                *own |= is_mark(code);
+            marks.resize(codes.len(), None);
+            for (mark, code) in marks.iter_mut().zip(codes) {
+                *mark = status(code).map(CellMark::Status).or(*mark);
             }
         }
-        Ok(hatched)
+        Ok(marks)
+    }
+
+    /// Returns true for each hatched cell of a panel, `[distance][push_angle]`; nothing without marks.
+    pub fn hatched(&self, map: &MapSlice, index: usize) -> Result<Vec<bool>, RenderError> {
+        let marks = self.of_panel(map, index)?;
+        Ok(marks.iter().map(Option::is_some).collect())
     }
 }
 
@@ -80,8 +104,8 @@ fn beyond(map: &MapSlice, most: f64, index: usize) -> Result<Vec<bool>, RenderEr
     Ok(strains.values().map(|strain| strain > most).collect())
 }
 
-/// Returns true if the code of a status marks a state whose contact does not slide toward the tip.
-fn is_mark(code: u32) -> bool {
-    let mut marks = Status::NOT_TOWARD_TIP.iter();
-    marks.any(|status| status.code() == code)
+/// Returns the status with this code if it marks a state whose contact does not slide toward the tip.
+fn status(code: u32) -> Option<Status> {
+    let mut marks = Status::NOT_TOWARD_TIP.into_iter();
+    marks.find(|status| status.code() == code)
 }

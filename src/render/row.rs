@@ -1,10 +1,10 @@
 //! Line charts of maps with one row: a channel over the push angle.
 
-use super::marks::has_marks;
+use super::marks::{CellMark, MapMarks, YIELDING};
 use super::{MapOptions, RenderError, labels};
 use crate::classify::Status;
 use crate::scene::Coordinate;
-use crate::store::{ChannelValues, MapSlice};
+use crate::store::MapSlice;
 use whiskmap_plot::{Chart, Ink, Line, Picture, Plot, Stroke};
 
 /// Maximum number of whiskers in a line chart. More lines would share colours.
@@ -28,7 +28,7 @@ pub fn chart(
     options: &MapOptions<'_>,
 ) -> Result<Picture, RenderError> {
     let grid = map.grid();
-    let has_marks = has_marks(map, channel)?;
+    let marks = MapMarks::new(map, channel)?;
     let mut lines = Vec::new();
     let mut names = vec![String::new()];
     if let [axis] = &*grid.sweep {
@@ -38,19 +38,23 @@ pub fn chart(
     }
     for (index, name) in names.iter().enumerate() {
         let values: Vec<f64> = map.read_panel(channel, index)?.values().collect();
-        let marks = has_marks.then(|| map.read_panel("status", index));
-        let marks = marks.transpose()?;
+        let marks = marks.of_panel(map, index)?;
         let ink = match names.len() {
             1 => Ink::Black,
             _ => Ink::Series(index),
         };
-        for (points, mark) in parts(&grid.push_angle_deg, &values, marks.as_ref()) {
+        for (points, mark) in parts(&grid.push_angle_deg, &values, &marks) {
             lines.push(match mark {
                 None => Line::new(points, ink, Stroke::Solid).named(name),
-                Some(Status::TowardBase) => {
+                Some(CellMark::Yields) => {
+                    Line::new(points, Ink::Grey, Stroke::Dashed).named(YIELDING)
+                }
+                Some(CellMark::Status(Status::TowardBase)) => {
                     Line::new(points, ink, Stroke::Dashed).named("slides to base")
                 }
-                Some(_) => Line::new(points, Ink::Grey, Stroke::Solid).named("sticks"),
+                Some(CellMark::Status(_)) => {
+                    Line::new(points, Ink::Grey, Stroke::Solid).named("sticks")
+                }
             });
         }
     }
@@ -72,19 +76,13 @@ pub fn chart(
     Ok(Chart::single(options.title(map), plot).picture(options.size)?)
 }
 
-/// Part of a line, and the status of its states if their contact does not slide toward the tip.
-type RowPart = (Vec<[f64; 2]>, Option<Status>);
+/// Part of a line, and the mark of its states.
+type RowPart = (Vec<[f64; 2]>, Option<CellMark>);
 
 /// Returns the parts of a row of `values` at `angles`, each of one mark: CF and CB apart, because the values between them are not those of
 /// first touch. Parts of one side share an end.
-fn parts(angles: &[f64], values: &[f64], marks: Option<&ChannelValues>) -> Vec<RowPart> {
-    let mark = |i: usize| {
-        let Some(ChannelValues::U32(codes)) = marks else {
-            return None;
-        };
-        let mut marks = Status::NOT_TOWARD_TIP.into_iter();
-        marks.find(|status| status.code() == codes[i])
-    };
+fn parts(angles: &[f64], values: &[f64], marks: &[Option<CellMark>]) -> Vec<RowPart> {
+    let mark = |i: usize| marks.get(i).copied().flatten();
     let mut parts: Vec<RowPart> = Vec::new();
     for (i, (angle, value)) in angles.iter().zip(values).enumerate() {
         let point = [*angle, *value];

@@ -1,6 +1,7 @@
 //! Numbers of a scene before they are checked.
 
 use super::axis::AxisValues;
+use super::error::SceneFault;
 use super::grid::{Coordinate, SweepPlace};
 use super::parameter::Parameter;
 use super::smooth::MeasuredRadii;
@@ -133,6 +134,8 @@ pub struct SceneBuilder {
     pub(super) is_length_traced: bool,
     /// Table of whiskers, the first sweep axis; `None` without one.
     pub(super) table: Option<Arc<[WhiskerRow]>>,
+    /// Fault of the first number that was set although a column of the table gives it; `None` without one.
+    pub(super) refused: Option<SceneFault>,
     pub(super) push_angle_deg: AxisValues,
     pub(super) distance_mm: AxisValues,
     pub(super) sweep: Vec<(Parameter, AxisValues)>,
@@ -154,9 +157,12 @@ impl SceneBuilder {
         self
     }
 
-    /// Sets a number of the scene, in the unit of the parameter.
+    /// Sets a number of the scene, in the unit of the parameter. A number that a column of the table of whiskers gives is refused when the
+    /// scene is built, because it would have no effect.
     #[must_use]
     pub fn set(mut self, parameter: Parameter, value: f64) -> Self {
+        let refused = self.refuse_number(parameter, value).err();
+        self.refused = self.refused.or(refused);
         self.numbers.set(parameter, value);
         self
     }

@@ -21,6 +21,7 @@ mod rows;
 mod scene;
 mod shape;
 mod smooth;
+mod substitutes;
 mod surface;
 mod sweep;
 mod table;

@@ -9,6 +9,9 @@ use super::smooth::{MeasuredRadii, SMOOTH_KEY};
 /// Key of the measured rows of radii in a scene file.
 pub(super) const KEY: &str = "whisker.profile.rows";
 
+/// Reason why a radius or a taper is refused beside measured radii.
+pub(super) const IS_MEASURED: &str = "must be left out: the radii are those of whisker.profile";
+
 /// Largest number of rows of a measured profile. A trajectory takes at least two steps from row to row.
 pub(super) const MOST: usize = 256;
 
@@ -56,8 +59,7 @@ pub(super) fn radii(
             .zip(ends)
             .find_map(|(key, end)| Some((key, end?)))
         {
-            let must = "must be left out: the radii are those of whisker.profile";
-            return Err(SceneFault::of_value(*key, digits(value), must));
+            return Err(SceneFault::of_value(*key, digits(value), IS_MEASURED));
         }
         check_places(&given.rows, length_mm)?;
         let Some(smooth) = given.smoothed()? else {

@@ -16,6 +16,7 @@ impl SceneBuilder {
     #[must_use]
     pub fn whiskers(mut self, rows: impl Into<Vec<WhiskerRow>>) -> Self {
         self.table = Some(rows.into().into());
+        self.refused = None;
         self
     }
 
@@ -44,37 +45,13 @@ impl SceneBuilder {
         one.with_tip_of_taper()
     }
 
-    /// Refuses sweep axes of parameters that a column of the table gives, or determines.
-    fn refuse_columns(&self, rows: &[WhiskerRow]) -> Result<(), SceneFault> {
-        use Parameter::{BaseRadiusUm, Taper, TipRadiusUm};
-        for (parameter, _) in &self.sweep {
-            let others: &[Parameter] = match parameter {
-                BaseRadiusUm | TipRadiusUm => &[Taper],
-                Taper => &[TipRadiusUm],
-                _ => &[],
-            };
-            let is_at_odds = |own: &Parameter| own == parameter || others.contains(own);
-            let columns = rows.iter().flat_map(|row| &row.numbers);
-            let mut columns = columns.map(|(column, _)| *column);
-            if let Some(column) = columns.find(is_at_odds) {
-                let must = format!(
-                    "must be left out: {} has the column {}",
-                    SweepVariable::TABLE,
-                    column.name()
-                );
-                return Err(SceneFault::new(parameter.axis_key(), must));
-            }
-        }
-        Ok(())
-    }
-
     /// Returns the whiskers of the table, `[row]`, and the builder of the first row that has one.
     pub(super) fn table_whiskers(
         &self,
         rows: &[WhiskerRow],
     ) -> Result<(Vec<TableWhisker>, Self), SceneFault> {
         check_names(rows)?;
-        self.refuse_columns(rows)?;
+        self.refuse_axes_of_columns()?;
         let mut first = None;
         let whiskers = rows.iter().map(|row| {
             let one = self.of_row(row);
@@ -114,7 +91,11 @@ fn check_names(rows: &[WhiskerRow]) -> Result<(), SceneFault> {
     let mut names = HashSet::new();
     for (index, row) in rows.iter().enumerate() {
         let name = &row.name;
-        let must = if name.trim().is_empty() || name.contains(char::is_control) {
+        let key = format!("{key}[{index}]");
+        if name.trim().is_empty() {
+            return Err(SceneFault::new(key, "the name of the whisker is missing"));
+        }
+        let must = if name.contains(char::is_control) {
             "the name of a whisker must be one line of text"
         } else if !names.insert(name) {
             "the name of a whisker must be unlike those before it"
@@ -123,11 +104,7 @@ fn check_names(rows: &[WhiskerRow]) -> Result<(), SceneFault> {
         } else {
             continue;
         };
-        return Err(SceneFault::of_value(
-            format!("{key}[{index}]"),
-            name.clone(),
-            must,
-        ));
+        return Err(SceneFault::of_value(key, name.clone(), must));
     }
     Ok(())
 }

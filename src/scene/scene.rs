@@ -7,10 +7,12 @@ use std::sync::Arc;
 use super::builder::SceneBuilder;
 use super::data::SceneData;
 use super::error::{SceneError, SceneFault};
+use super::limits::digits;
 use super::parameter::Parameter;
+use super::profile::IS_MEASURED;
 use super::smooth::SmoothRadii;
 use super::table::WhiskerRow;
-use super::toml::SceneText;
+use super::toml::{SceneText, TAPER_KEY};
 use crate::traced::TracedShape;
 
 /// A scene that has passed every check. It dereferences to its [`SceneData`], which only a new scene changes.
@@ -49,6 +51,9 @@ impl SceneBuilder {
     /// If a number is missing, out of its range, or contradicts another one. The error names its key in a scene file.
     pub fn build(self) -> Result<Scene, SceneError> {
         let refused = |fault| SceneError::of_fault("", "", fault);
+        if let Some(fault) = self.refused {
+            return Err(refused(fault));
+        }
         let builder = Arc::new(self.with_tip_of_taper().map_err(refused)?);
         let text = SceneText::of_numbers(Arc::clone(&builder));
         let data = builder.checked(text).map_err(refused)?;
@@ -103,13 +108,10 @@ impl Scene {
         self.builder.table.as_deref().unwrap_or_default()
     }
 
-    /// Returns true if a row of the table of whiskers gives the parameter, or what would give it: the scene's own number has no effect there.
+    /// Returns the column of the table of whiskers that leaves the scene's own number without effect; `None` without one.
     #[cfg(feature = "fit")]
-    pub(crate) fn has_column(&self, parameter: Parameter) -> bool {
-        self.table_rows().iter().any(|row| {
-            let mut numbers = row.numbers().iter();
-            numbers.any(|(own, _)| own.key() == parameter.key()) || row.replaces(parameter)
-        })
+    pub(crate) fn column_of(&self, parameter: Parameter) -> Option<&'static str> {
+        self.builder.column_of(parameter)
     }
 
     /// Returns the paths of the CSV files that the scene names, of radii and of traced points: `[file]`.
@@ -158,7 +160,7 @@ impl Scene {
     pub fn with_parameters(&self, values: &[(Parameter, f64)]) -> Result<Self, SceneError> {
         let mut builder = self.to_builder();
         for (parameter, value) in values {
-            builder.numbers.set(*parameter, *value);
+            builder = builder.set(*parameter, *value);
         }
         builder.build()
     }
@@ -198,6 +200,13 @@ impl SceneBuilder {
         if let Some(taper) = self.numbers.get(Parameter::Taper) {
             // Next to the ends of this range, the rounding of the tip's radius would hide what lies beyond.
             Parameter::taper_limits(taper).check(Parameter::Taper.name(), taper)?;
+            if self.has_bases_of_rows() {
+                self.refuse_number(Parameter::Taper, taper)?;
+            }
+            if self.measured.is_some() {
+                let taper = digits(taper);
+                return Err(SceneFault::of_value(TAPER_KEY, taper, IS_MEASURED));
+            }
             let key = Parameter::BaseRadiusUm.key();
             let absent = || SceneFault::new(key, "is left out, and there is a taper");
             let tip_radius_um = self.numbers.tip_radius_um().ok_or_else(absent)?;

@@ -6,6 +6,7 @@ use super::grid::{Grid, SweepAxis, SweepPlace};
 use super::limits::digits;
 use super::parameter::Parameter;
 use super::shape;
+use super::substitutes::HAS_TAPERS;
 
 /// Returns the sweep axes. Each value is within the limits that hold whatever the other numbers are.
 pub(super) fn axes(
@@ -57,39 +58,28 @@ pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
 pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
     let given = |parameter| scene.numbers.get(parameter).is_some();
     let is_measured = scene.measured.is_some();
-    let is_spiral = given(Parameter::SpiralPerMm) || given(Parameter::SpiralPerMm2);
     for (parameter, _) in &scene.sweep {
-        let must = match parameter {
-            Parameter::Taper | Parameter::TipRadiusUm | Parameter::BaseRadiusUm if is_measured => {
-                "must be left out: the radii are those of whisker.profile"
-            }
-            Parameter::LengthMm if is_measured => {
+        let mut substitutes = parameter.substitutes().iter();
+        let substituted = substitutes.find_map(|part| part.of_scene(scene));
+        let must = match (substituted, parameter) {
+            (Some(must), _) => must,
+            (None, Parameter::LengthMm) if is_measured => {
                 "must be left out: whisker.profile has the radii of one length"
             }
-            Parameter::TipRadiusUm if scene.sweeps(Parameter::Taper) => {
-                "must be left out: grid.taper gives every whisker of the sweep its tip"
-            }
-            Parameter::ParabolaPerMm | Parameter::VertexMm if scene.traced.is_some() => {
-                shape::IS_TRACED
-            }
-            Parameter::ParabolaPerMm | Parameter::VertexMm if is_spiral => {
-                "must be left out: the whisker is an Euler spiral"
-            }
-            Parameter::VertexMm
+            (None, Parameter::VertexMm)
                 if !given(Parameter::ParabolaPerMm) && !scene.sweeps(Parameter::ParabolaPerMm) =>
             {
                 "must be left out: there is no parabola; give parabola_per_mm or grid.curvature_per_mm"
             }
-            own if !Parameter::SWEPT.contains(own) => "must be left out: no axis varies it",
+            (None, own) if !Parameter::SWEPT.contains(own) => "must be left out: no axis varies it",
             _ => continue,
         };
         return Err(SceneFault::new(parameter.axis_key(), must));
     }
     match scene.numbers.get(Parameter::TipRadiusUm) {
         Some(tip) if scene.sweeps(Parameter::Taper) => {
-            let must = "must be left out: grid.taper gives every whisker of the sweep its tip";
             let key = Parameter::TipRadiusUm.key();
-            Err(SceneFault::of_value(key, digits(tip), must))
+            Err(SceneFault::of_value(key, digits(tip), HAS_TAPERS))
         }
         _ => Ok(()),
     }

@@ -108,15 +108,9 @@ impl WhiskerRow {
 
     /// Returns true if another column of the row gives what `parameter` would.
     pub(super) fn replaces(&self, parameter: Parameter) -> bool {
-        use Parameter::{
-            BaseRadiusUm, LengthMm, ParabolaPerMm, SpiralPerMm, SpiralPerMm2, Taper, TipRadiusUm,
-            VertexMm,
-        };
-        match parameter {
-            BaseRadiusUm | TipRadiusUm | Taper => self.profile.is_some(),
-            LengthMm | ParabolaPerMm | VertexMm | SpiralPerMm | SpiralPerMm2 => self.rest.is_some(),
-            _ => false,
-        }
+        let has_length = parameter == Parameter::LengthMm && self.rest.is_some();
+        let mut substitutes = parameter.substitutes().iter();
+        has_length || substitutes.any(|part| self.gives(*part))
     }
 }
 

@@ -17,7 +17,8 @@ use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 /// Number of points that are computed between two looks at the flag that cancels.
 const POINTS_AT_ONCE: usize = 1 << 10;
 
-/// Branch: all states of one whisker at one pole that are connected with first touch.
+/// Branch: all states of one whisker at one pole that are connected with first touch. Unstable states beyond nine turns of the base are left
+/// out, and the last point then has no mark.
 #[derive(Clone, Debug)]
 pub struct Branch {
     pub(super) level: LevelCurve,
@@ -62,7 +63,7 @@ impl Branch {
     /// Computes the branch of `whisker` at `pole`, whose first touch is at `distance_mm` from the base.
     ///
     /// # Errors
-    /// The whisker at rest does not reach the pole, or the continuation fails.
+    /// The whisker at rest does not reach the pole, the stable states do not end within nine turns of the base, or the continuation fails.
     pub fn new(
         whisker: &Whisker,
         pole: &Pole,
@@ -95,6 +96,9 @@ impl Branch {
             false => NoState::Failed { push_deg: 0.0 },
         };
         let continuation = followed.ok_or(none)?;
+        if continuation.fold.is_none() && continuation.end.is_none() {
+            return Err(NoState::BeyondTurns);
+        }
         let has_friction = rod.friction != 0.0;
         Ok(Self {
             history: has_friction
@@ -163,22 +167,24 @@ impl Branch {
             corrected.extend(self.level.correct(starts, ON_CURVE));
         }
         let (last, last_node) = (targets.len() - 1, nodes.len() - 1);
-        let end_mark = match (fold, end) {
+        let end_mark = end.map(|end| match (fold, end) {
             (Some(_), Edge::Fold) => BranchMark::SecondFold,
             (Some(_), Edge::Tip) => BranchMark::Tip,
             (None, _) => BranchMark::PullOff,
-        };
+        });
         let mut marked = Vec::with_capacity(targets.len());
         for (i, (near, corrected)) in near.iter().zip(corrected).enumerate() {
             // The ends and the fold are more accurate than corrected points.
             let exact = match i {
-                0 => Some((nodes[0], BranchMark::FirstTouch)),
+                0 => Some((nodes[0], Some(BranchMark::FirstTouch))),
                 _ if i == last => Some((nodes[last_node], end_mark)),
-                _ if Some(i) == fold_at => fold.map(|fold| (nodes[fold], BranchMark::SlipOff)),
+                _ if Some(i) == fold_at => {
+                    fold.map(|fold| (nodes[fold], Some(BranchMark::SlipOff)))
+                }
                 _ => None,
             };
-            marked.push(if let Some((node, mark)) = exact {
-                (node, Some(mark))
+            marked.push(if let Some(exact) = exact {
+                exact
             } else {
                 let (point, full) = corrected.ok_or_else(|| self.failed())?;
                 let CurveNode { push, angle, .. } = nodes[*near];

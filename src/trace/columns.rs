@@ -1,5 +1,6 @@
 //! Table rows whose columns are defined once, for the documentation and `--help`.
 
+use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Reading;
 
 /// Expands to the description of a column: its own, that which all tables have, or that of the field of [`Reading`] with its name.
@@ -17,7 +18,7 @@ macro_rules! column {
 /// Defines a struct whose fields are the columns of a table. Their doc comments are the descriptions in
 /// [`COLUMNS`](crate::trace::Detachment::COLUMNS); without one, the description is that of all tables.
 ///
-/// A row `of a state` is a [`StateRow`]: fields marked `= place` and `= load` have the values of a [`Reading`].
+/// A row `of a state` is a [`StateRow`] and a [`ContactRow`]: fields marked `= place` and `= load` have the values of a [`Reading`].
 macro_rules! row {
     ($(#[$outer:meta])* pub struct $name:ident {
         $($(#[doc = $text:literal])* pub $column:ident: $kind:ty,)*
@@ -54,7 +55,22 @@ macro_rules! row {
                 self
             }
         }
+
+        impl $crate::trace::ContactRow for $name {
+            fn contact(&self) -> $crate::trace::ContactColumns {
+                let mut own = $crate::trace::ContactColumns::default();
+                $($crate::trace::row!(@contact own.$column = self);)*
+                own
+            }
+        }
     };
+    (@contact $own:ident.side = $row:ident) => { $own.side = $row.side.into() };
+    (@contact $own:ident.arc_length_mm = $row:ident) => { $own.arc_length_mm = $row.arc_length_mm.into() };
+    (@contact $own:ident.contact_angle_deg = $row:ident) => { $own.contact_angle_deg = $row.contact_angle_deg.into() };
+    (@contact $own:ident.force_un = $row:ident) => { $own.force_un = $row.force_un.into() };
+    (@contact $own:ident.base_force_x_un = $row:ident) => { $own.base_force_un[0] = $row.base_force_x_un.into() };
+    (@contact $own:ident.base_force_y_un = $row:ident) => { $own.base_force_un[1] = $row.base_force_y_un.into() };
+    (@contact $own:ident.$other:ident = $row:ident) => {};
     (@value $part:ident $row:ident.$column:ident = $state:ident.$field:ident) => { $row.$column = $state.$field.into() };
     (@zero place $row:ident.$column:ident) => {};
     (@zero load $row:ident.$column:ident) => { $row.$column = 0.0.into() };
@@ -69,6 +85,27 @@ pub(crate) trait StateRow {
 
     /// Returns the row with all loads 0, as those of a free whisker.
     fn unloaded(self) -> Self;
+}
+
+/// Columns of a row that give the contact of its state, and the force there. Columns that the table does not have are `None`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactColumns {
+    /// Side of the whisker that the pole is on; `None` for a free whisker.
+    pub side: Option<Side>,
+    /// Arclength from the base to the contact, in mm.
+    pub arc_length_mm: Option<f64>,
+    /// Angle of the tangent at the contact, from the base's tangent, in degrees.
+    pub contact_angle_deg: Option<f64>,
+    /// Normal part of the force between pole and whisker, in uN.
+    pub force_un: Option<f64>,
+    /// Force that the pole puts on the base, along its tangent and to the left of it, `[x, y]` in uN.
+    pub base_force_un: [Option<f64>; 2],
+}
+
+/// Row of a table whose columns give the contact of a state, and the force there.
+pub trait ContactRow {
+    /// Returns the columns of the contact.
+    fn contact(&self) -> ContactColumns;
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 use super::{Branch, NoState, StateAtPush};
 use crate::friction::{ContactPhase, ContactQuery, FrictionState, Sliding, states};
 use crate::sheet::CurveNode;
-use glam::DVec2;
 use std::borrow::Cow;
 use whiskmap_mechanics::rod::Rod;
 
@@ -67,19 +66,13 @@ impl Branch {
         pushed.collect()
     }
 
-    /// Returns the unstable states `nodes` with the direction in which their contact slides in the direction of continuation, `[node]`.
-    /// They have the friction of a contact that slides toward the tip.
+    /// Returns the unstable states `nodes`, `[node]`. They have the friction of a contact that slides toward the tip, as the last stable states do.
     pub(super) fn beyond_fold(&self, nodes: &[CurveNode]) -> Vec<StateAtPush> {
-        let level = &self.level;
-        let points: Vec<DVec2> = nodes.iter().map(|node| node.point).collect();
-        let slidings = match level.rod.friction {
-            0.0 => vec![None; nodes.len()],
-            _ => Sliding::at(level.method, &level.rod, &points),
-        };
-        let states = nodes.iter().zip(slidings);
-        let friction = level.rod.friction;
+        let friction = self.level.rod.friction;
+        let sliding = (friction != 0.0).then_some(Sliding::Tip);
+        let states = nodes.iter();
         states
-            .map(|(node, sliding)| StateAtPush::of(node, false, friction, sliding))
+            .map(|node| StateAtPush::of(node, false, friction, sliding))
             .collect()
     }
 

@@ -23,6 +23,7 @@ pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;
 pub use state::StateAtPush;
 
+pub use columns::{ContactColumns, ContactRow};
 pub(crate) use columns::{StateRow, column, row};
 
 use crate::scene::{RefusedWhisker, SweepPlace, SweptWhisker};
@@ -127,6 +128,11 @@ pub enum NoState {
         /// Signed push angle of the state, in degrees.
         push_deg: f64,
     },
+    /// The stable states do not end within nine turns of the base.
+    #[error(
+        "the stable states do not end within nine turns of the base (3240 deg), as where a follicle is much softer than its whisker"
+    )]
+    BeyondTurns,
     /// The continuation of the branch failed.
     #[error("the continuation of the branch failed near {push_deg} deg")]
     Failed {

@@ -15,7 +15,7 @@ impl StableBranch {
     /// Computes the stable states of `whisker` at `pole`, whose first touch is at `distance_mm` from the base.
     ///
     /// # Errors
-    /// The whisker at rest does not reach the pole, or the continuation fails.
+    /// The whisker at rest does not reach the pole, the states do not end within nine turns of the base, or the continuation fails.
     pub fn new(
         whisker: &Whisker,
         pole: &Pole,

@@ -3,13 +3,8 @@
 //! Beyond its yield strain a whisker is not elastic, so that the state is not that of a real whisker. The marks change no state.
 
 use crate::design::DesignVaried;
-use crate::locate::LocatedState;
 use crate::scene::{Pole, Scene, Whisker};
-use crate::sensitivity::VariableEffect;
-use crate::texture::TextureSample;
-use crate::trace::{BranchPoint, Detachment, PushLoad, ShapePoint, StableBranch, row};
-use crate::uncertainty::LargestSpread;
-use crate::whisk::WhiskSample;
+use crate::trace::{ContactColumns, ContactRow, Corner, Detachment, PushLoad, StableBranch, row};
 use glam::DVec2;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -48,68 +43,36 @@ row! {
     }
 }
 
-/// Row of a table that has the largest strain of a state or of a push.
-pub trait StrainRow {
-    /// Returns the largest bending strain of the row; `None` without a state.
-    fn strain(&self) -> Option<f64>;
-}
-
-impl StrainRow for BranchPoint {
-    fn strain(&self) -> Option<f64> {
-        Some(self.peak_strain)
-    }
-}
-
-impl StrainRow for ShapePoint {
-    fn strain(&self) -> Option<f64> {
-        Some(self.strain)
-    }
-}
-
-impl StrainRow for VariableEffect {
-    fn strain(&self) -> Option<f64> {
-        self.max_strain
-    }
-}
-
-impl StrainRow for LargestSpread {
-    fn strain(&self) -> Option<f64> {
-        self.max_strain
-    }
-}
-
 impl YieldMark {
-    /// Returns the mark of a row of `whisker`; `None` without a yield strain.
+    /// Returns the mark of a row of `whisker` with this largest bending `strain`, `None` without a state. Returns `None` without a yield strain.
     #[must_use]
-    pub fn new(whisker: &Whisker, row: &impl StrainRow) -> Option<Self> {
+    pub fn new(whisker: &Whisker, strain: impl Into<Option<f64>>) -> Option<Self> {
         whisker.yield_strain?;
-        let yields = row.strain().and_then(|strain| whisker.yields(strain));
+        let yields = strain.into().and_then(|strain| whisker.yields(strain));
         Some(Self { yields })
     }
 
-    /// Returns the marks of the rows of `whisker`, `[row]`; `None` without a yield strain.
+    /// Returns the marks of rows of `whisker` with these largest bending strains, `[row]`; `None` without a yield strain.
     #[must_use]
-    pub fn of_rows(whisker: &Whisker, rows: &[impl StrainRow]) -> Option<Vec<Self>> {
-        rows.iter().map(|row| Self::new(whisker, row)).collect()
+    pub fn of_rows(whisker: &Whisker, strains: impl IntoIterator<Item = f64>) -> Option<Vec<Self>> {
+        whisker.yield_strain?;
+        let strains = strains.into_iter();
+        strains.map(|strain| Self::new(whisker, strain)).collect()
     }
 }
 
 /// Contact of a state with the force of the pole, as tables have them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactLoad {
-    /// Side of the whisker that the pole is on.
-    pub side: Side,
-    /// Arclength from the base to the contact, in mm.
-    pub arc_length_mm: f64,
+struct ContactLoad {
+    side: Side,
+    arc_length_mm: f64,
     /// Force that the pole puts on the base, along its tangent and to the left of it, in uN.
-    pub base_force_un: DVec2,
+    base_force_un: DVec2,
     /// Angle of the tangent at the contact, from the base's tangent, in degrees. It does not count without friction.
-    pub contact_angle_deg: f64,
+    contact_angle_deg: f64,
 }
 
 /// Contact of a row's state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RowContact {
+enum RowContact {
     /// The row has no state.
     Unknown,
     /// The whisker is at rest.
@@ -118,63 +81,20 @@ pub enum RowContact {
     Loaded(ContactLoad),
 }
 
-/// Row of a table that has the contact of a state with its load.
-pub trait ContactRow {
-    /// Returns the contact of the row's state.
-    fn contact(&self) -> RowContact;
-}
-
-impl ContactRow for WhiskSample {
-    fn contact(&self) -> RowContact {
-        RowContact::of(
-            (self.side, self.force_un),
-            self.arc_length_mm,
-            [self.base_force_x_un, self.base_force_y_un],
-            self.contact_angle_deg,
-        )
-    }
-}
-
-impl ContactRow for TextureSample {
-    fn contact(&self) -> RowContact {
-        // Asperities have no friction, so that the angle does not count.
-        RowContact::of(
-            (self.side, self.force_un),
-            self.arc_length_mm,
-            [self.base_force_x_un, self.base_force_y_un],
-            Some(0.0),
-        )
-    }
-}
-
-impl ContactRow for LocatedState {
-    fn contact(&self) -> RowContact {
-        RowContact::of(
-            (self.side, self.force_un),
-            self.arc_length_mm,
-            [self.base_force_x_un, self.base_force_y_un],
-            self.contact_angle_deg,
-        )
-    }
-}
-
 impl RowContact {
-    /// Creates the contact of a row with these columns. A row without a side and with a force of 0 has a free whisker.
-    fn of(
-        (side, force_un): (Option<Side>, Option<f64>),
-        arc_length_mm: Option<f64>,
-        [x, y]: [Option<f64>; 2],
-        contact_angle_deg: Option<f64>,
-    ) -> Self {
-        if (side, force_un) == (None, Some(0.0)) {
+    /// Creates the contact of a row with these columns. A row without a side and with a force of 0 has a free whisker. A table without the
+    /// angle of the contact has no friction.
+    fn new(columns: ContactColumns) -> Self {
+        if (columns.side, columns.force_un) == (None, Some(0.0)) {
             return Self::Free;
         }
+        let [x, y] = columns.base_force_un;
         let load = || {
             Some(ContactLoad {
-                side: side?,
-                arc_length_mm: arc_length_mm?,
+                side: columns.side?,
+                arc_length_mm: columns.arc_length_mm?,
                 base_force_un: DVec2::new(x?, y?),
-                contact_angle_deg: contact_angle_deg?,
+                contact_angle_deg: columns.contact_angle_deg.unwrap_or_default(),
             })
         };
         load().map_or(Self::Unknown, Self::Loaded)
@@ -204,7 +124,7 @@ impl StrainMark {
     #[must_use]
     pub fn of_rows(whisker: &Whisker, pole: &Pole, rows: &[impl ContactRow]) -> Option<Vec<Self>> {
         whisker.yield_strain?;
-        let contacts = rows.iter().map(ContactRow::contact);
+        let contacts = rows.iter().map(|row| RowContact::new(row.contact()));
         let contacts: Vec<RowContact> = contacts.collect();
         let loaded = contacts.iter().filter_map(|contact| match contact {
             RowContact::Loaded(load) => Some(load.condition(whisker, pole)),
@@ -253,10 +173,14 @@ impl PushMark {
     /// Marks a push of `whisker` at `pole` that has this `end`: empty cells without a detachment. `None` without a yield strain.
     #[must_use]
     pub fn of_end(whisker: &Whisker, pole: &Pole, end: &Detachment) -> Option<Self> {
-        match end.push_angle_deg {
-            Some(_) => Self::new(whisker, pole, end.side, end.distance_mm),
-            None => whisker.yield_strain.map(|_| Self::default()),
-        }
+        let distance_mm = end.push_angle_deg.and(Some(end.distance_mm));
+        Self::new(whisker, pole, end.side, distance_mm)
+    }
+
+    /// Marks the push of `whisker` at `pole` that ends at a `corner`: empty cells without one. `None` without a yield strain.
+    #[must_use]
+    pub fn of_corner(whisker: &Whisker, pole: &Pole, corner: &Corner) -> Option<Self> {
+        Self::new(whisker, pole, corner.side, corner.distance_mm)
     }
 
     /// Marks the push of a design's solution: the scene with these `values` of the `varied` numbers, `[variable]`, with the pole on a side at a
@@ -277,14 +201,20 @@ impl PushMark {
         Some(mark.unwrap_or_default())
     }
 
-    /// Marks a push of `whisker` at `pole`, whose first touch is at `distance_mm` from the base, until it detaches: empty cells without states.
-    /// `None` without a yield strain.
+    /// Marks a push of `whisker` at `pole`, whose first touch is at `distance_mm` from the base, until it detaches: empty cells without a distance or
+    /// states. `None` without a yield strain.
     ///
     /// The stable states up to the end are followed, which takes one or two milliseconds.
     #[must_use]
-    pub fn new(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> Option<Self> {
+    pub fn new(
+        whisker: &Whisker,
+        pole: &Pole,
+        side: Side,
+        distance_mm: impl Into<Option<f64>>,
+    ) -> Option<Self> {
         whisker.yield_strain?;
-        let branch = StableBranch::new(whisker, pole, side, distance_mm).ok();
+        let distance_mm = distance_mm.into();
+        let branch = distance_mm.and_then(|own| StableBranch::new(whisker, pole, side, own).ok());
         let strain = branch.map(|branch| branch.peak(PushLoad::Strain).size);
         let max_strain = strain.filter(|strain| strain.is_finite());
         Some(Self {

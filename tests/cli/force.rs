@@ -8,7 +8,7 @@ const HEADER: &str =
 
 const TABLE: &str = "time_s,curvature_change_per_mm,moment_nnm,force_un,base_force_x_un,base_force_y_un,base_moment_nnm,\
                      contact_angle_deg,contact_off_mm,force_sd_un,base_force_x_sd_un,base_force_y_sd_un,base_moment_sd_nnm,\
-                     reason";
+                     side,arc_length_mm,reason";
 
 fn force(place: &Place, more: &[&str]) -> super::Run {
     place.run(&[&["force", "scene.toml", "--frames", "f.csv"], more].concat())

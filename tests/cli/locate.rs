@@ -240,7 +240,7 @@ fn bad_readings_are_refused() {
         ),
         (
             "base_moment_nnm,base_moment_nnm,base_force_x_un\n1,2,3\n",
-            "r.csv:1: found",
+            "r.csv:1: has the column base_moment_nnm 2 times: must have it once",
         ),
     ] {
         place.write("r.csv", text);

@@ -226,6 +226,23 @@ fn wrong_uses_of_tables_are_refused() {
             "pad.csv:2: length_mm = long: must be a number, or empty where it is missing",
         ),
         (
+            "name,length_mm\nC1,20\n,21\n",
+            "line 3: the name of the whisker is missing",
+        ),
+        (
+            "name,length_mm,length_mm\nC1,20,21\n",
+            "pad.csv:1: has the column length_mm 2 times: must have it once",
+        ),
+        (
+            "name,length_cm,remark\nC1,2,good\n",
+            "row 1: whisker.length_mm: is left out; ",
+        ),
+        (
+            "name,length_cm,remark\nC1,2,good\n",
+            "pad.csv:1: columns that are not used: length_cm, remark; `length_cm` is not known; values must be in mm: convert \
+             them, and use the name `length_mm`",
+        ),
+        (
             "name,profile\nC1,no.csv\n",
             "line 2: profile: no.csv: cannot be read",
         ),

@@ -27,6 +27,10 @@ fn column(text: &str, name: &str) -> Option<Vec<String>> {
         .collect()
 }
 
+/// Frames of the scene's whisker: free, and in contact.
+const FRAMES: &str = "time_s,curvature_per_mm,at_arc_length_mm,contact_x_mm,contact_y_mm\n0.004,0.03961985,2,,\n\
+     0.006,0.03962440,2,14.999205,4.500917\n0.008,0.04060842,2,14.911963,4.754610\n0.010,0.05,2,14.2,6.5\n";
+
 /// Every table of states or pushes has the mark at its end, by its own largest strain; without a yield strain, it has the other columns alone.
 #[test]
 fn tables_have_a_mark() {
@@ -36,6 +40,7 @@ fn tables_have_a_mark() {
     let extra = format!("{surface}{uncertain}");
     let place = Place::with(&format!("{}{extra}", yielding(0.002)));
     place.write("elastic.toml", &format!("{SCENE}{extra}"));
+    place.write("frames.csv", FRAMES);
     let at = "--distance=10";
     for (words, value, last) in [
         (&["curve", at][..], "max_strain", "max_strain,yields"),
@@ -53,6 +58,12 @@ fn tables_have_a_mark() {
             &["curve", at, "--samples=3", "--largest"],
             "max_strain",
             "yields",
+        ),
+        (&["curve", "--corner"], "max_strain", "max_strain,yields"),
+        (
+            &["force", "--frames=frames.csv", "--model"],
+            "peak_strain",
+            "peak_strain,yields",
         ),
         (&["branch", at], "peak_strain", "yields"),
         (&["shape", at, "--push-angle=30"], "strain", "yields"),
@@ -101,7 +112,9 @@ fn tables_have_a_mark() {
             }
         }
         assert!(
-            seen[1] > 0 || words[0] == "texture" && seen[0] > 0,
+            seen[1] > 0
+                || words[0] == "texture" && seen[0] > 0
+                || words[1] == "--corner" && seen[0] == 1,
             "{words:?} {seen:?}"
         );
         // The other columns have the same cells.
@@ -141,7 +154,8 @@ fn maps_have_strains_and_hatched_cells() {
         let run = good(&place, &[words, &["-o", "s.svg"]].concat());
         (String::from_utf8(place.bytes("s.svg")).unwrap(), run.err)
     };
-    place.map(&["scene.toml"]);
+    let map = place.map(&["scene.toml"]);
+    assert!(map.count(LEGEND) > 10, "{map:?}");
     place.map(&["elastic.toml", "-o", "elastic"]);
     for (name, has_strain) in [("outputs/scene.exr", true), ("elastic/elastic.exr", false)] {
         let map = MapSource::open(&place.path(name)).unwrap();
@@ -162,6 +176,13 @@ fn maps_have_strains_and_hatched_cells() {
     }
     let (bar, _) = svg(&["render", "outputs/scene.exr", "--channel=peak_strain"]);
     assert!(bar.contains("largest bending strain"), "{bar}");
+    // A row is a line, whose part beyond the yield strain has another stroke.
+    let row = ["--channel=force_un", "--at=distance_mm=10"];
+    for (scene, has_part) in [("scene.toml", true), ("strong.toml", false)] {
+        let (picture, _) = svg(&[&["render", scene], &row[..]].concat());
+        assert_eq!(picture.contains(LEGEND), has_part, "{scene}");
+        assert_eq!(picture.contains("stroke-dasharray"), has_part, "{scene}");
+    }
     // The cells are hatched, not only the legend.
     let body = |picture: &str| {
         let mut rasters = picture.split("<image");

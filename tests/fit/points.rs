@@ -76,8 +76,6 @@ fn errors_name_the_line_the_value_and_what_is_allowed() {
     assert_eq!(refused(""), rows);
     assert_eq!(refused("side,distance_mm,push_angle_deg\n"), rows);
     for (old, new) in [
-        ("sd_deg", "kind"),
-        ("side", "sd_deg"),
         ("kind", "push_chord_deg"),
         ("distance_mm", "distance"),
         ("push_angle_deg", "angle"),
@@ -87,6 +85,10 @@ fn errors_name_the_line_the_value_and_what_is_allowed() {
         let said = format!("p.csv:1: found {found}; needed {columns}, each once");
         let why = with(old, new);
         assert!(why.starts_with(&said), "{why}");
+    }
+    for (old, new) in [("sd_deg", "kind"), ("side", "sd_deg")] {
+        let twice = format!("p.csv:1: has the column {new} 2 times: must have it once");
+        assert_eq!(with(old, new), twice);
     }
     let hint = "; `distance` is not known; did you mean `distance_mm`?";
     assert!(with("distance_mm", "distance").ends_with(hint));

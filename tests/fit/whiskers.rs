@@ -126,13 +126,13 @@ fn points_of_other_whiskers_are_refused() {
             &table,
             "C2,cb,8,20",
             LengthMm,
-            "length_mm: a column of the table of whiskers gives it",
+            "length_mm: whiskers.table has the column length_mm",
         ),
         (
             &table,
             "C2,cb,8,20",
             Taper,
-            "taper: a column of the table of whiskers gives it",
+            "taper: whiskers.table has the column tip_radius_um",
         ),
     ] {
         let why = refused(scene, row, free).to_string();

@@ -70,7 +70,39 @@ fn friction_takes_energy_where_the_contact_slides() {
     );
 }
 
-/// The slid distance is the arclength of the contact minus the distance rolled around the pole, along a whole branch, with unstable states.
+/// The force on the whisker has the tangential component of its sliding direction: all of the friction, toward where the contact slides.
+#[test]
+fn sliding_is_the_direction_of_the_friction() {
+    let scene = cone(0.02, 0.25, 0.3);
+    let mut counts = [[0; 2]; 2];
+    for side in Side::BOTH {
+        for distance in [1.5, 4.0, 9.0, 15.0] {
+            let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
+            for point in branch.points(60).unwrap() {
+                let sign = match point.sliding {
+                    Some(Sliding::Tip) => 1.0,
+                    Some(Sliding::Base) => -1.0,
+                    _ => continue,
+                };
+                let (sin, cos) = point.contact_angle_deg.to_radians().sin_cos();
+                let [x, y] = [point.base_force_x_un, point.base_force_y_un];
+                let [along, across] = [cos * x + sin * y, (cos * y - sin * x).abs()];
+                let off = along - sign * 0.3 * across;
+                assert!(
+                    off.abs() <= 1e-8 * across,
+                    "{side:?} {distance}: {off:e} {point:?}"
+                );
+                counts[usize::from(point.stable)][usize::from(sign < 0.0)] += 1;
+            }
+        }
+    }
+    assert!(
+        counts[0][0] > 100 && counts[1].iter().all(|count| *count > 10),
+        "{counts:?}"
+    );
+}
+
+/// The slid distance is the arclength of the contact minus the distance rolled around the pole, along the stable states of a branch.
 #[test]
 fn sliding_is_what_is_not_rolled() {
     let mut counts = [0, 0];
@@ -80,7 +112,8 @@ fn sliding_is_what_is_not_rolled() {
             for distance in [1.5, 4.0, 9.0, 15.0, 18.5] {
                 let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
                 let points = branch.points(400).unwrap();
-                for pair in points.windows(2) {
+                let stable = points.partition_point(|point| point.stable);
+                for pair in points[..stable].windows(2) {
                     let [slid, next] = [pair[0], pair[1]].map(|point| {
                         let turned = (point.contact_angle_deg - point.push_angle_deg).to_radians();
                         point.arc_length_mm + side.sign() * radius_mm * turned

@@ -150,7 +150,10 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
             by: own.by,
             first: 1,
         };
-        Marked((own.point, columns), YieldMark::new(&whisker, &own.point))
+        Marked(
+            (own.point, columns),
+            YieldMark::new(&whisker, own.point.peak_strain),
+        )
     }))?;
     outputs.finish(title(&scene, distances), || plot(&scene, &points, args))
 }

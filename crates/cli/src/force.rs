@@ -4,21 +4,25 @@ use super::arguments::{column_help, span};
 use super::data::ColumnArgs;
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
+use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use whiskmap::force::{self, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until};
+use whiskmap::force::{
+    self, BaseAxis, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until,
+};
 use whiskmap::render::forces as chart;
+use whiskmap::yields::StrainMark;
 
 const EXAMPLES: &str = "\
 Examples:
   whiskmap force scenes/cone.toml --frames scenes/frames.csv --plot force.svg
   whiskmap force scenes/cone.toml --frames scenes/frames.csv --model --csv force.csv
 
-FILE has the columns time_s, curvature_per_mm, at_arc_length_mm, contact_x_mm and contact_y_mm, in the frame of the base: the first \
-axis is the base's tangent. Frames without contact leave the cells of the contact empty, or have 0 in a column contact, which has 1 \
+FILE has the columns time_s, curvature_per_mm, at_arc_length_mm, contact_x_mm and contact_y_mm, in the frame of the base, whose \
+first axis is --axis. Frames without contact leave the cells of the contact empty, or have 0 in a column contact, which has 1 \
 in the others. Other numbers may be missing: an empty cell, or NaN. Without --model, the column \
 contact_angle_deg has the angle of the whisker's tangent at the contact; at_x_mm and at_y_mm are the position of the measured \
 point, which is otherwise that of the resting whisker.
@@ -33,7 +37,7 @@ gives a standard deviation of each force. The scene's [uncertainty] may give cur
 #[derive(Debug, Args)]
 #[command(
     after_help = EXAMPLES,
-    after_long_help = column_help(EXAMPLES, &[("Columns", FrameForce::COLUMNS)])
+    after_long_help = column_help(EXAMPLES, &[("Columns", FrameForce::COLUMNS), STRAIN_MARKS])
 )]
 pub struct ForceArgs {
     #[command(flatten)]
@@ -46,11 +50,22 @@ pub struct ForceArgs {
     /// Compute the state of the full model instead of the moment over the lever
     #[arg(long)]
     model: bool,
+    /// First axis of the frame of the base, in FILE and in the table
+    #[arg(long, value_enum, default_value = "tangent")]
+    axis: AxisName,
     /// Subtract the mean change of curvature in the frames of this time, which must be without contact
     #[arg(long, value_name = "FROM..TO", allow_hyphen_values = true, value_parser = span)]
     baseline: Option<[f64; 2]>,
     #[command(flatten)]
     outputs: OutputArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum AxisName {
+    /// Tangent of the bent whisker at its base
+    Tangent,
+    /// Axis of the follicle, which a push turns
+    Follicle,
 }
 
 pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
@@ -83,6 +98,10 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
             .as_ref()
             .map(|own| own.frames)
             .unwrap_or_default(),
+        axis: match args.axis {
+            AxisName::Tangent => BaseAxis::Tangent,
+            AxisName::Follicle => BaseAxis::Follicle,
+        },
         ..ForceOptions::new(method)
     };
     let frames = &read.frames;
@@ -96,6 +115,10 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
     if let Some(warning) = force::warning(&found) {
         message(&format!("warning: {warning}"));
     }
-    outputs.rows(&found)?;
+    let marks = match method {
+        ForceMethod::Model => StrainMark::of_rows(&whisker, &scene.pole, &found),
+        ForceMethod::Lever => None,
+    };
+    outputs.rows(marked(&found, marks))?;
     outputs.finish_chart(|| chart(&scene.title, &found), [])
 }

@@ -46,7 +46,7 @@ pub fn run(args: &SensitivityArgs, files: &mut Files) -> Result<(), Failure> {
     let rows = effects(&scene, distance);
     let marked = rows
         .iter()
-        .map(|row| Marked(row, YieldMark::new(&whisker, row)));
+        .map(|row| Marked(row, YieldMark::new(&whisker, row.max_strain)));
     outputs.rows(marked)?;
     outputs.finish(title(&scene, &[distance]), || sensitivities(&rows))?;
     let unresolved = rows

@@ -76,7 +76,9 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let side = args.side.unwrap_or(Side::of_push(push_deg));
     let stable = args.branch == BranchPart::Stable;
     let refused = |why| match why {
-        NoState::OutOfReach { .. } | NoState::Failed { .. } => refuse(distance, why),
+        NoState::OutOfReach { .. } | NoState::BeyondTurns | NoState::Failed { .. } => {
+            refuse(distance, why)
+        }
         NoState::SlippedOff { at_deg } | NoState::PulledOff { at_deg }
             if (at_deg - push_deg).abs() < 1e-8 =>
         {
@@ -91,9 +93,9 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let count = args.points as usize;
     let shape = WhiskerShape::new(&branch, &state.map_err(refused)?, count);
     let points = shape.points.iter();
-    outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point))))?;
+    outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point.strain))))?;
     let state_file = state_table.map(|mut table| {
-        let mark = YieldMark::new(&whisker, &shape.state);
+        let mark = YieldMark::new(&whisker, shape.state.peak_strain);
         table.rows([Marked(&shape.state, mark)])?;
         table.finish()
     });

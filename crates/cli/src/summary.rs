@@ -99,6 +99,7 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
         ),
         (summary.toward_base, "slide toward the base"),
         (summary.sticking, "stick where their last sliding ended"),
+        (summary.yielding, "beyond the yield strain"),
     ] {
         if count > 0 {
             writeln!(out, "{count:>12}  {what}")?;

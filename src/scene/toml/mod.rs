@@ -14,7 +14,7 @@ use std::ops::Range;
 use toml_edit::{Document, Item};
 
 /// Key of the taper, which a scene file may give instead of the radius at the tip.
-const TAPER_KEY: &str = "whisker.taper";
+pub(in crate::scene) const TAPER_KEY: &str = "whisker.taper";
 
 /// Key of the yield strain, which marks states and changes none.
 pub(in crate::scene) const YIELD_KEY: &str = "whisker.yield_strain";

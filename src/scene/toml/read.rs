@@ -22,7 +22,6 @@ use crate::scene::{Scene, SceneBuilder};
 use crate::traced::{MOST_DEGREE, TracedShape};
 
 use super::pairs::PairsCsv;
-use super::tables::ProfileTable;
 use super::{SceneFile, SceneText, TAPER_KEY, place_in};
 
 impl Scene {
@@ -119,10 +118,6 @@ fn build(
     let mut sweep: Vec<(Parameter, AxisValues)> = axes.collect();
     // The derived tables have no order; the scene has that of the text.
     sweep.sort_by_cached_key(|(parameter, _)| Some(place_in(text, parameter.axis_key())?.start));
-    if let Some(taper) = file.whisker.taper {
-        let tip_radius_um = tip_of_taper(taper, &numbers, &sweep, &file.whisker.profile)?;
-        numbers.set(Parameter::TipRadiusUm, tip_radius_um);
-    }
     let mut builder = SceneBuilder {
         title: file.title,
         numbers,
@@ -167,34 +162,34 @@ fn build(
     if let Some(rows) = file.whiskers.table {
         builder.table = Some(rows.read(folder, files)?.into());
     }
+    if let Some(taper) = file.whisker.taper {
+        let tip_radius_um = tip_of_taper(taper, &builder)?;
+        builder.numbers.set(Parameter::TipRadiusUm, tip_radius_um);
+    }
     builder.uncertainty = file.uncertainty.as_ref().map(uncertainty).transpose()?;
     Ok(builder)
 }
 
 /// Returns the radius at the tip that `whisker.taper` gives, in micrometres. Refuses a taper beside what gives other radii at the tip.
-fn tip_of_taper(
-    taper: f64,
-    numbers: &Numbers,
-    sweep: &[(Parameter, AxisValues)],
-    profile: &ProfileTable,
-) -> Result<f64, SceneFault> {
+fn tip_of_taper(taper: f64, scene: &SceneBuilder) -> Result<f64, SceneFault> {
     let taper = Parameter::taper_limits(taper).check(TAPER_KEY, taper)?;
-    let sweeps = |parameter| sweep.iter().any(|(own, _)| *own == parameter);
-    let must = if profile.rows.is_some() {
+    let must = if scene.measured.is_some() {
         "the radii are those of whisker.profile"
-    } else if numbers.get(Parameter::TipRadiusUm).is_some() {
+    } else if scene.number(Parameter::TipRadiusUm).is_some() {
         "whisker.tip_radius_um gives the radius at the tip"
-    } else if sweeps(Parameter::Taper) {
+    } else if scene.sweeps(Parameter::Taper) {
         "grid.taper gives every whisker of the sweep its tip"
-    } else if sweeps(Parameter::TipRadiusUm) {
+    } else if scene.sweeps(Parameter::TipRadiusUm) {
         "grid.tip_radius_um gives every whisker of the sweep its tip"
-    } else if sweeps(Parameter::BaseRadiusUm) {
+    } else if scene.sweeps(Parameter::BaseRadiusUm) {
         "grid.base_radius_um varies the base; give whisker.tip_radius_um to keep the tip, or grid.taper with one value to \
          keep the taper"
+    } else if scene.has_bases_of_rows() {
+        "whiskers.table has the column base_radius_um"
     } else {
         let base = Parameter::BaseRadiusUm;
         let absent = || SceneFault::new(base.key(), "is left out, and there is no whisker.profile");
-        let base_radius_um = numbers.get(base).ok_or_else(absent)?;
+        let base_radius_um = scene.number(base).ok_or_else(absent)?;
         return Ok(base_radius_um * (1.0 - taper));
     };
     let must = format!("must be left out: {must}");
@@ -244,6 +239,10 @@ fn located(mut fault: SceneFault, files: &[PairsCsv], origin: &str, text: &str) 
     if let Some((key, line)) = of_file {
         let must = format!("line {line}: {}", fault.must);
         fault = SceneFault::new(key, must);
+    }
+    let notes = files.iter().filter(|csv| csv.key == fault.key);
+    for note in notes.filter_map(|csv| csv.note.as_ref()) {
+        fault.must = format!("{}; {note}", fault.must);
     }
     let span = place_in(text, &fault.key);
     let value = span.clone().and_then(|span| text.get(span));

@@ -15,6 +15,7 @@ use crate::scene::error::SceneFault;
 use crate::scene::grid::SweepVariable;
 use crate::scene::limits::digits;
 use crate::scene::parameter::Parameter;
+use crate::scene::substitutes::Substitute;
 use crate::scene::table::WhiskerRow;
 
 /// Key of the table of whiskers in a scene file.
@@ -24,10 +25,10 @@ const KEY: &str = SweepVariable::TABLE;
 const NAME: &str = "name";
 
 /// Column with measured radii: in a CSV file, the name of a CSV file.
-const PROFILE: &str = "profile";
+const PROFILE: &str = Substitute::Profile.column();
 
 /// Column with traced points: in a CSV file, the name of a CSV file.
-const REST_POINTS: &str = "rest_points";
+const REST_POINTS: &str = Substitute::Rest.column();
 
 /// Table of whiskers as a scene file has it.
 pub(in crate::scene) enum WhiskerRows {
@@ -109,8 +110,8 @@ impl RowTable {
         let mut row = WhiskerRow::new(self.name);
         for (name, value) in self.numbers {
             let Some(parameter) = Parameter::named(&name) else {
-                let hint = did_you_mean(&name, columns());
-                let known = columns().collect::<Vec<_>>().join(", ");
+                let hint = did_you_mean(&name, WhiskerRow::columns());
+                let known = WhiskerRow::columns().collect::<Vec<_>>().join(", ");
                 let must = format!("is not known; must be one of {known}{hint}");
                 return Err(of_row(SceneFault::of_value(
                     shortened(&name),
@@ -150,10 +151,12 @@ fn refused(why: CsvError) -> SceneFault {
     SceneFault::new(KEY, why.to_string())
 }
 
-/// Names of all columns of a table of whiskers.
-fn columns() -> impl Iterator<Item = &'static str> + Clone {
-    let files = [NAME, PROFILE, REST_POINTS].into_iter();
-    files.chain(Parameter::ALL.map(Parameter::name))
+impl WhiskerRow {
+    /// Returns the names of all columns of a table of whiskers.
+    pub fn columns() -> impl Iterator<Item = &'static str> + Clone {
+        let others = [NAME, PROFILE, REST_POINTS].into_iter();
+        others.chain(Parameter::ALL.map(Parameter::name))
+    }
 }
 
 /// Sets the pairs of a row.
@@ -165,7 +168,7 @@ fn read_csv(
     path: PathBuf,
     files: &mut Vec<PairsCsv>,
 ) -> Result<Vec<WhiskerRow>, SceneFault> {
-    let optional: Vec<&str> = columns().filter(|name| *name != NAME).collect();
+    let optional: Vec<&str> = WhiskerRow::columns().filter(|name| *name != NAME).collect();
     let note = table.require(&[&[NAME]], &optional).map_err(refused)?;
     let text = |column: &str| {
         let cells = table.values(column, "", |cell| Some(cell.to_owned()));

@@ -24,14 +24,14 @@ pub struct Continuation {
     pub nodes: Vec<CurveNode>,
     /// Index of the continuation's node at the fold; `None` if the tip comes first.
     pub fold: Option<usize>,
-    /// Edge of the sheet at which the last node lies.
-    pub end: Edge,
+    /// Edge of the sheet at which the last node lies; `None` if the curve goes on beyond nine turns of the base.
+    pub end: Option<Edge>,
 }
 
 impl Continuation {
     /// Returns true if the push angle changes so fast along an edge at the first fold or the end that these need more steps.
     fn is_steep(&self) -> bool {
-        let last = self.nodes.last().map(|end| (self.end, end));
+        let last = self.end.zip(self.nodes.last());
         let fold = self.fold.map(|fold| (Edge::Fold, &self.nodes[fold]));
         let slopes = fold.into_iter().chain(last);
         slopes
@@ -41,18 +41,18 @@ impl Continuation {
 }
 
 impl LevelCurve {
-    /// Follows a `stretch` of the level curve from `start`. Returns `None` if the continuation fails.
+    /// Follows a `stretch` of the level curve from `start`, for at most nine turns of the base. Returns `None` if the continuation fails.
     #[must_use]
     pub fn continuation(&self, start: CurveNode, stretch: Stretch) -> Option<Continuation> {
-        continuations(&[Some((self, start))], stretch, ON_CURVE).pop()?
+        within_turns(&[Some((self, start))], stretch, ON_CURVE).pop()?
     }
 }
 
 /// Level curve and the node from which it is followed. The whole is `None` for a curve that is left out.
 pub type CurveStart<'a> = Option<(&'a LevelCurve, CurveNode)>;
 
-/// Follows several level curves at once, each as [`LevelCurve::continuation`] does; their trajectories share batches. Returns `[curve]`, `None` where
-/// the continuation fails or the start is `None`.
+/// Follows several level curves to an edge, each as [`LevelCurve::continuation`] does; their trajectories share batches. Returns `[curve]`, `None` where
+/// the continuation fails or reaches no edge, or the start is `None`.
 ///
 /// Nodes between the ends may miss their curve by `miss` in `ln D`. Results do not depend on the other curves. Where an end is steep, the
 /// curve is followed again with twice the steps.
@@ -62,6 +62,13 @@ pub fn continuations(
     stretch: Stretch,
     miss: f64,
 ) -> Vec<Option<Continuation>> {
+    let followed = within_turns(starts, stretch, miss).into_iter();
+    let ended = followed.map(|found| found.filter(|found| found.end.is_some()));
+    ended.collect()
+}
+
+/// Follows level curves as [`continuations`] does, also those that reach no edge within nine turns.
+fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Continuation>> {
     let mut ended = follow_with_retry(starts, stretch, miss);
     let pairs = starts.iter().zip(&ended);
     let finer = pairs.map(|(start, found)| {
@@ -79,7 +86,7 @@ pub fn continuations(
     ended
 }
 
-/// Follows all curves, and those that fail once more with nodes to rounding. Where curves meet, nodes with an error of `miss` can lead to
+/// Follows all curves, and those that reach no edge once more with nodes to rounding. Where curves meet, nodes with an error of `miss` can lead to
 /// another curve.
 fn follow_with_retry(
     starts: &[CurveStart],
@@ -89,10 +96,12 @@ fn follow_with_retry(
     let mut ended = follow(starts, stretch, miss);
     if miss > ON_CURVE {
         let failed = starts.iter().zip(&ended);
-        let failed = failed.map(|(start, found)| start.filter(|_| found.is_none()));
+        let has_end =
+            |found: &Option<Continuation>| found.as_ref().is_some_and(|own| own.end.is_some());
+        let failed = failed.map(|(start, found)| start.filter(|_| !has_end(found)));
         let again = follow(&failed.collect::<Vec<_>>(), stretch, ON_CURVE);
         for (ended, again) in ended.iter_mut().zip(again) {
-            *ended = ended.take().or(again);
+            *ended = again.or(ended.take());
         }
     }
     ended
@@ -119,6 +128,11 @@ fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Cont
         // Each stepper runs until the chord to its next node may meet an edge, or until it fails. So edge Newtons share batches, too.
         let predicted: Vec<DVec2> = open.iter().map(|stepper| stepper.predicted).collect();
         newton.solve(&mut open, predicted);
+        for stepper in &mut open {
+            if stepper.candidate.is_none() && stepper.is_beyond_turns() {
+                ended[stepper.index] = Some(stepper.continuation(None));
+            }
+        }
         let at_edges = std::mem::take(&mut open).into_iter();
         let at_edges =
             at_edges.filter_map(|mut stepper| Some((stepper.candidate.take()?, stepper)));
@@ -135,16 +149,14 @@ fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Cont
                     stepper.advance()
                 }
                 Meeting::Edge(edge, _) => {
-                    ended[stepper.index] = Some(Continuation {
-                        nodes: std::mem::take(&mut stepper.nodes),
-                        fold: stepper.fold,
-                        end: edge,
-                    });
+                    ended[stepper.index] = Some(stepper.continuation(Some(edge)));
                     false
                 }
             };
             if may_go_on {
                 open.push(stepper);
+            } else if stepper.is_beyond_turns() {
+                ended[stepper.index] = Some(stepper.continuation(None));
             }
         }
     }

@@ -260,15 +260,15 @@ fn ends_of_pieces(
 
 /// Returns the crossing at which `piece` ends, and its nodes.
 fn end_of_piece(level: &LevelCurve, piece: Continuation) -> Option<PieceEnd> {
-    let end = piece.nodes.last()?;
+    let (edge, end) = (piece.end?, piece.nodes.last()?);
     let distance = end.full.map.pole.length();
     let crossing = Crossing {
-        edge: piece.end,
+        edge,
         tau: end.point.x,
         load: end.point.y,
         push: level.side.sign() * end.push,
         residual: libm::log(level.row.pole_distance / distance).abs(),
-        slope: piece.end.slope(&end.full.map),
+        slope: edge.slope(&end.full.map),
     };
     Some((crossing, piece.nodes))
 }

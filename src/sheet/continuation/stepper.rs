@@ -1,6 +1,7 @@
 //! The stepper of a continuation: predictor and corrector, from node to node.
 
 use crate::newton::{NewtonProblem, NewtonStep};
+use crate::sheet::continuation::Continuation;
 use crate::sheet::continuation::corrector::{CORRECTOR_TRAJECTORIES, Corrector};
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 use crate::sheet::continuation::meeting::{Chord, MOST_TURN};
@@ -104,7 +105,7 @@ impl<'a> Stepper<'a> {
     /// Predicts the next node of the continuation. Returns false where it ends without an edge.
     pub fn advance(&mut self) -> bool {
         self.predict();
-        let is_within = self.nodes.len() < MOST_NODES && self.last().push.abs() <= MOST_PUSH;
+        let is_within = self.nodes.len() < MOST_NODES && !self.is_beyond_turns();
         is_within && self.step > SHORTEST_ARC_STEP
     }
 
@@ -112,6 +113,22 @@ impl<'a> Stepper<'a> {
     pub fn shorten(&mut self) -> bool {
         self.step *= 0.5;
         self.advance()
+    }
+
+    /// Returns true if the last node lies beyond the largest push angle.
+    pub fn is_beyond_turns(&self) -> bool {
+        self.nodes
+            .last()
+            .is_some_and(|last| last.push.abs() > MOST_PUSH)
+    }
+
+    /// Returns the continuation up to the last node, which lies at the edge `end`, and leaves the stepper without nodes.
+    pub fn continuation(&mut self, end: Option<Edge>) -> Continuation {
+        Continuation {
+            nodes: std::mem::take(&mut self.nodes),
+            fold: self.fold,
+            end,
+        }
     }
 
     fn last(&self) -> &CurveNode {

@@ -67,8 +67,8 @@ Percentiles are linear between neighbouring samples. The samples depend on the s
 
 const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns", Detachment::COLUMNS),
-    PUSH_MARKS,
     ("Columns with --corner", Corner::COLUMNS),
+    PUSH_MARKS,
     ("Columns with --data", ComparedPoint::COLUMNS),
     ("Columns with --samples", EndSpread::COLUMNS),
     ("More columns with --largest", LargestSpread::COLUMNS),
@@ -166,7 +166,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         match args.sampling.largest {
             true => {
                 let largest = uncertainty::largest(&draws).into_iter();
-                let mark = |own: &LargestSpread| YieldMark::new(&scene.whisker, own);
+                let mark = |own: &LargestSpread| YieldMark::new(&scene.whisker, own.max_strain);
                 let largest = largest.map(|own| (mark(&own), own));
                 let rows = rows.iter().zip(largest);
                 outputs.rows(rows.map(|(row, (mark, own))| Marked((row, own), mark)))?;
@@ -189,8 +189,15 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             let corner = |own: Result<&SweptWhisker, &RefusedWhisker>, side| {
                 bar.inc(1);
                 vec![match own {
-                    Ok(own) => trace::corner(&own.whisker, &own.pole, side),
-                    Err(_) => Corner::without_whisker(side),
+                    Ok(own) => {
+                        let corner = trace::corner(&own.whisker, &own.pole, side);
+                        let mark = PushMark::of_corner(&own.whisker, &own.pole, &corner);
+                        Marked(corner, mark)
+                    }
+                    Err(_) => {
+                        let mark = scene.whisker.yield_strain.map(|_| PushMark::default());
+                        Marked(Corner::without_whisker(side), mark)
+                    }
                 }]
             };
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
