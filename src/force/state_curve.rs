@@ -49,7 +49,7 @@ const AT_EXTREMUM: f64 = 1e-11;
 
 impl BaseAxis {
     /// Returns the angle from this axis to that of the follicle in a state of `rod`, in radians.
-    pub fn turn(self, rod: &Rod, full: &FullState) -> f64 {
+    pub(super) fn turn(self, rod: &Rod, full: &FullState) -> f64 {
         match self {
             Self::Tangent => rod.mount * full.force * full.position.x,
             Self::Follicle => 0.0,

@@ -29,7 +29,7 @@ fn column(text: &str, name: &str) -> Option<Vec<String>> {
 
 /// Frames of the scene's whisker: free, and in contact.
 const FRAMES: &str = "time_s,curvature_per_mm,at_arc_length_mm,contact_x_mm,contact_y_mm\n0.004,0.03961985,2,,\n\
-     0.006,0.03962440,2,14.999205,4.500917\n0.008,0.04060842,2,14.911963,4.754610\n0.010,0.05,2,14.2,6.5\n";
+     0.006,0.03962440,2,14.999205,4.500917\n0.008,0.04060842,2,14.911963,4.754610\n0.010,0.15610992,2,6.16253623,4.93100638\n";
 
 /// Every table of states or pushes has the mark at its end, by its own largest strain; without a yield strain, it has the other columns alone.
 #[test]
