@@ -42,7 +42,7 @@ impl DerivativeArgs {
         if named.is_empty() {
             return Ok(all);
         }
-        match named.iter().find(|own| !all.contains(own)) {
+        match named.iter().find(|variable| !all.contains(variable)) {
             None => Ok(each_once(named)),
             Some(other) => {
                 let all: Vec<String> = all.iter().map(ToString::to_string).collect();

@@ -139,7 +139,7 @@ impl Failure {
 
 /// Returns the faults of a store that occur, with their counts, and the command that removes them.
 fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
-    let faults = [
+    let kinds = [
         (missing, ["block is", "blocks are"], "missing"),
         (damaged, ["block is", "blocks are"], "damaged"),
         (
@@ -148,8 +148,8 @@ fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
             "damaged",
         ),
     ];
-    let faults = faults.into_iter().filter(|(count, ..)| *count > 0);
-    let faults = faults.map(|(count, [one, several], state)| {
+    let present = kinds.into_iter().filter(|(count, ..)| *count > 0);
+    let faults = present.map(|(count, [one, several], state)| {
         let what = if count == 1 { one } else { several };
         format!("{count} {what} {state}")
     });
@@ -168,7 +168,9 @@ pub fn message(line: &str) {
 
 /// Prints an error of clap about `arguments`. It quotes them as they are, so they are parsed again with control characters escaped.
 pub fn refuse(arguments: &[OsString], wrong: &clap::Error) {
-    let shown = arguments.iter().map(|own| escaped(&own.to_string_lossy()));
+    let shown = arguments
+        .iter()
+        .map(|argument| escaped(&argument.to_string_lossy()));
     match Arguments::try_parse_from(shown) {
         // A closed standard error hides the message, not the code.
         Err(wrong) => drop(wrong.print()),

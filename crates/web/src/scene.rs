@@ -49,8 +49,7 @@ pub fn description(scene: &Scene, sweep: &Scene, place: &SweepPlace) -> Result<V
 
 /// Returns the number of `parameter`: the scene's own, or else the neutral one. `None` if the scene cannot have the parameter.
 fn number(scene: &Scene, parameter: Parameter) -> Option<f64> {
-    let own = parameter.value(scene);
-    own.or_else(|| {
+    parameter.value(scene).or_else(|| {
         parameter
             .neutral()
             .filter(|value| scene.with(parameter, *value).is_ok())
