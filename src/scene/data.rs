@@ -75,7 +75,10 @@ impl SceneData {
         let row = place.row().and_then(|row| self.table.get(row));
         let (mut whisker, mut pole) = match row {
             None => (self.whisker.clone(), self.pole),
-            Some(TableWhisker { found: Ok(own), .. }) => own.clone(),
+            Some(TableWhisker {
+                found: Ok(whisker_and_pole),
+                ..
+            }) => whisker_and_pole.clone(),
             Some(TableWhisker {
                 name,
                 found: Err(reason),
@@ -181,14 +184,15 @@ impl SceneData {
     /// Returns true if any whisker of the sweep has friction with its pole.
     #[must_use]
     pub fn has_friction(&self) -> bool {
-        self.corner_whiskers().any(|own| own.pole.friction != 0.0)
+        self.corner_whiskers()
+            .any(|swept| swept.pole.friction != 0.0)
     }
 
     /// Returns true if all whiskers of the sweep are straight at rest.
     #[must_use]
     pub fn is_straight(&self) -> bool {
         self.corner_whiskers()
-            .all(|own| own.whisker.sharpest_bend_per_mm() == 0.0)
+            .all(|swept| swept.whisker.sharpest_bend_per_mm() == 0.0)
     }
 
     /// Returns true if the scene has an axis along which whiskers differ.

@@ -254,7 +254,7 @@ impl SweepPlace {
     #[must_use]
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
         let mut values = self.values();
-        values.find_map(|(own, value)| (own == parameter).then_some(value))
+        values.find_map(|(swept, value)| (swept == parameter).then_some(value))
     }
 
     /// Returns the parameter of each sweep axis of a parameter with the whisker's value, in the parameter's unit.

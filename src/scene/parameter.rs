@@ -223,8 +223,8 @@ impl Parameter {
     #[must_use]
     pub fn suggested(name: &str) -> Option<String> {
         let mut all = Self::ALL.into_iter();
-        let own = all.find(|own| own.axis() == name)?;
-        Some(format!("; did you mean `{}`?", own.name()))
+        let parameter = all.find(|parameter| parameter.axis() == name)?;
+        Some(format!("; did you mean `{}`?", parameter.name()))
     }
 
     /// Returns the change of the parameter that changes a whisker or its contact altogether, in its unit.

@@ -255,7 +255,7 @@ impl Parameter {
     /// Returns the names of the parameters that the scene gives, with commas between them.
     pub(crate) fn given(scene: &Scene) -> String {
         let all = Self::ALL.into_iter();
-        let given = all.filter(|own| own.value(scene).is_some());
+        let given = all.filter(|parameter| parameter.value(scene).is_some());
         given.map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
@@ -264,17 +264,17 @@ impl Parameter {
     /// Both are NaN if the scene does not give the parameter.
     #[must_use]
     pub fn range(self, scene: &Scene) -> [f64; 2] {
-        let Some(own) = self.value(scene) else {
+        let Some(number) = self.value(scene) else {
             return [f64::NAN; 2];
         };
-        range_around(own, |value| scene.with(self, value).is_ok())
+        range_around(number, |value| scene.with(self, value).is_ok())
     }
 }
 
-/// Returns the range `[least, greatest]` of accepted numbers around an accepted one: `own`.
-pub(crate) fn range_around(own: f64, mut accepts: impl FnMut(f64) -> bool) -> [f64; 2] {
+/// Returns the range `[least, greatest]` of accepted numbers around `number`, which must be accepted.
+pub(crate) fn range_around(number: f64, mut accepts: impl FnMut(f64) -> bool) -> [f64; 2] {
     [f64::MIN, f64::MAX].map(|beyond| {
-        let [mut inside, mut outside] = [own, beyond].map(rank);
+        let [mut inside, mut outside] = [number, beyond].map(rank);
         while inside.abs_diff(outside) > 1 {
             let middle = inside.midpoint(outside);
             if accepts(of_rank(middle)) {
