@@ -34,7 +34,7 @@ pub fn table(
     known: &[&str],
 ) -> Result<CsvTable, CsvError> {
     let names = columns.into_iter();
-    let names = names.map(|(expected, own)| ColumnName { expected, own });
+    let names = names.map(|(expected, in_file)| ColumnName { expected, in_file });
     CsvTable::parse(text, origin)?.renamed(&names.collect::<Vec<_>>(), known)
 }
 

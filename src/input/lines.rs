@@ -24,7 +24,7 @@ fn declared(text: &str) -> Option<char> {
     let separator = line.trim_end_matches(' ').strip_prefix("sep=")?;
     SEPARATORS
         .into_iter()
-        .find(|own| separator.trim_start_matches(' ') == own.to_string())
+        .find(|known| separator.trim_start_matches(' ') == known.to_string())
 }
 
 /// Returns the separator of the columns of a CSV text: the declared one, or the most frequent one of its header, outside of quotes. Of a first
@@ -37,7 +37,7 @@ pub(super) fn separator(text: &str) -> char {
     let header = text.lines().find(is_header).unwrap_or_default();
     // A line of numbers, without a header, may have decimal commas.
     if !header.contains(char::is_alphabetic)
-        && let Some(first) = SEPARATORS.into_iter().find(|own| header.contains(*own))
+        && let Some(first) = SEPARATORS.into_iter().find(|known| header.contains(*known))
     {
         return first;
     }
