@@ -146,7 +146,7 @@ impl Plan {
         }
         let corners: Vec<Rod> = scene
             .corner_whiskers()
-            .map(|own| own.rod(Side::Cb))
+            .map(|swept| swept.rod(Side::Cb))
             .collect();
         let rows_at_once = (CELLS_IN_FLIGHT / push_angles).clamp(1, ROWS_IN_FLIGHT);
         let of_rows = |rows: usize| (rows * sides.len()).div_ceil(rows_at_once);
