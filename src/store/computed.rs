@@ -130,7 +130,7 @@ impl ComputedMap {
         on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
     ) -> Result<ChannelValues, StoreError> {
         let names = self.channels();
-        let channel = names.iter().position(|own| *own == name);
+        let channel = names.iter().position(|known| *known == name);
         let channel = channel.ok_or_else(|| StoreError::UnknownChannel {
             path: PathBuf::from(&self.scene.name),
             name: name.to_owned(),

@@ -33,7 +33,7 @@ impl AtlasLayout {
     pub fn of(grid: &Grid) -> Self {
         let [columns, rows] = grid
             .atlas()
-            .map(|axis| axis.map_or(1, |own| own.values.len()));
+            .map(|axis| axis.map_or(1, |axis| axis.values.len()));
         Self {
             columns,
             rows,
@@ -175,10 +175,10 @@ pub(super) fn parts(channels: Channels) -> Vec<(&'static str, Vec<&'static str>)
     };
     let names: Vec<&'static str> = channels.names().collect();
     let parts = names.chunk_by(|one, next| part(one) == part(next));
-    let sorted = parts.map(|own| {
-        let mut own = own.to_vec();
-        own.sort_unstable();
-        (part(&own[0]), own)
+    let sorted = parts.map(|names| {
+        let mut names = names.to_vec();
+        names.sort_unstable();
+        (part(&names[0]), names)
     });
     sorted.collect()
 }

@@ -62,7 +62,7 @@ impl MapWriter {
         let headers = layout.headers(about.channels, &attributes);
         if headers
             .iter()
-            .any(|own| own.chunk_count > i32::MAX as usize)
+            .any(|header| header.chunk_count > i32::MAX as usize)
         {
             let why = exr::error::Error::Invalid("it has more than 2^31 blocks".into());
             return Err(StoreError::Encode(path.to_owned(), why));

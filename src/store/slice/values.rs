@@ -54,7 +54,7 @@ impl MapSlice {
     pub fn panel(&self, channels: Channels, whisker: usize) -> Result<Panel, StoreError> {
         let mut panel = Panel::unresolved(self.part.rows.len() * self.part.columns.len(), channels);
         for name in channels.names() {
-            let state = STATE_CHANNELS.iter().position(|own| *own == name);
+            let state = STATE_CHANNELS.iter().position(|channel| *channel == name);
             match (self.read_panel(name, whisker)?, name, state) {
                 (ChannelValues::U32(codes), "regime", _) => panel.regime = codes,
                 (ChannelValues::U32(codes), "status", _) => panel.status = codes,
@@ -64,8 +64,8 @@ impl MapSlice {
                 (ChannelValues::F32(values), "residual", _) => panel.residual = values,
                 (ChannelValues::F32(values), "peak_strain", _) => panel.peak_strain = values,
                 (ChannelValues::F32(values), ..) => {
-                    if let Some(own) = panel.push_derivative_mut(name) {
-                        *own = values;
+                    if let Some(derivative) = panel.push_derivative_mut(name) {
+                        *derivative = values;
                     }
                 }
             }
@@ -93,8 +93,8 @@ impl MapSlice {
         }
         let mut codes = BTreeSet::new();
         for whisker in 0..self.part.grid.whisker_count() {
-            if let ChannelValues::U32(own) = self.read_panel(channel, whisker)? {
-                codes.extend(own);
+            if let ChannelValues::U32(whisker_codes) = self.read_panel(channel, whisker)? {
+                codes.extend(whisker_codes);
             }
         }
         Ok(codes)

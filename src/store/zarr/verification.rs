@@ -198,9 +198,9 @@ impl ZarrStore {
             Ok(true) => return BlockState::Missing,
             Err(fault) => return BlockState::Unreadable(vec![fault]),
         }
-        let faults = self.arrays.par_iter();
-        let faults = faults.filter_map(|array| self.check(array, block, depth).err());
-        let mut faults: Vec<StoreError> = faults.collect();
+        let arrays = self.arrays.par_iter();
+        let found = arrays.filter_map(|array| self.check(array, block, depth).err());
+        let mut faults: Vec<StoreError> = found.collect();
         if faults.is_empty() && depth == CheckDepth::Values {
             faults.extend(self.check_counts(block).err());
         }
@@ -269,7 +269,10 @@ impl ZarrStore {
         let found = of_whisker.flat_map(|cells| {
             Regime::ALL.map(|regime| {
                 let code = regime.code();
-                cells.iter().filter(|own| u32::from(**own) == code).count() as u32
+                cells
+                    .iter()
+                    .filter(|cell| u32::from(**cell) == code)
+                    .count() as u32
             })
         });
         if !found.eq(counted) {
@@ -280,7 +283,7 @@ impl ZarrStore {
             **code != NOT_COMPUTED
                 && Regime::ALL
                     .iter()
-                    .all(|own| own.code() != u32::from(**code))
+                    .all(|regime| regime.code() != u32::from(**code))
         });
         unknown.map_or(Ok(()), |code| {
             let why = format!("the code {code} has no name");
