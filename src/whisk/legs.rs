@@ -112,7 +112,7 @@ impl<'a> Legs<'a> {
     /// history of its own.
     fn decide(&mut self) {
         if let [first @ Phase::Free { .. }, others @ ..] = &self.possible[..]
-            && others.iter().all(|own| own == first)
+            && others.iter().all(|other| other == first)
         {
             self.phase = *first;
             self.possible.clear();

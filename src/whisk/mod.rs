@@ -65,11 +65,11 @@ impl Whisk {
         let spans = self
             .events
             .iter()
-            .filter(|own| own.event == WhiskEventKind::Undecided);
+            .filter(|event| event.event == WhiskEventKind::Undecided);
         let undecided = self
             .samples
             .iter()
-            .filter(|own| own.regime == WhiskRegime::Undecided);
+            .filter(|sample| sample.regime == WhiskRegime::Undecided);
         let (spans, undecided) = (spans.count(), undecided.count());
         let without = (undecided > 0 || spans > 0).then(|| {
             let all = self.samples.len();
@@ -106,11 +106,11 @@ impl Whisk {
                 event.event,
                 WhiskEventKind::SlipOff | WhiskEventKind::PullOff
             ) {
-                let held = events
+                let simultaneous = events
                     .peek()
                     .filter(|next| next.angle_deg == event.angle_deg);
-                let held = held.filter(|next| next.event == WhiskEventKind::Touch);
-                let held = held.and_then(|next| next.energy_nj);
+                let touch = simultaneous.filter(|next| next.event == WhiskEventKind::Touch);
+                let held = touch.and_then(|touch| touch.energy_nj);
                 lost += event.energy_nj.unwrap_or(f64::NAN) - held.unwrap_or_default();
             }
         }
@@ -265,18 +265,18 @@ pub fn whisk_with(
         length_mm,
     });
     let mut samples = Vec::with_capacity(legs.samples.len());
-    for own in legs.samples.chunks(STATES_AT_ONCE) {
+    for chunk in legs.samples.chunks(STATES_AT_ONCE) {
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
-        samples.extend(found.samples(own, point.as_ref()));
+        samples.extend(found.samples(chunk, point.as_ref()));
     }
     let mut events = Vec::with_capacity(legs.events.len());
-    for own in legs.events.chunks(STATES_AT_ONCE) {
+    for chunk in legs.events.chunks(STATES_AT_ONCE) {
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
-        events.extend(found.events(own));
+        events.extend(found.events(chunk));
     }
     let fixed = FixedPole {
         centre_mm: DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm),
@@ -285,7 +285,7 @@ pub fn whisk_with(
     let mut samples: Vec<WhiskSample> = known
         .iter()
         .zip(samples)
-        .map(|(&i, own)| own.at(course.times_s[i], course.angles_deg[i], &fixed))
+        .map(|(&i, sample)| sample.at(course.times_s[i], course.angles_deg[i], &fixed))
         .collect();
     samples.extend(gaps.iter().flat_map(|gap| gap.samples(&course.times_s)));
     samples.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
