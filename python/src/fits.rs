@@ -320,7 +320,7 @@ fn goals(name: &str) -> PyResult<DesignGoal> {
     })
 }
 
-/// Returns the side of a target: that of the push angle, or the given one for a load.
+/// Returns the side of a target: the side of the push angle, or the given side for a load.
 fn target_side(goal: DesignGoal, value: f64, side: Option<&str>) -> PyResult<Side> {
     let side = side.map(arguments::side).transpose()?;
     let is_angle = goal.kind().is_some();

@@ -148,8 +148,8 @@ type Baseline = (f64, f64, usize);
 /// Columns of forces, a warning, and the baseline.
 type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>, Option<Baseline>);
 
-/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`. The baseline is that of frames in `baseline_s`, or
-/// of frames without contact in the column `contact`.
+/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`. The baseline comes from frames in
+/// `baseline_s`, or from frames without contact in the column `contact`.
 #[pyfunction]
 #[allow(clippy::too_many_arguments, reason = "one argument of Python each")]
 pub fn force<'py>(

@@ -241,7 +241,7 @@ impl CheckedScene {
     }
 }
 
-/// Returns a note about those of the columns `names` that a table of whiskers does not have; `None` without such a column.
+/// Returns a note about the columns among `names` that a table of whiskers does not have; `None` without such a column.
 #[pyfunction]
 pub fn unused_columns(names: Vec<String>) -> Option<String> {
     let known = WhiskerRow::columns;

@@ -25,7 +25,7 @@ pub struct StoredMap {
 
 #[pymethods]
 impl StoredMap {
-    /// Opens an EXR map, or a Zarr store if the path is that of a folder. Cells of a store that are not computed have fill values.
+    /// Opens an EXR map, or a Zarr store if the path is a folder. Cells of a store that are not computed have fill values.
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let opened = py.detach(|| {

@@ -21,7 +21,7 @@ const MOST_THREADS: usize = 1024;
 
 /// Pools by their number of threads; 0 is a thread for each core, or `RAYON_NUM_THREADS`.
 ///
-/// They belong to a process: after `fork`, a pool has no threads in the child.
+/// Pools belong to a process: after `fork`, a pool has no threads in the child.
 struct ThreadPools {
     process: u32,
     pools: HashMap<usize, Arc<ThreadPool>>,

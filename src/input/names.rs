@@ -65,7 +65,7 @@ pub fn each_once<T: Clone + PartialEq>(values: &[T]) -> Vec<T> {
     kept
 }
 
-/// Units at the ends of names, those of one quantity together.
+/// Units at the ends of names, with all units of one quantity in one list.
 const UNITS: [&[&str]; 4] = [
     &["nm", "um", "mm", "cm", "m", "inch"],
     &["nm2", "um2", "mm2", "cm2", "m2"],

@@ -131,8 +131,8 @@ impl Quantity {
         self.parse_with_unit(text).map(|(number, _)| number)
     }
 
-    /// Returns the finite number in `text`, in the quantity's own unit, and the unit in which the text gives it: the own one if it gives
-    /// none, and an empty text for a plain number.
+    /// Returns the finite number in `text`, in the quantity's own unit, and the unit in which the text gives it. Without a unit in the
+    /// text, this is the quantity's own unit, or an empty text for a plain number.
     ///
     /// ```
     /// use whiskmap::input::Quantity;
@@ -172,7 +172,7 @@ impl Quantity {
         Some(converted(number, default_size, size))
     }
 
-    /// Size of the quantity's own unit, and name and size of another unit of it. The sign for micro is U+00B5 or U+03BC.
+    /// Size of the quantity's own unit, and name and size of the other `unit`. The sign for micro is U+00B5 or U+03BC.
     fn sizes(self, unit: &str) -> Option<(f64, (&'static str, f64))> {
         let unit = unit.replace(['\u{b5}', '\u{3bc}'], "u");
         let units = self.table().iter();

@@ -155,7 +155,7 @@ impl MeasuredPoints {
     }
 
     /// Returns the derivatives of the predicted angles by each of `variables`, in degrees per unit of the variable, `[variable][point]`.
-    /// `None` if one of them does not exist.
+    /// `None` if one of the derivatives does not exist.
     #[must_use]
     pub fn derivatives(
         &self,

@@ -40,7 +40,7 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All channels of a map, those of a state in the order of [`STATE_CHANNELS`] first, `[channel]`.
+    /// All channels of a map, beginning with the channels of a state in the order of [`STATE_CHANNELS`]: `[channel]`.
     pub const ALL: [Self; STATE_CHANNELS.len() + 3] = [
         Self::ArcLength,
         Self::ContactAngle,

@@ -100,7 +100,7 @@ impl Plan {
         Self::in_blocks(scene, 1)
     }
 
-    /// Creates the plan of a run for `scene` that keeps the packed panels of so many `whiskers`, until their blocks are written.
+    /// Creates the plan of a run for `scene` that keeps the packed panels of this number of `whiskers` until their blocks are written.
     ///
     /// # Errors
     /// When one panel, or the blocks, take more than [`MEMORY_LIMIT`].

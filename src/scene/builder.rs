@@ -130,7 +130,7 @@ pub struct SceneBuilder {
     pub(super) measured: Option<MeasuredRadii>,
     /// Shape at rest through traced points; `None` without them.
     pub(super) traced: Option<Arc<TracedShape>>,
-    /// True if the length is that of the curve through the traced points, because none was set before them.
+    /// True if the length is the length of the curve through the traced points, because no length was set before them.
     pub(super) is_length_traced: bool,
     /// Table of whiskers, the first sweep axis; `None` without one.
     pub(super) table: Option<Arc<[WhiskerRow]>>,

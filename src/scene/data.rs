@@ -65,7 +65,7 @@ pub struct RefusedWhisker {
 }
 
 impl SceneData {
-    /// Returns the whisker and pole of `place`: those of its row in the table of whiskers, or of the scene, with the values of
+    /// Returns the whisker and pole of `place`. They come from its row in the table of whiskers, or from the scene, and have the values of
     /// `place`. A taper determines the radius at the tip. The vertex of a curvature axis is the whisker's own, or 0 if the scene gives
     /// none.
     ///

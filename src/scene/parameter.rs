@@ -84,7 +84,7 @@ macro_rules! parameters {
             }
 
             /// Returns the limits `[least, greatest]` of the parameter whatever the other numbers are, in its unit. Other numbers narrow
-            /// some of them ([`Self::range`]).
+            /// some of these limits ([`Self::range`]).
             #[must_use]
             pub const fn limits(self) -> [f64; 2] {
                 match self { $(Self::$parameter => [$least, $most]),* }

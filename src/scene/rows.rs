@@ -12,7 +12,7 @@ use super::table::{TableWhisker, WhiskerRow};
 const MOST_ROWS: usize = 65_536;
 
 impl SceneBuilder {
-    /// Sets the table of whiskers, which is the first sweep axis. A number of a row replaces that of the scene.
+    /// Sets the table of whiskers, which is the first sweep axis. A number of a row replaces the number of the scene.
     #[must_use]
     pub fn whiskers(mut self, rows: impl Into<Vec<WhiskerRow>>) -> Self {
         self.table = Some(rows.into().into());

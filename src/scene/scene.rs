@@ -153,7 +153,7 @@ impl Scene {
         self.with_parameters(&[(parameter, value)])
     }
 
-    /// Returns the scene with other values of some parameters, in their units. A taper is that of the new radius at the base.
+    /// Returns the scene with other values of some parameters, in their units. A taper refers to the new radius at the base.
     ///
     /// # Errors
     /// If the scene would be refused with them, or a taper is not between 0 and 1.
@@ -166,13 +166,13 @@ impl Scene {
     }
 
     /// Returns the scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over the axis.
-    /// Its text stays that of the whole scene.
+    /// The new scene keeps the text of the whole scene.
     #[must_use]
     pub fn thinned(&self, lines: usize, values: usize) -> Self {
         self.thinned_to([lines, lines], values)
     }
 
-    /// Returns the scene with at most so many push angles and distances, and at most `values` of each sweep axis.
+    /// Returns the scene with at most these numbers of push angles and distances, and at most `values` of each sweep axis.
     #[must_use]
     pub fn thinned_to(&self, [push_angles, distances]: [usize; 2], values: usize) -> Self {
         let mut thinned = self.clone();
@@ -215,8 +215,8 @@ impl SceneBuilder {
         Ok(self)
     }
 
-    /// Returns the given value of a parameter, in its unit, or that of the first row of the table that has one; `None` if it is not given. A
-    /// taper is given with the radius at the tip, whose value this is, and in a table the radius at the tip with a taper.
+    /// Returns the given value of a parameter, in its unit, or the value in the first row of the table that has one. `None` if it is not
+    /// given. A taper is given with the radius at the tip, whose value this is. In a table, the radius at the tip is given with a taper.
     pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         let of_rows = |parameter| {
             let mut rows = self.table.iter().flat_map(|rows| rows.iter());

@@ -9,7 +9,7 @@ pub(super) const SMOOTH_KEY: &str = "whisker.profile.smooth";
 /// Fewest rows from which cross-validation chooses a degree, as for traced points.
 const FEWEST: usize = 8;
 
-/// Largest degree of the radius as a polynomial of the arclength: that of the curvature of traced shapes.
+/// Largest degree of the radius as a polynomial of the arclength, equal to the largest degree of the curvature of traced shapes.
 const MOST_DEGREE: usize = 6;
 
 /// Squared error over the squared radius at the base that counts as 0: rows of an exact polynomial.
@@ -42,7 +42,7 @@ pub struct SmoothRadii {
 pub(super) struct MeasuredRadii {
     /// Rows as they are given: `[row][arclength, radius]`, in millimetres and micrometres.
     pub rows: Vec<[f64; 2]>,
-    /// True if the radii are those of a polynomial through the rows.
+    /// True if a polynomial through the rows gives the radii of the whisker.
     pub smooth: bool,
 }
 

@@ -7,7 +7,7 @@ use super::parameter::Parameter;
 use super::whisker::{Pole, Whisker};
 use crate::traced::TracedShape;
 
-/// Row of a table of whiskers: a name, and the numbers that replace those of the scene's whisker.
+/// Row of a table of whiskers: a name, and the numbers that replace the numbers of the scene's whisker.
 ///
 /// ```
 /// use whiskmap::scene::{Parameter, Scene, WhiskerRow};

@@ -121,7 +121,7 @@ impl SceneData {
         ))
     }
 
-    /// Values of `parameter` in the scene: those of its axis, or else `value`.
+    /// Values of `parameter` in the scene: the values of its axis, or else `value`.
     fn number(&self, parameter: Parameter, value: f64) -> SceneNumber {
         match self.grid.axis(parameter) {
             Some(values) => SceneNumber::new(parameter.axis_key(), values.iter().copied()),

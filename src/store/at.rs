@@ -122,7 +122,7 @@ pub(super) fn readable(chosen: &ChosenValues) -> impl Iterator<Item = (&'static 
     chosen.iter().map(text)
 }
 
-/// Returns a title with the selected values, but for those that it has already, as that of an extracted part.
+/// Returns `title` with the selected values that it does not have already; the title of an extracted part has some.
 pub(super) fn titled(title: &str, chosen: &ChosenValues) -> String {
     let chosen = readable(chosen).map(|(name, value)| format!(", {name} = {value}"));
     let is_new = |part: &String| !title.ends_with(&**part) && !title.contains(&format!("{part}, "));

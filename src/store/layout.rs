@@ -80,7 +80,7 @@ impl AtlasLayout {
         self.distances.div_ceil(self.block_height())
     }
 
-    /// Blocks of so many cells of a panel in each part.
+    /// Returns the number of blocks in each part for this number of `cells` of a panel.
     pub(super) fn blocks(&self, cells: usize) -> usize {
         cells.div_ceil(self.block_height() * self.push_angles)
     }

@@ -60,8 +60,8 @@ impl TemporaryFiles {
         Ok(())
     }
 
-    /// Removes leftovers in `folder` that this user may write to: those of this host at once, files of another host after a day. A folder of
-    /// another host stays: it may be old, and files in it new.
+    /// Removes leftovers in `folder` that this user may write to: leftovers of this host at once, files of another host after a day. A
+    /// folder of another host stays: it may be old, and files in it new.
     pub fn remove_leftovers(folder: &Path) {
         let host_here = host();
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -80,7 +80,7 @@ impl TemporaryFiles {
             // No folder is opened for writing, and NFS locks no file that is not.
             let mut options = File::options();
             options.read(is_folder).write(!is_folder);
-            // It stays locked until it is removed.
+            // The file stays locked until it is removed.
             if is_gone
                 && let Ok(file) = options.open(entry.path())
                 && file.try_lock().is_ok()

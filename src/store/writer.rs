@@ -29,8 +29,8 @@ pub struct MapWriter {
     channels: Channels,
     digits: Digits,
     headers: Headers,
-    /// Position of each part's table of block positions. Tables are written with their blocks: those of a large sweep would not
-    /// fit in memory.
+    /// Position of each part's table of block positions. Tables are written with their blocks: the tables of a large sweep would not fit in
+    /// memory.
     tables: Vec<u64>,
     /// Panels written so far.
     written: usize,

@@ -24,7 +24,7 @@ pub struct CourseGap {
 }
 
 impl CourseGap {
-    /// Returns the samples of the gap, without states: `[sample]`. `times_s` are those of the course.
+    /// Returns the samples of the gap, without states: `[sample]`. `times_s` are the times of the course.
     pub(super) fn samples<'a>(
         &self,
         times_s: &'a [f64],
@@ -46,7 +46,7 @@ impl AngleCourse {
         known.map(|(i, _)| i).collect()
     }
 
-    /// Returns the gaps of the course, `[gap]`. Those of at most `bridge_s` are bridged.
+    /// Returns the gaps of the course, `[gap]`. Gaps of at most `bridge_s` are bridged.
     pub(super) fn gaps(&self, bridge_s: f64) -> Vec<CourseGap> {
         let known = self.known();
         let count = self.times_s.len();

@@ -92,8 +92,8 @@ impl Whisk {
         last.unwrap_or(f64::NAN)
     }
 
-    /// Returns the energy that the detachments of the course lose, in nJ: that of the last states before them, without that of a state
-    /// on the other side that follows at once. It is NaN after a gap that is not bridged.
+    /// Returns the energy that the detachments of the course lose, in nJ. A detachment loses the energy of the last state before it, less
+    /// the energy of a state on the other side that follows at once. The result is NaN after a gap that is not bridged.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
         if self.gaps.iter().any(|gap| !gap.is_bridged) {

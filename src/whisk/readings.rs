@@ -170,7 +170,7 @@ pub fn missing(time_s: f64, reason: Undecided) -> WhiskSample {
     }
 }
 
-/// Returns a sample without time and angle. `unit` is that of energies, in nJ.
+/// Returns a sample without time and angle. `unit` is the unit of energies, in nJ.
 fn sample(leg_sample: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSample {
     let LegSample {
         phase,

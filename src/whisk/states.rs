@@ -115,7 +115,7 @@ impl SideStates {
         self.limits.get(row)
     }
 
-    /// Returns the unit of energy of the whisker, in nJ: that of a dimensionless energy of 1.
+    /// Returns the unit of energy of the whisker, in nJ: a dimensionless energy of 1.
     pub fn energy_nj(&self) -> f64 {
         self.whisker.units().moment_nnm
     }

@@ -158,7 +158,7 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
     outputs.finish(title(&scene, distances), || plot(&scene, &points, args))
 }
 
-/// Plots branches, those of several poles in their own colours.
+/// Plots branches. Each of several poles has its own colour.
 fn plot(scene: &Scene, points: &[BranchPoint], args: &BranchArgs) -> Plot {
     let y = args.y.axis();
     let at_poles = points.chunk_by(|a, b| a.distance_mm == b.distance_mm);

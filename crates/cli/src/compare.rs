@@ -71,7 +71,7 @@ pub fn run(args: &CompareArgs, files: &mut Files) -> Result<(), Failure> {
     }
 }
 
-/// Opens both maps. Of a scene, the channels that the other map has are computed.
+/// Opens both maps. For a scene, the channels that the other map has are computed.
 fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure> {
     let CompareArgs {
         first,

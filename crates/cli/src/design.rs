@@ -82,7 +82,7 @@ fn distance(text: &str) -> Result<Distance, String> {
     }
 }
 
-/// Parses the name of a parameter or of the distance, and limits of it.
+/// Parses the name of a parameter or of the distance, with limits of its value if the text gives them.
 fn variable(text: &str) -> Result<DesignVariable, String> {
     let (name, limits) = match text.split_once('=') {
         Some((name, limits)) => (name, Some(limits)),
@@ -452,7 +452,8 @@ fn written(scene: &Scene, varied: &DesignVaried, values: &[f64], digits: usize) 
     }
 }
 
-/// Returns the numbers of the scene with the values of a solution. Of a taper, the scene gives the radius at the tip, which has no more digits.
+/// Returns the numbers of the scene with the values of a solution. Instead of a taper, the scene gives the radius at the tip, with at most
+/// `digits` digits.
 fn changes(
     scene: &Scene,
     varied: &DesignVaried,
@@ -504,7 +505,7 @@ fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> String
     format!("no {name} between {from} and {to} {wanted}: {reached}")
 }
 
-/// Returns the message for targets without a solution, or with a line of them.
+/// Returns the message for targets that have no solution, or a line of solutions.
 fn unreached_together(
     variables: &[DesignVariable],
     asked: &[AskedTarget],

@@ -129,7 +129,7 @@ impl Failure {
         match self {
             // A reader that stops early, like `head`, is not a failure.
             _ if self.is_broken_pipe() => return 0,
-            // It is several lines, and in colour.
+            // The message has several lines, and colours.
             Self::Scene(error) => drop(writeln!(io::stderr(), "{}", error.render(color()))),
             _ => message(&format!("error: {self}")),
         }
@@ -166,7 +166,8 @@ pub fn message(line: &str) {
     let _ = writeln!(io::stderr(), "{}", escaped(line));
 }
 
-/// Prints an error of clap about `arguments`. It quotes them as they are, so they are parsed again with control characters escaped.
+/// Prints an error of clap about `arguments`. clap quotes arguments as they are, so this function parses them again with control characters
+/// escaped.
 pub fn refuse(arguments: &[OsString], wrong: &clap::Error) {
     let shown = arguments
         .iter()

@@ -37,7 +37,8 @@ pub fn channel_names(scene: &Scene) -> Vec<&'static str> {
     names.into_iter().chain(derivatives).collect()
 }
 
-/// Opens the map of `scene`, which is computed when it is read, and prints its engine. The engine is selected for a map of so many `whiskers`.
+/// Opens the map of `scene`, which is computed when it is read, and prints its engine. The engine is selected for a map of this number of
+/// `whiskers`.
 pub fn computed(
     scene: Scene,
     solver: &SolverArgs,

@@ -99,7 +99,7 @@ impl SubmitArgs {
     /// Returns the arguments of `map` in a task.
     ///
     /// # Errors
-    /// If `map` does not accept its own options together with those of the script.
+    /// If `map` does not accept its own options together with the options of the script.
     fn map(&self) -> Result<MapArgs, Failure> {
         let given = "whiskmap map SCENE -o=DIR --format=zarr --shard=0/1 --resume --threads=1";
         let all = given.split(' ').chain(self.map.iter().map(String::as_str));

@@ -18,7 +18,8 @@ pub struct PointsTask {
 }
 
 impl PointsTask {
-    /// Returns the points with the predictions of `scene`, or of its best fit. Of points that name their whiskers, those of `place` count.
+    /// Returns the points with the predictions of `scene`, or of its best fit. If the points name their whiskers, only the points of the
+    /// whisker at `place` count.
     pub fn respond(&self, scene: &Scene, place: &SweepPlace) -> Result<Value, String> {
         let all = MeasuredPoints::parse(&self.csv, &self.name);
         let at_place = all.and_then(|points| points.at(place));

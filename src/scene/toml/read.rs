@@ -116,7 +116,7 @@ fn build(
     let swept = Parameter::SWEPT.into_iter();
     let axes = swept.filter_map(|parameter| Some((parameter, parameter.axis_in(&mut file)?)));
     let mut sweep: Vec<(Parameter, AxisValues)> = axes.collect();
-    // The derived tables have no order; the scene has that of the text.
+    // The derived tables have no order; the scene has the order of the text.
     sweep.sort_by_cached_key(|(parameter, _)| Some(place_in(text, parameter.axis_key())?.start));
     let mut builder = SceneBuilder {
         title: file.title,

@@ -46,8 +46,8 @@ impl MapSlice {
         })
     }
 
-    /// Reads the `channels` of a whisker of the slice; all other channels are those of [`Panel::unresolved`]. `whisker` is an index in
-    /// the slice, whose first sweep axis varies fastest.
+    /// Reads the `channels` of a whisker of the slice; all other channels are as in [`Panel::unresolved`]. `whisker` is an index in the
+    /// slice, whose first sweep axis varies fastest.
     ///
     /// # Errors
     /// An error of [`MapSlice::read_panel`].
@@ -73,8 +73,8 @@ impl MapSlice {
         Ok(panel)
     }
 
-    /// Returns the names of the codes of `regime` or `status` in the slice, by code, with that of cells that are not computed; `None` for
-    /// other channels.
+    /// Returns the names of the codes of `regime` or `status` in the slice, by code, with the name of cells that are not computed. `None`
+    /// for other channels.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
         let mut names = self.source.names(channel)?;

@@ -165,7 +165,7 @@ pub(super) fn attributes(about: &MapDescription<'_>, scene: &SceneData) -> Map<S
     completed(&Map::from_iter(agreed), &scene.title)
 }
 
-/// Returns the attributes of a store: those of `found` in [`AGREED`], the `title`, and those that follow.
+/// Returns the attributes of a store: the attributes of `found` in [`AGREED`], the `title`, and the attributes that follow from these.
 pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, Value> {
     let agreed = AGREED.iter().filter_map(|name| {
         let value = found.get(*name)?;
@@ -182,7 +182,7 @@ pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, 
     attributes
 }
 
-/// Returns the metadata of the store's root, with those of all arrays.
+/// Returns the metadata of the store's root, with the metadata of all arrays.
 pub(super) fn group<'a>(
     attributes: &Map<String, Value>,
     arrays: impl Iterator<Item = &'a ZarrArray>,

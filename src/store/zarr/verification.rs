@@ -1,8 +1,8 @@
 //! Verification of a store: it belongs to the settings of a run, and its files are sound.
 //!
 //! The identity of a store is a hash of everything that its bytes depend on. Each file of a block begins with a hash of the store's
-//! identity and its own place. So one check finds a damaged file and a file of another store or place. It has two depths ([`CheckDepth`]): the
-//! structure of files, or all of their values.
+//! identity and its own place. So one check finds a damaged file and a file of another store or place. A check has two depths
+//! ([`CheckDepth`]): the structure of files, or all of their values.
 
 use super::array::ZarrArray;
 use super::files::{attributes, metadata_fault};

@@ -201,7 +201,7 @@ fn verdicts(out: &mut impl Write, report: &Report) -> io::Result<()> {
     Ok(())
 }
 
-/// Formats a largest error with one digit; `-` for an infinite one, that of a state that was not found.
+/// Formats a largest error with one digit, and an infinite error, of a state that was not found, as `-`.
 fn error(largest: f64) -> String {
     if largest.is_finite() {
         format!("{largest:.0e}")

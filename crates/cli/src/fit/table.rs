@@ -18,8 +18,8 @@ fn no_error(fit: &Fit, estimate: &Estimate) -> &'static str {
     }
 }
 
-/// Formats a value and its standard error with the digits that the error leaves, by the rule of the Particle Data Group: with three digits
-/// of the error below 355, two of them, below 950 one, otherwise 1000.
+/// Formats a value and its standard error with the digits that the error leaves, by the rule of the Particle Data Group. The rule looks at
+/// the first three digits of the error. It keeps two digits below 355 and one digit below 950; a greater error is rounded up to 1000.
 ///
 /// Review of Particle Physics, section 5.3 of the introduction.
 fn with_error(value: f64, error: f64) -> [String; 2] {
