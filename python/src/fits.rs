@@ -266,8 +266,8 @@ pub fn design(
     ))
 }
 
-/// Finds the values of several varied numbers with which a push of the scene's only whisker on `side` reaches all `targets`, of which each has a goal and
-/// a value.
+/// Finds the values of several varied numbers with which a push of the scene's only whisker on `side` reaches all `targets`. Each target
+/// has a goal and a value.
 #[pyfunction]
 pub fn designs(
     py: Python<'_>,

@@ -56,10 +56,11 @@ impl fmt::Display for ColumnName {
 }
 
 impl CsvTable {
-    /// Returns the CSV table with own column names replaced by the expected ones, which must be among the `known` names of its columns.
+    /// Returns the CSV table with column names of the file replaced by the expected ones, which must be among the `known` names of its
+    /// columns.
     ///
     /// # Errors
-    /// If an expected name is not known, an own column is missing or there twice, or a name is given or would be there twice.
+    /// If an expected name is not known, a column of the file is missing or there twice, or a name is given or would be there twice.
     pub fn renamed(self, columns: &[ColumnName], known: &[&str]) -> Result<Self, CsvError> {
         let mut renamed: Vec<(usize, &str)> = Vec::with_capacity(columns.len());
         let (origin, line) = (self.origin.clone(), self.header_line());

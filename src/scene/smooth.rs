@@ -23,8 +23,8 @@ const SD_OF_MEDIAN: f64 = 1.4826;
 
 /// Measured radii of a whisker, smoothed: a polynomial of the arclength that is fitted to the rows by least squares.
 ///
-/// Cross-validation chooses the degree from 0 (a cylinder) to 6: each row is predicted by the polynomial through all others, and the
-/// smallest degree counts whose mean squared error exceeds the least one by at most the standard error of the difference.
+/// Cross-validation chooses the degree from 0 (a cylinder) to 6. For each degree, the polynomial through all other rows predicts each row.
+/// The chosen degree is the smallest whose mean squared error exceeds the least one by at most the standard error of the difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmoothRadii {
     /// Rows with the smoothed radii, `[row][arclength, radius]`, in mm and um.

@@ -106,8 +106,8 @@ impl AtlasLayout {
         block * self.block_height()
     }
 
-    /// Returns the samples of a block of a panel, or of some of its rows, line by line, in the order of the file, from all samples of each
-    /// channel with its rounding.
+    /// Returns the samples of a block of a panel, or of some of its rows, from all samples of each channel with its rounding. The samples
+    /// are in the order of the file, line by line.
     pub(super) fn lines<'a>(
         &self,
         block: usize,

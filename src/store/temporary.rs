@@ -1,7 +1,7 @@
 //! Temporary files and folders: unfinished outputs, which are removed when they are dropped and when the process is interrupted.
 //!
-//! A process that is killed leaves them. They are locked while their process runs, so that a later process can remove these leftovers.
-//! The locks in a shared folder may be visible on one host only, so names contain the host.
+//! A process that is killed leaves its temporary files. Each file is locked while its process runs, so that a later process can remove
+//! these leftovers. The locks in a shared folder may be visible on one host only, so names contain the host.
 
 use std::fs::{self, File, Metadata};
 use std::io;

@@ -51,8 +51,8 @@ pub struct Whisk {
 }
 
 impl Whisk {
-    /// Returns one line for the assumption of a free whisker beyond first touch, one for bridged gaps, one for other gaps, and one for samples
-    /// without a state; none without these.
+    /// Returns one line for each of these: the assumption of a free whisker beyond first touch, bridged gaps, other gaps, and samples
+    /// without a state. Without any of them, there is no line.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let start = self.assumed_free_deg.map(|angle_deg| {
@@ -194,8 +194,8 @@ pub fn whisk(
 /// Computes the course as [`whisk`] does, with a start and a flag that cancels.
 ///
 /// # Errors
-/// Fails as [`whisk`] does. Also if the course should begin in contact, but no side holds the whisker, if the curvature should be taken beyond
-/// the whisker, and if it is cancelled.
+/// Fails as [`whisk`] does. Also fails if the course should begin in contact, but no side holds the whisker. Also fails if the curvature
+/// should be taken beyond the whisker, or if the computation is cancelled.
 pub fn whisk_with(
     whisker: &Whisker,
     pole: &Pole,

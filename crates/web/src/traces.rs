@@ -90,8 +90,8 @@ fn drawn(found: Result<WhiskerShape, NoState>) -> Value {
     })
 }
 
-/// Returns `count` points of the branch of each side at one distance, as from `whiskmap branch`, and the shape in the unstable state at a
-/// push angle, or the reasons why there are none.
+/// Returns `count` points of the branch of each side at one distance, as from `whiskmap branch`. The value also has the shape in the
+/// unstable state at a push angle, or the reasons why there is no branch or shape.
 pub fn branches(scene: &Scene, distance_mm: f64, push_deg: Option<f64>, count: usize) -> Value {
     let branches = Side::BOTH.map(|side| whiskmap::branch(scene, distance_mm, side));
     let [cf, cb] = branches.each_ref().map(|branch| {

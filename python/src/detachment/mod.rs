@@ -48,8 +48,8 @@ type QuantityArrays<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// Kinds of the ends, residuals, push angles up to which a whisker may snap, largest strains of pushes of a scene with a yield strain, quantities,
-/// and exceptions of refused rows in order.
+/// Kinds of the ends, residuals, push angles up to which a whisker may snap, and largest strains of pushes of a scene with a yield strain.
+/// Then quantities, and exceptions of refused rows in order.
 type DetachmentArrays<'py> = (
     Bound<'py, PyArray1<u8>>,
     Bound<'py, PyArray1<f64>>,

@@ -57,7 +57,7 @@ impl ZarrStore {
             }
             Err(why) if is_absent(&why) => {
                 let (has_blocks, is_empty) = (self.has_blocks(), is_empty(&self.path));
-                // Another process may have created it meanwhile: the root first.
+                // Another process may have created the store in the meantime: the root first.
                 if Self::is_at(&self.path) {
                     return self.agree();
                 }
@@ -110,8 +110,8 @@ impl ZarrStore {
         }
     }
 
-    /// Returns true if a block in the store's folder belongs to this store, by the first bytes of its files, and false if the folder has no
-    /// blocks. A file of this store in the place of another one is damaged, but belongs to it.
+    /// Returns true if a block in the store's folder belongs to this store, by the first bytes of its files. Returns false if the folder
+    /// has no blocks. A file of this store in the place of another file is damaged, but belongs to the store.
     ///
     /// # Errors
     /// The folder has blocks, and none belongs to this store.
@@ -317,7 +317,7 @@ impl ZarrStore {
     /// A file cannot be removed, or all blocks belong to another store: then the root is wrong, not the blocks.
     pub fn remove_damaged(&self, block: usize) -> Result<bool, StoreError> {
         self.has_blocks()?;
-        // A run may have computed it again meanwhile.
+        // A run may have computed the block again in the meantime.
         let state = self.state(block, CheckDepth::Values);
         if !matches!(state, BlockState::Damaged(_)) {
             return Ok(false);
