@@ -31,21 +31,32 @@ pub fn parameters() -> Vec<(
     Option<&'static str>,
     &'static str,
 )> {
-    let axis = |own: Parameter| Parameter::SWEPT.contains(&own).then(|| own.axis());
+    let axis = |parameter: Parameter| {
+        Parameter::SWEPT
+            .contains(&parameter)
+            .then(|| parameter.axis())
+    };
     let all = Parameter::ALL.into_iter();
-    all.map(|own| (own.name(), own.unit(), axis(own), own.title()))
-        .collect()
+    all.map(|parameter| {
+        (
+            parameter.name(),
+            parameter.unit(),
+            axis(parameter),
+            parameter.title(),
+        )
+    })
+    .collect()
 }
 
 /// Returns name, unit and value of each variable of a scene's detachments; the distance has no value.
 #[pyfunction]
 pub fn variables(scene: &CheckedScene) -> Vec<(String, &'static str, f64)> {
-    let value = |own: Variable| match own {
+    let value = |variable: Variable| match variable {
         Variable::Parameter(parameter) => parameter.value(&scene.0).unwrap_or(f64::NAN),
         _ => f64::NAN,
     };
     let all = Variable::of_detachments(&scene.0).into_iter();
-    all.map(|own| (own.name(), own.unit(), value(own)))
+    all.map(|variable| (variable.name(), variable.unit(), value(variable)))
         .collect()
 }
 
@@ -82,14 +93,14 @@ pub fn coordinates<'py>(py: Python<'py>, scene: &CheckedScene) -> Vec<Coordinate
 /// Returns the coordinates of a grid, as [`coordinates`] does.
 pub fn of_grid<'py>(py: Python<'py>, grid: &whiskmap::scene::Grid) -> Vec<Coordinate<'py>> {
     let all = store::coordinates(grid).into_iter();
-    all.map(|own| {
-        let numbers: Option<Vec<f64>> = own.values.iter().map(|value| value.number()).collect();
-        let names = || own.values.iter().map(ToString::to_string).collect();
+    all.map(|axis| {
+        let numbers: Option<Vec<f64>> = axis.values.iter().map(|value| value.number()).collect();
+        let names = || axis.values.iter().map(ToString::to_string).collect();
         let values = match numbers {
             Some(numbers) => CoordinateValues::Numbers(PyArray1::from_vec(py, numbers)),
             None => CoordinateValues::Names(names()),
         };
-        (own.name, own.attributes.to_string(), values)
+        (axis.name, axis.attributes.to_string(), values)
     })
     .collect()
 }
@@ -98,9 +109,9 @@ pub fn of_grid<'py>(py: Python<'py>, grid: &whiskmap::scene::Grid) -> Vec<Coordi
 #[pyfunction]
 pub fn regimes() -> Vec<(u32, &'static str, String, String)> {
     let all = Regime::ALL.into_iter();
-    all.map(|own| {
-        let [ground, stripes] = regime_fill(own.code()).colours().map(hexadecimal);
-        (own.code(), own.name(), ground, stripes)
+    all.map(|regime| {
+        let [ground, stripes] = regime_fill(regime.code()).colours().map(hexadecimal);
+        (regime.code(), regime.name(), ground, stripes)
     })
     .collect()
 }

@@ -26,7 +26,8 @@ pub fn start(name: &str) -> PyResult<CourseStart> {
     }
 }
 
-/// Returns the CSV table in `text`, which messages call `origin`, with expected names in place of own ones: `[column]` of both.
+/// Returns the CSV table in `text`, which messages call `origin`, with expected names of columns in place of the names in the file. Each of
+/// the `columns` has both names: `[column]`.
 pub fn table(
     text: &str,
     origin: &str,
@@ -34,7 +35,7 @@ pub fn table(
     known: &[&str],
 ) -> Result<CsvTable, CsvError> {
     let names = columns.into_iter();
-    let names = names.map(|(expected, own)| ColumnName { expected, own });
+    let names = names.map(|(expected, in_file)| ColumnName { expected, in_file });
     CsvTable::parse(text, origin)?.renamed(&names.collect::<Vec<_>>(), known)
 }
 

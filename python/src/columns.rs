@@ -76,14 +76,15 @@ impl Table {
             columns.par_iter_mut().for_each(|(name, values, _)| {
                 let cells = rows.iter().map(|row| &row[*name]);
                 match values {
-                    Values::Texts(own) => {
-                        own.extend(cells.map(|cell| cell.as_str().unwrap_or_default().to_owned()));
+                    Values::Texts(texts) => {
+                        texts
+                            .extend(cells.map(|cell| cell.as_str().unwrap_or_default().to_owned()));
                     }
-                    Values::Truths(own) => {
-                        own.extend(cells.map(|cell| cell.as_bool().unwrap_or_default()));
+                    Values::Truths(truths) => {
+                        truths.extend(cells.map(|cell| cell.as_bool().unwrap_or_default()));
                     }
-                    Values::Numbers(own) => {
-                        own.extend(cells.map(|cell| cell.as_f64().unwrap_or(f64::NAN)));
+                    Values::Numbers(numbers) => {
+                        numbers.extend(cells.map(|cell| cell.as_f64().unwrap_or(f64::NAN)));
                     }
                 }
             });
@@ -109,11 +110,11 @@ impl Table {
     pub fn into_columns(self, py: Python<'_>) -> PyResult<Vec<Column<'_>>> {
         let column = |(name, values, meaning): (&'static str, Values, &'static str)| {
             let (values, unit) = match values {
-                Values::Texts(own) => (own.into_pyobject(py)?.into_any(), None),
-                Values::Truths(own) => (PyArray1::from_vec(py, own).into_any(), None),
-                Values::Numbers(own) => {
+                Values::Texts(texts) => (texts.into_pyobject(py)?.into_any(), None),
+                Values::Truths(truths) => (PyArray1::from_vec(py, truths).into_any(), None),
+                Values::Numbers(numbers) => {
                     let unit = Some(units(name));
-                    (PyArray1::from_vec(py, own).into_any(), unit)
+                    (PyArray1::from_vec(py, numbers).into_any(), unit)
                 }
             };
             Ok((name, values, unit, meaning.to_owned()))

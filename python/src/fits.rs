@@ -61,7 +61,7 @@ pub fn fit<'py>(
         single(&scene.0)?;
     }
     let mut losses = FitLoss::ALL.into_iter();
-    let loss = losses.find(|own| own.name() == loss).ok_or_else(|| {
+    let loss = losses.find(|known| known.name() == loss).ok_or_else(|| {
         let known = FitLoss::ALL.map(FitLoss::name).join(", ");
         arguments::refused("loss", loss, &format!("must be one of {known}"))
     })?;
@@ -89,27 +89,27 @@ pub fn fit<'py>(
     let warnings = noted.into_iter().flatten().chain(fit.warnings(&points));
     let warnings = warnings.collect();
     let estimates = fit.estimates.iter();
-    let estimates = estimates.map(|own| {
+    let estimates = estimates.map(|estimate| {
         (
-            own.parameter.name(),
-            own.parameter.unit(),
-            own.value,
-            own.standard_error,
-            own.is_at_limit,
+            estimate.parameter.name(),
+            estimate.parameter.unit(),
+            estimate.value,
+            estimate.standard_error,
+            estimate.is_at_limit,
         )
     });
-    let pulls = fit.pulls.iter().map(|own| {
-        let name = own.parameter.name();
+    let pulls = fit.pulls.iter().map(|pull| {
+        let name = pull.parameter.name();
         let mut rows = fit.comparison.rows.iter();
         let index = rows
-            .position(|row| row.line == own.line)
+            .position(|row| row.line == pull.line)
             .unwrap_or_default();
         (
             index,
-            own.residual_deg,
-            own.weight,
+            pull.residual_deg,
+            pull.weight,
             name,
-            own.standard_errors,
+            pull.standard_errors,
         )
     });
     Ok(FitResult {
@@ -166,9 +166,10 @@ fn yielding(
     let warning = |values: &Vec<f64>| {
         let mark = PushMark::of_solution(scene, varied, push, values)?;
         let strain = mark.max_strain.filter(|_| mark.yields == Some(true))?;
-        let named = varied.variables.iter().zip(values);
-        let named = named.map(|(own, value)| format!("{} = {}", own.variable, digits(*value)));
-        let named = named.collect::<Vec<_>>().join(", ");
+        let pairs = varied.variables.iter().zip(values);
+        let texts =
+            pairs.map(|(variable, value)| format!("{} = {}", variable.variable, digits(*value)));
+        let named = texts.collect::<Vec<_>>().join(", ");
         Some(format!(
             "{named}: the whisker yields: the largest strain of the push, {}, exceeds yield_strain = {}",
             digits(rounded(strain, 6)),
@@ -265,8 +266,8 @@ pub fn design(
     ))
 }
 
-/// Finds the values of several varied numbers with which a push of the scene's only whisker on `side` reaches all `targets`, of which each has a goal and
-/// a value.
+/// Finds the values of several varied numbers with which a push of the scene's only whisker on `side` reaches all `targets`. Each target
+/// has a goal and a value.
 #[pyfunction]
 pub fn designs(
     py: Python<'_>,
@@ -298,7 +299,7 @@ pub fn designs(
     let found = threads::run(py, None, |_| Ok(()), job)?;
     let (found, warnings) = found.map_err(|why| of_design(py, why))?;
     let nearest = found.nearest;
-    let nearest = nearest.map(|own| (own.values, own.reached, own.is_at_limit));
+    let nearest = nearest.map(|nearest| (nearest.values, nearest.reached, nearest.is_at_limit));
     Ok((
         found.solutions,
         found.ranges,
@@ -319,7 +320,7 @@ fn goals(name: &str) -> PyResult<DesignGoal> {
     })
 }
 
-/// Returns the side of a target: that of the push angle, or the given one for a load.
+/// Returns the side of a target: the side of the push angle, or the given side for a load.
 fn target_side(goal: DesignGoal, value: f64, side: Option<&str>) -> PyResult<Side> {
     let side = side.map(arguments::side).transpose()?;
     let is_angle = goal.kind().is_some();

@@ -15,8 +15,8 @@ use whiskmap::yields::StrainMark;
 /// Columns of located states, and a warning.
 type LocateColumns<'py> = (Vec<Column<'py>>, Option<String>);
 
-/// Locates the contacts of the readings in the CSV table `readings`, which messages call `origin`, from a sensor with these standard deviations of moment
-/// (nN m) and force (uN).
+/// Locates the contacts of the readings in the CSV table `readings`, which messages call `origin`. The sensor has these standard deviations
+/// of moment (nN m) and force (uN).
 #[pyfunction]
 pub fn locate<'py>(
     py: Python<'py>,

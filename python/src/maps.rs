@@ -114,11 +114,11 @@ fn gathered(
     let summary = whiskmap::for_each_panel(scene, options, |whisker, mut panel| {
         let place = place(&scene.grid, whisker);
         for (index, name) in channels.names().enumerate() {
-            let own = taken(&mut panel, name);
+            let values = taken(&mut panel, name);
             if whisker == 0 {
-                arrays.push((name, own.spread(whiskers)));
+                arrays.push((name, values.spread(whiskers)));
             } else if let Some((_, array)) = arrays.get_mut(index) {
-                array.put(place, &own);
+                array.put(place, &values);
             }
         }
         Ok::<(), Error>(())
@@ -137,11 +137,11 @@ fn taken(panel: &mut Panel, name: &str) -> ChannelArray {
         "peak_strain" => ChannelArray::Quantities(std::mem::take(&mut panel.peak_strain)),
         "margin_deg" => ChannelArray::Quantities(std::mem::take(&mut panel.margin_deg)),
         _ => {
-            let own = match Channel::of(name) {
+            let values = match Channel::of(name) {
                 Some(channel) => panel.state.get_mut(channel as usize),
                 None => panel.push_derivative_mut(name),
             };
-            ChannelArray::Quantities(own.map(std::mem::take).unwrap_or_default())
+            ChannelArray::Quantities(values.map(std::mem::take).unwrap_or_default())
         }
     }
 }
@@ -149,26 +149,26 @@ fn taken(panel: &mut Panel, name: &str) -> ChannelArray {
 impl ChannelArray {
     /// Returns the array for all whiskers, with this one as the first. A single whisker keeps its memory.
     fn spread(self, whiskers: usize) -> Self {
-        fn longer<T: Clone + Default>(mut own: Vec<T>, whiskers: usize) -> Vec<T> {
-            own.resize(own.len() * whiskers, T::default());
-            own
+        fn longer<T: Clone + Default>(mut values: Vec<T>, whiskers: usize) -> Vec<T> {
+            values.resize(values.len() * whiskers, T::default());
+            values
         }
         match self {
-            Self::Codes(own) => Self::Codes(longer(own, whiskers)),
-            Self::Counts(own) => Self::Counts(longer(own, whiskers)),
-            Self::Quantities(own) => Self::Quantities(longer(own, whiskers)),
+            Self::Codes(values) => Self::Codes(longer(values, whiskers)),
+            Self::Counts(values) => Self::Counts(longer(values, whiskers)),
+            Self::Quantities(values) => Self::Quantities(longer(values, whiskers)),
         }
     }
 
     /// Writes the values of one whisker at its place.
-    fn put(&mut self, place: usize, own: &Self) {
-        fn copy<T: Copy>(all: &mut [T], place: usize, own: &[T]) {
-            all[place * own.len()..][..own.len()].copy_from_slice(own);
+    fn put(&mut self, place: usize, values: &Self) {
+        fn copy<T: Copy>(all: &mut [T], place: usize, values: &[T]) {
+            all[place * values.len()..][..values.len()].copy_from_slice(values);
         }
-        match (self, own) {
-            (Self::Codes(all), Self::Codes(own)) => copy(all, place, own),
-            (Self::Counts(all), Self::Counts(own)) => copy(all, place, own),
-            (Self::Quantities(all), Self::Quantities(own)) => copy(all, place, own),
+        match (self, values) {
+            (Self::Codes(all), Self::Codes(values)) => copy(all, place, values),
+            (Self::Counts(all), Self::Counts(values)) => copy(all, place, values),
+            (Self::Quantities(all), Self::Quantities(values)) => copy(all, place, values),
             _ => {}
         }
     }

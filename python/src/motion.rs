@@ -148,8 +148,8 @@ type Baseline = (f64, f64, usize);
 /// Columns of forces, a warning, and the baseline.
 type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>, Option<Baseline>);
 
-/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`. The baseline is that of frames in `baseline_s`, or
-/// of frames without contact in the column `contact`.
+/// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`. The baseline comes from frames in
+/// `baseline_s`, or from frames without contact in the column `contact`.
 #[pyfunction]
 #[allow(clippy::too_many_arguments, reason = "one argument of Python each")]
 pub fn force<'py>(
@@ -173,9 +173,12 @@ pub fn force<'py>(
     let table = arguments::table(frames, origin, columns, &CurvatureFrames::COLUMNS);
     let read = table.and_then(|table| CurvatureFrames::of(&table, whisker.length_mm, method));
     let read = read.map_err(|why| refused(&why))?;
-    let baseline = read.baseline(&whisker, baseline_s);
-    let baseline = baseline.map_err(|why| refused(&why))?;
-    let deviations = scene.uncertainty.as_ref().map(|own| own.frames);
+    let estimated = read.baseline(&whisker, baseline_s);
+    let baseline = estimated.map_err(|why| refused(&why))?;
+    let deviations = scene
+        .uncertainty
+        .as_ref()
+        .map(|deviations| deviations.frames);
     let options = ForceOptions {
         baseline,
         deviations: deviations.unwrap_or_default(),
@@ -203,7 +206,8 @@ pub fn force<'py>(
         (table, force_warning(&found))
     };
     let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;
-    let baseline = baseline.map(|own| (own.mean_per_mm, own.sd_per_mm, own.count));
+    let baseline =
+        baseline.map(|baseline| (baseline.mean_per_mm, baseline.sd_per_mm, baseline.count));
     Ok((table.into_columns(py)?, warning, baseline))
 }
 
@@ -211,7 +215,7 @@ fn course(
     time_s: &PyReadonlyArray1<'_, f64>,
     angle_deg: &PyReadonlyArray1<'_, f64>,
 ) -> PyResult<AngleCourse> {
-    let [times, angles] = [time_s, angle_deg].map(|own| own.as_array().to_vec());
+    let [times, angles] = [time_s, angle_deg].map(|array| array.as_array().to_vec());
     AngleCourse::new(times, angles).map_err(|why| refused(&why))
 }
 

@@ -13,7 +13,9 @@ type EffectRow = (&'static str, bool, String);
 pub fn plan(scene: &CheckedScene) -> PyResult<(usize, usize, Option<u64>, Vec<EffectRow>)> {
     let plan = Plan::new(&scene.0).map_err(|why| of_plan(&why))?;
     let effects = effects(&scene.0, plan.method.effects).into_iter();
-    let effects = effects.map(|own| (own.name, own.on, own.why)).collect();
+    let effects = effects
+        .map(|effect| (effect.name, effect.on, effect.why))
+        .collect();
     // A map in memory keeps the panels of all whiskers.
     let bytes = Plan::in_memory(&scene.0).ok().map(|plan| plan.bytes);
     Ok((plan.whiskers, plan.cells, bytes, effects))

@@ -119,14 +119,16 @@ impl CheckedScene {
         if let Some(deviations) = deviations {
             builder = builder.uncertainty(uncertainty(&deviations)?);
         }
-        if let Some(own) = surface {
+        if let Some((distance_mm, spacing_um, asperity_radius_um, length_mm, jitter, seed)) =
+            surface
+        {
             builder = builder.surface(Surface {
-                distance_mm: own.0,
-                spacing_um: own.1,
-                asperity_radius_um: own.2,
-                length_mm: own.3,
-                jitter: own.4,
-                seed: own.5,
+                distance_mm,
+                spacing_um,
+                asperity_radius_um,
+                length_mm,
+                jitter,
+                seed,
             });
         }
         if let Some(rows) = table {
@@ -146,12 +148,14 @@ impl CheckedScene {
     /// Returns the description from which [`CheckedScene::build`] makes an equal scene.
     fn description(&self) -> Description {
         let builder = self.0.to_builder();
-        let given = Parameter::ALL
+        let parameters = Parameter::ALL
             .into_iter()
-            .filter(|own| *own != Parameter::Taper);
-        let given = given.filter_map(|own| Some((own.name().to_owned(), builder.number(own)?)));
+            .filter(|parameter| *parameter != Parameter::Taper);
+        let numbers = parameters.filter_map(|parameter| {
+            Some((parameter.name().to_owned(), builder.number(parameter)?))
+        });
         let yield_strain = self.0.whisker.yield_strain;
-        let given = given.chain(yield_strain.map(|own| (YIELD_STRAIN.to_owned(), own)));
+        let given = numbers.chain(yield_strain.map(|strain| (YIELD_STRAIN.to_owned(), strain)));
         let axes = builder.axes();
         (
             self.0.title.clone(),
@@ -159,21 +163,21 @@ impl CheckedScene {
             self.0
                 .measured_rows()
                 .map(|rows| (rows.to_vec(), self.0.smooth_radii().is_some())),
-            self.0.traced().map(|own| {
-                let degree = (!own.is_degree_chosen).then_some(own.degree);
-                (own.points_mm.clone(), degree)
+            self.0.traced().map(|shape| {
+                let degree = (!shape.is_degree_chosen).then_some(shape.degree);
+                (shape.points_mm.clone(), degree)
             }),
             axes.map(|(name, values)| (name.to_owned(), axis_tuple(values)))
                 .collect(),
             self.0.uncertainty.as_ref().map(deviations_by_name),
-            self.0.surface.map(|own| {
+            self.0.surface.map(|surface| {
                 (
-                    own.distance_mm,
-                    own.spacing_um,
-                    own.asperity_radius_um,
-                    own.length_mm,
-                    own.jitter,
-                    own.seed,
+                    surface.distance_mm,
+                    surface.spacing_um,
+                    surface.asperity_radius_um,
+                    surface.length_mm,
+                    surface.jitter,
+                    surface.seed,
                 )
             }),
             (!self.0.table.is_empty()).then(|| self.0.table_rows().iter().map(row_tuple).collect()),
@@ -225,23 +229,25 @@ impl CheckedScene {
 
     /// Scenes are equal if all their values are, whatever their texts.
     fn __eq__(&self, other: &Self) -> bool {
-        let (own, other) = (&*self.0, &*other.0);
-        own.title == other.title
-            && own.whisker == other.whisker
-            && own.pole == other.pole
-            && own.grid == other.grid
-            && own.table == other.table
-            && own.uncertainty == other.uncertainty
-            && own.surface == other.surface
-            && own.name == other.name
+        let (scene, other) = (&*self.0, &*other.0);
+        scene.title == other.title
+            && scene.whisker == other.whisker
+            && scene.pole == other.pole
+            && scene.grid == other.grid
+            && scene.table == other.table
+            && scene.uncertainty == other.uncertainty
+            && scene.surface == other.surface
+            && scene.name == other.name
     }
 }
 
-/// Returns a note about those of the columns `names` that a table of whiskers does not have; `None` without such a column.
+/// Returns a note about the columns among `names` that a table of whiskers does not have; `None` without such a column.
 #[pyfunction]
 pub fn unused_columns(names: Vec<String>) -> Option<String> {
     let known = WhiskerRow::columns;
-    let unused = names.iter().filter(|name| known().all(|own| own != *name));
+    let unused = names
+        .iter()
+        .filter(|name| known().all(|column| column != *name));
     let unused: Vec<&str> = unused.map(String::as_str).collect();
     let hints = unused.iter().filter_map(|name| {
         let hint = did_you_mean(name, known());
@@ -321,10 +327,11 @@ fn axis_tuple(values: &AxisValues) -> AxisTuple {
 /// Returns the parameter that a sweep axis of this name varies.
 fn swept(name: &str) -> PyResult<Parameter> {
     let mut all = Parameter::SWEPT.into_iter();
-    all.find(|own| own.axis() == name).ok_or_else(|| {
-        let known = Parameter::SWEPT.map(Parameter::axis).join(", ");
-        refused("grid.sweep", name, &format!("must be one of {known}"))
-    })
+    all.find(|parameter| parameter.axis() == name)
+        .ok_or_else(|| {
+            let known = Parameter::SWEPT.map(Parameter::axis).join(", ");
+            refused("grid.sweep", name, &format!("must be one of {known}"))
+        })
 }
 
 fn uncertainty(by_name: &BTreeMap<String, f64>) -> PyResult<Deviations> {
@@ -343,12 +350,13 @@ fn uncertainty(by_name: &BTreeMap<String, f64>) -> PyResult<Deviations> {
 
 fn deviations_by_name(deviations: &Deviations) -> BTreeMap<String, f64> {
     let parameters = deviations.parameters.iter();
-    let parameters = parameters.map(|(own, deviation)| (own.name().to_owned(), *deviation));
+    let parameters =
+        parameters.map(|(parameter, deviation)| (parameter.name().to_owned(), *deviation));
     let rows = deviations
         .profile_radius_um
         .map(|deviation| (PROFILE_RADIUS.to_owned(), deviation));
-    let frames = FrameDeviations::NAMES.into_iter();
-    let frames = frames.zip(deviations.frames.values());
-    let frames = frames.filter_map(|(name, deviation)| Some((name.to_owned(), deviation?)));
+    let names = FrameDeviations::NAMES.into_iter();
+    let named = names.zip(deviations.frames.values());
+    let frames = named.filter_map(|(name, deviation)| Some((name.to_owned(), deviation?)));
     parameters.chain(rows).chain(frames).collect()
 }

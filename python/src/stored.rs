@@ -25,7 +25,7 @@ pub struct StoredMap {
 
 #[pymethods]
 impl StoredMap {
-    /// Opens an EXR map, or a Zarr store if the path is that of a folder. Cells of a store that are not computed have fill values.
+    /// Opens an EXR map, or a Zarr store if the path is a folder. Cells of a store that are not computed have fill values.
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let opened = py.detach(|| {
@@ -65,8 +65,8 @@ impl StoredMap {
         let version = self.map.source().foreign_version();
         let version = version.map_err(|why| of_store(&why))?;
         Ok(version.map(|version| {
-            let (path, own) = (self.path.display(), env!("CARGO_PKG_VERSION"));
-            format!("{path} was written by whiskmap {version}, not by {own}; its channels may have another meaning")
+            let (path, current) = (self.path.display(), env!("CARGO_PKG_VERSION"));
+            format!("{path} was written by whiskmap {version}, not by {current}; its channels may have another meaning")
         }))
     }
 
@@ -82,8 +82,8 @@ impl StoredMap {
         for whisker in whiskers {
             let panel = py.detach(|| self.map.read_panel(channel, whisker));
             match panel.map_err(|why| of_store(&why))? {
-                ChannelValues::U32(own) => codes.extend(own),
-                ChannelValues::F32(own) => quantities.extend(own),
+                ChannelValues::U32(whisker_codes) => codes.extend(whisker_codes),
+                ChannelValues::F32(whisker_values) => quantities.extend(whisker_values),
             }
             py.check_signals()?;
         }

@@ -21,7 +21,7 @@ const MOST_THREADS: usize = 1024;
 
 /// Pools by their number of threads; 0 is a thread for each core, or `RAYON_NUM_THREADS`.
 ///
-/// They belong to a process: after `fork`, a pool has no threads in the child.
+/// Pools belong to a process: after `fork`, a pool has no threads in the child.
 struct ThreadPools {
     process: u32,
     pools: HashMap<usize, Arc<ThreadPool>>,
@@ -53,7 +53,7 @@ fn pool(threads: Option<ThreadCount>) -> PyResult<Arc<ThreadPool>> {
     let threads = threads.map_or(0, |threads| threads.0);
     let mut all = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = process::id();
-    if all.as_ref().is_none_or(|own| own.process != process) {
+    if all.as_ref().is_none_or(|pools| pools.process != process) {
         let pools = HashMap::new();
         // The threads of the parent's pools do not exist here, so dropping its pools could wait for ever.
         std::mem::forget(all.replace(ThreadPools { process, pools }));

@@ -36,8 +36,8 @@ pub fn curve<'py>(
             let ends = ends.par_iter();
             let ends = ends.filter(|_| !cancel.load(Ordering::Relaxed));
             let mark = |(place, end): &(SweepPlace, Detachment)| {
-                let own = scene.0.whisker_at(place.clone()).ok()?;
-                PushMark::of_end(&own.whisker, &own.pole, end)
+                let swept = scene.0.whisker_at(place.clone()).ok()?;
+                PushMark::of_end(&swept.whisker, &swept.pole, end)
             };
             ends.map(|end| mark(end).unwrap_or_default()).collect()
         });
@@ -63,7 +63,8 @@ pub fn branch<'py>(
     let scene = at_pole(py, scene, distance_mm)?;
     let job = |cancel: &Arc<AtomicBool>| {
         let points = branch_of(&scene, distance_mm, side)?.points_until(points, cancel)?;
-        let marks = YieldMark::of_rows(&scene.whisker, points.iter().map(|own| own.peak_strain));
+        let marks =
+            YieldMark::of_rows(&scene.whisker, points.iter().map(|point| point.peak_strain));
         let table = Table::new(&points, BranchPoint::COLUMNS, cancel);
         Ok(table.marked(marks, YieldMark::COLUMNS, cancel))
     };
@@ -94,13 +95,16 @@ pub fn shape<'py>(
         let branch = branch_of(&scene, distance_mm, Side::of_push(push_angle_deg))?;
         let state = branch.state(push_angle_deg.to_radians(), stable)?;
         let shape = WhiskerShape::new(&branch, &state, points);
-        let marks = YieldMark::of_rows(&scene.whisker, shape.points.iter().map(|own| own.strain));
-        let points = Table::new(&shape.points, ShapePoint::COLUMNS, cancel);
-        let points = points.marked(marks, YieldMark::COLUMNS, cancel);
+        let marks = YieldMark::of_rows(
+            &scene.whisker,
+            shape.points.iter().map(|point| point.strain),
+        );
+        let point_table = Table::new(&shape.points, ShapePoint::COLUMNS, cancel);
+        let point_table = point_table.marked(marks, YieldMark::COLUMNS, cancel);
         let mark = YieldMark::of_rows(&scene.whisker, [shape.state.peak_strain]);
-        let state = Table::new(&[shape.state], BranchPoint::COLUMNS, cancel);
-        let state = state.marked(mark, YieldMark::COLUMNS, cancel);
-        Ok((shape, points, state))
+        let state_table = Table::new(&[shape.state], BranchPoint::COLUMNS, cancel);
+        let state_table = state_table.marked(mark, YieldMark::COLUMNS, cancel);
+        Ok((shape, point_table, state_table))
     };
     let found = threads::run(py, None, |_| Ok(()), job)?;
     let (shape, points, state) = found.map_err(of_state)?;

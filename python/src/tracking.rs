@@ -41,24 +41,24 @@ enum Pole {
 
 impl Options {
     fn checked(self) -> PyResult<TrackingOptions> {
-        let mut own = TrackingOptions::new(self.mm_per_pixel, self.fps);
+        let mut options = TrackingOptions::new(self.mm_per_pixel, self.fps);
         let format = |name: String| {
             let mut all = TrackingFormat::ALL.into_iter();
-            all.find(|own| own.name() == name).ok_or_else(|| {
+            all.find(|known| known.name() == name).ok_or_else(|| {
                 let names = TrackingFormat::ALL.map(TrackingFormat::name).join("', '");
                 refused(&format!("format = '{name}': must be one of '{names}'"))
             })
         };
-        own.format = self.format.map(format).transpose()?;
-        own.whisker = self.whisker;
-        own.points = self.points;
-        own.likelihood = self.likelihood;
-        own.follicle_px = self.follicle_px;
-        own.curvature_at_mm = self.curvature_at_mm;
-        own.fit_to_mm = self.fit_to_mm;
-        own.degree = self.degree;
-        own.mirror = self.mirror;
-        own.face_axis = match self.face_axis.as_deref() {
+        options.format = self.format.map(format).transpose()?;
+        options.whisker = self.whisker;
+        options.points = self.points;
+        options.likelihood = self.likelihood;
+        options.follicle_px = self.follicle_px;
+        options.curvature_at_mm = self.curvature_at_mm;
+        options.fit_to_mm = self.fit_to_mm;
+        options.degree = self.degree;
+        options.mirror = self.mirror;
+        options.face_axis = match self.face_axis.as_deref() {
             None => None,
             Some("x") => Some(FaceAxis::X),
             Some("y") => Some(FaceAxis::Y),
@@ -67,13 +67,13 @@ impl Options {
                 return Err(refused(&why));
             }
         };
-        own.pole = self.pole.map(|pole| match pole {
+        options.pole = self.pole.map(|pole| match pole {
             Pole::Part(name) => ImagePole::Part(name),
             Pole::At(at) => ImagePole::At(at),
         });
-        own.contact_within_mm = self.contact_within_mm;
-        own.zero_s = self.zero_s;
-        Ok(own)
+        options.contact_within_mm = self.contact_within_mm;
+        options.zero_s = self.zero_s;
+        Ok(options)
     }
 }
 
@@ -118,6 +118,9 @@ impl TrackedFilm {
     /// Returns the points of a frame from base to tip, `[point][x, y]` in mm.
     fn shape(&self, frame: u64) -> PyResult<Vec<[f64; 2]>> {
         let points = self.0.shape(frame).map_err(|why| refused(&why))?;
-        Ok(points.iter().map(|own| [own.x_mm, own.y_mm]).collect())
+        Ok(points
+            .iter()
+            .map(|point| [point.x_mm, point.y_mm])
+            .collect())
     }
 }

@@ -24,7 +24,7 @@ pub struct ColumnName {
     /// Name of the column that the table must have, or its beginning up to an underscore.
     pub expected: String,
     /// Name that the column has in the file.
-    pub own: String,
+    pub in_file: String,
 }
 
 impl FromStr for ColumnName {
@@ -33,11 +33,11 @@ impl FromStr for ColumnName {
     fn from_str(text: &str) -> Result<Self, String> {
         let pair = text
             .split_once('=')
-            .map(|(expected, own)| [expected, own].map(str::trim));
+            .map(|(expected, in_file)| [expected, in_file].map(str::trim));
         match pair {
-            Some([expected, own]) if !expected.is_empty() && !own.is_empty() => Ok(Self {
+            Some([expected, in_file]) if !expected.is_empty() && !in_file.is_empty() => Ok(Self {
                 expected: expected.to_owned(),
-                own: own.to_owned(),
+                in_file: in_file.to_owned(),
             }),
             _ => Err("must be an expected name and an own one, such as distance_mm=d".to_owned()),
         }
@@ -46,15 +46,21 @@ impl FromStr for ColumnName {
 
 impl fmt::Display for ColumnName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}={}", shortened(&self.expected), shortened(&self.own))
+        write!(
+            f,
+            "{}={}",
+            shortened(&self.expected),
+            shortened(&self.in_file)
+        )
     }
 }
 
 impl CsvTable {
-    /// Returns the CSV table with own column names replaced by the expected ones, which must be among the `known` names of its columns.
+    /// Returns the CSV table with column names of the file replaced by the expected ones, which must be among the `known` names of its
+    /// columns.
     ///
     /// # Errors
-    /// If an expected name is not known, an own column is missing or there twice, or a name is given or would be there twice.
+    /// If an expected name is not known, a column of the file is missing or there twice, or a name is given or would be there twice.
     pub fn renamed(self, columns: &[ColumnName], known: &[&str]) -> Result<Self, CsvError> {
         let mut renamed: Vec<(usize, &str)> = Vec::with_capacity(columns.len());
         let (origin, line) = (self.origin.clone(), self.header_line());
@@ -63,7 +69,7 @@ impl CsvTable {
                 let what = format!("columns {column}: {what}");
                 Err(CsvError::at(&origin, line, what))
             };
-            let ColumnName { expected, own } = column;
+            let ColumnName { expected, in_file } = column;
             let is_short = |name: &&str| {
                 let rest = name.strip_prefix(expected.as_str());
                 rest.is_some_and(|rest| rest.starts_with('_'))
@@ -87,9 +93,9 @@ impl CsvTable {
                     .map(|(place, _)| place)
                     .collect()
             };
-            let found: Vec<usize> = places(own);
+            let found: Vec<usize> = places(in_file);
             let [place] = found[..] else {
-                let hint = did_you_mean(own, self.names());
+                let hint = did_you_mean(in_file, self.names());
                 let all = self.names().collect::<Vec<_>>().join(", ");
                 let times = match found.len() {
                     0 => "is no column of the file",
@@ -97,14 +103,14 @@ impl CsvTable {
                 };
                 return refused(format!(
                     "`{}` {times}; found {}{hint}",
-                    shortened(own),
+                    shortened(in_file),
                     shortened(&all)
                 ));
             };
             if renamed.iter().any(|(other, _)| *other == place) {
-                return refused(format!("`{}` is given twice", shortened(own)));
+                return refused(format!("`{}` is given twice", shortened(in_file)));
             }
-            if own != name && !places(name).is_empty() {
+            if in_file != name && !places(name).is_empty() {
                 return refused(format!(
                     "the file has a column `{name}`, too; leave one of both out"
                 ));

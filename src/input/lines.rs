@@ -9,7 +9,7 @@ pub(crate) struct CsvLine {
     pub cells: StringRecord,
 }
 
-/// The separators of columns. Decimal commas may stand between the first two, which are preferred therefore.
+/// Separators of columns. The first two are preferred, because decimal commas may stand between them.
 const SEPARATORS: [char; 3] = [';', '\t', ','];
 
 /// Returns the text of a CSV file with one kind of line end, and without the byte order mark.
@@ -24,11 +24,11 @@ fn declared(text: &str) -> Option<char> {
     let separator = line.trim_end_matches(' ').strip_prefix("sep=")?;
     SEPARATORS
         .into_iter()
-        .find(|own| separator.trim_start_matches(' ') == own.to_string())
+        .find(|known| separator.trim_start_matches(' ') == known.to_string())
 }
 
-/// Returns the separator of the columns of a CSV text: the declared one, or the most frequent one of its header, outside of quotes. Of a first
-/// line without letters, it is the first separator there is.
+/// Returns the separator of the columns of a CSV text: the declared one, or the most frequent one of its header, outside of quotes. If the
+/// header has no letters, the function returns the first of [`SEPARATORS`] in the header.
 pub(super) fn separator(text: &str) -> char {
     if let Some(separator) = declared(text) {
         return separator;
@@ -37,7 +37,7 @@ pub(super) fn separator(text: &str) -> char {
     let header = text.lines().find(is_header).unwrap_or_default();
     // A line of numbers, without a header, may have decimal commas.
     if !header.contains(char::is_alphabetic)
-        && let Some(first) = SEPARATORS.into_iter().find(|own| header.contains(*own))
+        && let Some(first) = SEPARATORS.into_iter().find(|known| header.contains(*known))
     {
         return first;
     }
@@ -45,7 +45,7 @@ pub(super) fn separator(text: &str) -> char {
         let unquoted = header.split('"').step_by(2);
         unquoted.map(|part| part.matches(*separator).count()).sum()
     };
-    // Of several greatest counts, the last one is taken.
+    // `max_by_key` returns the last of several greatest counts.
     let most = SEPARATORS.into_iter().rev().max_by_key(count);
     most.unwrap_or(',')
 }

@@ -37,11 +37,13 @@ pub fn did_you_mean<'a>(
     let mut converted = known
         .clone()
         .filter(|other| is_of_another_unit(name, other));
-    if let Some(own) = converted.next() {
-        let (stem, unit) = own.rsplit_once('_').unwrap_or(("", own));
+    if let Some(expected) = converted.next() {
+        let (stem, unit) = expected.rsplit_once('_').unwrap_or(("", expected));
         let per = if stem.ends_with("per") { "1/" } else { "" };
         let unit = if unit == "gpa" { "GPa" } else { unit };
-        return format!("; values must be in {per}{unit}: convert them, and use the name `{own}`");
+        return format!(
+            "; values must be in {per}{unit}: convert them, and use the name `{expected}`"
+        );
     }
     let found = similar(name, known);
     found.map_or_else(String::new, |known| format!("; did you mean `{known}`?"))
@@ -63,7 +65,7 @@ pub fn each_once<T: Clone + PartialEq>(values: &[T]) -> Vec<T> {
     kept
 }
 
-/// Units at the ends of names, those of one quantity together.
+/// Units at the ends of names, with all units of one quantity in one list.
 const UNITS: [&[&str]; 4] = [
     &["nm", "um", "mm", "cm", "m", "inch"],
     &["nm2", "um2", "mm2", "cm2", "m2"],

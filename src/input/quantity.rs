@@ -116,10 +116,11 @@ impl Quantity {
 
     /// Returns the names of the units in which a number of the quantity can be given, its own unit first.
     pub fn units(self) -> impl Iterator<Item = &'static str> {
-        let own = self.unit();
+        let default = self.unit();
         let others = self.table().iter().map(|(name, _)| *name);
-        own.into_iter()
-            .chain(others.filter(move |name| Some(*name) != own))
+        default
+            .into_iter()
+            .chain(others.filter(move |name| Some(*name) != default))
     }
 
     /// Returns the finite number in `text`, in the quantity's own unit.
@@ -130,8 +131,8 @@ impl Quantity {
         self.parse_with_unit(text).map(|(number, _)| number)
     }
 
-    /// Returns the finite number in `text`, in the quantity's own unit, and the unit in which the text gives it: the own one if it gives
-    /// none, and an empty text for a plain number.
+    /// Returns the finite number in `text`, in the quantity's own unit, and the unit in which the text gives it. Without a unit in the
+    /// text, this is the quantity's own unit, or an empty text for a plain number.
     ///
     /// ```
     /// use whiskmap::input::Quantity;
@@ -146,45 +147,48 @@ impl Quantity {
         let is_last = |c: char| c.is_ascii_digit() || c == '.';
         let end = text.rfind(is_last).map_or(0, |last| last + 1);
         let (number, unit) = text.split_at(end);
-        let number: Option<f64> = number.trim_start().parse().ok();
-        let number = number.filter(|number| number.is_finite());
+        let parsed: Option<f64> = number.trim_start().parse().ok();
+        let finite = parsed.filter(|number| number.is_finite());
         let [_, kind, examples] = self.about();
-        let number = number.ok_or_else(|| format!("must be {kind}, such as {examples}"))?;
+        let refused = || format!("must be {kind}, such as {examples}");
+        let number = finite.ok_or_else(refused)?;
         let unit = unit.trim();
         if unit.is_empty() {
             return Ok((number, self.unit().unwrap_or_default()));
         }
         let unknown = || format!("unit {}: {}", shortened(unit), self.allowed());
-        let (own, (name, size)) = self.sizes(unit).ok_or_else(unknown)?;
-        let number = Some(converted(number, size, own)).filter(|number| number.is_finite());
-        let number = number.ok_or_else(|| format!("must be {kind}, such as {examples}"))?;
-        Ok((number, name))
+        let (default_size, (name, size)) = self.sizes(unit).ok_or_else(unknown)?;
+        let converted = converted(number, size, default_size);
+        match converted.is_finite() {
+            true => Ok((converted, name)),
+            false => Err(refused()),
+        }
     }
 
     /// Converts a number in the quantity's own unit to another `unit`. Returns `None` for a unit of another quantity.
     #[must_use]
     pub fn convert(self, number: f64, unit: &str) -> Option<f64> {
-        let (own, (_, size)) = self.sizes(unit)?;
-        Some(converted(number, own, size))
+        let (default_size, (_, size)) = self.sizes(unit)?;
+        Some(converted(number, default_size, size))
     }
 
-    /// Size of the quantity's own unit, and name and size of another unit of it. The sign for micro is U+00B5 or U+03BC.
+    /// Size of the quantity's own unit, and name and size of the other `unit`. The sign for micro is U+00B5 or U+03BC.
     fn sizes(self, unit: &str) -> Option<(f64, (&'static str, f64))> {
         let unit = unit.replace(['\u{b5}', '\u{3bc}'], "u");
         let units = self.table().iter();
-        let named = |name: &str| units.clone().find(|(own, _)| *own == name).copied();
-        let (_, own) = named(self.unit()?)?;
-        Some((own, named(&unit)?))
+        let named = |name: &str| units.clone().find(|(known, _)| *known == name).copied();
+        let (_, default_size) = named(self.unit()?)?;
+        Some((default_size, named(&unit)?))
     }
 
     /// Message that lists the allowed units.
     fn allowed(self) -> String {
         let names: Vec<&str> = self.units().collect();
         match names[..] {
-            [own, ref others @ .., last] => {
+            [default, ref others @ .., last] => {
                 let others = others.iter().map(|name| format!(", {name}"));
                 let others: String = others.collect();
-                format!("must be {own} (the default){others} or {last}")
+                format!("must be {default} (the default){others} or {last}")
             }
             _ => "must be left out".to_owned(),
         }

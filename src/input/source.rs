@@ -10,8 +10,8 @@ pub(crate) const TEXT_MIB: u64 = 1;
 /// Longest table in MiB: a million samples of a course take 24.
 pub(super) const TABLE_MIB: u64 = 32;
 
-/// Opens the regular file at `path` to read it; `None` for a folder, a pipe or a device. All of it is read from this handle: another
-/// process may replace the file meanwhile.
+/// Opens the regular file at `path` to read it; `None` for a folder, a pipe or a device. The whole file is read from this handle, because
+/// another process may replace the file meanwhile.
 ///
 /// # Errors
 /// If it cannot be opened.

@@ -92,13 +92,13 @@ impl CsvTable {
     /// # Errors
     /// If there is no row, a quote is not closed, or a row has fewer cells than the header has names, or more that are not empty.
     pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
-        let mut own = CsvLines::split(text, origin)?;
-        if own.lines.len() < 2 {
+        let mut split = CsvLines::split(text, origin)?;
+        if split.lines.len() < 2 {
             let what = "has no rows: must have a header and at least one row below it";
             return Err(CsvError::whole(origin, what));
         }
-        let header = own.lines.remove(0);
-        own.table(header, origin)
+        let header = split.lines.remove(0);
+        split.table(header, origin)
     }
 
     /// Checks the header of a CSV file: it must have one name of each group of `needed`, once, and each `optional` name at most once.
@@ -164,9 +164,9 @@ impl CsvTable {
 
     /// Returns the table with other names of the columns at these places.
     pub(super) fn with_names(mut self, renamed: &[(usize, &str)]) -> Self {
-        let new = |place: usize| renamed.iter().find(|(own, _)| *own == place);
+        let new = |place: usize| renamed.iter().find(|(column, _)| *column == place);
         let names = self.names().enumerate();
-        let names = names.map(|(place, own)| new(place).map_or(own, |(_, name)| *name));
+        let names = names.map(|(place, old)| new(place).map_or(old, |(_, name)| *name));
         self.header.cells = names.collect::<Vec<_>>().into();
         self
     }
@@ -244,8 +244,12 @@ impl CsvTable {
         is_allowed: impl Fn(f64) -> bool,
     ) -> Result<Option<Vec<f64>>, CsvError> {
         let must = format!("{must}, or empty where it is missing");
+        let is_missing = |cell: &str| {
+            let mut markers = MISSING.iter();
+            markers.any(|marker| cell.eq_ignore_ascii_case(marker))
+        };
         self.parsed(column, &must, |cell| match cell {
-            cell if MISSING.iter().any(|own| cell.eq_ignore_ascii_case(own)) => Some(f64::NAN),
+            cell if is_missing(cell) => Some(f64::NAN),
             cell => {
                 let number = cell.parse().ok();
                 number.filter(|number: &f64| number.is_nan() || is_allowed(*number))

@@ -85,7 +85,7 @@ impl MeasuredPoints {
         let lines: Vec<String> = self
             .incomplete
             .iter()
-            .map(|own| own.line.to_string())
+            .map(|point| point.line.to_string())
             .collect();
         let count = self.points.len() + lines.len();
         (!lines.is_empty()).then(|| {
@@ -155,7 +155,7 @@ impl MeasuredPoints {
     }
 
     /// Returns the derivatives of the predicted angles by each of `variables`, in degrees per unit of the variable, `[variable][point]`.
-    /// `None` if one of them does not exist.
+    /// `None` if one of the derivatives does not exist.
     #[must_use]
     pub fn derivatives(
         &self,
@@ -173,7 +173,8 @@ impl MeasuredPoints {
         };
         let of_point = |point: &MeasuredPoint, variable: usize| {
             let ends = &ends[usize::from(point.side == Side::Cb)];
-            let place = ends.partition_point(|own| own.end.distance_mm < point.distance_mm);
+            let place =
+                ends.partition_point(|derivatives| derivatives.end.distance_mm < point.distance_mm);
             ends[place].by[variable].as_ref().ok().map(angle)
         };
         let of_variable = |variable: usize| {

@@ -96,7 +96,7 @@ impl MeasuredPoints {
         })?;
         let mut whiskers: Vec<String> = Vec::new();
         let mut index_of = |name: String| {
-            let index = whiskers.iter().position(|own| *own == name);
+            let index = whiskers.iter().position(|known| *known == name);
             index.unwrap_or_else(|| {
                 whiskers.push(name);
                 whiskers.len() - 1

@@ -36,7 +36,7 @@ impl MeasuredPoints {
             })?;
             scene
                 .whisker_at(place)
-                .map_err(|own| refused(format!("its row has no whisker: {}", own.reason)))
+                .map_err(|why| refused(format!("its row has no whisker: {}", why.reason)))
         };
         self.whiskers.iter().enumerate().map(of_name).collect()
     }
@@ -46,19 +46,21 @@ impl MeasuredPoints {
     /// # Errors
     /// The first point that is out of reach.
     pub(crate) fn check_reach_of(&self, whiskers: &[SweptWhisker]) -> Result<(), CsvError> {
-        let mut own = whiskers.iter().enumerate();
-        own.try_for_each(|(index, own)| {
+        let mut indexed = whiskers.iter().enumerate();
+        indexed.try_for_each(|(index, swept)| {
             let points = self.of_whisker(index);
-            points.check_reach(&own.whisker, &own.pole)
+            points.check_reach(&swept.whisker, &swept.pole)
         })
     }
 
     /// Returns the first point at whose distance its resting whisker does not touch its pole; `None` if all are within reach.
     pub(crate) fn first_out_of_reach_of(&self, whiskers: &[SweptWhisker]) -> Option<MeasuredPoint> {
-        let mut own = whiskers.iter().enumerate();
-        own.find_map(|(index, own)| {
+        let mut indexed = whiskers.iter().enumerate();
+        indexed.find_map(|(index, swept)| {
             let points = self.of_whisker(index);
-            points.first_out_of_reach(&own.whisker, &own.pole).copied()
+            points
+                .first_out_of_reach(&swept.whisker, &swept.pole)
+                .copied()
         })
     }
 
@@ -69,9 +71,9 @@ impl MeasuredPoints {
 
     /// Returns the points that have all of their values, with the predictions for their `whiskers`: `[point]`.
     pub(crate) fn compared_with(&self, whiskers: &[SweptWhisker]) -> Vec<ComparedPoint> {
-        let compared = whiskers.par_iter().enumerate().map(|(index, own)| {
+        let compared = whiskers.par_iter().enumerate().map(|(index, swept)| {
             let points = self.of_whisker(index);
-            points.compared(&own.whisker, &own.pole)
+            points.compared(&swept.whisker, &swept.pole)
         });
         self.in_order(compared.collect())
     }
@@ -82,14 +84,16 @@ impl MeasuredPoints {
         whiskers: &[SweptWhisker],
         variables: &[Variable],
     ) -> Option<Vec<Vec<f64>>> {
-        let own = whiskers.par_iter().enumerate().map(|(index, own)| {
+        let derivatives = whiskers.par_iter().enumerate().map(|(index, swept)| {
             let points = self.of_whisker(index);
-            points.derivatives(&own.whisker, &own.pole, variables)
+            points.derivatives(&swept.whisker, &swept.pole, variables)
         });
-        let own: Vec<Vec<Vec<f64>>> = own.collect::<Option<_>>()?;
+        let derivatives: Vec<Vec<Vec<f64>>> = derivatives.collect::<Option<_>>()?;
         let of_variable = |variable: usize| {
-            let own = own.iter().map(|own| own[variable].clone());
-            self.in_order(own.collect())
+            let values = derivatives
+                .iter()
+                .map(|of_whisker| of_whisker[variable].clone());
+            self.in_order(values.collect())
         };
         Some((0..variables.len()).map(of_variable).collect())
     }

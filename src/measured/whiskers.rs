@@ -16,28 +16,31 @@ impl MeasuredPoints {
         let Some(name) = place.whisker() else {
             return Err(self.without_table());
         };
-        let index = self.whiskers.iter().position(|own| own == name);
-        let own = index.map(|index| self.of_whisker(index));
-        own.filter(|own| !own.points.is_empty()).ok_or_else(|| {
-            let what = format!("has no point of the whisker {}", shortened(name));
-            CsvError::whole(&self.origin, what)
-        })
+        let index = self.whiskers.iter().position(|known| known == name);
+        let measured = index.map(|index| self.of_whisker(index));
+        measured
+            .filter(|measured| !measured.points.is_empty())
+            .ok_or_else(|| {
+                let what = format!("has no point of the whisker {}", shortened(name));
+                CsvError::whole(&self.origin, what)
+            })
     }
 
     /// Returns the points of the whisker with this index, as points without names.
     pub(super) fn of_whisker(&self, index: usize) -> Self {
-        let own = |points: &[MeasuredPoint]| {
-            let own = points.iter().filter(|point| point.whisker == index);
-            own.map(|point| MeasuredPoint {
-                whisker: 0,
-                ..*point
-            })
-            .collect()
+        let of_index = |points: &[MeasuredPoint]| {
+            let selected = points.iter().filter(|point| point.whisker == index);
+            selected
+                .map(|point| MeasuredPoint {
+                    whisker: 0,
+                    ..*point
+                })
+                .collect()
         };
         Self {
             whiskers: Vec::new(),
-            points: own(&self.points),
-            incomplete: own(&self.incomplete),
+            points: of_index(&self.points),
+            incomplete: of_index(&self.incomplete),
             ..self.clone()
         }
     }

@@ -40,7 +40,7 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All channels of a map, those of a state in the order of [`STATE_CHANNELS`] first, `[channel]`.
+    /// All channels of a map, beginning with the channels of a state in the order of [`STATE_CHANNELS`]: `[channel]`.
     pub const ALL: [Self; STATE_CHANNELS.len() + 3] = [
         Self::ArcLength,
         Self::ContactAngle,
@@ -70,7 +70,7 @@ impl Channel {
     /// Returns the channel with this name; `None` for codes, counts, derivatives and other names.
     #[must_use]
     pub fn of(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|own| own.name() == name)
+        Self::ALL.into_iter().find(|channel| channel.name() == name)
     }
 }
 
@@ -168,7 +168,7 @@ impl Channels {
     /// Returns true if the selection has the channel `name`.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {
-        self.names().any(|own| own == name)
+        self.names().any(|selected| selected == name)
     }
 
     /// Returns the parameters by which the selection has derivatives.
@@ -217,7 +217,10 @@ impl FromStr for Channels {
     /// Parses names with commas between them.
     fn from_str(list: &str) -> Result<Self, String> {
         let wanted: Vec<&str> = list.split(',').map(str::trim).collect();
-        match wanted.iter().find(|name| !names().any(|own| own == **name)) {
+        match wanted
+            .iter()
+            .find(|name| !names().any(|known| known == **name))
+        {
             Some(unknown) => Err(format!(
                 "must be names with commas between them, out of {}, {PEAK_STRAIN}, and derivatives such as d_push_d_taper{}",
                 Self::STANDARD,
@@ -244,7 +247,7 @@ mod tests {
         assert!(
             Channel::ALL
                 .iter()
-                .all(|own| Channel::of(own.name()) == Some(*own))
+                .all(|channel| Channel::of(channel.name()) == Some(*channel))
         );
     }
 }

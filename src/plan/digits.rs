@@ -122,18 +122,18 @@ impl FromStr for Digits {
             let number = number
                 .parse()
                 .ok()
-                .filter(|own| (least..=most).contains(own));
+                .filter(|number| (least..=most).contains(number));
             let number = number.ok_or_else(|| {
                 format!(
                     "`{entry}`: must be N or NAME=N, N a whole number between {least} and {most}"
                 )
             })?;
-            let own = match Channel::of(name) {
+            let given = match Channel::of(name) {
                 Some(channel) => &mut named[channel as usize],
                 None if name.is_empty() && !entry.contains('=') => &mut others,
                 None => return Err(refused(name)),
             };
-            if own.replace(number).is_some() {
+            if given.replace(number).is_some() {
                 return Err(format!("`{entry}`: must be given once"));
             }
         }
@@ -147,7 +147,7 @@ impl FromStr for Digits {
 /// The message for a `name` that is not a channel of quantities.
 fn refused(name: &str) -> String {
     let names = Channel::ALL.map(Channel::name);
-    let kind = if channel_names().any(|own| own == name) {
+    let kind = if channel_names().any(|known| known == name) {
         "is a channel that is not rounded"
     } else {
         "is no channel"
@@ -167,7 +167,7 @@ mod tests {
         let text = format!("{:e}", f64::from(value.abs()));
         let exponent = text
             .split_once('e')
-            .and_then(|(_, own)| own.parse::<i32>().ok());
+            .and_then(|(_, exponent)| exponent.parse::<i32>().ok());
         0.5 * 10_f64.powi(exponent.unwrap_or_default() - digits + 1)
     }
 

@@ -31,9 +31,9 @@ pub enum Cost {
 #[must_use]
 pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let SceneData { whisker, pole, .. } = &**scene;
-    let why = |parameter: Parameter, own: String| match scene.grid.axis(parameter) {
+    let why = |parameter: Parameter, fixed: String| match scene.grid.axis(parameter) {
         Some(values) => swept(parameter.axis_key(), values),
-        None => own,
+        None => fixed,
     };
     let taper = match &whisker.profile {
         Some(_) => "the radii are measured".to_owned(),
@@ -43,10 +43,10 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
             Parameter::Taper,
         ]
         .into_iter()
-        .fold(radii(whisker), |own, parameter| why(parameter, own)),
+        .fold(radii(whisker), |text, parameter| why(parameter, text)),
     };
-    let smooth = scene.smooth_radii().map_or_else(String::new, |own| {
-        let (degree, rms) = (own.degree, own.rms_um);
+    let smooth = scene.smooth_radii().map_or_else(String::new, |radii| {
+        let (degree, rms) = (radii.degree, radii.rms_um);
         format!(", smooth: degree {degree}, rms {rms:.1e} um")
     });
     let measured = whisker.profile.as_ref().map_or_else(
@@ -58,12 +58,12 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let parabola = number(Parameter::ParabolaPerMm, "parabola_per_mm", bend, 0.0);
     let spiral = whisker.euler_spiral.map_or_else(
         || "euler_spiral is 0 or left out".to_owned(),
-        |own| format!("per_mm {}, per_mm2 {}", own.per_mm, own.per_mm2),
+        |spiral| format!("per_mm {}, per_mm2 {}", spiral.per_mm, spiral.per_mm2),
     );
     let traced = scene.traced().map_or_else(
         || "no whisker.rest".to_owned(),
-        |own| {
-            let (degree, count, rms) = (own.degree, own.points_mm.len(), own.rms_mm);
+        |shape| {
+            let (degree, count, rms) = (shape.degree, shape.points_mm.len(), shape.rms_mm);
             format!("degree {degree}, rms {rms:.1e} mm, {count} points")
         },
     );
@@ -73,19 +73,21 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let friction = number(Parameter::Friction, "friction", pole.friction, 0.0);
     let clamped = || "no whisker.follicle: the base is clamped".to_owned();
     let stiffness = whisker.follicle_stiffness_nnm_per_rad;
-    let follicle = stiffness.map_or_else(clamped, |own| format!("stiffness_nnm_per_rad {own}"));
+    let follicle = stiffness.map_or_else(clamped, |stiffness| {
+        format!("stiffness_nnm_per_rad {stiffness}")
+    });
     let follicle = why(Parameter::FollicleStiffness, follicle);
     let corners: Vec<SweptWhisker> = scene.corner_whiskers().collect();
     let any = |differs: fn(&SweptWhisker) -> bool| corners.iter().any(differs);
-    let stretched = any(|own| own.whisker.arc_stretch != 1.0);
+    let stretched = any(|swept| swept.whisker.arc_stretch != 1.0);
     let varies = kernels.taper || kernels.profile || kernels.gradient;
     let stretch = whisker.arc_stretch;
     let mut stretch = number(Parameter::ArcStretch, "arc_stretch", stretch, 1.0);
     if stretched && !varies {
         stretch += " does nothing without taper or modulus gradient";
     }
-    let turns = any(|own| own.whisker.follicle_stiffness_nnm_per_rad.is_some());
-    let is_disc = any(|own| own.pole.radius_mm != 0.0);
+    let turns = any(|swept| swept.whisker.follicle_stiffness_nnm_per_rad.is_some());
+    let is_disc = any(|swept| swept.pole.radius_mm != 0.0);
     let effect = |name, on, cost, why| Effect {
         name,
         on,

@@ -36,7 +36,7 @@ pub const fn fits(bytes: u64, gpu_bytes: u64) -> bool {
     bytes + THREADS_IN_FLIGHT * BYTES_PER_THREAD + gpu_bytes <= MEMORY_LIMIT
 }
 
-/// Returns the memory of the sheets of so many whiskers, in bytes.
+/// Returns the memory of the sheets of this number of `whiskers`, in bytes.
 pub fn bytes_of_sheets(scene: &Scene, whiskers: usize) -> u64 {
     (whiskers * Plan::sides(scene).len()) as u64 * SIDE_BYTES
 }

@@ -100,7 +100,7 @@ impl Plan {
         Self::in_blocks(scene, 1)
     }
 
-    /// Creates the plan of a run for `scene` that keeps the packed panels of so many `whiskers`, until their blocks are written.
+    /// Creates the plan of a run for `scene` that keeps the packed panels of this number of `whiskers` until their blocks are written.
     ///
     /// # Errors
     /// When one panel, or the blocks, take more than [`MEMORY_LIMIT`].
@@ -146,7 +146,7 @@ impl Plan {
         }
         let corners: Vec<Rod> = scene
             .corner_whiskers()
-            .map(|own| own.rod(Side::Cb))
+            .map(|swept| swept.rod(Side::Cb))
             .collect();
         let rows_at_once = (CELLS_IN_FLIGHT / push_angles).clamp(1, ROWS_IN_FLIGHT);
         let of_rows = |rows: usize| (rows * sides.len()).div_ceil(rows_at_once);

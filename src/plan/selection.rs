@@ -13,9 +13,9 @@ impl Plan {
     pub fn with_channels(mut self, channels: Channels, scene: &Scene) -> Result<Self, PlanError> {
         self.channels = channels;
         let mut derivatives = channels.derivatives();
-        if let Some(absent) = derivatives.find(|own| !own.has_derivative(scene)) {
+        if let Some(absent) = derivatives.find(|parameter| !parameter.has_derivative(scene)) {
             let all = Parameter::ALL.into_iter();
-            let given = all.filter(|own| own.has_derivative(scene));
+            let given = all.filter(|parameter| parameter.has_derivative(scene));
             return Err(PlanError::NotGiven {
                 name: absent.push_derivative(),
                 given: given.map(Parameter::name).collect::<Vec<_>>().join(", "),

@@ -44,15 +44,15 @@ impl FrameDeviations {
 
     /// Sets the standard deviation of this name. Returns false for another name.
     pub fn set(&mut self, name: &str, deviation: f64) -> bool {
-        let own = [
+        let values = [
             &mut self.curvature_per_mm,
             &mut self.contact_mm,
             &mut self.angle_deg,
         ];
-        let named = Self::NAMES.into_iter().zip(own);
-        let mut found = named.filter(|(own, _)| *own == name);
-        found.next().is_some_and(|(_, own)| {
-            *own = Some(deviation);
+        let named = Self::NAMES.into_iter().zip(values);
+        let mut found = named.filter(|(known, _)| *known == name);
+        found.next().is_some_and(|(_, value)| {
+            *value = Some(deviation);
             true
         })
     }
@@ -130,7 +130,7 @@ pub struct SceneBuilder {
     pub(super) measured: Option<MeasuredRadii>,
     /// Shape at rest through traced points; `None` without them.
     pub(super) traced: Option<Arc<TracedShape>>,
-    /// True if the length is that of the curve through the traced points, because none was set before them.
+    /// True if the length is the length of the curve through the traced points, because no length was set before them.
     pub(super) is_length_traced: bool,
     /// Table of whiskers, the first sweep axis; `None` without one.
     pub(super) table: Option<Arc<[WhiskerRow]>>,
@@ -177,7 +177,7 @@ impl SceneBuilder {
     /// radius]`. The rows of a scene that smooths its rows are smoothed, too.
     #[must_use]
     pub fn profile(mut self, rows: impl Into<Vec<[f64; 2]>>) -> Self {
-        let smooth = self.measured.is_some_and(|own| own.smooth);
+        let smooth = self.measured.is_some_and(|radii| radii.smooth);
         let rows = rows.into();
         self.measured = Some(MeasuredRadii { rows, smooth });
         self
@@ -187,8 +187,8 @@ impl SceneBuilder {
     /// does nothing.
     #[must_use]
     pub fn smooth_profile(mut self, smooth: bool) -> Self {
-        if let Some(own) = &mut self.measured {
-            own.smooth = smooth;
+        if let Some(radii) = &mut self.measured {
+            radii.smooth = smooth;
         }
         self
     }
@@ -228,8 +228,8 @@ impl SceneBuilder {
     #[must_use]
     pub fn sweep(mut self, parameter: Parameter, values: impl Into<AxisValues>) -> Self {
         let values = values.into();
-        match self.sweep.iter_mut().find(|(own, _)| *own == parameter) {
-            Some((_, own)) => *own = values,
+        match self.sweep.iter_mut().find(|(swept, _)| *swept == parameter) {
+            Some((_, axis)) => *axis = values,
             None => self.sweep.push((parameter, values)),
         }
         self
@@ -250,10 +250,12 @@ impl SceneBuilder {
             }
             (Coordinate::Number(value), "push_angle_deg") => self.push_angle_deg([*value]),
             (Coordinate::Number(value), "distance_mm") => self.distance_mm([*value]),
-            (Coordinate::Number(value), _) => match swept.find(|own| own.axis() == axis) {
-                Some(parameter) => self.sweep(parameter, [*value]),
-                None => self,
-            },
+            (Coordinate::Number(value), _) => {
+                match swept.find(|parameter| parameter.axis() == axis) {
+                    Some(parameter) => self.sweep(parameter, [*value]),
+                    None => self,
+                }
+            }
         }
     }
 
@@ -270,7 +272,7 @@ impl SceneBuilder {
 
     /// Returns true if the scene has a sweep axis along which whiskers differ in `parameter`.
     pub(super) fn sweeps(&self, parameter: Parameter) -> bool {
-        self.sweep.iter().any(|(own, _)| *own == parameter)
+        self.sweep.iter().any(|(swept, _)| *swept == parameter)
     }
 
     /// Sets the standard deviations of the numbers of the scene.

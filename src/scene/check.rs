@@ -84,7 +84,10 @@ impl SceneBuilder {
         Ok(SceneData {
             title: self.title.clone(),
             uncertainty: deviations::checked(self)?,
-            surface: self.surface.map(|own| own.checked(&whisker)).transpose()?,
+            surface: self
+                .surface
+                .map(|surface| surface.checked(&whisker))
+                .transpose()?,
             whisker,
             pole,
             grid,
@@ -143,7 +146,7 @@ fn whisker(
     let modulus = Parameter::YoungsModulusGpa;
     let youngs_modulus_gpa = check(modulus, modulus.number_limits().remarks(unit))?;
     let (curvature, euler_spiral) = shape::shape(numbers, length_mm)?;
-    let traced = traced.map(|own| shape::traced(numbers, &own.curvature));
+    let traced = traced.map(|traced| shape::traced(numbers, &traced.curvature));
     let traced = traced.transpose()?;
     let ratio = Parameter::ModulusTipToBase;
     let modulus_tip_to_base = check(ratio, ratio.number_limits())?;
@@ -171,7 +174,7 @@ fn whisker(
     let stiffness = Parameter::FollicleStiffness;
     let given = numbers.get(stiffness);
     let follicle_stiffness_nnm_per_rad = given
-        .map(|own| stiffness.number_limits().check(stiffness.key(), own))
+        .map(|number| stiffness.number_limits().check(stiffness.key(), number))
         .transpose()?;
     Ok(Whisker {
         length_mm,
@@ -195,10 +198,10 @@ fn grid(scene: &SceneBuilder, [shortest, longest]: [f64; 2]) -> Result<Grid, Sce
     let push_angle_deg = scene.push_angle_deg.checked("grid.push_angle_deg", &turn)?;
     let near = ("length_mm / 1000", longest / NEAREST);
     let far = ("10 * length_mm", FARTHEST * shortest);
-    let unit = other_unit(longest, LENGTH_MM, &LENGTH_UNITS);
-    let unit = unit.filter(|_| !(LENGTH_MM[0]..=LENGTH_MM[1]).contains(&longest));
-    let unit = unit.map(|unit| format!("is length_mm = {} in {unit}?", digits(longest)));
-    let reach = NumberLimits::between(near, far).remarks(unit);
+    let likely_unit = other_unit(longest, LENGTH_MM, &LENGTH_UNITS);
+    let unit = likely_unit.filter(|_| !(LENGTH_MM[0]..=LENGTH_MM[1]).contains(&longest));
+    let remark = unit.map(|unit| format!("is length_mm = {} in {unit}?", digits(longest)));
+    let reach = NumberLimits::between(near, far).remarks(remark);
     let distance_mm = scene.distance_mm.checked("grid.distance_mm", &reach)?;
     let sweep = sweep::axes(scene, [shortest, longest])?;
     let grid = Grid {

@@ -65,7 +65,7 @@ pub struct RefusedWhisker {
 }
 
 impl SceneData {
-    /// Returns the whisker and pole of `place`: those of its row in the table of whiskers, or of the scene, with the values of
+    /// Returns the whisker and pole of `place`. They come from its row in the table of whiskers, or from the scene, and have the values of
     /// `place`. A taper determines the radius at the tip. The vertex of a curvature axis is the whisker's own, or 0 if the scene gives
     /// none.
     ///
@@ -75,7 +75,10 @@ impl SceneData {
         let row = place.row().and_then(|row| self.table.get(row));
         let (mut whisker, mut pole) = match row {
             None => (self.whisker.clone(), self.pole),
-            Some(TableWhisker { found: Ok(own), .. }) => own.clone(),
+            Some(TableWhisker {
+                found: Ok(whisker_and_pole),
+                ..
+            }) => whisker_and_pole.clone(),
             Some(TableWhisker {
                 name,
                 found: Err(reason),
@@ -181,14 +184,15 @@ impl SceneData {
     /// Returns true if any whisker of the sweep has friction with its pole.
     #[must_use]
     pub fn has_friction(&self) -> bool {
-        self.corner_whiskers().any(|own| own.pole.friction != 0.0)
+        self.corner_whiskers()
+            .any(|swept| swept.pole.friction != 0.0)
     }
 
     /// Returns true if all whiskers of the sweep are straight at rest.
     #[must_use]
     pub fn is_straight(&self) -> bool {
         self.corner_whiskers()
-            .all(|own| own.whisker.sharpest_bend_per_mm() == 0.0)
+            .all(|swept| swept.whisker.sharpest_bend_per_mm() == 0.0)
     }
 
     /// Returns true if the scene has an axis along which whiskers differ.

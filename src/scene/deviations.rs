@@ -30,7 +30,7 @@ pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneF
     let has_tip = || {
         parameters
             .iter()
-            .any(|(own, _)| *own == Parameter::TipRadiusUm)
+            .any(|(parameter, _)| *parameter == Parameter::TipRadiusUm)
     };
     let limits = NumberLimits::between(0.0, MOST);
     for &(parameter, deviation) in parameters {

@@ -22,7 +22,7 @@ pub struct Grid {
     pub push_angle_deg: Vec<f64>,
     /// Distances from the base to the contact at first touch, in millimetres: `[distance]`.
     pub distance_mm: Vec<f64>,
-    /// Sweep axes, along which whiskers differ, in the order of the scene, `[axis]`. Of two axes, a curvature is the second.
+    /// Sweep axes, along which whiskers differ, in the order of the scene, `[axis]`. A curvature is the second of two axes.
     pub sweep: Vec<SweepAxis>,
 }
 
@@ -254,7 +254,7 @@ impl SweepPlace {
     #[must_use]
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
         let mut values = self.values();
-        values.find_map(|(own, value)| (own == parameter).then_some(value))
+        values.find_map(|(swept, value)| (swept == parameter).then_some(value))
     }
 
     /// Returns the parameter of each sweep axis of a parameter with the whisker's value, in the parameter's unit.

@@ -84,7 +84,7 @@ macro_rules! parameters {
             }
 
             /// Returns the limits `[least, greatest]` of the parameter whatever the other numbers are, in its unit. Other numbers narrow
-            /// some of them ([`Self::range`]).
+            /// some of these limits ([`Self::range`]).
             #[must_use]
             pub const fn limits(self) -> [f64; 2] {
                 match self { $(Self::$parameter => [$least, $most]),* }
@@ -223,8 +223,8 @@ impl Parameter {
     #[must_use]
     pub fn suggested(name: &str) -> Option<String> {
         let mut all = Self::ALL.into_iter();
-        let own = all.find(|own| own.axis() == name)?;
-        Some(format!("; did you mean `{}`?", own.name()))
+        let parameter = all.find(|parameter| parameter.axis() == name)?;
+        Some(format!("; did you mean `{}`?", parameter.name()))
     }
 
     /// Returns the change of the parameter that changes a whisker or its contact altogether, in its unit.

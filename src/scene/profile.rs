@@ -209,8 +209,8 @@ fn beyond(rows: &[[f64; 2]], extension: f64) -> [f64; 2] {
     [end + extension, slope.mul_add(extension, last)]
 }
 
-/// Returns the limits of the length of the cone beyond `rows`. It is at most as long as the rows, and so short that the radius at its end is
-/// one that the last row of a profile may have.
+/// Returns the limits of the length of the cone beyond `rows`. The cone is at most as long as the rows. Its radius at the end is one that
+/// the last row of a profile may have.
 fn extension_limits(rows: &[[f64; 2]]) -> NumberLimits {
     let ([_, base], [length_mm, last]) = (rows[0], rows[rows.len() - 1]);
     let slope = beyond(rows, 1.0)[1] - last;

@@ -12,7 +12,7 @@ use super::table::{TableWhisker, WhiskerRow};
 const MOST_ROWS: usize = 65_536;
 
 impl SceneBuilder {
-    /// Sets the table of whiskers, which is the first sweep axis. A number of a row replaces that of the scene.
+    /// Sets the table of whiskers, which is the first sweep axis. A number of a row replaces the number of the scene.
     #[must_use]
     pub fn whiskers(mut self, rows: impl Into<Vec<WhiskerRow>>) -> Self {
         self.table = Some(rows.into().into());
@@ -69,7 +69,9 @@ impl SceneBuilder {
         match first {
             Some(first) => Ok((whiskers, first)),
             None => {
-                let reason = whiskers.iter().find_map(|own| own.found.as_ref().err());
+                let reason = whiskers
+                    .iter()
+                    .find_map(|whisker| whisker.found.as_ref().err());
                 let reason = reason.map_or("", |reason| reason);
                 let must = format!("must have a row with a whisker; row 1: {reason}");
                 Err(SceneFault::new(SweepVariable::TABLE, must))
@@ -114,7 +116,7 @@ fn given_twice(row: &WhiskerRow) -> Option<&'static str> {
     let count = |parameter| {
         row.numbers
             .iter()
-            .filter(|(own, _)| *own == parameter)
+            .filter(|(given, _)| *given == parameter)
             .count()
     };
     if count(Parameter::Taper) + count(Parameter::TipRadiusUm) > 1 {

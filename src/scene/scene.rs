@@ -153,7 +153,7 @@ impl Scene {
         self.with_parameters(&[(parameter, value)])
     }
 
-    /// Returns the scene with other values of some parameters, in their units. A taper is that of the new radius at the base.
+    /// Returns the scene with other values of some parameters, in their units. A taper refers to the new radius at the base.
     ///
     /// # Errors
     /// If the scene would be refused with them, or a taper is not between 0 and 1.
@@ -166,13 +166,13 @@ impl Scene {
     }
 
     /// Returns the scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over the axis.
-    /// Its text stays that of the whole scene.
+    /// The new scene keeps the text of the whole scene.
     #[must_use]
     pub fn thinned(&self, lines: usize, values: usize) -> Self {
         self.thinned_to([lines, lines], values)
     }
 
-    /// Returns the scene with at most so many push angles and distances, and at most `values` of each sweep axis.
+    /// Returns the scene with at most these numbers of push angles and distances, and at most `values` of each sweep axis.
     #[must_use]
     pub fn thinned_to(&self, [push_angles, distances]: [usize; 2], values: usize) -> Self {
         let mut thinned = self.clone();
@@ -215,8 +215,8 @@ impl SceneBuilder {
         Ok(self)
     }
 
-    /// Returns the given value of a parameter, in its unit, or that of the first row of the table that has one; `None` if it is not given. A
-    /// taper is given with the radius at the tip, whose value this is, and in a table the radius at the tip with a taper.
+    /// Returns the given value of a parameter, in its unit, or the value in the first row of the table that has one. `None` if it is not
+    /// given. A taper is given with the radius at the tip, whose value this is. In a table, the radius at the tip is given with a taper.
     pub(super) fn given(&self, parameter: Parameter) -> Option<f64> {
         let of_rows = |parameter| {
             let mut rows = self.table.iter().flat_map(|rows| rows.iter());
@@ -255,7 +255,7 @@ impl Parameter {
     /// Returns the names of the parameters that the scene gives, with commas between them.
     pub(crate) fn given(scene: &Scene) -> String {
         let all = Self::ALL.into_iter();
-        let given = all.filter(|own| own.value(scene).is_some());
+        let given = all.filter(|parameter| parameter.value(scene).is_some());
         given.map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
@@ -264,17 +264,17 @@ impl Parameter {
     /// Both are NaN if the scene does not give the parameter.
     #[must_use]
     pub fn range(self, scene: &Scene) -> [f64; 2] {
-        let Some(own) = self.value(scene) else {
+        let Some(number) = self.value(scene) else {
             return [f64::NAN; 2];
         };
-        range_around(own, |value| scene.with(self, value).is_ok())
+        range_around(number, |value| scene.with(self, value).is_ok())
     }
 }
 
-/// Returns the range `[least, greatest]` of accepted numbers around an accepted one: `own`.
-pub(crate) fn range_around(own: f64, mut accepts: impl FnMut(f64) -> bool) -> [f64; 2] {
+/// Returns the range `[least, greatest]` of accepted numbers around `number`, which must be accepted.
+pub(crate) fn range_around(number: f64, mut accepts: impl FnMut(f64) -> bool) -> [f64; 2] {
     [f64::MIN, f64::MAX].map(|beyond| {
-        let [mut inside, mut outside] = [own, beyond].map(rank);
+        let [mut inside, mut outside] = [number, beyond].map(rank);
         while inside.abs_diff(outside) > 1 {
             let middle = inside.midpoint(outside);
             if accepts(of_rank(middle)) {

@@ -9,7 +9,7 @@ pub(super) const SMOOTH_KEY: &str = "whisker.profile.smooth";
 /// Fewest rows from which cross-validation chooses a degree, as for traced points.
 const FEWEST: usize = 8;
 
-/// Largest degree of the radius as a polynomial of the arclength: that of the curvature of traced shapes.
+/// Largest degree of the radius as a polynomial of the arclength, equal to the largest degree of the curvature of traced shapes.
 const MOST_DEGREE: usize = 6;
 
 /// Squared error over the squared radius at the base that counts as 0: rows of an exact polynomial.
@@ -23,8 +23,8 @@ const SD_OF_MEDIAN: f64 = 1.4826;
 
 /// Measured radii of a whisker, smoothed: a polynomial of the arclength that is fitted to the rows by least squares.
 ///
-/// Cross-validation chooses the degree from 0 (a cylinder) to 6: each row is predicted by the polynomial through all others, and the
-/// smallest degree counts whose mean squared error exceeds the least one by at most the standard error of the difference.
+/// Cross-validation chooses the degree from 0 (a cylinder) to 6. For each degree, the polynomial through all other rows predicts each row.
+/// The chosen degree is the smallest whose mean squared error exceeds the least one by at most the standard error of the difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmoothRadii {
     /// Rows with the smoothed radii, `[row][arclength, radius]`, in mm and um.
@@ -42,7 +42,7 @@ pub struct SmoothRadii {
 pub(super) struct MeasuredRadii {
     /// Rows as they are given: `[row][arclength, radius]`, in millimetres and micrometres.
     pub rows: Vec<[f64; 2]>,
-    /// True if the radii are those of a polynomial through the rows.
+    /// True if a polynomial through the rows gives the radii of the whisker.
     pub smooth: bool,
 }
 
@@ -66,16 +66,20 @@ fn orthonormal(places: &[f64], most: usize) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for _ in 0..=most {
         let mut next: Vec<f64> = match basis.last() {
-            Some(last) => last.iter().zip(places).map(|(own, x)| own * x).collect(),
+            Some(last) => last
+                .iter()
+                .zip(places)
+                .map(|(value, x)| value * x)
+                .collect(),
             None => vec![1.0; places.len()],
         };
         // Twice is enough: the second pass removes what rounding leaves.
         for _ in 0..2 {
-            for own in &basis {
-                let part = dot(own, &next);
+            for polynomial in &basis {
+                let part = dot(polynomial, &next);
                 next.iter_mut()
-                    .zip(own)
-                    .for_each(|(x, own)| *x -= part * own);
+                    .zip(polynomial)
+                    .for_each(|(x, value)| *x -= part * value);
             }
         }
         let length = dot(&next, &next).sqrt();
@@ -111,16 +115,17 @@ impl SmoothRadii {
         // own radius in its fit (Hastie et al., The Elements of Statistical Learning, 2009, equation 7.64).
         let mut left = Vec::new();
         let mut squares = Vec::new();
-        for own in &basis {
-            let part = dot(own, &residuals);
-            for ((residual, leverage), own) in residuals.iter_mut().zip(&mut leverages).zip(own) {
-                *residual -= part * own;
-                *leverage += own * own;
+        for polynomial in &basis {
+            let part = dot(polynomial, &residuals);
+            let sums = residuals.iter_mut().zip(&mut leverages);
+            for ((residual, leverage), value) in sums.zip(polynomial) {
+                *residual -= part * value;
+                *leverage += value * value;
             }
             let errors = residuals.iter().zip(&leverages);
             squares.push(
                 errors
-                    .map(|(own, part)| (own / (1.0 - part)).powi(2))
+                    .map(|(residual, part)| (residual / (1.0 - part)).powi(2))
                     .collect(),
             );
             left.push(residuals.clone());
@@ -131,7 +136,7 @@ impl SmoothRadii {
         let smooth = rows.iter().zip(&residuals);
         Ok(Self {
             rows: smooth
-                .map(|([s, own], residual)| [*s, own - residual])
+                .map(|([s, radius], residual)| [*s, radius - residual])
                 .collect(),
             degree,
             rms_um: (dot(&residuals, &residuals) / rows.len() as f64).sqrt(),
@@ -142,7 +147,11 @@ impl SmoothRadii {
     /// Returns the derivatives of all smoothed radii by the measured radius of `row`, `[row]`, at a fixed degree.
     #[must_use]
     pub fn by_measured(&self, row: usize) -> Vec<f64> {
-        let by = |other| self.basis.iter().map(|own| own[row] * own[other]).sum();
+        let by = |other| {
+            let polynomials = self.basis.iter();
+            let products = polynomials.map(|polynomial| polynomial[row] * polynomial[other]);
+            products.sum()
+        };
         (0..self.rows.len()).map(by).collect()
     }
 }
@@ -163,8 +172,8 @@ pub(super) fn scatter(rows: &[[f64; 2]]) -> Option<f64> {
     if rows.len() < FEWEST_SCATTERED {
         return None;
     }
-    let bends = rows.windows(3).map(|own| {
-        let [[a, before], [b, radius], [c, after]] = [own[0], own[1], own[2]];
+    let bends = rows.windows(3).map(|rows| {
+        let [[a, before], [b, radius], [c, after]] = [rows[0], rows[1], rows[2]];
         let part = (b - a) / (c - a);
         let bend = radius - (1.0 - part) * before - part * after;
         // A scale that is 1 for equal distances, where the standard deviation is sqrt(3/2).
@@ -173,6 +182,6 @@ pub(super) fn scatter(rows: &[[f64; 2]]) -> Option<f64> {
     let bends: Vec<f64> = bends.collect();
     let second = median(bends.iter().copied())? / 1.5_f64.sqrt();
     // (-1/2, 1, -1/2) less the same one row later is (-1/2, 3/2, -3/2, 1/2): the sum of the squares is 5.
-    let third = median(bends.windows(2).map(|own| own[1] - own[0]))? / 5_f64.sqrt();
+    let third = median(bends.windows(2).map(|pair| pair[1] - pair[0]))? / 5_f64.sqrt();
     Some(SD_OF_MEDIAN * second.min(third))
 }

@@ -85,7 +85,7 @@ impl WhiskerRow {
 }
 
 impl SceneBuilder {
-    /// Returns true if the table gives bases of whiskers, but no tips: a taper of the scene is not that of the rows.
+    /// Returns true if the table gives bases of whiskers, but no tips. Then a taper of the scene is not the taper of the rows.
     pub(super) fn has_bases_of_rows(&self) -> bool {
         self.column_of(Parameter::Taper) == Some(Parameter::BaseRadiusUm.name())
     }
@@ -126,7 +126,7 @@ impl SceneBuilder {
         Ok(())
     }
 
-    /// Returns the column of the table that gives the parameter, a substitute of it, or the `other` part.
+    /// Returns the column of the table that gives the parameter, a substitute of the parameter, or the `other` part.
     fn column(&self, parameter: Parameter, other: Option<Substitute>) -> Option<&'static str> {
         let rows = self.table.as_deref()?;
         let substitutes = parameter.substitutes().iter().copied();

@@ -20,10 +20,10 @@ pub(super) fn axes(
             _ => parameter.number_limits(),
         };
         // An axis replaces the scene's own number, which must be valid nevertheless.
-        if let Some(own) = scene.numbers.get(parameter) {
-            limits.check(parameter.key(), own)?;
+        if let Some(number) = scene.numbers.get(parameter) {
+            limits.check(parameter.key(), number)?;
             if parameter == Parameter::ParabolaPerMm {
-                shape::refuse_faint(own, lengths_mm[0])?;
+                shape::refuse_faint(number, lengths_mm[0])?;
             }
         }
         let values = values.checked(parameter.axis_key(), &limits)?;
@@ -43,12 +43,12 @@ pub(super) fn axes(
 pub(super) fn lengths_mm(scene: &SceneBuilder) -> Result<[f64; 2], SceneFault> {
     let length = Parameter::LengthMm;
     let limits = length.number_limits();
-    let own = scene.numbers.get(length);
-    let own = own.ok_or_else(|| SceneFault::new(length.key(), "is left out"))?;
-    limits.check(length.key(), own)?;
-    let Some((_, axis)) = scene.sweep.iter().find(|(own, _)| *own == length) else {
+    let number = scene.numbers.get(length);
+    let number = number.ok_or_else(|| SceneFault::new(length.key(), "is left out"))?;
+    limits.check(length.key(), number)?;
+    let Some((_, axis)) = scene.sweep.iter().find(|(swept, _)| *swept == length) else {
         let extension = scene.numbers.get(Parameter::TipExtensionMm);
-        return Ok([own + extension.unwrap_or(0.0).max(0.0); 2]);
+        return Ok([number + extension.unwrap_or(0.0).max(0.0); 2]);
     };
     let values = axis.checked(length.axis_key(), &limits)?;
     Ok([values[0], values[values.len() - 1]])
@@ -71,7 +71,9 @@ pub(super) fn refuse_at_odds(scene: &SceneBuilder) -> Result<(), SceneFault> {
             {
                 "must be left out: there is no parabola; give parabola_per_mm or grid.curvature_per_mm"
             }
-            (None, own) if !Parameter::SWEPT.contains(own) => "must be left out: no axis varies it",
+            (None, parameter) if !Parameter::SWEPT.contains(parameter) => {
+                "must be left out: no axis varies it"
+            }
             _ => continue,
         };
         return Err(SceneFault::new(parameter.axis_key(), must));
@@ -116,9 +118,9 @@ pub(super) fn check_corners(
     }
     if !is_everywhere {
         let values = place.values();
-        let values = values.map(|(parameter, value)| format!("{} = {value}", parameter.axis()));
-        let values = values.collect::<Vec<_>>().join(", ");
-        fault.must = format!("{}; refused is {values}", fault.must);
+        let texts = values.map(|(parameter, value)| format!("{} = {value}", parameter.axis()));
+        let refused_at = texts.collect::<Vec<_>>().join(", ");
+        fault.must = format!("{}; refused is {refused_at}", fault.must);
     }
     Err(fault)
 }

@@ -7,7 +7,7 @@ use super::parameter::Parameter;
 use super::whisker::{Pole, Whisker};
 use crate::traced::TracedShape;
 
-/// Row of a table of whiskers: a name, and the numbers that replace those of the scene's whisker.
+/// Row of a table of whiskers: a name, and the numbers that replace the numbers of the scene's whisker.
 ///
 /// ```
 /// use whiskmap::scene::{Parameter, Scene, WhiskerRow};
@@ -102,8 +102,8 @@ impl WhiskerRow {
     /// Returns the number of the whisker, in the unit of the parameter; `None` if the row does not give it.
     pub(super) fn number(&self, parameter: Parameter) -> Option<f64> {
         let mut numbers = self.numbers.iter();
-        let own = numbers.find(|(own, value)| *own == parameter && !value.is_nan());
-        own.map(|(_, value)| *value)
+        let found = numbers.find(|(given, value)| *given == parameter && !value.is_nan());
+        found.map(|(_, value)| *value)
     }
 
     /// Returns true if another column of the row gives what `parameter` would.

@@ -98,8 +98,10 @@ impl SceneData {
         let Self { whisker, .. } = self;
         let (length, base) = (whisker.length_mm, whisker.base_radius_um);
         let rows = whisker.profile.iter().flatten();
-        let rows: Vec<[f64; 2]> = rows.map(|[s, own]| [length * s, base * own]).collect();
-        let scatter = scatter(&rows).filter(|own| *own >= SCATTER * base)?;
+        let rows: Vec<[f64; 2]> = rows
+            .map(|[s, radius]| [length * s, base * radius])
+            .collect();
+        let scatter = scatter(&rows).filter(|scatter| *scatter >= SCATTER * base)?;
         let fit = SmoothRadii::fit(&rows).ok()?;
         let step = length / (rows.len() - 1) as f64;
         let [scatter_um, part, slope, mean, rms] = [
@@ -109,7 +111,7 @@ impl SceneData {
             (base - whisker.tip_radius_um) / length,
             fit.rms_um,
         ]
-        .map(|own| digits(rounded(own, 2)));
+        .map(|number| digits(rounded(number, 2)));
         Some(format!(
             "whisker.profile.rows: radii scatter by {scatter_um} um from row to row, {part} % of the base, more than their neighbours \
              explain; expected at most {} %. Tapers between rows are off by {slope} um/mm, of {mean} um/mm on average, and move \
@@ -119,11 +121,11 @@ impl SceneData {
         ))
     }
 
-    /// The number of `parameter`: its axis, or the scene's `own` value.
-    fn number(&self, parameter: Parameter, own: f64) -> SceneNumber {
+    /// Values of `parameter` in the scene: the values of its axis, or else `value`.
+    fn number(&self, parameter: Parameter, value: f64) -> SceneNumber {
         match self.grid.axis(parameter) {
             Some(values) => SceneNumber::new(parameter.axis_key(), values.iter().copied()),
-            None => SceneNumber::new(parameter.key(), [own]),
+            None => SceneNumber::new(parameter.key(), [value]),
         }
     }
 
@@ -159,8 +161,8 @@ impl SceneData {
 
     /// The force of the first whisker at an end of the axes whose force is not as expected.
     fn force(&self) -> Option<String> {
-        self.corner_whiskers().find_map(|own| {
-            let whisker = own.whisker;
+        self.corner_whiskers().find_map(|swept| {
+            let whisker = swept.whisker;
             let force_un = whisker.units().force_un;
             unexpected(force_un, FORCE_UN, &FORCE_UNITS)?;
             let others = other_units(force_un, FORCE_UN, &FORCE_UNITS);

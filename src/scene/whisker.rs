@@ -124,12 +124,14 @@ impl Whisker {
     /// Returns the largest curvature of the whisker at rest, in radians per millimetre.
     #[must_use]
     pub fn sharpest_bend_per_mm(&self) -> f64 {
-        let parabola = self.curvature.map_or(0.0, |own| 2.0 * own.parabola_per_mm);
-        let spiral = self.euler_spiral.map_or(0.0, |own| {
-            let at_tip = own.per_mm + own.per_mm2 * self.length_mm;
-            own.per_mm.abs().max(at_tip.abs())
+        let parabola = self
+            .curvature
+            .map_or(0.0, |parabola| 2.0 * parabola.parabola_per_mm);
+        let spiral = self.euler_spiral.map_or(0.0, |spiral| {
+            let at_tip = spiral.per_mm + spiral.per_mm2 * self.length_mm;
+            spiral.per_mm.abs().max(at_tip.abs())
         });
-        let traced = self.traced.map_or(0.0, |own| own.sharpest());
+        let traced = self.traced.map_or(0.0, |curvature| curvature.sharpest());
         parabola.max(spiral).max(traced / self.length_mm)
     }
 }

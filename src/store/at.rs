@@ -72,16 +72,16 @@ pub fn scene_at(
     for at in wanted {
         let select = select(&axes, &chosen, at, exact);
         let (axis, index) = select.map_err(|why| InvalidAxisValue::new(at, why))?;
-        let (own, value) = (&scene.grid.sweep[axis], axes[axis].values[index]);
-        let value = own.variable.coordinate(value);
+        let (sweep_axis, value) = (&scene.grid.sweep[axis], axes[axis].values[index]);
+        let value = sweep_axis.variable.coordinate(value);
         let mut refused = scene.refused();
         if let Coordinate::Name(name) = &value
-            && let Some((_, reason)) = refused.find(|(own, _)| own == name)
+            && let Some((_, reason)) = refused.find(|(whisker, _)| whisker == name)
         {
             return Err(InvalidAxisValue::new(at, format!("{name}: {reason}")));
         }
-        builder = builder.fixed(own.variable.name(), &value);
-        chosen.push((own.variable.name(), value));
+        builder = builder.fixed(sweep_axis.variable.name(), &value);
+        chosen.push((sweep_axis.variable.name(), value));
     }
     if let Some(at) = wanted.last() {
         let title = titled(&scene.title, &chosen);
@@ -122,7 +122,7 @@ pub(super) fn readable(chosen: &ChosenValues) -> impl Iterator<Item = (&'static 
     chosen.iter().map(text)
 }
 
-/// Returns a title with the selected values, but for those that it has already, as that of an extracted part.
+/// Returns `title` with the selected values that it does not have already; the title of an extracted part has some.
 pub(super) fn titled(title: &str, chosen: &ChosenValues) -> String {
     let chosen = readable(chosen).map(|(name, value)| format!(", {name} = {value}"));
     let is_new = |part: &String| !title.ends_with(&**part) && !title.contains(&format!("{part}, "));
@@ -177,7 +177,7 @@ fn numbered(name: &str, values: &[f64], wanted: f64, exact: bool) -> Result<usiz
     let index = nearest(values, wanted);
     let value = values[index];
     if exact && value != wanted {
-        let [wanted, value] = [wanted, value].map(|own| with_unit(name, own));
+        let [wanted, value] = [wanted, value].map(|number| with_unit(name, number));
         return Err(format!(
             "{wanted} is no value of the axis; the nearest is {value}"
         ));
@@ -199,7 +199,7 @@ fn check_near(name: &str, values: &[f64], wanted: f64) -> Result<(), String> {
     if first - below <= wanted && wanted <= last + above {
         return Ok(());
     }
-    let [wanted, first, last] = [wanted, first, last].map(|own| with_unit(name, own));
+    let [wanted, first, last] = [wanted, first, last].map(|number| with_unit(name, number));
     Err(match values {
         [_] => format!("{wanted} is not on the axis, which has one value, {first}"),
         _ => format!(

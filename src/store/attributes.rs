@@ -148,8 +148,8 @@ fn axes(grid: &Grid) -> Vec<AxisAttribute> {
         axis(distance, &grid.distance_mm),
     ];
     let atlas = grid.atlas().into_iter().zip(ATLAS);
-    let atlas = atlas.filter_map(|(own, [direction, first])| {
-        let SweepAxis { variable, values } = own?;
+    let atlas = atlas.filter_map(|(sweep_axis, [direction, first])| {
+        let SweepAxis { variable, values } = sweep_axis?;
         let about = [variable.name(), variable.unit(), direction, first];
         Some(AxisAttribute {
             names: variable.names().to_vec(),

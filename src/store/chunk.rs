@@ -9,7 +9,8 @@ use exr::block::chunk::{
 };
 use exr::math::Vec2;
 
-/// Returns the bytes of a block of a map with so many `parts`, from its compressed samples. Its place is `[panel, part, block]`.
+/// Returns the bytes of a block of a map with this number of `parts`, from its compressed samples. The place of the block is `[panel, part,
+/// block]`.
 pub(super) fn chunk(
     layout: &AtlasLayout,
     parts: usize,

@@ -1,7 +1,7 @@
 //! Maps that are computed when they are read, whisker by whisker.
 //!
-//! Invariant: the values of a whisker do not depend on the whiskers that are read with it. Unless the engine fails, they are those of a map of
-//! the whole scene by this engine.
+//! Invariant: the values of a whisker do not depend on the whiskers that are read with it. Unless the engine fails, they equal the values
+//! in a map of the whole scene by this engine.
 
 use super::layout::{SAMPLE_BYTES, sample_type};
 use super::{ChannelValues, StoreError};
@@ -61,8 +61,8 @@ impl fmt::Debug for ComputedMap {
 }
 
 impl ComputedMap {
-    /// Creates the map of `scene` with the steps and channels of `plan`, of which nothing is computed yet. `engine` solves cells, or the CPU
-    /// engine without one. `tolerances` are those of [`MapDescription`](super::MapDescription).
+    /// Creates the map of `scene` with the steps and channels of `plan`; no value is computed yet. `engine` solves cells, or the CPU engine
+    /// without one. The `tolerances` are described in [`MapDescription`](super::MapDescription).
     #[must_use]
     pub fn new(
         scene: Scene,
@@ -130,7 +130,7 @@ impl ComputedMap {
         on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
     ) -> Result<ChannelValues, StoreError> {
         let names = self.channels();
-        let channel = names.iter().position(|own| *own == name);
+        let channel = names.iter().position(|known| *known == name);
         let channel = channel.ok_or_else(|| StoreError::UnknownChannel {
             path: PathBuf::from(&self.scene.name),
             name: name.to_owned(),

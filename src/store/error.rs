@@ -54,13 +54,13 @@ pub enum StoreError {
     /// The store was written by an incompatible version, which is named.
     #[error("{folder} was written by whiskmap {1}, and only that version can check and read it", folder = .0.display())]
     OtherVersion(PathBuf, String),
-    /// The folder is a Zarr store of another program; the text says what is missing or different.
+    /// The folder is a Zarr store of another program; the text names what is missing or different.
     #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
     NotAStore(PathBuf, String),
     /// The folder has no metadata at its root, so it is not a Zarr store.
     #[error("{folder} is not a store: it has no zarr.json; give a folder that `map --format zarr` wrote", folder = .0.display())]
     NoStore(PathBuf),
-    /// A file of a block of the store does not exist: it is not computed, or lost.
+    /// A file of a block of the store does not exist: it is not computed, or was removed.
     #[error("{file} is missing", file = .0.display())]
     NotComputed(PathBuf),
     /// The store has no values for some of the requested whiskers, because a run has not finished their block.
@@ -75,10 +75,10 @@ pub enum StoreError {
     /// The file does not begin like an EXR file.
     #[error("{file} is not an EXR file", file = .0.display())]
     NotExr(PathBuf),
-    /// The EXR file was written by another program; the text says what is missing or different.
+    /// Another program wrote the EXR file; the text names what is missing or different.
     #[error("{file} is an EXR file, but not a map of whiskmap: {1}", file = .0.display())]
     NotAMap(PathBuf, String),
-    /// The bytes of the file end too early or contradict each other; the text says where, and how.
+    /// The bytes of the file end too early or contradict each other; the text describes where, and how.
     #[error("{file} is damaged: {1}", file = .0.display())]
     Damaged(PathBuf, String),
     /// The file does not have the requested channel.

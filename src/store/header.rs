@@ -129,13 +129,19 @@ pub(super) fn check_layout(
 pub(super) fn channels(meta: &MetaData) -> Channels {
     let lists = meta.headers.iter().map(|header| &header.channels.list);
     let found: Vec<_> = lists.flatten().map(|channel| &channel.name).collect();
-    Channels::those(|name| found.iter().any(|own| own.bytes() == name.as_bytes()))
+    Channels::those(|name| {
+        found
+            .iter()
+            .any(|channel| channel.bytes() == name.as_bytes())
+    })
 }
 
 /// Decodes an attribute of the first part of an EXR map.
 pub(super) fn parse<T: DeserializeOwned>(meta: &MetaData, name: &str) -> Result<T, String> {
     let attributes = meta.headers.first().map(|header| &header.own_attributes);
-    let mut attributes = attributes.into_iter().flat_map(|own| &own.other);
+    let mut attributes = attributes
+        .into_iter()
+        .flat_map(|attributes| &attributes.other);
     let text = attributes
         .find(|(found, _)| found.bytes() == name.as_bytes())
         .and_then(|(_, value)| str::from_utf8(value.to_text().ok()?.bytes()).ok())

@@ -33,7 +33,7 @@ impl AtlasLayout {
     pub fn of(grid: &Grid) -> Self {
         let [columns, rows] = grid
             .atlas()
-            .map(|axis| axis.map_or(1, |own| own.values.len()));
+            .map(|axis| axis.map_or(1, |axis| axis.values.len()));
         Self {
             columns,
             rows,
@@ -80,7 +80,7 @@ impl AtlasLayout {
         self.distances.div_ceil(self.block_height())
     }
 
-    /// Blocks of so many cells of a panel in each part.
+    /// Returns the number of blocks in each part for this number of `cells` of a panel.
     pub(super) fn blocks(&self, cells: usize) -> usize {
         cells.div_ceil(self.block_height() * self.push_angles)
     }
@@ -106,8 +106,8 @@ impl AtlasLayout {
         block * self.block_height()
     }
 
-    /// Returns the samples of a block of a panel, or of some of its rows, line by line, in the order of the file, from all samples of each
-    /// channel with its rounding.
+    /// Returns the samples of a block of a panel, or of some of its rows, from all samples of each channel with its rounding. The samples
+    /// are in the order of the file, line by line.
     pub(super) fn lines<'a>(
         &self,
         block: usize,
@@ -175,10 +175,10 @@ pub(super) fn parts(channels: Channels) -> Vec<(&'static str, Vec<&'static str>)
     };
     let names: Vec<&'static str> = channels.names().collect();
     let parts = names.chunk_by(|one, next| part(one) == part(next));
-    let sorted = parts.map(|own| {
-        let mut own = own.to_vec();
-        own.sort_unstable();
-        (part(&own[0]), own)
+    let sorted = parts.map(|names| {
+        let mut names = names.to_vec();
+        names.sort_unstable();
+        (part(&names[0]), names)
     });
     sorted.collect()
 }

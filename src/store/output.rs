@@ -96,8 +96,8 @@ impl Output {
         matches!(self.place, OutputPlace::Stdout(_))
     }
 
-    /// Finishes the output. The bytes of a regular file are on the disk before its name, and its name before this returns: a crash of the
-    /// machine leaves the old file or the new one. It takes 1 to 5 ms.
+    /// Finishes the output. The bytes of a regular file are on the disk before its name, and the name before this function returns. So a
+    /// crash of the machine leaves the old file or the new one. The call takes 1 to 5 ms.
     ///
     /// # Errors
     /// The file cannot be brought to the disk or renamed, or the device takes no more.

@@ -135,10 +135,10 @@ impl StoredMap {
     /// # Errors
     /// The attribute is damaged.
     pub fn digits(&self) -> Result<Digits, StoreError> {
-        let own = self.meta.headers.first();
-        let mut names = own
+        let first = self.meta.headers.first();
+        let mut names = first
             .into_iter()
-            .flat_map(|own| own.own_attributes.other.keys());
+            .flat_map(|header| header.own_attributes.other.keys());
         if !names.any(|name| name.bytes() == DIGITS.as_bytes()) {
             return Ok(Digits::ALL);
         }
@@ -205,8 +205,9 @@ impl StoredMap {
     fn find(&self, name: &str) -> Result<(usize, usize), StoreError> {
         let parts = layout::parts(self.channels);
         let mut parts = parts.iter().map(|(_, channels)| channels).enumerate();
-        let found =
-            parts.find_map(|(part, own)| Some((part, own.iter().position(|own| *own == name)?)));
+        let found = parts.find_map(|(part, channels)| {
+            Some((part, channels.iter().position(|channel| *channel == name)?))
+        });
         found.ok_or_else(|| StoreError::UnknownChannel {
             path: self.path.clone(),
             name: name.to_owned(),

@@ -33,7 +33,7 @@ impl MapSource {
     /// Opens the EXR map at `path`, or the Zarr store if it is a folder.
     ///
     /// # Errors
-    /// It cannot be read, or this program did not write it.
+    /// The map cannot be read, or this program did not write it.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         #[cfg(feature = "zarr")]
         if path.is_dir() {
@@ -140,7 +140,8 @@ impl MapSource {
         }
     }
 
-    /// Returns the indices of the whiskers that are not computed yet, as ranges in order, `[range]`: those of unfinished blocks of a store.
+    /// Returns the indices of the whiskers that are not computed yet, as ranges in order, `[range]`: the whiskers of unfinished blocks of a
+    /// store.
     ///
     /// # Errors
     /// The file system refuses to look for a file.

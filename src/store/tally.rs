@@ -50,12 +50,16 @@ impl CellCounts {
 
 /// Returns the names of the regimes by code.
 pub(super) fn regimes() -> BTreeMap<u32, &'static str> {
-    Regime::ALL.map(|own| (own.code(), own.name())).into()
+    Regime::ALL
+        .map(|regime| (regime.code(), regime.name()))
+        .into()
 }
 
 /// Returns the names of the statuses by code.
 pub(super) fn statuses() -> BTreeMap<u32, &'static str> {
-    Status::ALL.map(|own| (own.code(), own.name())).into()
+    Status::ALL
+        .map(|status| (status.code(), status.name()))
+        .into()
 }
 
 /// Adds to `cells`, by name, the number of cells with each of the `codes`. A code without a name is an error.
@@ -68,8 +72,8 @@ fn add(
         return Err(*unknown);
     }
     for (code, name) in names {
-        let own = codes.iter().filter(|other| **other == code).count();
-        *cells.entry(name.to_owned()).or_default() += own as u64;
+        let count = codes.iter().filter(|other| **other == code).count();
+        *cells.entry(name.to_owned()).or_default() += count as u64;
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Temporary files and folders: unfinished outputs, which are removed when they are dropped and when the process is interrupted.
 //!
-//! A process that is killed leaves them. They are locked while their process runs, so that a later process can remove these leftovers.
-//! The locks in a shared folder may be visible on one host only, so names contain the host.
+//! A process that is killed leaves its temporary files. Each file is locked while its process runs, so that a later process can remove
+//! these leftovers. The locks in a shared folder may be visible on one host only, so names contain the host.
 
 use std::fs::{self, File, Metadata};
 use std::io;
@@ -60,8 +60,8 @@ impl TemporaryFiles {
         Ok(())
     }
 
-    /// Removes leftovers in `folder` that this user may write to: those of this host at once, files of another host after a day. A folder of
-    /// another host stays: it may be old, and files in it new.
+    /// Removes leftovers in `folder` that this user may write to: leftovers of this host at once, files of another host after a day. A
+    /// folder of another host stays: it may be old, and files in it new.
     pub fn remove_leftovers(folder: &Path) {
         let host_here = host();
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -80,7 +80,7 @@ impl TemporaryFiles {
             // No folder is opened for writing, and NFS locks no file that is not.
             let mut options = File::options();
             options.read(is_folder).write(!is_folder);
-            // It stays locked until it is removed.
+            // The file stays locked until it is removed.
             if is_gone
                 && let Ok(file) = options.open(entry.path())
                 && file.try_lock().is_ok()

@@ -29,8 +29,8 @@ pub struct MapWriter {
     channels: Channels,
     digits: Digits,
     headers: Headers,
-    /// Position of each part's table of block positions. Tables are written with their blocks: those of a large sweep would not
-    /// fit in memory.
+    /// Position of each part's table of block positions. Tables are written with their blocks: the tables of a large sweep would not fit in
+    /// memory.
     tables: Vec<u64>,
     /// Panels written so far.
     written: usize,
@@ -62,7 +62,7 @@ impl MapWriter {
         let headers = layout.headers(about.channels, &attributes);
         if headers
             .iter()
-            .any(|own| own.chunk_count > i32::MAX as usize)
+            .any(|header| header.chunk_count > i32::MAX as usize)
         {
             let why = exr::error::Error::Invalid("it has more than 2^31 blocks".into());
             return Err(StoreError::Encode(path.to_owned(), why));

@@ -24,7 +24,7 @@ pub struct CourseGap {
 }
 
 impl CourseGap {
-    /// Returns the samples of the gap, without states: `[sample]`. `times_s` are those of the course.
+    /// Returns the samples of the gap, without states: `[sample]`. `times_s` are the times of the course.
     pub(super) fn samples<'a>(
         &self,
         times_s: &'a [f64],
@@ -46,7 +46,7 @@ impl AngleCourse {
         known.map(|(i, _)| i).collect()
     }
 
-    /// Returns the gaps of the course, `[gap]`. Those of at most `bridge_s` are bridged.
+    /// Returns the gaps of the course, `[gap]`. Gaps of at most `bridge_s` are bridged.
     pub(super) fn gaps(&self, bridge_s: f64) -> Vec<CourseGap> {
         let known = self.known();
         let count = self.times_s.len();
@@ -77,11 +77,11 @@ impl AngleCourse {
 /// Returns one line for the gaps that are bridged, and one for those that are not; none without gaps.
 pub(super) fn warnings(gaps: &[CourseGap]) -> impl Iterator<Item = String> {
     [true, false].into_iter().filter_map(|is_bridged| {
-        let own = gaps.iter().filter(|gap| gap.is_bridged == is_bridged);
-        let (count, first) = (own.clone().count(), own.clone().next()?);
-        let missing: usize = own.clone().map(|gap| gap.count).sum();
-        let longest = own.filter_map(|gap| gap.length_s).fold(0.0, f64::max);
-        let [at, longest] = [first.time_s, longest].map(|own| digits(rounded(own, 6)));
+        let selected = gaps.iter().filter(|gap| gap.is_bridged == is_bridged);
+        let (count, first) = (selected.clone().count(), selected.clone().next()?);
+        let missing: usize = selected.clone().map(|gap| gap.count).sum();
+        let longest = selected.filter_map(|gap| gap.length_s).fold(0.0, f64::max);
+        let [at, longest] = [first.time_s, longest].map(|number| digits(rounded(number, 6)));
         let what = format!("missing angles: {missing}, gaps: {count}, the first at {at} s");
         Some(match is_bridged {
             true => format!("{what}: the course continues along straight lines across them, the longest of {longest} s"),

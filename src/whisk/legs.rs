@@ -28,7 +28,7 @@ pub struct LegEvent {
     pub time_s: f64,
     /// Angle of the base at the event, in radians.
     pub angle: f64,
-    /// Kind of the event; `None` where a detachment's kind is that of the end of the push.
+    /// Kind of the event; `None` for a detachment whose kind is the kind of the end of the push.
     pub kind: Option<WhiskEventKind>,
     /// Contact that begins, ends or changes; its push is NaN if the course is undecided from here on.
     pub contact: CourseContact,
@@ -112,7 +112,7 @@ impl<'a> Legs<'a> {
     /// history of its own.
     fn decide(&mut self) {
         if let [first @ Phase::Free { .. }, others @ ..] = &self.possible[..]
-            && others.iter().all(|own| own == first)
+            && others.iter().all(|other| other == first)
         {
             self.phase = *first;
             self.possible.clear();

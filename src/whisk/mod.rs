@@ -51,8 +51,8 @@ pub struct Whisk {
 }
 
 impl Whisk {
-    /// Returns one line for the assumption of a free whisker beyond first touch, one for bridged gaps, one for other gaps, and one for samples
-    /// without a state; none without these.
+    /// Returns one line for each of these: the assumption of a free whisker beyond first touch, bridged gaps, other gaps, and samples
+    /// without a state. Without any of them, there is no line.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let start = self.assumed_free_deg.map(|angle_deg| {
@@ -65,11 +65,11 @@ impl Whisk {
         let spans = self
             .events
             .iter()
-            .filter(|own| own.event == WhiskEventKind::Undecided);
+            .filter(|event| event.event == WhiskEventKind::Undecided);
         let undecided = self
             .samples
             .iter()
-            .filter(|own| own.regime == WhiskRegime::Undecided);
+            .filter(|sample| sample.regime == WhiskRegime::Undecided);
         let (spans, undecided) = (spans.count(), undecided.count());
         let without = (undecided > 0 || spans > 0).then(|| {
             let all = self.samples.len();
@@ -92,8 +92,8 @@ impl Whisk {
         last.unwrap_or(f64::NAN)
     }
 
-    /// Returns the energy that the detachments of the course lose, in nJ: that of the last states before them, without that of a state
-    /// on the other side that follows at once. It is NaN after a gap that is not bridged.
+    /// Returns the energy that the detachments of the course lose, in nJ. A detachment loses the energy of the last state before it, less
+    /// the energy of a state on the other side that follows at once. The result is NaN after a gap that is not bridged.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
         if self.gaps.iter().any(|gap| !gap.is_bridged) {
@@ -106,11 +106,11 @@ impl Whisk {
                 event.event,
                 WhiskEventKind::SlipOff | WhiskEventKind::PullOff
             ) {
-                let held = events
+                let simultaneous = events
                     .peek()
                     .filter(|next| next.angle_deg == event.angle_deg);
-                let held = held.filter(|next| next.event == WhiskEventKind::Touch);
-                let held = held.and_then(|next| next.energy_nj);
+                let touch = simultaneous.filter(|next| next.event == WhiskEventKind::Touch);
+                let held = touch.and_then(|touch| touch.energy_nj);
                 lost += event.energy_nj.unwrap_or(f64::NAN) - held.unwrap_or_default();
             }
         }
@@ -194,8 +194,8 @@ pub fn whisk(
 /// Computes the course as [`whisk`] does, with a start and a flag that cancels.
 ///
 /// # Errors
-/// Fails as [`whisk`] does. Also if the course should begin in contact, but no side holds the whisker, if the curvature should be taken beyond
-/// the whisker, and if it is cancelled.
+/// Fails as [`whisk`] does. Also fails if the course should begin in contact, but no side holds the whisker. Also fails if the curvature
+/// should be taken beyond the whisker, or if the computation is cancelled.
 pub fn whisk_with(
     whisker: &Whisker,
     pole: &Pole,
@@ -265,18 +265,18 @@ pub fn whisk_with(
         length_mm,
     });
     let mut samples = Vec::with_capacity(legs.samples.len());
-    for own in legs.samples.chunks(STATES_AT_ONCE) {
+    for chunk in legs.samples.chunks(STATES_AT_ONCE) {
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
-        samples.extend(found.samples(own, point.as_ref()));
+        samples.extend(found.samples(chunk, point.as_ref()));
     }
     let mut events = Vec::with_capacity(legs.events.len());
-    for own in legs.events.chunks(STATES_AT_ONCE) {
+    for chunk in legs.events.chunks(STATES_AT_ONCE) {
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
-        events.extend(found.events(own));
+        events.extend(found.events(chunk));
     }
     let fixed = FixedPole {
         centre_mm: DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm),
@@ -285,7 +285,7 @@ pub fn whisk_with(
     let mut samples: Vec<WhiskSample> = known
         .iter()
         .zip(samples)
-        .map(|(&i, own)| own.at(course.times_s[i], course.angles_deg[i], &fixed))
+        .map(|(&i, sample)| sample.at(course.times_s[i], course.angles_deg[i], &fixed))
         .collect();
     samples.extend(gaps.iter().flat_map(|gap| gap.samples(&course.times_s)));
     samples.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));

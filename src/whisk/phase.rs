@@ -27,7 +27,7 @@ pub struct Passage {
     pub time_s: f64,
     /// Angle of the base at which the phase changes, in radians.
     pub angle: f64,
-    /// Kind of the event; `None` where a detachment's kind is that of the end of the push.
+    /// Kind of the event; `None` for a detachment whose kind is the kind of the end of the push.
     pub event: Option<WhiskEventKind>,
     /// Side of the contact that begins or ends.
     pub side: Side,

@@ -53,8 +53,8 @@ impl WhiskSample {
         Self {
             time_s,
             angle_deg: Some(angle_deg),
-            contact_x_mm: contact.map(|own| own.x),
-            contact_y_mm: contact.map(|own| own.y),
+            contact_x_mm: contact.map(|point| point.x),
+            contact_y_mm: contact.map(|point| point.y),
             ..self
         }
     }
@@ -81,10 +81,11 @@ impl Found<'_> {
     ) -> Vec<Option<ContactState>> {
         let mut readings = vec![None; contacts.len()];
         for side in Side::BOTH {
-            let own = contacts.iter().enumerate();
-            let own =
-                own.filter_map(|(i, contact)| Some((i, contact.filter(|own| own.side == side)?)));
-            let (places, contacts): (Vec<usize>, Vec<CourseContact>) = own.unzip();
+            let indexed = contacts.iter().enumerate();
+            let on_side = indexed.filter_map(|(i, contact)| {
+                Some((i, contact.filter(|contact| contact.side == side)?))
+            });
+            let (places, contacts): (Vec<usize>, Vec<CourseContact>) = on_side.unzip();
             let states = self.of(side).map(|states| states.at(&contacts, solve));
             for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
                 readings[i] = state;
@@ -104,17 +105,17 @@ impl Found<'_> {
         let readings = self.readings(&contacts, states);
         let unit = self.cb.energy_nj();
         let samples = samples.par_iter().zip(readings);
-        let with_curvature = |(own, state): (&LegSample, Option<ContactState>)| {
-            let curvature = point.and_then(|point| match own.phase {
+        let with_curvature = |(leg_sample, state): (&LegSample, Option<ContactState>)| {
+            let curvature = point.and_then(|point| match leg_sample.phase {
                 Phase::Free { .. } => Some(point.at_rest_per_mm()),
                 _ => {
-                    let states = self.of(own.contact?.side)?;
+                    let states = self.of(leg_sample.contact?.side)?;
                     Some(states.curvature_per_mm(&state?, point.at_mm))
                 }
             });
             WhiskSample {
                 curvature_per_mm: curvature,
-                ..sample(own, state, unit)
+                ..sample(leg_sample, state, unit)
             }
         };
         samples.map(with_curvature).collect()
@@ -123,7 +124,8 @@ impl Found<'_> {
     /// Returns the events of a course with their states: `[event]`.
     pub fn events(&self, events: &[LegEvent]) -> Vec<WhiskEvent> {
         let contacts = events.iter();
-        let contacts = contacts.map(|event| Some(event.contact).filter(|own| !own.push.is_nan()));
+        let contacts =
+            contacts.map(|event| Some(event.contact).filter(|contact| !contact.push.is_nan()));
         // A snap begins at a limit, where rounding may hide that the contact still sticks.
         let readings = self.readings(&contacts.collect::<Vec<_>>(), held);
         let events = events.iter().zip(readings).map(|(event, reading)| {
@@ -145,7 +147,7 @@ impl Found<'_> {
                 },
                 ..WhiskEvent::default()
             };
-            event.with_state(reading.as_ref().map(|own| &own.reading))
+            event.with_state(reading.as_ref().map(|state| &state.reading))
         });
         events.collect()
     }
@@ -157,24 +159,24 @@ pub fn missing(time_s: f64, reason: Undecided) -> WhiskSample {
         obstacle: 0,
         reason,
     };
-    let own = LegSample {
+    let undecided = LegSample {
         phase,
         contact: None,
         dissipated: f64::NAN,
     };
     WhiskSample {
         time_s,
-        ..sample(&own, None, f64::NAN)
+        ..sample(&undecided, None, f64::NAN)
     }
 }
 
-/// Returns a sample without time and angle. `unit` is that of energies, in nJ.
-fn sample(own: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSample {
+/// Returns a sample without time and angle. `unit` is the unit of energies, in nJ.
+fn sample(leg_sample: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSample {
     let LegSample {
         phase,
         contact,
         dissipated,
-    } = *own;
+    } = *leg_sample;
     let reason = match phase {
         Phase::Undecided { reason, .. } => Some(reason),
         Phase::Contact { .. } if state.is_none() => Some(Undecided::NotFound),
@@ -182,7 +184,7 @@ fn sample(own: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSampl
     };
     let loads = match phase {
         Phase::Free { .. } => WhiskSample::default().unloaded(),
-        _ => WhiskSample::default().with_state(state.as_ref().map(|own| &own.reading)),
+        _ => WhiskSample::default().with_state(state.as_ref().map(|state| &state.reading)),
     };
     let is_known = dissipated.is_finite() && reason != Some(Undecided::Stuck);
     WhiskSample {
@@ -191,12 +193,12 @@ fn sample(own: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSampl
             (Phase::Free { .. }, _) => WhiskRegime::Free,
             _ => WhiskRegime::Contact,
         },
-        side: contact.map(|own| own.side),
-        push_angle_deg: contact.map(|own| signed_deg(own.side, own.push)),
+        side: contact.map(|contact| contact.side),
+        push_angle_deg: contact.map(|contact| signed_deg(contact.side, contact.push)),
         dissipated_nj: is_known.then_some(dissipated * unit),
-        sliding: state.and_then(|own| {
+        sliding: state.and_then(|state| {
             let phase = || contact?.phase.map(ContactPhase::sliding);
-            own.sliding.or_else(phase)
+            state.sliding.or_else(phase)
         }),
         reason,
         ..loads

@@ -95,7 +95,8 @@ pub enum WhiskEventKind {
 }
 
 row! {
-    /// Event of a course, between samples. Its loads and energy are those of the last state before it, and of the first one after a touch.
+    /// Event of a course, between samples. Its loads and energy belong to the last state before the event, and after a touch to the first
+    /// state after it.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
     pub struct WhiskEvent of a state {
         /// Time of the event, in s, from the straight line between two samples.

@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(short.held(-0.3).next(), None);
     }
 
-    /// Without its history, a whisker is free or in a contact that holds it. Only far from both touches it is free for sure.
+    /// Without its history, a whisker is free or in a contact that holds it. It is certainly free only beyond the ends of both pushes.
     #[test]
     fn a_whisker_of_unknown_history_has_all_possible_phases() {
         let turns = Turns {

@@ -68,18 +68,21 @@ impl SideStates {
         let method = Method::new(Resolution::FINE);
         let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
         let sheet = Sheet::new(method, &rod, side, &distances);
-        let ends = RowEnd::of(method, &sheet).into_iter().enumerate();
-        let ends = ends.map(|(row, end)| end.map_err(|_| row));
-        let ends: Vec<RowEnd> = ends.collect::<Result<_, _>>()?;
-        let limits = |(row, end): (usize, &RowEnd)| {
+        let solved = RowEnd::of(method, &sheet).into_iter().enumerate();
+        let found = solved.map(|(row, end)| end.map_err(|_| row));
+        let ends: Vec<RowEnd> = found.collect::<Result<_, _>>()?;
+        let limits_of = |(row, end): (usize, &RowEnd)| {
             let limits = CourseLimits::new(&sheet.level(row));
-            let limits = limits.filter(|limits| limits.detaches_at(end.crossing.push));
-            limits.ok_or(row)
+            let detaching = limits.filter(|limits| limits.detaches_at(end.crossing.push));
+            detaching.ok_or(row)
         };
-        let limits = ends.iter().enumerate().map(limits);
         let limits: Vec<CourseLimits> = match rod.friction {
             0.0 => Vec::new(),
-            _ => limits.collect::<Result<_, _>>()?,
+            _ => ends
+                .iter()
+                .enumerate()
+                .map(limits_of)
+                .collect::<Result<_, _>>()?,
         };
         Ok(Self {
             ends,
@@ -112,7 +115,7 @@ impl SideStates {
         self.limits.get(row)
     }
 
-    /// Returns the unit of energy of the whisker, in nJ: that of a dimensionless energy of 1.
+    /// Returns the unit of energy of the whisker, in nJ: a dimensionless energy of 1.
     pub fn energy_nj(&self) -> f64 {
         self.whisker.units().moment_nnm
     }
@@ -143,18 +146,21 @@ impl SideStates {
             return self.without_friction(&pushes);
         };
         // A contact that sticks when the push is back at 0 is not at first touch: the whisker is still bent.
-        let is_inside = |own: &CourseContact| {
-            let is_stuck = matches!(own.phase, Some(ContactPhase::Sticks(_)));
-            (own.push > 0.0 || is_stuck && own.push == 0.0) && own.push < self.end(0)
+        let is_inside = |contact: &CourseContact| {
+            let is_stuck = matches!(contact.phase, Some(ContactPhase::Sticks(_)));
+            (contact.push > 0.0 || is_stuck && contact.push == 0.0) && contact.push < self.end(0)
         };
-        let inside = contacts.iter().filter(|own| is_inside(own));
-        let queries = inside.filter_map(|own| Some(limits.query(own.phase?, own.push)));
+        let inside = contacts.iter().filter(|contact| is_inside(contact));
+        let queries = inside.filter_map(|contact| Some(limits.query(contact.phase?, contact.push)));
         let mut solved = solve(&queries.collect::<Vec<_>>()).into_iter();
-        let states = contacts.iter().map(|own| {
-            if is_inside(own) {
-                let state = own.phase.and_then(|_| solved.next()?)?;
+        let states = contacts.iter().map(|contact| {
+            if is_inside(contact) {
+                let state = contact.phase.and_then(|_| solved.next()?)?;
                 let reader = self.reader.with_contact(&state.rod(&self.sheet.rod));
-                let (touch, push) = (self.sheet.rows[0].touch, self.sheet.side.sign() * own.push);
+                let (touch, push) = (
+                    self.sheet.rows[0].touch,
+                    self.sheet.side.sign() * contact.push,
+                );
                 return Some(ContactState {
                     reading: reader.read(state.at.point.x, &state.full, touch, push),
                     sliding: Some(state.sliding),
@@ -162,11 +168,11 @@ impl SideStates {
                     ratio: state.at.ratio,
                 });
             }
-            let state = match own.push > 0.0 {
+            let state = match contact.push > 0.0 {
                 true => self.at_end(0),
                 false => self.at_touch(0),
             };
-            let sliding = own.phase.map(|phase| phase.sliding());
+            let sliding = contact.phase.map(|phase| phase.sliding());
             Some(ContactState { sliding, ..state })
         });
         states.collect()
@@ -237,7 +243,7 @@ impl SideStates {
             } else if state.is_none() {
                 let distance = self.distances_mm[row];
                 let branch = match last.take() {
-                    Some((own, branch)) if own == row => branch,
+                    Some((last_row, branch)) if last_row == row => branch,
                     _ => StableBranch::new(&self.whisker, &self.pole, side, distance).ok(),
                 };
                 *state = branch.as_ref().and_then(|branch| {
@@ -269,10 +275,11 @@ impl BothSides {
     pub fn states(&self, contacts: &[Option<(Side, RowPush)>]) -> Vec<Option<ContactState>> {
         let mut found = vec![None; contacts.len()];
         for side in Side::BOTH {
-            let own = contacts.iter().enumerate();
-            let own =
-                own.filter_map(|(i, contact)| Some((i, contact.filter(|own| own.0 == side)?.1)));
-            let (places, pushes): (Vec<usize>, Vec<RowPush>) = own.unzip();
+            let indexed = contacts.iter().enumerate();
+            let on_side = indexed.filter_map(|(i, contact)| {
+                Some((i, contact.filter(|contact| contact.0 == side)?.1))
+            });
+            let (places, pushes): (Vec<usize>, Vec<RowPush>) = on_side.unzip();
             let states = self.of(side).map(|states| states.without_friction(&pushes));
             for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
                 found[i] = state;

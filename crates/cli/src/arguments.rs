@@ -51,7 +51,8 @@ pub fn whole(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String>
 /// Returns a parser of the names of scene parameters.
 pub fn parameter() -> impl TypedValueParser<Value = Parameter> {
     // The axis of a parameter may have another name, which is accepted here to suggest the parameter.
-    let names = Parameter::ALL.map(|own| PossibleValue::new(own.name()).alias(own.axis()));
+    let names = Parameter::ALL
+        .map(|parameter| PossibleValue::new(parameter.name()).alias(parameter.axis()));
     PossibleValuesParser::new(names).try_map(|name| {
         let hint = || Parameter::suggested(&name).unwrap_or_default();
         Parameter::named(&name).ok_or_else(|| format!("names a sweep axis{}", hint()))

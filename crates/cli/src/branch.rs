@@ -143,22 +143,22 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
             states.extend(followed.map_err(|why| refuse(distance, why))?);
         }
     }
-    let points: Vec<BranchPoint> = states.iter().map(|own| own.point).collect();
-    outputs.rows(states.into_iter().map(|own| {
+    let points: Vec<BranchPoint> = states.iter().map(|state| state.point).collect();
+    outputs.rows(states.into_iter().map(|state| {
         let columns = DerivativeColumns {
             variables: &variables,
-            by: own.by,
+            by: state.by,
             first: 1,
         };
         Marked(
-            (own.point, columns),
-            YieldMark::new(&whisker, own.point.peak_strain),
+            (state.point, columns),
+            YieldMark::new(&whisker, state.point.peak_strain),
         )
     }))?;
     outputs.finish(title(&scene, distances), || plot(&scene, &points, args))
 }
 
-/// Plots branches, those of several poles in their own colours.
+/// Plots branches. Each of several poles has its own colour.
 fn plot(scene: &Scene, points: &[BranchPoint], args: &BranchArgs) -> Plot {
     let y = args.y.axis();
     let at_poles = points.chunk_by(|a, b| a.distance_mm == b.distance_mm);

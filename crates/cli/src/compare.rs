@@ -71,7 +71,7 @@ pub fn run(args: &CompareArgs, files: &mut Files) -> Result<(), Failure> {
     }
 }
 
-/// Opens both maps. Of a scene, the channels that the other map has are computed.
+/// Opens both maps. For a scene, the channels that the other map has are computed.
 fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure> {
     let CompareArgs {
         first,
@@ -101,13 +101,14 @@ fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure
             stored(files, second, solver)?,
         ],
         [false, true] => {
-            let own = stored(files, first, &unused)?;
-            let other = of_scene(files, second, Some(&own))?;
-            [own, other]
+            let stored_map = stored(files, first, &unused)?;
+            let scene_map = of_scene(files, second, Some(&stored_map))?;
+            [stored_map, scene_map]
         }
         [true, false] => {
-            let other = stored(files, second, &unused)?;
-            [of_scene(files, first, Some(&other))?, other]
+            let stored_map = stored(files, second, &unused)?;
+            let scene_map = of_scene(files, first, Some(&stored_map))?;
+            [scene_map, stored_map]
         }
         [true, true] => [
             of_scene(files, first, None)?,
@@ -199,27 +200,27 @@ fn table(out: &mut impl Write, quantities: &[QuantityComparison]) -> io::Result<
         "{:19}  {:>10}  {:>10}  {:>8}  {:>8}  {:>8}{rounding}  place of the largest",
         "channel", "cells", "differing", "median", "largest", "relative"
     )?;
-    for own in quantities {
+    for quantity in quantities {
         let rounding = match has_rounding {
-            true => format!("  {:>13.1e}", own.beyond_rounding),
+            true => format!("  {:>13.1e}", quantity.beyond_rounding),
             false => String::new(),
         };
-        let place = own
+        let place = quantity
             .place
             .as_ref()
             .map(ToString::to_string)
             .unwrap_or_default();
         let line = format!(
             "{:19}  {:>10}  {:>10}  {:>8.1e}  {:>8.1e}  {:>8.1e}{rounding}  {place}",
-            own.channel,
-            own.cells,
-            own.differing,
-            own.median,
-            own.largest,
-            own.relative(own.largest)
+            quantity.channel,
+            quantity.cells,
+            quantity.differing,
+            quantity.median,
+            quantity.largest,
+            quantity.relative(quantity.largest)
         );
         writeln!(out, "{}", line.trim_end())?;
-        let [first, second] = own.only_in;
+        let [first, second] = quantity.only_in;
         if first + second > 0 {
             writeln!(
                 out,

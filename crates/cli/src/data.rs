@@ -8,7 +8,7 @@ use whiskmap::input::{ColumnName, CsvTable};
 use whiskmap::measured::{Comparison, MeasuredPoints};
 use whiskmap::scene::{digits, rounded};
 
-/// Option of all commands that read a table. In each of them, the options that name a table are the group `table`.
+/// Option of all commands that read a table. In each of these commands, the options that name a table are the group `table`.
 #[derive(Debug, Args)]
 pub struct ColumnArgs {
     /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
@@ -22,7 +22,7 @@ pub struct ColumnArgs {
 }
 
 impl ColumnArgs {
-    /// Reads the table of the input `path`, whose columns have the names `expected` in place of own ones.
+    /// Reads the table in the input `path`, with the `expected` names of columns in place of the names in the file.
     pub fn table(&self, path: &Path, expected: &[&str]) -> Result<CsvTable, Failure> {
         Ok(CsvTable::input(path)?.renamed(&self.columns, expected)?)
     }
@@ -37,8 +37,8 @@ pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads measured points from the input `path`, whose `columns` may have own names. Prints unused columns, the number of points with a
-/// missing value, and that of points whose angle has the other side's sign.
+/// Reads measured points from the input `path`, whose `columns` may have other names. Prints unused columns, the number of points with a
+/// missing value, and the number of points whose angle has the sign of the other side.
 pub fn read(
     files: &mut Files,
     path: &Path,

@@ -32,7 +32,7 @@ pub struct DerivativeColumns<'a> {
 }
 
 impl DerivativeArgs {
-    /// Returns the variables of the columns, by default those of detachments and `more`: `[variable]`, empty without the option.
+    /// Returns the variables of the columns, by default the variables of detachments and `more`: `[variable]`, empty without the option.
     pub fn variables(&self, scene: &Scene, more: &[Variable]) -> Result<Vec<Variable>, Failure> {
         let Some(named) = &self.derivatives else {
             return Ok(Vec::new());
@@ -42,7 +42,7 @@ impl DerivativeArgs {
         if named.is_empty() {
             return Ok(all);
         }
-        match named.iter().find(|own| !all.contains(own)) {
+        match named.iter().find(|variable| !all.contains(variable)) {
             None => Ok(each_once(named)),
             Some(other) => {
                 let all: Vec<String> = all.iter().map(ToString::to_string).collect();

@@ -82,7 +82,7 @@ fn distance(text: &str) -> Result<Distance, String> {
     }
 }
 
-/// Parses the name of a parameter or of the distance, and limits of it.
+/// Parses the name of a parameter or of the distance, with limits of its value if the text gives them.
 fn variable(text: &str) -> Result<DesignVariable, String> {
     let (name, limits) = match text.split_once('=') {
         Some((name, limits)) => (name, Some(limits)),
@@ -97,7 +97,7 @@ fn variable(text: &str) -> Result<DesignVariable, String> {
     let known = name
         .parse()
         .ok()
-        .filter(|own| *own != Variable::PushAngleDeg);
+        .filter(|variable| *variable != Variable::PushAngleDeg);
     let variable = known.ok_or_else(|| {
         let hint = Parameter::suggested(name).unwrap_or_else(|| did_you_mean(name, names()));
         format!(
@@ -218,9 +218,9 @@ impl DesignArgs {
             ("--max-moment", DesignGoal::MaxMoment, self.goal.max_moment),
             ("--max-strain", DesignGoal::MaxStrain, self.goal.max_strain),
         ];
-        let given = goals.into_iter();
-        let given = given.filter_map(|(option, goal, asked)| Some((option, goal, asked?)));
-        let given: Vec<(&'static str, DesignGoal, GoalValue)> = given.collect();
+        let asked = |(option, goal, value): (_, _, Option<_>)| Some((option, goal, value?));
+        let given: Vec<(&'static str, DesignGoal, GoalValue)> =
+            goals.into_iter().filter_map(asked).collect();
         let angle = given.iter().find(|(_, goal, _)| goal.kind().is_some());
         let of_angle = angle.map(|(.., asked)| Side::of_push(asked.value));
         let Some(side) = of_angle.or(self.side) else {
@@ -258,7 +258,7 @@ impl DesignArgs {
         let mut varied: DesignVaried = self.varied.iter().copied().collect();
         varied.keeps_taper = self.keep.is_some();
         let mut all = varied.variables.iter();
-        let is_varied = all.any(|own| own.variable == Variable::DistanceMm);
+        let is_varied = all.any(|variable| variable.variable == Variable::DistanceMm);
         let distances = &scene.grid.distance_mm;
         let distance_mm = match self.distance {
             Some(_) if is_varied => {
@@ -298,9 +298,9 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let asked = args.targets(distance_mm)?;
     let variables = &varied.variables;
     if variables.len() != asked.len() {
-        let options = asked.iter().map(|own| own.option);
+        let options = asked.iter().map(|target| target.option);
         let options = options.collect::<Vec<_>>().join(", ");
-        let names = variables.iter().map(|own| own.variable.name());
+        let names = variables.iter().map(|variable| variable.variable.name());
         let names = names.collect::<Vec<_>>().join(",");
         let why =
             format!("--for {names}: must be as many parameters as targets; these are {options}");
@@ -344,7 +344,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
             (values, target.goal.digits())
         }
         several => {
-            let targets: Vec<DesignTarget> = several.iter().map(|own| own.target).collect();
+            let targets: Vec<DesignTarget> = several.iter().map(|target| target.target).collect();
             let found = designs(&scene, &varied, &targets).map_err(|why| refused(path, why))?;
             if found.solutions.is_empty() || found.is_undetermined {
                 let why = unreached_together(variables, several, &found);
@@ -353,20 +353,23 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
             (found.solutions, SOLUTION_DIGITS)
         }
     };
-    let short = solutions.iter();
-    let short = short.map(|values| written(&scene, &varied, values, most_digits));
-    let short: Vec<Vec<f64>> = short.collect();
+    let short: Vec<Vec<f64>> = solutions
+        .iter()
+        .map(|values| written(&scene, &varied, values, most_digits))
+        .collect();
     let side = asked[0].target.side;
     name_strains(&scene, &varied, (side, distance_mm), &short);
     if let Some(output) = better {
-        let own: Vec<f64> = variables
+        let current: Vec<f64> = variables
             .iter()
-            .filter_map(|own| own.variable.value(&scene))
+            .filter_map(|variable| variable.variable.value(&scene))
             .collect();
         let apart = |values: &[f64]| {
-            let pairs = values.iter().zip(&own);
+            let pairs = values.iter().zip(&current);
             pairs
-                .map(|(value, own)| ((value - own) / own.abs().max(f64::MIN_POSITIVE)).powi(2))
+                .map(|(value, current)| {
+                    ((value - current) / current.abs().max(f64::MIN_POSITIVE)).powi(2)
+                })
                 .sum::<f64>()
         };
         let nearest = short.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
@@ -380,7 +383,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let mut out = StandardOutput::open();
     if variables.len() > 1 {
-        let names = variables.iter().map(|own| own.variable.name());
+        let names = variables.iter().map(|variable| variable.variable.name());
         writeln!(out, "{}", names.collect::<Vec<_>>().join(","))?;
     }
     for values in short {
@@ -401,9 +404,10 @@ fn name_strains(
         return;
     };
     for values in solutions {
-        let named = varied.variables.iter().zip(values);
-        let named = named.map(|(own, value)| format!("{} = {}", own.variable, digits(*value)));
-        let named = named.collect::<Vec<_>>().join(", ");
+        let pairs = varied.variables.iter().zip(values);
+        let texts =
+            pairs.map(|(variable, value)| format!("{} = {}", variable.variable, digits(*value)));
+        let named = texts.collect::<Vec<_>>().join(", ");
         let mark = PushMark::of_solution(scene, varied, (side, distance_mm), values);
         let PushMark { max_strain, yields } = mark.unwrap_or_default();
         let strain = max_strain.map(|strain| digits(rounded(strain, SOLUTION_DIGITS)));
@@ -423,7 +427,7 @@ fn name_strains(
 
 fn distance_is_varied(varied: &DesignVaried) -> bool {
     let mut all = varied.variables.iter();
-    all.any(|own| own.variable == Variable::DistanceMm)
+    all.any(|variable| variable.variable == Variable::DistanceMm)
 }
 
 /// Returns the title of a chart of the scene, with the distance of the pole unless it varies.
@@ -448,7 +452,8 @@ fn written(scene: &Scene, varied: &DesignVaried, values: &[f64], digits: usize) 
     }
 }
 
-/// Returns the numbers of the scene with the values of a solution. Of a taper, the scene gives the radius at the tip, which has no more digits.
+/// Returns the numbers of the scene with the values of a solution. Instead of a taper, the scene gives the radius at the tip, with at most
+/// `digits` digits.
 fn changes(
     scene: &Scene,
     varied: &DesignVaried,
@@ -482,7 +487,7 @@ fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> String
         (DetachmentKind::SlipOff, "slips off"),
         (DetachmentKind::PullOff, "is pulled off"),
     ];
-    let reached = ways.iter().filter_map(|(kind, way)| {
+    let ranges = ways.iter().filter_map(|(kind, way)| {
         let [low, high] = design.reached(*kind)?.map(number);
         let between = match goal.kind() {
             Some(_) if low == high => format!("at {low} for every value"),
@@ -492,15 +497,15 @@ fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> String
         };
         Some(format!("it {way} {between}"))
     });
-    let reached: Vec<_> = reached.collect();
-    let reached = match reached.join(", and ") {
+    let ranges: Vec<_> = ranges.collect();
+    let reached = match ranges.join(", and ") {
         nothing if nothing.is_empty() => "it does not reach the pole".to_owned(),
-        reached => reached,
+        ranges => ranges,
     };
     format!("no {name} between {from} and {to} {wanted}: {reached}")
 }
 
-/// Returns the message for targets without a solution, or with a line of them.
+/// Returns the message for targets that have no solution, or a line of solutions.
 fn unreached_together(
     variables: &[DesignVariable],
     asked: &[AskedTarget],
@@ -508,10 +513,10 @@ fn unreached_together(
 ) -> String {
     let listed = |values: &[f64], of: &dyn Fn(usize) -> String| {
         let parts = variables.iter().zip(values).enumerate();
-        let parts = parts.map(|(i, (own, value))| {
+        let parts = parts.map(|(i, (variable, value))| {
             format!(
                 "{} {}{}",
-                own.variable,
+                variable.variable,
                 digits(rounded(*value, SOLUTION_DIGITS)),
                 of(i)
             )
@@ -526,10 +531,10 @@ fn unreached_together(
             "the targets do not determine these parameters: one can replace another along a line of values; {solution} is one that {wanted}"
         );
     }
-    let ranges = variables.iter().zip(&found.ranges);
-    let ranges = ranges.map(|(own, range)| {
+    let pairs = variables.iter().zip(&found.ranges);
+    let ranges = pairs.map(|(variable, range)| {
         let [from, to] = range.map(|end| digits(rounded(end, SOLUTION_DIGITS)));
-        format!("{} between {from} and {to}", own.variable)
+        format!("{} between {from} and {to}", variable.variable)
     });
     let ranges = ranges.collect::<Vec<_>>().join(" and ");
     let Some(nearest) = &found.nearest else {
@@ -540,8 +545,8 @@ fn unreached_together(
         false => String::new(),
     };
     let values = listed(&nearest.values, &at_limit);
-    let reached = asked.iter().zip(&nearest.reached);
-    let reached = reached.map(|(own, value)| own.text(*value, SOLUTION_DIGITS));
+    let pairs = asked.iter().zip(&nearest.reached);
+    let reached = pairs.map(|(target, value)| target.text(*value, SOLUTION_DIGITS));
     let reached = reached.collect::<Vec<_>>().join(" and ");
     let why = match nearest.is_at_limit.contains(&true) {
         true => "beyond the limits the targets may be nearer",

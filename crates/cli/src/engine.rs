@@ -238,7 +238,7 @@ impl EngineArgs {
 fn without_gpu(map: &PlannedMap<'_>) -> OpenEngine {
     let why = format!("auto: {}", expansions(map));
     let spectral = map.cheaper();
-    (spectral.map(|own| Box::new(own) as _), why)
+    (spectral.map(|engine| Box::new(engine) as _), why)
 }
 
 /// Returns why expansions pay for a map, or why they do not, in one line.

@@ -54,7 +54,7 @@ pub fn files(scene: &Scene, plan: &Plan, formats: &[MapFormat]) -> Result<Vec<Fi
         let start = Instant::now();
         let packed = groups
             .iter()
-            .map(|own| format.pack(&small, &small_plan, own));
+            .map(|panels| format.pack(&small, &small_plan, panels));
         let bytes = packed.sum::<u64>() as f64 * by_cells;
         FileCost {
             format: *format,

@@ -129,7 +129,7 @@ impl Failure {
         match self {
             // A reader that stops early, like `head`, is not a failure.
             _ if self.is_broken_pipe() => return 0,
-            // It is several lines, and in colour.
+            // The message has several lines, and colours.
             Self::Scene(error) => drop(writeln!(io::stderr(), "{}", error.render(color()))),
             _ => message(&format!("error: {self}")),
         }
@@ -139,7 +139,7 @@ impl Failure {
 
 /// Returns the faults of a store that occur, with their counts, and the command that removes them.
 fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
-    let faults = [
+    let kinds = [
         (missing, ["block is", "blocks are"], "missing"),
         (damaged, ["block is", "blocks are"], "damaged"),
         (
@@ -148,8 +148,8 @@ fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
             "damaged",
         ),
     ];
-    let faults = faults.into_iter().filter(|(count, ..)| *count > 0);
-    let faults = faults.map(|(count, [one, several], state)| {
+    let present = kinds.into_iter().filter(|(count, ..)| *count > 0);
+    let faults = present.map(|(count, [one, several], state)| {
         let what = if count == 1 { one } else { several };
         format!("{count} {what} {state}")
     });
@@ -166,9 +166,12 @@ pub fn message(line: &str) {
     let _ = writeln!(io::stderr(), "{}", escaped(line));
 }
 
-/// Prints an error of clap about `arguments`. It quotes them as they are, so they are parsed again with control characters escaped.
+/// Prints an error of clap about `arguments`. clap quotes arguments as they are, so this function parses them again with control characters
+/// escaped.
 pub fn refuse(arguments: &[OsString], wrong: &clap::Error) {
-    let shown = arguments.iter().map(|own| escaped(&own.to_string_lossy()));
+    let shown = arguments
+        .iter()
+        .map(|argument| escaped(&argument.to_string_lossy()));
     match Arguments::try_parse_from(shown) {
         // A closed standard error hides the message, not the code.
         Err(wrong) => drop(wrong.print()),

@@ -117,7 +117,8 @@ impl Files {
     }
 }
 
-/// Opens the file or the folder at `path`, or that of the `stream` at `-`, to compare it with others; returns `None` for a device or a pipe.
+/// Opens the file or the folder at `path`, or the file of `stream` at `-`, to compare it with others. Returns `None` for a device or a
+/// pipe.
 fn stored(path: &Path, stream: fn() -> io::Result<Handle>) -> Option<Handle> {
     let is_stored = |about: Metadata| about.is_file() || about.is_dir();
     if path == Path::new(STDOUT) {

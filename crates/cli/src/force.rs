@@ -96,7 +96,7 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         deviations: scene
             .uncertainty
             .as_ref()
-            .map(|own| own.frames)
+            .map(|deviations| deviations.frames)
             .unwrap_or_default(),
         axis: match args.axis {
             AxisName::Tangent => BaseAxis::Tangent,

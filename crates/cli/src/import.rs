@@ -126,9 +126,9 @@ fn time(text: &str) -> Result<f64, String> {
 }
 
 fn pixels(text: &str) -> Result<[f64; 2], String> {
-    let pair = text.split_once(',');
-    let pair = pair.and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
-    let pair = pair.filter(|own: &[f64; 2]| own.iter().all(|own| own.is_finite()));
+    let words = text.split_once(',');
+    let numbers = words.and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    let pair = numbers.filter(|[x, y]: &[f64; 2]| x.is_finite() && y.is_finite());
     pair.ok_or_else(|| "must be X,Y in pixels, such as 120.5,80".to_owned())
 }
 
@@ -172,7 +172,7 @@ impl From<TrackingError> for Failure {
 impl ImportArgs {
     fn options(&self) -> TrackingOptions {
         let mut options = TrackingOptions::new(self.mm_per_pixel, self.fps.unwrap_or(1.0));
-        options.format = self.format.map(|own| match own {
+        options.format = self.format.map(|format| match format {
             Format::Deeplabcut => TrackingFormat::DeepLabCut,
             Format::Whisk => TrackingFormat::Whisk,
             Format::Xy => TrackingFormat::Xy,
@@ -183,9 +183,9 @@ impl ImportArgs {
         options.follicle_px = self.follicle;
         options.curvature_at_mm = self.curvature_at;
         options.fit_to_mm = self.fit_to;
-        options.degree = self.degree.map(|own| own as usize);
+        options.degree = self.degree.map(|degree| degree as usize);
         options.mirror = self.mirror;
-        options.face_axis = self.face_axis.map(|own| match own {
+        options.face_axis = self.face_axis.map(|axis| match axis {
             Axis::X => FaceAxis::X,
             Axis::Y => FaceAxis::Y,
         });
@@ -197,7 +197,7 @@ impl ImportArgs {
 }
 
 pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
-    let stdin = args.files.iter().filter(|own| *own == Path::new(STDOUT));
+    let stdin = args.files.iter().filter(|file| *file == Path::new(STDOUT));
     if stdin.count() > 1 {
         let why = "FILE -: standard input can be read once; name files";
         return Err(Failure::Input(why.to_owned()));

@@ -174,10 +174,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Stack of a thread in bytes, as large as that of a main thread: GPU drivers compile on it.
+/// Stack of a thread in bytes, as large as the stack of a main thread: GPU drivers compile on it.
 const STACK: usize = 8 << 20;
 
-/// Installs handlers, starts the threads and runs `command` on one of them.
+/// Installs handlers, starts the threads and runs `command` on one of the threads.
 fn start(command: &Command) -> Result<(), Failure> {
     failure::keep_expected_panics_silent();
     let (threads, advice) = match command {
@@ -209,7 +209,7 @@ fn unstarted<E: ToString>(count: usize) -> impl FnOnce(E) -> Failure {
 /// Environment variable with the number of threads, as of other programs that use rayon; without it, and if it is 0, all cores are used.
 const THREADS: &str = "RAYON_NUM_THREADS";
 
-/// Returns the number of threads to start: that of `--threads`, of the environment, or of the processor's cores.
+/// Returns the number of threads to start: the number in `--threads`, in the environment, or of the processor's cores.
 ///
 /// # Errors
 /// If the environment variable has a number that `--threads` does not accept.

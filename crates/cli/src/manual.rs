@@ -97,14 +97,12 @@ mod tests {
         let mut missing = Vec::new();
         for command in program.get_subcommands() {
             let name = command.get_name();
-            let sections = PAGE.split("\n## ").skip(1);
-            let mut own = sections.filter(|section| {
+            let mut sections = PAGE.split("\n## ").skip(1);
+            let section = sections.find(|section| {
                 let heading = section.lines().next().unwrap_or_default();
                 heading.split(", ").any(|word| word == name)
             });
-            let section = own
-                .next()
-                .unwrap_or_else(|| panic!("no section for {name}"));
+            let section = section.unwrap_or_else(|| panic!("no section for {name}"));
             let mentioned = mentioned(section);
             let unnamed = defined(command)
                 .into_iter()

@@ -132,7 +132,7 @@ impl MapArgs {
         }
     }
 
-    /// Returns the plan of the map in this format, as the options say.
+    /// Returns the plan of the map in this format, with the given options.
     ///
     /// # Errors
     /// If the options contradict each other, the scene or the format.

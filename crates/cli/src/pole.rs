@@ -27,7 +27,7 @@ impl WhiskerArgs {
     pub fn read(&self, files: &mut Files, command: &str) -> Result<Scene, Failure> {
         let scene = self.selected(files)?;
         check_single(&scene, command)?;
-        // The values of axes and tables become those of the scene.
+        // The values of axes and tables become numbers of the scene.
         Ok(scene.of_whisker(0)?)
     }
 

@@ -23,8 +23,8 @@ pub struct SelectionArgs {
 }
 
 impl SelectionArgs {
-    /// Opens the selected part of the input `path`, a stored map or a scene, and prints the selected values. Of a scene, the channels that are
-    /// `wanted` of it are computed, or those of a map without a selection if there are none.
+    /// Opens the selected part of the input `path`, a stored map or a scene, and prints the selected values. For a scene, the channels in
+    /// `wanted` are computed. If `wanted` is empty, they are the channels of a map without a selection.
     pub fn open<'n>(
         &self,
         files: &mut Files,

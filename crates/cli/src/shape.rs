@@ -70,8 +70,8 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         return Err(Failure::Input(why));
     }
     let mut outputs = args.outputs.open(files)?;
-    let state_table = args.state.as_deref();
-    let state_table = state_table.map(|path| args.outputs.table(files, "--state", path));
+    let state_path = args.state.as_deref();
+    let state_table = state_path.map(|path| args.outputs.table(files, "--state", path));
     let state_table = state_table.transpose()?;
     let side = args.side.unwrap_or(Side::of_push(push_deg));
     let stable = args.branch == BranchPart::Stable;
@@ -117,7 +117,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid).named("first touch");
         plot.lines.insert(0, at_rest);
         let traced = scene.traced().into_iter();
-        let points = traced.flat_map(|own| own.points_at_rest_mm(whisker.length_mm));
+        let points = traced.flat_map(|shape| shape.points_at_rest_mm(whisker.length_mm));
         plot.dots.extend(points.map(|at| Dot {
             at,
             ink: Ink::Grey,

@@ -42,9 +42,9 @@ pub struct ShardShare {
 
 impl Sum for ShardShare {
     fn sum<I: Iterator<Item = Self>>(shares: I) -> Self {
-        shares.fold(Self::default(), |sum, own| Self {
-            blocks: sum.blocks + own.blocks,
-            whiskers: sum.whiskers + own.whiskers,
+        shares.fold(Self::default(), |sum, share| Self {
+            blocks: sum.blocks + share.blocks,
+            whiskers: sum.whiskers + share.whiskers,
         })
     }
 }

@@ -32,8 +32,8 @@ pub fn handle(temporary: TemporaryFiles, advice: &'static str) -> io::Result<()>
     std::thread::Builder::new().spawn(wait).map(drop)
 }
 
-/// Ends the process on Ctrl-C, Ctrl-Break or when its console is closed, removes the `temporary` files, and prints `advice`. The exit code is
-/// that of a process without a handler.
+/// Ends the process on Ctrl-C, Ctrl-Break or when its console is closed, removes the `temporary` files, and prints `advice`. The exit code
+/// is the same as without a handler.
 #[cfg(windows)]
 pub fn handle(temporary: TemporaryFiles, advice: &'static str) -> io::Result<()> {
     const STATUS_CONTROL_C_EXIT: u32 = 0xC000_013A;

@@ -32,9 +32,9 @@ impl SolverArgs {
     pub fn open(&self, map: &PlannedMap<'_>) -> Result<OpenEngine, Failure> {
         let engine = self.engine.open(map)?;
         match (&engine.0, map.left_deg) {
-            (Some(own), Some(_)) => message(&format!(
+            (Some(opened), Some(_)) => message(&format!(
                 "accuracy: residuals of at most {:.1e} of the length",
-                own.residual_bound()
+                opened.residual_bound()
             )),
             _ => self.tolerance.report(map.accuracy),
         }

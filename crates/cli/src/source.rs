@@ -29,15 +29,16 @@ pub fn stored(files: &mut Files, path: &Path, solver: &SolverArgs) -> Result<Map
 
 /// Returns the names of all channels that a map of `scene` can have, derivatives last, `[channel]`.
 pub fn channel_names(scene: &Scene) -> Vec<&'static str> {
-    let derivatives = Parameter::ALL.into_iter();
-    let derivatives = derivatives.filter(|own| own.has_derivative(scene));
-    let derivatives = derivatives.map(Parameter::push_derivative);
+    let parameters = Parameter::ALL.into_iter();
+    let varied = parameters.filter(|parameter| parameter.has_derivative(scene));
+    let derivatives = varied.map(Parameter::push_derivative);
     let others = Channels::STANDARD.with(Channel::PeakStrain.name());
     let names = others.names().collect::<Vec<_>>();
     names.into_iter().chain(derivatives).collect()
 }
 
-/// Opens the map of `scene`, which is computed when it is read, and prints its engine. The engine is selected for a map of so many `whiskers`.
+/// Opens the map of `scene`, which is computed when it is read, and prints its engine. The engine is selected for a map of this number of
+/// `whiskers`.
 pub fn computed(
     scene: Scene,
     solver: &SolverArgs,

@@ -99,7 +99,7 @@ impl SubmitArgs {
     /// Returns the arguments of `map` in a task.
     ///
     /// # Errors
-    /// If `map` does not accept its own options together with those of the script.
+    /// If `map` does not accept its own options together with the options of the script.
     fn map(&self) -> Result<MapArgs, Failure> {
         let given = "whiskmap map SCENE -o=DIR --format=zarr --shard=0/1 --resume --threads=1";
         let all = given.split(' ').chain(self.map.iter().map(String::as_str));
@@ -168,16 +168,16 @@ impl SubmitArgs {
         let job: String = name.chars().map(plain).collect();
         let last = self.shards - 1;
         let cpus = self.cpus_per_task.map(|cpus| cpus.to_string());
-        let resources = [
+        let requests = [
             ("partition", self.partition.as_ref()),
             ("time", Some(&time)),
             ("cpus-per-task", cpus.as_ref()),
             ("mem", Some(&memory)),
         ];
-        let resources = resources.map(|(option, value)| {
+        let lines = requests.map(|(option, value)| {
             value.map_or_else(String::new, |value| format!("#SBATCH --{option}={value}\n"))
         });
-        let resources = resources.concat();
+        let resources = lines.concat();
         let partition = self.partition.as_ref();
         let partition = partition.map_or_else(String::new, |name| format!(" --partition={name}"));
         // `auto` may select different engines on different nodes.
@@ -186,11 +186,10 @@ impl SubmitArgs {
         } else {
             " --engine cpu"
         };
-        let own = self
-            .map
-            .iter()
-            .map(|own| format!(" {}", word_of_shell(own)));
-        let own: String = own.collect();
+        let words = self.map.iter();
+        let options: String = words
+            .map(|word| format!(" {}", word_of_shell(word)))
+            .collect();
         let status = word_of_shell(&format!("{program} status --verify {store}"));
         let shards = self.shards;
         Ok(format!(
@@ -210,7 +209,7 @@ if [ "$SLURM_ARRAY_TASK_ID" = "$SLURM_ARRAY_TASK_MIN" ]; then
         --output="slurm-${{SLURM_ARRAY_JOB_ID}}_status.out" --wrap={status}
 fi
 
-exec {program} map {scene} -o {folder} --format zarr{engine}{own} \
+exec {program} map {scene} -o {folder} --format zarr{engine}{options} \
     --shard "$SLURM_ARRAY_TASK_ID/{shards}" --resume --threads "$SLURM_CPUS_ON_NODE"
 "#
         ))

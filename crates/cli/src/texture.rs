@@ -129,8 +129,8 @@ fn written<R: serde::Serialize>(
 /// Prints the number of events, the energy that detachments lose, and the part of the samples in each phase.
 fn summarise(texture: &Texture) {
     let count = |kind| {
-        let own = texture.events.iter().filter(|event| event.event == kind);
-        own.count()
+        let events = texture.events.iter();
+        events.filter(|event| event.event == kind).count()
     };
     let [touches, releases, slips, pulls] = [
         WhiskEventKind::Touch,
@@ -150,8 +150,8 @@ fn summarise(texture: &Texture) {
     ));
     let all = texture.samples.len();
     let phase = |phase| {
-        let own = texture.samples.iter().filter(|own| own.phase == phase);
-        own.count()
+        let samples = texture.samples.iter();
+        samples.filter(|sample| sample.phase == phase).count()
     };
     let [stuck, slipping, free] = [
         TexturePhase::Stuck,

@@ -30,7 +30,10 @@ impl ColumnUnits {
                 let hint = did_you_mean(name, all.iter().copied());
                 return Err(refused(format!("must be one of {}{hint}", all.join(", "))));
             };
-            if let Some(other) = units.iter().find(|own| kind.units().any(|of| of == **own)) {
+            if let Some(other) = units
+                .iter()
+                .find(|given| kind.units().any(|of| of == **given))
+            {
                 return Err(refused(format!(
                     "{other} is a unit of the same quantity; give one of them"
                 )));

@@ -67,9 +67,9 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let (scene, whisker) = pole::read(files, &args.pole.whisker, "whisk", &[distance])?;
     let course = args.course.course(files)?;
     let mut outputs = args.outputs.open(files)?;
-    let events = args.events.as_deref();
-    let events = events.map(|path| args.outputs.table(files, "--events", path));
-    let events = events.transpose()?;
+    let event_path = args.events.as_deref();
+    let event_table = event_path.map(|path| args.outputs.table(files, "--events", path));
+    let event_table = event_table.transpose()?;
     let mut options = WhiskOptions::default();
     options.start = args.start.map(|start| match start {
         StartChoice::Free => CourseStart::Free,
@@ -86,7 +86,7 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     })?;
     let marks = StrainMark::of_rows(&whisker, &scene.pole, &found.samples);
     outputs.rows(marked(&found.samples, marks))?;
-    let events = events.map(|mut table| {
+    let events = event_table.map(|mut table| {
         table.rows(&found.events)?;
         table.finish()
     });

@@ -58,9 +58,9 @@ impl WhiskTask {
             let points = WhiskerShape::new(branch, &state, POINTS).points;
             // The contact lies between the evenly spaced points, or on one of them.
             let is_extra =
-                |own: &ShapePoint| points.len() > POINTS && own.part == WhiskerPart::Contact;
-            let even = points.iter().filter(|own| !is_extra(own));
-            let even: Vec<[f64; 2]> = even.map(|own| [own.x_mm, own.y_mm]).collect();
+                |point: &ShapePoint| points.len() > POINTS && point.part == WhiskerPart::Contact;
+            let even = points.iter().filter(|point| !is_extra(point));
+            let even: Vec<[f64; 2]> = even.map(|point| [point.x_mm, point.y_mm]).collect();
             Some(turned(&even, turn_deg))
         };
         let shapes = found.samples.iter().flat_map(|sample| {
@@ -70,9 +70,12 @@ impl WhiskTask {
                 .unwrap_or_else(|| vec![[f64::NAN; 2]; POINTS])
         });
         let (sin, cos) = libm::sincos(row.touch);
-        let pole_mm = [cos, sin].map(|own| own * row.pole_distance * whisker.length_mm);
+        let pole_mm = [cos, sin].map(|component| component * row.pole_distance * whisker.length_mm);
         Ok(Response {
-            numbers: shapes.flatten().map(|own| own as f32).collect(),
+            numbers: shapes
+                .flatten()
+                .map(|coordinate| coordinate as f32)
+                .collect(),
             text: json!({
                 "distance_mm": self.distance_mm,
                 "points": POINTS,

@@ -29,10 +29,11 @@ impl MapTask {
     pub fn respond(&self, scene: &Scene) -> Result<Response, String> {
         let size = self.size.map(|count| count.clamp(1, MOST));
         let axis = |[from, to]: [f64; 2], count| AxisValues::linear(from, to, count);
-        let scene = scene.to_builder();
-        let scene = scene.push_angle_deg(axis(self.push_angle_deg, size[0]));
-        let scene = scene.distance_mm(axis(self.distance_mm, size[1])).build();
-        let scene = scene.map_err(|why| why.to_string())?;
+        let builder = scene
+            .to_builder()
+            .push_angle_deg(axis(self.push_angle_deg, size[0]))
+            .distance_mm(axis(self.distance_mm, size[1]));
+        let scene = builder.build().map_err(|why| why.to_string())?;
         let mut options = Options::default();
         options.engine = MapEngine::Spectral;
         options.tolerance_deg = self.tolerance_deg;

@@ -18,11 +18,12 @@ pub struct PointsTask {
 }
 
 impl PointsTask {
-    /// Returns the points with the predictions of `scene`, or of its best fit. Of points that name their whiskers, those of `place` count.
+    /// Returns the points with the predictions of `scene`, or of its best fit. If the points name their whiskers, only the points of the
+    /// whisker at `place` count.
     pub fn respond(&self, scene: &Scene, place: &SweepPlace) -> Result<Value, String> {
-        let points = MeasuredPoints::parse(&self.csv, &self.name);
-        let points = points.and_then(|points| points.at(place));
-        let points = points.map_err(|why| why.to_string())?;
+        let all = MeasuredPoints::parse(&self.csv, &self.name);
+        let at_place = all.and_then(|points| points.at(place));
+        let points = at_place.map_err(|why| why.to_string())?;
         let free = self.free.iter().filter_map(|name| Parameter::named(name));
         let free: Vec<Parameter> = free.collect();
         if free.is_empty() {
@@ -54,12 +55,12 @@ impl PointsTask {
     }
 }
 
-fn comparison(own: &Comparison) -> Value {
+fn comparison(comparison: &Comparison) -> Value {
     json!({
-        "rows": own.rows,
-        "count": own.count(),
-        "of_another_kind": own.of_another_kind(),
-        "rms_deg": own.rms_deg(),
-        "bias_deg": own.bias_deg(),
+        "rows": comparison.rows,
+        "count": comparison.count(),
+        "of_another_kind": comparison.of_another_kind(),
+        "rms_deg": comparison.rms_deg(),
+        "bias_deg": comparison.bias_deg(),
     })
 }

@@ -64,7 +64,7 @@ pub enum Task {
     },
     /// Task: compute the course in front of one pole while the base's angle is a sine of time.
     Whisk(course::WhiskTask),
-    /// Task: compare measured detachments with those of the scene, after a fit of the free parameters if there are any.
+    /// Task: compare measured detachments with the detachments of the scene, after a fit of the free parameters if there are any.
     Points(points::PointsTask),
 }
 
@@ -107,7 +107,7 @@ impl Request {
         })
     }
 
-    /// The one whisker of the request, with its values: that of the name, or the first one of a sweep.
+    /// Returns the scene of one whisker with the values of the request. The whisker is the named one, or the first one of a sweep.
     fn scene(&self) -> Result<Scene, String> {
         self.one(self.changes()?)
     }

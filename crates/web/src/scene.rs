@@ -5,8 +5,8 @@ use whiskmap::classify::{Regime, Status};
 use whiskmap::plan::{Plan, STATE_CHANNELS, effects};
 use whiskmap::scene::{Parameter, Scene, SweepPlace};
 
-/// Returns title, units, numbers, effects and axes of a scene, the names of codes and channels, whether it is one whisker of a sweep, and the
-/// names of the whiskers of its table with its own, of this place.
+/// Returns title, units, numbers, effects and axes of `scene`, which is the whisker at `place` of `sweep`, and the names of codes and
+/// channels. The value also has the names of the whiskers in the table of `sweep`, and the name of the whisker at `place`.
 pub fn description(scene: &Scene, sweep: &Scene, place: &SweepPlace) -> Result<Value, String> {
     let whiskers = sweep.table.iter().filter(|row| row.found.is_ok());
     let parameters = Parameter::ALL.into_iter();
@@ -49,8 +49,7 @@ pub fn description(scene: &Scene, sweep: &Scene, place: &SweepPlace) -> Result<V
 
 /// Returns the number of `parameter`: the scene's own, or else the neutral one. `None` if the scene cannot have the parameter.
 fn number(scene: &Scene, parameter: Parameter) -> Option<f64> {
-    let own = parameter.value(scene);
-    own.or_else(|| {
+    parameter.value(scene).or_else(|| {
         parameter
             .neutral()
             .filter(|value| scene.with(parameter, *value).is_ok())

@@ -47,9 +47,11 @@ pub fn state(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, St
 
 /// Regime, status and values of a cell that no push from first touch reaches.
 fn cell(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, String> {
-    let cell = scene.to_builder().push_angle_deg([push_deg]);
-    let cell = cell.distance_mm([distance_mm]).build();
-    let cell = cell.map_err(|why| why.to_string())?;
+    let builder = scene
+        .to_builder()
+        .push_angle_deg([push_deg])
+        .distance_mm([distance_mm]);
+    let cell = builder.build().map_err(|why| why.to_string())?;
     let map = whiskmap::map(&cell, Options::default()).map_err(|why| why.to_string())?;
     let panel = &map.panels[0];
     let mut status = Status::ALL.into_iter();
@@ -88,8 +90,8 @@ fn drawn(found: Result<WhiskerShape, NoState>) -> Value {
     })
 }
 
-/// Returns `count` points of the branch of each side at one distance, as from `whiskmap branch`, and the shape in the unstable state at a
-/// push angle, or the reasons why there are none.
+/// Returns `count` points of the branch of each side at one distance, as from `whiskmap branch`. The value also has the shape in the
+/// unstable state at a push angle, or the reasons why there is no branch or shape.
 pub fn branches(scene: &Scene, distance_mm: f64, push_deg: Option<f64>, count: usize) -> Value {
     let branches = Side::BOTH.map(|side| whiskmap::branch(scene, distance_mm, side));
     let [cf, cb] = branches.each_ref().map(|branch| {
@@ -100,9 +102,9 @@ pub fn branches(scene: &Scene, distance_mm: f64, push_deg: Option<f64>, count: u
         }
     });
     let unstable = push_deg.map(|push_deg| {
-        let mut own = Side::BOTH.iter().zip(&branches);
-        let own = own.find(|(side, _)| **side == Side::of_push(push_deg));
-        let shape = own.map(|(_, branch)| {
+        let mut sides = Side::BOTH.iter().zip(&branches);
+        let pushed = sides.find(|(side, _)| **side == Side::of_push(push_deg));
+        let shape = pushed.map(|(_, branch)| {
             let branch = branch.as_ref().map_err(|why| *why)?;
             let state = branch.state(push_deg.to_radians(), false)?;
             Ok(WhiskerShape::new(branch, &state, POINTS))

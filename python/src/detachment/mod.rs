@@ -48,8 +48,8 @@ type QuantityArrays<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// Kinds of the ends, residuals, push angles up to which a whisker may snap, largest strains of pushes of a scene with a yield strain, quantities,
-/// and exceptions of refused rows in order.
+/// Kinds of the ends, residuals, push angles up to which a whisker may snap, and largest strains of pushes of a scene with a yield strain.
+/// Then quantities, and exceptions of refused rows in order.
 type DetachmentArrays<'py> = (
     Bound<'py, PyArray1<u8>>,
     Bound<'py, PyArray1<f64>>,
@@ -106,21 +106,21 @@ pub fn detachment<'py>(
     let (ends, refused) = threads::run(py, threads, |_| Ok(()), |cancel| rows.ends(cancel))?;
     let refused = refused.iter().map(|refused| of_row(py, refused));
     let mut kinds = vec![DetachmentKind::NoWhisker as u8; count];
-    for own in &ends {
-        kinds[own.row] = own.end.kind as u8;
+    for row_end in &ends {
+        kinds[row_end.row] = row_end.end.kind as u8;
     }
     let of_rows = |value: &dyn Fn(&RowEnd) -> Option<f64>| {
         let mut values = vec![f64::NAN; count];
-        for own in &ends {
-            values[own.row] = value(own).unwrap_or(f64::NAN);
+        for row_end in &ends {
+            values[row_end.row] = value(row_end).unwrap_or(f64::NAN);
         }
         PyArray1::from_vec(py, values)
     };
-    let values = |value: fn(&Detachment) -> Option<f64>| of_rows(&|own| value(&own.end));
+    let values = |value: fn(&Detachment) -> Option<f64>| of_rows(&|row_end| value(&row_end.end));
     let quantities = QUANTITIES.map(|(name, value, derivative)| {
         let mut by = vec![f64::NAN; count * width];
-        for own in &ends {
-            for (place, derivatives) in by[own.row * width..].iter_mut().zip(&own.by) {
+        for row_end in &ends {
+            for (place, derivatives) in by[row_end.row * width..].iter_mut().zip(&row_end.by) {
                 *place = derivatives.as_ref().map_or(f64::NAN, derivative);
             }
         }
@@ -129,7 +129,7 @@ pub fn detachment<'py>(
     let kinds = PyArray1::from_vec(py, kinds);
     let snaps = values(|end| end.snaps_deg);
     let residuals = values(|end| end.residual);
-    let strains = is_marked.then(|| of_rows(&|own| own.mark?.max_strain));
+    let strains = is_marked.then(|| of_rows(&|row_end| row_end.mark?.max_strain));
     Ok((
         kinds,
         residuals,

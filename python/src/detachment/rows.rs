@@ -137,20 +137,21 @@ impl DetachmentRows<'_> {
         let base = self
             .variables
             .iter()
-            .position(|own| self.have_taper && *own == base);
+            .position(|variable| self.have_taper && *variable == base);
         let mut variables = self.variables.clone();
         variables.extend(base.map(|_| Variable::from(Parameter::TipRadiusUm)));
         let ends = detachments(whisker, pole, side, distances, &variables);
-        let end = |own: DetachmentDerivatives| {
-            let mut by: Vec<Option<Derivatives>> = own.by.into_iter().map(Result::ok).collect();
+        let end = |derivatives: DetachmentDerivatives| {
+            let mut by: Vec<Option<Derivatives>> =
+                derivatives.by.into_iter().map(Result::ok).collect();
             if let Some(base) = base {
                 let tip = by.pop().flatten();
                 by[base] = by[base]
                     .zip(tip)
                     .map(|(base, tip)| base.plus(1.0 - whisker.taper(), &tip));
             }
-            let mark = PushMark::of_end(whisker, pole, &own.end);
-            (own.end, by, mark)
+            let mark = PushMark::of_end(whisker, pole, &derivatives.end);
+            (derivatives.end, by, mark)
         };
         ends.into_iter().map(end).collect()
     }

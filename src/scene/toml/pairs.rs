@@ -37,7 +37,7 @@ pub(super) fn points<'de, D: Deserializer<'de>>(pairs: D) -> Result<Option<Pairs
     pairs.deserialize_any(PairKind::POINTS).map(Some)
 }
 
-/// Pairs of a scene file: the list of them, or the name of a CSV file with their columns.
+/// Pairs of a scene file: the list of pairs, or the name of a CSV file with their columns.
 pub(in crate::scene) struct Pairs {
     kind: PairKind,
     source: PairSource,
@@ -96,7 +96,7 @@ pub(super) struct PairsCsv {
 }
 
 impl Pairs {
-    /// Returns the listed pairs, `[pair][column]`, or reads those of the regular file in `folder` that is named, which is added to `files`.
+    /// Returns the listed pairs, `[pair][column]`, or reads the pairs of the named regular file in `folder`, which is added to `files`.
     /// Without a folder, a name is refused, because the text of a scene must not name files.
     pub(super) fn read(
         self,

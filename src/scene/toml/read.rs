@@ -87,9 +87,9 @@ fn checked(
     built
         .and_then(|mut builder| {
             builder.stem = stem.into_owned();
-            let own = builder.standalone(text, &files);
+            let standalone = builder.standalone(text, &files);
             Ok(Scene {
-                data: builder.checked(SceneText::of_source(&own))?,
+                data: builder.checked(SceneText::of_source(&standalone))?,
                 builder: Arc::new(builder),
                 notes: files.iter().filter_map(|csv| csv.note.clone()).collect(),
                 csv_files: files.iter().map(|csv| csv.path.clone()).collect(),
@@ -116,7 +116,7 @@ fn build(
     let swept = Parameter::SWEPT.into_iter();
     let axes = swept.filter_map(|parameter| Some((parameter, parameter.axis_in(&mut file)?)));
     let mut sweep: Vec<(Parameter, AxisValues)> = axes.collect();
-    // The derived tables have no order; the scene has that of the text.
+    // The derived tables have no order; the scene has the order of the text.
     sweep.sort_by_cached_key(|(parameter, _)| Some(place_in(text, parameter.axis_key())?.start));
     let mut builder = SceneBuilder {
         title: file.title,
@@ -199,7 +199,8 @@ fn tip_of_taper(taper: f64, scene: &SceneBuilder) -> Result<f64, SceneFault> {
 /// The checked degree of a traced curvature.
 fn degree(given: i64) -> Result<usize, SceneFault> {
     let degree = usize::try_from(given).ok();
-    degree.filter(|own| *own <= MOST_DEGREE).ok_or_else(|| {
+    let allowed = degree.filter(|degree| *degree <= MOST_DEGREE);
+    allowed.ok_or_else(|| {
         let must = format!("must be between 0 and {MOST_DEGREE}");
         SceneFault::of_value(DEGREE_KEY, given.to_string(), must)
     })

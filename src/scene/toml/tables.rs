@@ -12,7 +12,7 @@ use super::whiskers::{WhiskerRows, whisker_rows};
 use crate::scene::Surface;
 use crate::scene::axis::{AxisScale, AxisValues};
 
-/// Scene file. Of its fields, numbers and sweep axes belong to parameters, whose table (`src/scene/parameter.rs`) names them.
+/// Scene file. Its numbers and sweep axes belong to parameters, whose table (`src/scene/parameter.rs`) names them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct SceneFile {
@@ -96,7 +96,7 @@ pub(in crate::scene) struct RestTable {
     pub points: Option<Pairs>,
     /// Degree of the traced curvature; cross-validation chooses it if it is left out.
     pub degree: Option<i64>,
-    /// Coefficients of the traced curvature; those of the fit if they are left out.
+    /// Coefficients of the traced curvature; if they are left out, the scene has the coefficients of the fit.
     pub curvature: Option<Vec<f64>>,
 }
 

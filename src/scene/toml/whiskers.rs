@@ -74,8 +74,8 @@ impl<'de> Visitor<'de> for RowsVisitor {
 }
 
 impl WhiskerRows {
-    /// Returns the listed rows, or reads those of the regular file in `folder` that is named. All files are added to `files`. Without a
-    /// folder, names of files are refused.
+    /// Returns the listed rows, or reads the rows of the named regular file in `folder`. All files are added to `files`. Without a folder,
+    /// names of files are refused.
     pub(super) fn read(
         self,
         folder: Option<&Path>,

@@ -88,7 +88,7 @@ impl Scene {
             let (parameter, digits) = match parameter {
                 Parameter::Taper | Parameter::TipRadiusUm if is_tapered => continue,
                 Parameter::Taper => (Parameter::TipRadiusUm, DERIVED_DIGITS),
-                own => (*own, EXACT_DIGITS),
+                parameter => (*parameter, EXACT_DIGITS),
             };
             if let Some(value) = parameter.value(&changed) {
                 let value = rounded(value, digits);
@@ -177,27 +177,27 @@ fn put_fit(root: &mut dyn TableLike, traced: &TracedShape) {
 impl SceneBuilder {
     /// Returns the `text` of this scene with the pairs of CSV `files` in place of their names, and with the fit to traced points.
     pub(super) fn standalone(&self, text: &str, files: &[PairsCsv]) -> String {
-        let mut own = text.to_owned();
+        let mut standalone = text.to_owned();
         for csv in files {
             let points = self.traced.as_ref().map(|traced| &traced.points_mm);
             let pairs = if csv.key == ROWS_KEY {
-                self.measured.as_ref().map(|own| &own.rows)
+                self.measured.as_ref().map(|radii| &radii.rows)
             } else {
                 points
             };
-            if let Some((pairs, span)) = pairs.zip(place_in(&own, csv.key)) {
-                own.replace_range(span, &pairs_text(pairs));
+            if let Some((pairs, span)) = pairs.zip(place_in(&standalone, csv.key)) {
+                standalone.replace_range(span, &pairs_text(pairs));
             }
         }
         let of_whiskers = self.table.as_ref();
         let of_whiskers =
             of_whiskers.filter(|_| files.iter().any(|csv| csv.key == SweepVariable::TABLE));
         if self.traced.is_none() && of_whiskers.is_none() {
-            return own;
+            return standalone;
         }
         // The text was read as TOML.
-        let Ok(mut document) = own.parse::<DocumentMut>() else {
-            return own;
+        let Ok(mut document) = standalone.parse::<DocumentMut>() else {
+            return standalone;
         };
         let root = document.as_table_mut();
         if let Some(rows) = of_whiskers {

@@ -46,15 +46,15 @@ impl MapSlice {
         })
     }
 
-    /// Reads the `channels` of a whisker of the slice; all other channels are those of [`Panel::unresolved`]. `whisker` is an index in
-    /// the slice, whose first sweep axis varies fastest.
+    /// Reads the `channels` of a whisker of the slice; all other channels are as in [`Panel::unresolved`]. `whisker` is an index in the
+    /// slice, whose first sweep axis varies fastest.
     ///
     /// # Errors
     /// An error of [`MapSlice::read_panel`].
     pub fn panel(&self, channels: Channels, whisker: usize) -> Result<Panel, StoreError> {
         let mut panel = Panel::unresolved(self.part.rows.len() * self.part.columns.len(), channels);
         for name in channels.names() {
-            let state = STATE_CHANNELS.iter().position(|own| *own == name);
+            let state = STATE_CHANNELS.iter().position(|channel| *channel == name);
             match (self.read_panel(name, whisker)?, name, state) {
                 (ChannelValues::U32(codes), "regime", _) => panel.regime = codes,
                 (ChannelValues::U32(codes), "status", _) => panel.status = codes,
@@ -64,8 +64,8 @@ impl MapSlice {
                 (ChannelValues::F32(values), "residual", _) => panel.residual = values,
                 (ChannelValues::F32(values), "peak_strain", _) => panel.peak_strain = values,
                 (ChannelValues::F32(values), ..) => {
-                    if let Some(own) = panel.push_derivative_mut(name) {
-                        *own = values;
+                    if let Some(derivative) = panel.push_derivative_mut(name) {
+                        *derivative = values;
                     }
                 }
             }
@@ -73,8 +73,8 @@ impl MapSlice {
         Ok(panel)
     }
 
-    /// Returns the names of the codes of `regime` or `status` in the slice, by code, with that of cells that are not computed; `None` for
-    /// other channels.
+    /// Returns the names of the codes of `regime` or `status` in the slice, by code, with the name of cells that are not computed. `None`
+    /// for other channels.
     #[must_use]
     pub fn names(&self, channel: &str) -> Option<BTreeMap<u32, String>> {
         let mut names = self.source.names(channel)?;
@@ -93,8 +93,8 @@ impl MapSlice {
         }
         let mut codes = BTreeSet::new();
         for whisker in 0..self.part.grid.whisker_count() {
-            if let ChannelValues::U32(own) = self.read_panel(channel, whisker)? {
-                codes.extend(own);
+            if let ChannelValues::U32(whisker_codes) = self.read_panel(channel, whisker)? {
+                codes.extend(whisker_codes);
             }
         }
         Ok(codes)

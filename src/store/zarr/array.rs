@@ -204,7 +204,7 @@ mod tests {
         };
         let found = numbers(array.unpack(frames()));
         assert_eq!(found[..51], values);
-        assert!(found.len() == 68 && found[51..].iter().all(|own| own.is_nan()));
+        assert!(found.len() == 68 && found[51..].iter().all(|value| value.is_nan()));
         let columns = ZarrArray {
             encoding: ChunkEncoding::default(),
             ..array

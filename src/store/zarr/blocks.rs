@@ -7,7 +7,7 @@ use std::ops::Range;
 /// Fewest and most cells of a block: an interruption loses seconds of work, and the panels of a block take 120 MB of memory.
 const CELLS: [usize; 2] = [1 << 14, 1 << 21];
 
-/// Blocks of a sweep whose size lies between these limits; there is a file for each of them and each array.
+/// Number of blocks of a sweep if their size lies between these limits; each block has a file for each array.
 const WANTED: usize = 128;
 
 /// Blocks of a sweep. They depend on its grid alone, so that any number of processes agree on them.

@@ -12,7 +12,7 @@ use miniz_oxide::inflate::decompress_slice_iter_to_slice;
 /// Compression codec of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Codec {
-    /// LZ4: four times as fast as zlib. Where the last bits of mantissas are noise, its size is within 3 % of that of zlib.
+    /// LZ4: four times as fast as zlib. Where the last bits of mantissas are noise, the result is within 3 % of the size by zlib.
     Lz4,
     /// Zlib, which also codes frequent bytes in fewer bits: rounded quantities and codes take less space.
     Zlib,

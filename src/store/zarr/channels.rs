@@ -16,7 +16,7 @@ pub fn channel_attributes(name: &str) -> Option<Value> {
 
 /// Returns kind and attributes of a channel; `None` for another name.
 pub(super) fn channel(name: &str) -> Option<(ValueKind, Value)> {
-    if let Some((_, units, meaning, _)) = CHANNELS.iter().find(|(own, ..)| *own == name) {
+    if let Some((_, units, meaning, _)) = CHANNELS.iter().find(|(known, ..)| *known == name) {
         let kind = match (name, units) {
             (_, Some(_)) => Quantity,
             ("newton_steps", None) => Count,
@@ -25,7 +25,7 @@ pub(super) fn channel(name: &str) -> Option<(ValueKind, Value)> {
         return Some((kind, with_flags(name, about(*units, meaning))));
     }
     let mut all = Parameter::ALL.into_iter();
-    let parameter = all.find(|own| own.push_derivative() == name)?;
+    let parameter = all.find(|parameter| parameter.push_derivative() == name)?;
     let units = match parameter.unit() {
         "1" => "degree".to_owned(),
         unit => format!("degree/({unit})"),

@@ -110,9 +110,9 @@ pub fn coordinates(grid: &Grid) -> Vec<AxisCoordinate> {
 /// The coordinates along every axis, and the description of the rounding if there is any, with their values as bytes.
 pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)> {
     let mut all = Vec::new();
-    for own in coordinates(grid) {
-        let (kind, bytes) = packed(&own.values);
-        let array = ZarrArray::of_axis(own.name, kind, own.values.len(), own.attributes);
+    for axis in coordinates(grid) {
+        let (kind, bytes) = packed(&axis.values);
+        let array = ZarrArray::of_axis(axis.name, kind, axis.values.len(), axis.attributes);
         all.push((array, bytes));
     }
     let codes = Regime::ALL.map(|regime| regime.code() as u8).to_vec();
@@ -151,7 +151,7 @@ fn packed(values: &[Coordinate]) -> (ValueKind, Vec<u8>) {
 
 /// Returns the attributes of a store, equal on all machines of one arithmetic class.
 pub(super) fn attributes(about: &MapDescription<'_>, scene: &SceneData) -> Map<String, Value> {
-    let agreed = [
+    let required = [
         ("whiskmap_version", json!(env!("CARGO_PKG_VERSION"))),
         ("engine", json!(about.engine.engine)),
         ("arithmetic", json!(about.arithmetic)),
@@ -160,12 +160,12 @@ pub(super) fn attributes(about: &MapDescription<'_>, scene: &SceneData) -> Map<S
         ("scene", json!(scene.text.to_string())),
     ];
     let digits = digits(about).map(|digits| (DIGITS, json!(digits)));
-    let agreed = agreed.into_iter().chain(digits);
-    let agreed = agreed.map(|(name, value)| (name.to_owned(), value));
+    let all = required.into_iter().chain(digits);
+    let agreed = all.map(|(name, value)| (name.to_owned(), value));
     completed(&Map::from_iter(agreed), &scene.title)
 }
 
-/// Returns the attributes of a store: those of `found` in [`AGREED`], the `title`, and those that follow.
+/// Returns the attributes of a store: the attributes of `found` in [`AGREED`], the `title`, and the attributes that follow from these.
 pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, Value> {
     let agreed = AGREED.iter().filter_map(|name| {
         let value = found.get(*name)?;
@@ -182,7 +182,7 @@ pub(super) fn completed(found: &Map<String, Value>, title: &str) -> Map<String, 
     attributes
 }
 
-/// Returns the metadata of the store's root, with those of all arrays.
+/// Returns the metadata of the store's root, with the metadata of all arrays.
 pub(super) fn group<'a>(
     attributes: &Map<String, Value>,
     arrays: impl Iterator<Item = &'a ZarrArray>,

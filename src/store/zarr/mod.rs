@@ -78,7 +78,7 @@ impl ZarrStore {
             ..*about
         };
         let attributes = metadata::attributes(&about, scene);
-        let own = Self {
+        let store = Self {
             may_exist,
             ..Self::new(
                 path,
@@ -87,8 +87,8 @@ impl ZarrStore {
                 (about.channels, about.digits),
             )
         };
-        own.agree()?;
-        Ok(own)
+        store.agree()?;
+        Ok(store)
     }
 
     /// Returns true if there is a Zarr store at `path`, of this program or another one.

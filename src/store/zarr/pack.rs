@@ -31,11 +31,11 @@ impl PackedPanel {
 
     /// Appends the next band of the panel.
     pub fn append(&mut self, band: Self) {
-        for (own, chunks) in self.chunks.iter_mut().zip(band.chunks) {
-            own.extend(chunks);
+        for (chunks, of_band) in self.chunks.iter_mut().zip(band.chunks) {
+            chunks.extend(of_band);
         }
-        for (own, count) in self.counts.iter_mut().zip(band.counts) {
-            *own += count;
+        for (count, of_band) in self.counts.iter_mut().zip(band.counts) {
+            *count += of_band;
         }
     }
 }
@@ -86,9 +86,9 @@ impl ZarrStore {
             let room = self.blocks.slots();
             let missing = (panels.len() < room).then(|| array.pack_fill(room));
             let missing = missing.unwrap_or_default();
-            let counts = panels.iter().filter(|_| array.name == CELLS);
-            let counts = counts.map(|panel| array.pack(bytemuck::cast_slice(&panel.counts)));
-            let counts: Vec<Vec<Vec<u8>>> = counts.collect();
+            let counted = panels.iter().filter(|_| array.name == CELLS);
+            let packed = counted.map(|panel| array.pack(bytemuck::cast_slice(&panel.counts)));
+            let counts: Vec<Vec<Vec<u8>>> = packed.collect();
             let mut slots = vec![&missing; room];
             for (place, panel) in panels.iter().enumerate() {
                 let packed = counts.get(place).unwrap_or(&panel.chunks[*index]);

@@ -2,7 +2,7 @@
 
 use crate::plan::rounded;
 
-/// Columns that are turned together: those of a cache line.
+/// Number of columns that are turned together: the columns of a cache line.
 const TOGETHER: usize = 16;
 
 /// Values that are separated together, in a cache.

@@ -1,8 +1,8 @@
 //! Verification of a store: it belongs to the settings of a run, and its files are sound.
 //!
 //! The identity of a store is a hash of everything that its bytes depend on. Each file of a block begins with a hash of the store's
-//! identity and its own place. So one check finds a damaged file and a file of another store or place. It has two depths ([`CheckDepth`]): the
-//! structure of files, or all of their values.
+//! identity and its own place. So one check finds a damaged file and a file of another store or place. A check has two depths
+//! ([`CheckDepth`]): the structure of files, or all of their values.
 
 use super::array::ZarrArray;
 use super::files::{attributes, metadata_fault};
@@ -57,7 +57,7 @@ impl ZarrStore {
             }
             Err(why) if is_absent(&why) => {
                 let (has_blocks, is_empty) = (self.has_blocks(), is_empty(&self.path));
-                // Another process may have created it meanwhile: the root first.
+                // Another process may have created the store in the meantime: the root first.
                 if Self::is_at(&self.path) {
                     return self.agree();
                 }
@@ -110,8 +110,8 @@ impl ZarrStore {
         }
     }
 
-    /// Returns true if a block in the store's folder belongs to this store, by the first bytes of its files, and false if the folder has no
-    /// blocks. A file of this store in the place of another one is damaged, but belongs to it.
+    /// Returns true if a block in the store's folder belongs to this store, by the first bytes of its files. Returns false if the folder
+    /// has no blocks. A file of this store in the place of another file is damaged, but belongs to the store.
     ///
     /// # Errors
     /// The folder has blocks, and none belongs to this store.
@@ -198,9 +198,9 @@ impl ZarrStore {
             Ok(true) => return BlockState::Missing,
             Err(fault) => return BlockState::Unreadable(vec![fault]),
         }
-        let faults = self.arrays.par_iter();
-        let faults = faults.filter_map(|array| self.check(array, block, depth).err());
-        let mut faults: Vec<StoreError> = faults.collect();
+        let arrays = self.arrays.par_iter();
+        let found = arrays.filter_map(|array| self.check(array, block, depth).err());
+        let mut faults: Vec<StoreError> = found.collect();
         if faults.is_empty() && depth == CheckDepth::Values {
             faults.extend(self.check_counts(block).err());
         }
@@ -269,7 +269,10 @@ impl ZarrStore {
         let found = of_whisker.flat_map(|cells| {
             Regime::ALL.map(|regime| {
                 let code = regime.code();
-                cells.iter().filter(|own| u32::from(**own) == code).count() as u32
+                cells
+                    .iter()
+                    .filter(|cell| u32::from(**cell) == code)
+                    .count() as u32
             })
         });
         if !found.eq(counted) {
@@ -280,7 +283,7 @@ impl ZarrStore {
             **code != NOT_COMPUTED
                 && Regime::ALL
                     .iter()
-                    .all(|own| own.code() != u32::from(**code))
+                    .all(|regime| regime.code() != u32::from(**code))
         });
         unknown.map_or(Ok(()), |code| {
             let why = format!("the code {code} has no name");
@@ -314,7 +317,7 @@ impl ZarrStore {
     /// A file cannot be removed, or all blocks belong to another store: then the root is wrong, not the blocks.
     pub fn remove_damaged(&self, block: usize) -> Result<bool, StoreError> {
         self.has_blocks()?;
-        // A run may have computed it again meanwhile.
+        // A run may have computed the block again in the meantime.
         let state = self.state(block, CheckDepth::Values);
         if !matches!(state, BlockState::Damaged(_)) {
             return Ok(false);

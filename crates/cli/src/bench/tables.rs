@@ -117,20 +117,20 @@ fn expansions(out: &mut impl Write, report: &Report) -> io::Result<()> {
         out,
         "\nexpansions, one thread\n  bound  states  certified  ms a side spread us a state  trajectories pays from"
     )?;
-    for own in &report.expansions {
-        let from = own
+    for expansions in &report.expansions {
+        let from = expansions
             .pays_from
             .map_or_else(|| "-".to_owned(), |from| format!("{from:.0}"));
         writeln!(
             out,
             "{:7.0e} {:7} {:9.2}% {:10.2} {} {:11.3} {:13.3} {from:>9}",
-            own.bound,
-            own.states,
-            100.0 * own.certified,
-            own.ms_per_side,
-            spread(&own.seconds),
-            own.us_per_state,
-            own.us_by_trajectories,
+            expansions.bound,
+            expansions.states,
+            100.0 * expansions.certified,
+            expansions.ms_per_side,
+            spread(&expansions.seconds),
+            expansions.us_per_state,
+            expansions.us_by_trajectories,
         )?;
     }
     writeln!(
@@ -201,7 +201,7 @@ fn verdicts(out: &mut impl Write, report: &Report) -> io::Result<()> {
     Ok(())
 }
 
-/// Formats a largest error with one digit; `-` for an infinite one, that of a state that was not found.
+/// Formats a largest error with one digit, and an infinite error, of a state that was not found, as `-`.
 fn error(largest: f64) -> String {
     if largest.is_finite() {
         format!("{largest:.0e}")

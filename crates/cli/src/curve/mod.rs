@@ -166,10 +166,11 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         match args.sampling.largest {
             true => {
                 let largest = uncertainty::largest(&draws).into_iter();
-                let mark = |own: &LargestSpread| YieldMark::new(&scene.whisker, own.max_strain);
-                let largest = largest.map(|own| (mark(&own), own));
+                let mark =
+                    |spread: &LargestSpread| YieldMark::new(&scene.whisker, spread.max_strain);
+                let largest = largest.map(|spread| (mark(&spread), spread));
                 let rows = rows.iter().zip(largest);
-                outputs.rows(rows.map(|(row, (mark, own))| Marked((row, own), mark)))?;
+                outputs.rows(rows.map(|(row, (mark, spread))| Marked((row, spread), mark)))?;
             }
             false => outputs.rows(&rows)?,
         }
@@ -186,12 +187,12 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         if args.corner {
-            let corner = |own: Result<&SweptWhisker, &RefusedWhisker>, side| {
+            let corner = |swept: Result<&SweptWhisker, &RefusedWhisker>, side| {
                 bar.inc(1);
-                vec![match own {
-                    Ok(own) => {
-                        let corner = trace::corner(&own.whisker, &own.pole, side);
-                        let mark = PushMark::of_corner(&own.whisker, &own.pole, &corner);
+                vec![match swept {
+                    Ok(swept) => {
+                        let corner = trace::corner(&swept.whisker, &swept.pole, side);
+                        let mark = PushMark::of_corner(&swept.whisker, &swept.pole, &corner);
                         Marked(corner, mark)
                     }
                     Err(_) => {
@@ -211,9 +212,9 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             };
             Marked((end, columns), mark)
         };
-        let ends = |own: Result<&SweptWhisker, &RefusedWhisker>, side| {
+        let ends = |swept: Result<&SweptWhisker, &RefusedWhisker>, side| {
             bar.inc(distances.len());
-            let Ok(own) = own else {
+            let Ok(swept) = swept else {
                 let ends = Detachment::without_whisker(side, distances).into_iter();
                 let by = || vec![Err(NoDerivative::NoDetachment); variables.len()];
                 let mark = scene.whisker.yield_strain.map(|_| PushMark::default());
@@ -221,9 +222,13 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
                     .map(|end| row(DetachmentDerivatives { end, by: by() }, mark))
                     .collect();
             };
-            let (whisker, pole) = (&own.whisker, &own.pole);
+            let (whisker, pole) = (&swept.whisker, &swept.pole);
             let ends = detachments_at(resolution, whisker, pole, side, distances, &variables);
-            let marks = PushMark::of_ends(whisker, pole, ends.iter().map(|own| &own.end));
+            let marks = PushMark::of_ends(
+                whisker,
+                pole,
+                ends.iter().map(|derivatives| &derivatives.end),
+            );
             ends.into_iter()
                 .zip(marks)
                 .map(|(end, mark)| row(end, mark))
@@ -262,7 +267,7 @@ fn write<R: Serialize>(
     if !scene.table.is_empty() {
         outputs.rows(rows.iter().map(|(place, row)| {
             let whisker = place.row().and_then(|row| scene.table.get(row));
-            let reason = whisker.and_then(|own| own.found.as_ref().err());
+            let reason = whisker.and_then(|whisker| whisker.found.as_ref().err());
             let no_whisker = reason.map(String::as_str);
             (place, Reason { no_whisker }, row)
         }))

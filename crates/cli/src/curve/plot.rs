@@ -38,13 +38,17 @@ pub fn scene_curves(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot
     let whiskers: Vec<SweptWhisker> = scene.whiskers().flatten().collect();
     let drawn: Vec<(f64, Vec<Detachment>)> = whiskers
         .par_iter()
-        .map(|own| detachments(scene, resolution, own))
+        .map(|swept| detachments(scene, resolution, swept))
         .collect();
-    let looks = whiskers.iter().map(|own| {
+    let looks = whiskers.iter().map(|swept| {
         let Some((index, axis, values)) = &coloured else {
             return (None, String::new());
         };
-        let value = own.place.coordinates().nth(*index).map(|(_, value)| value);
+        let value = swept
+            .place
+            .coordinates()
+            .nth(*index)
+            .map(|(_, value)| value);
         let place = values
             .iter()
             .position(|known| Some(known) == value.as_ref());

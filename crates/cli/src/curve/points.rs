@@ -79,6 +79,6 @@ pub fn compare(
 /// Returns the percentiles of the samples on the side and at the distance of a point, which `spread` has.
 fn at_point(spread: &[EndSpread], point: &ComparedPoint) -> PointSpread {
     let mut rows = spread.iter();
-    let own = rows.find(|row| row.side == point.side && Some(row.distance_mm) == point.distance_mm);
-    own.map(EndSpread::of_push_angles).unwrap_or_default()
+    let row = rows.find(|row| row.side == point.side && Some(row.distance_mm) == point.distance_mm);
+    row.map(EndSpread::of_push_angles).unwrap_or_default()
 }

@@ -90,8 +90,8 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
         let output = path.as_deref().map(|path| files.output(option, path));
         output.transpose()
     };
-    let toml = open("--output", &args.output)?;
-    let json = open("--json", &args.json)?;
+    let toml_output = open("--output", &args.output)?;
+    let json_output = open("--json", &args.json)?;
     let never = AtomicBool::new(false);
     let found =
         fit_until(&scene, &points, &args.free, args.loss, &never).map_err(|why| match why {
@@ -107,11 +107,13 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     for warning in found.warnings(&points) {
         message(&format!("warning: {warning}"));
     }
-    let toml = toml.filter(|_| found.not_a_fit.is_none());
-    let json = json.map(|output| (output, format!("{:#}\n", document(&found))));
-    let values = found.estimates.iter();
-    let values: Vec<_> = values.map(|own| (own.parameter, own.value)).collect();
-    let toml = toml.map(|output| Ok::<_, Failure>((output, scene.to_toml_with(&values)?)));
+    let toml_output = toml_output.filter(|_| found.not_a_fit.is_none());
+    let json = json_output.map(|output| (output, format!("{:#}\n", document(&found))));
+    let estimates = found.estimates.iter();
+    let values: Vec<_> = estimates
+        .map(|estimate| (estimate.parameter, estimate.value))
+        .collect();
+    let toml = toml_output.map(|output| Ok::<_, Failure>((output, scene.to_toml_with(&values)?)));
     let toml = toml.transpose()?;
     let outputs = [toml, json].into_iter().flatten().collect();
     let printed = print(&scene.title, &found, outputs);
@@ -146,36 +148,48 @@ fn print(title: &str, fit: &Fit, outputs: Vec<(Output, String)>) -> Result<(), F
 
 /// Returns the fit as JSON, with parameters by name.
 fn document(fit: &Fit) -> Value {
-    let names = fit.estimates.iter().map(|own| own.parameter.name());
+    let names = fit
+        .estimates
+        .iter()
+        .map(|estimate| estimate.parameter.name());
     let keyed = |values: Vec<Value>| -> Map<String, Value> {
         names.clone().map(str::to_owned).zip(values).collect()
     };
     let estimates = fit.estimates.iter();
-    let values = estimates.clone().map(|own| json!(own.value)).collect();
-    let errors = estimates.map(|own| json!(own.standard_error)).collect();
+    let values = estimates
+        .clone()
+        .map(|estimate| json!(estimate.value))
+        .collect();
+    let errors = estimates
+        .map(|estimate| json!(estimate.standard_error))
+        .collect();
     let rows = fit.correlation.iter();
-    let rows = rows.map(|row| Value::Object(keyed(row.iter().map(|own| json!(own)).collect())));
+    let rows = rows.map(|row| {
+        Value::Object(keyed(
+            row.iter().map(|correlation| json!(correlation)).collect(),
+        ))
+    });
     let comparison = &fit.comparison;
-    let traced = fit.scene.traced().map(|own| {
+    let traced = fit.scene.traced().map(|shape| {
         json!({
-            "degree": own.degree,
-            "curvature": own.coefficients(),
-            "length_mm": own.length_mm,
-            "rms_mm": own.rms_mm,
+            "degree": shape.degree,
+            "curvature": shape.coefficients(),
+            "length_mm": shape.length_mm,
+            "rms_mm": shape.rms_mm,
         })
     });
-    let pulls = fit.pulls.iter().map(|own| {
+    let pulls = fit.pulls.iter().map(|pull| {
         json!({
-            "line": own.line,
-            "residual_deg": own.residual_deg,
-            "weight": own.weight,
-            "parameter": own.parameter.name(),
-            "standard_errors": own.standard_errors,
+            "line": pull.line,
+            "residual_deg": pull.residual_deg,
+            "weight": pull.weight,
+            "parameter": pull.parameter.name(),
+            "standard_errors": pull.standard_errors,
         })
     });
     let pulls: Vec<Value> = pulls.collect();
     let smooth = fit.scene.smooth_radii();
-    let smooth = smooth.map(|own| json!({ "degree": own.degree, "rms_um": own.rms_um }));
+    let smooth = smooth.map(|radii| json!({ "degree": radii.degree, "rms_um": radii.rms_um }));
     json!({
         "not_a_fit": fit.not_a_fit.as_ref().map(ToString::to_string),
         "values": keyed(values),

@@ -18,8 +18,8 @@ fn no_error(fit: &Fit, estimate: &Estimate) -> &'static str {
     }
 }
 
-/// Formats a value and its standard error with the digits that the error leaves, by the rule of the Particle Data Group: with three digits
-/// of the error below 355, two of them, below 950 one, otherwise 1000.
+/// Formats a value and its standard error with the digits that the error leaves, by the rule of the Particle Data Group. The rule looks at
+/// the first three digits of the error. It keeps two digits below 355 and one digit below 950; a greater error is rounded up to 1000.
 ///
 /// Review of Particle Physics, section 5.3 of the introduction.
 fn with_error(value: f64, error: f64) -> [String; 2] {
@@ -31,12 +31,12 @@ fn with_error(value: f64, error: f64) -> [String; 2] {
     let exponent: i32 = exponent.parse().unwrap_or_default();
     let is_long = leading.parse::<f64>().is_ok_and(|leading| leading < 3.55);
     let places = i32::from(is_long) - exponent;
-    [value, error].map(|own| {
+    [value, error].map(|number| {
         if places >= 0 {
-            return format!("{own:.*}", places as usize);
+            return format!("{number:.*}", places as usize);
         }
         let unit = 10_f64.powi(-places);
-        format!("{:.0}", (own / unit).round() * unit)
+        format!("{:.0}", (number / unit).round() * unit)
     })
 }
 
@@ -68,7 +68,7 @@ pub fn table(title: &str, fit: &Fit) -> io::Result<()> {
     }
     for (i, estimate) in fit.estimates.iter().enumerate() {
         for (other, correlation) in fit.estimates[..i].iter().zip(&fit.correlation[i]) {
-            let [first, second] = [other, estimate].map(|own| own.parameter.name());
+            let [first, second] = [other, estimate].map(|estimate| estimate.parameter.name());
             if let Some(correlation) = correlation.map(statistic) {
                 writeln!(out, "correlation of {first} and {second}: {correlation}")?;
             }
@@ -85,19 +85,19 @@ pub fn table(title: &str, fit: &Fit) -> io::Result<()> {
     }
     if !fit.pulls.is_empty() {
         let strongest = fit.pulls.iter().take(PULLS);
-        let strongest = strongest.map(|own| {
-            let moved = rounded(own.standard_errors, 2);
+        let texts = strongest.map(|pull| {
+            let moved = rounded(pull.standard_errors, 2);
             format!(
                 "line {} ({} by {moved:+} standard errors)",
-                own.line,
-                own.parameter.name()
+                pull.line,
+                pull.parameter.name()
             )
         });
-        let strongest: Vec<String> = strongest.collect();
+        let texts: Vec<String> = texts.collect();
         writeln!(
             out,
             "without these rows, values would move most: {}",
-            strongest.join(", ")
+            texts.join(", ")
         )?;
     }
     Ok(())

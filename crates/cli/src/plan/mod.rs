@@ -116,8 +116,8 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
         estimate.engine.1 = "that of `submit`, unless --engine names another".to_owned();
     }
     print(&scene, &estimate)?;
-    let own = shard.map_or(0..shares.len(), |shard| shard.index..shard.index + 1);
-    print_shards(&scene, &estimate, &shares[own.clone()], own.start)?;
+    let printed = shard.map_or(0..shares.len(), |shard| shard.index..shard.index + 1);
+    print_shards(&scene, &estimate, &shares[printed.clone()], printed.start)?;
     Ok(())
 }
 

@@ -68,13 +68,13 @@ pub fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
         out,
         "time          about {seconds} s on {on}, {hours} CPU-hours, without the files"
     )?;
-    for own in &estimate.files {
-        let name = match own.format {
+    for file in &estimate.files {
+        let name = match file.format {
             MapFormat::Exr => "EXR file",
             MapFormat::Zarr => "Zarr store",
         };
-        let (bytes, seconds) = (DecimalBytes(own.bytes as u64), two_digits(own.seconds));
-        let memory = mib(memory(&own.format.plan(scene)?, threads));
+        let (bytes, seconds) = (DecimalBytes(file.bytes as u64), two_digits(file.seconds));
+        let memory = mib(memory(&file.format.plan(scene)?, threads));
         writeln!(
             out,
             "{name:12}  about {bytes}, {seconds} s more, at most {memory} MiB of memory"
