@@ -45,7 +45,7 @@ impl ChebyshevGrid {
         };
         let known = |j, k| if k < count { weight(j, k) } else { 0.0 };
         let group = |j, from: usize| std::array::from_fn(|lane| known(j, from + lane));
-        let row = |j| std::array::from_fn(|own| group(j, own * WIDTH));
+        let row = |j| std::array::from_fn(|index| group(j, index * WIDTH));
         Self {
             points: (0..count).map(point).collect(),
             transform: (0..count).map(row).collect(),
@@ -213,12 +213,12 @@ impl<const D: usize> SimdTask for Transform<'_, D> {
                     }
                 }
                 for (i, sums) in sums.iter().enumerate().take(D - first) {
-                    let mut own = [0.0; WIDTH];
+                    let mut unpacked = [0.0; WIDTH];
                     for (sum, from) in sums.iter().zip((0..WIDTH).step_by(T::LANES)) {
-                        keep(&mut own, from, *sum);
+                        keep(&mut unpacked, from, *sum);
                     }
-                    for (coefficients, own) in into.iter_mut().zip(own) {
-                        coefficients[first + i] = own;
+                    for (coefficients, coefficient) in into.iter_mut().zip(unpacked) {
+                        coefficients[first + i] = coefficient;
                     }
                 }
             }

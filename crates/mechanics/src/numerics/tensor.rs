@@ -33,7 +33,7 @@ impl<const D: usize> ChebyshevTensor<D> {
             .collect();
         let of = |power: usize| {
             in_x.iter()
-                .map(move |own| own.coefficients[power])
+                .map(move |expansion| expansion.coefficients[power])
                 .collect()
         };
         Self {
@@ -55,8 +55,8 @@ impl<const D: usize> ChebyshevTensor<D> {
         let in_y = |terms: &Vec<[f64; D]>| Chebyshev {
             coefficients: terms.clone(),
         };
-        let sum = |sum: [[f64; D]; 2], own: Chebyshev<D>| {
-            let tails = own.tails();
+        let sum = |sum: [[f64; D]; 2], expansion: Chebyshev<D>| {
+            let tails = expansion.tails();
             std::array::from_fn(|group| std::array::from_fn(|i| sum[group][i] + tails[group][i]))
         };
         let zero = [[0.0; D]; 2];
@@ -403,19 +403,19 @@ impl<const D: usize, const L: usize> SimdTask for LevelPoints<'_, D, L> {
                 x = x + (T::of(self.level) - value) / slope;
             }
             for first in (0..D).step_by(TOGETHER) {
-                let own = values::<T, D, TOGETHER>(terms, first, from, x);
-                for (into, own) in found.values[first..].iter_mut().zip(own) {
-                    keep(into, from, own);
+                let packed = values::<T, D, TOGETHER>(terms, first, from, x);
+                for (into, value) in found.values[first..].iter_mut().zip(packed) {
+                    keep(into, from, value);
                 }
             }
-            for (into, own) in found.along.iter_mut().zip(self.along.values::<T, L>(0, x)) {
-                keep(into, from, own);
+            for (into, value) in found.along.iter_mut().zip(self.along.values::<T, L>(0, x)) {
+                keep(into, from, value);
             }
         }
         // Columns beyond the count are as the first one, for every number of lanes.
-        for own in found.values.iter_mut().chain(&mut found.along) {
-            let first = own[0];
-            own[*count..].fill(first);
+        for lanes in found.values.iter_mut().chain(&mut found.along) {
+            let first = lanes[0];
+            lanes[*count..].fill(first);
         }
         found
     }
@@ -447,18 +447,19 @@ mod tests {
         let columns = tensor.columns(&places);
         for level in [0.17, 0.5, 0.99] {
             let blocks = columns.level(level, &along).unwrap();
-            assert_eq!(blocks.iter().map(|own| own.count).sum::<usize>(), 21);
+            assert_eq!(blocks.iter().map(|block| block.count).sum::<usize>(), 21);
             for block in &blocks {
                 let mut all = block.values.iter().chain(&block.along);
-                let is_first = |own: &LaneNumbers| own[block.count..].iter().all(|x| *x == own[0]);
+                let is_first =
+                    |lanes: &LaneNumbers| lanes[block.count..].iter().all(|x| *x == lanes[0]);
                 assert!(all.all(is_first));
             }
             for (m, y) in places.iter().enumerate() {
                 let (block, lane) = (&blocks[m / WIDTH], m % WIDTH);
                 let x = level - 0.25 * y * y;
                 let wanted = function(x, *y);
-                for (own, wanted) in block.values.iter().zip(wanted) {
-                    assert!((own[lane] - wanted).abs() < 1e-13, "{level} {y}");
+                for (found, wanted) in block.values.iter().zip(wanted) {
+                    assert!((found[lane] - wanted).abs() < 1e-13, "{level} {y}");
                 }
                 assert!((block.along[0][lane] - x.exp()).abs() < 1e-13);
             }

@@ -218,7 +218,10 @@ impl Rod {
         let s = arclength(self, tau);
         let scale = self.radius(tau);
         let cone = s * s * (1.0 + 2.0 * scale) / (6.0 * scale * scale);
-        let bending = self.profile.as_ref().map_or(cone, |own| own.compliance(s));
+        let bending = self
+            .profile
+            .as_ref()
+            .map_or(cone, |profile| profile.compliance(s));
         (bending + self.mount * s) / cone
     }
 

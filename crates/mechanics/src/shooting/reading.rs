@@ -92,7 +92,7 @@ impl StateNumbers<LaneNumbers> {
     #[must_use]
     #[inline(always)]
     pub fn pack<T: Lanes>(&self, from: usize) -> StateNumbers<T> {
-        let two = |own: &[LaneNumbers; 2]| own.each_ref().map(|own| pack(own, from));
+        let two = |pair: &[LaneNumbers; 2]| pair.each_ref().map(|numbers| pack(numbers, from));
         StateNumbers {
             arclength: pack(&self.arclength, from),
             contact_angle: pack(&self.contact_angle, from),

@@ -201,8 +201,8 @@ impl<T: Lanes> Gather<T> for Polynomial<T> {
     #[inline(always)]
     fn gather(conditions: &Conditions, s: T) -> (Self, (), [T; 2]) {
         let mut centred = [T::of(0.0); CURVATURE_TERMS];
-        for (power, own) in centred.iter_mut().enumerate() {
-            *own = lanes(conditions, |condition| match &condition.rod.polynomial {
+        for (power, coefficient) in centred.iter_mut().enumerate() {
+            *coefficient = lanes(conditions, |condition| match &condition.rod.polynomial {
                 Some(polynomial) => polynomial.centred()[power],
                 None if FEW_KERNELS => spiral_power(condition.rod, power),
                 None => 0.0,
