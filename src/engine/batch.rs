@@ -39,12 +39,12 @@ impl BatchRow {
         push: f64,
         magnitudes: &[f64],
     ) -> impl Iterator<Item = Range<usize>> + use<'_> {
-        let end = magnitudes.partition_point(|own| *own < push);
+        let end = magnitudes.partition_point(|magnitude| *magnitude < push);
         let before = self
             .cells
             .iter()
-            .map(move |own| own.start..own.end.min(end));
-        before.take_while(|own| !own.is_empty())
+            .map(move |range| range.start..range.end.min(end));
+        before.take_while(|range| !range.is_empty())
     }
 }
 

@@ -134,7 +134,7 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
             curvature,
         } = AroundEnd::new(expansion);
         terms.push(at_end.map(T::of));
-        terms.extend(quotient.coefficients.iter().map(|own| own.map(T::of)));
+        terms.extend(quotient.coefficients.iter().map(|term| term.map(T::of)));
         let [tip, tip_radius] = side.sheet.tip;
         let numbers = GpuRow {
             end: halves(at_end[0]),
@@ -149,7 +149,7 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
         };
         let mut at = row.first;
         let before = row.before(expansion.end, &side.columns.magnitudes);
-        for (own, cells) in row.cells.iter().zip(before) {
+        for (range, cells) in row.cells.iter().zip(before) {
             // A submission has fewer cells and coefficients, and a row fewer columns, than `u32` can count.
             packed.heads.push([
                 packed.cells as u32,
@@ -163,7 +163,7 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
                 cells: at..at + cells.len(),
             });
             packed.cells += cells.len();
-            at += own.len();
+            at += range.len();
         }
     }
     packed.terms = bytemuck::cast_slice(&terms).to_vec();

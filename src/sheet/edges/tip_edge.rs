@@ -158,9 +158,9 @@ impl<'a> TipLoads<'a> {
                 ln_distance: libm::log(map.pole.length()),
                 phi: nearest_turn(map.pole.to_angle(), self.phis[m]),
             };
-            let own = extrema.iter().filter(|extremum| extremum.after == m);
-            let own = own.map(|extremum| extremum.polished(self.case, self.corner));
-            let all = std::iter::once((*part, self.maps[m])).chain(own);
+            let after = extrema.iter().filter(|extremum| extremum.after == m);
+            let polished = after.map(|extremum| extremum.polished(self.case, self.corner));
+            let all = std::iter::once((*part, self.maps[m])).chain(polished);
             samples.extend(all.map(sample));
         }
         samples

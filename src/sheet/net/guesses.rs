@@ -139,7 +139,7 @@ impl GuessPanel {
         let turned = row.touch + nearest_turn(near, line.points[0].values[1][0]) - near;
         let points = line.points.iter().flat_map(|block| {
             (0..block.count).map(|lane| {
-                let [ln_tau, ln_q] = block.along.map(|own| own[lane]);
+                let [ln_tau, ln_q] = block.along.map(|coordinate| coordinate[lane]);
                 (block.values[1][lane], ln_tau, ln_q)
             })
         });
@@ -196,17 +196,17 @@ impl GuessPanel {
         }
         // Between the Chebyshev points are the contact nodes, where folds are exact.
         let [from, to] = self.0.contacts;
-        let nodes = contacts.folds.iter();
-        let nodes = nodes.map(|fold| (u_of(rod, fold.tau) - from) / (to - from));
-        let nodes = nodes.filter(|place| (0.0..=1.0).contains(place));
-        let places: Vec<f64> = points(over * in_u).chain(nodes).collect();
+        let folds = contacts.folds.iter();
+        let at_folds = folds.map(|fold| (u_of(rod, fold.tau) - from) / (to - from));
+        let inside = at_folds.filter(|place| (0.0..=1.0).contains(place));
+        let places: Vec<f64> = points(over * in_u).chain(inside).collect();
         let columns = determinant.columns(&places);
         // The place in the range of loads itself is found along with the zeros of the determinant.
         let place = Chebyshev {
             coefficients: vec![[0.5], [0.5]],
         };
         let zeros = columns.level(0.0, &place)?;
-        let folds: Vec<LaneNumbers> = zeros.iter().map(|own| own.along[0]).collect();
+        let folds: Vec<LaneNumbers> = zeros.iter().map(|zero| zero.along[0]).collect();
         let mut stable = 1.0;
         for (place, fold) in places.iter().zip(folds.as_flattened()) {
             let [surely_stable, known] = self.loads_at(rod, contacts, *place);
@@ -318,7 +318,9 @@ mod tests {
                     let pushes = (0..=40).map(|i| from + part(i) * (end.push - from));
                     let pushes: Vec<f64> = pushes.collect();
                     let guesses = sheet.guesses(row, &pushes);
-                    let points = guesses.iter().map(|own| own.map(|own| (own.tau, own.load)));
+                    let points = guesses
+                        .iter()
+                        .map(|guess| guess.map(|guess| (guess.tau, guess.load)));
                     let points: Option<Vec<(f64, f64)>> = points.collect();
                     let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
                     for (map, push) in maps.iter().zip(&pushes) {
