@@ -95,14 +95,14 @@ pub fn designs_until(
     targets: &[DesignTarget],
     cancel: &AtomicBool,
 ) -> Result<Designs, DesignError> {
-    let (scene, own, ranges) = &checked(scene, varied, targets)?;
+    let (scene, scene_values, ranges) = &checked(scene, varied, targets)?;
     let search = TogetherSearch {
         scene: DesignScene {
             scene,
             varied,
             distance_mm: targets[0].distance_mm,
         },
-        sizes: sizes(scene, varied, own),
+        sizes: sizes(scene, varied, scene_values),
         targets,
         cancel,
     };
@@ -154,10 +154,10 @@ pub fn designs_until(
 }
 
 /// Natural sizes of the varied numbers of a scene, each in its unit: `[variable]`. In these units, all are of order 1.
-fn sizes(scene: &Scene, varied: &DesignVaried, own: &[f64]) -> Vec<f64> {
-    let variables = varied.variables.iter().zip(own);
-    let sizes = variables.map(|(variable, own)| match variable.variable {
-        Variable::Parameter(parameter) => parameter.size(&scene.whisker).max(own.abs()),
+fn sizes(scene: &Scene, varied: &DesignVaried, scene_values: &[f64]) -> Vec<f64> {
+    let variables = varied.variables.iter().zip(scene_values);
+    let sizes = variables.map(|(variable, value)| match variable.variable {
+        Variable::Parameter(parameter) => parameter.size(&scene.whisker).max(value.abs()),
         _ => scene.whisker.length_mm,
     });
     sizes.collect()
@@ -211,7 +211,7 @@ impl TogetherSearch<'_> {
         Some(
             misses
                 .into_iter()
-                .fold(0.0, |most, own| own.abs().max(most)),
+                .fold(0.0, |most, miss| miss.abs().max(most)),
         )
     }
 
@@ -353,14 +353,14 @@ impl Places {
         let all = 0..self.places.len();
         let coordinate = |index: usize, k: u32| index / self.side.pow(k) % self.side;
         let is_least = |index: &usize| {
-            let own = self.size(*index);
+            let size = self.size(*index);
             let neighbours = (0..variables).flat_map(|k| {
                 let (at, step) = (coordinate(*index, k), self.side.pow(k));
                 let before = (at > 0).then(|| index - step);
                 let after = (at + 1 < self.side).then(|| index + step);
                 [before, after]
             });
-            own.is_finite() && neighbours.flatten().all(|other| self.size(other) >= own)
+            size.is_finite() && neighbours.flatten().all(|other| self.size(other) >= size)
         };
         let enclosing = |index: usize| {
             let is_inside = (0..variables).all(|k| coordinate(index, k) + 1 < self.side);
@@ -372,11 +372,12 @@ impl Places {
                 is_inside.then(|| (0..1 << variables).map(corner).collect())?;
             let misses: Vec<&Vec<f64>> = corners
                 .iter()
-                .map(|own| self.misses[*own].as_ref())
+                .map(|place| self.misses[*place].as_ref())
                 .collect::<Option<_>>()?;
             let between = |target: usize| {
-                let signs = misses.iter().map(|own| own[target] < 0.0);
-                signs.clone().any(|own| own) && signs.clone().any(|own| !own)
+                let signs = misses.iter().map(|miss| miss[target] < 0.0);
+                signs.clone().any(|is_negative| is_negative)
+                    && signs.clone().any(|is_negative| !is_negative)
             };
             let encloses = (0..misses[0].len()).all(between);
             corners

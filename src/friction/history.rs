@@ -95,18 +95,18 @@ impl ContactHistory {
     /// Histories with exact states where the contact changes its phase. A small error of a slid distance changes the force ratio of a contact
     /// that sticks there by much.
     fn refined(histories: &[Option<Self>]) -> Vec<Option<Self>> {
-        let limits = histories.iter().flatten().filter_map(|own| {
-            let base = own.base.as_ref()?;
-            let tip = (&own.tip, own.met(&own.tip, Sliding::Tip));
-            Some([tip, (base, own.met(base, Sliding::Base))])
+        let limits = histories.iter().flatten().filter_map(|history| {
+            let base = history.base.as_ref()?;
+            let tip = (&history.tip, history.met(&history.tip, Sliding::Tip));
+            Some([tip, (base, history.met(base, Sliding::Base))])
         });
         let limits: Vec<(&SlidingLimit, Vec<usize>)> = limits.flatten().collect();
         let divided = SlidingLimit::divided(&limits);
         let mut divided = SlidingLimit::polished(&divided).into_iter();
-        let refined = histories.iter().map(|own| {
-            let own = own.as_ref()?;
-            if own.base.is_none() {
-                return Some(own.clone());
+        let refined = histories.iter().map(|history| {
+            let history = history.as_ref()?;
+            if history.base.is_none() {
+                return Some(history.clone());
             }
             let (tip, base) = (divided.next()?, divided.next()?);
             Some(Self::new(tip, Some(base)))

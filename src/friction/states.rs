@@ -16,8 +16,8 @@ const SLID_ROUNDING: f64 = 1e-14;
 pub fn states(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
     let mut found = held(queries);
     // The limits are interpolated; the force ratio decides whether a contact next to a limit still sticks.
-    let doubtful = queries.iter().zip(&found).enumerate();
-    let doubtful = doubtful.filter_map(|(i, (query, state))| {
+    let pairs = queries.iter().zip(&found).enumerate();
+    let doubtful = pairs.filter_map(|(i, (query, state))| {
         let ContactPhase::Sticks(end) = query.phase else {
             return None;
         };
@@ -77,8 +77,8 @@ pub fn held(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
             targets[i] = path.as_ref().and_then(|path| path.target(queries[i].push));
         }
     }
-    for (own, state) in found.iter_mut().zip(solve_known(&targets)) {
-        *own = own.or(state);
+    for (found, state) in found.iter_mut().zip(solve_known(&targets)) {
+        *found = found.or(state);
     }
     found
 }

@@ -37,12 +37,15 @@ pub fn complete(
             counts.add_others(without, has_failed);
             return (cells, audit);
         }
-        let solved = cells.outcome.iter().filter(|own| **own == Outcome::Solved);
+        let solved = cells
+            .outcome
+            .iter()
+            .filter(|outcome| **outcome == Outcome::Solved);
         audit.turned_over = solved.count() as u64;
     }
     let cells = cpu.solve(batch);
     let outcomes = cells.outcome.iter();
-    let others = outcomes.filter(|own| may_have_state(**own)).count();
+    let others = outcomes.filter(|outcome| may_have_state(**outcome)).count();
     counts.add_others(others as u64, has_failed || audit.differing > 0);
     (cells, audit)
 }

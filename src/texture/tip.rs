@@ -103,7 +103,7 @@ impl TipFrame {
         to: &FreePoint,
         between: &impl Fn(f64) -> FreePoint,
     ) -> bool {
-        let heights = [from, to].map(|own| own.from_contact.y);
+        let heights = [from, to].map(|point| point.from_contact.y);
         let lowest = heights[0].min(heights[1]);
         if lowest < -ROUNDING_MM {
             return true;
