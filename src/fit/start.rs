@@ -43,11 +43,11 @@ pub(super) fn within_reach(
     };
     for tries in 1..=MOST_TRIES {
         for parameter in free {
-            let Some(own) = parameter.value(scene) else {
+            let Some(scene_value) = parameter.value(scene) else {
                 continue;
             };
             for power in [tries, -tries] {
-                let at = |power: i32| own * RATIO.powi(power);
+                let at = |power: i32| scene_value * RATIO.powi(power);
                 let moved = |power: i32| {
                     let moved = scene.with_parameters(&[(*parameter, at(power))]).ok()?;
                     reach(&moved, points).is_ok().then_some(moved)

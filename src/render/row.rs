@@ -88,7 +88,7 @@ fn parts(angles: &[f64], values: &[f64], marks: &[Option<CellMark>]) -> Vec<RowP
         let point = [*angle, *value];
         let crosses = i > 0 && angles[i - 1] < 0.0 && *angle > 0.0;
         match parts.last_mut() {
-            Some((points, own)) if !crosses && *own == mark(i) => points.push(point),
+            Some((points, last_mark)) if !crosses && *last_mark == mark(i) => points.push(point),
             Some((points, _)) if !crosses => {
                 let shared = points.last().copied();
                 parts.push((shared.into_iter().chain([point]).collect(), mark(i)));
