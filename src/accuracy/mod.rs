@@ -56,7 +56,7 @@ pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Acc
 pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
     let distances = scene.grid.distance_mm.iter();
     let nearest = distances.copied().fold(f64::INFINITY, f64::min);
-    let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
+    let lengths = scene.corner_whiskers().map(|swept| swept.whisker.length_mm);
     let longest = lengths.fold(0.0, f64::max);
     (goal * longest / nearest).to_degrees()
 }

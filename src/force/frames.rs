@@ -129,7 +129,9 @@ impl CurvatureFrames {
                     }
                     contacts[i] != 0.0
                 }
-                None => contact_mm.into_iter().any(|own| !own.is_nan()),
+                None => contact_mm
+                    .into_iter()
+                    .any(|coordinate| !coordinate.is_nan()),
             };
             let contact = is_in_contact.then_some(FrameContact {
                 contact_mm,

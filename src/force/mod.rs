@@ -52,8 +52,8 @@ impl CurvatureFrame {
     /// Returns true if a number that `method` needs is missing.
     fn is_missing(&self, method: ForceMethod) -> bool {
         let contact = self.contact.as_ref();
-        let position = contact.map_or([0.0; 2], |own| own.contact_mm);
-        let angle = contact.and_then(|own| own.contact_angle_deg);
+        let position = contact.map_or([0.0; 2], |contact| contact.contact_mm);
+        let angle = contact.and_then(|contact| contact.contact_angle_deg);
         let angle = angle.filter(|_| method == ForceMethod::Lever);
         let at = self
             .at_mm
@@ -160,7 +160,7 @@ impl ForceOptions {
 
     /// Returns the standard deviations of what a frame measures, with the scatter of the baseline.
     fn with_scatter(&self) -> FrameDeviations {
-        let scatter = self.baseline.map(|own| own.sd_per_mm);
+        let scatter = self.baseline.map(|baseline| baseline.sd_per_mm);
         FrameDeviations {
             curvature_per_mm: self.deviations.curvature_per_mm.or(scatter),
             ..self.deviations
@@ -203,7 +203,9 @@ pub fn forces_until(
 ) -> Vec<FrameForce> {
     let method = options.method;
     let deviations = options.with_scatter();
-    let baseline_per_mm = options.baseline.map_or(0.0, |own| own.mean_per_mm);
+    let baseline_per_mm = options
+        .baseline
+        .map_or(0.0, |baseline| baseline.mean_per_mm);
     let distances = frames.iter().filter_map(|frame| frame.contact);
     let distances = distances.map(|contact| DVec2::from(contact.contact_mm).length());
     let nearest = distances.fold(whisker.length_mm, f64::min);

@@ -105,7 +105,7 @@ impl StateCurve<'_> {
         let pairs = samples.windows(2);
         let crossings = pairs.filter_map(|pair| self.between([pair[0], pair[1]]));
         let triples = samples.windows(3);
-        let turns = triples.flat_map(|own| self.at_extremum([own[0], own[1], own[2]]));
+        let turns = triples.flat_map(|triple| self.at_extremum([triple[0], triple[1], triple[2]]));
         let tip = self.rod.tau_tip();
         let is_on_whisker = |state: &ModelState| {
             let tau = state.point.x;

@@ -157,12 +157,12 @@ impl SheetGrid {
         signs: &mut Vec<u8>,
         starts: &mut Vec<DVec2>,
     ) {
-        let own = &self.pairs[pair];
+        let pair_grid = &self.pairs[pair];
         let wanted = DVec2::from(PAIRS[pair].map(|i| wanted[i]));
         let count = self.parts.len();
         signs.clear();
-        let [first, second] = &own.levers;
-        let nodes = first.iter().zip(second).zip(&own.sizes);
+        let [first, second] = &pair_grid.levers;
+        let nodes = first.iter().zip(second).zip(&pair_grid.sizes);
         signs.extend(nodes.map(|((x, y), size)| {
             let [across, along] = misses(DVec2::new(*x, *y), *size, wanted);
             u8::from(across > 0.0) | u8::from(along > 0.0) << 1
@@ -174,12 +174,12 @@ impl SheetGrid {
                 let any = corners[0] | corners[1] | corners[2] | corners[3];
                 let all = corners[0] & corners[1] & corners[2] & corners[3];
                 if any & !all == 3 {
-                    starts.push(self.start(own, i * count + k, wanted));
+                    starts.push(self.start(pair_grid, i * count + k, wanted));
                 }
             }
         }
-        for &cell in &own.turns {
-            let corners = self.corners(own, cell, wanted);
+        for &cell in &pair_grid.turns {
+            let corners = self.corners(pair_grid, cell, wanted);
             let may_vanish = |i: usize| {
                 let values = corners.map(|corner| corner[i]);
                 let least = values.into_iter().fold(f64::INFINITY, f64::min);
@@ -229,7 +229,7 @@ impl SheetGrid {
 
     /// Returns the contact before `tau`, and `|load| tau^2` of the first fold at `tau`, interpolated.
     fn fold(&self, tau: f64) -> (usize, f64) {
-        let after = self.taus.partition_point(|own| *own < tau);
+        let after = self.taus.partition_point(|node| *node < tau);
         let i = after.clamp(1, self.taus.len() - 1) - 1;
         let [from, to] = [self.taus[i], self.taus[i + 1]].map(libm::log);
         let at = (libm::log(tau) - from) / (to - from);
@@ -262,7 +262,7 @@ impl SheetGrid {
         let part = load * tau * tau / q;
         let before = self
             .parts
-            .partition_point(|own| *own < part)
+            .partition_point(|node| *node < part)
             .saturating_sub(1);
         let near = self.phis[i * self.parts.len() + before];
         (part < NEAR_FOLD).then(|| nearest_turn(map.pole.to_angle(), near))

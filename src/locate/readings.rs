@@ -67,7 +67,7 @@ impl BaseReadings {
                 "" | "nan" | "NaN" => Some(None),
                 cell => {
                     let number: Option<f64> = cell.parse().ok();
-                    number.filter(|own| own.abs() <= most).map(Some)
+                    number.filter(|number| number.abs() <= most).map(Some)
                 }
             });
             let rows = table.lines().count();

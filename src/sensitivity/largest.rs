@@ -50,7 +50,12 @@ pub(super) fn largest_along(
     let (moment, by) = match peak.before_end_deg {
         None => end().map_or_else(
             || none(NoDerivative::NoDetachment),
-            |own| (own.end.base_moment_nnm.unwrap_or_default(), own.by),
+            |detachment| {
+                (
+                    detachment.end.base_moment_nnm.unwrap_or_default(),
+                    detachment.by,
+                )
+            },
         ),
         Some(push_deg) => {
             let found = state(whisker, pole, distance_mm, push_deg, variables)?;

@@ -58,20 +58,20 @@ impl RodAxes {
         let mut places = [None; NUMBERS.len()];
         let mut parts = Vec::new();
         for variable in variables {
-            let mut own = variable.clone();
+            let mut remaining = variable.clone();
             let mut sum = Vec::new();
             if variable.pieces.is_some() {
                 // The pieces belong together with the taper of their coordinates.
-                let taper = std::mem::take(&mut own.taper);
+                let taper = std::mem::take(&mut remaining.taper);
                 sum.push((axes.len(), 1.0));
                 axes.push(RodDerivative {
                     taper,
-                    pieces: own.pieces.take(),
+                    pieces: remaining.pieces.take(),
                     ..RodDerivative::default()
                 });
             }
             for (number, place) in NUMBERS.iter().zip(&mut places) {
-                let coefficient = *number(&mut own);
+                let coefficient = *number(&mut remaining);
                 if coefficient == 0.0 {
                     continue;
                 }

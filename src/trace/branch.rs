@@ -234,7 +234,7 @@ impl Branch {
     fn detaches(&self) -> bool {
         let end = self.stable_end_deg().to_radians().abs();
         let history = self.history.as_ref();
-        let sliding = history.and_then(|own| own.sliding_at_end(end));
+        let sliding = history.and_then(|history| history.sliding_at_end(end));
         sliding.is_none_or(|sliding| sliding == Sliding::Tip)
     }
 

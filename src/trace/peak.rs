@@ -122,7 +122,7 @@ impl StableBranch {
         states
             .iter()
             .map(size)
-            .map(|own| own.unwrap_or(f64::NAN))
+            .map(|size| size.unwrap_or(f64::NAN))
             .collect()
     }
 }
