@@ -18,7 +18,7 @@ pub const SPECTRAL: &str = "spectral";
 /// Maximum bounds on the residual in whisker lengths, from coarse to the smallest that refined states allow.
 const BOUNDS: [f64; 5] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
 
-/// Measurement of expansions with one bound on the residual: their time on one thread, beside that of trajectories.
+/// Measurement of expansions with one bound on the residual: their time on one thread, beside the time of trajectories.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Expansions {
     /// Maximum bound on the residual of a state, in whisker lengths.

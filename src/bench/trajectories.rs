@@ -29,7 +29,7 @@ pub struct Trajectories {
     pub seconds: Timing,
     /// Rate in trajectories per second.
     pub per_s: f64,
-    /// Largest distance of the pole from that of the CPU, in whisker lengths.
+    /// Largest distance of the pole from the pole that the CPU finds, in whisker lengths.
     pub apart: f64,
 }
 

@@ -31,8 +31,8 @@ pub struct WholeMap {
     /// CPU time of the process for one cell, in microseconds; 0 where the system has no such clock. A software adapter's threads are
     /// included.
     pub host_us_per_cell: f64,
-    /// CPU seconds of the host's own stages over those of the CPU engine: one thread, from the sheets to the classification, without packing
-    /// and without the engine; 0 where the system has no such clock.
+    /// CPU seconds of the host's own stages over the CPU seconds with the CPU engine: one thread, from the sheets to the classification, without
+    /// packing and without the engine; 0 where the system has no such clock.
     pub host_share: f64,
     /// Stage times of cells, guesses and refinement over the sum of all stage times, from 0 to 1: the part that an engine can take over.
     pub device_can_take: f64,

@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 1e-12;
 /// Largest miss of a solution, relative to the target. Where a load is largest at the fold, it is known to the root of the rounding error.
 const LARGEST_MISS: f64 = 1e-6;
 
-/// Relative difference of the values of two solutions: that of values at a largest miss.
+/// Relative difference within which the values of two solutions are equal, as values at a largest miss are.
 const SAME: f64 = 1e-5;
 
 /// Step of differences, in natural sizes of the variables: for strains, and at places without derivatives.
@@ -53,11 +53,11 @@ pub struct DesignNearest {
     pub is_at_limit: Vec<bool>,
 }
 
-/// Finds the values of the `varied` numbers with which a push reaches all `targets`, as many, of one distance and side. Each target is of
-/// another quantity. The grid is not used.
+/// Finds the values of the `varied` numbers with which a push reaches all `targets`, of one distance and side. There are as many targets as
+/// varied numbers, each of another quantity. The grid is not used.
 ///
 /// Newton's method in a trust region, with exact derivatives, starts from many places within the limits: where the misses of neighbours are
-/// larger, and where all targets lie between those of neighbours. Largest strains are differentiated by differences.
+/// larger, and where all targets lie between the values of neighbours. Largest strains are differentiated by differences.
 ///
 /// ```
 /// use whiskmap::design::{DesignGoal, DesignTarget, DesignVariable, designs};

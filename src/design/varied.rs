@@ -27,7 +27,7 @@ pub struct DesignVaried {
 pub struct DesignVariable {
     /// Parameter of the scene, or the distance.
     pub variable: Variable,
-    /// Limits `[least, greatest]` in the unit of the variable, of which those of the scene are kept, too; `None` for those of the scene alone.
+    /// Limits `[least, greatest]` in the unit of the variable, within the limits of the scene; `None` for the limits of the scene alone.
     pub limits: Option<[f64; 2]>,
 }
 
@@ -137,8 +137,8 @@ impl DesignScene<'_> {
         part.map_or(self.distance_mm, |part| part * self.scene.whisker.length_mm)
     }
 
-    /// Returns the scene with these `values` of the varied numbers, `[variable]`, in front of its pole alone, whose distance is that of its grid. Other
-    /// distances would limit what is accepted.
+    /// Returns the scene with these `values` of the varied numbers, `[variable]`, in front of its pole alone. The grid has the pole's distance
+    /// alone, because other distances would limit the accepted values.
     pub fn at(&self, values: &[f64]) -> Result<Scene, SceneError> {
         let mut builder = self.scene.to_builder();
         let mut length_mm = self.scene.whisker.length_mm;

@@ -32,8 +32,8 @@ impl BatchRow {
         self.cells.iter().flat_map(Range::clone)
     }
 
-    /// Returns the cells of the row to solve whose push angles are before `push`, `[range]`. `magnitudes` are those of the side's columns, in
-    /// radians.
+    /// Returns the cells of the row to solve whose push angles are before `push`, `[range]`. `magnitudes` are the push angles of the
+    /// side's columns, in radians.
     pub fn before(
         &self,
         push: f64,

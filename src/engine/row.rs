@@ -203,7 +203,7 @@ mod tests {
         assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan());
     }
 
-    /// Channel values in SIMD lanes are those of the converter of single states.
+    /// Channel values in SIMD lanes equal the values of the converter of single states.
     #[test]
     fn values_of_a_net_are_those_of_a_trajectory() {
         use whiskmap_mechanics::shooting::FirstVariation;

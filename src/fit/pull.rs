@@ -73,7 +73,7 @@ pub(super) fn pulls(
 }
 
 /// Returns one line for each outlier of a fit to `points`: a residual of more than 3 standard deviations. Without deviations in the file, the median
-/// of the residuals gives that of all points.
+/// of the residuals gives the standard deviation of all points.
 pub(super) fn outliers(fit: &Fit, points: &MeasuredPoints) -> Vec<String> {
     let rows = fit.comparison.rows.iter();
     let residuals = rows.filter_map(|row| Some((row.line, row.residual_deg?, row.sd_deg)));

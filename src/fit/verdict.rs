@@ -9,7 +9,7 @@ use std::fmt;
 const LARGEST_RMS_DEG: f64 = 5.0;
 
 /// Largest RMS as a fraction of the range of the measured angles and 0, the angle at first touch. Without 0, the range of
-/// repeated measurements at one distance would be that of their errors.
+/// repeated measurements at one distance would be the range of their errors.
 const LARGEST_PART: f64 = 1.0 / 3.0;
 
 /// Largest excess of a reduced chi-square over 1, in its own standard deviations `sqrt(2 / freedom)`.

@@ -1,4 +1,4 @@
-//! Standard deviations of forces, to first order in those of what a frame measures.
+//! Standard deviations of forces, to first order in the standard deviations of the measured numbers of a frame.
 
 use super::FrameForce;
 use crate::scene::FrameDeviations;

@@ -1,7 +1,7 @@
 //! Forces from the change of curvature at one point of the whisker, as experiments measure them (the paper's Fig. 7B).
 //!
-//! The bending moment at a point is the bending stiffness there times the change of the curvature from that of the resting whisker. Divided
-//! by the lever of the contact it is the force, which is normal to the whisker at the contact: friction and inertia are left out.
+//! The bending moment at a point is the bending stiffness there times the change of the curvature from the resting whisker. The moment divided
+//! by the lever of the contact is the force, which is normal to the whisker at the contact: friction and inertia are left out.
 
 mod baseline;
 mod deviation;
@@ -42,7 +42,7 @@ pub struct CurvatureFrame {
     pub curvature_per_mm: f64,
     /// Arclength from the base to the measured point, in mm; NaN where it is missing.
     pub at_arc_length_mm: f64,
-    /// Position of the measured point, `[x, y]` in mm, NaN where it is missing; `None` for that of the resting whisker.
+    /// Position of the measured point, `[x, y]` in mm, NaN where it is missing; `None` for the position on the resting whisker.
     pub at_mm: Option<[f64; 2]>,
     /// Position and tangent of the whisker at the contact in this frame; `None` if the whisker is free.
     pub contact: Option<FrameContact>,
@@ -190,9 +190,9 @@ pub fn forces(
     forces_until(whisker, pole, frames, &options, &AtomicBool::new(false))
 }
 
-/// Computes the forces as [`forces`] does, with a baseline and standard deviations. These are of first order in those of the frames, which
-/// are independent; loads of frames without contact are exactly 0. If `cancel` is true, the function soon returns, and the remaining frames
-/// have no force.
+/// Computes the forces as [`forces`] does, with a baseline and standard deviations. The deviations are of first order in the deviations of
+/// the frames, which are independent; loads of frames without contact are exactly 0. If `cancel` is true, the function soon returns, and the
+/// remaining frames have no force.
 #[must_use]
 pub fn forces_until(
     whisker: &Whisker,

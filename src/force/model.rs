@@ -180,7 +180,7 @@ struct StateBy {
 }
 
 impl VariedState {
-    /// Returns the derivatives by `tau` (0) or load (1), with that of the force.
+    /// Returns the derivatives by `tau` (0) or load (1), with the derivative of the force.
     fn by(&self, coordinate: usize, force_by: f64) -> StateBy {
         let of = |(point, by): &(RodPoint, BaseDerivatives<f64>)| {
             let by = [by.by_tau, by.by_load][coordinate];

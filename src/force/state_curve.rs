@@ -1,7 +1,7 @@
-//! Stable states of the model at one distance of the contact from the base, and those of them that have a measured curvature.
+//! Stable states of the model at one distance of the contact from the base, and the states among them with a measured curvature.
 //!
 //! Along these states the row parameter `w = |load| tau^2` grows from first touch on. The curvature first grows, too, and may then fall again,
-//! so that several states can have it. They are bracketed between samples of `w`, and on both sides of an extremum.
+//! so that several states can have the same curvature. States are bracketed between samples of `w`, and on both sides of an extremum.
 
 use super::BaseAxis;
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
@@ -48,7 +48,7 @@ const EXTREMUM_WIDTH: f64 = 1e-6;
 const AT_EXTREMUM: f64 = 1e-11;
 
 impl BaseAxis {
-    /// Returns the angle from this axis to that of the follicle in a state of `rod`, in radians.
+    /// Returns the angle from this axis to the follicle's axis in a state of `rod`, in radians.
     pub fn turn(self, rod: &Rod, full: &FullState) -> f64 {
         match self {
             Self::Tangent => rod.mount * full.force * full.position.x,
@@ -152,8 +152,8 @@ impl StateCurve<'_> {
         (has_curvature && self.is_stable(&found)).then_some(found.state)
     }
 
-    /// Returns the states with the measured curvature around an extremum of the curvature, where the middle one of three samples misses it
-    /// least, and all of them on one side.
+    /// Returns the states with the measured curvature around an extremum of the curvature, where the middle one of three samples misses the
+    /// measured curvature least, and all three samples lie on one side.
     fn at_extremum(&self, mut around: [CurveSample; 3]) -> Vec<ModelState> {
         let is_below = around.map(|sample| sample.miss < 0.0);
         let [from, middle, to] = around.map(|sample| sample.miss.abs());

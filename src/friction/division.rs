@@ -118,7 +118,7 @@ impl SlidingLimit {
         polished.collect()
     }
 
-    /// Nodes of a divided segment. The states at touch and fold, which are singular or exact, stay those of the segment.
+    /// Nodes of a divided segment. The segment keeps its states at touch and fold, which are singular or exact.
     fn run(&self, segment: usize, states: &[Option<FrictionState>]) -> Option<LimitPart<'_>> {
         let LimitSegment { from, to, .. } = &self.segments[segment];
         let last = states.len() - 1;

@@ -85,7 +85,7 @@ impl SlidingLimit {
         Some(self.segments[segment].slid.at(x).0)
     }
 
-    /// Returns a state near that of the limit at the push angle `push` (radians); `None` beyond the ends.
+    /// Returns a state near the limit's state at the push angle `push` (radians); `None` beyond the ends.
     pub fn near(&self, push: f64) -> Option<FrictionPoint> {
         let (segment, x) = self.place(push)?;
         let [tau, load, angle] = self.segments[segment].contact(x);

@@ -24,8 +24,8 @@ const RATIO_STEP: f64 = 1e-4;
 /// Last Newton step of the force ratio of a contact that sticks. Forces change by less than it, relative to their size.
 const LAST_RATIO_STEP: f64 = 1e-9;
 
-/// Distance of the pole from its target, in whisker lengths, at which a state is accepted without another step. It is that of rounding: an
-/// error of a slid distance is multiplied by 1e6 and more in the force ratio of a contact that sticks there.
+/// Distance of the pole from its target, in whisker lengths, at which a state is accepted without another step. It is the size of
+/// rounding errors: an error of a slid distance is multiplied by 1e6 and more in the force ratio of a contact that sticks there.
 const AT_POLE: f64 = 1e-16;
 
 /// Largest distance of the pole from its target at which the force ratio changes, in whisker lengths.
@@ -199,7 +199,7 @@ impl FrictionTarget<'_> {
         }
     }
 
-    /// State of a converged iterate with the trajectory `here`, if it is as stable as those of its limit. There the determinants do not
+    /// State of a converged iterate with the trajectory `here`, if it is as stable as the states of its limit. There the determinants do not
     /// change their signs: a sliding contact meets its fold, and a sticking one buckles.
     fn accept(
         &self,

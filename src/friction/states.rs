@@ -97,7 +97,7 @@ impl ContactHistory {
     }
 }
 
-/// States of those of `targets` that are known, `[target]`.
+/// States of the known `targets`, `[target]`; `None` for the others.
 fn solve_known(targets: &[Option<FrictionTarget>]) -> Vec<Option<FrictionState>> {
     let known: Vec<FrictionTarget> = targets.iter().flatten().copied().collect();
     let mut solved = solve(&known).into_iter();

@@ -1,8 +1,8 @@
-//! Grid of states over contact and load on one side of a whisker, and the cells of it in which a state has given numbers at the base.
+//! Grid of states over contact and load on one side of a whisker, and the grid's cells in which a state has given numbers at the base.
 //!
 //! The contacts are evenly spaced in `u = ln tau + tau`, from the tip inward; the loads are parts of the first fold's. A pair of numbers
 //! `w` is the force times the lever `l`. In a cell that has such a state, `l x w` and `l . (f l - w)` have zeros, so that both change
-//! their signs between its corners. Without a load the lever is that of the resting whisker, so that small loads need no more cells.
+//! their signs between its corners. Without a load, the resting whisker gives the lever, so that small loads need no more cells.
 //! Where the Jacobian of the pair changes its sign, a cell may have two states; such cells and their neighbours have more starts.
 
 use super::newton::{lever, lever_by};
@@ -13,7 +13,7 @@ use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
 use whiskmap_mechanics::shooting::batch::{Batch, Method};
 use whiskmap_mechanics::shooting::{FirstVariation, Reader, ShootingMap};
 
-/// Indices of the numbers `[M, Fx, Fy]` in each pair of them.
+/// Indices of the two numbers of each pair in `[M, Fx, Fy]`.
 pub const PAIRS: [[usize; 2]; 3] = [[0, 2], [0, 1], [1, 2]];
 
 /// Arclength of the contact nearest to the base, in whisker lengths, as for the poles of a scene.
@@ -25,7 +25,7 @@ const CONTACT_STEP: f64 = 0.12;
 /// Smallest part of the fold's load beside 0.
 const FIRST_PART: f64 = 1e-4;
 
-/// Step between parts of the fold's load: relative to small parts, and an eighth of it near the fold.
+/// Step between parts of the fold's load: relative to small parts; near the fold, an eighth of this step.
 const PART_STEP: f64 = 0.35;
 
 /// Largest part of the fold's load: beyond 1, since the fold is interpolated between contacts.
@@ -148,7 +148,7 @@ impl SheetGrid {
         self.pairs[pair].is_determined
     }
 
-    /// Adds to `starts` points `(tau, load)` near all states whose pair of numbers, by its index in [`PAIRS`], is that of `wanted`.
+    /// Adds to `starts` points `(tau, load)` near all states with the pair of numbers of `wanted`, by the index of the pair in [`PAIRS`].
     /// `signs` is memory for the search.
     pub fn add_starts(
         &self,

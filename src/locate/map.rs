@@ -60,8 +60,8 @@ struct ContactCell {
 }
 
 impl Locator {
-    /// Returns the stable states of `whisker` at `pole`, those of the locator, at the distances and push angles of `grid`. First touch, and cells
-    /// that the whisker does not reach or has left, have no state.
+    /// Returns the stable states at the distances and push angles of `grid`. `whisker` and `pole` are the locator's. First touch, and cells that
+    /// the whisker does not reach or has left, have no state.
     #[must_use]
     pub fn shared_states(&self, whisker: &Whisker, pole: &Pole, grid: &Grid) -> SharedMap {
         let pole = &Pole::smooth(pole.radius_mm);

@@ -2,7 +2,7 @@
 //!
 //! Two of moment, axial force and transverse force determine contact and load, except where their Jacobian is singular; there may be
 //! several states, or none. All stable states with the measured numbers are returned, each with the condition of the inverse and the
-//! standard deviations that follow from those of the sensor. With all three numbers, the state nearest to them is returned.
+//! standard deviations that follow from the sensor's standard deviations. With all three numbers, the state nearest to them is returned.
 
 mod grid;
 mod map;
@@ -127,7 +127,7 @@ const SAME_STATE: f64 = 1e-6;
 /// Largest misfit of a state to two numbers, over the reading's size.
 const MOST_MISFIT_OF_TWO: f64 = 1e-9;
 
-/// Largest misfit of a state to three numbers without standard deviations, over the reading's size: that of numbers with three digits.
+/// Largest misfit of a state to three numbers without standard deviations, over the reading's size: the misfit of numbers with three digits.
 const MOST_MISFIT_OF_THREE: f64 = 1e-3;
 
 /// Largest misfit of a state to three numbers, in standard deviations: beyond it lies one of two million normal errors.
@@ -199,8 +199,8 @@ impl Locator {
             .collect()
     }
 
-    /// Finds all stable states for each of the `readings`, in their order; those of a reading by growing push angle. Each reading has at
-    /// least one row.
+    /// Finds all stable states for each of the `readings`, in their order. The states of a reading are sorted by growing push angle. Each
+    /// reading has at least one row.
     #[must_use]
     pub fn locate(
         &self,

@@ -14,7 +14,7 @@ pub struct BaseReadings {
     pub note: Option<String>,
 }
 
-/// Largest size of a moment in nN m and of a force in uN: beyond that of every whisker of a scene.
+/// Largest size of a moment in nN m and of a force in uN: beyond the loads of every whisker of a scene.
 pub const MOST_LOAD: f64 = 1e18;
 
 /// Largest size of an angle of the base, in degrees.

@@ -18,7 +18,7 @@ pub struct FrictionRow {
     pub contacts: Vec<(usize, f64)>,
 }
 
-/// Cell whose friction is not that of a contact that slides toward the tip.
+/// Cell whose contact does not slide toward the tip, so that its friction differs.
 struct FrictionCell {
     /// Index of the cell in the panel.
     cell: usize,

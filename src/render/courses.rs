@@ -37,8 +37,8 @@ const CURVES: [Curve; 3] = [
     },
 ];
 
-/// Returns a chart of a course: angle of the base, force and moment over time, with the events as dots, which the first plot names. Loads fall to those of the next
-/// state where the whisker detaches. Lines break where the state is undecided.
+/// Returns a chart of a course: angle of the base, force and moment over time, with the events as dots, which the first plot names. At a detachment,
+/// loads fall to the loads of the next state. Lines break where the state is undecided.
 #[must_use]
 pub fn courses(title: &str, whisk: &Whisk) -> Chart {
     let mut plots: Vec<Plot> = CURVES.iter().map(|curve| plot(whisk, curve)).collect();

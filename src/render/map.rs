@@ -191,7 +191,7 @@ fn quantities(
     scaled(map, channel, options, false)
 }
 
-/// Returns true for a moment, whose sign is that of its side.
+/// Returns true for a moment, which has the sign of its side.
 fn is_moment(channel: &str) -> bool {
     channel.ends_with("_nnm")
 }

@@ -69,7 +69,7 @@ impl MapMarks {
         }
     }
 
-    /// Returns the mark of each cell of a panel, `[distance][push_angle]`; nothing without marks. A cell with both marks has that of its status.
+    /// Returns the mark of each cell of a panel, `[distance][push_angle]`; nothing without marks. A cell with both marks has the mark of its status.
     pub fn of_panel(
         &self,
         map: &MapSlice,

@@ -79,8 +79,8 @@ pub fn chart(
 /// Part of a line, and the mark of its states.
 type RowPart = (Vec<[f64; 2]>, Option<CellMark>);
 
-/// Returns the parts of a row of `values` at `angles`, each of one mark: CF and CB apart, because the values between them are not those of
-/// first touch. Parts of one side share an end.
+/// Returns the parts of a row of `values` at `angles`, each of one mark. CF and CB have separate parts, because no line between them
+/// would pass through first touch. Parts of one side share an end.
 fn parts(angles: &[f64], values: &[f64], marks: &[Option<CellMark>]) -> Vec<RowPart> {
     let mark = |i: usize| marks.get(i).copied().flatten();
     let mut parts: Vec<RowPart> = Vec::new();

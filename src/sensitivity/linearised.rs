@@ -1,8 +1,8 @@
 //! A state with its derivatives by contact, load and the numbers of its rod, and how it moves with a variable.
 //!
 //! Equations `F(tau, load, p) = 0` determine the state. By the implicit function theorem, its derivative by `p` is
-//! `d(tau, load)/dp = -(dF/d(tau, load))^-1 dF/dp`. At a push angle, `F` is `(ln D, phi)` less that of the pole. At a fold it is `ln D` and
-//! `det J`, and at the tip `ln D` and the contact's distance from the tip.
+//! `d(tau, load)/dp = -(dF/d(tau, load))^-1 dF/dp`. At a push angle, `F` is `(ln D, phi)` of the state less `(ln D, phi)` of the pole. At a fold it
+//! is `ln D` and `det J`, and at the tip `ln D` and the contact's distance from the tip.
 
 use super::NoDerivative;
 use super::whisker::WhiskerDerivative;

@@ -96,7 +96,7 @@ impl TipFrame {
     }
 
     /// Returns true if a point between two points of the free part lies below the contact. The second derivative of the height by the
-    /// arclength is at most the largest curvature: parts whose lowest possible height is that of the contact need no further points.
+    /// arclength is at most the largest curvature. So parts that cannot be lower than the contact need no further points.
     fn descends(
         &self,
         from: &FreePoint,

@@ -3,7 +3,8 @@
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Reading;
 
-/// Expands to the description of a column: its own, that which all tables have, or that of the field of [`Reading`] with its name.
+/// Expands to the description of a column: its own description, the shared one of all tables, or the description of the field of
+/// [`Reading`] with its name.
 macro_rules! column {
     ($column:ident $($text:literal)+) => { concat!($($text),+) };
     (side) => { " Side of the whisker that the pole is on: cb (convex) or cf (concave)." };
@@ -16,7 +17,7 @@ macro_rules! column {
 }
 
 /// Defines a struct whose fields are the columns of a table. Their doc comments are the descriptions in
-/// [`COLUMNS`](crate::trace::Detachment::COLUMNS); without one, the description is that of all tables.
+/// [`COLUMNS`](crate::trace::Detachment::COLUMNS); a field without one has the shared description of all tables.
 ///
 /// A row `of a state` is a [`StateRow`] and a [`ContactRow`]: fields marked `= place` and `= load` have the values of a [`Reading`].
 macro_rules! row {
@@ -83,7 +84,7 @@ pub(crate) trait StateRow {
     /// Returns the row with the values of `state`; unchanged without one.
     fn with_state(self, state: Option<&Reading>) -> Self;
 
-    /// Returns the row with all loads 0, as those of a free whisker.
+    /// Returns the row with all loads 0, as a free whisker has them.
     fn unloaded(self) -> Self;
 }
 

@@ -119,7 +119,7 @@ pub(crate) struct DetachmentEnd {
 }
 
 /// Computes detachments with their crossings, `[distance]`, and the largest strain of each if `has_strain` is true. Then the sliding
-/// direction is that of the contact's history, too.
+/// direction is taken from the contact's history, too.
 pub(crate) fn detachments(
     resolution: Resolution,
     (whisker, pole, side): (&Whisker, &Pole, Side),

@@ -93,7 +93,7 @@ impl StableBranch {
         }
     }
 
-    /// Returns the largest size of `load` at the nodes of the continuation, some percent below that of [`Self::peak`]; NaN if no state is known.
+    /// Returns the largest size of `load` at the nodes of the continuation, some percent below the size of [`Self::peak`]; NaN if no state is known.
     #[must_use]
     pub fn rough_peak(&self, load: PushLoad) -> f64 {
         let sizes = self.sizes(&self.0.continuation.nodes, load);

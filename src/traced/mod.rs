@@ -170,10 +170,10 @@ impl TracedShape {
         })
     }
 
-    /// Replaces the fitted coefficients of the curvature by those of an equal fit on another machine, `[degree]`, in radians.
+    /// Replaces the fitted coefficients of the curvature by the coefficients of an equal fit on another machine, `[degree]`, in radians.
     ///
     /// # Errors
-    /// If they are not those of the fit to the points.
+    /// If the number of coefficients is wrong, or one differs from the fit to the points by more than 1e-6 radians.
     pub fn with_coefficients(mut self, coefficients: &[f64]) -> Result<Self, TracedError> {
         let fitted = &self.coefficients();
         let is_same = fitted.len() == coefficients.len()
@@ -193,7 +193,7 @@ impl TracedShape {
         Ok(self)
     }
 
-    /// Returns the coefficients of the curvature over the length, `[degree]`, in radians: those of Legendre polynomials of `2 s/L - 1`.
+    /// Returns the coefficients of the curvature over the length, `[degree]`, in radians, of Legendre polynomials of `2 s/L - 1`.
     #[must_use]
     pub fn coefficients(&self) -> Vec<f64> {
         self.curvature.legendre()[..=self.degree].to_vec()

@@ -286,7 +286,7 @@ impl Statistics {
 }
 
 /// Quantile by linear interpolation between neighbours of the `sorted` values: the first value is the quantile of 0, the last
-/// that of 1 (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
+/// value the quantile of 1 (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
 fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     let place = part * last as f64;

@@ -1,6 +1,6 @@
 //! Marks of states and pushes whose largest bending strain exceeds the yield strain of the whisker.
 //!
-//! Beyond its yield strain a whisker is not elastic, so that the state is not that of a real whisker. The marks change no state.
+//! Beyond its yield strain a whisker is not elastic, so that a real whisker is in another state. The marks change no state.
 
 use crate::design::DesignVaried;
 use crate::scene::{Pole, Scene, Whisker};

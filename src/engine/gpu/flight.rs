@@ -125,7 +125,7 @@ impl Flight {
         })
     }
 
-    /// Waits for the cells, writes them into those of the batch, and returns the buffers.
+    /// Waits for the cells, writes them into the cells of the batch, and returns the buffers.
     pub fn finish(
         self,
         device: &Device,

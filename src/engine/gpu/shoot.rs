@@ -109,7 +109,7 @@ impl Fan {
     }
 }
 
-/// Returns the results of `work` for `count` indices, on all threads of the pool of this thread. A thread of no pool, such as that of an engine,
+/// Returns the results of `work` for `count` indices, on all threads of the pool of this thread. A thread of no pool, such as an engine's thread,
 /// works alone.
 fn results<O: Send>(count: usize, work: impl Fn(usize) -> O + Send + Sync) -> Vec<O> {
     match rayon::current_thread_index() {

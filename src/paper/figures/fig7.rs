@@ -58,7 +58,7 @@ fn frame(motion: &Motion, i: usize, sample: &WhiskSample) -> Result<CurvatureFra
     let Some((shape, push)) = shape.zip(sample.push_angle_deg) else {
         return Ok(frame);
     };
-    // From the axes of first touch to those of the base.
+    // Rotation from the axes of first touch to the axes of the base.
     let turn = DVec2::from_angle(push.to_radians());
     let at = &shape.points[1];
     frame.curvature_per_mm = at.curvature_per_mm + noise;

@@ -237,8 +237,8 @@ fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Op
         .collect()
 }
 
-/// Returns the end of the `stretch` of the level curve that begins at each of the `starts`, or with `backward` of the one
-/// that ends there. An entry is `None` without a start, or where the continuation fails.
+/// Returns the end of the `stretch` of the level curve that begins at each of the `starts`. With `backward`, the stretch
+/// ends there. An entry is `None` without a start, or where the continuation fails.
 fn ends_of_pieces(
     rows: &[ContinuedRow],
     starts: &[Option<CurveNode>],

@@ -175,7 +175,7 @@ impl<'a> TipLoads<'a> {
 }
 
 impl TipEdge {
-    /// Returns true if the slopes of the polynomial through the distances agree with those of the trajectories.
+    /// Returns true if the slopes of the polynomial through the distances agree with the slopes of the trajectories.
     fn is_certified(&self) -> bool {
         let known = |part: &f64| self.corner * self.by_load[0].at(*part).0;
         let largest = |of: &dyn Fn(&f64) -> f64| {

@@ -95,7 +95,7 @@ impl GuessPanel {
     /// Computes the panel of `size` over the `range` of contacts.
     ///
     /// # Errors
-    /// If its error exceeds the largest one, the size whose error is expected not to; `None` if there is none.
+    /// If the panel's error exceeds `largest`: the size whose error is expected to be small enough, or `None` without such a size.
     fn new(
         case: SheetCase,
         range: [f64; 2],
@@ -115,8 +115,8 @@ impl GuessPanel {
         }
     }
 
-    /// Writes guesses for those of the growing `pushes` (magnitudes, in radians) that are near `row` between its `ends` into `guesses`, where there
-    /// are none: `[push_angle]`. Without its first end, the row begins at first touch.
+    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near `row` between its `ends`.
+    /// Without its first end, the row begins at first touch.
     ///
     /// Writes none if the row is not in the panel, if its push angle does not grow throughout, or if it contradicts the ends, which are computed
     /// apart.
@@ -235,7 +235,7 @@ impl GuessPanel {
         are_known.then_some([least, largest])
     }
 
-    /// Returns places in the range of loads of the contact at `place`: up to which it is surely stable, and that of the first fold of `contacts`.
+    /// Returns two places in the range of loads of the contact at `place`: the end of the surely stable loads, and the first fold of `contacts`.
     fn loads_at(&self, rod: &Rod, contacts: &ContactNodes, place: f64) -> [f64; 2] {
         let [ln_tau, ln_q] = self.0.along.at(place);
         let tau = libm::exp(ln_tau);
@@ -349,7 +349,7 @@ mod tests {
         assert_eq!(with, without);
     }
 
-    /// A pole out of reach leaves the rows within reach their panel, where the rod is continued to no radius or no modulus as well.
+    /// A pole out of reach leaves the rows within reach their panel, also where the rod is continued to no radius or no modulus.
     #[test]
     fn rows_out_of_reach_need_no_panel() {
         for (taper, gradient) in [(0.95, 0.0), (1.0, 0.0), (0.3, -0.9)] {
@@ -365,7 +365,8 @@ mod tests {
         }
     }
 
-    /// A pair of folds between the nodes is found, however near to each other; another first fold than that of the contact nodes is refused.
+    /// A pair of folds between the nodes is found, however near to each other. A first fold that differs from the first fold of the contact nodes
+    /// is refused.
     #[test]
     fn folds_that_nodes_do_not_show_are_found() {
         let rod = cone(Side::Cb);

@@ -62,8 +62,8 @@ impl PanelRow {
     /// Returns the `row` at `place` with its range of contacts and its number of `cells`. `None` if it has no contacts: the pole is out of reach,
     /// or the base may be inside the pole.
     ///
-    /// The contact is at least as far along the whisker as it is from the base, and that is at least the pole's distance without its radius. It
-    /// is at most that of first touch, or the `last`.
+    /// The contact is at least as far along the whisker as it is from the base, and this distance is at least the pole's distance without its
+    /// radius. The contact is at most as far along as at first touch, or at the `last` contact.
     fn new(rod: &Rod, row: usize, place: &Row, last: f64, cells: usize) -> Option<Self> {
         let reach = place.contact.min(place.end);
         let nearest = place.pole_distance - rod.pole.abs();
@@ -148,7 +148,7 @@ impl<P> PanelQueue<P> {
         queue
     }
 
-    /// Begins the panel of some `rows`, or those of their halves where contacts are too far apart for one panel.
+    /// Begins the panel of some `rows`, or two panels of half the rows where contacts are too far apart for one panel.
     fn begin(&mut self, rows: Range<usize>, halvings: u32) {
         let panel_rows = &self.rows[rows.clone()];
         let Some(first) = panel_rows.first() else {

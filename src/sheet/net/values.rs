@@ -175,7 +175,7 @@ impl ValuePanel {
     /// Creates the panel of `rows` from the `states` of a grid.
     ///
     /// # Errors
-    /// If its bound exceeds `most`, in whisker lengths, the size that is expected to be accurate enough; `None` if there is none.
+    /// If the panel's bound exceeds `most`, in whisker lengths: the size that is expected to be accurate enough, or `None` without such a size.
     fn new(
         sheet: &Sheet,
         rows: &[PanelRow],
@@ -426,7 +426,7 @@ mod tests {
         }
     }
 
-    /// States of the net at random contacts and loads of a row are those of trajectories.
+    /// The net and trajectories give equal states at random contacts and loads of a row.
     #[test]
     fn a_bound_is_four_times_the_largest_error() {
         let (sheet, rows) = cone();

@@ -3,7 +3,7 @@
 //! With `y = 2 x - 1`, `f(x) = c_0 + c_1 T_1(y) + ... + c_(N-1) T_(N-1)(y)` is the polynomial through `N` values. The coefficients of
 //! an analytic function fall geometrically, and the error is about the first coefficient left out (L. N. Trefethen, *Approximation
 //! Theory and Approximation Practice*, SIAM 2013, chapters 3 and 8). Clenshaw's recurrence evaluates it. On the interval it is as stable
-//! as the barycentric formula (J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 501, 2004), and gives derivatives as well.
+//! as the barycentric formula (J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 501, 2004), and gives derivatives, too.
 
 use crate::numerics::{LaneNumbers, Lanes, Real, SimdTask, Unit, WIDTH, keep, pack};
 use std::f64::consts::FRAC_PI_2;

@@ -197,7 +197,7 @@ pub struct TensorColumns<const D: usize> {
 pub struct LevelBlock<const D: usize, const L: usize> {
     /// Number of columns of the block.
     pub count: usize,
-    /// Functions of the tensor on the level line, `[function][column]`; columns beyond the count are as the first one.
+    /// Functions of the tensor on the level line, `[function][column]`; columns beyond the count equal the first column.
     pub values: [LaneNumbers; D],
     /// Functions of `x` alone on the level line: `[function][column]`.
     pub along: [LaneNumbers; L],
@@ -213,8 +213,8 @@ impl<const D: usize> TensorColumns<D> {
     /// Returns the points at which the first function is `level`, with the values of `along` there: functions of `x` alone. There is one point
     /// for each column, in blocks of [`WIDTH`].
     ///
-    /// A point is the first at which the first function grows beyond the level. Returns `None` if there is none in some column, or if Newton's
-    /// method fails.
+    /// The point of a column is the first at which the first function grows beyond the level. Returns `None` if a column has no such point, or
+    /// if Newton's method fails.
     #[must_use]
     pub fn level<const L: usize>(
         &self,
@@ -475,7 +475,7 @@ mod tests {
         );
     }
 
-    /// Along columns of an expansion with exchanged variables, quotients with places of each column are those of its functions.
+    /// Along columns of an expansion with exchanged variables, quotients with places of each column equal the quotients of its functions.
     #[test]
     fn quotients_are_those_of_columns() {
         let function = |x: f64, y: f64| (x + 2.0 * y).sin();
@@ -498,7 +498,8 @@ mod tests {
         }
     }
 
-    /// Two places of a column can have the value of the level: the line has the one where the function grows. Above the largest value there is none.
+    /// Two places of a column can have the value of the level: the line has the place where the function grows. Above the largest value there is no
+    /// place.
     #[test]
     fn a_level_line_is_where_the_function_grows() {
         let tensor = tensor(|x, y| [x * (0.9 - x) + y, x, 0.0]);

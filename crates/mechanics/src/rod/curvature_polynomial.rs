@@ -1,4 +1,4 @@
-//! Curvature at rest as a polynomial of the arclength, such as that of a shape traced from an image.
+//! Curvature at rest as a polynomial of the arclength, such as the curvature of a shape traced from an image.
 
 /// Number of coefficients of a [`CurvaturePolynomial`]: one more than its largest degree.
 pub const CURVATURE_TERMS: usize = 7;
@@ -8,7 +8,7 @@ const PLACES: u32 = 512;
 
 /// Curvature of a whisker at rest, in radians per whisker length, as a polynomial of the arclength.
 ///
-/// Coefficients are those of Legendre polynomials of `2 s - 1`, with the arclength `s` in whisker lengths: the first one is the angle
+/// Coefficients belong to Legendre polynomials of `2 s - 1`, with the arclength `s` in whisker lengths: the first one is the angle
 /// by which the whole whisker turns, in radians. Powers of `s` would cancel in `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvaturePolynomial {

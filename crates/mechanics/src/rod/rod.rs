@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde_core::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// The side of the whisker that the pole is on. The default is that of the push angle 0.
+/// The side of the whisker that the pole is on. The default is the side of the push angle 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Concave backward: the pole is on the convex side, the force bends the whisker further.
@@ -208,8 +208,8 @@ impl Rod {
         s.derivative
     }
 
-    /// Returns the softness at `tau`, dimensionless: the whisker's rotation there under a small load, over that of the clamped cone with the
-    /// same base and tip. It is 1 without a profile and a mount that turns. Folds of all whiskers lie at similar `|load| s^2 softness`.
+    /// Returns the softness at `tau`, dimensionless: the whisker's rotation there under a small load, over the rotation of the clamped cone
+    /// with the same base and tip. It is 1 without a profile and a mount that turns. Folds of all whiskers lie at similar `|load| s^2 softness`.
     #[must_use]
     pub fn softness(&self, tau: f64) -> f64 {
         if self.profile.is_none() && self.mount == 0.0 {

@@ -2,7 +2,7 @@
 //!
 //! The spring is the limit of a short and soft piece of the rod. So the equations of the rod add its turn to all angles and their
 //! derivatives, and the relations that follow from them hold behind it: the symplectic product of the derivatives, and the energy,
-//! which contains that of the spring. The frame of the base is then that of the mount, which a push turns.
+//! which contains the spring's energy. The frame of the base is then the frame of the mount, which a push turns.
 
 use crate::numerics::{Real, Vector};
 use crate::shooting::contact::direction;

@@ -15,8 +15,8 @@ use crate::shooting::{Carried, Sensitivity};
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralFirst;
 
-/// Set of the first and second derivatives on any rod. Beside those of [`GeneralFirst`], a trajectory carries the second derivatives of `theta` and
-/// `X` by force and arclength, and of `Y` by force.
+/// Set of the first and second derivatives on any rod. Beside the derivatives of [`GeneralFirst`], a trajectory carries the second derivatives of
+/// `theta` and `X` by force and arclength, and of `Y` by force.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralSecond;
 
