@@ -53,7 +53,7 @@ struct MapRun {
     packed_bytes: u64,
 }
 
-/// Name of an engine, the engine unless it is the CPU's, and its runs.
+/// Name of an engine, the engine itself (`None` for the CPU engine), and its runs.
 type MeasuredEngine = (String, Option<Box<dyn Engine>>, Vec<MapRun>);
 
 /// Adds maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is one for all.

@@ -346,8 +346,8 @@ impl Places {
         Some(&self.places[nearest])
     }
 
-    /// Returns the places from which searches start: those with smaller misses than their neighbours, and the best corner of each cell in which every
-    /// target lies between the values at corners. The best ones come first.
+    /// Returns the places from which searches start: the places with smaller misses than their neighbours, and the best corner of each cell in
+    /// which every target lies between the values at corners. The best places come first.
     fn starts(&self) -> Vec<Vec<f64>> {
         let variables = self.places[0].len() as u32;
         let all = 0..self.places.len();

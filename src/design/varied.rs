@@ -1,4 +1,4 @@
-//! Numbers that a design varies, and those that follow them.
+//! Numbers that a design varies, and numbers that follow them.
 
 use crate::scene::{Parameter, Scene, SceneError, range_around};
 use crate::sensitivity::Variable;

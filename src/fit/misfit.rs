@@ -161,7 +161,7 @@ impl<'a> Misfit<'a> {
             .map(|parameter| (*parameter).into())
             .collect();
         let mut columns = self.points.derivatives_with(&whiskers, &variables)?;
-        // With a free taper, the radius at the tip follows the one at the base. No detachment depends on the size of a cone.
+        // With a free taper, the radius at the tip follows the radius at the base. No detachment depends on the size of a cone.
         if self.free.contains(&Parameter::Taper) {
             let of_base = self.free.iter().zip(&mut columns);
             let mut of_base =

@@ -25,7 +25,7 @@ const DOUBLED_AT: f64 = 8.0;
 /// Step at which the end of the states counts as reached, in parts of a whole one.
 const LAST_PART: f64 = 1e-9;
 
-/// Maximum number of samples, those after a halved step included.
+/// Maximum number of samples, including samples after a halved step.
 const SAMPLES: usize = 160;
 
 /// Maximum number of trajectories to a state.
@@ -138,7 +138,7 @@ impl StateCurve<'_> {
         self.sheet.is_stable(point.x, point.y, &full.map)
     }
 
-    /// Returns the state with the measured curvature between two samples, if one of them has less and the other more.
+    /// Returns the state with the measured curvature between two samples, if one sample has a smaller curvature and the other a larger one.
     fn between(&self, [one, other]: [CurveSample; 2]) -> Option<ModelState> {
         if one.miss * other.miss > 0.0 {
             return None;

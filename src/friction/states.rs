@@ -83,7 +83,7 @@ pub fn held(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
     found
 }
 
-/// Returns the states of limits at pushes, magnitudes in radians, `[pair]`; `None` where none is found.
+/// Returns the states of limits at pushes, magnitudes in radians, `[pair]`; `None` where no state is found.
 pub(super) fn at_limits(pairs: &[(&SlidingLimit, f64)]) -> Vec<Option<FrictionState>> {
     let targets = pairs.iter();
     let targets = targets.map(|(limit, push)| FrictionTarget::sliding(limit, *push));

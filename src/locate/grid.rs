@@ -275,7 +275,8 @@ const ON_TIP: f64 = 1e-9;
 /// Determinant of a stable state at the fold, relative to its scale, that is rounding ([`Sheet::is_stable`](crate::sheet::Sheet::is_stable)).
 const FLAT: f64 = 1e-7;
 
-/// Component across the lever and along it of the force times the lever less the numbers `wanted`, the latter times the lever.
+/// Returns `lever x wanted` and `size - lever . wanted`, where `size` is the force times the square of the lever. Both are 0 in a state with
+/// the numbers `wanted`.
 #[inline(always)]
 fn misses(lever: DVec2, size: f64, wanted: DVec2) -> [f64; 2] {
     [lever.perp_dot(wanted), size - lever.dot(wanted)]

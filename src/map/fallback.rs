@@ -63,7 +63,7 @@ const fn is_final(outcome: Outcome) -> bool {
     )
 }
 
-/// The cells that the CPU solves: those that are not certified, and the sample of the audit.
+/// The cells that the CPU solves: cells without a certificate, and the sample of the audit.
 fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
     let rows = batch.rows.par_iter().map(|row| {
         let side = &batch.sides[row.side];

@@ -51,7 +51,7 @@ pub fn fill(
 const fn status(outcome: Outcome, is_on_span: bool) -> Status {
     match outcome {
         Outcome::Solved => Status::Solved,
-        // At the tip both verdicts are right; the boundary's is taken.
+        // At the tip both verdicts are right; the verdict of the boundary is taken.
         Outcome::AtTip if is_on_span => Status::Solved,
         Outcome::AtTip | Outcome::BeyondTip => Status::BeyondTip,
         Outcome::BeyondFold => Status::BeyondFold,
@@ -130,8 +130,8 @@ impl RowWriter<'_> {
         })
     }
 
-    /// Writes a run of cells with one verdict, the first of which is in the column `from` of the side. Keeps those in doubt and, with
-    /// friction, those in contact.
+    /// Writes a run of cells with one verdict. Its first cell is in the column `from` of the side. Keeps the cells in doubt and, with friction,
+    /// the cells in contact.
     fn write_run(&mut self, from: usize, cells: CellRun) {
         let columns: &SideColumns = &self.side.columns;
         let run = from..from + cells.steps.len();

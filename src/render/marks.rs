@@ -34,12 +34,12 @@ pub enum CellMark {
 pub struct MapMarks {
     /// True if states whose contact does not slide toward the tip are marked.
     has_marks: bool,
-    /// Yield strain beyond which states are marked; `None` if none is.
+    /// Yield strain beyond which states are marked; `None` without marks.
     yield_strain: Option<f64>,
 }
 
 impl MapMarks {
-    /// Finds the marks of a picture of `channel`: those that occur.
+    /// Finds the marks that occur in a picture of `channel`.
     pub fn new(map: &MapSlice, channel: &str) -> Result<Self, RenderError> {
         let mut marks = Self {
             has_marks: has_marks(map, channel)?,

@@ -31,7 +31,7 @@ pub enum Equations {
     Tip,
 }
 
-/// Numbers of a rod by which trajectories are differentiated, one lane for each. Every variable is a sum of them.
+/// Numbers of a rod by which trajectories are differentiated, one lane for each. Every variable is a sum of these numbers.
 pub struct RodAxes {
     axes: Vec<RodDerivative>,
     /// Parts of each variable, `[variable][part]`: the index of an axis and its coefficient.

@@ -16,7 +16,7 @@ pub enum Variable {
     /// Push angle of a state, in degrees. Detachments do not depend on it.
     PushAngleDeg,
     /// Measured radius of this row of the whisker's profile, in um, before the factor of the radii. Where two neighbouring rows are equal,
-    /// the derivative is the mean of those on both sides.
+    /// the derivative is the mean of the derivatives on both sides.
     ProfileRadiusUm(usize),
 }
 

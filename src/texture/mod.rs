@@ -2,8 +2,8 @@
 //!
 //! The paper has no model for this. Here, the surface is a row of small poles, its asperities, on a line. The whisker touches one of them
 //! at a time, without friction and inertia, and passes between them. A detachment frees it. It comes to rest against the first asperity
-//! ahead that its stable states can lie on at this angle of the base, else it is free. The states are those of [`crate::whisk`] against one
-//! pole, which is the limit of a single asperity.
+//! ahead that its stable states can lie on at this angle of the base, else it is free. Against one pole, the limit of a single
+//! asperity, the states equal the states of [`crate::whisk`].
 //!
 //! Positions are `[x, y]` in mm: the base is at the origin, and the line of the asperities is at `y = distance`. The angle of the base is 0
 //! where the chord of the resting whisker is normal to that line. It grows toward `x`, and pushes CB then.

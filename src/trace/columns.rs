@@ -149,7 +149,7 @@ mod tests {
         );
     }
 
-    /// Rows share the description of a field of [`Reading`], but for those with their own.
+    /// Rows share the description of a field of [`Reading`], but for rows with a description of their own.
     #[test]
     fn columns_have_their_descriptions() {
         let about = |columns: &[(&str, &str)], name: &str| {

@@ -239,8 +239,8 @@ pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>>
     (0..sheet.rows.len()).map(of_row).collect()
 }
 
-/// Returns the signed push angle, in degrees, at which the stable states end that `row` of `sheet` has beside those from first touch, at the
-/// push at which these end ([`RowBoundary::snap`]).
+/// Returns the signed push angle, in degrees, up to which `row` of `sheet` has other stable states at the push where the stable states from
+/// first touch end ([`RowBoundary::snap`]).
 pub(crate) fn snaps_deg(sheet: &Sheet, row: usize) -> Option<f64> {
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
     let span = boundary.snap()?;

@@ -5,7 +5,7 @@ use super::{Branch, StableBranch, StateAtPush};
 use crate::sheet::{CurveNode, ON_CURVE};
 use glam::DVec2;
 
-/// Largest excess of a maximum over the value at the end, relative to this, with which it counts as that at the end.
+/// Largest relative excess of a maximum over the value at the end with which the end counts as the maximum.
 const AT_END: f64 = 1e-9;
 
 /// Number of states between two others in a round of the search for a maximum: about as many as a block of trajectories has.

@@ -48,7 +48,7 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
 impl Varying {
     /// Returns the variables of the whisker that the number of `scene` changes, each with its change per unit of the number. The cone beyond
     /// the last measured row follows the last two rows. A measured radius changes all smoothed ones.
-    /// With a taper in `all`, the radius at the tip follows that at the base.
+    /// With a taper in `all`, the radius at the tip follows the radius at the base.
     pub(super) fn variables(&self, scene: &Scene, all: &[Self]) -> Vec<(Variable, f64)> {
         let is_taper =
             |one: &Self| matches!(one.source, VaryingSource::Parameter(Parameter::Taper));

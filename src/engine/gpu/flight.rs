@@ -46,7 +46,7 @@ pub struct Flight {
     buffers: Buffers,
 }
 
-/// Binds the first `size` bytes of a buffer, or all of it.
+/// Binds the first `size` bytes of a buffer, or the whole buffer.
 pub fn binding(binding: u32, buffer: &wgpu::Buffer, size: Option<u64>) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry {
         binding,

@@ -67,7 +67,7 @@ pub fn continuations(
     ended.collect()
 }
 
-/// Follows level curves as [`continuations`] does, also those that reach no edge within nine turns.
+/// Follows level curves as [`continuations`] does, also curves that reach no edge within nine turns.
 fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Continuation>> {
     let mut ended = follow_with_retry(starts, stretch, miss);
     let pairs = starts.iter().zip(&ended);
@@ -86,8 +86,8 @@ fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Optio
     ended
 }
 
-/// Follows all curves, and those that reach no edge once more with nodes to rounding. Where curves meet, nodes with an error of `miss` can lead to
-/// another curve.
+/// Follows all curves. Curves that reach no edge are followed once more with nodes to rounding: where curves meet, nodes with an error of `miss`
+/// can lead to another curve.
 fn follow_with_retry(
     starts: &[CurveStart],
     stretch: Stretch,

@@ -70,7 +70,7 @@ const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
 pub(super) struct DistanceExtremum {
     /// Index of the sample before the extremum.
     after: usize,
-    /// Predicted load, in parts of the corner's.
+    /// Predicted load, in parts of the corner's load.
     part: f64,
     /// Parts that bracket the root of `dlnD/dload`.
     parts: Bracket,

@@ -1,4 +1,4 @@
-//! Sizes of panels: the first one for a bound, and those that the decay of coefficients calls for.
+//! Sizes of panels: the first size for a bound, and the next sizes by the decay of coefficients.
 
 use super::bound::{MARGIN, larger};
 use whiskmap_mechanics::numerics::expansion::{MOST_POINTS, TAIL};

@@ -84,7 +84,7 @@ impl Grid {
 }
 
 impl ValueDraft {
-    /// Begins the panels of [`ValueNet::new`]; `None` where none is possible.
+    /// Begins the panels of [`ValueNet::new`]; `None` where no panel is possible.
     pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
         let samples = Arc::clone(sheet.samples.as_ref()?);
         if sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {

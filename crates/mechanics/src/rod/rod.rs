@@ -199,8 +199,8 @@ impl Rod {
         tau_derivative(dual(self.taper, by_taper), dual(s, by_s))
     }
 
-    /// Returns the derivative of [`arclength`] by a variable, in whisker lengths per unit of it. The variable changes `tau` by `by_tau` and the taper
-    /// by `by_taper`.
+    /// Returns the derivative of [`arclength`] by a variable, in whisker lengths per unit of the variable. The variable changes `tau` by `by_tau`
+    /// and the taper by `by_taper`.
     #[must_use]
     pub fn arclength_derivative(&self, tau: f64, by_tau: f64, by_taper: f64) -> f64 {
         let dual = |value, derivative| Dual { value, derivative };

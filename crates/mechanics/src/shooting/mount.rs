@@ -8,8 +8,8 @@ use crate::numerics::{Real, Vector};
 use crate::shooting::contact::direction;
 use crate::shooting::{Carried, Planar, Sensitivity};
 
-/// Returns the state of the rod, and the derivatives that a trajectory carries, behind a mount of this `compliance`, from those at the base. The signed
-/// `force` acts at the contact, in `E I_base/L_w^2`.
+/// Returns the state of the rod, and the derivatives that a trajectory carries, behind a mount of this `compliance`, from the state and derivatives at
+/// the base. The signed `force` acts at the contact, in `E I_base/L_w^2`.
 #[inline(always)]
 pub fn in_mount<T: Real, S: Sensitivity<T>>(
     compliance: T,

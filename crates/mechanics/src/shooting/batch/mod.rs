@@ -1,6 +1,6 @@
 //! Batches of thousands of trajectories in `f64`, in lanes of the widest SIMD unit of the machine, on all cores.
 //!
-//! The generic integrator is inlined into functions compiled for every [`Unit`]; the processor decides which of them run.
+//! The generic integrator is inlined into functions compiled for every [`Unit`]; the processor decides which functions run.
 //! Results do not depend on the number of threads: the conditions of a block do not depend on it.
 
 mod block;

@@ -35,7 +35,7 @@ impl<T: Real> Sensitivity<T> for GeneralFirst {
     }
 }
 
-/// Derivatives by load and `tau` from those by force and arclength.
+/// Derivatives by load and `tau`, from the derivatives by force and arclength.
 #[inline(always)]
 fn base_derivatives<T: Real>(
     arrival: &Arrival<T>,
