@@ -20,8 +20,8 @@ pub struct Accuracy {
 }
 
 /// Text about the quantities that a tolerance bounds, and the quantities without a bound. The error of a state is the error of its pole as
-/// seen from the base: of the pole's direction, and of the logarithm of the pole's distance as radians. At a fold all other quantities change with the
-/// square root of the push angle.
+/// seen from the base: of the pole's direction, and of the logarithm of the pole's distance as radians. At a fold all other quantities
+/// change with the square root of the push angle.
 pub const BOUNDED: &str = "push angles: where states stand and where they detach; not contact angles, arclengths, \
                            forces and moments, which next to a fold change faster";
 

@@ -1,5 +1,5 @@
-//! Plan of a map whose steps keep a tolerance: the share of the tolerance that is left to the engine, the engines that keep this share, and
-//! the bounds that the map describes.
+//! Plan of a map whose steps keep a tolerance. The plan has the engine's share of the tolerance, the engines that keep this share, and the
+//! bounds that the map describes.
 
 use super::{Error, accuracy};
 use crate::accuracy::{Accuracy, BOUNDED, bound_deg};

@@ -56,8 +56,9 @@ pub struct DesignNearest {
 /// Finds the values of the `varied` numbers with which a push reaches all `targets`, of one distance and side. There are as many targets as
 /// varied numbers, each of another quantity. The grid is not used.
 ///
-/// Newton's method in a trust region, with exact derivatives, starts from many places within the limits: where the misses of neighbours are
-/// larger, and where all targets lie between the values of neighbours. Largest strains are differentiated by differences.
+/// Newton's method in a trust region, with exact derivatives, starts from many places within the limits. Starts are places whose
+/// neighbours have larger misses, and places where all targets lie between the values of neighbours. Largest strains are differentiated by
+/// differences.
 ///
 /// ```
 /// use whiskmap::design::{DesignGoal, DesignTarget, DesignVariable, designs};
@@ -346,8 +347,8 @@ impl Places {
         Some(&self.places[nearest])
     }
 
-    /// Returns the places from which searches start: the places with smaller misses than their neighbours, and the best corner of each cell in
-    /// which every target lies between the values at corners. The best places come first.
+    /// Returns the places from which searches start, the best ones first. They are the places with smaller misses than their neighbours, and the
+    /// best corner of each cell in which every target lies between the values at corners.
     fn starts(&self) -> Vec<Vec<f64>> {
         let variables = self.places[0].len() as u32;
         let all = 0..self.places.len();

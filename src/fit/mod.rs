@@ -54,8 +54,8 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Returns one line for each point that is left out, each parameter at a limit, and each parameter that the points do not determine,
-    /// and one for residuals that are larger than their standard deviations. With another loss than squares, each outlier has a line. `points` are
+    /// Returns one line for each point that is left out, each parameter at a limit, and each parameter that the points do not determine.
+    /// Residuals that are larger than their standard deviations have one line. With another loss than squares, each outlier has a line. `points` are
     /// the points of the fit.
     #[must_use]
     pub fn warnings(&self, points: &MeasuredPoints) -> Vec<String> {

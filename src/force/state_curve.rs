@@ -152,8 +152,8 @@ impl StateCurve<'_> {
         (has_curvature && self.is_stable(&found)).then_some(found.state)
     }
 
-    /// Returns the states with the measured curvature around an extremum of the curvature, where the middle one of three samples misses the
-    /// measured curvature least, and all three samples lie on one side.
+    /// Returns the states with the measured curvature around an extremum of the curvature. There, all three samples lie on one side of the
+    /// measured curvature, and the middle sample misses it least.
     fn at_extremum(&self, mut around: [CurveSample; 3]) -> Vec<ModelState> {
         let is_below = around.map(|sample| sample.miss < 0.0);
         let [from, middle, to] = around.map(|sample| sample.miss.abs());

@@ -25,7 +25,7 @@ const RATIO_STEP: f64 = 1e-4;
 const LAST_RATIO_STEP: f64 = 1e-9;
 
 /// Distance of the pole from its target, in whisker lengths, at which a state is accepted without another step. It is the size of
-/// rounding errors: an error of a slid distance is multiplied by 1e6 and more in the force ratio of a contact that sticks there.
+/// rounding errors, because the force ratio of a contact that sticks there multiplies an error of the slid distance by 1e6 and more.
 const AT_POLE: f64 = 1e-16;
 
 /// Largest distance of the pole from its target at which the force ratio changes, in whisker lengths.

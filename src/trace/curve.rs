@@ -239,8 +239,8 @@ pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>>
     (0..sheet.rows.len()).map(of_row).collect()
 }
 
-/// Returns the signed push angle, in degrees, up to which `row` of `sheet` has other stable states at the push where the stable states from
-/// first touch end ([`RowBoundary::snap`]).
+/// Returns the signed push angle, in degrees, up to which the whisker in `row` of `sheet` may snap to other stable states: the end of
+/// [`RowBoundary::snap`].
 pub(crate) fn snaps_deg(sheet: &Sheet, row: usize) -> Option<f64> {
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
     let span = boundary.snap()?;

@@ -148,7 +148,8 @@ row! {
 }
 
 impl LargestSpread {
-    /// Computes the spread of the largest loads of samples beside those of the scene, `scene_loads`: `[contact force, moment, strain]` of each push that detaches.
+    /// Computes the spread of the largest loads of samples beside the loads of the scene: `[contact force, moment, strain]` of each push that
+    /// detaches.
     pub(super) fn new(
         scene_loads: Option<[f64; 3]>,
         samples: impl Iterator<Item = [f64; 3]>,

@@ -1,8 +1,8 @@
 //! The mount of the base: a clamp, or a torsion spring that turns by its compliance times the moment at the base.
 //!
-//! The spring is the limit of a short and soft piece of the rod. So the equations of the rod add its turn to all angles and their
-//! derivatives, and the relations that follow from them hold behind it: the symplectic product of the derivatives, and the energy,
-//! which contains the spring's energy. The frame of the base is then the frame of the mount, which a push turns.
+//! The spring is the limit of a short and soft piece of the rod. So the equations of the rod add the spring's turn to all angles and
+//! their derivatives. Their consequences hold behind the spring: the symplectic product of the derivatives, and the energy, which
+//! contains the spring's energy. The frame of the base is then the frame of the mount, which a push turns.
 
 use crate::numerics::{Real, Vector};
 use crate::shooting::contact::direction;

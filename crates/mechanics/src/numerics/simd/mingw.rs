@@ -1,5 +1,5 @@
-//! Fused multiplication and addition where the C library is MinGW-w64's, which rounds twice: [`f64::mul_add`] calls it outside of SIMD
-//! kernels, and results would differ from the results on other systems.
+//! Fused multiplication and addition for MinGW-w64, whose C library rounds twice. [`f64::mul_add`] calls the C library outside of
+//! SIMD kernels, so that results would differ from the results on other systems.
 #![allow(
     unsafe_code,
     reason = "the linker takes this function in place of the C library's"
