@@ -69,7 +69,7 @@ pub struct DesignNearest {
 /// let target = |goal, value| DesignTarget { distance_mm: 60.0, side: Side::Cb, goal, value };
 /// let targets = [target(DesignGoal::SlipOff, 30.0), target(DesignGoal::MaxMoment, 5e6)];
 /// let varied = [Parameter::BaseRadiusUm, Parameter::Taper];
-/// let varied = varied.map(|own| DesignVariable { variable: own.into(), limits: None });
+/// let varied = varied.map(|parameter| DesignVariable { variable: parameter.into(), limits: None });
 /// let found = designs(&robot, &varied.into_iter().collect(), &targets)?;
 /// let [solution] = &found.solutions[..] else { panic!("{found:?}") };
 /// assert!((solution[1] - 0.935_453_623_8).abs() < 1e-6); // The push angle depends on the taper alone.

@@ -146,16 +146,16 @@ impl FrictionTarget<'_> {
             level.node(at.point, &here.full, self.push, at.angle)
         };
         let angles = node(level, here);
-        let own_slid = slid(rod, &angles);
+        let iterate_slid = slid(rod, &angles);
         let place = level.row.pole(self.push);
-        let missed = self.slid.map_or(0.0, |slid| slid - own_slid);
+        let missed = self.slid.map_or(0.0, |slid| slid - iterate_slid);
         let residual = map.pole.distance(place);
         let jacobian = beside.map(|(other, there)| {
             let by = |variation: DVec2, radius: f64, angle: f64| {
                 variation.extend(radius - rod.pole * (angle + variation.y))
             };
             let moved = map.residual(there.full.map.pole) / RATIO_STEP;
-            let slid = (slid(&other.rod, &node(other, there)) - own_slid) / RATIO_STEP;
+            let slid = (slid(&other.rod, &node(other, there)) - iterate_slid) / RATIO_STEP;
             DMat3::from_cols(
                 by(map.by_tau, rod.radius(at.point.x), here.by_tau.angle),
                 by(map.by_load, 0.0, here.by_load.angle),
