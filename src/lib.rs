@@ -24,8 +24,8 @@
 //!
 //! let scene = Scene::parse(include_str!("../scenes/cone.toml"), "cone.toml")?;
 //! for taper in [0.0, 0.5, 1.0] {
-//!     let own = scene.to_builder().set(Parameter::Taper, taper).distance_mm([15.66]).build()?;
-//!     for (_, end) in whiskmap::curve(&own, Options::default())? {
+//!     let tapered = scene.to_builder().set(Parameter::Taper, taper).distance_mm([15.66]).build()?;
+//!     for (_, end) in whiskmap::curve(&tapered, Options::default())? {
 //!         println!("{taper} {:?} {:?} {:?}", end.side, end.kind, end.push_angle_deg);
 //!     }
 //! }

@@ -19,9 +19,9 @@ pub struct Accuracy {
     pub error_deg: f64,
 }
 
-/// Text about the quantities that a tolerance bounds, and those that it does not. The error of a state is the one of its pole as seen
-/// from the base: of its direction, and of the logarithm of its distance as radians. At a fold all other quantities change with the
-/// square root of the push angle.
+/// Text about the quantities that a tolerance bounds, and the quantities without a bound. The error of a state is the error of its pole as
+/// seen from the base: of the pole's direction, and of the logarithm of the pole's distance as radians. At a fold all other quantities
+/// change with the square root of the push angle.
 pub const BOUNDED: &str = "push angles: where states stand and where they detach; not contact angles, arclengths, \
                            forces and moments, which next to a fold change faster";
 
@@ -56,7 +56,7 @@ pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Acc
 pub fn bound_deg(scene: &Scene, goal: f64) -> f64 {
     let distances = scene.grid.distance_mm.iter();
     let nearest = distances.copied().fold(f64::INFINITY, f64::min);
-    let lengths = scene.corner_whiskers().map(|own| own.whisker.length_mm);
+    let lengths = scene.corner_whiskers().map(|swept| swept.whisker.length_mm);
     let longest = lengths.fold(0.0, f64::max);
     (goal * longest / nearest).to_degrees()
 }

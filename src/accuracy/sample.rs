@@ -35,8 +35,8 @@ impl SceneSample {
         let whiskers = whiskers(scene);
         let pairs: Vec<_> = whiskers
             .iter()
-            .flat_map(|own| sides.iter().map(move |side| (own, *side)))
-            .map(|(own, side)| (own.rod(side), side, own.whisker.length_mm))
+            .flat_map(|swept| sides.iter().map(move |side| (swept, *side)))
+            .map(|(swept, side)| (swept.rod(side), side, swept.whisker.length_mm))
             .collect();
         let effects = Effects::of(pairs.iter().map(|(rod, ..)| rod));
         let distances_mm = spread(&scene.grid.distance_mm, DISTANCES);

@@ -30,9 +30,9 @@ pub fn measure(scene: &Scene, runs: usize) -> Vec<Detachments> {
     let curves = |resolution: Resolution| -> Vec<Detachment> {
         sides
             .par_iter()
-            .flat_map_iter(|(own, side)| {
+            .flat_map_iter(|(swept, side)| {
                 let distances = &scene.grid.distance_mm;
-                curve_at(resolution, &own.whisker, &own.pole, *side, distances)
+                curve_at(resolution, &swept.whisker, &swept.pole, *side, distances)
             })
             .collect()
     };

@@ -1,6 +1,6 @@
 //! Error against time for every engine of this machine, on the states of a scene, and times of whole maps.
 //!
-//! The CPU solves targets from the guesses of the net. The spectral engine and a GPU solve those of the same cells whose rows have
+//! The CPU solves targets from the guesses of the net. The spectral engine and a GPU solve the cells whose rows have
 //! expansions; nets are made beforehand. Errors are differences from much finer steps. Times are medians, without the first run, which warms up.
 
 mod cpu;

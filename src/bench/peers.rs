@@ -75,7 +75,7 @@ impl Peers {
     fn parse(bytes: &[u8]) -> Result<Self, String> {
         let file: PeersFile = serde_json::from_slice(bytes)
             .map_err(|cause| format!("must be as benches/peers/run.sh writes it: {cause}"))?;
-        let rows = |rows: Option<PeerRows>| rows.map(|own| own.rows);
+        let rows = |rows: Option<PeerRows>| rows.map(|peer| peer.rows);
         let programs = [
             ("heyoka", file.heyoka, 0.0),
             ("AUTO-07p", rows(file.auto), LAST_DIGIT),

@@ -27,17 +27,17 @@ impl Request {
     ) -> Vec<Self> {
         let method = Method::fine().with_effects(task.effects);
         let sides = whisker_sides(scene).into_iter().zip(&task.rods).enumerate();
-        let requests = sides.map(|(index, ((own, side), rod))| {
+        let requests = sides.map(|(index, ((swept, side), rod))| {
             let distances = scene.grid.distance_mm.iter();
-            let distances: Vec<f64> = distances.map(|d| d / own.whisker.length_mm).collect();
+            let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
             let sheet = Sheet::new(method, rod, side, &distances);
             let columns = SideColumns::new(&scene.grid.push_angle_deg, side, 0);
-            let pushes: Vec<f64> = columns.columns.iter().map(|own| own.push).collect();
+            let pushes: Vec<f64> = columns.columns.iter().map(|column| column.push).collect();
             let rows = sheet.rows.iter();
             let poles = rows.flat_map(|row| pushes.iter().map(|push| row.pole(*push)));
             let targets = poles.map(|pole| task.target(index as u32, pole)).collect();
             let rows = (0..distances.len()).map(|row| (0, row));
-            let side = WhiskerSide::new(Arc::new(columns), own.whisker.units(), sheet);
+            let side = WhiskerSide::new(Arc::new(columns), swept.whisker.units(), sheet);
             let side = with_net(side);
             let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
             batch.has_points = true;
@@ -59,7 +59,9 @@ impl Request {
 
 /// Returns the largest number of loads of a net of the `requests`.
 pub fn loads(requests: &[Request]) -> usize {
-    let sides = requests.iter().flat_map(|own| own.batch.sides.iter());
+    let sides = requests
+        .iter()
+        .flat_map(|request| request.batch.sides.iter());
     let nets = sides.filter_map(|side| side.sheet.net());
     nets.map(ValueNet::loads).max().unwrap_or(0)
 }

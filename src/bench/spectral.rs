@@ -18,7 +18,7 @@ pub const SPECTRAL: &str = "spectral";
 /// Maximum bounds on the residual in whisker lengths, from coarse to the smallest that refined states allow.
 const BOUNDS: [f64; 5] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
 
-/// Measurement of expansions with one bound on the residual: their time on one thread, beside that of trajectories.
+/// Measurement of expansions with one bound on the residual: their time on one thread, beside the time of trajectories.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Expansions {
     /// Maximum bound on the residual of a state, in whisker lengths.
@@ -105,14 +105,16 @@ fn row(
     let requests = Request::all(scene, task, expand);
     let solver = Spectral::new(bound);
     let Ok((seconds, cells)) = timed(runs, || {
-        let cells = requests.iter().map(|own| {
-            let batch = own.batch.clone().with_expansions(bound);
+        let cells = requests.iter().map(|request| {
+            let batch = request.batch.clone().with_expansions(bound);
             solver.solve(&batch)
         });
         Ok::<_, Infallible>(cells.collect::<Vec<_>>())
     });
     let points = requests.iter().zip(&cells);
-    let points: Points = points.flat_map(|(own, cells)| own.solved(cells)).collect();
+    let points: Points = points
+        .flat_map(|(request, cells)| request.solved(cells))
+        .collect();
     if points.is_empty() {
         return None;
     }
@@ -130,7 +132,11 @@ fn row(
 
 /// Times the expansions of all whisker sides.
 fn one_time(requests: &[Request], runs: usize, bound: f64) -> Timing {
-    let sides = || requests.iter().flat_map(|own| own.batch.sides.iter());
+    let sides = || {
+        requests
+            .iter()
+            .flat_map(|request| request.batch.sides.iter())
+    };
     let Ok((seconds, ())) = timed(runs, || {
         for side in sides() {
             black_box(side.net(bound));
@@ -151,8 +157,9 @@ fn expansions(
     let error = |row: &Measurement| row.errors.angle_deg.worst;
     let time = |row: &Measurement| row.us_per_state;
     let vectors = format!("cpu {}", Unit::detect());
-    let own = |other: &&Measurement| other.engine == vectors && other.threads == row.threads;
-    let trajectories = || report.rows.iter().filter(own);
+    let is_by_trajectories =
+        |other: &&Measurement| other.engine == vectors && other.threads == row.threads;
+    let trajectories = || report.rows.iter().filter(is_by_trajectories);
     let accurate = trajectories().filter(|other| error(other) <= error(row));
     let cheapest = accurate.min_by(|a, b| time(a).total_cmp(&time(b)));
     let best = || trajectories().min_by(|a, b| error(a).total_cmp(&error(b)));

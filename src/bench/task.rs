@@ -39,7 +39,7 @@ pub fn places(hits: &[Hit]) -> Vec<(f64, f64)> {
 /// Returns the whiskers of a scene, each on every side that the push angles need: `[side]`.
 pub fn whisker_sides(scene: &Scene) -> Vec<(SweptWhisker, Side)> {
     let sides = Plan::sides(scene);
-    let both = |own: SweptWhisker| sides.iter().map(move |side| (own.clone(), *side));
+    let both = |swept: SweptWhisker| sides.iter().map(move |side| (swept.clone(), *side));
     scene.whiskers().flatten().flat_map(both).collect()
 }
 
@@ -89,15 +89,15 @@ impl Task {
     /// Creates the task of a scene: the states of every cell that has one.
     pub fn new(scene: &Scene) -> Self {
         let sides = whisker_sides(scene);
-        let rod = |(own, side): &(SweptWhisker, Side)| own.rod(*side);
+        let rod = |(swept, side): &(SweptWhisker, Side)| swept.rod(*side);
         let rods: Vec<Rod> = sides.iter().map(rod).collect();
         let effects = Effects::of(&rods);
         let method = Method::fine().with_effects(effects);
         let distances_mm = &scene.grid.distance_mm;
         let (targets, starts): (Vec<CellTarget>, Vec<CellTarget>) =
             (rods.par_iter().zip(&sides).enumerate())
-                .flat_map_iter(|(index, (rod, (own, side)))| {
-                    let length = own.whisker.length_mm;
+                .flat_map_iter(|(index, (rod, (swept, side)))| {
+                    let length = swept.whisker.length_mm;
                     let distances: Vec<f64> = distances_mm.iter().map(|d| d / length).collect();
                     let sheet = Sheet::new(method, rod, *side, &distances);
                     let solved = states(method, &sheet, &scene.grid.push_angle_deg);

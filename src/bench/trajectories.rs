@@ -29,7 +29,7 @@ pub struct Trajectories {
     pub seconds: Timing,
     /// Rate in trajectories per second.
     pub per_s: f64,
-    /// Largest distance of the pole from that of the CPU, in whisker lengths.
+    /// Largest distance of the pole from the pole that the CPU finds, in whisker lengths.
     pub apart: f64,
 }
 
@@ -64,9 +64,9 @@ pub fn measure(task: &Task, runs: usize, report: &mut Report, on_step: &mut dyn 
         on_step(&format!("trajectories by {}", one.name));
         let measured = Gpu::open(Some(one.adapter), one.precision).and_then(|mut gpu| {
             let (seconds, found) = timed(runs, || gpu.shoot(method, &conditions))?;
-            let apart = found.iter().zip(&wanted);
-            let apart = apart.map(|(own, other)| own.pole.distance(other.pole));
-            let apart = apart.fold(0.0, larger);
+            let pairs = found.iter().zip(&wanted);
+            let distances = pairs.map(|(state, wanted)| state.pole.distance(wanted.pole));
+            let apart = distances.fold(0.0, larger);
             Ok::<_, EngineError>(row(&one.name, Some(gpu.describe().adapter), seconds, apart))
         });
         match measured {

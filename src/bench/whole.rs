@@ -31,8 +31,8 @@ pub struct WholeMap {
     /// CPU time of the process for one cell, in microseconds; 0 where the system has no such clock. A software adapter's threads are
     /// included.
     pub host_us_per_cell: f64,
-    /// CPU seconds of the host's own stages over those of the CPU engine: one thread, from the sheets to the classification, without packing
-    /// and without the engine; 0 where the system has no such clock.
+    /// CPU seconds of the host's own stages over the CPU seconds with the CPU engine: one thread, from the sheets to the classification, without
+    /// packing and without the engine; 0 where the system has no such clock.
     pub host_share: f64,
     /// Stage times of cells, guesses and refinement over the sum of all stage times, from 0 to 1: the part that an engine can take over.
     pub device_can_take: f64,
@@ -47,13 +47,13 @@ struct MapRun {
     seconds: f64,
     host: f64,
     /// CPU seconds of the host's own stages on one thread.
-    own: f64,
+    on_one_thread: f64,
     stages_ms: StageTimes,
     fallback: u64,
     packed_bytes: u64,
 }
 
-/// Name of an engine, the engine unless it is the CPU's, and its runs.
+/// Name of an engine, the engine itself (`None` for the CPU engine), and its runs.
 type MeasuredEngine = (String, Option<Box<dyn Engine>>, Vec<MapRun>);
 
 /// Adds maps of `scene` by every engine of the report, on all threads. The engines take turns, so that a busy machine is one for all.
@@ -80,7 +80,8 @@ pub fn measure(
         engines.push((spectral, Some(Box::new(Spectral::default())), Vec::new()));
     }
     if on_gpu(plan.method.effects).is_ok() {
-        let measured = |one: &Candidate| report.engines.iter().any(|own| own.name == one.name);
+        let measured =
+            |one: &Candidate| report.engines.iter().any(|engine| engine.name == one.name);
         for one in candidates().into_iter().filter(measured) {
             match Gpu::open(Some(one.adapter), one.precision) {
                 Ok(gpu) => engines.push((one.name, Some(Box::new(gpu)), Vec::new())),
@@ -95,8 +96,12 @@ pub fn measure(
             on_step(&format!("map {round} of {runs} by {name}"));
             let sample = pool.install(|| run(scene, &plan, borrowed(&mut engine)));
             let sample = sample.and_then(|sample| {
-                let own = one.install(|| own_seconds(scene, &plan, borrowed(&mut engine)))?;
-                Ok(MapRun { own, ..sample })
+                let on_one_thread =
+                    one.install(|| one_thread_seconds(scene, &plan, borrowed(&mut engine)))?;
+                Ok(MapRun {
+                    on_one_thread,
+                    ..sample
+                })
             });
             match sample {
                 Ok(sample) => {
@@ -111,8 +116,8 @@ pub fn measure(
     let maps = engines.into_iter();
     let adapter = |name: &str| {
         let mut engines = report.engines.iter();
-        let own = engines.find(|own| own.name == name && own.threads.is_none());
-        own.map(|own| own.adapter.clone())
+        let engine = engines.find(|engine| engine.name == name && engine.threads.is_none());
+        engine.map(|engine| engine.adapter.clone())
     };
     let maps = maps.map(|(name, _, samples)| WholeMap {
         adapter: adapter(&name),
@@ -129,11 +134,13 @@ pub fn measure(
 
 /// Borrows the engine of a run.
 fn borrowed(engine: &mut Option<Box<dyn Engine>>) -> Option<&mut dyn Engine> {
-    engine.as_mut().map(|own| own.as_mut() as &mut dyn Engine)
+    engine
+        .as_mut()
+        .map(|engine| engine.as_mut() as &mut dyn Engine)
 }
 
 /// CPU seconds of this thread, the only one of its pool, for one map that is not packed.
-fn own_seconds(
+fn one_thread_seconds(
     scene: &Scene,
     plan: &Plan,
     engine: Option<&mut dyn Engine>,
@@ -177,7 +184,7 @@ fn run(scene: &Scene, plan: &Plan, engine: Option<&mut dyn Engine>) -> Result<Ma
     Ok(MapRun {
         seconds: summary.wall_seconds,
         host: summary.cpu_seconds.unwrap_or_default(),
-        own: 0.0,
+        on_one_thread: 0.0,
         stages_ms: stages.map(|(name, s)| (name.to_owned(), 1e3 * s)).collect(),
         fallback: summary.engine_cells.fallback(),
         packed_bytes,
@@ -195,7 +202,7 @@ fn summed_up(engine: String, cells: usize, samples: &[MapRun]) -> WholeMap {
         adapter: None,
         seconds: Timing::of(samples.iter().map(|run| run.seconds)),
         host_us_per_cell: 1e6 * median(samples.iter().map(|run| run.host)) / cells as f64,
-        host_share: median(samples.iter().map(|run| run.own)),
+        host_share: median(samples.iter().map(|run| run.on_one_thread)),
         device_can_take: for_devices / (for_devices + for_cpus),
         fallback: samples.last().map_or(0, |run| run.fallback),
         packed_bytes_per_cell: samples

@@ -66,9 +66,9 @@ fn check_grids(grids: [&Grid; 2]) -> Result<(), Mismatch> {
             names
         }
     };
-    let [own, other] = [names(&first), names(&second)];
-    if own != other {
-        return Err(Mismatch::Axes(own, other));
+    let [first_names, second_names] = [names(&first), names(&second)];
+    if first_names != second_names {
+        return Err(Mismatch::Axes(first_names, second_names));
     }
     let differing = first.iter().zip(&second).find(|(one, other)| one != other);
     differing.map_or(Ok(()), |((axis, one), (_, other))| {
@@ -120,8 +120,10 @@ fn check_scenes([first, second]: [&Scene; 2]) -> Result<(), Mismatch> {
         return Ok(());
     }
     let is_swept = |parameter| first.grid.axis(parameter).is_some();
-    let all = Parameter::ALL.into_iter().filter(|own| !is_swept(*own));
-    let mut differing = all.filter(|own| own.value(first) != own.value(second));
+    let all = Parameter::ALL
+        .into_iter()
+        .filter(|parameter| !is_swept(*parameter));
+    let mut differing = all.filter(|parameter| parameter.value(first) != parameter.value(second));
     let Some(parameter) = differing.next() else {
         return Err(Mismatch::Profile);
     };

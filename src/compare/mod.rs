@@ -109,18 +109,18 @@ pub fn compare(maps: [&MapSource; 2]) -> Result<MapComparison, CompareError> {
         }
     }
     for whiskers in ZarrStore::blocks(grid) {
-        for own in &mut codes {
-            let (channel, add) = (own.channel, |cell, values| own.add(grid, cell, values));
+        for code in &mut codes {
+            let (channel, add) = (code.channel, |cell, values| code.add(grid, cell, values));
             each_cell(maps, channel, &whiskers, add)?;
         }
-        for own in &mut quantities {
-            let (channel, add) = (own.channel, |cell, values| own.add(cell, values));
+        for quantity in &mut quantities {
+            let (channel, add) = (quantity.channel, |cell, values| quantity.add(cell, values));
             each_cell(maps, channel, &whiskers, add)?;
         }
     }
     let codes = codes.into_iter().map(CodeComparison::finish);
     comparison.codes = codes.collect();
-    let quantities = quantities.into_iter().map(|own| own.finish(grid));
+    let quantities = quantities.into_iter().map(|quantity| quantity.finish(grid));
     comparison.quantities = quantities.collect();
     Ok(comparison)
 }

@@ -35,7 +35,7 @@ pub struct QuantityComparison {
     counts: Vec<u64>,
 }
 
-/// Bits of an `f32` below those that number a bin of differences: a bin is 2^-8 of its values wide.
+/// Bits of an `f32` below the bits that number a bin of differences: a bin is 2^-8 of its values wide.
 const BIN_SHIFT: u32 = 15;
 
 impl QuantityComparison {

@@ -37,19 +37,22 @@ impl Within {
     /// many cells may have a state in only one map.
     #[must_use]
     pub fn exceeded(&self, comparison: &MapComparison) -> Vec<&'static str> {
-        let codes = comparison.codes.iter().filter(|own| {
-            let allowed = self.cells(own.channel);
-            allowed.is_some_and(|allowed| own.differing as f64 > allowed)
+        let codes = comparison.codes.iter().filter(|code| {
+            let allowed = self.cells(code.channel);
+            allowed.is_some_and(|allowed| code.differing as f64 > allowed)
         });
-        let quantities = comparison.quantities.iter().filter(|own| {
-            let allowed = self.allowed(own);
-            let one_sided = own.only_in.iter().sum::<u64>() as f64;
+        let quantities = comparison.quantities.iter().filter(|quantity| {
+            let allowed = self.allowed(quantity);
+            let one_sided = quantity.only_in.iter().sum::<u64>() as f64;
             allowed.is_some_and(|allowed| {
-                own.beyond_rounding > allowed || one_sided > self.cells("regime").unwrap_or(0.0)
+                quantity.beyond_rounding > allowed
+                    || one_sided > self.cells("regime").unwrap_or(0.0)
             })
         });
-        let codes = codes.map(|own| own.channel);
-        codes.chain(quantities.map(|own| own.channel)).collect()
+        let codes = codes.map(|code| code.channel);
+        codes
+            .chain(quantities.map(|quantity| quantity.channel))
+            .collect()
     }
 
     fn named(&self, channel: &str) -> Option<f64> {
@@ -64,11 +67,12 @@ impl Within {
     }
 
     /// The allowed difference of a channel in its unit; `None` for any difference.
-    fn allowed(&self, own: &QuantityComparison) -> Option<f64> {
-        let is_exact = STATE_CHANNELS.contains(&own.channel) || own.channel == "margin_deg";
+    fn allowed(&self, quantity: &QuantityComparison) -> Option<f64> {
+        let is_exact =
+            STATE_CHANNELS.contains(&quantity.channel) || quantity.channel == "margin_deg";
         let relative = self.relative.filter(|_| is_exact);
-        let relative = relative.map(|relative| relative * own.largest_value);
-        self.named(own.channel).or(relative)
+        let relative = relative.map(|relative| relative * quantity.largest_value);
+        self.named(quantity.channel).or(relative)
     }
 }
 
@@ -89,7 +93,7 @@ impl FromStr for Within {
                 return Err(refused("must be a whole number of cells".to_owned()));
             }
             let is_new = if entry.contains('=') {
-                let found = channel_names().find(|own| *own == name.trim());
+                let found = channel_names().find(|channel| *channel == name.trim());
                 let name = found.ok_or_else(|| {
                     let hint = did_you_mean(name, channel_names());
                     refused(format!(
@@ -97,7 +101,7 @@ impl FromStr for Within {
                         Channels::STANDARD
                     ))
                 })?;
-                let is_new = absolute.iter().all(|(own, _)| *own != name);
+                let is_new = absolute.iter().all(|(other, _)| *other != name);
                 absolute.push((name, number));
                 is_new
             } else {

@@ -1,5 +1,5 @@
-//! Plan of a map whose steps keep a tolerance: the share of it that is left to the engine, the engines that keep it, and the bounds that
-//! the map describes.
+//! Plan of a map whose steps keep a tolerance. The plan has the engine's share of the tolerance, the engines that keep this share, and the
+//! bounds that the map describes.
 
 use super::{Error, accuracy};
 use crate::accuracy::{Accuracy, BOUNDED, bound_deg};
@@ -67,7 +67,7 @@ impl<'a> PlannedMap<'a> {
 
     /// Returns the spectral engine; `None` where the CPU engine takes less time, as counted by the plan.
     ///
-    /// It is also `None` where the residuals would have to be smaller than those of the CPU engine.
+    /// It is also `None` where the residuals would have to be smaller than the residuals of the CPU engine.
     #[must_use]
     pub fn cheaper(&self) -> Option<Spectral> {
         let count = self.plan.expansions(self.scene);

@@ -138,7 +138,7 @@ mod tests {
         let map = map(&scene.build().unwrap(), Options::default()).unwrap();
         let [height, width] = map.shape();
         let computed = Channel::ALL.into_iter();
-        let computed = computed.filter(|own| Channels::STANDARD.contains(own.name()));
+        let computed = computed.filter(|channel| Channels::STANDARD.contains(channel.name()));
         for channel in computed {
             let view = map.view(0, channel).unwrap();
             assert_eq!(view.dim(), (height, width));

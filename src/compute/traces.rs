@@ -31,14 +31,14 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
     let accuracy = accuracy(scene, options.tolerance_deg, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     let distances = &scene.grid.distance_mm;
-    let of_side = |own: Result<&SweptWhisker, &RefusedWhisker>, side| {
-        let Ok(own) = own else {
+    let of_side = |swept: Result<&SweptWhisker, &RefusedWhisker>, side| {
+        let Ok(swept) = swept else {
             return Detachment::without_whisker(side, distances);
         };
         let parts = distances.chunks(DISTANCES_AT_ONCE);
         let parts = parts.filter(|_| !options.is_cancelled());
         parts
-            .flat_map(|part| curve_at(resolution, &own.whisker, &own.pole, side, part))
+            .flat_map(|part| curve_at(resolution, &swept.whisker, &swept.pole, side, part))
             .collect()
     };
     let mut ends = Vec::with_capacity(2 * scene.whisker_count() * distances.len());

@@ -256,33 +256,35 @@ fn checked(
     }
     let count = varied.variables.len();
     let first = targets.first();
-    let is_one_push = |own: &&DesignTarget| {
-        first.is_some_and(|first| (own.distance_mm, own.side) == (first.distance_mm, first.side))
+    let is_one_push = |target: &&DesignTarget| {
+        first.is_some_and(|first| {
+            (target.distance_mm, target.side) == (first.distance_mm, first.side)
+        })
     };
-    let goals = targets.iter().filter(is_one_push).map(|own| own.goal);
+    let goals = targets.iter().filter(is_one_push).map(|target| target.goal);
     let goals = each_once(&goals.collect::<Vec<_>>()).len();
     if goals != count || targets.len() != count || count == 0 {
         let (variables, targets) = (count, goals);
         return Err(DesignError::Targets { variables, targets });
     }
-    let distance_mm = first.map_or(f64::NAN, |own| own.distance_mm);
-    for (i, own) in varied.variables.iter().enumerate() {
-        let given = match own.variable {
+    let distance_mm = first.map_or(f64::NAN, |target| target.distance_mm);
+    for (i, design_variable) in varied.variables.iter().enumerate() {
+        let given = match design_variable.variable {
             Variable::Parameter(parameter) if parameter.value(scene).is_none() => {
                 let given = Parameter::given(scene);
                 return Err(DesignError::Lacking { parameter, given });
             }
-            Variable::Parameter(_) | Variable::DistanceMm => key(own.variable),
+            Variable::Parameter(_) | Variable::DistanceMm => key(design_variable.variable),
             other => return Err(DesignError::NotVaried(other)),
         };
         let mut others = varied.variables[..i].iter();
         if let Some(other) = others.find(|other| key(other.variable) == given) {
-            return Err(DesignError::Twice(other.variable, own.variable));
+            return Err(DesignError::Twice(other.variable, design_variable.variable));
         }
     }
     let varies = |parameter: Parameter| {
         let mut all = varied.variables.iter();
-        all.any(|own| own.variable == parameter.into())
+        all.any(|design_variable| design_variable.variable == parameter.into())
     };
     let [base, tip] = [Parameter::BaseRadiusUm, Parameter::TipRadiusUm].map(varies);
     if varied.keeps_taper && (base == tip || varies(Parameter::Taper)) {
@@ -293,26 +295,26 @@ fn checked(
         varied,
         distance_mm,
     };
-    let own: Vec<f64> = (0..count).filter_map(|i| unvaried.own(i)).collect();
-    let scene = unvaried.at(&own)?;
+    let scene_values: Vec<f64> = (0..count).filter_map(|i| unvaried.scene_value(i)).collect();
+    let scene = unvaried.at(&scene_values)?;
     let at_one_pole = DesignScene {
         scene: &scene,
         varied,
         distance_mm,
     };
     let mut ranges = Vec::with_capacity(count);
-    for (i, range) in at_one_pole.ranges(&own).into_iter().enumerate() {
+    for (i, range) in at_one_pole.ranges(&scene_values).into_iter().enumerate() {
         let DesignVariable { variable, limits } = varied.variables[i];
         let range = range.map_err(|range| DesignError::Limits {
             variable,
             range,
             limits: limits.unwrap_or(range),
         })?;
-        if range[1] - range[0] <= 3.0 * EQUAL * own[i].abs() {
-            let value = own[i];
+        if range[1] - range[0] <= 3.0 * EQUAL * scene_values[i].abs() {
+            let value = scene_values[i];
             return Err(DesignError::Fixed { variable, value });
         }
         ranges.push(range);
     }
-    Ok((scene, own, ranges))
+    Ok((scene, scene_values, ranges))
 }

@@ -6,8 +6,8 @@ pub const SAMPLES: usize = 128;
 /// Ratio of the ends of a range of positive numbers above which half of the samples are logarithmic.
 const WIDE: f64 = 10.0;
 
-/// Returns `count` sample values of a parameter in growing order, `[sample]`, in its unit, with both ends of the range. They are evenly spaced;
-/// in a wide range of positive numbers, half of them are evenly spaced in the logarithm.
+/// Returns `count` sample values of a parameter in growing order, `[sample]`, in its unit, with both ends of the range. The samples are evenly
+/// spaced; in a wide range of positive numbers, half of the samples are evenly spaced in the logarithm.
 pub fn samples([low, high]: [f64; 2], count: usize) -> Vec<f64> {
     let even = |count: usize| {
         (0..count).map(move |i| match i {

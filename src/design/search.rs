@@ -37,7 +37,7 @@ impl DesignSearch<'_> {
         }
     }
 
-    /// Value of an end less that of the target, in the unit of the goal; NaN for an end of another kind.
+    /// Value of an end less the target's value, in the unit of the goal; NaN for an end of another kind.
     fn miss(&self, end: &DesignEnd) -> f64 {
         let accepted = end.reached.filter(|_| self.target.accepts(end.kind));
         accepted.unwrap_or(f64::NAN) - self.target.value

@@ -103,7 +103,7 @@ impl DesignTarget {
     #[must_use]
     pub fn accepts(&self, kind: DetachmentKind) -> bool {
         match self.goal.kind() {
-            Some(own) => kind == own,
+            Some(wanted) => kind == wanted,
             None => matches!(kind, DetachmentKind::SlipOff | DetachmentKind::PullOff),
         }
     }
@@ -142,8 +142,8 @@ impl DesignTarget {
         let mut by = by.into_iter();
         let mut along = |direction: &Vec<(Variable, f64)>| {
             let parts = direction.iter().map(|(_, factor)| {
-                let own = by.next()?.ok()?;
-                Some(factor * own)
+                let derivative = by.next()?.ok()?;
+                Some(factor * derivative)
             });
             parts.collect::<Vec<_>>().into_iter().sum::<Option<f64>>()
         };

@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 1e-12;
 /// Largest miss of a solution, relative to the target. Where a load is largest at the fold, it is known to the root of the rounding error.
 const LARGEST_MISS: f64 = 1e-6;
 
-/// Relative difference of the values of two solutions: that of values at a largest miss.
+/// Relative difference within which the values of two solutions are equal, as values at a largest miss are.
 const SAME: f64 = 1e-5;
 
 /// Step of differences, in natural sizes of the variables: for strains, and at places without derivatives.
@@ -53,11 +53,12 @@ pub struct DesignNearest {
     pub is_at_limit: Vec<bool>,
 }
 
-/// Finds the values of the `varied` numbers with which a push reaches all `targets`, as many, of one distance and side. Each target is of
-/// another quantity. The grid is not used.
+/// Finds the values of the `varied` numbers with which a push reaches all `targets`, of one distance and side. There are as many targets as
+/// varied numbers, each of another quantity. The grid is not used.
 ///
-/// Newton's method in a trust region, with exact derivatives, starts from many places within the limits: where the misses of neighbours are
-/// larger, and where all targets lie between those of neighbours. Largest strains are differentiated by differences.
+/// Newton's method in a trust region, with exact derivatives, starts from many places within the limits. Starts are places whose
+/// neighbours have larger misses, and places where all targets lie between the values of neighbours. Largest strains are differentiated by
+/// differences.
 ///
 /// ```
 /// use whiskmap::design::{DesignGoal, DesignTarget, DesignVariable, designs};
@@ -68,7 +69,7 @@ pub struct DesignNearest {
 /// let target = |goal, value| DesignTarget { distance_mm: 60.0, side: Side::Cb, goal, value };
 /// let targets = [target(DesignGoal::SlipOff, 30.0), target(DesignGoal::MaxMoment, 5e6)];
 /// let varied = [Parameter::BaseRadiusUm, Parameter::Taper];
-/// let varied = varied.map(|own| DesignVariable { variable: own.into(), limits: None });
+/// let varied = varied.map(|parameter| DesignVariable { variable: parameter.into(), limits: None });
 /// let found = designs(&robot, &varied.into_iter().collect(), &targets)?;
 /// let [solution] = &found.solutions[..] else { panic!("{found:?}") };
 /// assert!((solution[1] - 0.935_453_623_8).abs() < 1e-6); // The push angle depends on the taper alone.
@@ -95,14 +96,14 @@ pub fn designs_until(
     targets: &[DesignTarget],
     cancel: &AtomicBool,
 ) -> Result<Designs, DesignError> {
-    let (scene, own, ranges) = &checked(scene, varied, targets)?;
+    let (scene, scene_values, ranges) = &checked(scene, varied, targets)?;
     let search = TogetherSearch {
         scene: DesignScene {
             scene,
             varied,
             distance_mm: targets[0].distance_mm,
         },
-        sizes: sizes(scene, varied, own),
+        sizes: sizes(scene, varied, scene_values),
         targets,
         cancel,
     };
@@ -154,10 +155,10 @@ pub fn designs_until(
 }
 
 /// Natural sizes of the varied numbers of a scene, each in its unit: `[variable]`. In these units, all are of order 1.
-fn sizes(scene: &Scene, varied: &DesignVaried, own: &[f64]) -> Vec<f64> {
-    let variables = varied.variables.iter().zip(own);
-    let sizes = variables.map(|(variable, own)| match variable.variable {
-        Variable::Parameter(parameter) => parameter.size(&scene.whisker).max(own.abs()),
+fn sizes(scene: &Scene, varied: &DesignVaried, scene_values: &[f64]) -> Vec<f64> {
+    let variables = varied.variables.iter().zip(scene_values);
+    let sizes = variables.map(|(variable, value)| match variable.variable {
+        Variable::Parameter(parameter) => parameter.size(&scene.whisker).max(value.abs()),
         _ => scene.whisker.length_mm,
     });
     sizes.collect()
@@ -211,7 +212,7 @@ impl TogetherSearch<'_> {
         Some(
             misses
                 .into_iter()
-                .fold(0.0, |most, own| own.abs().max(most)),
+                .fold(0.0, |most, miss| miss.abs().max(most)),
         )
     }
 
@@ -346,21 +347,21 @@ impl Places {
         Some(&self.places[nearest])
     }
 
-    /// Returns the places from which searches start: those with smaller misses than their neighbours, and the best corner of each cell in which every
-    /// target lies between the values at corners. The best ones come first.
+    /// Returns the places from which searches start, the best ones first. They are the places with smaller misses than their neighbours, and the
+    /// best corner of each cell in which every target lies between the values at corners.
     fn starts(&self) -> Vec<Vec<f64>> {
         let variables = self.places[0].len() as u32;
         let all = 0..self.places.len();
         let coordinate = |index: usize, k: u32| index / self.side.pow(k) % self.side;
         let is_least = |index: &usize| {
-            let own = self.size(*index);
+            let size = self.size(*index);
             let neighbours = (0..variables).flat_map(|k| {
                 let (at, step) = (coordinate(*index, k), self.side.pow(k));
                 let before = (at > 0).then(|| index - step);
                 let after = (at + 1 < self.side).then(|| index + step);
                 [before, after]
             });
-            own.is_finite() && neighbours.flatten().all(|other| self.size(other) >= own)
+            size.is_finite() && neighbours.flatten().all(|other| self.size(other) >= size)
         };
         let enclosing = |index: usize| {
             let is_inside = (0..variables).all(|k| coordinate(index, k) + 1 < self.side);
@@ -372,11 +373,12 @@ impl Places {
                 is_inside.then(|| (0..1 << variables).map(corner).collect())?;
             let misses: Vec<&Vec<f64>> = corners
                 .iter()
-                .map(|own| self.misses[*own].as_ref())
+                .map(|place| self.misses[*place].as_ref())
                 .collect::<Option<_>>()?;
             let between = |target: usize| {
-                let signs = misses.iter().map(|own| own[target] < 0.0);
-                signs.clone().any(|own| own) && signs.clone().any(|own| !own)
+                let signs = misses.iter().map(|miss| miss[target] < 0.0);
+                signs.clone().any(|is_negative| is_negative)
+                    && signs.clone().any(|is_negative| !is_negative)
             };
             let encloses = (0..misses[0].len()).all(between);
             corners

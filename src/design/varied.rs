@@ -1,4 +1,4 @@
-//! Numbers that a design varies, and those that follow them.
+//! Numbers that a design varies, and numbers that follow them.
 
 use crate::scene::{Parameter, Scene, SceneError, range_around};
 use crate::sensitivity::Variable;
@@ -27,7 +27,7 @@ pub struct DesignVaried {
 pub struct DesignVariable {
     /// Parameter of the scene, or the distance.
     pub variable: Variable,
-    /// Limits `[least, greatest]` in the unit of the variable, of which those of the scene are kept, too; `None` for those of the scene alone.
+    /// Limits `[least, greatest]` in the unit of the variable, within the limits of the scene; `None` for the limits of the scene alone.
     pub limits: Option<[f64; 2]>,
 }
 
@@ -63,8 +63,8 @@ impl DesignVaried {
     pub fn changes(&self, scene: &Scene, values: &[f64]) -> Vec<(Parameter, f64)> {
         let taper = scene.whisker.taper();
         let mut changes = Vec::with_capacity(values.len() + 1);
-        for (own, &value) in self.variables.iter().zip(values) {
-            let Variable::Parameter(parameter) = own.variable else {
+        for (design_variable, &value) in self.variables.iter().zip(values) {
+            let Variable::Parameter(parameter) = design_variable.variable else {
                 continue;
             };
             changes.push((parameter, value));
@@ -120,25 +120,25 @@ impl DesignScene<'_> {
         self.varied
             .variables
             .iter()
-            .any(|own| own.variable == wanted)
+            .any(|design_variable| design_variable.variable == wanted)
     }
 
     /// Returns the value of variable `i` in the scene, in its unit; `None` if the scene does not give it.
-    pub fn own(&self, i: usize) -> Option<f64> {
+    pub fn scene_value(&self, i: usize) -> Option<f64> {
         match self.varied.variables[i].variable {
-            Variable::DistanceMm => Some(self.own_distance_mm()),
+            Variable::DistanceMm => Some(self.scene_distance_mm()),
             variable => variable.value(self.scene),
         }
     }
 
     /// Distance in mm before anything varies.
-    fn own_distance_mm(&self) -> f64 {
+    fn scene_distance_mm(&self) -> f64 {
         let part = self.varied.distance_to_length;
         part.map_or(self.distance_mm, |part| part * self.scene.whisker.length_mm)
     }
 
-    /// Returns the scene with these `values` of the varied numbers, `[variable]`, in front of its pole alone, whose distance is that of its grid. Other
-    /// distances would limit what is accepted.
+    /// Returns the scene with these `values` of the varied numbers, `[variable]`, in front of its pole alone. The grid has the pole's distance
+    /// alone, because other distances would limit the accepted values.
     pub fn at(&self, values: &[f64]) -> Result<Scene, SceneError> {
         let mut builder = self.scene.to_builder();
         let mut length_mm = self.scene.whisker.length_mm;
@@ -153,7 +153,8 @@ impl DesignScene<'_> {
             builder = builder.set(parameter, value);
         }
         let varied = self.varied.variables.iter().zip(values);
-        let distance = varied.filter(|(own, _)| own.variable == Variable::DistanceMm);
+        let distance =
+            varied.filter(|(design_variable, _)| design_variable.variable == Variable::DistanceMm);
         let distance = distance.map(|(_, value)| *value).next();
         let of_length = || Some(self.varied.distance_to_length? * length_mm);
         let distance_mm = distance.or_else(of_length).unwrap_or(self.distance_mm);
@@ -180,11 +181,11 @@ impl DesignScene<'_> {
     /// Returns the variables of derivatives in whose directions each varied number of `scene` goes, with factors: `[variable][direction]`.
     pub fn directions(&self, scene: &Scene) -> Vec<Vec<(Variable, f64)>> {
         let parameter = Variable::Parameter;
-        let direction = |own: &DesignVariable| {
-            let mut direction = vec![(own.variable, 1.0)];
+        let direction = |design_variable: &DesignVariable| {
+            let mut direction = vec![(design_variable.variable, 1.0)];
             let keeps_taper = self.varied.keeps_taper || self.varies(Parameter::Taper);
             let tip_to_base = scene.whisker.tip_radius_um / scene.whisker.base_radius_um;
-            match own.variable {
+            match design_variable.variable {
                 Variable::Parameter(Parameter::BaseRadiusUm) if keeps_taper => {
                     direction.push((parameter(Parameter::TipRadiusUm), tip_to_base));
                 }

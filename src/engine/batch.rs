@@ -32,19 +32,19 @@ impl BatchRow {
         self.cells.iter().flat_map(Range::clone)
     }
 
-    /// Returns the cells of the row to solve whose push angles are before `push`, `[range]`. `magnitudes` are those of the side's columns, in
-    /// radians.
+    /// Returns the cells of the row to solve whose push angles are before `push`, `[range]`. `magnitudes` are the push angles of the
+    /// side's columns, in radians.
     pub fn before(
         &self,
         push: f64,
         magnitudes: &[f64],
     ) -> impl Iterator<Item = Range<usize>> + use<'_> {
-        let end = magnitudes.partition_point(|own| *own < push);
+        let end = magnitudes.partition_point(|magnitude| *magnitude < push);
         let before = self
             .cells
             .iter()
-            .map(move |own| own.start..own.end.min(end));
-        before.take_while(|own| !own.is_empty())
+            .map(move |range| range.start..range.end.min(end));
+        before.take_while(|range| !range.is_empty())
     }
 }
 

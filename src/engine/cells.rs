@@ -121,8 +121,8 @@ impl CellsMut<'_> {
         self.steps[index] = cell.steps;
         self.residual[index] = cell.residual;
         for (column, value) in self.values.iter_mut().zip(cell.values) {
-            if let Some(own) = column.get_mut(index) {
-                *own = value;
+            if let Some(number) = column.get_mut(index) {
+                *number = value;
             }
         }
         if let Some(point) = self.points.get_mut(index) {
@@ -136,7 +136,10 @@ impl CellsMut<'_> {
             outcome: split_off(&mut self.outcome, count),
             steps: split_off(&mut self.steps, count),
             residual: split_off(&mut self.residual, count),
-            values: self.values.each_mut().map(|own| split_off(own, count)),
+            values: self
+                .values
+                .each_mut()
+                .map(|column| split_off(column, count)),
             points: split_off(&mut self.points, count),
         }
     }
@@ -230,7 +233,7 @@ impl Cells {
             outcome: self.outcome[range.start],
             steps: &self.steps[range.clone()],
             residual: &self.residual[range.clone()],
-            values: values.map(|own| own.get(range.clone()).unwrap_or_default()),
+            values: values.map(|column| column.get(range.clone()).unwrap_or_default()),
             points: self.points.get(range.clone()).unwrap_or_default(),
         }
     }

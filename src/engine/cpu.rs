@@ -38,7 +38,7 @@ impl Cpu {
         let mut cells = Cells::new(batch, Outcome::OffSheet);
         let mut rest = self.refined.as_slice();
         let rows = batch.rows.iter().zip(&targets).zip(cells.rows_mut(batch));
-        let rows = rows.map(|((row, targets), into)| {
+        let refined_rows = rows.map(|((row, targets), into)| {
             let count = targets.iter().flatten().count();
             (
                 row,
@@ -47,8 +47,9 @@ impl Cpu {
                 into,
             )
         });
-        let rows: Vec<_> = rows.collect();
-        rows.into_par_iter()
+        let refined_rows: Vec<_> = refined_rows.collect();
+        refined_rows
+            .into_par_iter()
             .for_each(|(row, targets, refined, mut into)| {
                 let mut refined = refined.iter();
                 for ((index, cell), target) in row.each().enumerate().zip(targets) {

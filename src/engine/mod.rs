@@ -145,7 +145,7 @@ pub enum EngineError {
     /// A call of the device failed.
     #[error("GPU: {0}")]
     Device(String),
-    /// Audited cells of the engine differ from those of the CPU.
+    /// Audited cells of the engine differ from the cells of the CPU.
     #[error("{differing} of {cells} audited cells of the engine differ by more than the tolerance")]
     FailedAudit {
         /// Number of audited cells that differ.

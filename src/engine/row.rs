@@ -166,7 +166,7 @@ impl RowExpansion {
     ) {
         let last = self.end + PUSH_MARGIN;
         let near = row.before(last.next_up(), magnitudes);
-        let near: usize = near.map(|own| own.len()).sum();
+        let near: usize = near.map(|cells| cells.len()).sum();
         outcomes[near..].fill(Outcome::OffSheet);
     }
 }
@@ -203,7 +203,7 @@ mod tests {
         assert!(larger(f64::NAN, 1.0).is_nan() && larger(1.0, f64::NAN).is_nan());
     }
 
-    /// Channel values in SIMD lanes are those of the converter of single states.
+    /// Channel values in SIMD lanes equal the values of the converter of single states.
     #[test]
     fn values_of_a_net_are_those_of_a_trajectory() {
         use whiskmap_mechanics::shooting::FirstVariation;
@@ -220,8 +220,11 @@ mod tests {
                 let exact: Vec<FirstVariation> =
                     Batch::new(Method::fine()).shoot_at(&sheet.rod, [(tau, load)]);
                 let exact = side.values(row, tau, &exact[0].full, push);
-                for ((own, exact), size) in values.into_iter().zip(exact).zip(sizes) {
-                    assert!((own - exact).abs() < 1e-9 * size, "{row}: {own} {exact}");
+                for ((found, exact), size) in values.into_iter().zip(exact).zip(sizes) {
+                    assert!(
+                        (found - exact).abs() < 1e-9 * size,
+                        "{row}: {found} {exact}"
+                    );
                 }
                 compared += 1;
             }
@@ -255,18 +258,23 @@ mod tests {
             let distance = sheet.rows[row].pole_distance;
             for by in [-2.0, 2.0] {
                 let off = by * MOST / distance;
-                assert!(!is_accepted(MOST, &|own| own.coefficients[0][0] += off));
+                assert!(!is_accepted(MOST, &|functions| functions.coefficients[0][0] += off));
             }
             let is_fold = edge == Edge::Fold;
             assert_eq!(
-                is_accepted(MOST, &|own| own.coefficients[0][1] += 1e-6),
+                is_accepted(MOST, &|functions| functions.coefficients[0][1] += 1e-6),
                 is_fold
             );
-            assert!(!is_accepted(MOST, &|own| own.coefficients[0][FUNCTIONS - 1] = f64::NAN));
+            let spoil = |functions: &mut Chebyshev<FUNCTIONS>| {
+                functions.coefficients[0][FUNCTIONS - 1] = f64::NAN;
+            };
+            assert!(!is_accepted(MOST, &spoil));
             // Coefficients end where rounding does.
             let length = |size: f64| {
                 let last = weights.map(|weight| size / weight);
-                let longer = accepted(MOST, states.end, &|own| own.coefficients.push(last));
+                let longer = accepted(MOST, states.end, &|functions| {
+                    functions.coefficients.push(last)
+                });
                 longer.unwrap().inverse.functions.coefficients.len()
             };
             assert!(length(1e-16) <= count);

@@ -113,8 +113,8 @@ impl WhiskerSide {
             .channels()
     }
 
-    /// Returns the largest bending strains of states with contact and load `(tau, load)`, whose friction is that of the side: `[point]`. Each
-    /// takes a trajectory.
+    /// Returns the largest bending strains of states with contact and load `(tau, load)` and the side's friction: `[point]`. Each state takes a
+    /// trajectory.
     #[must_use]
     pub fn peak_strains(&self, points: impl Iterator<Item = DVec2>) -> Vec<f32> {
         let peaks: Vec<PeakStrain> = self.strains().shoot_at(&self.sheet.rod, points);

@@ -95,13 +95,15 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64
             }
             let here = from..from + count;
             for (column, values) in values.iter_mut().zip(channels) {
-                let own = column.get_mut(here.clone()).into_iter().flatten();
-                own.zip(values)
-                    .for_each(|(own, value)| *own = *value as f32);
+                let numbers = column.get_mut(here.clone()).into_iter().flatten();
+                numbers
+                    .zip(values)
+                    .for_each(|(number, value)| *number = *value as f32);
             }
-            let own = points.get_mut(here).into_iter().flatten();
-            own.zip(tau.iter().zip(load))
-                .for_each(|(own, (tau, load))| *own = DVec2::new(*tau, *load));
+            let targets = points.get_mut(here).into_iter().flatten();
+            targets
+                .zip(tau.iter().zip(load))
+                .for_each(|(target, (tau, load))| *target = DVec2::new(*tau, *load));
         });
 }
 

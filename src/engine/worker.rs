@@ -49,7 +49,9 @@ impl<'e> Worker<'e> {
         has_thread: bool,
         work: impl FnOnce(Self) -> R,
     ) -> R {
-        let residual_bound = engine.as_ref().map_or(0.0, |own| own.residual_bound());
+        let residual_bound = engine
+            .as_ref()
+            .map_or(0.0, |engine| engine.residual_bound());
         let worker = |connection| Self {
             connection,
             residual_bound,

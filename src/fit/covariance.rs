@@ -26,7 +26,8 @@ impl Covariance {
         });
         let scales: Vec<f64> = scales.collect();
         let columns = jacobian.iter().zip(&scales);
-        let columns = columns.map(|(column, scale)| column.iter().map(|own| own * scale).collect());
+        let columns =
+            columns.map(|(column, scale)| column.iter().map(|entry| entry * scale).collect());
         let svd = Svd::new(columns.collect());
         let mut matrix = vec![vec![0.0; count]; count];
         let mut free = vec![0.0; count];
@@ -36,12 +37,12 @@ impl Covariance {
                 let step: Vec<f64> = direction
                     .iter()
                     .zip(&scales)
-                    .map(|(own, scale)| own * scale / value)
+                    .map(|(component, scale)| component * scale / value)
                     .collect();
-                for (row, own) in matrix.iter_mut().zip(&step) {
+                for (row, row_step) in matrix.iter_mut().zip(&step) {
                     row.iter_mut()
                         .zip(&step)
-                        .for_each(|(sum, other)| *sum += own * other);
+                        .for_each(|(sum, column_step)| *sum += row_step * column_step);
                 }
                 rank += 1;
             } else {

@@ -50,7 +50,7 @@ impl FitLoss {
         }
     }
 
-    /// Returns the weight of a residual of `r` standard deviations: the slope of the loss over that of the square, between 0 and 1.
+    /// Returns the weight of a residual of `r` standard deviations: the slope of the loss over the slope of the square, between 0 and 1.
     #[must_use]
     pub fn weight(self, r: f64) -> f64 {
         match self {
@@ -118,7 +118,7 @@ mod tests {
         }
     }
 
-    /// The closed derivatives are those of central differences.
+    /// The closed derivatives equal central differences.
     #[test]
     fn slopes_are_those_of_the_roots() {
         for loss in FitLoss::ALL {
@@ -133,7 +133,7 @@ mod tests {
                 );
                 let pull = difference(&|r| loss.weight(r) * r);
                 assert!((loss.curvature(r) - pull).abs() < 1e-8, "{loss:?} {r}");
-                // The rounding of the difference grows with the loss: measured up to 5e-11 of it.
+                // The rounding of the difference grows with the loss: up to 5e-11 of the loss was measured.
                 let half = 0.5 * difference(&|r| loss.of(r));
                 let most = 1e-9 * (1.0 + loss.of(r));
                 assert!((half - loss.weight(r) * r).abs() < most, "{loss:?} {r}");

@@ -34,7 +34,7 @@ impl<'a> Misfit<'a> {
         cancel: &'a AtomicBool,
     ) -> Self {
         let first = scene.first_whisker();
-        let units = free.iter().map(|own| own.size(&first.whisker));
+        let units = free.iter().map(|parameter| parameter.size(&first.whisker));
         Self {
             scene,
             points,
@@ -56,7 +56,7 @@ impl<'a> Misfit<'a> {
     pub fn start(&self) -> Vec<f64> {
         let values = self.free.iter().zip(&self.units);
         values
-            .filter_map(|(own, unit)| Some(own.value(self.scene)? / unit))
+            .filter_map(|(parameter, unit)| Some(parameter.value(self.scene)? / unit))
             .collect()
     }
 
@@ -64,14 +64,16 @@ impl<'a> Misfit<'a> {
     /// `[parameter][least, greatest]`.
     pub fn ranges(&self, scene: &Scene) -> Vec<[f64; 2]> {
         let free = self.free.par_iter().zip(&self.units);
-        free.map(|(own, unit)| own.range(scene).map(|end| end / unit))
+        free.map(|(parameter, unit)| parameter.range(scene).map(|end| end / unit))
             .collect()
     }
 
     /// Returns the scene with these values of the free parameters, `[parameter]`, each divided by its unit in [`Misfit::units`].
     pub fn scene(&self, parameters: &[f64]) -> Result<Scene, SceneError> {
         let values = self.free.iter().zip(&self.units).zip(parameters);
-        let values: Vec<_> = values.map(|((own, unit), x)| (*own, unit * x)).collect();
+        let values: Vec<_> = values
+            .map(|((parameter, unit), x)| (*parameter, unit * x))
+            .collect();
         self.scene.with_parameters(&values)
     }
 
@@ -108,7 +110,7 @@ impl<'a> Misfit<'a> {
         let mut columns = self.jacobian(parameters)?;
         for column in &mut columns {
             let slopes = column.iter_mut().zip(roots);
-            slopes.for_each(|(own, root)| *own *= self.loss.root_slope(*root));
+            slopes.for_each(|(derivative, root)| *derivative *= self.loss.root_slope(*root));
         }
         Some(columns)
     }
@@ -153,12 +155,17 @@ impl<'a> Misfit<'a> {
     /// Returns the exact columns of the Jacobian; `None` where the scene refuses the parameters, or an end has no derivative.
     fn derivatives(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
         let whiskers = self.points.whiskers_in(&*self.accepted(parameters)?).ok()?;
-        let variables: Vec<Variable> = self.free.iter().map(|own| (*own).into()).collect();
+        let variables: Vec<Variable> = self
+            .free
+            .iter()
+            .map(|parameter| (*parameter).into())
+            .collect();
         let mut columns = self.points.derivatives_with(&whiskers, &variables)?;
-        // With a free taper, the radius at the tip follows the one at the base. No detachment depends on the size of a cone.
+        // With a free taper, the radius at the tip follows the radius at the base. No detachment depends on the size of a cone.
         if self.free.contains(&Parameter::Taper) {
             let of_base = self.free.iter().zip(&mut columns);
-            let mut of_base = of_base.filter(|(own, _)| **own == Parameter::BaseRadiusUm);
+            let mut of_base =
+                of_base.filter(|(parameter, _)| **parameter == Parameter::BaseRadiusUm);
             of_base.by_ref().for_each(|(_, column)| column.fill(0.0));
         }
         for (column, unit) in columns.iter_mut().zip(&self.units) {

@@ -54,20 +54,21 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Returns one line for each point that is left out, each parameter at a limit, and each parameter that the points do not determine,
-    /// and one for residuals that are larger than their standard deviations. With another loss than squares, each outlier has a line. `points` are those of the fit.
+    /// Returns one line for each point that is left out, each parameter at a limit, and each parameter that the points do not determine.
+    /// Residuals that are larger than their standard deviations have one line. With another loss than squares, each outlier has a line. `points` are
+    /// the points of the fit.
     #[must_use]
     pub fn warnings(&self, points: &MeasuredPoints) -> Vec<String> {
         let is_fit = self.not_a_fit.is_none();
-        let of_parameter = |own: &Estimate| {
-            let name = own.parameter.name();
-            if own.is_at_limit {
-                let value = digits(own.value);
+        let of_parameter = |estimate: &Estimate| {
+            let name = estimate.parameter.name();
+            if estimate.is_at_limit {
+                let value = digits(estimate.value);
                 return Some(format!(
                     "{name}: {value} is the last value that the scene accepts, so there is no standard error"
                 ));
             }
-            let is_free = is_fit && own.standard_error.is_none();
+            let is_free = is_fit && estimate.standard_error.is_none();
             is_free.then(|| format!("{name}: not determined by these points"))
         };
         // With another loss, the residuals give the standard errors.
@@ -100,10 +101,11 @@ impl Fit {
             line,
             distance_mm,
         } = self.moved?;
-        let own = parameter.value(scene).unwrap_or(f64::NAN);
-        let [distance, start, own] = [distance_mm, value, own].map(|own| digits(rounded(own, 6)));
+        let scene_value = parameter.value(scene).unwrap_or(f64::NAN);
+        let [distance, start, scene_value] =
+            [distance_mm, value, scene_value].map(|number| digits(rounded(number, 6)));
         Some(format!(
-            "{}:{line}: {distance} mm is out of reach of the scene's whisker: {} starts at {start} instead of {own}",
+            "{}:{line}: {distance} mm is out of reach of the scene's whisker: {} starts at {start} instead of {scene_value}",
             points.origin,
             parameter.name()
         ))
@@ -356,7 +358,10 @@ fn variance(loss: FitLoss, residuals: &[f64], freedom: usize) -> Option<f64> {
         .sum();
     let curvatures = || residuals.iter().map(|r| loss.curvature(*r));
     let mean = curvatures().sum::<f64>() / count;
-    let spread = curvatures().map(|own| (own - mean).powi(2)).sum::<f64>() / count;
+    let spread = curvatures()
+        .map(|curvature| (curvature - mean).powi(2))
+        .sum::<f64>()
+        / count;
     let parameters = count - freedom as f64;
     let few = 1.0 + parameters / count * spread / (mean * mean);
     let variance = few * few * pulls / freedom as f64 / (mean * mean);

@@ -50,10 +50,10 @@ pub(super) fn pulls(
         let weight = loss.weight(residual);
         let size = weight * residual / mean / (1.0 - leverage);
         let known = estimates.iter().enumerate();
-        let known = known.filter(|(_, own)| own.standard_error.is_some());
-        let moves = known.filter_map(|(k, own)| {
+        let known = known.filter(|(_, estimate)| estimate.standard_error.is_some());
+        let moves = known.filter_map(|(k, estimate)| {
             let error = covariance.deviation(k)? * variance.sqrt();
-            Some((own.parameter, size * step[k] / error))
+            Some((estimate.parameter, size * step[k] / error))
         });
         // A point that alone determines a parameter has a leverage of 1.
         let moves = moves.filter(|(_, moved)| moved.is_finite());
@@ -73,7 +73,7 @@ pub(super) fn pulls(
 }
 
 /// Returns one line for each outlier of a fit to `points`: a residual of more than 3 standard deviations. Without deviations in the file, the median
-/// of the residuals gives that of all points.
+/// of the residuals gives the standard deviation of all points.
 pub(super) fn outliers(fit: &Fit, points: &MeasuredPoints) -> Vec<String> {
     let rows = fit.comparison.rows.iter();
     let residuals = rows.filter_map(|row| Some((row.line, row.residual_deg?, row.sd_deg)));
@@ -88,7 +88,7 @@ pub(super) fn outliers(fit: &Fit, points: &MeasuredPoints) -> Vec<String> {
         let deviations = (residual / sd.unwrap_or(OF_MEDIAN * median)).abs();
         let weight = fit.loss.weight(residual / sd.unwrap_or(1.0));
         (deviations > FAR).then(|| {
-            let [residual, deviations, weight] = [residual, deviations, weight].map(|own| digits(rounded(own, 3)));
+            let [residual, deviations, weight] = [residual, deviations, weight].map(|number| digits(rounded(number, 3)));
             format!("{}:{line}: outlier: residual {residual} deg, {deviations} standard deviations, weight {weight}", points.origin)
         })
     };

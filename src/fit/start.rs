@@ -7,10 +7,10 @@ use crate::scene::{Parameter, Scene};
 /// Ratio of neighbouring values that are tried.
 const RATIO: f64 = 1.05;
 
-/// Most values that are tried on each side of that of the scene. The last one is 2.1 times as large: a longer way is an error of the points.
+/// Most values that are tried on each side of the scene's value. The last one is 2.1 times as large: a longer way is an error of the points.
 const MOST_TRIES: i32 = 15;
 
-/// Parameter whose start value is not that of the scene, because the scene's whisker does not reach a measured point.
+/// Parameter whose start value differs from the scene's value, because the scene's whisker does not reach a measured point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovedStart {
     /// Free parameter that was moved.
@@ -43,11 +43,11 @@ pub(super) fn within_reach(
     };
     for tries in 1..=MOST_TRIES {
         for parameter in free {
-            let Some(own) = parameter.value(scene) else {
+            let Some(scene_value) = parameter.value(scene) else {
                 continue;
             };
             for power in [tries, -tries] {
-                let at = |power: i32| own * RATIO.powi(power);
+                let at = |power: i32| scene_value * RATIO.powi(power);
                 let moved = |power: i32| {
                     let moved = scene.with_parameters(&[(*parameter, at(power))]).ok()?;
                     reach(&moved, points).is_ok().then_some(moved)

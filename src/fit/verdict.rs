@@ -9,7 +9,7 @@ use std::fmt;
 const LARGEST_RMS_DEG: f64 = 5.0;
 
 /// Largest RMS as a fraction of the range of the measured angles and 0, the angle at first touch. Without 0, the range of
-/// repeated measurements at one distance would be that of their errors.
+/// repeated measurements at one distance would be the range of their errors.
 const LARGEST_PART: f64 = 1.0 / 3.0;
 
 /// Largest excess of a reduced chi-square over 1, in its own standard deviations `sqrt(2 / freedom)`.
@@ -99,8 +99,8 @@ impl LikelyCause {
     /// The mistake that a comparison of `points` with the theory of `scene` shows.
     fn of(points: &MeasuredPoints, scene: &Scene) -> Option<Self> {
         let whiskers = points.whiskers_in(scene).ok()?;
-        let own = points.beside_all(&whiskers);
-        let predicted = own.rows.iter().filter_map(|row| row.predicted_deg);
+        let comparison = points.beside_all(&whiskers);
+        let predicted = comparison.rows.iter().filter_map(|row| row.predicted_deg);
         let has_tens = predicted.fold(0.0, |most: f64, angle| most.max(angle.abs())) >= TENS_DEG;
         if has_tens
             && points
@@ -116,7 +116,7 @@ impl LikelyCause {
         }
         farther.check_reach_of(&whiskers).ok()?;
         let rms_deg = farther.beside_all(&whiskers).rms_deg()?;
-        (rms_deg < own.rms_deg()? / 2.0).then_some(Self::Centimetres)
+        (rms_deg < comparison.rms_deg()? / 2.0).then_some(Self::Centimetres)
     }
 
     /// The mistake that the standard deviations of `points` show with this reduced chi-square. Deviations in radians are

@@ -43,7 +43,7 @@ impl CurvatureBaseline {
     pub fn note(&self) -> String {
         let error = self.sd_per_mm / (self.count as f64).sqrt();
         let [mean, error, scatter] =
-            [self.mean_per_mm, error, self.sd_per_mm].map(|own| digits(rounded(own, 4)));
+            [self.mean_per_mm, error, self.sd_per_mm].map(|number| digits(rounded(number, 4)));
         format!(
             "baseline of {} frames without contact: {mean} per mm from the curvature at rest, with a standard error of {error}; the scatter of a frame is {scatter} per mm",
             self.count
@@ -71,8 +71,8 @@ impl CurvatureFrames {
         let place = span_s.map_or_else(String::new, |[from, to]| {
             format!(" from {} to {} s", digits(from), digits(to))
         });
-        let own = self.frames.iter().filter(|frame| is_inside(frame));
-        if let Some(frame) = own.clone().find(|frame| frame.contact.is_some())
+        let in_span = self.frames.iter().filter(|frame| is_inside(frame));
+        if let Some(frame) = in_span.clone().find(|frame| frame.contact.is_some())
             && span_s.is_some()
         {
             let time = digits(frame.time_s);
@@ -81,7 +81,7 @@ impl CurvatureFrames {
             );
             return Err(CsvError::at(&self.origin, frame.line, what));
         }
-        let free = own.filter(|frame| frame.contact.is_none());
+        let free = in_span.filter(|frame| frame.contact.is_none());
         let baseline = CurvatureBaseline::new(whisker, free).map_err(|count| {
             let what = format!(
                 "has {count} frames without contact and with a curvature{place}: a baseline must have at least 2"

@@ -1,4 +1,4 @@
-//! Standard deviations of forces, to first order in those of what a frame measures.
+//! Standard deviations of forces, to first order in the standard deviations of the measured numbers of a frame.
 
 use super::FrameForce;
 use crate::scene::FrameDeviations;
@@ -34,7 +34,7 @@ impl LoadDerivatives {
         let deviation = |load: usize| {
             let parts = terms.map(|(by, sd)| by[load] * sd.unwrap_or_default());
             let squares: f64 = parts.iter().map(|part| part * part).sum();
-            Some(squares.sqrt()).filter(|own| own.is_finite())
+            Some(squares.sqrt()).filter(|total| total.is_finite())
         };
         FrameForce {
             force_sd_un: deviation(0),

@@ -123,13 +123,15 @@ impl CurvatureFrames {
             // Without the column `contact`, a frame in which no position was measured has no contact.
             let is_in_contact = match &contacts {
                 Some(contacts) => {
-                    // Whether there is a contact is missing, so that its position is not that of one.
+                    // The contact flag is missing, so that the position may not be a contact's position.
                     if contacts[i].is_nan() {
                         contact_mm = [f64::NAN; 2];
                     }
                     contacts[i] != 0.0
                 }
-                None => contact_mm.into_iter().any(|own| !own.is_nan()),
+                None => contact_mm
+                    .into_iter()
+                    .any(|coordinate| !coordinate.is_nan()),
             };
             let contact = is_in_contact.then_some(FrameContact {
                 contact_mm,

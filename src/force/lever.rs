@@ -97,7 +97,7 @@ impl Bending {
         let force = self.moment_nnm() / lever;
         let normal = tangent.perp();
         let on_base = force * normal;
-        // Derivatives of the loads, by those of the force, of the normal and of the position.
+        // Derivatives of the loads, from the derivatives of the force, of the normal and of the position.
         let loads = |force_by: f64, normal_by: DVec2, position_by: DVec2| {
             let by = force_by * normal + force * normal_by;
             let moment = position_by.perp_dot(on_base) + position.perp_dot(by);

@@ -1,7 +1,7 @@
 //! Forces from the change of curvature at one point of the whisker, as experiments measure them (the paper's Fig. 7B).
 //!
-//! The bending moment at a point is the bending stiffness there times the change of the curvature from that of the resting whisker. Divided
-//! by the lever of the contact it is the force, which is normal to the whisker at the contact: friction and inertia are left out.
+//! The bending moment at a point is the bending stiffness there times the change of the curvature from the resting whisker. The moment divided
+//! by the lever of the contact is the force, which is normal to the whisker at the contact: friction and inertia are left out.
 
 mod baseline;
 mod deviation;
@@ -42,7 +42,7 @@ pub struct CurvatureFrame {
     pub curvature_per_mm: f64,
     /// Arclength from the base to the measured point, in mm; NaN where it is missing.
     pub at_arc_length_mm: f64,
-    /// Position of the measured point, `[x, y]` in mm, NaN where it is missing; `None` for that of the resting whisker.
+    /// Position of the measured point, `[x, y]` in mm, NaN where it is missing; `None` for the position on the resting whisker.
     pub at_mm: Option<[f64; 2]>,
     /// Position and tangent of the whisker at the contact in this frame; `None` if the whisker is free.
     pub contact: Option<FrameContact>,
@@ -52,8 +52,8 @@ impl CurvatureFrame {
     /// Returns true if a number that `method` needs is missing.
     fn is_missing(&self, method: ForceMethod) -> bool {
         let contact = self.contact.as_ref();
-        let position = contact.map_or([0.0; 2], |own| own.contact_mm);
-        let angle = contact.and_then(|own| own.contact_angle_deg);
+        let position = contact.map_or([0.0; 2], |contact| contact.contact_mm);
+        let angle = contact.and_then(|contact| contact.contact_angle_deg);
         let angle = angle.filter(|_| method == ForceMethod::Lever);
         let at = self
             .at_mm
@@ -160,7 +160,7 @@ impl ForceOptions {
 
     /// Returns the standard deviations of what a frame measures, with the scatter of the baseline.
     fn with_scatter(&self) -> FrameDeviations {
-        let scatter = self.baseline.map(|own| own.sd_per_mm);
+        let scatter = self.baseline.map(|baseline| baseline.sd_per_mm);
         FrameDeviations {
             curvature_per_mm: self.deviations.curvature_per_mm.or(scatter),
             ..self.deviations
@@ -190,9 +190,9 @@ pub fn forces(
     forces_until(whisker, pole, frames, &options, &AtomicBool::new(false))
 }
 
-/// Computes the forces as [`forces`] does, with a baseline and standard deviations. These are of first order in those of the frames, which
-/// are independent; loads of frames without contact are exactly 0. If `cancel` is true, the function soon returns, and the remaining frames
-/// have no force.
+/// Computes the forces as [`forces`] does, with a baseline and standard deviations. The deviations are of first order in the deviations of
+/// the frames, which are independent; loads of frames without contact are exactly 0. If `cancel` is true, the function soon returns, and the
+/// remaining frames have no force.
 #[must_use]
 pub fn forces_until(
     whisker: &Whisker,
@@ -203,7 +203,9 @@ pub fn forces_until(
 ) -> Vec<FrameForce> {
     let method = options.method;
     let deviations = options.with_scatter();
-    let baseline_per_mm = options.baseline.map_or(0.0, |own| own.mean_per_mm);
+    let baseline_per_mm = options
+        .baseline
+        .map_or(0.0, |baseline| baseline.mean_per_mm);
     let distances = frames.iter().filter_map(|frame| frame.contact);
     let distances = distances.map(|contact| DVec2::from(contact.contact_mm).length());
     let nearest = distances.fold(whisker.length_mm, f64::min);

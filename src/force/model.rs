@@ -28,7 +28,7 @@ impl Model {
     /// Creates the model in the frame with this `axis`; contacts are at least `nearest_mm` from the base.
     pub fn new(whisker: &Whisker, pole: &Pole, nearest_mm: f64, axis: BaseAxis) -> Self {
         let method = Method::new(Resolution::FINE);
-        // A sheet is certified at the contacts of its rows: those from the nearest to the tip.
+        // A sheet is certified at the contacts of its rows: from the nearest contact to the tip.
         let nearest = (nearest_mm / whisker.length_mm).min(1.0);
         let distance = |i| nearest * libm::pow(1.0 / nearest, f64::from(i) / f64::from(ROWS));
         let distances: Vec<f64> = (0..=ROWS).map(distance).collect();
@@ -165,7 +165,7 @@ struct VariedState {
     force: f64,
     base: (RodPoint, BaseDerivatives<f64>),
     middle: (RodPoint, BaseDerivatives<f64>),
-    /// Bending stiffness at the measured point over that at the base.
+    /// Bending stiffness at the measured point over the stiffness at the base.
     stiffness: f64,
     /// Compliance of the mount from the base's tangent to the first axis of the frame.
     mount: f64,
@@ -180,7 +180,7 @@ struct StateBy {
 }
 
 impl VariedState {
-    /// Returns the derivatives by `tau` (0) or load (1), with that of the force.
+    /// Returns the derivatives by `tau` (0) or load (1), with the derivative of the force.
     fn by(&self, coordinate: usize, force_by: f64) -> StateBy {
         let of = |(point, by): &(RodPoint, BaseDerivatives<f64>)| {
             let by = [by.by_tau, by.by_load][coordinate];

@@ -1,7 +1,7 @@
-//! Stable states of the model at one distance of the contact from the base, and those of them that have a measured curvature.
+//! Stable states of the model at one distance of the contact from the base, and the states among them with a measured curvature.
 //!
 //! Along these states the row parameter `w = |load| tau^2` grows from first touch on. The curvature first grows, too, and may then fall again,
-//! so that several states can have it. They are bracketed between samples of `w`, and on both sides of an extremum.
+//! so that several states can have the same curvature. States are bracketed between samples of `w`, and on both sides of an extremum.
 
 use super::BaseAxis;
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
@@ -25,7 +25,7 @@ const DOUBLED_AT: f64 = 8.0;
 /// Step at which the end of the states counts as reached, in parts of a whole one.
 const LAST_PART: f64 = 1e-9;
 
-/// Maximum number of samples, those after a halved step included.
+/// Maximum number of samples, including samples after a halved step.
 const SAMPLES: usize = 160;
 
 /// Maximum number of trajectories to a state.
@@ -48,7 +48,7 @@ const EXTREMUM_WIDTH: f64 = 1e-6;
 const AT_EXTREMUM: f64 = 1e-11;
 
 impl BaseAxis {
-    /// Returns the angle from this axis to that of the follicle in a state of `rod`, in radians.
+    /// Returns the angle from this axis to the follicle's axis in a state of `rod`, in radians.
     pub(super) fn turn(self, rod: &Rod, full: &FullState) -> f64 {
         match self {
             Self::Tangent => rod.mount * full.force * full.position.x,
@@ -105,7 +105,7 @@ impl StateCurve<'_> {
         let pairs = samples.windows(2);
         let crossings = pairs.filter_map(|pair| self.between([pair[0], pair[1]]));
         let triples = samples.windows(3);
-        let turns = triples.flat_map(|own| self.at_extremum([own[0], own[1], own[2]]));
+        let turns = triples.flat_map(|triple| self.at_extremum([triple[0], triple[1], triple[2]]));
         let tip = self.rod.tau_tip();
         let is_on_whisker = |state: &ModelState| {
             let tau = state.point.x;
@@ -138,7 +138,7 @@ impl StateCurve<'_> {
         self.sheet.is_stable(point.x, point.y, &full.map)
     }
 
-    /// Returns the state with the measured curvature between two samples, if one of them has less and the other more.
+    /// Returns the state with the measured curvature between two samples, if one sample has a smaller curvature and the other a larger one.
     fn between(&self, [one, other]: [CurveSample; 2]) -> Option<ModelState> {
         if one.miss * other.miss > 0.0 {
             return None;
@@ -152,8 +152,8 @@ impl StateCurve<'_> {
         (has_curvature && self.is_stable(&found)).then_some(found.state)
     }
 
-    /// Returns the states with the measured curvature around an extremum of the curvature, where the middle one of three samples misses it
-    /// least, and all of them on one side.
+    /// Returns the states with the measured curvature around an extremum of the curvature. There, all three samples lie on one side of the
+    /// measured curvature, and the middle sample misses it least.
     fn at_extremum(&self, mut around: [CurveSample; 3]) -> Vec<ModelState> {
         let is_below = around.map(|sample| sample.miss < 0.0);
         let [from, middle, to] = around.map(|sample| sample.miss.abs());

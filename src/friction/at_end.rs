@@ -57,14 +57,17 @@ fn points(sheet: &Sheet, row: usize, end: &Crossing) -> Option<Vec<DVec2>> {
     }
     let pushes = (1..=BETWEEN).map(|i| end.push * f64::from(i) / f64::from(BETWEEN + 1));
     let guesses = sheet.guesses(row, &pushes.collect::<Vec<_>>()).into_iter();
-    let between = guesses.map(|guess| guess.map(|own| DVec2::new(own.tau, own.load)));
+    let between = guesses.map(|guess| guess.map(|guess| DVec2::new(guess.tau, guess.load)));
     let end = Some(DVec2::new(end.tau, end.load));
     between.chain([end]).collect()
 }
 
 /// Returns true if the slid distance at the end of `limit` is larger than everywhere before.
 fn is_farthest_at_end(limit: &SlidingLimit) -> bool {
-    let grows = limit.segments.iter().all(|own| own.to.push > own.from.push);
+    let grows = limit
+        .segments
+        .iter()
+        .all(|segment| segment.to.push > segment.from.push);
     let end = limit.end();
     let before = limit.pushes().filter(|push| *push < end);
     let before: Option<Vec<f64>> = before.map(|push| limit.slid(push)).collect();

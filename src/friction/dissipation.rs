@@ -47,8 +47,8 @@ impl Dissipation {
         let conditions: Vec<InitialCondition> = conditions.collect();
         let shot: Vec<FirstVariation> = Batch::new(level.method).shoot(&conditions);
         let friction = level.rod.friction.abs() * level.rod.contact_tangent().x;
-        let powers = shot.iter().zip(&points).zip(&nodes);
-        let powers = powers.map(|((variation, at), node)| {
+        let states = shot.iter().zip(&points).zip(&nodes);
+        let powers = states.map(|((variation, at), node)| {
             let rate = ContactRate::new(variation, &level.rod, at.point.x);
             let by_phi = rate.slid / variation.full.map.det();
             let slides = level.side.sign() * by_phi * node.push_by_x;
@@ -69,9 +69,9 @@ impl Dissipation {
     /// Returns the energy dissipated along `limit` from first touch to `push`, a magnitude in radians; NaN beyond the limit.
     pub fn at(&self, limit: &SlidingLimit, push: f64) -> f64 {
         let place = limit.place(push);
-        place.map_or(f64::NAN, |(segment, x)| {
-            let own = &self.0[segment];
-            own.before + own.until(x)
+        place.map_or(f64::NAN, |(index, x)| {
+            let segment = &self.0[index];
+            segment.before + segment.until(x)
         })
     }
 }

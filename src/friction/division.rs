@@ -44,15 +44,15 @@ impl SlidingLimit {
         let limits = limits.iter().map(|(limit, segments)| {
             let runs: Vec<Option<Self>> = divided.by_ref().take(segments.len()).collect();
             let mut runs = segments.iter().zip(runs).peekable();
-            let mut own = Vec::new();
+            let mut joined = Vec::new();
             for (index, segment) in limit.segments.iter().enumerate() {
                 match runs.next_if(|(at, _)| **at == index) {
-                    Some((_, Some(run))) => own.extend(run.segments),
-                    _ => own.push(segment.clone()),
+                    Some((_, Some(run))) => joined.extend(run.segments),
+                    _ => joined.push(segment.clone()),
                 }
             }
             Self {
-                segments: own,
+                segments: joined,
                 ..(*limit).clone()
             }
         });
@@ -72,29 +72,34 @@ impl SlidingLimit {
         let reversals: Vec<Vec<(usize, f64)>> = reversals.collect();
         let at = |reversals: &[Vec<(usize, f64)>]| {
             let pairs = limits.iter().zip(reversals);
-            let pairs =
-                pairs.flat_map(|(limit, own)| own.iter().map(move |(_, push)| (limit, *push)));
+            let pairs = pairs.flat_map(|(limit, limit_reversals)| {
+                limit_reversals.iter().map(move |(_, push)| (limit, *push))
+            });
             knots_at(&pairs.collect::<Vec<_>>())
         };
         let mut near = at(&reversals).into_iter();
-        let exact = limits.iter().zip(&reversals).map(|(limit, own)| {
-            let exact = own.iter().map(|(index, push)| {
-                let LimitSegment { from, to, .. } = &limit.segments[*index];
-                let bend = (to.slope() - from.slope()) / (to.push - from.push);
-                let found = near.next().flatten();
-                let step = found.map_or(0.0, |knot: SlidingKnot| knot.slope() / bend);
-                let exact = push - step;
-                let is_inside = from.push < exact && exact < to.push;
-                (*index, if is_inside { exact } else { *push })
+        let exact = limits
+            .iter()
+            .zip(&reversals)
+            .map(|(limit, limit_reversals)| {
+                let exact = limit_reversals.iter().map(|(index, push)| {
+                    let LimitSegment { from, to, .. } = &limit.segments[*index];
+                    let bend = (to.slope() - from.slope()) / (to.push - from.push);
+                    let found = near.next().flatten();
+                    let step = found.map_or(0.0, |knot: SlidingKnot| knot.slope() / bend);
+                    let exact = push - step;
+                    let is_inside = from.push < exact && exact < to.push;
+                    (*index, if is_inside { exact } else { *push })
+                });
+                exact.collect()
             });
-            exact.collect()
-        });
         let exact: Vec<Vec<(usize, f64)>> = exact.collect();
         let mut knots = at(&exact).into_iter();
-        let polished = limits.iter().zip(&exact).map(|(limit, own)| {
-            let found: Vec<Option<SlidingKnot>> = knots.by_ref().take(own.len()).collect();
-            let mut segments = Vec::with_capacity(limit.segments.len() + own.len());
-            let mut turns = own.iter().zip(found).peekable();
+        let polished = limits.iter().zip(&exact).map(|(limit, limit_reversals)| {
+            let found: Vec<Option<SlidingKnot>> =
+                knots.by_ref().take(limit_reversals.len()).collect();
+            let mut segments = Vec::with_capacity(limit.segments.len() + limit_reversals.len());
+            let mut turns = limit_reversals.iter().zip(found).peekable();
             for (index, segment) in limit.segments.iter().enumerate() {
                 match turns.next_if(|((at, _), _)| *at == index) {
                     Some((_, Some(knot))) => {
@@ -113,7 +118,7 @@ impl SlidingLimit {
         polished.collect()
     }
 
-    /// Nodes of a divided segment. The states at touch and fold, which are singular or exact, stay those of the segment.
+    /// Nodes of a divided segment. The segment keeps its states at touch and fold, which are singular or exact.
     fn run(&self, segment: usize, states: &[Option<FrictionState>]) -> Option<LimitPart<'_>> {
         let LimitSegment { from, to, .. } = &self.segments[segment];
         let last = states.len() - 1;
@@ -159,7 +164,8 @@ impl SlidingLimit {
 
     /// Returns the indices of the segments between two push angles, in radians, and of their neighbours.
     pub fn between(&self, from: f64, to: f64) -> Vec<usize> {
-        let is_between = |own: &LimitSegment| own.to.push >= from && own.from.push <= to;
+        let is_between =
+            |segment: &LimitSegment| segment.to.push >= from && segment.from.push <= to;
         let inside: Vec<bool> = self.segments.iter().map(is_between).collect();
         let is_near = |i: &usize| {
             let [from, to] = [i.saturating_sub(1), (i + 2).min(inside.len())];

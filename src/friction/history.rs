@@ -92,21 +92,21 @@ impl ContactHistory {
         Self::refined(&histories)
     }
 
-    /// Histories with exact states where the contact changes its phase. A small error of a slid distance changes the force ratio of a contact
-    /// that sticks there by much.
+    /// Histories with exact states where the contact changes its phase. Where the contact sticks, a small error of the slid distance changes its
+    /// force ratio considerably.
     fn refined(histories: &[Option<Self>]) -> Vec<Option<Self>> {
-        let limits = histories.iter().flatten().filter_map(|own| {
-            let base = own.base.as_ref()?;
-            let tip = (&own.tip, own.met(&own.tip, Sliding::Tip));
-            Some([tip, (base, own.met(base, Sliding::Base))])
+        let limits = histories.iter().flatten().filter_map(|history| {
+            let base = history.base.as_ref()?;
+            let tip = (&history.tip, history.met(&history.tip, Sliding::Tip));
+            Some([tip, (base, history.met(base, Sliding::Base))])
         });
         let limits: Vec<(&SlidingLimit, Vec<usize>)> = limits.flatten().collect();
         let divided = SlidingLimit::divided(&limits);
         let mut divided = SlidingLimit::polished(&divided).into_iter();
-        let refined = histories.iter().map(|own| {
-            let own = own.as_ref()?;
-            if own.base.is_none() {
-                return Some(own.clone());
+        let refined = histories.iter().map(|history| {
+            let history = history.as_ref()?;
+            if history.base.is_none() {
+                return Some(history.clone());
             }
             let (tip, base) = (divided.next()?, divided.next()?);
             Some(Self::new(tip, Some(base)))
@@ -199,7 +199,7 @@ impl ContactHistory {
         let Some(base) = &self.base else {
             return ContactPhase::Slides(Sliding::Tip);
         };
-        // The end of the boundary may lie a rounding beyond that of the limit.
+        // The end of the boundary may lie a rounding beyond the end of the limit.
         let push = push.min(self.tip.end());
         let after = self.knots.partition_point(|knot| knot.push < push).max(1);
         let before = &self.knots[after - 1];
@@ -231,7 +231,7 @@ impl ContactHistory {
     }
 
     /// Returns the sliding direction at the detachment `push`, a magnitude in radians, where the stable states of the tip limit end. A push
-    /// detaches there if the contact slides toward the tip. `None` if the limit ends elsewhere, so that the history is not that of this end.
+    /// detaches there if the contact slides toward the tip. `None` if the limit ends elsewhere, so that the history leads to another end.
     #[must_use]
     pub fn sliding_at_end(&self, push: f64) -> Option<Sliding> {
         let end = self.tip.end();

@@ -29,7 +29,8 @@ impl SlidingLimit {
         let starts = levels.iter().map(|level| Some((level, level.touch())));
         let continued = continuations(&starts.collect::<Vec<_>>(), Stretch::Stable, NODE_MISS);
         let parts = levels.iter().zip(&continued);
-        let parts = parts.map(|(level, own)| Some(LimitPart::stable(level, own.as_ref()?)));
+        let parts = parts
+            .map(|(level, continuation)| Some(LimitPart::stable(level, continuation.as_ref()?)));
         through(&parts.collect::<Vec<_>>())
     }
 
@@ -84,7 +85,7 @@ impl SlidingLimit {
         Some(self.segments[segment].slid.at(x).0)
     }
 
-    /// Returns a state near that of the limit at the push angle `push` (radians); `None` beyond the ends.
+    /// Returns a state near the limit's state at the push angle `push` (radians); `None` beyond the ends.
     pub fn near(&self, push: f64) -> Option<FrictionPoint> {
         let (segment, x) = self.place(push)?;
         let [tau, load, angle] = self.segments[segment].contact(x);
@@ -98,7 +99,9 @@ impl SlidingLimit {
     /// Returns the index of the segment at the push angle `push` (radians), and its variable there; `None` beyond the ends.
     pub fn place(&self, push: f64) -> Option<(usize, f64)> {
         let last = self.segments.len().checked_sub(1)?;
-        let after = self.segments.partition_point(|own| own.to.push <= push);
+        let after = self
+            .segments
+            .partition_point(|segment| segment.to.push <= push);
         let at = after.min(last);
         let segment = &self.segments[at];
         let is_inside = segment.from.push <= push && push <= segment.to.push;
@@ -153,9 +156,9 @@ pub fn through(parts: &[Option<LimitPart>]) -> Vec<Option<SlidingLimit>> {
     let limits = parts.iter().map(|part| {
         let LimitPart { level, nodes, .. } = part.as_ref()?;
         let fold = part.as_ref()?.has_fold.then(|| nodes.len() - 1);
-        let knots = nodes.iter().zip(&mut shot).enumerate();
+        let states = nodes.iter().zip(&mut shot).enumerate();
         let sign = level.side.sign();
-        let knots = knots.map(|(i, (node, variation))| SlidingKnot {
+        let knots = states.map(|(i, (node, variation))| SlidingKnot {
             push: sign * node.push,
             slid: slid(&level.rod, node),
             node: *node,

@@ -24,8 +24,8 @@ const RATIO_STEP: f64 = 1e-4;
 /// Last Newton step of the force ratio of a contact that sticks. Forces change by less than it, relative to their size.
 const LAST_RATIO_STEP: f64 = 1e-9;
 
-/// Distance of the pole from its target, in whisker lengths, at which a state is accepted without another step. It is that of rounding: an
-/// error of a slid distance is multiplied by 1e6 and more in the force ratio of a contact that sticks there.
+/// Distance of the pole from its target, in whisker lengths, at which a state is accepted without another step. It is the size of
+/// rounding errors, because the force ratio of a contact that sticks there multiplies an error of the slid distance by 1e6 and more.
 const AT_POLE: f64 = 1e-16;
 
 /// Largest distance of the pole from its target at which the force ratio changes, in whisker lengths.
@@ -146,16 +146,16 @@ impl FrictionTarget<'_> {
             level.node(at.point, &here.full, self.push, at.angle)
         };
         let angles = node(level, here);
-        let own_slid = slid(rod, &angles);
+        let iterate_slid = slid(rod, &angles);
         let place = level.row.pole(self.push);
-        let missed = self.slid.map_or(0.0, |slid| slid - own_slid);
+        let missed = self.slid.map_or(0.0, |slid| slid - iterate_slid);
         let residual = map.pole.distance(place);
         let jacobian = beside.map(|(other, there)| {
             let by = |variation: DVec2, radius: f64, angle: f64| {
                 variation.extend(radius - rod.pole * (angle + variation.y))
             };
             let moved = map.residual(there.full.map.pole) / RATIO_STEP;
-            let slid = (slid(&other.rod, &node(other, there)) - own_slid) / RATIO_STEP;
+            let slid = (slid(&other.rod, &node(other, there)) - iterate_slid) / RATIO_STEP;
             DMat3::from_cols(
                 by(map.by_tau, rod.radius(at.point.x), here.by_tau.angle),
                 by(map.by_load, 0.0, here.by_load.angle),
@@ -199,7 +199,7 @@ impl FrictionTarget<'_> {
         }
     }
 
-    /// State of a converged iterate with the trajectory `here`, if it is as stable as those of its limit. There the determinants do not
+    /// State of a converged iterate with the trajectory `here`, if it is as stable as the states of its limit. There the determinants do not
     /// change their signs: a sliding contact meets its fold, and a sticking one buckles.
     fn accept(
         &self,

@@ -97,11 +97,11 @@ impl LimitSegment {
         }
     }
 
-    /// Returns contact coordinate, load and tangent angle near those at the variable `x`: on the polynomials or, where a corner of fold and
-    /// tip throws one of them far off, on lines.
+    /// Returns approximate contact coordinate, load and tangent angle at the variable `x`. They lie on the polynomials or, where a corner of
+    /// fold and tip throws a polynomial far off, on lines.
     pub fn contact(&self, x: f64) -> [f64; 3] {
-        let [from, to] = [0.0, 1.0].map(|end| self.near.map(|own| own.at(end).0));
-        let cubic = self.near.map(|own| own.at(x).0);
+        let [from, to] = [0.0, 1.0].map(|end| self.near.map(|polynomial| polynomial.at(end).0));
+        let cubic = self.near.map(|polynomial| polynomial.at(x).0);
         let line = |i: usize| (to[i] - from[i]).mul_add(x, from[i]);
         let is_near = |i: &usize| (cubic[*i] - line(*i)).abs() <= (to[*i] - from[*i]).abs();
         match [0, 1].iter().all(is_near) {

@@ -23,7 +23,7 @@ impl Sliding {
     /// Returns the sliding direction of the contact at `tau` in the state of `rod`, if it slides; `None` without friction.
     #[must_use]
     pub fn of(variation: &FirstVariation, rod: &Rod, tau: f64) -> Option<Self> {
-        // The sign of the side is that of the friction coefficient and of the change of the pole's direction.
+        // The side, the friction coefficient and the change of the pole's direction have the same sign.
         let rate = ContactRate::new(variation, rod, tau).slid * rod.friction;
         (rod.friction != 0.0).then_some(if rate < 0.0 { Self::Base } else { Self::Tip })
     }

@@ -16,8 +16,8 @@ const SLID_ROUNDING: f64 = 1e-14;
 pub fn states(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
     let mut found = held(queries);
     // The limits are interpolated; the force ratio decides whether a contact next to a limit still sticks.
-    let doubtful = queries.iter().zip(&found).enumerate();
-    let doubtful = doubtful.filter_map(|(i, (query, state))| {
+    let pairs = queries.iter().zip(&found).enumerate();
+    let doubtful = pairs.filter_map(|(i, (query, state))| {
         let ContactPhase::Sticks(end) = query.phase else {
             return None;
         };
@@ -77,13 +77,13 @@ pub fn held(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
             targets[i] = path.as_ref().and_then(|path| path.target(queries[i].push));
         }
     }
-    for (own, state) in found.iter_mut().zip(solve_known(&targets)) {
-        *own = own.or(state);
+    for (found, state) in found.iter_mut().zip(solve_known(&targets)) {
+        *found = found.or(state);
     }
     found
 }
 
-/// Returns the states of limits at pushes, magnitudes in radians, `[pair]`; `None` where none is found.
+/// Returns the states of limits at pushes, magnitudes in radians, `[pair]`; `None` where no state is found.
 pub(super) fn at_limits(pairs: &[(&SlidingLimit, f64)]) -> Vec<Option<FrictionState>> {
     let targets = pairs.iter();
     let targets = targets.map(|(limit, push)| FrictionTarget::sliding(limit, *push));
@@ -97,7 +97,7 @@ impl ContactHistory {
     }
 }
 
-/// States of those of `targets` that are known, `[target]`.
+/// States of the known `targets`, `[target]`; `None` for the others.
 fn solve_known(targets: &[Option<FrictionTarget>]) -> Vec<Option<FrictionState>> {
     let known: Vec<FrictionTarget> = targets.iter().flatten().copied().collect();
     let mut solved = solve(&known).into_iter();

@@ -52,7 +52,7 @@ pub fn minimise(
             *scale = norm(column).max(*scale);
             // A parameter on which nothing depends stays.
             if *scale > 0.0 {
-                column.iter_mut().for_each(|own| *own /= *scale);
+                column.iter_mut().for_each(|entry| *entry /= *scale);
             }
         }
         let scaled = |x: &[f64]| {
@@ -86,7 +86,7 @@ pub fn minimise(
                 let size = slope / (value * value + damping);
                 step.iter_mut()
                     .zip(*direction)
-                    .for_each(|(step, own)| *step -= size * own);
+                    .for_each(|(step, component)| *step -= size * component);
                 predicted += size * size * (value * value + 2.0 * damping);
             }
             let step_length = norm(&step);

@@ -1,8 +1,8 @@
-//! Grid of states over contact and load on one side of a whisker, and the cells of it in which a state has given numbers at the base.
+//! Grid of states over contact and load on one side of a whisker, and the grid's cells in which a state has given numbers at the base.
 //!
 //! The contacts are evenly spaced in `u = ln tau + tau`, from the tip inward; the loads are parts of the first fold's. A pair of numbers
 //! `w` is the force times the lever `l`. In a cell that has such a state, `l x w` and `l . (f l - w)` have zeros, so that both change
-//! their signs between its corners. Without a load the lever is that of the resting whisker, so that small loads need no more cells.
+//! their signs between its corners. Without a load, the resting whisker gives the lever, so that small loads need no more cells.
 //! Where the Jacobian of the pair changes its sign, a cell may have two states; such cells and their neighbours have more starts.
 
 use super::newton::{lever, lever_by};
@@ -13,7 +13,7 @@ use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
 use whiskmap_mechanics::shooting::batch::{Batch, Method};
 use whiskmap_mechanics::shooting::{FirstVariation, Reader, ShootingMap};
 
-/// Indices of the numbers `[M, Fx, Fy]` in each pair of them.
+/// Indices of the two numbers of each pair in `[M, Fx, Fy]`.
 pub const PAIRS: [[usize; 2]; 3] = [[0, 2], [0, 1], [1, 2]];
 
 /// Arclength of the contact nearest to the base, in whisker lengths, as for the poles of a scene.
@@ -25,7 +25,7 @@ const CONTACT_STEP: f64 = 0.12;
 /// Smallest part of the fold's load beside 0.
 const FIRST_PART: f64 = 1e-4;
 
-/// Step between parts of the fold's load: relative to small parts, and an eighth of it near the fold.
+/// Step between parts of the fold's load: relative to small parts; near the fold, an eighth of this step.
 const PART_STEP: f64 = 0.35;
 
 /// Largest part of the fold's load: beyond 1, since the fold is interpolated between contacts.
@@ -148,7 +148,7 @@ impl SheetGrid {
         self.pairs[pair].is_determined
     }
 
-    /// Adds to `starts` points `(tau, load)` near all states whose pair of numbers, by its index in [`PAIRS`], is that of `wanted`.
+    /// Adds to `starts` points `(tau, load)` near all states with the pair of numbers of `wanted`, by the index of the pair in [`PAIRS`].
     /// `signs` is memory for the search.
     pub fn add_starts(
         &self,
@@ -157,12 +157,12 @@ impl SheetGrid {
         signs: &mut Vec<u8>,
         starts: &mut Vec<DVec2>,
     ) {
-        let own = &self.pairs[pair];
+        let pair_grid = &self.pairs[pair];
         let wanted = DVec2::from(PAIRS[pair].map(|i| wanted[i]));
         let count = self.parts.len();
         signs.clear();
-        let [first, second] = &own.levers;
-        let nodes = first.iter().zip(second).zip(&own.sizes);
+        let [first, second] = &pair_grid.levers;
+        let nodes = first.iter().zip(second).zip(&pair_grid.sizes);
         signs.extend(nodes.map(|((x, y), size)| {
             let [across, along] = misses(DVec2::new(*x, *y), *size, wanted);
             u8::from(across > 0.0) | u8::from(along > 0.0) << 1
@@ -174,12 +174,12 @@ impl SheetGrid {
                 let any = corners[0] | corners[1] | corners[2] | corners[3];
                 let all = corners[0] & corners[1] & corners[2] & corners[3];
                 if any & !all == 3 {
-                    starts.push(self.start(own, i * count + k, wanted));
+                    starts.push(self.start(pair_grid, i * count + k, wanted));
                 }
             }
         }
-        for &cell in &own.turns {
-            let corners = self.corners(own, cell, wanted);
+        for &cell in &pair_grid.turns {
+            let corners = self.corners(pair_grid, cell, wanted);
             let may_vanish = |i: usize| {
                 let values = corners.map(|corner| corner[i]);
                 let least = values.into_iter().fold(f64::INFINITY, f64::min);
@@ -229,7 +229,7 @@ impl SheetGrid {
 
     /// Returns the contact before `tau`, and `|load| tau^2` of the first fold at `tau`, interpolated.
     fn fold(&self, tau: f64) -> (usize, f64) {
-        let after = self.taus.partition_point(|own| *own < tau);
+        let after = self.taus.partition_point(|node| *node < tau);
         let i = after.clamp(1, self.taus.len() - 1) - 1;
         let [from, to] = [self.taus[i], self.taus[i + 1]].map(libm::log);
         let at = (libm::log(tau) - from) / (to - from);
@@ -262,7 +262,7 @@ impl SheetGrid {
         let part = load * tau * tau / q;
         let before = self
             .parts
-            .partition_point(|own| *own < part)
+            .partition_point(|node| *node < part)
             .saturating_sub(1);
         let near = self.phis[i * self.parts.len() + before];
         (part < NEAR_FOLD).then(|| nearest_turn(map.pole.to_angle(), near))
@@ -275,7 +275,8 @@ const ON_TIP: f64 = 1e-9;
 /// Determinant of a stable state at the fold, relative to its scale, that is rounding ([`Sheet::is_stable`](crate::sheet::Sheet::is_stable)).
 const FLAT: f64 = 1e-7;
 
-/// Component across the lever and along it of the force times the lever less the numbers `wanted`, the latter times the lever.
+/// Returns `lever x wanted` and `size - lever . wanted`, where `size` is the force times the square of the lever. Both are 0 in a state with
+/// the numbers `wanted`.
 #[inline(always)]
 fn misses(lever: DVec2, size: f64, wanted: DVec2) -> [f64; 2] {
     [lever.perp_dot(wanted), size - lever.dot(wanted)]

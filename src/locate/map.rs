@@ -60,8 +60,8 @@ struct ContactCell {
 }
 
 impl Locator {
-    /// Returns the stable states of `whisker` at `pole`, those of the locator, at the distances and push angles of `grid`. First touch, and cells
-    /// that the whisker does not reach or has left, have no state.
+    /// Returns the stable states at the distances and push angles of `grid`. `whisker` and `pole` are the locator's. First touch, and cells that
+    /// the whisker does not reach or has left, have no state.
     #[must_use]
     pub fn shared_states(&self, whisker: &Whisker, pole: &Pole, grid: &Grid) -> SharedMap {
         let pole = &Pole::smooth(pole.radius_mm);
@@ -112,12 +112,13 @@ impl Locator {
             Some((column, state))
         });
         let states: Vec<(usize, StateAtPush)> = states.collect();
-        let own = &self.sides[usize::from(side == Side::Cb)];
+        let sheet_grid = &self.sides[usize::from(side == Side::Cb)];
         let points = states.iter().map(|(_, state)| (state.tau, state.load));
-        let variations: Vec<FirstVariation> = Batch::new(self.method).shoot_at(&own.rod, points);
+        let variations: Vec<FirstVariation> =
+            Batch::new(self.method).shoot_at(&sheet_grid.rod, points);
         let cell = |((column, state), here): (&(usize, StateAtPush), FirstVariation)| {
             let at = DVec2::new(state.tau, state.load);
-            let columns = base_derivatives(&own.rod, at, &here);
+            let columns = base_derivatives(&sheet_grid.rod, at, &here);
             let condition = |pair: usize| {
                 let [one, other] = PAIRS[pair];
                 let measured = DVec3::from(
@@ -125,8 +126,10 @@ impl Locator {
                 );
                 let [by_contact, by_load] = columns;
                 let det = by_contact[one] * by_load[other] - by_contact[other] * by_load[one];
-                let condition = Triangle::new(columns.map(|own| measured * own)).condition();
-                own.is_determined(pair).then_some(condition.copysign(det))
+                let condition = Triangle::new(columns.map(|column| measured * column)).condition();
+                sheet_grid
+                    .is_determined(pair)
+                    .then_some(condition.copysign(det))
             };
             let reading = branch.read(state);
             ContactCell {
@@ -190,7 +193,7 @@ fn singular(grid: &Grid, cells: &[ContactCell], pair: usize) -> Vec<[[f64; 2]; 2
             let [Some((side, _)), ..] = known else {
                 continue;
             };
-            let known = known.map(|own| own.filter(|(own, _)| *own == side));
+            let known = known.map(|inverse| inverse.filter(|(other, _)| *other == side));
             let mut ends = (0..4).filter_map(|i| {
                 let next = (i + 1) % 4;
                 let [from, to] = [known[i]?.1, known[next]?.1];

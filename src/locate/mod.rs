@@ -2,7 +2,7 @@
 //!
 //! Two of moment, axial force and transverse force determine contact and load, except where their Jacobian is singular; there may be
 //! several states, or none. All stable states with the measured numbers are returned, each with the condition of the inverse and the
-//! standard deviations that follow from those of the sensor. With all three numbers, the state nearest to them is returned.
+//! standard deviations that follow from the sensor's standard deviations. With all three numbers, the state nearest to them is returned.
 
 mod grid;
 mod map;
@@ -127,7 +127,7 @@ const SAME_STATE: f64 = 1e-6;
 /// Largest misfit of a state to two numbers, over the reading's size.
 const MOST_MISFIT_OF_TWO: f64 = 1e-9;
 
-/// Largest misfit of a state to three numbers without standard deviations, over the reading's size: that of numbers with three digits.
+/// Largest misfit of a state to three numbers without standard deviations, over the reading's size: the misfit of numbers with three digits.
 const MOST_MISFIT_OF_THREE: f64 = 1e-3;
 
 /// Largest misfit of a state to three numbers, in standard deviations: beyond it lies one of two million normal errors.
@@ -199,8 +199,8 @@ impl Locator {
             .collect()
     }
 
-    /// Finds all stable states for each of the `readings`, in their order; those of a reading by growing push angle. Each reading has at
-    /// least one row.
+    /// Finds all stable states for each of the `readings`, in their order. The states of a reading are sorted by growing push angle. Each
+    /// reading has at least one row.
     #[must_use]
     pub fn locate(
         &self,
@@ -224,7 +224,9 @@ impl Locator {
                 true => &[],
                 false => readings,
             };
-            let wanted = readings.iter().map(|own| self.wanted(own, deviations));
+            let wanted = readings
+                .iter()
+                .map(|reading| self.wanted(reading, deviations));
             let wanted: Vec<Wanted> = wanted.collect();
             let found = self.solve(&wanted, deviations.is_some());
             let first = chunk * READINGS_AT_ONCE + 1;
@@ -246,7 +248,13 @@ impl Locator {
         let given = [reading.moment_nnm, reading.force_x_un, reading.force_y_un];
         let measured = DVec3::from(given.map(|number| f64::from(u8::from(number.is_some()))));
         let in_rod = DVec3::new(units.moment_nnm, units.force_un, units.force_un);
-        let sds = deviations.map(|own| DVec3::new(own.moment_nnm, own.force_un, own.force_un));
+        let sds = deviations.map(|deviations| {
+            DVec3::new(
+                deviations.moment_nnm,
+                deviations.force_un,
+                deviations.force_un,
+            )
+        });
         let mut wanted = Wanted {
             reading,
             numbers: DVec3::from(given.map(Option::unwrap_or_default)) / in_rod,
@@ -354,8 +362,8 @@ impl Locator {
         let contact = units.length_mm * to_base.rotate(-full.position);
         let pole = units.length_mm * full.map.pole;
         let columns = base_derivatives(&grid.rod, at, &found.last);
-        let condition = Triangle::new(columns.map(|own| wanted.measured * own)).condition();
-        let weighted = Triangle::new(columns.map(|own| wanted.weights * own));
+        let condition = Triangle::new(columns.map(|column| wanted.measured * column)).condition();
+        let weighted = Triangle::new(columns.map(|column| wanted.weights * column));
         let deviation = |gradient: DVec2, unit: f64| {
             has_deviations.then(|| weighted.deviation(gradient) * unit)
         };

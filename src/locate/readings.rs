@@ -14,7 +14,7 @@ pub struct BaseReadings {
     pub note: Option<String>,
 }
 
-/// Largest size of a moment in nN m and of a force in uN: beyond that of every whisker of a scene.
+/// Largest size of a moment in nN m and of a force in uN: beyond the loads of every whisker of a scene.
 pub const MOST_LOAD: f64 = 1e18;
 
 /// Largest size of an angle of the base, in degrees.
@@ -67,7 +67,7 @@ impl BaseReadings {
                 "" | "nan" | "NaN" => Some(None),
                 cell => {
                     let number: Option<f64> = cell.parse().ok();
-                    number.filter(|own| own.abs() <= most).map(Some)
+                    number.filter(|number| number.abs() <= most).map(Some)
                 }
             });
             let rows = table.lines().count();

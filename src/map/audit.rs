@@ -53,19 +53,19 @@ impl AuditSample {
     }
 }
 
-/// Largest error of a value by expansions, as a part of its size, over the bound on the residual in whisker lengths: what their certificate
-/// allows.
+/// Largest error of a value by expansions, as a part of its size, over the bound on the residual in whisker lengths: the error that the
+/// certificate of expansions allows.
 const VALUES_PER_MISS: f64 = 10.0;
 
-/// Largest change of a value, as a part of its size, over that of the argument of its row, as a part of its end: values are smooth functions
-/// of the argument.
+/// Largest change of a value, as a part of its size, over the change of its row's argument, as a part of the argument's end. Values are smooth
+/// functions of the argument.
 const BY_ARGUMENT: f64 = 4.0;
 
 /// Relative error of a residual that is rounded to `f32`.
 const ROUNDED: f64 = f32::EPSILON as f64;
 
-/// Compares the solved `cells` of an engine with those of the `rest` that the CPU `found`. Residuals are at most `residual_bound`, and those of
-/// rows at most `row_residual`, both in whisker lengths. Returns the numbers of compared and of differing cells.
+/// Compares the solved `cells` of an engine with the cells of the `rest` that the CPU `found`. Residuals of cells are at most
+/// `residual_bound`, and residuals of rows at most `row_residual`, both in whisker lengths. Returns the numbers of compared and of differing cells.
 pub fn compare(
     batch: &RowBatch,
     cells: &Cells,
@@ -127,7 +127,7 @@ fn holds(
         .all(|i| (ours[i] - f64::from(theirs.values[i])).abs() <= (TOLERANCE + by_miss) * sizes[i])
 }
 
-/// Sizes of the values of a row ([`WhiskerSide::sizes`]): the larger ones of those at its end and those of `ours`.
+/// Sizes of the values of a row ([`WhiskerSide::sizes`]): the larger of the sizes at its end and the sizes of `ours`.
 fn sizes(side: &WhiskerSide, at_end: Values, ours: Values) -> Values {
     let largest = |[arc, _, force, .., distance, _]: Values| [arc, force, distance, force * arc];
     let (at_end, ours) = (largest(at_end), largest(ours));

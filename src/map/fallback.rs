@@ -37,12 +37,15 @@ pub fn complete(
             counts.add_others(without, has_failed);
             return (cells, audit);
         }
-        let solved = cells.outcome.iter().filter(|own| **own == Outcome::Solved);
+        let solved = cells
+            .outcome
+            .iter()
+            .filter(|outcome| **outcome == Outcome::Solved);
         audit.turned_over = solved.count() as u64;
     }
     let cells = cpu.solve(batch);
     let outcomes = cells.outcome.iter();
-    let others = outcomes.filter(|own| may_have_state(**own)).count();
+    let others = outcomes.filter(|outcome| may_have_state(**outcome)).count();
     counts.add_others(others as u64, has_failed || audit.differing > 0);
     (cells, audit)
 }
@@ -60,7 +63,7 @@ const fn is_final(outcome: Outcome) -> bool {
     )
 }
 
-/// The cells that the CPU solves: those that are not certified, and the sample of the audit.
+/// The cells that the CPU solves: cells without a certificate, and the sample of the audit.
 fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
     let rows = batch.rows.par_iter().map(|row| {
         let side = &batch.sides[row.side];

@@ -18,7 +18,7 @@ pub struct FrictionRow {
     pub contacts: Vec<(usize, f64)>,
 }
 
-/// Cell whose friction is not that of a contact that slides toward the tip.
+/// Cell whose contact does not slide toward the tip, so that its friction differs.
 struct FrictionCell {
     /// Index of the cell in the panel.
     cell: usize,
@@ -49,7 +49,9 @@ pub fn replace(
             add_strains(side, &mut cells);
         }
         let ends = rows.iter().zip(histories).filter(|(row, history)| {
-            let sliding = history.as_ref().and_then(|own| own.sliding_at_end(row.end));
+            let sliding = history
+                .as_ref()
+                .and_then(|history| history.sliding_at_end(row.end));
             sliding.is_some_and(|sliding| sliding != Sliding::Tip)
         });
         let ends: Vec<usize> = ends.map(|(row, _)| row.row - first_row).collect();
@@ -150,12 +152,12 @@ fn write(found: &FrictionCell, panel: &mut Panel) {
     panel.newton_steps[cell] += state.steps;
     panel.residual[cell] = state.residual as f32;
     for (channel, value) in panel.state.iter_mut().zip(values) {
-        if let Some(own) = channel.get_mut(cell) {
-            *own = *value as f32;
+        if let Some(number) = channel.get_mut(cell) {
+            *number = *value as f32;
         }
     }
-    if let Some(own) = panel.peak_strain.get_mut(cell) {
-        *own = found.strain;
+    if let Some(strain) = panel.peak_strain.get_mut(cell) {
+        *strain = found.strain;
     }
 }
 
@@ -163,8 +165,8 @@ fn write(found: &FrictionCell, panel: &mut Panel) {
 fn clear(cell: usize, panel: &mut Panel) {
     panel.residual[cell] = f32::NAN;
     for channel in panel.state.iter_mut().chain([&mut panel.peak_strain]) {
-        if let Some(own) = channel.get_mut(cell) {
-            *own = f32::NAN;
+        if let Some(number) = channel.get_mut(cell) {
+            *number = f32::NAN;
         }
     }
 }

@@ -42,7 +42,11 @@ impl PendingNets {
         let nodes = Arc::new(Nodes {
             method: self.method,
             points: points.collect(),
-            rods: self.sides.iter().map(|own| own.sheet.rod.clone()).collect(),
+            rods: self
+                .sides
+                .iter()
+                .map(|side| side.sheet.rod.clone())
+                .collect(),
         });
         self.submitted = (nodes.count() > 0).then_some(nodes);
         if let Some(nodes) = &self.submitted {
@@ -63,9 +67,9 @@ impl PendingNets {
             };
             let mut rest = &states[..];
             let parts = nodes.points.iter().map(|points| {
-                let (own, others) = rest.split_at(points.len());
+                let (side_states, others) = rest.split_at(points.len());
                 rest = others;
-                own
+                side_states
             });
             let parts: Vec<&[PlainState]> = parts.collect();
             let sides = self.drafts.par_iter_mut().zip(&self.sides);

@@ -116,7 +116,9 @@ impl Panel {
     /// channels.
     #[must_use]
     pub fn push_derivative_mut(&mut self, name: &str) -> Option<&mut Vec<f32>> {
-        let place = DERIVATIVES.iter().position(|own| *own == name)?;
+        let place = DERIVATIVES
+            .iter()
+            .position(|derivative| *derivative == name)?;
         Some(&mut self.push_derivatives[place])
     }
 
@@ -127,7 +129,11 @@ impl Panel {
             "status" => &self.status,
             "newton_steps" => &self.newton_steps,
             _ => {
-                let by = || DERIVATIVES.iter().position(|own| *own == name);
+                let by = || {
+                    DERIVATIVES
+                        .iter()
+                        .position(|derivative| *derivative == name)
+                };
                 let values = match Channel::of(name) {
                     Some(channel) => self.channel(channel),
                     None => by().map_or(&[][..], |place| &self.push_derivatives[place]),
@@ -153,11 +159,14 @@ impl Panel {
     /// Returns the `rows` of a panel that is `width` cells wide, which can be written in parallel.
     pub(super) fn rows_mut(&mut self, width: usize, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let cells = rows.start * width..rows.end * width;
-        let mut state = self.state.each_mut().map(|own| rows_of(own, &cells, width));
+        let mut state = self
+            .state
+            .each_mut()
+            .map(|channel| rows_of(channel, &cells, width));
         let mut push_derivatives = self
             .push_derivatives
             .each_mut()
-            .map(|own| rows_of(own, &cells, width));
+            .map(|channel| rows_of(channel, &cells, width));
         let mut peak_strain = rows_of(&mut self.peak_strain, &cells, width);
         let [regime, status, newton_steps] =
             [&mut self.regime, &mut self.status, &mut self.newton_steps]

@@ -51,7 +51,7 @@ pub fn fill(
 const fn status(outcome: Outcome, is_on_span: bool) -> Status {
     match outcome {
         Outcome::Solved => Status::Solved,
-        // At the tip both verdicts are right; the boundary's is taken.
+        // At the tip both verdicts are right; the verdict of the boundary is taken.
         Outcome::AtTip if is_on_span => Status::Solved,
         Outcome::AtTip | Outcome::BeyondTip => Status::BeyondTip,
         Outcome::BeyondFold => Status::BeyondFold,
@@ -86,7 +86,7 @@ impl RowWriter<'_> {
         let is_reached = side.sheet.rows[row].is_reached();
         let touches = columns
             .iter()
-            .take_while(|own| own.push == 0.0 && is_reached);
+            .take_while(|column| column.push == 0.0 && is_reached);
         let touches = touches.count();
         for index in 0..touches {
             let touch = side.first_touch(row, cells.steps[first + index]);
@@ -109,8 +109,8 @@ impl RowWriter<'_> {
         let doubtful = std::mem::take(&mut self.doubtful);
         if !doubtful.is_empty() {
             for (index, cell) in doubt::solve(side, row, &self.boundary, doubtful) {
-                self.contacts.retain(|(own, _)| *own != index);
-                self.points.retain(|(own, _)| *own != index);
+                self.contacts.retain(|(other, _)| *other != index);
+                self.points.retain(|(other, _)| *other != index);
                 self.write_run(index, cell.run());
             }
             self.contacts.sort_unstable_by_key(|(index, _)| *index);
@@ -130,8 +130,8 @@ impl RowWriter<'_> {
         })
     }
 
-    /// Writes a run of cells with one verdict, the first of which is in the column `from` of the side. Keeps those in doubt and, with
-    /// friction, those in contact.
+    /// Writes a run of cells with one verdict. Its first cell is in the column `from` of the side. Keeps the cells in doubt and, with friction,
+    /// the cells in contact.
     fn write_run(&mut self, from: usize, cells: CellRun) {
         let columns: &SideColumns = &self.side.columns;
         let run = from..from + cells.steps.len();
@@ -142,8 +142,8 @@ impl RowWriter<'_> {
         let (regime, status) = self.boundary.classify(push, status);
         let (place, into) = (columns.span(&run), &mut self.into);
         let clear = |row: &mut [f32]| {
-            if let Some(own) = row.get_mut(place.clone()) {
-                own.fill(f32::NAN);
+            if let Some(values) = row.get_mut(place.clone()) {
+                values.fill(f32::NAN);
             }
         };
         into.regime[place.clone()].fill(regime.code());
@@ -192,7 +192,9 @@ impl RowWriter<'_> {
             self.doubtful.extend(cells);
         }
         if self.side.has_friction() && regime == Regime::Contact {
-            let contacts = run.zip(ours).map(|(index, own)| (index, own.push.abs()));
+            let contacts = run
+                .zip(ours)
+                .map(|(index, column)| (index, column.push.abs()));
             self.contacts.extend(contacts);
         }
     }

@@ -129,8 +129,8 @@ impl Summary {
         }
         let codes = [&panel.regime, &panel.status, &panel.newton_steps];
         let [regimes, statuses, steps] = codes.map(|codes| codes.par_chunks(AT_ONCE));
-        let parts = (regimes, statuses, panel.residual.par_chunks(AT_ONCE), steps);
-        let parts = parts
+        let chunks = (regimes, statuses, panel.residual.par_chunks(AT_ONCE), steps);
+        let parts = chunks
             .into_par_iter()
             .map(|(regimes, statuses, residuals, steps)| {
                 let mut part = Self::default();
@@ -154,7 +154,8 @@ impl Summary {
 
     /// Counts cells by their codes of regime and status, their residuals and steps.
     fn count_cells(&mut self, regimes: &[u32], statuses: &[u32], residuals: &[f32], steps: &[u32]) {
-        let of = |codes: &[u32], code: u32| codes.iter().filter(|own| **own == code).count() as u64;
+        let of =
+            |codes: &[u32], code: u32| codes.iter().filter(|found| **found == code).count() as u64;
         self.regimes = Regime::ALL.map(|regime| of(regimes, regime.code()));
         let mut worst = 0.0_f32;
         for (residual, regime) in residuals.iter().zip(regimes) {

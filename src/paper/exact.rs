@@ -30,7 +30,7 @@ fn pushed(
 }
 
 /// Checks against the classical elastica. The digits are from an independent evaluation of the elliptic integrals; `elastica`
-/// reproduces all of them.
+/// reproduces all digits.
 fn straight_cylinder() -> Vec<Check> {
     let case = "straight cylinder, point contact";
     let end = end(&STRAIGHT_CYLINDER, &POINT, Side::Cb, 8.0);

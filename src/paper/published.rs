@@ -1,4 +1,4 @@
-//! Checks against published numbers of the paper, and more digits of them from AUTO-07p.
+//! Checks against published numbers of the paper, with more digits from AUTO-07p.
 
 use super::check::{AUTO, Check, ExpectedNumber, FORWARD, PAPER, end, near};
 use super::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};

@@ -26,7 +26,7 @@ pub const FIG4_WHISKER: Whisker = whisker([15.25, 32.5, 2.0], 0.02, 0.0);
 /// Hair of the paper's Fig. 4.
 pub const FIG4_HAIR: Whisker = whisker([15.0, 30.0, 26.5], 0.017, 0.0);
 
-/// Whisker of the paper's Fig. 6. The paper gives no curvature for it: this is that of Fig. 4.
+/// Whisker of the paper's Fig. 6. The paper gives no curvature for it: this is the curvature of Fig. 4.
 pub const FIG6_WHISKER: Whisker = whisker([16.4, 33.5, 2.0], 0.02, 0.0);
 
 /// Blunt whisker of the paper's Fig. 5.

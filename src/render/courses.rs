@@ -37,8 +37,8 @@ const CURVES: [Curve; 3] = [
     },
 ];
 
-/// Returns a chart of a course: angle of the base, force and moment over time, with the events as dots, which the first plot names. Loads fall to those of the next
-/// state where the whisker detaches. Lines break where the state is undecided.
+/// Returns a chart of a course: angle of the base, force and moment over time, with the events as dots, which the first plot names. At a detachment,
+/// loads fall to the loads of the next state. Lines break where the state is undecided.
 #[must_use]
 pub fn courses(title: &str, whisk: &Whisk) -> Chart {
     let mut plots: Vec<Plot> = CURVES.iter().map(|curve| plot(whisk, curve)).collect();
@@ -64,7 +64,7 @@ type WithDeviation = fn(&FrameForce) -> [Option<f64>; 2];
 pub fn forces(title: &str, forces: &[FrameForce]) -> Chart {
     let plot = |name: &str, number: WithDeviation| {
         let frames = forces.iter().map(|force| {
-            let [value, deviation] = number(force).map(|own| own.unwrap_or(f64::NAN));
+            let [value, deviation] = number(force).map(|found| found.unwrap_or(f64::NAN));
             (force.time_s, value, deviation)
         });
         let line = frames.clone().map(|(time, value, _)| [time, value]);
@@ -86,9 +86,9 @@ pub fn forces(title: &str, forces: &[FrameForce]) -> Chart {
         }
     };
     let mut plots = vec![
-        plot("force_un", |own| [own.force_un, own.force_sd_un]),
-        plot("base_moment_nnm", |own| {
-            [own.base_moment_nnm, own.base_moment_sd_nnm]
+        plot("force_un", |force| [force.force_un, force.force_sd_un]),
+        plot("base_moment_nnm", |force| {
+            [force.base_moment_nnm, force.base_moment_sd_nnm]
         }),
     ];
     // The first plot has the legend.

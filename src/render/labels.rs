@@ -60,20 +60,23 @@ pub fn parameter(parameter: Parameter) -> String {
 /// Returns the label of a sweep axis.
 #[must_use]
 pub fn variable(variable: &SweepVariable) -> String {
-    let own = variable.parameter();
-    own.map_or_else(|| variable.title().to_owned(), parameter)
+    let swept = variable.parameter();
+    swept.map_or_else(|| variable.title().to_owned(), parameter)
 }
 
 /// Returns the label of a channel of quantities.
 #[must_use]
 pub fn channel(name: &str) -> String {
     let mut all = Parameter::ALL.into_iter();
-    if let Some(own) = all.find(|own| own.push_derivative() == name) {
-        let unit = match own.unit() {
+    if let Some(parameter) = all.find(|parameter| parameter.push_derivative() == name) {
+        let unit = match parameter.unit() {
             "1" => "deg".to_owned(),
             unit => format!("deg per {unit}"),
         };
-        let (title, _) = own.title().split_once(" (").unwrap_or((own.title(), ""));
+        let (title, _) = parameter
+            .title()
+            .split_once(" (")
+            .unwrap_or((parameter.title(), ""));
         return format!("d(push angle at detachment) / d({title}) ({unit})");
     }
     column_label(name).unwrap_or(name).to_owned()
@@ -82,7 +85,7 @@ pub fn channel(name: &str) -> String {
 /// Returns the label of a column of states or a channel without a parameter; `None` for another name.
 #[must_use]
 pub fn column_label(name: &str) -> Option<&'static str> {
-    let label = || CHANNELS.iter().find(|(own, ..)| *own == name);
+    let label = || CHANNELS.iter().find(|(channel, ..)| *channel == name);
     match name {
         "contact_force_un" => Some("contact force with friction (\u{b5}N)"),
         "peak_strain_mm" => Some("arc length to the largest bending strain (mm)"),

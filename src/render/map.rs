@@ -93,7 +93,7 @@ fn panel_axis(axis: &SweepAxis) -> PanelAxis {
 fn without_whisker(map: &MapSlice) -> Result<BTreeSet<usize>, RenderError> {
     let axes = map.grid().sweep.iter();
     let mut variables = axes.map(|axis| &axis.variable);
-    let has_table = variables.any(|own| matches!(own, SweepVariable::Whisker(_)));
+    let has_table = variables.any(|variable| matches!(variable, SweepVariable::Whisker(_)));
     let mut panels = BTreeSet::new();
     if has_table && map.channels().contains(&"status") {
         for index in 0..map.layout().panels() {
@@ -130,8 +130,8 @@ fn codes(
     } else {
         let panels = 0..map.layout().panels();
         for index in panels.filter(|index| !without_whisker.contains(index)) {
-            if let ChannelValues::U32(own) = map.read_panel(channel, index)? {
-                codes.extend(own);
+            if let ChannelValues::U32(panel_codes) = map.read_panel(channel, index)? {
+                codes.extend(panel_codes);
             }
         }
     }
@@ -191,7 +191,7 @@ fn quantities(
     scaled(map, channel, options, false)
 }
 
-/// Returns true for a moment, whose sign is that of its side.
+/// Returns true for a moment, which has the sign of its side.
 fn is_moment(channel: &str) -> bool {
     channel.ends_with("_nnm")
 }

@@ -34,12 +34,12 @@ pub enum CellMark {
 pub struct MapMarks {
     /// True if states whose contact does not slide toward the tip are marked.
     has_marks: bool,
-    /// Yield strain beyond which states are marked; `None` if none is.
+    /// Yield strain beyond which states are marked; `None` without marks.
     yield_strain: Option<f64>,
 }
 
 impl MapMarks {
-    /// Finds the marks of a picture of `channel`: those that occur.
+    /// Finds the marks that occur in a picture of `channel`.
     pub fn new(map: &MapSlice, channel: &str) -> Result<Self, RenderError> {
         let mut marks = Self {
             has_marks: has_marks(map, channel)?,
@@ -69,7 +69,7 @@ impl MapMarks {
         }
     }
 
-    /// Returns the mark of each cell of a panel, `[distance][push_angle]`; nothing without marks. A cell with both marks has that of its status.
+    /// Returns the mark of each cell of a panel, `[distance][push_angle]`; nothing without marks. A cell with both marks has the mark of its status.
     pub fn of_panel(
         &self,
         map: &MapSlice,

@@ -206,9 +206,9 @@ pub fn designs(variable: Variable, target: &DesignTarget, design: &Design) -> Pl
         variable => labels::axis_title(&variable.name()),
     };
     let mut plot = empty("", &varied, &label);
-    let reached = [DetachmentKind::SlipOff, DetachmentKind::PullOff];
-    let reached = reached.into_iter().filter_map(|kind| design.reached(kind));
-    let reached = reached.fold([target.value; 2], |[low, high], [least, most]| {
+    let kinds = [DetachmentKind::SlipOff, DetachmentKind::PullOff];
+    let ranges = kinds.into_iter().filter_map(|kind| design.reached(kind));
+    let reached = ranges.fold([target.value; 2], |[low, high], [least, most]| {
         [low.min(least), high.max(most)]
     });
     plot.logarithmic = [design.range, reached].map(is_wide);

@@ -79,8 +79,8 @@ pub fn chart(
 /// Part of a line, and the mark of its states.
 type RowPart = (Vec<[f64; 2]>, Option<CellMark>);
 
-/// Returns the parts of a row of `values` at `angles`, each of one mark: CF and CB apart, because the values between them are not those of
-/// first touch. Parts of one side share an end.
+/// Returns the parts of a row of `values` at `angles`, each of one mark. CF and CB have separate parts, because no line between them
+/// would pass through first touch. Parts of one side share an end.
 fn parts(angles: &[f64], values: &[f64], marks: &[Option<CellMark>]) -> Vec<RowPart> {
     let mark = |i: usize| marks.get(i).copied().flatten();
     let mut parts: Vec<RowPart> = Vec::new();
@@ -88,7 +88,7 @@ fn parts(angles: &[f64], values: &[f64], marks: &[Option<CellMark>]) -> Vec<RowP
         let point = [*angle, *value];
         let crosses = i > 0 && angles[i - 1] < 0.0 && *angle > 0.0;
         match parts.last_mut() {
-            Some((points, own)) if !crosses && *own == mark(i) => points.push(point),
+            Some((points, last_mark)) if !crosses && *last_mark == mark(i) => points.push(point),
             Some((points, _)) if !crosses => {
                 let shared = points.last().copied();
                 parts.push((shared.into_iter().chain([point]).collect(), mark(i)));

@@ -16,14 +16,14 @@ type OfPair = fn(&SharedState) -> (usize, Option<f64>);
 
 /// Pairs of numbers with their names.
 const PAIRS: [(&str, OfPair); 3] = [
-    ("moment and axial force", |own| {
-        (own.moment_x_states, own.moment_x_condition)
+    ("moment and axial force", |state| {
+        (state.moment_x_states, state.moment_x_condition)
     }),
-    ("moment and transverse force", |own| {
-        (own.moment_y_states, own.moment_y_condition)
+    ("moment and transverse force", |state| {
+        (state.moment_y_states, state.moment_y_condition)
     }),
-    ("axial and transverse force", |own| {
-        (own.force_states, own.force_condition)
+    ("axial and transverse force", |state| {
+        (state.force_states, state.force_condition)
     }),
 ];
 
@@ -45,11 +45,13 @@ pub fn shared_states(
         let count = columns * grid.distance_mm.len();
         let (mut values, mut hatched) = (vec![f64::NAN; count], vec![false; count]);
         for state in &map.states {
-            let place = |values: &[f64], own: f64| values.partition_point(|value| *value < own);
+            let place = |values: &[f64], coordinate: f64| {
+                values.partition_point(|value| *value < coordinate)
+            };
             let row = place(&grid.distance_mm, state.distance_mm);
             let cell = row * columns + place(&grid.push_angle_deg, state.push_angle_deg);
             let (states, condition) = of_pair(state);
-            values[cell] = condition.map_or(f64::NAN, |own| own.min(f64::MAX));
+            values[cell] = condition.map_or(f64::NAN, |condition| condition.min(f64::MAX));
             hatched[cell] = states > 1;
         }
         PanelCells {

@@ -67,14 +67,14 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
         });
         let [force, moment, strain] = &loads;
         let size = |load: &Option<LargestLoad>| {
-            let size = load.as_ref().map(|own| own.peak.size);
+            let size = load.as_ref().map(|load| load.peak.size);
             size.filter(|size| !size.is_nan())
         };
         let slope = |load: &Option<LargestLoad>, i: usize| load.as_ref()?.by.get(i)?.ok();
-        let row = |own: super::DetachmentDerivatives| {
+        let row = |detachment: super::DetachmentDerivatives| {
             let rows: Vec<VariableEffect> = variables
                 .iter()
-                .zip(own.by)
+                .zip(detachment.by)
                 .enumerate()
                 .map(|(i, (&variable, by))| {
                     let value = match variable {
@@ -85,8 +85,8 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
                     VariableEffect {
                         side,
                         distance_mm,
-                        kind: own.end.kind,
-                        push_angle_deg: own.end.push_angle_deg,
+                        kind: detachment.end.kind,
+                        push_angle_deg: detachment.end.push_angle_deg,
                         variable,
                         value,
                         d_push_deg,

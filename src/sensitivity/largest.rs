@@ -11,15 +11,15 @@ pub struct LargestLoad {
     /// Largest size of the load, with its place.
     pub peak: PushPeak,
     /// Derivatives of the largest size by each variable, in the unit of the load per unit of the variable, `[variable]`, or the reason why
-    /// there is none.
+    /// there is no derivative.
     pub by: Vec<Result<f64, NoDerivative>>,
 }
 
 /// Computes the largest size of `load` in a push of `whisker` on `side`, from first touch at `distance_mm` to the end, with its derivatives by each of
 /// `variables`.
 ///
-/// The largest size is that of the end, or a maximum before it. There the derivative by the push angle is 0, so that the derivatives at a fixed push angle are
-/// those of the maximum. Strains have no derivatives.
+/// The largest size is the size at the end, or a maximum before the end. At a maximum the derivative by the push angle is 0, so that the
+/// derivatives at a fixed push angle are the derivatives of the maximum. Strains have no derivatives.
 ///
 /// # Errors
 /// The whisker at rest does not reach the pole, or the continuation fails.
@@ -50,7 +50,12 @@ pub(super) fn largest_along(
     let (moment, by) = match peak.before_end_deg {
         None => end().map_or_else(
             || none(NoDerivative::NoDetachment),
-            |own| (own.end.base_moment_nnm.unwrap_or_default(), own.by),
+            |detachment| {
+                (
+                    detachment.end.base_moment_nnm.unwrap_or_default(),
+                    detachment.by,
+                )
+            },
         ),
         Some(push_deg) => {
             let found = state(whisker, pole, distance_mm, push_deg, variables)?;

@@ -1,8 +1,8 @@
 //! A state with its derivatives by contact, load and the numbers of its rod, and how it moves with a variable.
 //!
 //! Equations `F(tau, load, p) = 0` determine the state. By the implicit function theorem, its derivative by `p` is
-//! `d(tau, load)/dp = -(dF/d(tau, load))^-1 dF/dp`. At a push angle, `F` is `(ln D, phi)` less that of the pole. At a fold it is `ln D` and
-//! `det J`, and at the tip `ln D` and the contact's distance from the tip.
+//! `d(tau, load)/dp = -(dF/d(tau, load))^-1 dF/dp`. At a push angle, `F` is `(ln D, phi)` of the state less `(ln D, phi)` of the pole. At a fold it
+//! is `ln D` and `det J`, and at the tip `ln D` and the contact's distance from the tip.
 
 use super::NoDerivative;
 use super::whisker::WhiskerDerivative;
@@ -31,7 +31,7 @@ pub enum Equations {
     Tip,
 }
 
-/// Numbers of a rod by which trajectories are differentiated, one lane for each. Every variable is a sum of them.
+/// Numbers of a rod by which trajectories are differentiated, one lane for each. Every variable is a sum of these numbers.
 pub struct RodAxes {
     axes: Vec<RodDerivative>,
     /// Parts of each variable, `[variable][part]`: the index of an axis and its coefficient.
@@ -58,20 +58,20 @@ impl RodAxes {
         let mut places = [None; NUMBERS.len()];
         let mut parts = Vec::new();
         for variable in variables {
-            let mut own = variable.clone();
+            let mut remaining = variable.clone();
             let mut sum = Vec::new();
             if variable.pieces.is_some() {
                 // The pieces belong together with the taper of their coordinates.
-                let taper = std::mem::take(&mut own.taper);
+                let taper = std::mem::take(&mut remaining.taper);
                 sum.push((axes.len(), 1.0));
                 axes.push(RodDerivative {
                     taper,
-                    pieces: own.pieces.take(),
+                    pieces: remaining.pieces.take(),
                     ..RodDerivative::default()
                 });
             }
             for (number, place) in NUMBERS.iter().zip(&mut places) {
-                let coefficient = *number(&mut own);
+                let coefficient = *number(&mut remaining);
                 if coefficient == 0.0 {
                     continue;
                 }

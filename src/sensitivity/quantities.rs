@@ -51,7 +51,7 @@ impl Derivatives {
     /// Returns these derivatives plus `factor` times `other`.
     #[must_use]
     pub fn plus(&self, factor: f64, other: &Self) -> Self {
-        let sum = |own: f64, other: f64| own + factor * other;
+        let sum = |derivative: f64, other: f64| derivative + factor * other;
         Self {
             push_angle_deg: sum(self.push_angle_deg, other.push_angle_deg),
             push_chord_deg: sum(self.push_chord_deg, other.push_chord_deg),

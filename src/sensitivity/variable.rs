@@ -16,7 +16,7 @@ pub enum Variable {
     /// Push angle of a state, in degrees. Detachments do not depend on it.
     PushAngleDeg,
     /// Measured radius of this row of the whisker's profile, in um, before the factor of the radii. Where two neighbouring rows are equal,
-    /// the derivative is the mean of those on both sides.
+    /// the derivative is the mean of the derivatives on both sides.
     ProfileRadiusUm(usize),
 }
 
@@ -79,7 +79,7 @@ impl Variable {
     #[must_use]
     pub fn of_detachments(scene: &Scene) -> Vec<Self> {
         let given = Parameter::ALL.into_iter();
-        let given = given.filter(|own| own.has_derivative(scene));
+        let given = given.filter(|parameter| parameter.has_derivative(scene));
         given
             .map(Self::Parameter)
             .chain([Self::DistanceMm])
@@ -101,9 +101,9 @@ impl std::str::FromStr for Variable {
         let others = [Self::DistanceMm, Self::PushAngleDeg];
         let all = Parameter::ALL.into_iter().map(Self::Parameter);
         let all: Vec<Self> = all.chain(others).collect();
-        let found = all.iter().find(|own| own.name() == name);
+        let found = all.iter().find(|variable| variable.name() == name);
         found.copied().ok_or_else(|| {
-            let names: Vec<String> = all.iter().map(|own| own.name()).collect();
+            let names: Vec<String> = all.iter().map(|variable| variable.name()).collect();
             let similar = || did_you_mean(name, names.iter().map(String::as_str));
             let hint = Parameter::suggested(name).unwrap_or_else(similar);
             format!("must be one of {}{hint}", names.join(", "))

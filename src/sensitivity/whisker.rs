@@ -173,8 +173,8 @@ impl WhiskerDerivative {
         by_row: impl Fn(usize) -> [f64; 2],
     ) {
         let dual = |value, derivative| Dual { value, derivative };
-        let rows = whisker.profile.iter().flatten().enumerate();
-        let rows = rows.map(|(i, [s, radius])| {
+        let profile = whisker.profile.iter().flatten().enumerate();
+        let rows = profile.map(|(i, [s, radius])| {
             let [by_s, by_radius] = by_row(i);
             [dual(*s, by_s), dual(*radius, by_radius)]
         });

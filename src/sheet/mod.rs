@@ -267,7 +267,11 @@ impl Sheet {
         for span in &self.continued[row] {
             span.write_guesses(pushes, &mut guesses);
         }
-        if let Some(panel) = self.samples.as_ref().and_then(|own| own.panels.of(row)) {
+        if let Some(panel) = self
+            .samples
+            .as_ref()
+            .and_then(|samples| samples.panels.of(row))
+        {
             for ends in self.pieces(row) {
                 panel.write_guesses(self.case(), &self.rows[row], ends, pushes, &mut guesses);
             }

@@ -140,7 +140,7 @@ impl Crossing {
         self.load == 0.0
     }
 
-    /// Returns the placeholder for crossings that could not be found; it follows those that were. Contact, load, push angle and slope are
+    /// Returns the placeholder for missing crossings, which follows the crossings that were found. Contact, load, push angle and slope are
     /// NaN.
     #[must_use]
     pub fn unknown() -> Self {

@@ -70,7 +70,7 @@ impl RowSpan {
             }
             let start = stencil(i, AROUND, self.nodes.len());
             let ([push_at, tau_at], _) = match &around {
-                Some(own) if own.1 == start => own,
+                Some(known) if known.1 == start => known,
                 _ => around.insert((self.polynomials(start), start)),
             };
             let w = push_at.solve(&self.problem(i, *push), LAST_STEP * largest);

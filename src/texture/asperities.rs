@@ -122,8 +122,8 @@ impl Asperities {
             return Ok(None);
         }
         let row = |touch: &AsperityTouch| {
-            let own = touch.distance_mm.unwrap_or_default();
-            distances.partition_point(|distance| *distance < own)
+            let touch_mm = touch.distance_mm.unwrap_or_default();
+            distances.partition_point(|distance| *distance < touch_mm)
         };
         for (_, touch) in &mut touches {
             touch.row = row(touch);
@@ -157,7 +157,7 @@ impl Asperities {
 
     /// Returns the phase in which a course begins at `angle`, in radians: at rest between two asperities.
     pub fn begin(&self, angle: f64) -> Result<Phase, TextureError> {
-        let before = |own: &Asperity| own.cb.angle + ROUNDING < angle;
+        let before = |asperity: &Asperity| asperity.cb.angle + ROUNDING < angle;
         let after = self.reached.partition_point(before) as i32 - 1;
         match self.of(Side::Cf, after) {
             Some(touch) if angle < touch.angle - ROUNDING => Err(TextureError::Begin {

@@ -15,7 +15,7 @@ pub fn events(
     crossed: Option<Crossing>,
 ) -> Vec<TextureEvent> {
     let energy = |i: usize| Some(held[i].as_ref()?.reading()?.energy_nj);
-    let is_before = |time_s: f64| crossed.is_none_or(|own| time_s < own.time_s);
+    let is_before = |time_s: f64| crossed.is_none_or(|crossing| time_s < crossing.time_s);
     let before = (0..passages.len()).take_while(|i| is_before(passages[*i].time_s));
     let events = before.map(|i| {
         let (passage, event) = (&passages[i], kinds[i]);
@@ -37,13 +37,13 @@ pub fn events(
             )
         }
     });
-    let end = crossed.map(|own| {
-        let moment = [own.time_s, own.angle];
+    let end = crossed.map(|crossing| {
+        let moment = [crossing.time_s, crossing.angle];
         TextureEvent::new(
             WhiskEventKind::Undecided,
             moment,
-            own.held.side,
-            Some(own.held),
+            crossing.held.side,
+            Some(crossing.held),
         )
     });
     events.chain(end).collect()
@@ -57,14 +57,14 @@ impl TextureEvent {
         side: Side,
         held: Option<Held>,
     ) -> Self {
-        let tip = held.and_then(|own| own.state).map(|(_, tip)| tip);
+        let tip = held.and_then(|held| held.state).map(|(_, tip)| tip);
         let event = Self {
             time_s,
             event,
-            asperity: held.map(|own| own.asperity),
+            asperity: held.map(|held| held.asperity),
             side,
             angle_deg: angle.to_degrees(),
-            push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
+            push_angle_deg: held.map(|held| signed_deg(held.side, held.push)),
             tip_x_mm: tip.map(|tip| tip.x_mm),
             ..Self::default()
         };

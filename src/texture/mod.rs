@@ -2,8 +2,8 @@
 //!
 //! The paper has no model for this. Here, the surface is a row of small poles, its asperities, on a line. The whisker touches one of them
 //! at a time, without friction and inertia, and passes between them. A detachment frees it. It comes to rest against the first asperity
-//! ahead that its stable states can lie on at this angle of the base, else it is free. The states are those of [`crate::whisk`] against one
-//! pole, which is the limit of a single asperity.
+//! ahead that its stable states can lie on at this angle of the base, else it is free. Against one pole, the limit of a single
+//! asperity, the states equal the states of [`crate::whisk`].
 //!
 //! Positions are `[x, y]` in mm: the base is at the origin, and the line of the asperities is at `y = distance`. The angle of the base is 0
 //! where the chord of the resting whisker is normal to that line. It grows toward `x`, and pushes CB then.
@@ -181,15 +181,17 @@ pub fn texture_until(
     let contacts: Vec<Contact> = contacts.collect();
     let held = place.held(&states, &contacts, &moments, curvature_at_mm, cancel)?;
 
-    let changes = passages.iter().map(|own| [own.time_s, own.angle]);
+    let changes = passages
+        .iter()
+        .map(|passage| [passage.time_s, passage.angle]);
     let changes: Vec<[f64; 2]> = changes.collect();
     let contacts = passages
         .iter()
-        .map(|own| place.contact(own.side, own.obstacle, own.push));
+        .map(|passage| place.contact(passage.side, passage.obstacle, passage.push));
     let contacts: Vec<Contact> = contacts.collect();
     let held_then = place.held(&states, &contacts, &changes, None, cancel)?;
     let kinds = passages.iter().zip(&contacts).map(|(passage, contact)| {
-        let end = contact.map(|own| states.detachment(own.side, own.row_push.0));
+        let end = contact.map(|contact| states.detachment(contact.side, contact.row_push.0));
         passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
     });
     let kinds: Vec<WhiskEventKind> = kinds.collect();
@@ -246,13 +248,13 @@ impl Placed<'_> {
         curvature_at_mm: Option<f64>,
         cancel: &AtomicBool,
     ) -> Result<Vec<Option<Held>>, TextureError> {
-        let row = |contact: &Contact| contact.map(|own| (own.side, own.row_push));
+        let row = |contact: &Contact| contact.map(|contact| (contact.side, contact.row_push));
         let mut found = Vec::with_capacity(contacts.len());
-        for own in contacts.chunks(STATES_AT_ONCE) {
+        for chunk in contacts.chunks(STATES_AT_ONCE) {
             if cancel.load(Ordering::Relaxed) {
                 return Err(TextureError::Cancelled);
             }
-            found.extend(states.states(&own.iter().map(row).collect::<Vec<_>>()));
+            found.extend(states.states(&chunk.iter().map(row).collect::<Vec<_>>()));
         }
         let held = contacts.par_iter().zip(found).zip(moments);
         let held = held.map(|((contact, state), [_, angle])| {
@@ -266,13 +268,13 @@ impl Placed<'_> {
                 asperity,
                 side,
                 push: row_push.1,
-                state: state.map(|own| {
-                    let tip = self.tips.held(x_mm, side, *angle, &own.reading);
-                    (own.reading, tip)
+                state: state.map(|state| {
+                    let tip = self.tips.held(x_mm, side, *angle, &state.reading);
+                    (state.reading, tip)
                 }),
-                curvature_per_mm: state
-                    .zip(curvature_at_mm)
-                    .and_then(|(own, at_mm)| Some(states.of(side)?.curvature_per_mm(&own, at_mm))),
+                curvature_per_mm: state.zip(curvature_at_mm).and_then(|(state, at_mm)| {
+                    Some(states.of(side)?.curvature_per_mm(&state, at_mm))
+                }),
             })
         });
         Ok(held.collect())
@@ -283,7 +285,7 @@ impl Texture {
     /// Returns one line for samples without a state; `None` without such samples.
     #[must_use]
     pub fn warning(&self) -> Option<String> {
-        let is_undecided = |own: &&TextureSample| own.phase == TexturePhase::Undecided;
+        let is_undecided = |sample: &&TextureSample| sample.phase == TexturePhase::Undecided;
         let undecided = self.samples.iter().filter(is_undecided).count();
         let all = self.samples.len();
         (undecided > 0).then(|| {
@@ -295,7 +297,10 @@ impl Texture {
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
         let kinds = [WhiskEventKind::SlipOff, WhiskEventKind::PullOff];
-        let ends = self.events.iter().filter(|own| kinds.contains(&own.event));
+        let ends = self
+            .events
+            .iter()
+            .filter(|event| kinds.contains(&event.event));
         let lost = ends.map(|event| event.lost_nj.unwrap_or(f64::NAN));
         lost.fold(0.0, |sum, lost| sum + lost)
     }

@@ -44,7 +44,7 @@ impl Crossing {
         states: impl Iterator<Item = (&'a Option<Held>, &'a [f64; 2])>,
     ) -> Option<Self> {
         let crossing = |(held, [time_s, angle]): (&Option<Held>, &[f64; 2])| {
-            let held = held.filter(|own| own.state.is_some_and(|(_, tip)| tip.crosses))?;
+            let held = held.filter(|held| held.state.is_some_and(|(_, tip)| tip.crosses))?;
             Some(Self {
                 time_s: *time_s,
                 angle: *angle,
@@ -74,7 +74,7 @@ pub fn samples(
         while let Some(passage) = passages.next_if(|passage| passage.time_s <= time_s) {
             has_slipped |= passage.event.is_none();
         }
-        let crosses = crossed.is_some_and(|own| own.time_s <= time_s);
+        let crosses = crossed.is_some_and(|crossing| crossing.time_s <= time_s);
         let reason = match phase {
             _ if crosses => Some(NoTextureState::CrossesSurface),
             Phase::Undecided { reason, .. } => Some(match reason {
@@ -87,7 +87,7 @@ pub fn samples(
                 | Undecided::Bridged
                 | Undecided::AfterGap => NoTextureState::NotFound,
             }),
-            Phase::Contact { .. } if held.is_none_or(|own| own.state.is_none()) => {
+            Phase::Contact { .. } if held.is_none_or(|held| held.state.is_none()) => {
                 Some(NoTextureState::NotFound)
             }
             _ => None,
@@ -100,12 +100,12 @@ pub fn samples(
         };
         let tip = match is_free {
             true => Some(tips.free(angle_deg.to_radians())),
-            false => held.and_then(|own| own.state).map(|(_, tip)| tip),
+            false => held.and_then(|held| held.state).map(|(_, tip)| tip),
         };
         let contact = tip.and_then(|tip| tip.contact_mm);
         let curvature_per_mm = match is_free {
             true => curvature_at_mm.map(|at_mm| tips.curvature_at_rest(at_mm)),
-            false => held.and_then(|own| own.curvature_per_mm),
+            false => held.and_then(|held| held.curvature_per_mm),
         };
         TextureSample {
             time_s,
@@ -116,11 +116,11 @@ pub fn samples(
                 None if is_free => TexturePhase::Free,
                 None => TexturePhase::Stuck,
             },
-            asperity: held.map(|own| own.asperity),
-            side: held.map(|own| own.side),
-            push_angle_deg: held.map(|own| signed_deg(own.side, own.push)),
-            contact_x_mm: contact.map(|own| own.x),
-            contact_y_mm: contact.map(|own| own.y),
+            asperity: held.map(|held| held.asperity),
+            side: held.map(|held| held.side),
+            push_angle_deg: held.map(|held| signed_deg(held.side, held.push)),
+            contact_x_mm: contact.map(|point| point.x),
+            contact_y_mm: contact.map(|point| point.y),
             curvature_per_mm,
             tip_x_mm: tip.map(|tip| tip.x_mm),
             tip_height_mm: tip.map(|tip| tip.height_mm),

@@ -35,7 +35,7 @@ pub fn shape(
     let distance = rest.distance_of_pole(centre.length() / whisker.length_mm);
     let branch = StableBranch::new(whisker, &pole, side, distance * whisker.length_mm)?;
     let shape = branch.shape(&branch.state(push_deg.to_radians())?, count);
-    // From the axes of first touch to those of the surface.
+    // Rotation from the axes of first touch to the axes of the surface.
     let turn = centre.to_angle() - DVec2::from(shape.pole_mm).to_angle();
     let turn = DVec2::from_angle(turn);
     let points = shape.points.iter();

@@ -86,8 +86,8 @@ impl Texture {
 }
 
 /// Returns the histogram of values, given as `[value, weight]`, in `bins` equal bins: the ends of each bin and the sum of its weights. The
-/// bins begin at `least`, which no value is below, or at the least value, and end at the largest. Equal ends make one bin without width;
-/// without values there is none.
+/// bins begin at `least`, which no value is below, or at the least value, and end at the largest. Equal ends make one bin without width.
+/// Without values there is no bin.
 #[must_use]
 pub fn histogram(values: &[[f64; 2]], least: Option<f64>, bins: usize) -> Vec<([f64; 2], f64)> {
     let all = || values.iter().map(|[value, _]| *value);

@@ -96,14 +96,14 @@ impl TipFrame {
     }
 
     /// Returns true if a point between two points of the free part lies below the contact. The second derivative of the height by the
-    /// arclength is at most the largest curvature: parts whose lowest possible height is that of the contact need no further points.
+    /// arclength is at most the largest curvature. So parts that cannot be lower than the contact need no further points.
     fn descends(
         &self,
         from: &FreePoint,
         to: &FreePoint,
         between: &impl Fn(f64) -> FreePoint,
     ) -> bool {
-        let heights = [from, to].map(|own| own.from_contact.y);
+        let heights = [from, to].map(|point| point.from_contact.y);
         let lowest = heights[0].min(heights[1]);
         if lowest < -ROUNDING_MM {
             return true;

@@ -124,7 +124,7 @@ impl Branch {
         nodes[fold.unwrap_or(nodes.len() - 1)].push.to_degrees()
     }
 
-    /// Returns `count` points of the branch, at least 3, with the fold as one of them. They are evenly spaced on each side of the fold.
+    /// Returns `count` points of the branch, at least 3, among them the fold. The points are evenly spaced on each side of the fold.
     /// Lengths are measured in push angle and contact angle (radians), and arclength of the contact (whisker lengths).
     ///
     /// # Errors
@@ -221,7 +221,7 @@ impl Branch {
         points.collect()
     }
 
-    /// Returns the push angle, in degrees, up to which the row has other stable states where those from first touch end.
+    /// Returns the push angle, in degrees, up to which the row has other stable states where the stable states from first touch end.
     fn snaps_deg(&self) -> Option<f64> {
         let LevelCurve {
             method, rod, side, ..
@@ -234,7 +234,7 @@ impl Branch {
     fn detaches(&self) -> bool {
         let end = self.stable_end_deg().to_radians().abs();
         let history = self.history.as_ref();
-        let sliding = history.and_then(|own| own.sliding_at_end(end));
+        let sliding = history.and_then(|history| history.sliding_at_end(end));
         sliding.is_none_or(|sliding| sliding == Sliding::Tip)
     }
 

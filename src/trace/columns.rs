@@ -3,7 +3,8 @@
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Reading;
 
-/// Expands to the description of a column: its own, that which all tables have, or that of the field of [`Reading`] with its name.
+/// Expands to the description of a column: its own description, the shared one of all tables, or the description of the field of
+/// [`Reading`] with its name.
 macro_rules! column {
     ($column:ident $($text:literal)+) => { concat!($($text),+) };
     (side) => { " Side of the whisker that the pole is on: cb (convex) or cf (concave)." };
@@ -16,7 +17,7 @@ macro_rules! column {
 }
 
 /// Defines a struct whose fields are the columns of a table. Their doc comments are the descriptions in
-/// [`COLUMNS`](crate::trace::Detachment::COLUMNS); without one, the description is that of all tables.
+/// [`COLUMNS`](crate::trace::Detachment::COLUMNS); a field without one has the shared description of all tables.
 ///
 /// A row `of a state` is a [`StateRow`] and a [`ContactRow`]: fields marked `= place` and `= load` have the values of a [`Reading`].
 macro_rules! row {
@@ -58,19 +59,19 @@ macro_rules! row {
 
         impl $crate::trace::ContactRow for $name {
             fn contact(&self) -> $crate::trace::ContactColumns {
-                let mut own = $crate::trace::ContactColumns::default();
-                $($crate::trace::row!(@contact own.$column = self);)*
-                own
+                let mut contact = $crate::trace::ContactColumns::default();
+                $($crate::trace::row!(@contact contact.$column = self);)*
+                contact
             }
         }
     };
-    (@contact $own:ident.side = $row:ident) => { $own.side = $row.side.into() };
-    (@contact $own:ident.arc_length_mm = $row:ident) => { $own.arc_length_mm = $row.arc_length_mm.into() };
-    (@contact $own:ident.contact_angle_deg = $row:ident) => { $own.contact_angle_deg = $row.contact_angle_deg.into() };
-    (@contact $own:ident.force_un = $row:ident) => { $own.force_un = $row.force_un.into() };
-    (@contact $own:ident.base_force_x_un = $row:ident) => { $own.base_force_un[0] = $row.base_force_x_un.into() };
-    (@contact $own:ident.base_force_y_un = $row:ident) => { $own.base_force_un[1] = $row.base_force_y_un.into() };
-    (@contact $own:ident.$other:ident = $row:ident) => {};
+    (@contact $contact:ident.side = $row:ident) => { $contact.side = $row.side.into() };
+    (@contact $contact:ident.arc_length_mm = $row:ident) => { $contact.arc_length_mm = $row.arc_length_mm.into() };
+    (@contact $contact:ident.contact_angle_deg = $row:ident) => { $contact.contact_angle_deg = $row.contact_angle_deg.into() };
+    (@contact $contact:ident.force_un = $row:ident) => { $contact.force_un = $row.force_un.into() };
+    (@contact $contact:ident.base_force_x_un = $row:ident) => { $contact.base_force_un[0] = $row.base_force_x_un.into() };
+    (@contact $contact:ident.base_force_y_un = $row:ident) => { $contact.base_force_un[1] = $row.base_force_y_un.into() };
+    (@contact $contact:ident.$other:ident = $row:ident) => {};
     (@value $part:ident $row:ident.$column:ident = $state:ident.$field:ident) => { $row.$column = $state.$field.into() };
     (@zero place $row:ident.$column:ident) => {};
     (@zero load $row:ident.$column:ident) => { $row.$column = 0.0.into() };
@@ -83,7 +84,7 @@ pub(crate) trait StateRow {
     /// Returns the row with the values of `state`; unchanged without one.
     fn with_state(self, state: Option<&Reading>) -> Self;
 
-    /// Returns the row with all loads 0, as those of a free whisker.
+    /// Returns the row with all loads 0, as a free whisker has them.
     fn unloaded(self) -> Self;
 }
 
@@ -148,11 +149,11 @@ mod tests {
         );
     }
 
-    /// Rows share the description of a field of [`Reading`], but for those with their own.
+    /// Rows share the description of a field of [`Reading`], but for rows with a description of their own.
     #[test]
     fn columns_have_their_descriptions() {
         let about = |columns: &[(&str, &str)], name: &str| {
-            let found = columns.iter().find(|(own, _)| *own == name);
+            let found = columns.iter().find(|(column, _)| *column == name);
             found.map(|(_, about)| (*about).to_owned())
         };
         let energy = about(Detachment::COLUMNS, "energy_nj");
@@ -162,6 +163,9 @@ mod tests {
         );
         assert_eq!(energy, about(BranchPoint::COLUMNS, "energy_nj"));
         let stable = about(BranchPoint::COLUMNS, "stable");
-        assert!(stable.is_some_and(|own| own.starts_with(" True if the state is stable")));
+        assert!(
+            stable
+                .is_some_and(|description| description.starts_with(" True if the state is stable"))
+        );
     }
 }

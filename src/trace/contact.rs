@@ -1,4 +1,4 @@
-//! States of a branch with friction: those of the course of the contact in place of those that slide toward the tip.
+//! States of a branch with friction: states on the course of the contact replace states that slide toward the tip.
 
 use super::{Branch, NoState, StateAtPush};
 use crate::friction::{ContactPhase, ContactQuery, FrictionState, Sliding, states};

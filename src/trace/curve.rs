@@ -95,7 +95,7 @@ pub fn curve_at(
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
     let ends = detachments(resolution, (whisker, pole, side), distances_mm, true);
-    ends.into_iter().map(|own| own.end).collect()
+    ends.into_iter().map(|detachment| detachment.end).collect()
 }
 
 /// Computes the detachment curve as [`curve_at`] does, but leaves out the largest strain, which takes a trajectory more for each end.
@@ -108,7 +108,7 @@ pub fn curve_without_strain(
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
     let ends = detachments(resolution, (whisker, pole, side), distances_mm, false);
-    ends.into_iter().map(|own| own.end).collect()
+    ends.into_iter().map(|detachment| detachment.end).collect()
 }
 
 /// A detachment with the crossing of the sheet's edge from which it was read.
@@ -119,7 +119,7 @@ pub(crate) struct DetachmentEnd {
 }
 
 /// Computes detachments with their crossings, `[distance]`, and the largest strain of each if `has_strain` is true. Then the sliding
-/// direction is that of the contact's history, too.
+/// direction is taken from the contact's history, too.
 pub(crate) fn detachments(
     resolution: Resolution,
     (whisker, pole, side): (&Whisker, &Pole, Side),
@@ -157,8 +157,8 @@ pub(crate) fn detachments(
             pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
             ..Detachment::default()
         };
-        let own: RowEnd = match found {
-            Ok(own) => own,
+        let row_end: RowEnd = match found {
+            Ok(row_end) => row_end,
             Err(kind) => {
                 return DetachmentEnd {
                     end: Detachment { kind, ..none },
@@ -167,21 +167,21 @@ pub(crate) fn detachments(
             }
         };
         // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
-        let off = libm::log(row.pole_distance / own.state.full.map.pole.length()).abs();
+        let off = libm::log(row.pole_distance / row_end.state.full.map.pole.length()).abs();
         let peak = peaks.next();
         let end = Detachment {
-            kind: own.kind(),
-            push_angle_deg: Some((side.sign() * own.crossing.push).to_degrees()),
+            kind: row_end.kind(),
+            push_angle_deg: Some((side.sign() * row_end.crossing.push).to_degrees()),
             peak_strain: peak.map(|peak| peak.strain * units.strain),
             peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
-            residual: Some(own.crossing.residual + off),
-            sliding: sliding.or(Sliding::of(&own.state, rod, own.crossing.tau)),
+            residual: Some(row_end.crossing.residual + off),
+            sliding: sliding.or(Sliding::of(&row_end.state, rod, row_end.crossing.tau)),
             snaps_deg: snaps_deg(&sheet, index),
-            ..none.with_state(Some(&own.reading(&reader, &sheet, index)))
+            ..none.with_state(Some(&row_end.reading(&reader, &sheet, index)))
         };
         DetachmentEnd {
             end,
-            crossing: Some(own.crossing),
+            crossing: Some(row_end.crossing),
         }
     });
     ends.collect()
@@ -202,8 +202,8 @@ impl RowEnd {
         let crossings = crossings(sheet);
         let points = crossings.iter().flatten().map(|end| (end.tau, end.load));
         let mut states = Batch::new(method).shoot_at(&sheet.rod, points).into_iter();
-        let end = |own: Result<&Crossing, _>| {
-            let (crossing, state) = (*own?, states.next());
+        let end = |crossing: Result<&Crossing, _>| {
+            let (crossing, state) = (*crossing?, states.next());
             let state = state.ok_or(DetachmentKind::Unresolved)?;
             Ok(Self { crossing, state })
         };
@@ -239,8 +239,8 @@ pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>>
     (0..sheet.rows.len()).map(of_row).collect()
 }
 
-/// Returns the signed push angle, in degrees, at which the stable states end that `row` of `sheet` has beside those from first touch, at the
-/// push at which these end ([`RowBoundary::snap`]).
+/// Returns the signed push angle, in degrees, up to which the whisker in `row` of `sheet` may snap to other stable states: the end of
+/// [`RowBoundary::snap`].
 pub(crate) fn snaps_deg(sheet: &Sheet, row: usize) -> Option<f64> {
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
     let span = boundary.snap()?;
@@ -255,14 +255,15 @@ fn slidings(sheet: &Sheet) -> Vec<Option<Sliding>> {
         return slidings;
     }
     let is_pushed = |end: &&Crossing| end.push > TIE;
-    let rows = (0..slidings.len()).filter(|row| sheet.touches(*row));
-    let rows = rows.filter_map(|row| Some((row, *sheet.crossings[row].first().filter(is_pushed)?)));
+    let touching = (0..slidings.len()).filter(|row| sheet.touches(*row));
+    let rows =
+        touching.filter_map(|row| Some((row, *sheet.crossings[row].first().filter(is_pushed)?)));
     let rows: Vec<(usize, Crossing)> = rows.collect();
     let mut doubtful = Vec::new();
-    for (own, is_sure) in rows.iter().zip(surely_slides_to_end(sheet, &rows)) {
+    for (row, is_sure) in rows.iter().zip(surely_slides_to_end(sheet, &rows)) {
         match is_sure {
-            true => slidings[own.0] = Some(Sliding::Tip),
-            false => doubtful.push(own),
+            true => slidings[row.0] = Some(Sliding::Tip),
+            false => doubtful.push(row),
         }
     }
     let levels = doubtful.iter().map(|(row, _)| sheet.level(*row));

@@ -5,7 +5,7 @@ use super::{Branch, StableBranch, StateAtPush};
 use crate::sheet::{CurveNode, ON_CURVE};
 use glam::DVec2;
 
-/// Largest excess of a maximum over the value at the end, relative to this, with which it counts as that at the end.
+/// Largest relative excess of a maximum over the value at the end with which the end counts as the maximum.
 const AT_END: f64 = 1e-9;
 
 /// Number of states between two others in a round of the search for a maximum: about as many as a block of trajectories has.
@@ -93,7 +93,7 @@ impl StableBranch {
         }
     }
 
-    /// Returns the largest size of `load` at the nodes of the continuation, some percent below that of [`Self::peak`]; NaN if no state is known.
+    /// Returns the largest size of `load` at the nodes of the continuation, some percent below the size of [`Self::peak`]; NaN if no state is known.
     #[must_use]
     pub fn rough_peak(&self, load: PushLoad) -> f64 {
         let sizes = self.sizes(&self.0.continuation.nodes, load);
@@ -122,7 +122,7 @@ impl StableBranch {
         states
             .iter()
             .map(size)
-            .map(|own| own.unwrap_or(f64::NAN))
+            .map(|size| size.unwrap_or(f64::NAN))
             .collect()
     }
 }

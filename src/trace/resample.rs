@@ -28,7 +28,7 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
 /// Maximum number of nodes of an interpolation.
 const NODES: usize = 6;
 
-/// Interpolates the curve at the length `target` along it; `lengths` are those of the nodes. Returns the index of the last node up to
+/// Interpolates the curve at the length `target` along it; `lengths` are the lengths at the nodes. Returns the index of the last node up to
 /// `target`, and `(tau, load)`.
 pub fn interpolate(nodes: &[CurveNode], lengths: &[f64], target: f64) -> (usize, DVec2) {
     let near = lengths.partition_point(|length| *length <= target);

@@ -69,7 +69,7 @@ impl WhiskerShape {
         let index = at.partition_point(|s| *s < contact);
         at.insert(index, contact);
         let places = profile(rod, found.tau, found.load, FINER, &at);
-        // Rotation from the axes of the contact to those of first touch, where the base's tangent is at `-push`.
+        // Rotation from the axes of the contact to the axes of first touch, where the base's tangent is at `-push`.
         let base = &found.full;
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
         let turn = DVec2::from_angle(-found.push).rotate(to_base);

@@ -220,12 +220,12 @@ impl<'a> CurveTable<'a> {
 
     fn foot_at(&self, point: DVec2, place: f64) -> Foot {
         let normal = unit(self.pose.angle + self.curvature.angle(place)).perp();
-        let own = self.point(place);
+        let foot_point = self.point(place);
         Foot {
             place,
-            distance: (point - own).dot(normal),
+            distance: (point - foot_point).dot(normal),
             normal,
-            point: own,
+            point: foot_point,
         }
     }
 
@@ -236,9 +236,11 @@ impl<'a> CurveTable<'a> {
             for [node, weight] in QUADRATURE {
                 let place = STEP * (f64::from(k) + node);
                 let curvature = end * self.curvature.at(end * place);
-                for ((degree, own), term) in legendre.iter_mut().enumerate().zip(self.terms.terms) {
+                for ((degree, coefficient), term) in
+                    legendre.iter_mut().enumerate().zip(self.terms.terms)
+                {
                     let norm = (2 * degree + 1) as f64;
-                    *own += norm * STEP * weight * curvature * term.at(place);
+                    *coefficient += norm * STEP * weight * curvature * term.at(place);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Least squares of distances of points from a curve of polynomial curvature, and the choice of the degree.
 //!
 //! The unknowns are the coefficients of the curvature, the angle of the tangent at the base, and the distance of the base from the
-//! first point, across the curve. The base is the foot of the first point, and the tip is that of the last one. The curve is fitted
+//! first point, across the curve. The base is the foot of the first point, and the tip is the foot of the last point. The curve is fitted
 //! by Levenberg and Marquardt's method; the foot of each point follows the curve.
 
 use super::curve::{CurvePose, CurveTable, CurveTerms, Foot};

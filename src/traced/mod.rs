@@ -140,7 +140,10 @@ impl TracedShape {
             distances,
             ..
         } = curves.swap_remove(chosen);
-        let squares = distances.iter().map(|own| own * own).sum::<f64>();
+        let squares = distances
+            .iter()
+            .map(|distance| distance * distance)
+            .sum::<f64>();
         let rms_mm = (squares / distances.len() as f64).sqrt();
         // A length of NaN is not long enough either.
         let is_whisker = rms_mm <= LARGEST_RMS * length && length >= (1.0 - LARGEST_FALL) * reach;
@@ -159,26 +162,28 @@ impl TracedShape {
             curvature: CurvaturePolynomial::new(pose.legendre),
             length_mm: length,
             rms_mm,
-            farthest_mm: distances.iter().fold(0.0, |most, own| own.abs().max(most)),
+            farthest_mm: distances
+                .iter()
+                .fold(0.0, |most, distance| distance.abs().max(most)),
             base_mm: pose.base.into(),
             base_angle: pose.angle,
         })
     }
 
-    /// Replaces the fitted coefficients of the curvature by those of an equal fit on another machine, `[degree]`, in radians.
+    /// Replaces the fitted coefficients of the curvature by the coefficients of an equal fit on another machine, `[degree]`, in radians.
     ///
     /// # Errors
-    /// If they are not those of the fit to the points.
+    /// If the number of coefficients is wrong, or one differs from the fit to the points by more than 1e-6 radians.
     pub fn with_coefficients(mut self, coefficients: &[f64]) -> Result<Self, TracedError> {
-        let own = &self.coefficients();
-        let is_same = own.len() == coefficients.len()
-            && own
+        let fitted = &self.coefficients();
+        let is_same = fitted.len() == coefficients.len()
+            && fitted
                 .iter()
                 .zip(coefficients)
-                .all(|(own, other)| (own - other).abs() <= SAME_FIT);
+                .all(|(fitted, other)| (fitted - other).abs() <= SAME_FIT);
         if !is_same {
             let must = format!(
-                "must be left out, or be the coefficients of the fit to the points ({own:?})"
+                "must be left out, or be the coefficients of the fit to the points ({fitted:?})"
             );
             return Err(TracedError::whole(must));
         }
@@ -188,7 +193,7 @@ impl TracedShape {
         Ok(self)
     }
 
-    /// Returns the coefficients of the curvature over the length, `[degree]`, in radians: those of Legendre polynomials of `2 s/L - 1`.
+    /// Returns the coefficients of the curvature over the length, `[degree]`, in radians, of Legendre polynomials of `2 s/L - 1`.
     #[must_use]
     pub fn coefficients(&self) -> Vec<f64> {
         self.curvature.legendre()[..=self.degree].to_vec()
@@ -201,8 +206,9 @@ impl TracedShape {
         let (sin, cos) = libm::sincos(self.base_angle);
         let (base, scale) = (DVec2::from(self.base_mm), length_mm / self.length_mm);
         let back = scale * DVec2::new(cos, -sin);
-        let own = self.points_mm.iter();
-        own.map(|point| back.rotate(DVec2::from(*point) - base).into())
+        let points = self.points_mm.iter();
+        points
+            .map(|point| back.rotate(DVec2::from(*point) - base).into())
             .collect()
     }
 }
@@ -219,7 +225,12 @@ pub(crate) fn common_degree(shapes: &[Vec<[f64; 2]>], cancel: &AtomicBool) -> Op
     });
     let squares: Vec<Vec<Vec<f64>>> = squares.collect();
     let most = squares.iter().map(Vec::len).min()?;
-    let pooled = |degree: usize| squares.iter().flat_map(|own| own[degree].clone()).collect();
+    let pooled = |degree: usize| {
+        squares
+            .iter()
+            .flat_map(|by_degree| by_degree[degree].clone())
+            .collect()
+    };
     let pooled: Vec<Vec<f64>> = (0..most).map(pooled).collect();
     Some(smallest_degree(&pooled, EXACT))
 }
@@ -259,10 +270,10 @@ fn check(points_mm: &[[f64; 2]]) -> Result<f64, TracedError> {
     let far = |[x, y]: [f64; 2]| libm::hypot(x - points_mm[0][0], y - points_mm[0][1]);
     let largest = points_mm
         .iter()
-        .fold(0.0, |most: f64, own| most.max(far(*own)));
+        .fold(0.0, |most: f64, point| most.max(far(*point)));
     let mut reach = 0.0_f64;
     for (i, &[x, y]) in points_mm.iter().enumerate() {
-        let is_near = |own: f64| own.abs() <= FARTHEST_MM;
+        let is_near = |coordinate: f64| coordinate.abs() <= FARTHEST_MM;
         if !(is_near(x) && is_near(y)) {
             return Err(TracedError::at(
                 i,
@@ -273,16 +284,16 @@ fn check(points_mm: &[[f64; 2]]) -> Result<f64, TracedError> {
             let must = format!("must differ from the point before it ({x}, {y})");
             return Err(TracedError::at(i, must));
         }
-        let own = far([x, y]);
+        let distance = far([x, y]);
         let noise = LARGEST_FALL * largest;
-        if own < reach - noise {
+        if distance < reach - noise {
             let must = format!(
-                "must not fold back: it is {own:.4} mm from the first point, a point before it {reach:.4} mm; \
+                "must not fold back: it is {distance:.4} mm from the first point, a point before it {reach:.4} mm; \
                  at most {noise:.4} mm, {LARGEST_FALL} of the largest distance, is taken for noise"
             );
             return Err(TracedError::at(i, must));
         }
-        reach = reach.max(own);
+        reach = reach.max(distance);
     }
     Ok(reach)
 }

@@ -19,7 +19,11 @@ pub(super) fn deviations_deg(
         .iter()
         .map(|one| one.variables(scene, varying))
         .collect();
-    let all: Vec<Variable> = parts.iter().flatten().map(|(own, _)| *own).collect();
+    let all: Vec<Variable> = parts
+        .iter()
+        .flatten()
+        .map(|(variable, _)| *variable)
+        .collect();
     let variables = each_once(&all);
     let ends = detachments_at(
         resolution,
@@ -32,7 +36,7 @@ pub(super) fn deviations_deg(
     let deviation = |DetachmentDerivatives { end, by }: DetachmentDerivatives| {
         end.push_angle_deg?;
         let slope_of = |variable: &Variable| {
-            let index = variables.iter().position(|own| own == variable)?;
+            let index = variables.iter().position(|other| other == variable)?;
             Some(by[index].as_ref().ok()?.push_angle_deg)
         };
         let mut square = 0.0;

@@ -136,12 +136,16 @@ impl Draws {
                 ends
             })
             .collect();
-        let own = curve(&self.scene.whisker, &self.scene.pole);
+        let scene_ends = curve(&self.scene.whisker, &self.scene.pole);
         let first_order = first_order::deviations_deg(&self.scene, &self.varying, resolution, side);
-        let rows = distances.iter().zip(own).zip(first_order).enumerate();
-        rows.map(|(row, ((distance_mm, own), first_order_deg))| {
+        let rows = distances
+            .iter()
+            .zip(scene_ends)
+            .zip(first_order)
+            .enumerate();
+        rows.map(|(row, ((distance_mm, scene_end), first_order_deg))| {
             let ends = ends.iter().map(|ends| ends[row]);
-            EndSpread::new(side, *distance_mm, own, ends, first_order_deg)
+            EndSpread::new(side, *distance_mm, scene_end, ends, first_order_deg)
         })
         .collect()
     }
@@ -156,18 +160,17 @@ impl Draws {
             let loads = distances.map(|distance| largest_loads((whisker, pole), side, *distance));
             loads.collect::<Vec<_>>()
         };
-        let drawn = self.drawn.par_iter();
-        let drawn = drawn.map(|(whisker, pole)| {
+        let drawn = self.drawn.par_iter().map(|(whisker, pole)| {
             let loads = loads(whisker, pole);
             tick();
             loads
         });
         let drawn: Vec<Vec<Option<[f64; 3]>>> = drawn.collect();
-        let own = loads(&self.scene.whisker, &self.scene.pole).into_iter();
-        let spread = |(row, own): (usize, Option<[f64; 3]>)| {
-            LargestSpread::new(own, drawn.iter().filter_map(|loads| loads[row]))
+        let scene_loads = loads(&self.scene.whisker, &self.scene.pole).into_iter();
+        let spread = |(row, row_loads): (usize, Option<[f64; 3]>)| {
+            LargestSpread::new(row_loads, drawn.iter().filter_map(|loads| loads[row]))
         };
-        own.enumerate().map(spread).collect()
+        scene_loads.enumerate().map(spread).collect()
     }
 }
 
@@ -179,7 +182,7 @@ fn largest_loads(
 ) -> Option<[f64; 3]> {
     let branch = StableBranch::new(whisker, pole, side, distance_mm).ok()?;
     let loads = PushLoad::ALL.map(|load| branch.peak(load).size);
-    loads.iter().all(|own| own.is_finite()).then_some(loads)
+    loads.iter().all(|load| load.is_finite()).then_some(loads)
 }
 
 /// End of a push.

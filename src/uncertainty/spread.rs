@@ -148,18 +148,22 @@ row! {
 }
 
 impl LargestSpread {
-    /// Computes the spread of the largest loads of samples beside the scene's `own` ones: `[contact force, moment, strain]` of each push that detaches.
-    pub(super) fn new(own: Option<[f64; 3]>, samples: impl Iterator<Item = [f64; 3]>) -> Self {
+    /// Computes the spread of the largest loads of samples beside the loads of the scene: `[contact force, moment, strain]` of each push that
+    /// detaches.
+    pub(super) fn new(
+        scene_loads: Option<[f64; 3]>,
+        samples: impl Iterator<Item = [f64; 3]>,
+    ) -> Self {
         let mut values: [Vec<f64>; 3] = Default::default();
         for sample in samples {
             values
                 .iter_mut()
                 .zip(sample)
-                .for_each(|(all, own)| all.push(own));
+                .for_each(|(all, load)| all.push(load));
         }
         let [forces, moments, strains] = values.map(Statistics::new);
         Self {
-            max_contact_force_un: own.map(|own| own[0]),
+            max_contact_force_un: scene_loads.map(|loads| loads[0]),
             max_contact_force_p5_un: forces.percentiles[0],
             max_contact_force_p25_un: forces.percentiles[1],
             max_contact_force_p50_un: forces.percentiles[2],
@@ -167,7 +171,7 @@ impl LargestSpread {
             max_contact_force_p95_un: forces.percentiles[4],
             max_contact_force_mean_un: forces.mean,
             max_contact_force_sd_un: forces.deviation,
-            max_base_moment_nnm: own.map(|own| own[1]),
+            max_base_moment_nnm: scene_loads.map(|loads| loads[1]),
             max_base_moment_p5_nnm: moments.percentiles[0],
             max_base_moment_p25_nnm: moments.percentiles[1],
             max_base_moment_p50_nnm: moments.percentiles[2],
@@ -175,7 +179,7 @@ impl LargestSpread {
             max_base_moment_p95_nnm: moments.percentiles[4],
             max_base_moment_mean_nnm: moments.mean,
             max_base_moment_sd_nnm: moments.deviation,
-            max_strain: own.map(|own| own[2]),
+            max_strain: scene_loads.map(|loads| loads[2]),
             max_strain_p5: strains.percentiles[0],
             max_strain_p25: strains.percentiles[1],
             max_strain_p50: strains.percentiles[2],
@@ -200,11 +204,11 @@ impl EndSpread {
         }
     }
 
-    /// Computes the spread of the `ends` of samples around the scene's `own` one.
+    /// Computes the spread of the `ends` of samples around `scene_end`, the end in the scene itself.
     pub(super) fn new(
         side: Side,
         distance_mm: f64,
-        own: PushEnd,
+        scene_end: PushEnd,
         ends: impl Iterator<Item = PushEnd>,
         sd_first_order_deg: Option<f64>,
     ) -> Self {
@@ -219,11 +223,11 @@ impl EndSpread {
         }
         let [pushes, forces, moments] = values.map(Statistics::new);
         let [slip_off, pull_off, out_of_reach, unresolved] = counts;
-        let loads = own.loads;
+        let loads = scene_end.loads;
         Self {
             side,
             distance_mm,
-            kind: own.kind,
+            kind: scene_end.kind,
             push_angle_deg: loads.map(|[push, ..]| push),
             slip_off,
             pull_off,
@@ -283,7 +287,7 @@ impl Statistics {
 }
 
 /// Quantile by linear interpolation between neighbours of the `sorted` values: the first value is the quantile of 0, the last
-/// that of 1 (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
+/// value the quantile of 1 (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
 fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     let place = part * last as f64;

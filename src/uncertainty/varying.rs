@@ -23,14 +23,16 @@ enum VaryingSource {
 
 /// Returns the numbers of `scene` whose `deviations` are not 0, `[number]`.
 pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
-    let parameters = deviations.parameters.iter().filter_map(|own| {
-        let (parameter, deviation) = *own;
-        Some(Varying {
-            source: VaryingSource::Parameter(parameter),
-            value: parameter.value(scene)?,
-            deviation,
-        })
-    });
+    let parameters = deviations
+        .parameters
+        .iter()
+        .filter_map(|&(parameter, deviation)| {
+            Some(Varying {
+                source: VaryingSource::Parameter(parameter),
+                value: parameter.value(scene)?,
+                deviation,
+            })
+        });
     let rows = deviations.profile_radius_um.map(|deviation| {
         let rows = rows(scene).into_iter().enumerate();
         rows.map(move |(row, [_, value])| Varying {
@@ -46,7 +48,7 @@ pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
 impl Varying {
     /// Returns the variables of the whisker that the number of `scene` changes, each with its change per unit of the number. The cone beyond
     /// the last measured row follows the last two rows. A measured radius changes all smoothed ones.
-    /// With a taper in `all`, the radius at the tip follows that at the base.
+    /// With a taper in `all`, the radius at the tip follows the radius at the base.
     pub(super) fn variables(&self, scene: &Scene, all: &[Self]) -> Vec<(Variable, f64)> {
         let is_taper =
             |one: &Self| matches!(one.source, VaryingSource::Parameter(Parameter::Taper));
@@ -65,7 +67,7 @@ impl Varying {
         let changes = match scene.smooth_radii() {
             Some(smooth) => smooth.by_measured(row),
             None => (0..rows.len())
-                .map(|own| f64::from(u8::from(own == row)))
+                .map(|other| f64::from(u8::from(other == row)))
                 .collect(),
         };
         let changed = changes
@@ -73,7 +75,7 @@ impl Varying {
             .enumerate()
             .filter(|(_, change)| **change != 0.0);
         let mut variables: Vec<(Variable, f64)> = changed
-            .map(|(own, change)| (Variable::ProfileRadiusUm(own), *change))
+            .map(|(changed_row, change)| (Variable::ProfileRadiusUm(changed_row), *change))
             .collect();
         let extension = scene.whisker.length_mm - rows[rows.len() - 1][0];
         let has_cone = scene.whisker.profile.as_ref().map_or(0, Vec::len) > rows.len();

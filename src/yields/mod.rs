@@ -1,6 +1,6 @@
 //! Marks of states and pushes whose largest bending strain exceeds the yield strain of the whisker.
 //!
-//! Beyond its yield strain a whisker is not elastic, so that the state is not that of a real whisker. The marks change no state.
+//! Beyond its yield strain a whisker is not elastic, so that a real whisker is in another state. The marks change no state.
 
 use crate::design::DesignVaried;
 use crate::scene::{Pole, Scene, Whisker};
@@ -194,9 +194,9 @@ impl PushMark {
     ) -> Option<Self> {
         scene.whisker.yield_strain?;
         let solution = varied.scene_at(scene, distance_mm, values);
-        let mark = solution.ok().and_then(|own| {
-            let distance_mm = own.grid.distance_mm[0];
-            Self::new(&own.whisker, &own.pole, side, distance_mm)
+        let mark = solution.ok().and_then(|solution| {
+            let distance_mm = solution.grid.distance_mm[0];
+            Self::new(&solution.whisker, &solution.pole, side, distance_mm)
         });
         Some(mark.unwrap_or_default())
     }
@@ -214,7 +214,8 @@ impl PushMark {
     ) -> Option<Self> {
         whisker.yield_strain?;
         let distance_mm = distance_mm.into();
-        let branch = distance_mm.and_then(|own| StableBranch::new(whisker, pole, side, own).ok());
+        let branch = distance_mm
+            .and_then(|distance_mm| StableBranch::new(whisker, pole, side, distance_mm).ok());
         let strain = branch.map(|branch| branch.peak(PushLoad::Strain).size);
         let max_strain = strain.filter(|strain| strain.is_finite());
         Some(Self {

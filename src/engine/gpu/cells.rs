@@ -75,32 +75,35 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[CellsOfRow], cells: &m
         };
         let residuals = &mut cells.residual[place.clone()];
         copy(residuals);
-        let mut is_finite = residuals.iter().all(|own| own.is_finite());
+        let mut is_finite = residuals.iter().all(|residual| residual.is_finite());
         let columns = cells
             .values
             .iter_mut()
-            .filter_map(|own| own.get_mut(place.clone()));
+            .filter_map(|column| column.get_mut(place.clone()));
         for column in columns {
             copy(column);
             is_finite &= column.iter().all(|value| value.is_finite());
         }
         if let Some(points) = cells.points.get_mut(place.clone()) {
             let mut numbers = [(); 4].map(|()| vec![0.0_f32; points.len()]);
-            numbers.iter_mut().for_each(|own| copy(own));
+            numbers.iter_mut().for_each(|part| copy(part));
             for (i, point) in points.iter_mut().enumerate() {
                 let [tau, tau_rest, load, load_rest] =
-                    numbers.each_ref().map(|own| f64::from(own[i]));
+                    numbers.each_ref().map(|part| f64::from(part[i]));
                 *point = DVec2::new(tau + tau_rest, load + load_rest);
                 is_finite &= point.is_finite();
             }
         }
         for index in place {
             let residual = cells.residual[index];
-            let values = cells.values.iter().filter_map(|own| own.get(index));
+            let values = cells.values.iter().filter_map(|column| column.get(index));
             let is_finite = is_finite
                 || residual.is_finite()
-                    && values.into_iter().all(|own| own.is_finite())
-                    && cells.points.get(index).is_none_or(|own| own.is_finite());
+                    && values.into_iter().all(|value| value.is_finite())
+                    && cells
+                        .points
+                        .get(index)
+                        .is_none_or(|point| point.is_finite());
             let outcome = outcome(residual, is_finite);
             cells.outcome[index] = outcome;
             if outcome != Outcome::Solved {
@@ -125,12 +128,12 @@ mod tests {
         let module = naga::front::wgsl::parse_str(&shaders::cells(precision)).unwrap();
         let is_row = |found: &&naga::Type| found.name.as_deref() == Some("Row");
         let row = module.types.iter().map(|(_, found)| found).find(is_row);
-        let Some(TypeInner::Struct { members, span }) = row.map(|own| &own.inner) else {
+        let Some(TypeInner::Struct { members, span }) = row.map(|found| &found.inner) else {
             panic!("no struct Row");
         };
         let offsets = members
             .iter()
-            .map(|own| (own.name.as_deref().unwrap(), own.offset as usize));
+            .map(|member| (member.name.as_deref().unwrap(), member.offset as usize));
         macro_rules! offsets {
             ($($member:ident)+) => { [$((stringify!($member), offset_of!(GpuRow<T>, $member))),+] };
         }

@@ -46,7 +46,7 @@ pub struct Flight {
     buffers: Buffers,
 }
 
-/// Binds the first `size` bytes of a buffer, or all of it.
+/// Binds the first `size` bytes of a buffer, or the whole buffer.
 pub fn binding(binding: u32, buffer: &wgpu::Buffer, size: Option<u64>) -> wgpu::BindGroupEntry<'_> {
     wgpu::BindGroupEntry {
         binding,
@@ -125,7 +125,7 @@ impl Flight {
         })
     }
 
-    /// Waits for the cells, writes them into those of the batch, and returns the buffers.
+    /// Waits for the cells, writes them into the cells of the batch, and returns the buffers.
     pub fn finish(
         self,
         device: &Device,

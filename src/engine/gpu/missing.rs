@@ -33,7 +33,7 @@ pub fn missing() -> String {
         .find_map(|name| Some((*name, env::var_os(name)?)));
     let (place, files) = match &named {
         Some((name, value)) => {
-            let files = env::split_paths(value).filter(|own| own.exists());
+            let files = env::split_paths(value).filter(|file| file.exists());
             (
                 format!("{name}={}", value.display()),
                 files.collect::<Vec<_>>(),
@@ -78,7 +78,10 @@ fn manifests() -> Vec<PathBuf> {
         .filter_map(|folder| fs::read_dir(folder).ok());
     let files = folders.flatten().flatten().map(|entry| entry.path());
     let mut files: Vec<PathBuf> = files
-        .filter(|path| path.extension().is_some_and(|own| own == "json"))
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "json")
+        })
         .collect();
     files.sort();
     files

@@ -121,7 +121,7 @@ impl Gpu {
     fn send(&mut self) -> Result<(), EngineError> {
         let (device, precision) = (&self.device, self.precision);
         while self.flights.len() < IN_FLIGHT
-            && let Some(pending) = self.pending.iter_mut().find(|own| own.is_waiting())
+            && let Some(pending) = self.pending.iter_mut().find(|batch| batch.is_waiting())
         {
             let begun = Instant::now();
             let batch = Arc::clone(&pending.batch);
@@ -155,7 +155,7 @@ impl Gpu {
 
     /// Waits for the oldest submission.
     fn receive(&mut self) -> Result<(), EngineError> {
-        let pending = self.pending.iter_mut().find(|own| own.in_flight > 0);
+        let pending = self.pending.iter_mut().find(|batch| batch.in_flight > 0);
         let (Some(pending), Some((flight, is_last))) = (pending, self.flights.pop_front()) else {
             let lost = "a batch has no submission in flight";
             return Err(EngineError::Device(lost.to_owned()));

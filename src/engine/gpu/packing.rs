@@ -50,7 +50,7 @@ pub struct GpuRow<T> {
     pub curvature: T,
     /// Bound on the residual of states of the row, in whisker lengths.
     pub residual: T,
-    /// Contact coordinate `tau` at the end less that of the tip.
+    /// Contact coordinate `tau` at the end less `tau` at the tip.
     pub to_tip: T,
     /// Difference of `tau` within which a contact is at the tip, and the radius there, by which a residual is divided.
     pub tip_tie: T,
@@ -62,7 +62,7 @@ pub struct GpuRow<T> {
 pub struct CellsOfRow {
     /// Index of the row in the batch.
     pub row: usize,
-    /// Cells of the run among those of the batch.
+    /// Cells of the run among the cells of the batch.
     pub cells: Range<usize>,
 }
 
@@ -71,7 +71,7 @@ pub struct CellsOfRow {
 pub struct Packed {
     /// Number of packed cells.
     pub cells: usize,
-    /// Places of the packed cells in those of the batch, in their order: `[run]`.
+    /// Places of the packed cells among the cells of the batch, in their order: `[run]`.
     pub runs: Vec<CellsOfRow>,
     /// For each run, the indices of its first packed cell, of its first push angle, and of its first coefficients, and their number.
     pub heads: Vec<[u32; 4]>,
@@ -95,7 +95,7 @@ impl Packed {
 struct AroundEnd {
     /// Numbers at the end.
     at_end: Numbers,
-    /// Expansions of the differences from the end, over that of the argument.
+    /// Expansions of the differences from the end, over the difference of the argument.
     quotient: Chebyshev<FUNCTIONS>,
     /// The push angle that is left to the end is `slope left + curvature left^2` at the end and at first touch, where `left` is the argument
     /// that is left.
@@ -134,7 +134,7 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
             curvature,
         } = AroundEnd::new(expansion);
         terms.push(at_end.map(T::of));
-        terms.extend(quotient.coefficients.iter().map(|own| own.map(T::of)));
+        terms.extend(quotient.coefficients.iter().map(|term| term.map(T::of)));
         let [tip, tip_radius] = side.sheet.tip;
         let numbers = GpuRow {
             end: halves(at_end[0]),
@@ -149,7 +149,7 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
         };
         let mut at = row.first;
         let before = row.before(expansion.end, &side.columns.magnitudes);
-        for (own, cells) in row.cells.iter().zip(before) {
+        for (range, cells) in row.cells.iter().zip(before) {
             // A submission has fewer cells and coefficients, and a row fewer columns, than `u32` can count.
             packed.heads.push([
                 packed.cells as u32,
@@ -163,7 +163,7 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
                 cells: at..at + cells.len(),
             });
             packed.cells += cells.len();
-            at += own.len();
+            at += range.len();
         }
     }
     packed.terms = bytemuck::cast_slice(&terms).to_vec();

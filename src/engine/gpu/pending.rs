@@ -8,7 +8,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct PendingBatch {
     pub batch: Arc<RowBatch>,
-    /// Cells of the pending batch; those that have not returned are [`Outcome::NoRow`].
+    /// Cells of the pending batch; cells without a result are [`Outcome::NoRow`].
     pub cells: Cells,
     /// Number of submissions of the pending batch that have not returned.
     pub in_flight: usize,

@@ -33,9 +33,12 @@ struct GpuRod<T> {
 impl<T: Scalar> GpuRod<T> {
     fn new(rod: &Rod) -> Self {
         let mut curvature = [T::of(0.0); 8];
-        let polynomial = rod.polynomial.iter().flat_map(|own| own.centred());
-        for (own, term) in curvature.iter_mut().zip(polynomial) {
-            *own = T::of(*term);
+        let polynomial = rod
+            .polynomial
+            .iter()
+            .flat_map(|polynomial| polynomial.centred());
+        for (coefficient, term) in curvature.iter_mut().zip(polynomial) {
+            *coefficient = T::of(*term);
         }
         Self {
             taper: T::of(rod.taper),
@@ -81,7 +84,7 @@ impl Fan {
             // The number of steps grows with the load.
             let load = fan
                 .iter()
-                .fold(0.0, |most: f64, own| most.max(own.load.abs()));
+                .fold(0.0, |most: f64, condition| most.max(condition.load.abs()));
             Self {
                 of,
                 effects: method.effects.and(rod),
@@ -106,7 +109,7 @@ impl Fan {
     }
 }
 
-/// Returns the results of `work` for `count` indices, on all threads of the pool of this thread. A thread of no pool, such as that of an engine,
+/// Returns the results of `work` for `count` indices, on all threads of the pool of this thread. A thread of no pool, such as an engine's thread,
 /// works alone.
 fn results<O: Send>(count: usize, work: impl Fn(usize) -> O + Send + Sync) -> Vec<O> {
     match rayon::current_thread_index() {
@@ -203,7 +206,8 @@ impl Gpu {
                 fan.of.clone().map(force)
             })
         };
-        let rounded: Vec<GpuContact<T>> = contacts.iter().map(|own| own.map(T::of)).collect();
+        let rounded: Vec<GpuContact<T>> =
+            contacts.iter().map(|contact| contact.map(T::of)).collect();
         let mut forces: Vec<T> = Vec::with_capacity(count);
         forces.extend(shots().map(|(_, force)| T::of(force)));
         let inputs: [&[u8]; INPUTS] = [

@@ -58,7 +58,7 @@ fn frame(motion: &Motion, i: usize, sample: &WhiskSample) -> Result<CurvatureFra
     let Some((shape, push)) = shape.zip(sample.push_angle_deg) else {
         return Ok(frame);
     };
-    // From the axes of first touch to those of the base.
+    // Rotation from the axes of first touch to the axes of the base.
     let turn = DVec2::from_angle(push.to_radians());
     let at = &shape.points[1];
     frame.curvature_per_mm = at.curvature_per_mm + noise;
@@ -89,8 +89,8 @@ pub fn fig7b() -> Result<Figure, FigureError> {
         .collect::<Result<_, _>>()?;
     let [lever, model] = [ForceMethod::Lever, ForceMethod::Model]
         .map(|method| forces(&FIG4_WHISKER, &POLE, &frames, method));
-    let rows = samples.iter().zip(&frames).zip(lever.iter().zip(&model));
-    let rows = rows.map(|((sample, frame), (lever, model))| TrialFrame {
+    let moments = samples.iter().zip(&frames).zip(lever.iter().zip(&model));
+    let rows = moments.map(|((sample, frame), (lever, model))| TrialFrame {
         time_s: sample.time_s,
         angle_deg: sample.angle_deg,
         curvature_per_mm: frame.curvature_per_mm,
@@ -121,7 +121,7 @@ pub fn fig7b() -> Result<Figure, FigureError> {
         ],
         ..Plot::default()
     };
-    let without = |all: &[FrameForce]| all.iter().filter(|own| own.force_un.is_none()).count();
+    let without = |all: &[FrameForce]| all.iter().filter(|force| force.force_un.is_none()).count();
     let caption = vec![
         "A made-up trial: the paper's film is not published.".to_owned(),
         format!(

@@ -115,7 +115,8 @@ impl Motion {
         let kinds = [WhiskEventKind::SlipOff, WhiskEventKind::PullOff];
         let mut events = self.whisk.events.iter();
         let end = events.find(|event| kinds.contains(&event.event));
-        let after = samples.partition_point(|own| end.is_none_or(|end| own.time_s < end.time_s));
+        let after =
+            samples.partition_point(|sample| end.is_none_or(|end| sample.time_s < end.time_s));
         let (mut lines, mut rows) = (Vec::new(), Vec::new());
         for (i, sample) in samples.iter().enumerate() {
             let look = match i {

@@ -70,9 +70,10 @@ pub fn correct(points: &[(&LevelCurve, DVec2, f64)]) -> Vec<Option<(DVec2, FullS
     let Some((first, ..)) = points.first() else {
         return Vec::new();
     };
-    let correctors = points.iter();
-    let correctors = correctors.map(|(level, _, tolerance)| Corrector::new(level, *tolerance));
-    let mut correctors: Vec<Corrector> = correctors.collect();
+    let mut correctors: Vec<Corrector> = points
+        .iter()
+        .map(|(level, _, tolerance)| Corrector::new(level, *tolerance))
+        .collect();
     let newton = BatchNewton::new(first.method, CORRECTOR_TRAJECTORIES);
     let iterates = newton.solve(&mut correctors, points.iter().map(|(_, point, _)| *point));
     let corrected = iterates.into_iter().map(|iterate| {

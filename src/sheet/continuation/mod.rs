@@ -67,7 +67,7 @@ pub fn continuations(
     ended.collect()
 }
 
-/// Follows level curves as [`continuations`] does, also those that reach no edge within nine turns.
+/// Follows level curves as [`continuations`] does, also curves that reach no edge within nine turns.
 fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Continuation>> {
     let mut ended = follow_with_retry(starts, stretch, miss);
     let pairs = starts.iter().zip(&ended);
@@ -76,18 +76,18 @@ fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Optio
         is_steep.then(|| start.map(|(level, _)| level.finer()))?
     });
     let finer: Vec<Option<LevelCurve>> = finer.collect();
-    let again = finer.iter().zip(starts);
-    let again = again.map(|(level, start)| Some((level.as_ref()?, (*start)?.1)));
-    let again: Vec<CurveStart> = again.collect();
-    let again = follow_with_retry(&again, stretch, miss);
+    let pairs = finer.iter().zip(starts);
+    let finer_starts = pairs.map(|(level, start)| Some((level.as_ref()?, (*start)?.1)));
+    let finer_starts: Vec<CurveStart> = finer_starts.collect();
+    let again = follow_with_retry(&finer_starts, stretch, miss);
     for (ended, again) in ended.iter_mut().zip(again) {
         *ended = again.or(ended.take());
     }
     ended
 }
 
-/// Follows all curves, and those that reach no edge once more with nodes to rounding. Where curves meet, nodes with an error of `miss` can lead to
-/// another curve.
+/// Follows all curves. Curves that reach no edge are followed once more with nodes to rounding: where curves meet, nodes with an error of `miss`
+/// can lead to another curve.
 fn follow_with_retry(
     starts: &[CurveStart],
     stretch: Stretch,
@@ -95,10 +95,13 @@ fn follow_with_retry(
 ) -> Vec<Option<Continuation>> {
     let mut ended = follow(starts, stretch, miss);
     if miss > ON_CURVE {
-        let failed = starts.iter().zip(&ended);
-        let has_end =
-            |found: &Option<Continuation>| found.as_ref().is_some_and(|own| own.end.is_some());
-        let failed = failed.map(|(start, found)| start.filter(|_| !has_end(found)));
+        let pairs = starts.iter().zip(&ended);
+        let has_end = |found: &Option<Continuation>| {
+            found
+                .as_ref()
+                .is_some_and(|continuation| continuation.end.is_some())
+        };
+        let failed = pairs.map(|(start, found)| start.filter(|_| !has_end(found)));
         let again = follow(&failed.collect::<Vec<_>>(), stretch, ON_CURVE);
         for (ended, again) in ended.iter_mut().zip(again) {
             *ended = again.or(ended.take());

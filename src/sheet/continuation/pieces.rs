@@ -200,8 +200,8 @@ fn past_folds(rows: &[ContinuedRow], found: &mut [StablePieces]) {
         });
         let begins: Vec<Option<Crossing>> = begins.collect();
         let stable = ends_of_pieces(rows, &at_crossings(rows, &begins), Stretch::Stable, false);
-        let pieces = rows.iter().zip(begins.into_iter().zip(stable));
-        let pieces = pieces.map(|(row, (begin, stable))| {
+        let continued = rows.iter().zip(begins.into_iter().zip(stable));
+        let pieces = continued.map(|(row, (begin, stable))| {
             let (end, nodes) = stable?;
             is_on_sheet(row.level, &nodes).then_some(StablePiece { begin, end, nodes })
         });
@@ -237,8 +237,8 @@ fn at_crossings(rows: &[ContinuedRow], crossings: &[Option<Crossing>]) -> Vec<Op
         .collect()
 }
 
-/// Returns the end of the `stretch` of the level curve that begins at each of the `starts`, or with `backward` of the one
-/// that ends there. An entry is `None` without a start, or where the continuation fails.
+/// Returns the end of the `stretch` of the level curve that begins at each of the `starts`. With `backward`, the stretch
+/// ends there. An entry is `None` without a start, or where the continuation fails.
 fn ends_of_pieces(
     rows: &[ContinuedRow],
     starts: &[Option<CurveNode>],

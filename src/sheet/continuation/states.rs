@@ -42,7 +42,7 @@ impl LevelCurve {
     }
 
     /// Returns the level curve's state at the signed `push`, in radians, and the root search that found it. The search uses no slopes,
-    /// because that of the push angle is zero at the fold.
+    /// because the slope of the push angle is zero at the fold.
     pub(super) fn bracketed_push(
         &self,
         nodes: &[CurveNode],

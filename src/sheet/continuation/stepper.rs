@@ -14,7 +14,7 @@ use whiskmap_mechanics::shooting::{FirstVariation, FullState};
 /// Approximate distance between neighbouring nodes, as [`LevelCurve::length`] measures it.
 const NODE_DISTANCE: f64 = 0.05;
 
-/// Largest angle, in radians, between neighbouring chords that are not short: their length is then that of the curve.
+/// Largest angle, in radians, between neighbouring chords that are not short: chords and curve then have about the same length.
 const SHARPEST_TURN: f64 = 0.1;
 
 /// Length below which chords may form any angle: after a longer chord, no step is short enough for a small angle.

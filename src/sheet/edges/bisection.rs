@@ -41,7 +41,7 @@ pub struct EdgeBisection {
 }
 
 impl EdgeBisection {
-    /// Creates the bisection for the `ln D` `target`. If both samples are on the same side of it, the closer one is the result.
+    /// Creates the bisection for the `ln D` `target`. If both samples are on the same side of the target, the closer sample is the result.
     pub fn new(edge: Edge, samples: [EdgeSample; 2], target: f64) -> Self {
         let ends = samples.map(|sample| sample.ln_distance - target);
         let parts = Bracket::new([0.0, 1.0], ends);
@@ -93,8 +93,8 @@ impl EdgeBisection {
     }
 }
 
-/// Returns the point of each interval of an edge at which `ln D` is the target, `[interval]`. If both ends are on the same side of it, the
-/// closer end is returned. An entry is `None` where a fold is missing, or the distance leaps over the target.
+/// Returns the point of each interval of an edge at which `ln D` is the target, `[interval]`. If both ends are on the same side of the
+/// target, the closer end is returned. An entry is `None` where a fold is missing, or the distance leaps over the target.
 pub fn bisect(case: SheetCase, mut all: Vec<EdgeBisection>) -> Vec<Option<EdgeIterate>> {
     for edge in [Edge::Fold, Edge::Tip] {
         let open = all.iter_mut().filter(|search| search.edge == edge);

@@ -161,7 +161,11 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
     let Some(first) = problems.first() else {
         return Vec::new();
     };
-    debug_assert!(problems.iter().all(|own| std::ptr::eq(own.rod, first.rod)));
+    debug_assert!(
+        problems
+            .iter()
+            .all(|problem| std::ptr::eq(problem.rod, first.rod))
+    );
     let starts = problems.iter().map(|problem| problem.start);
     let maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(first.rod, starts);
     let mut open = Vec::new();
@@ -212,7 +216,7 @@ mod tests {
         let method = Method::fine();
         let fold = DVec2::new(rod.tau(0.8), 12.0);
         let tip = DVec2::new(rod.tau_tip(), 3.0);
-        let is_found = |own: &EdgeIterate| own.has_converged && own.residual < 1e-12;
+        let is_found = |iterate: &EdgeIterate| iterate.has_converged && iterate.residual < 1e-12;
         for (edge, start, along) in [(Edge::Fold, fold, DVec2::ONE), (Edge::Tip, tip, DVec2::Y)] {
             let mut problem = EdgeProblem {
                 rod: &rod,

@@ -70,7 +70,7 @@ const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
 pub(super) struct DistanceExtremum {
     /// Index of the sample before the extremum.
     after: usize,
-    /// Predicted load, in parts of the corner's.
+    /// Predicted load, in parts of the corner's load.
     part: f64,
     /// Parts that bracket the root of `dlnD/dload`.
     parts: Bracket,
@@ -158,9 +158,9 @@ impl<'a> TipLoads<'a> {
                 ln_distance: libm::log(map.pole.length()),
                 phi: nearest_turn(map.pole.to_angle(), self.phis[m]),
             };
-            let own = extrema.iter().filter(|extremum| extremum.after == m);
-            let own = own.map(|extremum| extremum.polished(self.case, self.corner));
-            let all = std::iter::once((*part, self.maps[m])).chain(own);
+            let after = extrema.iter().filter(|extremum| extremum.after == m);
+            let polished = after.map(|extremum| extremum.polished(self.case, self.corner));
+            let all = std::iter::once((*part, self.maps[m])).chain(polished);
             samples.extend(all.map(sample));
         }
         samples
@@ -175,7 +175,7 @@ impl<'a> TipLoads<'a> {
 }
 
 impl TipEdge {
-    /// Returns true if the slopes of the polynomial through the distances agree with those of the trajectories.
+    /// Returns true if the slopes of the polynomial through the distances agree with the slopes of the trajectories.
     fn is_certified(&self) -> bool {
         let known = |part: &f64| self.corner * self.by_load[0].at(*part).0;
         let largest = |of: &dyn Fn(&f64) -> f64| {

@@ -24,7 +24,7 @@ const BEYOND_TIP: usize = 1;
 /// Number of contact nodes between the contact nearest to the base of any row and the first node.
 const BEYOND_NEAREST: usize = 1;
 
-/// Largest distance in `u` from the tip to the last node. The smallest `tau` is then below 1e-12 of the tip's.
+/// Largest distance in `u` from the tip to the last node. The smallest `tau` is then below 1e-12 of `tau` at the tip.
 const LONGEST_RANGE: f64 = 68.0;
 
 /// Contact nodes with their first folds, from the base outward.

@@ -7,7 +7,7 @@ pub const MARGIN: f64 = 4.0;
 /// than states.
 pub const VALUE_WEIGHT: f64 = 0.1;
 
-/// Smallest bound on the residual that trajectories of the finest steps allow, in whisker lengths: that of refined states.
+/// Smallest bound on the residual that trajectories of the finest steps allow, in whisker lengths: the residual of refined states.
 pub const SMALLEST_RESIDUAL: f64 = 1e-12;
 
 /// Returns the larger of two errors in one unit; NaN if either is.

@@ -43,7 +43,7 @@ impl CheckedRow {
                     &numbers.chord,
                     &numbers.energy,
                 ];
-                all.map(|own: &[f64; WIDTH]| own[lane])
+                all.map(|lanes: &[f64; WIDTH]| lanes[lane])
             })
         });
         let values: Vec<Checked> = values.collect();
@@ -88,25 +88,30 @@ pub(super) fn certified(
     let place = |i: usize| (i as f64 + 0.37) / CHECKS as f64;
     let expanded = checked
         .iter()
-        .flat_map(|own| (0..CHECKS).map(move |i| (own, own.functions.at(place(i) * own.end))));
+        .flat_map(|row| (0..CHECKS).map(move |i| (row, row.functions.at(place(i) * row.end))));
     let expanded: Vec<(&CheckedRow, Checked)> = expanded.collect();
-    let points = expanded.iter().map(|(_, own)| (own[1], own[2]));
+    let points = expanded
+        .iter()
+        .map(|(_, functions)| (functions[1], functions[2]));
     let exact: Vec<PlainState> = sheet.case().shoot(points);
     let sign = sheet.side.sign();
-    let misses = expanded.iter().zip(&exact).map(|((own, found), exact)| {
-        let [push, tau, _, angle, x, y, chord, energy] = *found;
-        let push = sign * push;
-        let numbers = reader.numbers(tau, exact, own.row.touch + push, chord);
-        let [exact_x, exact_y] = numbers.position;
-        let errors = [
-            angle - numbers.contact_angle,
-            x - exact_x,
-            y - exact_y,
-            chord - numbers.chord,
-            energy - numbers.energy,
-        ];
-        let miss = exact.pole.distance(own.row.pole(push));
-        larger(miss, largest(&errors, &own.weights))
-    });
+    let misses = expanded
+        .iter()
+        .zip(&exact)
+        .map(|((checked_row, found), exact)| {
+            let [push, tau, _, angle, x, y, chord, energy] = *found;
+            let push = sign * push;
+            let numbers = reader.numbers(tau, exact, checked_row.row.touch + push, chord);
+            let [exact_x, exact_y] = numbers.position;
+            let errors = [
+                angle - numbers.contact_angle,
+                x - exact_x,
+                y - exact_y,
+                chord - numbers.chord,
+                energy - numbers.energy,
+            ];
+            let miss = exact.pole.distance(checked_row.row.pole(push));
+            larger(miss, largest(&errors, &checked_row.weights))
+        });
     larger(MARGIN * misses.fold(by_decay, larger), SMALLEST_RESIDUAL)
 }

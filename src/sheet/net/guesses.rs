@@ -95,7 +95,7 @@ impl GuessPanel {
     /// Computes the panel of `size` over the `range` of contacts.
     ///
     /// # Errors
-    /// If its error exceeds the largest one, the size whose error is expected not to; `None` if there is none.
+    /// If the panel's error exceeds `largest`: the size whose error is expected to be small enough, or `None` without such a size.
     fn new(
         case: SheetCase,
         range: [f64; 2],
@@ -115,8 +115,8 @@ impl GuessPanel {
         }
     }
 
-    /// Writes guesses for those of the growing `pushes` (magnitudes, in radians) that are near `row` between its `ends` into `guesses`, where there
-    /// are none: `[push_angle]`. Without its first end, the row begins at first touch.
+    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near `row` between its `ends`.
+    /// Without its first end, the row begins at first touch.
     ///
     /// Writes none if the row is not in the panel, if its push angle does not grow throughout, or if it contradicts the ends, which are computed
     /// apart.
@@ -139,7 +139,7 @@ impl GuessPanel {
         let turned = row.touch + nearest_turn(near, line.points[0].values[1][0]) - near;
         let points = line.points.iter().flat_map(|block| {
             (0..block.count).map(|lane| {
-                let [ln_tau, ln_q] = block.along.map(|own| own[lane]);
+                let [ln_tau, ln_q] = block.along.map(|coordinate| coordinate[lane]);
                 (block.values[1][lane], ln_tau, ln_q)
             })
         });
@@ -196,17 +196,17 @@ impl GuessPanel {
         }
         // Between the Chebyshev points are the contact nodes, where folds are exact.
         let [from, to] = self.0.contacts;
-        let nodes = contacts.folds.iter();
-        let nodes = nodes.map(|fold| (u_of(rod, fold.tau) - from) / (to - from));
-        let nodes = nodes.filter(|place| (0.0..=1.0).contains(place));
-        let places: Vec<f64> = points(over * in_u).chain(nodes).collect();
+        let folds = contacts.folds.iter();
+        let at_folds = folds.map(|fold| (u_of(rod, fold.tau) - from) / (to - from));
+        let inside = at_folds.filter(|place| (0.0..=1.0).contains(place));
+        let places: Vec<f64> = points(over * in_u).chain(inside).collect();
         let columns = determinant.columns(&places);
         // The place in the range of loads itself is found along with the zeros of the determinant.
         let place = Chebyshev {
             coefficients: vec![[0.5], [0.5]],
         };
         let zeros = columns.level(0.0, &place)?;
-        let folds: Vec<LaneNumbers> = zeros.iter().map(|own| own.along[0]).collect();
+        let folds: Vec<LaneNumbers> = zeros.iter().map(|zero| zero.along[0]).collect();
         let mut stable = 1.0;
         for (place, fold) in places.iter().zip(folds.as_flattened()) {
             let [surely_stable, known] = self.loads_at(rod, contacts, *place);
@@ -235,7 +235,7 @@ impl GuessPanel {
         are_known.then_some([least, largest])
     }
 
-    /// Returns places in the range of loads of the contact at `place`: up to which it is surely stable, and that of the first fold of `contacts`.
+    /// Returns two places in the range of loads of the contact at `place`: the end of the surely stable loads, and the first fold of `contacts`.
     fn loads_at(&self, rod: &Rod, contacts: &ContactNodes, place: f64) -> [f64; 2] {
         let [ln_tau, ln_q] = self.0.along.at(place);
         let tau = libm::exp(ln_tau);
@@ -318,7 +318,9 @@ mod tests {
                     let pushes = (0..=40).map(|i| from + part(i) * (end.push - from));
                     let pushes: Vec<f64> = pushes.collect();
                     let guesses = sheet.guesses(row, &pushes);
-                    let points = guesses.iter().map(|own| own.map(|own| (own.tau, own.load)));
+                    let points = guesses
+                        .iter()
+                        .map(|guess| guess.map(|guess| (guess.tau, guess.load)));
                     let points: Option<Vec<(f64, f64)>> = points.collect();
                     let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
                     for (map, push) in maps.iter().zip(&pushes) {
@@ -347,7 +349,7 @@ mod tests {
         assert_eq!(with, without);
     }
 
-    /// A pole out of reach leaves the rows within reach their panel, where the rod is continued to no radius or no modulus as well.
+    /// A pole out of reach leaves the rows within reach their panel, also where the rod is continued to no radius or no modulus.
     #[test]
     fn rows_out_of_reach_need_no_panel() {
         for (taper, gradient) in [(0.95, 0.0), (1.0, 0.0), (0.3, -0.9)] {
@@ -363,7 +365,8 @@ mod tests {
         }
     }
 
-    /// A pair of folds between the nodes is found, however near to each other; another first fold than that of the contact nodes is refused.
+    /// A pair of folds between the nodes is found, however near to each other. A first fold that differs from the first fold of the contact nodes
+    /// is refused.
     #[test]
     fn folds_that_nodes_do_not_show_are_found() {
         let rod = cone(Side::Cb);

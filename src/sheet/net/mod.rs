@@ -62,8 +62,8 @@ impl PanelRow {
     /// Returns the `row` at `place` with its range of contacts and its number of `cells`. `None` if it has no contacts: the pole is out of reach,
     /// or the base may be inside the pole.
     ///
-    /// The contact is at least as far along the whisker as it is from the base, and that is at least the pole's distance without its radius. It
-    /// is at most that of first touch, or the `last`.
+    /// The contact is at least as far along the whisker as it is from the base, and this distance is at least the pole's distance without its
+    /// radius. The contact is at most as far along as at first touch, or at the `last` contact.
     fn new(rod: &Rod, row: usize, place: &Row, last: f64, cells: usize) -> Option<Self> {
         let reach = place.contact.min(place.end);
         let nearest = place.pole_distance - rod.pole.abs();
@@ -124,7 +124,7 @@ impl<P> PanelQueue<P> {
         count: usize,
         rows: impl Iterator<Item = PanelRow>,
     ) -> Self {
-        let is_long = |own: &PanelRow| own.contacts[1] - own.contacts[0] > WIDEST;
+        let is_long = |row: &PanelRow| row.contacts[1] - row.contacts[0] > WIDEST;
         let (mut rows, mut others): (Vec<_>, Vec<_>) = rows.partition(is_long);
         for rows in [&mut rows, &mut others] {
             rows.sort_by(|a, b| a.contacts[0].total_cmp(&b.contacts[0]));
@@ -148,12 +148,14 @@ impl<P> PanelQueue<P> {
         queue
     }
 
-    /// Begins the panel of some `rows`, or those of their halves where contacts are too far apart for one panel.
+    /// Begins the panel of some `rows`, or two panels of half the rows where contacts are too far apart for one panel.
     fn begin(&mut self, rows: Range<usize>, halvings: u32) {
-        let own = &self.rows[rows.clone()];
-        let Some(first) = own.first() else { return };
-        let contacts = own.iter().fold(first.contacts, |[from, to], own| {
-            [from, to.max(own.contacts[1])]
+        let panel_rows = &self.rows[rows.clone()];
+        let Some(first) = panel_rows.first() else {
+            return;
+        };
+        let contacts = panel_rows.iter().fold(first.contacts, |[from, to], row| {
+            [from, to.max(row.contacts[1])]
         });
         let range = contacts[1] - contacts[0];
         let size = NetSize::first(self.aim, range);
@@ -163,7 +165,7 @@ impl<P> PanelQueue<P> {
                     self.begin(half, halvings);
                 }
             }
-            _ if (self.pays)(size, own) => self.open.push(Attempt {
+            _ if (self.pays)(size, panel_rows) => self.open.push(Attempt {
                 rows,
                 contacts,
                 size,
@@ -176,12 +178,12 @@ impl<P> PanelQueue<P> {
 
     /// Returns the two halves of `rows` by their contacts; `None` if one has no rows, or if they may not be halved.
     fn halves(&self, rows: &Range<usize>, halvings: u32) -> Option<[Range<usize>; 2]> {
-        let own = &self.rows[rows.clone()];
-        let (first, last) = (own.first()?, own.last()?);
+        let panel_rows = &self.rows[rows.clone()];
+        let (first, last) = (panel_rows.first()?, panel_rows.last()?);
         let middle = first.contacts[0].midpoint(last.contacts[0]);
-        let near = own.partition_point(|row| row.contacts[0] < middle);
+        let near = panel_rows.partition_point(|row| row.contacts[0] < middle);
         let between = rows.start + near;
-        let may_halve = halvings > 0 && (1..own.len()).contains(&near);
+        let may_halve = halvings > 0 && (1..panel_rows.len()).contains(&near);
         may_halve.then_some([rows.start..between, between..rows.end])
     }
 
@@ -195,8 +197,8 @@ impl<P> PanelQueue<P> {
     fn store(&mut self, attempt: Attempt, made: Result<P, Option<NetSize>>) {
         match made {
             Ok(panel) => {
-                for own in &self.rows[attempt.rows] {
-                    self.found.panel_of[own.row] = Some(self.found.panels.len());
+                for row in &self.rows[attempt.rows] {
+                    self.found.panel_of[row.row] = Some(self.found.panels.len());
                 }
                 self.found.panels.push(panel);
             }

@@ -13,8 +13,8 @@ use whiskmap_mechanics::rod::Rod;
 /// Number of points of `ln q` as a function of `u`: the scale of the load need only be smooth.
 const SCALE: usize = 9;
 
-/// Number of columns of a row of its own, over those of the panel's rows: `[constant, for each part of the largest load]`. On a shorter range,
-/// fewer are as accurate; the last coefficients of the row show it.
+/// Number of columns of a row with columns of its own, over the number of the panel's columns: `[constant, for each part of the largest load]`. On
+/// a shorter range, fewer are as accurate; the last coefficients of the row show it.
 const OWN: [f64; 2] = [0.5, 0.5];
 
 /// Smallest part of a panel's largest load at which a row has the columns of the panel. A row with a smaller load at its end gets its own.

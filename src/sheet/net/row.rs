@@ -60,11 +60,11 @@ impl<'a> RowLine<'a> {
         let turned = nearest_turn(touch, points[0].values[1][0]);
         let parts = self.line.parts.chunks(WIDTH);
         let blocks = points.iter().zip(parts).map(|(points, parts)| {
-            let mut own = [0.0; WIDTH];
-            own[..parts.len()].copy_from_slice(parts);
+            let mut padded = [0.0; WIDTH];
+            padded[..parts.len()].copy_from_slice(parts);
             unit.run(States {
                 points,
-                parts: &own,
+                parts: &padded,
                 taper: self.case.rod.taper,
                 sign: self.case.side.sign(),
                 tilt,
@@ -108,8 +108,12 @@ impl SimdTask for States<'_> {
                 .points
                 .values
                 .each_ref()
-                .map(|own| pack::<T>(own, from));
-            let [ln_tau, ln_q] = self.points.along.each_ref().map(|own| pack::<T>(own, from));
+                .map(|lanes| pack::<T>(lanes, from));
+            let [ln_tau, ln_q] = self
+                .points
+                .along
+                .each_ref()
+                .map(|lanes| pack::<T>(lanes, from));
             let (sign, tau) = (T::of(self.sign), exp(ln_tau));
             let load = sign * pack(self.parts, from) * exp(ln_q - ln_tau - ln_tau);
             let [radius, arclength] = radius_and_arclength(T::of(self.taper), tau);

@@ -1,4 +1,4 @@
-//! Sizes of panels: the first one for a bound, and those that the decay of coefficients calls for.
+//! Sizes of panels: the first size for a bound, and the next sizes by the decay of coefficients.
 
 use super::bound::{MARGIN, larger};
 use whiskmap_mechanics::numerics::expansion::{MOST_POINTS, TAIL};
@@ -69,14 +69,14 @@ impl NetSize {
         (self.loads + MORE_COLUMNS).min(MOST_POINTS)
     }
 
-    /// Returns the next size with more contacts and more loads; `None` if there is none.
+    /// Returns the next size with more contacts and more loads; `None` for the largest size.
     pub fn larger(self) -> Option<Self> {
         let [contacts, loads] = [self.contacts, self.loads].map(|count| count + TAIL);
         (contacts.max(loads) <= MOST_POINTS).then_some(Self { contacts, loads })
     }
 
-    /// Returns the size that is expected to keep the bound `most`, where a panel of this size has these tails in both coordinates; `None` if
-    /// there is none.
+    /// Returns the size that is expected to keep the bound `most`, where a panel of this size has these tails in both coordinates. `None`
+    /// without such a size.
     pub fn enough(self, [in_u, in_p]: [NetTail; 2], most: f64) -> Option<Self> {
         // NaN is not below any bound.
         let falls = larger(in_u.last, in_p.last) <= HOPELESS;
@@ -91,8 +91,8 @@ impl NetSize {
 }
 
 impl NetTail {
-    /// Returns the number of points whose last coefficients are expected to be `goal`, if coefficients go on to fall at the same rate. This tail is
-    /// that of `count` points. `None` above [`MOST_POINTS`].
+    /// Returns the number of points whose last coefficients are expected to be `goal`, if coefficients go on to fall at the same rate. This tail
+    /// belongs to an expansion through `count` points. `None` above [`MOST_POINTS`].
     fn points(self, count: usize, goal: f64) -> Option<usize> {
         if self.last <= goal {
             return Some(count);

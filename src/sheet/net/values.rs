@@ -84,14 +84,14 @@ impl Grid {
 }
 
 impl ValueDraft {
-    /// Begins the panels of [`ValueNet::new`]; `None` where none is possible.
+    /// Begins the panels of [`ValueNet::new`]; `None` where no panel is possible.
     pub fn new(sheet: &Sheet, cells: impl Fn(usize) -> usize, most: f64) -> Option<Self> {
         let samples = Arc::clone(sheet.samples.as_ref()?);
         if sheet.rod.profile.is_some() || most < SMALLEST_RESIDUAL {
             return None;
         }
         let pays = |size: NetSize, rows: &[PanelRow]| {
-            let cells = rows.iter().map(|own| own.cells).sum();
+            let cells = rows.iter().map(|row| row.cells).sum();
             net_cost(size.states(), rows.len()) < cells
         };
         let rows = sheet.rows.iter().enumerate().filter_map(|(row, place)| {
@@ -121,10 +121,10 @@ impl ValueDraft {
     /// If there are fewer states than nodes.
     pub fn take(&mut self, sheet: &Sheet, mut states: &[PlainState]) {
         for grid in std::mem::take(&mut self.grids) {
-            let (own, others) = states.split_at(grid.attempt.size.states());
+            let (panel_states, others) = states.split_at(grid.attempt.size.states());
             states = others;
             let rows = self.queue.rows_of(&grid.attempt);
-            let made = ValuePanel::new(sheet, rows, &grid, own, self.most);
+            let made = ValuePanel::new(sheet, rows, &grid, panel_states, self.most);
             self.queue.store(grid.attempt, made);
         }
     }
@@ -163,7 +163,10 @@ impl ValueNet {
     /// Returns the largest number of loads of a panel.
     #[must_use]
     pub fn loads(&self) -> usize {
-        let loads = self.panels.iter().map(|own| own.panel.size.loads);
+        let loads = self
+            .panels
+            .iter()
+            .map(|value_panel| value_panel.panel.size.loads);
         loads.max().unwrap_or(0)
     }
 }
@@ -172,7 +175,7 @@ impl ValuePanel {
     /// Creates the panel of `rows` from the `states` of a grid.
     ///
     /// # Errors
-    /// If its bound exceeds `most`, in whisker lengths, the size that is expected to be accurate enough; `None` if there is none.
+    /// If the panel's bound exceeds `most`, in whisker lengths: the size that is expected to be accurate enough, or `None` without such a size.
     fn new(
         sheet: &Sheet,
         rows: &[PanelRow],
@@ -184,21 +187,21 @@ impl ValuePanel {
         let tensor = tensor(&reader, grid, states);
         let Attempt { contacts, size, .. } = grid.attempt;
         let panel = NetPanel::new(contacts, grid.along.clone(), size, tensor, size.columns());
-        let mut own = Self {
+        let mut value_panel = Self {
             panel,
             residual: f64::NAN,
             reader,
         };
-        let error = own.error();
+        let error = value_panel.error();
         // NaN is not below any bound.
         let has_converged = MARGIN * error <= most;
         if !has_converged {
-            return Err(size.enough(own.panel.tails(&own.weights()), most));
+            return Err(size.enough(value_panel.panel.tails(&value_panel.weights()), most));
         }
-        own.panel.shorten(&own.weights());
-        own.residual = own.certified(sheet, rows, error);
-        if own.residual <= most {
-            Ok(own)
+        value_panel.panel.shorten(&value_panel.weights());
+        value_panel.residual = value_panel.certified(sheet, rows, error);
+        if value_panel.residual <= most {
+            Ok(value_panel)
         } else {
             // Between the nodes, the error is larger than the last coefficients.
             Err(size.larger())
@@ -266,7 +269,7 @@ fn tensor(reader: &Reader, grid: &Grid, states: &[PlainState]) -> ChebyshevTenso
                 [ln_distance, phi, angle, x, y, chord, energy]
             });
             let values: Vec<Functions> = values.collect();
-            first = values.first().map_or(0.0, |own| own[1]);
+            first = values.first().map_or(0.0, |functions| functions[1]);
             Chebyshev::through(&values)
         });
     ChebyshevTensor::through(&rows.collect::<Vec<_>>())
@@ -302,12 +305,12 @@ mod tests {
         let distances: Vec<f64> = (0..60).map(|i| 0.4 + 0.01 * f64::from(i)).collect();
         let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &distances);
         let rows = sheet.rows.iter().enumerate();
-        let rows = rows.filter_map(|(row, place)| {
+        let panel_rows = rows.filter_map(|(row, place)| {
             let end = sheet.simple_end(row)?;
             PanelRow::new(&rod, row, place, end.tau, 0)
         });
-        let rows = rows.collect();
-        (sheet, rows)
+        let panel_rows = panel_rows.collect();
+        (sheet, panel_rows)
     }
 
     const SIZE: NetSize = NetSize {
@@ -317,7 +320,7 @@ mod tests {
 
     /// The grid of all rows, and the states of its nodes.
     fn grid(sheet: &Sheet, rows: &[PanelRow]) -> (Grid, Vec<PlainState>) {
-        let last = rows.iter().map(|own| own.contacts[1]);
+        let last = rows.iter().map(|row| row.contacts[1]);
         let attempt = Attempt {
             rows: 0..rows.len(),
             contacts: [rows[0].contacts[0], last.fold(0.0, f64::max)],
@@ -364,15 +367,15 @@ mod tests {
         assert!(
             [Edge::Fold, Edge::Tip]
                 .iter()
-                .all(|own| rows.iter().any(|row| edge(row) == *own))
+                .all(|expected| rows.iter().any(|row| edge(row) == *expected))
         );
         let sound = panel(&sheet, &rows);
         assert!(bound(&sheet, &rows, &sound) <= sound.residual);
         let NetSize { contacts, loads } = SIZE;
         let whole = whole(&sheet, &rows);
         let largest = whole.coefficients.iter().flatten();
-        let largest = largest.fold([0.0; FUNCTIONS], |most, own| {
-            std::array::from_fn(|i| f64::max(most[i], own[i].abs()))
+        let largest = largest.fold([0.0; FUNCTIONS], |most, functions| {
+            std::array::from_fn(|i| f64::max(most[i], functions[i].abs()))
         });
         for place in (0..contacts * loads * FUNCTIONS).step_by(STRIDE) {
             let (power, function) = (place / FUNCTIONS, place % FUNCTIONS);
@@ -382,8 +385,8 @@ mod tests {
                 change(&mut tensor.coefficients[in_u][in_p][function]);
                 bound(&sheet, &rows, &with_tensor(&sound, tensor))
             };
-            let wrong = spoiled(&|own| *own += SPOIL * largest[function]);
-            let without = spoiled(&|own| *own = f64::NAN);
+            let wrong = spoiled(&|coefficient| *coefficient += SPOIL * largest[function]);
+            let without = spoiled(&|coefficient| *coefficient = f64::NAN);
             assert!(
                 (wrong > MOST || wrong.is_nan()) && without.is_nan(),
                 "function {function}, powers {in_u} and {in_p}: {wrong:e} {without:e}"
@@ -423,15 +426,15 @@ mod tests {
         }
     }
 
-    /// States of the net at random contacts and loads of a row are those of trajectories.
+    /// The net and trajectories give equal states at random contacts and loads of a row.
     #[test]
     fn a_bound_is_four_times_the_largest_error() {
         let (sheet, rows) = cone();
         let sound = panel(&sheet, &rows);
         let by_decay = |error: f64| sound.certified(&sheet, &rows, error);
         assert_eq!(by_decay(1e-6), 4e-6);
-        let own = by_decay(0.0);
-        assert!((1e-12..1e-10).contains(&own), "{own:e}");
+        let checked_bound = by_decay(0.0);
+        assert!((1e-12..1e-10).contains(&checked_bound), "{checked_bound:e}");
         let spoiled = |function: usize, change: f64| {
             let mut tensor = sound.panel.tensor.clone();
             tensor.coefficients[0][0][function] += change;

@@ -123,7 +123,7 @@ impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         let value = self.value.sqrt();
-        // The smallest normal number changes no other root than that of 0.
+        // The smallest normal number changes no root but the root of 0.
         let slope = T::of(0.5) / (value + T::of(f64::MIN_POSITIVE));
         Self {
             value,

@@ -3,7 +3,7 @@
 //! With `y = 2 x - 1`, `f(x) = c_0 + c_1 T_1(y) + ... + c_(N-1) T_(N-1)(y)` is the polynomial through `N` values. The coefficients of
 //! an analytic function fall geometrically, and the error is about the first coefficient left out (L. N. Trefethen, *Approximation
 //! Theory and Approximation Practice*, SIAM 2013, chapters 3 and 8). Clenshaw's recurrence evaluates it. On the interval it is as stable
-//! as the barycentric formula (J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 501, 2004), and gives derivatives as well.
+//! as the barycentric formula (J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 501, 2004), and gives derivatives, too.
 
 use crate::numerics::{LaneNumbers, Lanes, Real, SimdTask, Unit, WIDTH, keep, pack};
 use std::f64::consts::FRAC_PI_2;
@@ -45,7 +45,7 @@ impl ChebyshevGrid {
         };
         let known = |j, k| if k < count { weight(j, k) } else { 0.0 };
         let group = |j, from: usize| std::array::from_fn(|lane| known(j, from + lane));
-        let row = |j| std::array::from_fn(|own| group(j, own * WIDTH));
+        let row = |j| std::array::from_fn(|index| group(j, index * WIDTH));
         Self {
             points: (0..count).map(point).collect(),
             transform: (0..count).map(row).collect(),
@@ -213,12 +213,12 @@ impl<const D: usize> SimdTask for Transform<'_, D> {
                     }
                 }
                 for (i, sums) in sums.iter().enumerate().take(D - first) {
-                    let mut own = [0.0; WIDTH];
+                    let mut unpacked = [0.0; WIDTH];
                     for (sum, from) in sums.iter().zip((0..WIDTH).step_by(T::LANES)) {
-                        keep(&mut own, from, *sum);
+                        keep(&mut unpacked, from, *sum);
                     }
-                    for (coefficients, own) in into.iter_mut().zip(own) {
-                        coefficients[first + i] = own;
+                    for (coefficients, coefficient) in into.iter_mut().zip(unpacked) {
+                        coefficients[first + i] = coefficient;
                     }
                 }
             }

@@ -79,8 +79,8 @@ impl<const D: usize> Inverse<D> {
         place * (self.end / INTERVALS as f64)
     }
 
-    /// Finds the arguments at which the first function has the growing `targets`. Calls `take` for each [`WIDTH`] of them with the index
-    /// of the first, their number, and the values there.
+    /// Finds the arguments at which the first function has the growing `targets`. Calls `take` for each [`WIDTH`] targets with the index
+    /// of the first target, the number of targets, and the values there.
     pub fn solve(&self, targets: &[f64], mut take: impl FnMut(usize, usize, &InverseBlock<D>)) {
         let unit = Unit::detect();
         let mut after = 0;

@@ -33,7 +33,7 @@ impl<const D: usize> ChebyshevTensor<D> {
             .collect();
         let of = |power: usize| {
             in_x.iter()
-                .map(move |own| own.coefficients[power])
+                .map(move |expansion| expansion.coefficients[power])
                 .collect()
         };
         Self {
@@ -55,8 +55,8 @@ impl<const D: usize> ChebyshevTensor<D> {
         let in_y = |terms: &Vec<[f64; D]>| Chebyshev {
             coefficients: terms.clone(),
         };
-        let sum = |sum: [[f64; D]; 2], own: Chebyshev<D>| {
-            let tails = own.tails();
+        let sum = |sum: [[f64; D]; 2], expansion: Chebyshev<D>| {
+            let tails = expansion.tails();
             std::array::from_fn(|group| std::array::from_fn(|i| sum[group][i] + tails[group][i]))
         };
         let zero = [[0.0; D]; 2];
@@ -197,7 +197,7 @@ pub struct TensorColumns<const D: usize> {
 pub struct LevelBlock<const D: usize, const L: usize> {
     /// Number of columns of the block.
     pub count: usize,
-    /// Functions of the tensor on the level line, `[function][column]`; columns beyond the count are as the first one.
+    /// Functions of the tensor on the level line, `[function][column]`; columns beyond the count equal the first column.
     pub values: [LaneNumbers; D],
     /// Functions of `x` alone on the level line: `[function][column]`.
     pub along: [LaneNumbers; L],
@@ -213,8 +213,8 @@ impl<const D: usize> TensorColumns<D> {
     /// Returns the points at which the first function is `level`, with the values of `along` there: functions of `x` alone. There is one point
     /// for each column, in blocks of [`WIDTH`].
     ///
-    /// A point is the first at which the first function grows beyond the level. Returns `None` if there is none in some column, or if Newton's
-    /// method fails.
+    /// The point of a column is the first at which the first function grows beyond the level. Returns `None` if a column has no such point, or
+    /// if Newton's method fails.
     #[must_use]
     pub fn level<const L: usize>(
         &self,
@@ -403,19 +403,19 @@ impl<const D: usize, const L: usize> SimdTask for LevelPoints<'_, D, L> {
                 x = x + (T::of(self.level) - value) / slope;
             }
             for first in (0..D).step_by(TOGETHER) {
-                let own = values::<T, D, TOGETHER>(terms, first, from, x);
-                for (into, own) in found.values[first..].iter_mut().zip(own) {
-                    keep(into, from, own);
+                let packed = values::<T, D, TOGETHER>(terms, first, from, x);
+                for (into, value) in found.values[first..].iter_mut().zip(packed) {
+                    keep(into, from, value);
                 }
             }
-            for (into, own) in found.along.iter_mut().zip(self.along.values::<T, L>(0, x)) {
-                keep(into, from, own);
+            for (into, value) in found.along.iter_mut().zip(self.along.values::<T, L>(0, x)) {
+                keep(into, from, value);
             }
         }
         // Columns beyond the count are as the first one, for every number of lanes.
-        for own in found.values.iter_mut().chain(&mut found.along) {
-            let first = own[0];
-            own[*count..].fill(first);
+        for lanes in found.values.iter_mut().chain(&mut found.along) {
+            let first = lanes[0];
+            lanes[*count..].fill(first);
         }
         found
     }
@@ -447,18 +447,19 @@ mod tests {
         let columns = tensor.columns(&places);
         for level in [0.17, 0.5, 0.99] {
             let blocks = columns.level(level, &along).unwrap();
-            assert_eq!(blocks.iter().map(|own| own.count).sum::<usize>(), 21);
+            assert_eq!(blocks.iter().map(|block| block.count).sum::<usize>(), 21);
             for block in &blocks {
                 let mut all = block.values.iter().chain(&block.along);
-                let is_first = |own: &LaneNumbers| own[block.count..].iter().all(|x| *x == own[0]);
+                let is_first =
+                    |lanes: &LaneNumbers| lanes[block.count..].iter().all(|x| *x == lanes[0]);
                 assert!(all.all(is_first));
             }
             for (m, y) in places.iter().enumerate() {
                 let (block, lane) = (&blocks[m / WIDTH], m % WIDTH);
                 let x = level - 0.25 * y * y;
                 let wanted = function(x, *y);
-                for (own, wanted) in block.values.iter().zip(wanted) {
-                    assert!((own[lane] - wanted).abs() < 1e-13, "{level} {y}");
+                for (found, wanted) in block.values.iter().zip(wanted) {
+                    assert!((found[lane] - wanted).abs() < 1e-13, "{level} {y}");
                 }
                 assert!((block.along[0][lane] - x.exp()).abs() < 1e-13);
             }
@@ -474,7 +475,7 @@ mod tests {
         );
     }
 
-    /// Along columns of an expansion with exchanged variables, quotients with places of each column are those of its functions.
+    /// Along columns of an expansion with exchanged variables, quotients with places of each column equal the quotients of its functions.
     #[test]
     fn quotients_are_those_of_columns() {
         let function = |x: f64, y: f64| (x + 2.0 * y).sin();
@@ -497,7 +498,8 @@ mod tests {
         }
     }
 
-    /// Two places of a column can have the value of the level: the line has the one where the function grows. Above the largest value there is none.
+    /// Two places of a column can have the value of the level: the line has the place where the function grows. Above the largest value there is no
+    /// place.
     #[test]
     fn a_level_line_is_where_the_function_grows() {
         let tensor = tensor(|x, y| [x * (0.9 - x) + y, x, 0.0]);

@@ -1,4 +1,4 @@
-//! Curvature at rest as a polynomial of the arclength, such as that of a shape traced from an image.
+//! Curvature at rest as a polynomial of the arclength, such as the curvature of a shape traced from an image.
 
 /// Number of coefficients of a [`CurvaturePolynomial`]: one more than its largest degree.
 pub const CURVATURE_TERMS: usize = 7;
@@ -8,7 +8,7 @@ const PLACES: u32 = 512;
 
 /// Curvature of a whisker at rest, in radians per whisker length, as a polynomial of the arclength.
 ///
-/// Coefficients are those of Legendre polynomials of `2 s - 1`, with the arclength `s` in whisker lengths: the first one is the angle
+/// Coefficients belong to Legendre polynomials of `2 s - 1`, with the arclength `s` in whisker lengths: the first one is the angle
 /// by which the whole whisker turns, in radians. Powers of `s` would cancel in `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvaturePolynomial {
@@ -21,14 +21,14 @@ impl CurvaturePolynomial {
     /// Creates the polynomial with these coefficients of Legendre polynomials, `[degree]`, in radians per whisker length.
     #[must_use]
     pub fn new(legendre: [f64; CURVATURE_TERMS]) -> Self {
-        let mut own = Self {
+        let mut polynomial = Self {
             legendre,
             centred: centred(&legendre),
             sharpest: 0.0,
         };
-        let places = (0..=PLACES).map(|i| own.at(f64::from(i) / f64::from(PLACES)).abs());
-        own.sharpest = places.fold(0.0, f64::max);
-        own
+        let places = (0..=PLACES).map(|i| polynomial.at(f64::from(i) / f64::from(PLACES)).abs());
+        polynomial.sharpest = places.fold(0.0, f64::max);
+        polynomial
     }
 
     /// Returns the coefficients of the Legendre polynomials of `2 s - 1`, `[degree]`, in radians per whisker length.
@@ -87,19 +87,19 @@ impl CurvaturePolynomial {
 fn centred(legendre: &[f64; CURVATURE_TERMS]) -> [f64; CURVATURE_TERMS] {
     let mut sum = [0.0; CURVATURE_TERMS];
     let mut before = [0.0; CURVATURE_TERMS];
-    let mut own = [0.0; CURVATURE_TERMS];
-    own[0] = 1.0;
+    let mut current = [0.0; CURVATURE_TERMS];
+    current[0] = 1.0;
     for (n, coefficient) in legendre.iter().enumerate() {
-        for (sum, term) in sum.iter_mut().zip(own) {
+        for (sum, term) in sum.iter_mut().zip(current) {
             *sum += coefficient * term;
         }
         let order = n as f64;
         let mut next = [0.0; CURVATURE_TERMS];
         for power in 0..CURVATURE_TERMS {
-            let shifted = if power > 0 { own[power - 1] } else { 0.0 };
+            let shifted = if power > 0 { current[power - 1] } else { 0.0 };
             next[power] = ((4.0 * order + 2.0) * shifted - order * before[power]) / (order + 1.0);
         }
-        (before, own) = (own, next);
+        (before, current) = (current, next);
     }
     sum
 }

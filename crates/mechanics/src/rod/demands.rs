@@ -75,7 +75,7 @@ impl Demands {
     }
 
     /// Returns the index of the interval of contacts, a reach, in which the arclength `s`, in whisker lengths, lies. Reaches have equal width
-    /// in `log s`, and demands are tabulated for each of them.
+    /// in `log s`, and demands are tabulated for each reach.
     #[must_use]
     pub fn reach(s: f64) -> u32 {
         ((-REACHES_PER_OCTAVE * libm::log2(s)) as u32).min(REACHES - 1)

@@ -32,8 +32,8 @@ impl RodDerivative {
     /// Returns the derivative of the piece `k` of the measured profile, each field by the variable; 0 if the profile does not change.
     #[must_use]
     pub fn piece(&self, k: usize) -> Piece {
-        let own = self.pieces.as_ref().and_then(|pieces| pieces.get(k));
-        own.copied().unwrap_or(Piece {
+        let piece = self.pieces.as_ref().and_then(|pieces| pieces.get(k));
+        piece.copied().unwrap_or(Piece {
             from: 0.0,
             tau: 0.0,
             cubic: [0.0; 4],

@@ -57,8 +57,8 @@ impl Effects {
         })
     }
 
-    /// Returns these effects and all effects of `rod`. No kernel has two rest shapes: that of `rod` replaces the rest shape of this
-    /// set.
+    /// Returns these effects and all effects of `rod`. No kernel has two rest shapes: the rest shape of `rod` replaces the rest
+    /// shape of this set.
     #[inline]
     #[must_use]
     pub fn and(self, rod: &Rod) -> Self {

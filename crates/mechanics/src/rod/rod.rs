@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde_core::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// The side of the whisker that the pole is on. The default is that of the push angle 0.
+/// The side of the whisker that the pole is on. The default is the side of the push angle 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Concave backward: the pole is on the convex side, the force bends the whisker further.
@@ -199,8 +199,8 @@ impl Rod {
         tau_derivative(dual(self.taper, by_taper), dual(s, by_s))
     }
 
-    /// Returns the derivative of [`arclength`] by a variable, in whisker lengths per unit of it. The variable changes `tau` by `by_tau` and the taper
-    /// by `by_taper`.
+    /// Returns the derivative of [`arclength`] by a variable, in whisker lengths per unit of the variable. The variable changes `tau` by `by_tau`
+    /// and the taper by `by_taper`.
     #[must_use]
     pub fn arclength_derivative(&self, tau: f64, by_tau: f64, by_taper: f64) -> f64 {
         let dual = |value, derivative| Dual { value, derivative };
@@ -208,8 +208,8 @@ impl Rod {
         s.derivative
     }
 
-    /// Returns the softness at `tau`, dimensionless: the whisker's rotation there under a small load, over that of the clamped cone with the
-    /// same base and tip. It is 1 without a profile and a mount that turns. Folds of all whiskers lie at similar `|load| s^2 softness`.
+    /// Returns the softness at `tau`, dimensionless: the whisker's rotation there under a small load, over the rotation of the clamped cone
+    /// with the same base and tip. It is 1 without a profile and a mount that turns. Folds of all whiskers lie at similar `|load| s^2 softness`.
     #[must_use]
     pub fn softness(&self, tau: f64) -> f64 {
         if self.profile.is_none() && self.mount == 0.0 {
@@ -218,7 +218,10 @@ impl Rod {
         let s = arclength(self, tau);
         let scale = self.radius(tau);
         let cone = s * s * (1.0 + 2.0 * scale) / (6.0 * scale * scale);
-        let bending = self.profile.as_ref().map_or(cone, |own| own.compliance(s));
+        let bending = self
+            .profile
+            .as_ref()
+            .map_or(cone, |profile| profile.compliance(s));
         (bending + self.mount * s) / cone
     }
 

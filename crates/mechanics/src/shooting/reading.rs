@@ -92,7 +92,7 @@ impl StateNumbers<LaneNumbers> {
     #[must_use]
     #[inline(always)]
     pub fn pack<T: Lanes>(&self, from: usize) -> StateNumbers<T> {
-        let two = |own: &[LaneNumbers; 2]| own.each_ref().map(|own| pack(own, from));
+        let two = |pair: &[LaneNumbers; 2]| pair.each_ref().map(|numbers| pack(numbers, from));
         StateNumbers {
             arclength: pack(&self.arclength, from),
             contact_angle: pack(&self.contact_angle, from),
@@ -212,14 +212,14 @@ impl Reader {
         let contact = to_base.rotate(-state.position);
         let to_pole = self.to_pole - state.position;
         let resting = self.rest.point_at_distance(contact.length());
-        let own_chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
+        let principal_chord = DVec2::new(resting.x, -resting.y).rotate(contact).to_angle();
         StateNumbers {
             arclength: arclength_at(self.taper, tau),
             contact_angle: phi - to_pole.to_angle() + self.tilt,
             force: state.force,
             tangent: state.tangent.to_array(),
             position: state.position.to_array(),
-            chord: nearest_turn(own_chord, chord),
+            chord: nearest_turn(principal_chord, chord),
             energy: state.energy,
         }
     }

@@ -59,7 +59,7 @@ pub fn varied_profile(
     let states = trajectory.states::<GeneralFirst>(loaded);
     let states = loaded.iter().zip(states);
     let varied = |(s, (state, carried)): (&f64, (Planar<f64>, _))| {
-        // The carried derivatives are those at a fixed arclength all along the trajectory, not at the base alone.
+        // The carried derivatives hold at a fixed arclength all along the trajectory, not at the base alone.
         let arrival = Arrival {
             contact: trajectory.start(),
             taper: rod.taper,

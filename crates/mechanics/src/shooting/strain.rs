@@ -39,7 +39,7 @@ impl<T: Lanes> StepObserver<T> for StepNodes<T> {
 }
 
 impl<T: Lanes> StepNodes<T> {
-    /// Returns the numbers of the points, `[point]`, each with those of all lanes.
+    /// Returns the numbers of the points, `[point]`, each in all lanes.
     #[inline(always)]
     pub(super) fn unpacked(&self) -> Vec<NodeNumbers<LaneNumbers>> {
         let mut unpacked = Vec::with_capacity(self.0.len());
@@ -151,7 +151,7 @@ struct Lever {
 }
 
 impl Lever {
-    /// The lever between two nodes, the first one nearer to the base. `curvature` is that of the whisker at a node.
+    /// The lever between two nodes, the first one nearer to the base. `curvature` gives the whisker's curvature at a node.
     fn new([from, to]: [&StrainNode; 2], curvature: impl Fn(&StrainNode) -> f64) -> Self {
         let width = to.arclength - from.arclength;
         // Lever and its derivatives, by the part of the interval.

@@ -1,8 +1,8 @@
 //! Points and tangents of a curve at rest as Taylor series, for many evaluations of one curve.
 //!
-//! The curve is cut into equal panels. Along each of them the tangent is a series of the place `x` on `[-1, 1]`. With the curvature
-//! `kappa`, the tangent `t` turns by `dt/dx = h kappa perp(t)`, where `h` is half the length of a panel: this gives each term from those
-//! before it. The panels are halved until the last two terms of each are below rounding.
+//! The curve is cut into equal panels. Along each panel the tangent is a series of the place `x` on `[-1, 1]`. With the curvature
+//! `kappa`, the tangent `t` turns by `dt/dx = h kappa perp(t)`, where `h` is half the length of a panel: this gives each term from the
+//! terms before. The panels are halved until the last two terms of each panel are below rounding.
 
 use crate::rod::CURVATURE_TERMS;
 use glam::DVec2;

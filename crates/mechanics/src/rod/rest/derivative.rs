@@ -24,7 +24,7 @@ impl Rest {
         by_distance: f64,
         by: &RodDerivative,
     ) -> (DVec2, DVec2, CurveDerivative) {
-        let (point, tangent, curvature, own) = match &self.form {
+        let (point, tangent, curvature, curve_derivative) = match &self.form {
             Form::Parabola(parabola) => {
                 let x = parabola.x_of_chord(distance);
                 let (point, tangent) = parabola.at(x);
@@ -37,10 +37,11 @@ impl Rest {
                 (point, tangent, curve.curvature(s), curve.derivative(s, by))
             }
         };
-        let along = (distance * by_distance - point.dot(own.point)) / point.dot(tangent);
+        let along =
+            (distance * by_distance - point.dot(curve_derivative.point)) / point.dot(tangent);
         let total = CurveDerivative {
-            point: own.point + along * tangent,
-            angle: own.angle + along * curvature,
+            point: curve_derivative.point + along * tangent,
+            angle: curve_derivative.angle + along * curvature,
         };
         (point, tangent, total)
     }
@@ -56,10 +57,11 @@ impl Rest {
     /// the rod by `by` and the distance by `by_distance`; `phi` in radians. The distance lies on the whisker, not beyond its tip.
     #[must_use]
     pub fn touch_derivative(&self, distance: f64, by_distance: f64, by: &RodDerivative) -> DVec2 {
-        let (point, tangent, own) = self.derivative_at(distance, by_distance, by);
+        let (point, tangent, curve_derivative) = self.derivative_at(distance, by_distance, by);
         let normal = tangent.perp();
         let pole = point - self.pole * normal;
-        let moved = own.point - by.pole * normal + self.pole * own.angle * tangent;
+        let moved = curve_derivative.point - by.pole * normal
+            + self.pole * curve_derivative.angle * tangent;
         DVec2::new(pole.dot(moved), pole.perp_dot(moved)) / pole.length_squared()
     }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// Properties that all trajectories of a block have in common.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlockKey {
-    /// Effects of the block's kernel: those of the method and of the rod. A profile counts only if it is the rod's own. Where a
+    /// Effects of the block's kernel: the effects of the method and of the rod. A profile counts only if it is the rod's own. Where a
     /// straight rod needs all derivatives, [`Effects::reaching`] adds `gradient`.
     pub effects: Effects,
     /// Address of the profile; 0 without one.

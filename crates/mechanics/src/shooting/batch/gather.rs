@@ -50,7 +50,7 @@ pub struct Contacts<'a, T> {
 
 /// A material that can be gathered from the rods of a block, with the integration along it.
 pub trait GatherMaterial<T: Lanes> {
-    /// Returns the bending stiffness at the contacts over the stiffness at the base. `radius` and `s` are those of the contacts.
+    /// Returns the bending stiffness at the contacts over the stiffness at the base. `radius` and `s` are the radius and arclength at the contacts.
     fn stiffness(conditions: &Conditions, radius: T, s: T) -> T;
 
     /// Returns the state of the trajectories at the base, from their `state` at the `contacts`. `ADVANCES` is true for rods that change
@@ -201,8 +201,8 @@ impl<T: Lanes> Gather<T> for Polynomial<T> {
     #[inline(always)]
     fn gather(conditions: &Conditions, s: T) -> (Self, (), [T; 2]) {
         let mut centred = [T::of(0.0); CURVATURE_TERMS];
-        for (power, own) in centred.iter_mut().enumerate() {
-            *own = lanes(conditions, |condition| match &condition.rod.polynomial {
+        for (power, coefficient) in centred.iter_mut().enumerate() {
+            *coefficient = lanes(conditions, |condition| match &condition.rod.polynomial {
                 Some(polynomial) => polynomial.centred()[power],
                 None if FEW_KERNELS => spiral_power(condition.rod, power),
                 None => 0.0,

@@ -1,6 +1,6 @@
 //! Batches of thousands of trajectories in `f64`, in lanes of the widest SIMD unit of the machine, on all cores.
 //!
-//! The generic integrator is inlined into functions compiled for every [`Unit`]; the processor decides which of them run.
+//! The generic integrator is inlined into functions compiled for every [`Unit`]; the processor decides which functions run.
 //! Results do not depend on the number of threads: the conditions of a block do not depend on it.
 
 mod block;
@@ -41,7 +41,7 @@ pub struct InitialCondition<'a> {
 pub struct Method {
     /// Resolution of the method: it determines the integration steps.
     pub resolution: Resolution,
-    /// Effects that every kernel has beside those of the rod.
+    /// Effects that every kernel has beside the effects of the rod.
     pub effects: Effects,
 }
 
@@ -140,7 +140,7 @@ impl Batch {
     }
 
     /// Returns the batch integrator with padded blocks: trajectories with different numbers of steps share a block, and all take the
-    /// largest number. An output depends on the whole batch by less than its error. Padding pays for small batches, such as those of a
+    /// largest number. An output depends on the whole batch by less than its error. Padding pays for small batches, such as the batches of a
     /// sheet.
     #[must_use]
     pub const fn padded(self) -> Self {

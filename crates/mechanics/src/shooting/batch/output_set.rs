@@ -230,7 +230,7 @@ impl OutputSet for PeakStrain {
         let mut peaks = [Self::default(); WIDTH];
         for (lane, peak) in peaks[..T::LANES].iter_mut().enumerate() {
             let InitialCondition { rod, tau, load } = conditions[lane];
-            let nodes = nodes.iter().map(|numbers| numbers.map(|own| own[lane]));
+            let nodes = nodes.iter().map(|numbers| numbers.map(|lanes| lanes[lane]));
             *peak = Self::along(rod, *tau, *load, nodes);
         }
         peaks

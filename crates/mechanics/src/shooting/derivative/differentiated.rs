@@ -54,15 +54,15 @@ fn transposed(values: &[f64; 12], columns: &[[f64; WIDTH]; 12]) -> Differentiate
     };
     let mut derivatives = [VariationDerivative::default(); WIDTH];
     for (lane, derivative) in derivatives.iter_mut().enumerate() {
-        let own = columns.map(|column| column[lane]);
-        let [turned, moved, pole, by_tau, by_load] = pairs(&own);
+        let lane_values = columns.map(|column| column[lane]);
+        let [turned, moved, pole, by_tau, by_load] = pairs(&lane_values);
         let centre = full.map.pole;
         *derivative = VariationDerivative {
             state: StateDerivative {
                 angle: tangent.perp_dot(turned),
                 position: moved,
-                force: own[4],
-                energy: own[5],
+                force: lane_values[4],
+                energy: lane_values[5],
             },
             ln_pole: DVec2::new(centre.dot(pole), centre.perp_dot(pole)) / centre.length_squared(),
             by_tau,

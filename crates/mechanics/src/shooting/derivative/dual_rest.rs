@@ -45,8 +45,8 @@ impl<T: Lanes> DualRest<T> for Polynomial<Dual<T>> {
     fn start(varied: &VariedCondition, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]) {
         let mut centred = [Dual::of(0.0); CURVATURE_TERMS];
         if let Some(polynomial) = &varied.condition.rod.polynomial {
-            for (own, value) in centred.iter_mut().zip(polynomial.centred()) {
-                *own = Dual::of(*value);
+            for (coefficient, value) in centred.iter_mut().zip(polynomial.centred()) {
+                *coefficient = Dual::of(*value);
             }
         } else if FEW_KERNELS {
             let (Spiral { at_base, slope }, ..) = Spiral::start(varied, s);

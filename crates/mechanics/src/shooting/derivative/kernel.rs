@@ -19,7 +19,7 @@ use crate::shooting::{
 };
 use std::marker::PhantomData;
 
-/// Derivatives that a trajectory carries, each of them a dual number.
+/// Derivatives that a trajectory carries, each a dual number.
 type Carried = Energetic<GeneralFirst>;
 
 /// Differentiates the trajectory from `condition` by `variables`, at most as many as there are lanes. Returns its state, and the derivatives of the

@@ -1,7 +1,7 @@
 //! Derivatives of states by the numbers of the rod: trajectories in [`Dual`] numbers, one variable in each lane.
 //!
 //! The integrator of the batches runs once, from the contact of a known state, with the steps that this state takes. It differentiates the
-//! discrete map exactly. The derivatives that it carries by contact and load are differentiated as well, so that second derivatives of
+//! discrete map exactly. The derivatives that it carries by contact and load are differentiated, too, so that second derivatives of
 //! the shooting map follow.
 
 mod differentiated;

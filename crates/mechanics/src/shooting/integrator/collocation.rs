@@ -4,7 +4,7 @@
 //! steps along each piece. But the levers `X` are smooth: they change by the cosine of an angle that bending turns a little
 //! within a step. The levers are therefore polynomials through Gauss-Legendre nodes, and the rotation `dtheta/da = f X/S` is
 //! their integral with the weight `r^-4`. The smooth modulus divides the levers at the nodes. Derivatives by a parameter have
-//! equations of this form as well.
+//! equations of the same form.
 //!
 //! Levers turn angles, and angles move levers. The iteration between them converges fast, because bending within a step moves a
 //! lever by a small part of itself.

@@ -40,9 +40,9 @@ pub struct StepStage<T> {
     pub along: T,
     /// Radius at the stage over the radius at the start of the step, `exp(taper sigma)`.
     pub grown: T,
-    /// Inverse cube of the radius at the stage, over that at the start of the step: `exp(-3 taper sigma)`.
+    /// Inverse cube of the radius at the stage, over the one at the start of the step: `exp(-3 taper sigma)`.
     pub inverse_cube: T,
-    /// Inverse square root of the radius at the stage, over that at the start of the step: `exp(-taper sigma/2)`.
+    /// Inverse square root of the radius at the stage, over the one at the start of the step: `exp(-taper sigma/2)`.
     pub shrunk: T,
 }
 

@@ -15,8 +15,8 @@ use crate::shooting::{Carried, Sensitivity};
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralFirst;
 
-/// Set of the first and second derivatives on any rod. Beside those of [`GeneralFirst`], a trajectory carries the second derivatives of `theta` and
-/// `X` by force and arclength, and of `Y` by force.
+/// Set of the first and second derivatives on any rod. Beside the derivatives of [`GeneralFirst`], a trajectory carries the second derivatives of
+/// `theta` and `X` by force and arclength, and of `Y` by force.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralSecond;
 
@@ -35,7 +35,7 @@ impl<T: Real> Sensitivity<T> for GeneralFirst {
     }
 }
 
-/// Derivatives by load and `tau` from those by force and arclength.
+/// Derivatives by load and `tau`, from the derivatives by force and arclength.
 #[inline(always)]
 fn base_derivatives<T: Real>(
     arrival: &Arrival<T>,
