@@ -269,6 +269,8 @@ struct FrameProblem<'a> {
     frame: &'a FramePoints,
     /// Range of the arclength of the contact; `None` for a whisker at rest.
     contacts: Option<[f64; 2]>,
+    /// True if the pole's centre is on the normal of the contact.
+    is_at_pole: bool,
     cancel: &'a AtomicBool,
 }
 
@@ -305,7 +307,7 @@ impl FrameProblem<'_> {
         });
         let base = &feet.points[0];
         let first = (points[0] - base.position).dot(base.tangent);
-        let contact = feet.contact.as_ref();
+        let contact = feet.contact.as_ref().filter(|_| self.is_at_pole);
         let pole = contact.map(|(own, _)| (self.frame.pole - own.position).dot(own.tangent));
         across.chain([first]).chain(pole).collect()
     }
@@ -313,7 +315,7 @@ impl FrameProblem<'_> {
 
 impl BoundedProblem for FrameProblem<'_> {
     fn count(&self) -> usize {
-        self.frame.points.len() + 1 + usize::from(self.contacts.is_some())
+        self.frame.points.len() + 1 + usize::from(self.is_at_pole)
     }
 
     fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
@@ -355,7 +357,7 @@ impl BoundedProblem for FrameProblem<'_> {
             across(base, self.frame.points[0]),
             [0.0; 2],
         );
-        if let Some((own, angle_by)) = &feet.contact {
+        if let Some((own, angle_by)) = feet.contact.as_ref().filter(|_| self.is_at_pole) {
             push(own.tangent, own, across(own, self.frame.pole), *angle_by);
         }
         Some(columns)
@@ -372,7 +374,18 @@ impl BoundedProblem for FrameProblem<'_> {
     }
 }
 
-/// Fits a curve to a frame: in contact near the arclength `contact`, or at rest. The angle of the base, in radians, is a guess.
+/// Load of a whisker to which a curve is fitted, with a guess of its arclength in lengths of the whisker.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum FittedLoad {
+    /// No load: the whisker is at rest.
+    Rest,
+    /// Load at the pole, which is near this arclength.
+    Pole(f64),
+    /// Load at this arclength, without a pole.
+    Place(f64),
+}
+
+/// Fits a curve to a frame with this load. The angle of the base, in radians, is a guess.
 ///
 /// # Errors
 /// The reason why the iteration ends before it converges.
@@ -380,10 +393,13 @@ pub(super) fn fit(
     whisker: &TrackedRod,
     frame: &FramePoints,
     angle: f64,
-    contact: Option<f64>,
+    load: FittedLoad,
     cancel: &AtomicBool,
 ) -> Result<FrameFit, &'static str> {
-    let contact = contact.map(|own| own.clamp(CONTACTS[0], CONTACTS[1]));
+    let contact = match load {
+        FittedLoad::Rest => None,
+        FittedLoad::Pole(s) | FittedLoad::Place(s) => Some(s.clamp(CONTACTS[0], CONTACTS[1])),
+    };
     let start = BentPose {
         base: frame.points[0],
         angle,
@@ -392,16 +408,16 @@ pub(super) fn fit(
     let mut problem = FrameProblem {
         whisker,
         frame,
-        contacts: None,
+        contacts: contact.map(|own| [own; 2]),
+        is_at_pole: matches!(load, FittedLoad::Pole(_)),
         cancel,
     };
     let mut x = start.unknowns();
     let found = |problem: &FrameProblem, x: &[f64], tolerance: f64| {
         search(problem, x, tolerance, "it is cancelled").map(|(x, _)| x)
     };
-    if let Some(contact) = contact {
+    if let (FittedLoad::Pole(_), Some(contact)) = (load, contact) {
         // Far from the minimum, a contact that moves may leave the pole.
-        problem.contacts = Some([contact; 2]);
         x = found(&problem, &x, COARSE)?;
         let near = [contact - NEAR, contact + NEAR];
         problem.contacts = Some(near.map(|own| own.clamp(CONTACTS[0], CONTACTS[1])));

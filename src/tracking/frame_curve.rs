@@ -40,7 +40,10 @@ pub(super) struct NearestPlace {
 #[derive(Clone, Debug)]
 enum CurveForm {
     /// Curves of polynomial curvature: near the base, where a low degree is enough, and of the whole whisker.
-    Polynomials { near: PlaneCurve, whole: PlaneCurve },
+    Polynomials {
+        near: Arc<PlaneCurve>,
+        whole: Arc<PlaneCurve>,
+    },
     /// Rod between base and contact, and its rest shape beyond.
     Bent {
         whisker: Arc<TrackedRod>,
@@ -53,6 +56,8 @@ enum CurveForm {
 #[derive(Clone, Debug)]
 pub(super) struct FrameCurve {
     form: CurveForm,
+    /// Rod that gives the curvature of a whisker at rest, as of one with a load.
+    loaded: Option<(Arc<TrackedRod>, BentPose)>,
     /// True if the y axis of the form has the other sign.
     is_mirrored: bool,
     /// Length of the traced whisker, in mm.
@@ -105,34 +110,36 @@ impl PlaneCurve {
 impl FrameCurve {
     /// Creates the curve of the arc from `base` with this length, both in mm, and this curvature over the length.
     pub fn arc(base: DVec2, angle: f64, curvature: CurvaturePolynomial, length_mm: f64) -> Self {
-        let arc = PlaneCurve {
+        let arc = Arc::new(PlaneCurve {
             base,
             angle,
             curvature,
             length_mm,
-        };
-        Self::polynomials(arc.clone(), arc, length_mm, None)
+        });
+        Self::polynomials(Arc::clone(&arc), arc, length_mm, None)
     }
 
     /// Creates the curve of two polynomials: of the points near the base, and of all points.
     pub fn traced(near: &TracedShape, whole: &TracedShape) -> Self {
-        let curves = [near, whole].map(PlaneCurve::of);
-        let [near, fitted] = curves;
+        let [near, fitted] = [near, whole].map(|own| Arc::new(PlaneCurve::of(own)));
         Self::polynomials(near, fitted, whole.length_mm, Some(whole.rms_mm))
     }
 
-    /// Creates the curve of a rod that was fitted to a frame.
-    pub fn rod(whisker: &Arc<TrackedRod>, found: &FrameFit) -> Self {
+    /// Creates the curve of a rod that was fitted to a frame. `loaded` gives the curvature of a whisker at rest.
+    pub fn rod(whisker: &Arc<TrackedRod>, found: &FrameFit, loaded: Option<&FrameFit>) -> Self {
         let (pose, scale) = (found.pose, whisker.length_mm);
         let (length_mm, rms_mm) = (scale * found.end, Some(scale * found.rms()));
         let Some(((at, angle), offset)) = pose.contact(whisker).zip(found.offset) else {
-            let rest = PlaneCurve {
+            let rest = Arc::new(PlaneCurve {
                 base: scale * pose.base,
                 angle: pose.angle,
                 curvature: whisker.curvature,
                 length_mm: scale,
+            });
+            return Self {
+                loaded: loaded.map(|own| (Arc::clone(whisker), own.pose)),
+                ..Self::polynomials(Arc::clone(&rest), rest, length_mm, rms_mm)
             };
-            return Self::polynomials(rest.clone(), rest, length_mm, rms_mm);
         };
         let contact = NearestPlace {
             at_mm: scale * at,
@@ -145,6 +152,7 @@ impl FrameCurve {
                 pose,
                 contact,
             },
+            loaded: None,
             is_mirrored: false,
             length_mm,
             rms_mm,
@@ -152,13 +160,14 @@ impl FrameCurve {
     }
 
     const fn polynomials(
-        near: PlaneCurve,
-        whole: PlaneCurve,
+        near: Arc<PlaneCurve>,
+        whole: Arc<PlaneCurve>,
         length_mm: f64,
         rms_mm: Option<f64>,
     ) -> Self {
         Self {
             form: CurveForm::Polynomials { near, whole },
+            loaded: None,
             is_mirrored: false,
             length_mm,
             rms_mm,
@@ -209,13 +218,16 @@ impl FrameCurve {
 
     /// Returns the curvature at the arclength `s_mm`, in 1/mm.
     pub fn curvature_per_mm(&self, s_mm: f64) -> f64 {
-        self.signed(match &self.form {
-            CurveForm::Polynomials { near, .. } => {
-                near.curvature.at(s_mm / near.length_mm) / near.length_mm
+        let of_rod = |whisker: &TrackedRod, pose: &BentPose| {
+            let (_, curvature) = pose.at(whisker, s_mm / whisker.length_mm);
+            curvature / whisker.length_mm
+        };
+        self.signed(match (&self.form, &self.loaded) {
+            (CurveForm::Bent { whisker, pose, .. }, _) | (_, Some((whisker, pose))) => {
+                of_rod(whisker, pose)
             }
-            CurveForm::Bent { whisker, pose, .. } => {
-                let (_, curvature) = pose.at(whisker, s_mm / whisker.length_mm);
-                curvature / whisker.length_mm
+            (CurveForm::Polynomials { near, .. }, None) => {
+                near.curvature.at(s_mm / near.length_mm) / near.length_mm
             }
         })
     }

@@ -3,7 +3,7 @@
 //! The shape at rest is that of frames in which the pole is far from the whisker. The taper follows from frames in contact: a loaded whisker
 //! bends most where it is thin. With both known, few points determine a frame.
 
-use super::bent::{FrameFit, FramePoints, TrackedRod, fit};
+use super::bent::{FittedLoad, FrameFit, FramePoints, TrackedRod, fit};
 use super::curve::{MORE_POINTS, points_mm};
 use super::frame_curve::FrameCurve;
 use super::options::TrackingOptions;
@@ -111,14 +111,19 @@ impl RodFrame {
         })
     }
 
+    /// Fits the curve with this load.
+    fn fit(&self, whisker: &TrackedRod, load: FittedLoad, cancel: &AtomicBool) -> Option<FrameFit> {
+        fit(whisker, &self.frame, self.angle, load, cancel).ok()
+    }
+
     /// Fits the shape at rest.
     fn at_rest(&self, whisker: &TrackedRod, cancel: &AtomicBool) -> Option<FrameFit> {
-        fit(whisker, &self.frame, self.angle, None, cancel).ok()
+        self.fit(whisker, FittedLoad::Rest, cancel)
     }
 
     /// Fits the shape in contact.
     fn bent(&self, whisker: &TrackedRod, cancel: &AtomicBool) -> Option<FrameFit> {
-        fit(whisker, &self.frame, self.angle, Some(self.contact), cancel).ok()
+        self.fit(whisker, FittedLoad::Pole(self.contact), cancel)
     }
 }
 
@@ -427,6 +432,14 @@ impl Film<'_> {
         frame.far <= self.within_mm / whisker.length_mm + BESIDE
     }
 
+    /// Returns the median place of the pole along the whisker, in lengths of it, in frames that may be in contact. A load there gives the
+    /// curvature of a whisker at rest, so that its scatter is that of measured loads.
+    fn usual_contact(&self, whisker: &TrackedRod, frames: &[Option<RodFrame>]) -> f64 {
+        let near = frames.iter().flatten();
+        let near = near.filter(|own| self.is_near(whisker, own));
+        median(near.map(|own| own.contact))
+    }
+
     /// Fits the rod to a frame: in contact if it is within the largest distance from the pole, or at rest.
     fn fit(&self, whisker: &TrackedRod, frame: Option<&RodFrame>) -> Result<FrameFit, NoFrame> {
         let within = self.within_mm / whisker.length_mm;
@@ -490,8 +503,15 @@ pub(super) fn curves(
         found.as_ref().ok().filter(|_| is_near)
     });
     notes.extend(compared(near, rest.rms_mm, rest.length_mm));
-    let curve = |own: Result<FrameFit, NoFrame>| own.map(|own| FrameCurve::rod(&whisker, &own));
-    Some(fits.into_iter().map(curve).collect())
+    let usual = film.usual_contact(&whisker, &frames);
+    let curve = |(frame, found): (&Option<RodFrame>, &Result<FrameFit, NoFrame>)| {
+        let found = found.as_ref().map_err(|why| *why)?;
+        let loaded = frame.as_ref().filter(|_| found.offset.is_none());
+        let loaded = loaded.and_then(|own| own.fit(&whisker, FittedLoad::Place(usual), cancel));
+        Ok(FrameCurve::rod(&whisker, found, loaded.as_ref()))
+    };
+    let pairs = frames.par_iter().zip(&fits);
+    Some(pairs.map(curve).collect())
 }
 
 /// Returns the indices of frames without contact, from all over the film: those that are farther than `beyond` from the pole, in lengths of the

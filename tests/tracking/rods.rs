@@ -213,6 +213,27 @@ fn few_points_with_errors_show_angles_forces_and_taper() {
     }
 }
 
+/// The scatter of the curvature without contact is that of its errors in contact, so that `force` has honest standard deviations.
+#[test]
+fn the_curvature_scatters_alike_with_and_without_contact() {
+    let (text, pole, _) = film(CONE, Side::Cb, 8, 0.2);
+    let (exact, _, _) = film(CONE, Side::Cb, 8, 0.0);
+    let curvatures = |text: &str| {
+        let found = parse(text, &at_pole(pole, &|own| own.taper = Some(0.95))).unwrap();
+        let rows = found.frames.into_iter();
+        rows.map(|row| (row.contact == Some(1), row.curvature_per_mm.unwrap()))
+    };
+    let pairs = curvatures(&text).zip(curvatures(&exact));
+    let scatter = |is_held: bool| {
+        let own = pairs
+            .clone()
+            .filter(|(row, exact)| row.0 == is_held && exact.0 == is_held);
+        rms(&own.map(|(row, exact)| row.1 - exact.1).collect::<Vec<_>>())
+    };
+    let ratio = scatter(true) / scatter(false);
+    assert!((0.5..2.0).contains(&ratio), "{ratio}");
+}
+
 /// A taper that is wrong by 0.3 leaves the points off the rod, and a note says so.
 #[test]
 fn points_off_the_rod_are_named() {
