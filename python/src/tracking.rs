@@ -29,6 +29,7 @@ pub struct Options {
     face_axis: Option<String>,
     pole: Option<Pole>,
     contact_within_mm: Option<f64>,
+    taper: Option<f64>,
     zero_s: Option<f64>,
 }
 
@@ -72,6 +73,7 @@ impl Options {
             Pole::At(at) => ImagePole::At(at),
         });
         options.contact_within_mm = self.contact_within_mm;
+        options.taper = self.taper;
         options.zero_s = self.zero_s;
         Ok(options)
     }

@@ -29,6 +29,13 @@ def test_frames_are_those_of_the_program_and_of_force(cone, tmp_path):
     assert "slip-off" in whisk.events.event.values
 
 
+def test_a_given_taper_is_that_of_the_rod():
+    found, given = (wm.read_tracking(FILM, **SCALE, **POLE, taper=taper) for taper in (None, 0.95))
+    assert any("the taper is 0.9" in note for note in found.notes)
+    assert not any("the taper is" in note for note in given.notes)
+    assert 1e-4 < abs(found.frames.angle_deg - given.frames.angle_deg).max() < 0.5
+
+
 def test_detachments_are_those_of_fit(cone):
     found = wm.read_tracking(str(FILM), **SCALE, **POLE).detachments
     assert found.side.values.tolist() == ["cb"] and abs(found.distance_mm.item() - 15.66) < 0.1
@@ -93,6 +100,8 @@ def test_bad_values_are_refused(tmp_path):
         ({"format": "csv"}, ValueError, "format = 'csv': must be one of 'deeplabcut', 'whisk', 'xy'"),
         ({"face_axis": "z"}, ValueError, "face_axis = 'z': must be 'x' or 'y'"),
         ({"pole": "pole"}, ValueError, "pole = pole: needs contact_within_mm"),
+        ({"taper": 0.9}, ValueError, "taper = 0.9: must be left out without a pole"),
+        ({**POLE, "taper": 2}, ValueError, "taper = 2: must be a number between 0 and 1"),
         ({"pole": [1]}, ValueError, "pole: must be x and y in pixels, has 1 numbers"),
         ({"points": "base"}, TypeError, "points = 'base': must be a list of names"),
         ({"whisker": 1.5}, TypeError, "whisker = 1.5: must be a whole number"),

@@ -78,6 +78,7 @@ def read_tracking(
     face_axis: Literal["x", "y"] | None = None,
     pole: str | Sequence[float] | None = None,
     contact_within_mm: float | None = None,
+    taper: float | None = None,
     zero_s: float | None = None,
 ) -> Tracking:
     """Read the file of a whisker tracker. Positions in it are in pixels, and the y axis of the image points downward.
@@ -105,9 +106,9 @@ def read_tracking(
         Arclength from the base at which the curvature is given; a quarter of the median length if left out.
     fit_to_mm : float, optional
         Distance from the base up to which points give base angle and curvature: 0.6 of the median length, or as far as 8 points reach, if left
-        out.
+        out. A distance selects polynomials, also with `pole`.
     degree : int, optional
-        Degree of the curvature of the curves through the points of a frame, 0 to 6; cross-validation chooses it if left out.
+        Degree of the curvature of the curves through the points of a frame, or with `pole` of the rod at rest, 0 to 6; chosen if left out.
     mirror : bool, optional
         Whether to mirror the image. If left out, it is mirrored if the whisker turns clockwise from base to tip.
     face_axis : {"x", "y"}, optional
@@ -116,6 +117,8 @@ def read_tracking(
         Centre of the pole in pixels, or the body part of DeepLabCut that is its centre.
     contact_within_mm : float, optional
         Largest distance of the whisker from the pole's centre in contact; needed with `pole`.
+    taper : float, optional
+        Taper of the traced whisker, ``1 - r_tip/r_base``, 0 to 1; found from frames in contact if left out. It needs `pole`.
     zero_s : float, optional
         Time of the frame in which the angle of the base is 0. If left out, it is first touch on CB, or else the first frame with a whisker.
 
@@ -151,6 +154,7 @@ def read_tracking(
         "face_axis": face_axis,
         "pole": pole if pole is None or isinstance(pole, str) else _pair("pole", pole),
         "contact_within_mm": None if contact_within_mm is None else number("contact_within_mm", contact_within_mm),
+        "taper": None if taper is None else number("taper", taper),
         "zero_s": None if zero_s is None else number("zero_s", zero_s),
     }
     film = TrackedFilm.parse([(_text(Path(path)), os.fspath(path)) for path in paths], options)

@@ -32,7 +32,7 @@ const FARTHEST_MM: f64 = 1e6;
 const LARGEST_FALL: f64 = 0.02;
 
 /// Largest root mean square of the points' distances, over the length: points beyond it are no whisker.
-const LARGEST_RMS: f64 = 0.02;
+pub(crate) const LARGEST_RMS: f64 = 0.02;
 
 /// Largest difference of coefficients that two machines may fit, in radians.
 const SAME_FIT: f64 = 1e-6;

@@ -1,17 +1,17 @@
 //! Curve of the whisker in each frame, in millimetres with the y axis upward.
 
+use super::frame_curve::FrameCurve;
 use super::options::{FaceAxis, TrackingError, TrackingOptions};
 use super::orient::median;
-use super::{CurvedFrame, ImageFrame, NoFrame};
+use super::{CurvedFrame, ImageFrame, NoFrame, rods};
 use crate::scene::{digits, rounded};
 use crate::traced::{MOST_DEGREE, TracedShape, common_degree};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial, Rest, Rod};
+use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial};
 
 /// Points more than the degree that a curve needs.
 pub(super) const MORE_POINTS: usize = 4;
@@ -28,148 +28,6 @@ const NEAR: f64 = 0.6;
 
 /// Angle by which a whisker turns from base to tip at least, in radians, to have a concave side.
 const STRAIGHT: f64 = 0.02;
-
-/// Number of places along a curve at which the nearest one to the pole is looked for first.
-const PLACES: u32 = 64;
-
-/// Most Newton steps to the place that is nearest to the pole.
-const MOST_STEPS: usize = 20;
-
-/// Curve in the plane of the image.
-#[derive(Clone, Debug)]
-struct PlaneCurve {
-    /// Position of the base, in mm.
-    base: DVec2,
-    /// Angle of the tangent at the base, in radians, counterclockwise from the x axis.
-    angle: f64,
-    /// Curvature over the length.
-    curvature: CurvaturePolynomial,
-    /// Length of the curve, in mm.
-    length_mm: f64,
-}
-
-/// Curves of a whisker in one frame: near its base, where a low degree of the curvature is enough, and of the whole whisker, which bends more
-/// where it is thin.
-#[derive(Clone, Debug)]
-pub(super) struct FrameCurve {
-    near: PlaneCurve,
-    whole: PlaneCurve,
-    /// Root mean square of the points' distances from the curve of the whole whisker, in mm; `None` without points.
-    pub rms_mm: Option<f64>,
-}
-
-/// Place on a curve that is nearest to the pole's centre.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct NearestPlace {
-    /// Position in the frame of the base, in mm.
-    pub at_mm: DVec2,
-    /// Angle of the tangent there from the base's, in radians.
-    pub angle: f64,
-    /// Distance of the pole's centre from the whisker, in mm, positive on its left.
-    pub offset_mm: f64,
-}
-
-impl PlaneCurve {
-    fn of(fit: &TracedShape) -> Self {
-        Self {
-            base: fit.base_mm.into(),
-            angle: fit.base_angle,
-            curvature: fit.curvature,
-            length_mm: fit.length_mm,
-        }
-    }
-
-    fn rest(&self) -> Rest {
-        Rest::new(&Rod {
-            polynomial: Some(Arc::new(self.curvature)),
-            ..Rod::default()
-        })
-    }
-
-    /// Returns the place that is nearest to a point in mm, in lengths of the curve, and the signed distance of the point in mm, positive on
-    /// the left; by Newton's method from the nearest of some places.
-    fn nearest(&self, rest: &Rest, point_mm: DVec2) -> (f64, f64) {
-        let point = DVec2::from_angle(-self.angle).rotate(point_mm - self.base) / self.length_mm;
-        let far = |s: f64| rest.at_arclength(s).0.distance_squared(point);
-        let places = (0..=PLACES).map(|i| f64::from(i) / f64::from(PLACES));
-        let first = places.min_by(|one, other| far(*one).total_cmp(&far(*other)));
-        let mut s = first.unwrap_or_default();
-        for _ in 0..MOST_STEPS {
-            let (own, tangent) = rest.at_arclength(s);
-            let slowed = 1.0 - (point - own).dot(tangent.perp()) * self.curvature.at(s);
-            let next = (s + (point - own).dot(tangent) / slowed.max(0.1)).clamp(0.0, 1.0);
-            let step = (next - s).abs();
-            s = next;
-            if step < 4.0 * f64::EPSILON {
-                break;
-            }
-        }
-        let (own, tangent) = rest.at_arclength(s);
-        let side = tangent.perp_dot(point - own).signum();
-        (s, side * own.distance(point) * self.length_mm)
-    }
-
-    /// Returns the curve with the other sign of the y axis.
-    fn mirrored(self) -> Self {
-        Self {
-            base: DVec2::new(self.base.x, -self.base.y),
-            angle: -self.angle,
-            curvature: CurvaturePolynomial::new(self.curvature.legendre().map(|own| -own)),
-            ..self
-        }
-    }
-}
-
-impl FrameCurve {
-    /// Returns the angle of the tangent at the base, in radians, counterclockwise from the x axis.
-    pub const fn angle(&self) -> f64 {
-        self.near.angle
-    }
-
-    /// Returns the length of the whisker, in mm.
-    pub const fn length_mm(&self) -> f64 {
-        self.whole.length_mm
-    }
-
-    /// Returns the length of the part whose curvature is known best, in mm.
-    pub const fn near_mm(&self) -> f64 {
-        self.near.length_mm
-    }
-
-    /// Returns the curvature at the arclength `s_mm`, in 1/mm.
-    pub fn curvature_per_mm(&self, s_mm: f64) -> f64 {
-        let near = &self.near;
-        near.curvature.at(s_mm / near.length_mm) / near.length_mm
-    }
-
-    /// Returns the position at the arclength `s_mm` in the frame of the base, in mm.
-    pub fn position_mm(&self, s_mm: f64) -> DVec2 {
-        let near = &self.near;
-        near.rest().at_arclength(s_mm / near.length_mm).0 * near.length_mm
-    }
-
-    /// Returns the place of the whole whisker that is nearest to the pole's centre.
-    pub fn nearest(&self, pole_mm: [f64; 2]) -> NearestPlace {
-        let Self { near, whole, .. } = self;
-        let rest = whole.rest();
-        let (s, offset_mm) = whole.nearest(&rest, pole_mm.into());
-        let own = rest.at_arclength(s).0 * whole.length_mm;
-        let at = whole.base + DVec2::from_angle(whole.angle).rotate(own);
-        NearestPlace {
-            at_mm: DVec2::from_angle(-near.angle).rotate(at - near.base),
-            angle: whole.angle + whole.curvature.angle(s) - near.angle,
-            offset_mm,
-        }
-    }
-
-    fn mirrored(self) -> Self {
-        Self {
-            near: self.near.mirrored(),
-            whole: self.whole.mirrored(),
-            ..self
-        }
-    }
-}
 
 /// Frames with what their curves need.
 pub(super) struct Curves<'a> {
@@ -210,13 +68,10 @@ impl<'a> Curves<'a> {
                 let must = "must be left out: only measurements of whisk have angles".to_owned();
                 return Err(super::refused("face_axis", axis, must));
             }
-            traced_frames(frames, options, cancel, notes)
+            rods::curves(frames, options, cancel, notes)
+                .unwrap_or_else(|| traced_frames(frames, options, cancel, notes))
         };
-        let turns = curves
-            .iter()
-            .flatten()
-            .map(|own: &FrameCurve| own.whole.curvature.angle(1.0));
-        let turn = median(turns);
+        let turn = median(curves.iter().flatten().map(FrameCurve::turn));
         let is_mirrored = options.mirror.unwrap_or(turn < -STRAIGHT);
         if is_mirrored && options.mirror.is_none() {
             let degrees = -turn.to_degrees();
@@ -272,7 +127,7 @@ impl<'a> Curves<'a> {
 }
 
 /// Points of a frame in mm with the y axis upward, from the base on; `None` if the base is lost.
-fn points_mm(frame: &ImageFrame, scale: f64) -> Option<Vec<[f64; 2]>> {
+pub(super) fn points_mm(frame: &ImageFrame, scale: f64) -> Option<Vec<[f64; 2]>> {
     (*frame.points_px.first()?)?;
     let points = frame.points_px.iter().flatten();
     Some(points.map(|[x, y]| [scale * x, -scale * y]).collect())
@@ -318,7 +173,7 @@ fn traced_frames(
     let points_each = median(known().map(|own| own.len() as f64));
     if points_each < ENOUGH_POINTS {
         notes.push(format!(
-            "{points_each} points along the whisker are few: angles and curvatures of a bent whisker may be far off; {ENOUGH_POINTS} or more are enough"
+            "{points_each} points along the whisker are few: angles and curvatures of a bent whisker may be far off; {ENOUGH_POINTS} or more are enough, or 5 with --pole"
         ));
     }
     let mut degree_of = |shapes: Vec<Vec<[f64; 2]>>, what: &str| {
@@ -343,11 +198,7 @@ fn traced_frames(
         };
         let near = fit(near(whole), near_degree)?;
         let whole = fit(whole.clone(), whole_degree)?;
-        Ok(FrameCurve {
-            near: PlaneCurve::of(&near),
-            whole: PlaneCurve::of(&whole),
-            rms_mm: Some(whole.rms_mm),
-        })
+        Ok(FrameCurve::traced(&near, &whole))
     };
     points.par_iter().map(frame).collect()
 }
@@ -437,15 +288,10 @@ fn arc(frame: &ImageFrame, axis: FaceAxis, scale: f64) -> Result<FrameCurve, NoF
     };
     let mut legendre = [0.0; CURVATURE_TERMS];
     legendre[0] = -2.0 * half;
-    let arc = PlaneCurve {
-        base: scale * DVec2::new(follicle.x, -follicle.y),
-        angle: -from_x(angle, axis),
-        curvature: CurvaturePolynomial::new(legendre),
-        length_mm: scale * length,
-    };
-    Ok(FrameCurve {
-        near: arc.clone(),
-        whole: arc,
-        rms_mm: None,
-    })
+    Ok(FrameCurve::arc(
+        scale * DVec2::new(follicle.x, -follicle.y),
+        -from_x(angle, axis),
+        CurvaturePolynomial::new(legendre),
+        scale * length,
+    ))
 }

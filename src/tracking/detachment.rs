@@ -1,7 +1,7 @@
 //! Detachments between frames, for `fit`.
 
 use super::TrackedFrame;
-use super::curve::NearestPlace;
+use super::frame_curve::NearestPlace;
 use crate::trace::row;
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;

@@ -129,6 +129,13 @@ fn refuse_points(options: &TrackingOptions) -> Result<(), TrackingError> {
             must("they have no points"),
         ));
     }
+    if let Some(taper) = options.taper {
+        return Err(refused(
+            "taper",
+            &taper.to_string(),
+            must("they have no points"),
+        ));
+    }
     if let Some([x, y]) = options.follicle_px {
         return Err(refused(
             "follicle_px",

@@ -4,13 +4,16 @@
 //! `points`). Then the end at the base is found (`orient`), each frame gets its curve in millimetres (`curve`), and the curves give rows for
 //! `whisk` and `force` (`rows`) and points for `fit` (`detachment`).
 
+mod bent;
 mod curve;
 mod deeplabcut;
 mod detachment;
+mod frame_curve;
 mod measurements;
 mod options;
 mod orient;
 mod points;
+mod rods;
 mod rows;
 
 pub use detachment::TrackedDetachment;
@@ -19,7 +22,7 @@ pub use rows::{NoFrame, TrackedFrame};
 
 use crate::input::{CsvError, CsvLines, read_bytes, text_of};
 use crate::trace::row;
-use curve::FrameCurve;
+use frame_curve::FrameCurve;
 use options::refused;
 use serde::Serialize;
 use std::path::Path;

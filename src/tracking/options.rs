@@ -91,9 +91,9 @@ pub struct TrackingOptions {
     /// Arclength from the base at which the curvature is given, in mm; `None` for a quarter of the median length.
     pub curvature_at_mm: Option<f64>,
     /// Distance from the base up to which points give base angle and curvature, in mm; `None` for 0.6 of the median length, or as far as 8
-    /// points reach.
+    /// points reach. A distance selects polynomials, also with a pole.
     pub fit_to_mm: Option<f64>,
-    /// Degree of the curvature of each frame's curves; `None` to choose it.
+    /// Degree of the curvature of each frame's curves, or of the rod at rest; `None` to choose it.
     pub degree: Option<usize>,
     /// True to mirror the image, false to leave it; `None` to mirror it if the whisker turns clockwise from base to tip.
     pub mirror: Option<bool>,
@@ -103,6 +103,8 @@ pub struct TrackingOptions {
     pub pole: Option<ImagePole>,
     /// Largest distance of the whisker from the pole's centre in contact, in mm. It is needed with a pole.
     pub contact_within_mm: Option<f64>,
+    /// Taper of the traced whisker, `1 - r_tip/r_base`, from 0 to 1; `None` to find it from frames in contact.
+    pub taper: Option<f64>,
     /// Time of the frame in which the angle of the base is 0, in s; `None` for first touch on CB, or else the first frame with a whisker.
     pub zero_s: Option<f64>,
 }
@@ -126,6 +128,7 @@ impl TrackingOptions {
             face_axis: None,
             pole: None,
             contact_within_mm: None,
+            taper: None,
             zero_s: None,
         }
     }
@@ -152,6 +155,20 @@ impl TrackingOptions {
         if let Some(degree) = self.degree.filter(|degree| *degree > MOST_DEGREE) {
             let must = format!("must be between 0 and {MOST_DEGREE}");
             return Err(refused("degree", &degree.to_string(), must));
+        }
+        if let Some(taper) = self.taper {
+            let must = if !(0.0..=1.0).contains(&taper) {
+                Some("must be a number between 0 and 1")
+            } else if self.pole.is_none() {
+                Some("must be left out without a pole")
+            } else if self.fit_to_mm.is_some() {
+                Some("must be left out with fit_to_mm, which selects polynomials")
+            } else {
+                None
+            };
+            if let Some(must) = must {
+                return Err(refused("taper", &digits(taper), must.to_owned()));
+            }
         }
         match (&self.pole, self.contact_within_mm) {
             (Some(pole), None) => {

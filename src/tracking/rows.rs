@@ -1,7 +1,7 @@
 //! Rows of frames, for `whisk` and `force`.
 
 use super::CurvedFrame;
-use super::curve::{FrameCurve, NearestPlace};
+use super::frame_curve::{FrameCurve, NearestPlace};
 use super::options::{TrackingError, TrackingOptions, refused};
 use super::orient::median;
 use crate::scene::{digits, rounded};
@@ -65,14 +65,14 @@ pub(super) fn frames(
     notes: &mut Vec<String>,
 ) -> Result<(Vec<TrackedFrame>, Vec<Option<NearestPlace>>), TrackingError> {
     let known = || curves.iter().filter_map(|own| own.curve.as_ref().ok());
-    let length_mm = median(known().map(|own| own.length_mm()));
+    let length_mm = median(known().map(|own| own.length_mm));
     let near_mm = median(known().map(FrameCurve::near_mm));
     let is_mean = known().any(|own| own.rms_mm.is_none());
     let at_mm = match options.curvature_at_mm {
         Some(mm) if (0.0..=near_mm).contains(&mm) => Some(mm),
         Some(mm) => {
             let must = format!(
-                "must be between 0 and {}, the median length in mm of the part that is fitted near the base (fit_to_mm)",
+                "must be between 0 and {}, the median length in mm of the part whose curvature is known",
                 digits(rounded(near_mm, 4))
             );
             return Err(refused("curvature_at_mm", &digits(mm), must));
@@ -111,7 +111,7 @@ pub(super) fn frames(
     }
     let row = |((own, place), angle): ((&CurvedFrame, &Option<NearestPlace>), &Option<f64>)| {
         let curve = own.curve.as_ref().ok();
-        let at = curve.map(|curve| at_mm.unwrap_or(0.5 * curve.length_mm()));
+        let at = curve.map(|curve| at_mm.unwrap_or(0.5 * curve.length_mm));
         let at = at.filter(|at| curve.is_some_and(|curve| *at <= curve.near_mm()));
         let position = curve.zip(at).map(|(curve, at)| curve.position_mm(at));
         let is_near = place.map(|place| place.offset_mm.abs() <= within);
@@ -128,7 +128,7 @@ pub(super) fn frames(
             contact_x_mm: contact.map(|own| own.at_mm.x),
             contact_y_mm: contact.map(|own| own.at_mm.y),
             contact_angle_deg: contact.map(|own| own.angle.to_degrees()),
-            length_mm: curve.map(|own| own.length_mm()),
+            length_mm: curve.map(|own| own.length_mm),
             rms_mm: curve.and_then(|own| own.rms_mm),
             reason: own.curve.as_ref().err().copied(),
         }

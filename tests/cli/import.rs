@@ -40,7 +40,8 @@ fn frames_are_those_that_force_and_whisk_read() {
     assert_eq!((run.code, &*run.out), (Some(0), "frames.csv\n"), "{run:?}");
     for note in [
         "note: base at ",
-        "note: curves near the base, up to 12 mm from it, have a curvature of degree 1, chosen by cross-validation in 40 frames",
+        "note: curves are those of a rod: at rest, its curvature has the degree ",
+        "note: the taper is 0.9",
         "note: angles of the base are 0 in frame ",
         "of 56 frames are gaps: 3 without base or enough points (missing), 0 along no smooth curve",
         "of 56 frames are in contact",

@@ -66,7 +66,7 @@ fn a_push_until_slip_off_comes_back() {
         let is_held = (0.0..15.6).contains(&push);
         assert_eq!(row.contact, Some(u8::from(is_held)), "{push} {row:?}");
         // 0 is in the frame of first touch, at 0.5 degrees.
-        assert_near(row.angle_deg, push - 0.5, 1e-2);
+        assert_near(row.angle_deg, push - 0.5, 1e-3);
         if is_held {
             let contact = shape(push).state;
             let at = [row.contact_x_mm, row.contact_y_mm].map(Option::unwrap);
@@ -77,9 +77,8 @@ fn a_push_until_slip_off_comes_back() {
                 .find(|own| own.part == whiskmap::trace::WhiskerPart::Contact)
                 .copied()
                 .unwrap();
-            // Measured at 15.5 degrees: 0.030 mm and 1.8 degrees; the polynomial has no kink at the contact, as the whisker has.
-            assert_near(Some(far), own.x_mm.hypot(own.y_mm), 0.04);
-            assert_near(row.contact_angle_deg, contact.contact_angle_deg, 2.0);
+            assert_near(Some(far), own.x_mm.hypot(own.y_mm), 2e-3);
+            assert_near(row.contact_angle_deg, contact.contact_angle_deg, 0.02);
         }
     }
     // The forces of these frames are those of the states.
@@ -106,19 +105,19 @@ fn a_push_until_slip_off_comes_back() {
     let forces = forces(&whisker, &scene.pole, &frames.frames, ForceMethod::Model);
     let mut compared = 0;
     for (force, push) in forces.iter().zip(pushes) {
-        // The model has no state at 12.5 degrees, where the force depends on the contact most.
-        if (2.0..12.0).contains(&push) {
+        // Near slip-off at 15.6 degrees, the force depends on the contact most.
+        if (2.0..14.0).contains(&push) {
             let wanted = shape(push).state.force_un;
             let own = force.force_un.unwrap();
-            // Measured: 1.7 %.
-            assert!((own / wanted - 1.0).abs() < 0.02, "{push} {own} {wanted}");
+            // Measured at 12.5 degrees: 0.26 %.
+            assert!((own / wanted - 1.0).abs() < 5e-3, "{push} {own} {wanted}");
             compared += 1;
         }
     }
-    assert_eq!(compared, 10);
+    assert_eq!(compared, 12);
 }
 
-/// The shipped file has lost frames and errors of 0.2 px, which are 0.5 degrees of the base.
+/// The shipped file has lost frames and errors of 0.2 px.
 #[test]
 fn the_shipped_film_has_a_slip_off() {
     let text = include_str!("../../scenes/deeplabcut.csv");
@@ -131,8 +130,8 @@ fn the_shipped_film_has_a_slip_off() {
         panic!("{:?}", found.detachments)
     };
     assert_eq!(end.side, Side::Cb);
-    // Measured: 16.72 degrees.
-    assert_near(Some(end.push_angle_deg), 15.61, 1.2);
+    // Measured: 16.01 degrees.
+    assert_near(Some(end.push_angle_deg), 15.61, 0.6);
     assert_near(Some(end.distance_mm), 15.66, 0.1);
     let gaps = found.frames.iter().filter(|row| row.reason.is_some());
     assert_eq!(gaps.map(|row| row.frame).collect::<Vec<_>>(), [4, 30, 31]);
@@ -145,11 +144,19 @@ fn the_shipped_film_has_a_slip_off() {
     assert_eq!(notes.collect::<Vec<_>>(), [named]);
     let are_few = |note: &String| note.contains("points along the whisker are few");
     assert!(!found.notes.iter().any(are_few), "{:?}", found.notes);
-    let some = with(&|own| {
+    let mut some = with(&|own| {
         own.points = ["base", "w3", "w6", "w9", "w12", "tip"]
             .map(str::to_owned)
             .to_vec()
     });
-    let some = parse(text, &some).unwrap();
-    assert!(some.notes.iter().any(are_few), "{:?}", some.notes);
+    let few = parse(text, &some).unwrap();
+    assert!(few.notes.iter().any(are_few), "{:?}", few.notes);
+    // With a pole, six points are enough.
+    (some.pole, some.contact_within_mm) = (own.pole, own.contact_within_mm);
+    let enough = parse(text, &some).unwrap();
+    assert!(!enough.notes.iter().any(are_few), "{:?}", enough.notes);
+    let [end] = enough.detachments[..] else {
+        panic!("{:?}", enough.detachments)
+    };
+    assert_near(Some(end.push_angle_deg), 15.61, 1.2);
 }

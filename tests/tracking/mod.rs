@@ -3,6 +3,7 @@
 
 mod film;
 mod refused;
+mod rods;
 
 use std::sync::atomic::AtomicBool;
 use whiskmap::tracking::{

@@ -125,6 +125,24 @@ fn options_that_do_not_fit_are_refused() {
         ),
         (
             &film,
+            with(&|own| own.taper = Some(0.9)),
+            "taper = 0.9: must be left out without a pole",
+        ),
+        (
+            &film,
+            with(&|own| (own.pole, own.taper) = (Some(at.clone()), Some(1.01))),
+            "taper = 1.01: must be a number between 0 and 1",
+        ),
+        (
+            &film,
+            with(&|own| {
+                own.pole = Some(at.clone());
+                (own.taper, own.fit_to_mm) = (Some(0.9), Some(12.0));
+            }),
+            "taper = 0.9: must be left out with fit_to_mm, which selects polynomials",
+        ),
+        (
+            &film,
             with(&|own| (own.pole, own.contact_within_mm) = (Some(part("pole")), Some(1.0))),
             "pole = pole: must be one of c, base, tip",
         ),
@@ -167,6 +185,14 @@ fn options_that_do_not_fit_are_refused() {
             &rows,
             with(&|own| own.degree = Some(2)),
             "degree = 2: must be left out with measurements of whisk",
+        ),
+        (
+            &rows,
+            with(&|own| {
+                (own.pole, own.contact_within_mm) = (Some(at.clone()), Some(1.0));
+                own.taper = Some(0.9);
+            }),
+            "taper = 0.9: must be left out with measurements of whisk: they have no points",
         ),
         (
             &rows,

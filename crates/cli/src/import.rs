@@ -72,10 +72,10 @@ pub struct ImportArgs {
     /// Arclength from the base at which the curvature is given, in mm or with a unit [default: a quarter of the median length]
     #[arg(long, value_name = "MM", value_parser = length)]
     curvature_at: Option<f64>,
-    /// Distance from the base up to which points give base angle and curvature, in mm or with a unit [default: 0.6 of the median length, or as far as 8 points reach]
+    /// Distance from the base up to which points give base angle and curvature, in mm or with a unit [default: 0.6 of the median length, or as far as 8 points reach]. It selects polynomials, also with --pole
     #[arg(long, value_name = "MM", value_parser = length)]
     fit_to: Option<f64>,
-    /// Degree of the curvature of the curves through the points of a frame [default: chosen by cross-validation]
+    /// Degree of the curvature of the curves through the points of a frame, or with --pole of the rod at rest [default: chosen]
     #[arg(long, value_name = "DEGREE", value_parser = whole(0..=6))]
     degree: Option<u32>,
     /// Mirror the image [default: if the whisker turns clockwise from base to tip]
@@ -90,6 +90,9 @@ pub struct ImportArgs {
     /// Largest distance of the whisker from the pole's centre in contact, in mm or with a unit
     #[arg(long, value_name = "MM", requires = "pole", value_parser = length)]
     contact_within: Option<f64>,
+    /// Taper of the traced whisker, 1 - r_tip/r_base, from 0 to 1 [default: found from frames in contact]
+    #[arg(long, value_name = "TAPER", requires = "pole", conflicts_with = "fit_to", value_parser = number)]
+    taper: Option<f64>,
     /// Time of the frame in which the angle of the base is 0, in s or with a unit [default: first touch on CB]
     #[arg(long, value_name = "TIME", value_parser = time)]
     zero: Option<f64>,
@@ -191,6 +194,7 @@ impl ImportArgs {
         });
         options.pole.clone_from(&self.pole);
         options.contact_within_mm = self.contact_within;
+        options.taper = self.taper;
         options.zero_s = self.zero;
         options
     }
