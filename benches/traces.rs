@@ -58,8 +58,9 @@ fn main() {
         ("100 whiskers, both sides, 5 derivatives", five),
     ] {
         group.time(name, || {
-            let ends =
-                |own| Side::BOTH.map(|side| detachments(own, pole, side, &[15.66], variables));
+            let ends = |whisker| {
+                Side::BOTH.map(|side| detachments(whisker, pole, side, &[15.66], variables))
+            };
             whiskers.iter().map(ends).collect::<Vec<_>>()
         });
     }

@@ -70,14 +70,14 @@ fn rows(table: &str, case: &Case, columns: &[&str]) -> Result<Vec<Vec<f64>>, Box
     let table = CsvTable::read(Path::new(FOLDER).join(table))?;
     let words = |name| table.values(name, "a word", |cell| Some(cell.to_owned()));
     let (scenes, sides) = (words("scene")?, words("side")?);
-    let own = scenes
+    let pairs = scenes
         .into_iter()
         .flatten()
         .zip(sides.into_iter().flatten());
-    let own: Vec<bool> = own
+    let of_case: Vec<bool> = pairs
         .map(|(scene, side)| scene == case.stem && side == "cb")
         .collect();
-    let mut rows = vec![Vec::new(); own.len()];
+    let mut rows = vec![Vec::new(); of_case.len()];
     for column in columns {
         let numbers = table.numbers(column, "a number", f64::is_finite)?;
         let numbers = numbers.ok_or_else(|| format!("no column {column}"))?;
@@ -85,7 +85,10 @@ fn rows(table: &str, case: &Case, columns: &[&str]) -> Result<Vec<Vec<f64>>, Box
             row.push(number);
         }
     }
-    let kept = rows.into_iter().zip(own).filter(|(_, is_own)| *is_own);
+    let kept = rows
+        .into_iter()
+        .zip(of_case)
+        .filter(|(_, is_of_case)| *is_of_case);
     Ok(kept.map(|(row, _)| row).collect())
 }
 
@@ -111,7 +114,10 @@ fn lags(case: &Case) -> Result<Plot, Box<dyn Error>> {
         let [damping, elements, rate, push] = row[..] else {
             continue;
         };
-        let Some(index) = DAMPINGS.iter().position(|own| *own == damping) else {
+        let Some(index) = DAMPINGS
+            .iter()
+            .position(|series_damping| *series_damping == damping)
+        else {
             continue;
         };
         let finer = if elements > 40.0 { ", 80 elements" } else { "" };
@@ -155,10 +161,11 @@ fn lags(case: &Case) -> Result<Plot, Box<dyn Error>> {
 fn forces(case: &Case) -> Result<Plot, Box<dyn Error>> {
     let points = branch(case)?;
     let (unit, factor) = case.unit;
-    let own = points
+    let curve = points
         .iter()
-        .map(|own| [own.push_angle_deg, factor * own.force_un]);
-    let mut lines = vec![Line::new(own.collect(), Ink::Black, Stroke::Solid).named("quasi-static")];
+        .map(|point| [point.push_angle_deg, factor * point.force_un]);
+    let mut lines =
+        vec![Line::new(curve.collect(), Ink::Black, Stroke::Solid).named("quasi-static")];
     let columns = [
         "damping_per_s",
         "rate_deg_per_s",

@@ -10,7 +10,7 @@ use whiskmap::{Options, map};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::read("scenes/morphology.toml")?.thinned(64, 8);
     let map = map(&scene, Options::default())?;
-    for (own, panel) in scene.whiskers().flatten().zip(&map.panels) {
+    for (swept, panel) in scene.whiskers().flatten().zip(&map.panels) {
         let slipped = panel
             .regime
             .iter()
@@ -18,8 +18,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let share = slipped.count() as f64 / panel.regime.len() as f64;
         println!(
             "taper {:.2}, curvature {:.3}/mm: {:4.1} % slip off",
-            own.whisker.taper(),
-            own.whisker.curvature.map_or(0.0, |own| own.parabola_per_mm),
+            swept.whisker.taper(),
+            swept
+                .whisker
+                .curvature
+                .map_or(0.0, |curvature| curvature.parabola_per_mm),
             100.0 * share
         );
     }

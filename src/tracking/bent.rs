@@ -149,17 +149,17 @@ impl BentPose {
     /// Points of the curve at growing places, in lengths of the whisker.
     fn points(&self, whisker: &TrackedRod, places: &[f64]) -> BentPoints {
         let TrackedRod { rod, rest, .. } = whisker;
-        let tangent = unit(self.angle);
+        let base_tangent = unit(self.angle);
         let at_rest = |turn: DVec2, s: f64, from: DVec2| {
             let (position, tangent) = rest.at_arclength(s);
             (turn.rotate(position - from), turn.rotate(tangent))
         };
         let Some([contact, force]) = self.load else {
             let point = |s: &f64| {
-                let (position, own) = at_rest(tangent, *s, DVec2::ZERO);
+                let (position, tangent) = at_rest(base_tangent, *s, DVec2::ZERO);
                 BentPoint {
                     position: self.base + position,
-                    tangent: own,
+                    tangent,
                     curvature: rest.curvature(*s),
                     by: [DVec2::ZERO; 2],
                 }
@@ -177,7 +177,7 @@ impl BentPose {
         let loaded = varied_profile(rod, rod.tau(contact), load, RESOLUTION, &at);
         // Derivatives of angle and position by arclength and force of the contact, from those by tau and load.
         let by = |by_tau: [f64; 3], by_load: [f64; 3]| {
-            let by_force = by_load.map(|own| own / (radius * radius));
+            let by_force = by_load.map(|derivative| derivative / (radius * radius));
             let by_contact = std::array::from_fn(|i| {
                 (by_tau[i] + 2.0 * rod.taper * force * by_force[i]) / radius
             });
@@ -185,24 +185,24 @@ impl BentPose {
         };
         let (base, of_base) = &loaded[0];
         let base_by: [[f64; 3]; 2] = by(of_base.by_tau, of_base.by_load);
-        let turn = DVec2::new(base.tangent.x, -base.tangent.y).rotate(tangent);
+        let turn = DVec2::new(base.tangent.x, -base.tangent.y).rotate(base_tangent);
         let place = |position: DVec2, tangent: DVec2, curvature: f64, by: [DVec2; 2]| {
-            let own = turn.rotate(position - base.position);
+            let from_base = turn.rotate(position - base.position);
             let by = [0, 1].map(|i| {
                 let [angle, x, y] = base_by[i];
-                turn.rotate(by[i] - DVec2::new(x, y)) - angle * own.perp()
+                turn.rotate(by[i] - DVec2::new(x, y)) - angle * from_base.perp()
             });
             BentPoint {
-                position: self.base + own,
+                position: self.base + from_base,
                 tangent: turn.rotate(tangent),
                 curvature,
                 by,
             }
         };
         let before = loaded[1..].iter().map(|(point, of_point)| {
-            let by: [[f64; 3]; 2] = by(of_point.by_tau, of_point.by_load);
-            let by = by.map(|[_, x, y]| DVec2::new(x, y));
-            place(point.position, point.tangent, point.curvature, by)
+            let point_by: [[f64; 3]; 2] = by(of_point.by_tau, of_point.by_load);
+            let position_by = point_by.map(|[_, x, y]| DVec2::new(x, y));
+            place(point.position, point.tangent, point.curvature, position_by)
         });
         let (from, axis) = rest.at_arclength(contact);
         let back = DVec2::new(axis.x, -axis.y);
@@ -283,10 +283,10 @@ impl FrameProblem<'_> {
             let mut least = 0.0;
             let all = places.iter_mut().zip(&here.points);
             // The first point is at the base.
-            for ((place, own), point) in all.zip(&self.frame.points).skip(1) {
-                let away = *point - own.position;
-                let slowed = 1.0 - own.curvature * away.dot(own.tangent.perp());
-                let next = *place + away.dot(own.tangent) / slowed.max(0.2);
+            for ((place, foot), point) in all.zip(&self.frame.points).skip(1) {
+                let away = *point - foot.position;
+                let slowed = 1.0 - foot.curvature * away.dot(foot.tangent.perp());
+                let next = *place + away.dot(foot.tangent) / slowed.max(0.2);
                 *place = next.clamp(least, LAST_PLACE);
                 least = *place;
             }
@@ -299,16 +299,17 @@ impl FrameProblem<'_> {
     fn residuals_at(&self, feet: &BentPoints) -> Vec<f64> {
         let points = &self.frame.points;
         let pairs = feet.points.iter().zip(points).enumerate();
-        let across = pairs.map(|(i, (own, point))| {
-            let away = *point - own.position;
+        let across = pairs.map(|(i, (foot, point))| {
+            let away = *point - foot.position;
             // The parabola of this curvature ends at the foot; that of the first point is at the base.
-            let along = if i == 0 { 0.0 } else { away.dot(own.tangent) };
-            away.dot(own.tangent.perp()) - 0.5 * own.curvature * along * along
+            let along = if i == 0 { 0.0 } else { away.dot(foot.tangent) };
+            away.dot(foot.tangent.perp()) - 0.5 * foot.curvature * along * along
         });
         let base = &feet.points[0];
         let first = (points[0] - base.position).dot(base.tangent);
         let contact = feet.contact.as_ref().filter(|_| self.is_at_pole);
-        let pole = contact.map(|(own, _)| (self.frame.pole - own.position).dot(own.tangent));
+        let pole =
+            contact.map(|(contact, _)| (self.frame.pole - contact.position).dot(contact.tangent));
         across.chain([first]).chain(pole).collect()
     }
 }
@@ -319,13 +320,13 @@ impl BoundedProblem for FrameProblem<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
-        if !x.iter().all(|own| own.is_finite()) {
+        if !x.iter().all(|unknown| unknown.is_finite()) {
             return None;
         }
         let residuals = self.residuals_at(&self.feet(&BentPose::of(x)).0);
         residuals
             .iter()
-            .all(|own| own.is_finite())
+            .all(|residual| residual.is_finite())
             .then_some(residuals)
     }
 
@@ -336,20 +337,21 @@ impl BoundedProblem for FrameProblem<'_> {
         let pose = BentPose::of(x);
         let (feet, _) = self.feet(&pose);
         let mut columns = vec![Vec::with_capacity(self.count()); x.len()];
-        // Row of the residual `axis . (point - own)`. `across` is its derivative by the angle of the axis.
-        let mut push = |axis: DVec2, own: &BentPoint, across: f64, axis_by: [f64; 2]| {
-            let turned = (own.position - pose.base).perp();
+        // Row of the residual `axis . (point - foot)`. `across` is its derivative by the angle of the axis.
+        let mut push = |axis: DVec2, foot: &BentPoint, across: f64, axis_by: [f64; 2]| {
+            let turned = (foot.position - pose.base).perp();
             columns[0].push(-axis.x);
             columns[1].push(-axis.y);
             columns[2].push(across - axis.dot(turned));
-            for ((column, by), own) in columns[3..].iter_mut().zip(axis_by).zip(own.by) {
-                column.push(by * across - axis.dot(own));
+            for ((column, by), position_by) in columns[3..].iter_mut().zip(axis_by).zip(foot.by) {
+                column.push(by * across - axis.dot(position_by));
             }
         };
-        for own in &feet.points {
-            push(own.tangent.perp(), own, 0.0, [0.0; 2]);
+        for foot in &feet.points {
+            push(foot.tangent.perp(), foot, 0.0, [0.0; 2]);
         }
-        let across = |own: &BentPoint, point: DVec2| (point - own.position).dot(own.tangent.perp());
+        let across =
+            |foot: &BentPoint, point: DVec2| (point - foot.position).dot(foot.tangent.perp());
         let base = &feet.points[0];
         push(
             base.tangent,
@@ -357,8 +359,13 @@ impl BoundedProblem for FrameProblem<'_> {
             across(base, self.frame.points[0]),
             [0.0; 2],
         );
-        if let Some((own, angle_by)) = feet.contact.as_ref().filter(|_| self.is_at_pole) {
-            push(own.tangent, own, across(own, self.frame.pole), *angle_by);
+        if let Some((contact, angle_by)) = feet.contact.as_ref().filter(|_| self.is_at_pole) {
+            push(
+                contact.tangent,
+                contact,
+                across(contact, self.frame.pole),
+                *angle_by,
+            );
         }
         Some(columns)
     }
@@ -403,26 +410,26 @@ pub(super) fn fit(
     let start = BentPose {
         base: frame.points[0],
         angle,
-        load: contact.map(|own| [own, 0.0]),
+        load: contact.map(|s| [s, 0.0]),
     };
     let mut problem = FrameProblem {
         whisker,
         frame,
-        contacts: contact.map(|own| [own; 2]),
+        contacts: contact.map(|s| [s; 2]),
         is_at_pole: matches!(load, FittedLoad::Pole(_)),
         cancel,
     };
-    let mut x = start.unknowns();
+    let mut guess = start.unknowns();
     let found = |problem: &FrameProblem, x: &[f64], tolerance: f64| {
         search(problem, x, tolerance, "it is cancelled").map(|(x, _)| x)
     };
     if let (FittedLoad::Pole(_), Some(contact)) = (load, contact) {
         // Far from the minimum, a contact that moves may leave the pole.
-        x = found(&problem, &x, COARSE)?;
+        guess = found(&problem, &guess, COARSE)?;
         let near = [contact - NEAR, contact + NEAR];
-        problem.contacts = Some(near.map(|own| own.clamp(CONTACTS[0], CONTACTS[1])));
+        problem.contacts = Some(near.map(|s| s.clamp(CONTACTS[0], CONTACTS[1])));
     }
-    let x = found(&problem, &x, TOLERANCE)?;
+    let x = found(&problem, &guess, TOLERANCE)?;
     let pose = BentPose::of(&x);
     let (feet, end) = problem.feet(&pose);
     let is_beside = x
@@ -430,9 +437,9 @@ pub(super) fn fit(
         .zip(problem.contacts)
         .is_some_and(|(s, [least, most])| *s > least && *s < most);
     let contact = feet.contact.as_ref().filter(|_| is_beside);
-    let offset = contact.map(|(own, _)| {
-        let away = frame.pole - own.position;
-        away.length().copysign(own.tangent.perp_dot(away))
+    let offset = contact.map(|(contact, _)| {
+        let away = frame.pole - contact.position;
+        away.length().copysign(contact.tangent.perp_dot(away))
     });
     Ok(FrameFit {
         pose,

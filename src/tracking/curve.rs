@@ -47,7 +47,7 @@ impl<'a> Curves<'a> {
         notes: &mut Vec<String>,
     ) -> Result<Self, TrackingError> {
         let scale = options.mm_per_pixel;
-        let curves = if frames.iter().any(|own| own.bend.is_some()) {
+        let curves = if frames.iter().any(|frame| frame.bend.is_some()) {
             let axis = options.face_axis.unwrap_or_else(|| face_axis(frames));
             let name = match axis {
                 FaceAxis::X => "x",
@@ -61,7 +61,7 @@ impl<'a> Curves<'a> {
             notes.push(format!(
                 "angles are measured from the {name} axis of the image{found}"
             ));
-            frames.iter().map(|own| arc(own, axis, scale)).collect()
+            frames.iter().map(|frame| arc(frame, axis, scale)).collect()
         } else {
             if let Some(axis) = options.face_axis {
                 let axis = if axis == FaceAxis::X { "x" } else { "y" };
@@ -89,13 +89,13 @@ impl<'a> Curves<'a> {
 
     /// Returns the frames with these numbers, mirrored if need be; frames that the file does not have are gaps.
     pub fn of_frames(self, numbers: RangeInclusive<u64>) -> Vec<CurvedFrame> {
-        let y = if self.is_mirrored {
+        let y_scale = if self.is_mirrored {
             self.mm_per_pixel
         } else {
             -self.mm_per_pixel
         };
-        let mm = |[x, own]: [f64; 2]| [self.mm_per_pixel * x, y * own];
-        let mut own = self.frames.iter().zip(self.curves).peekable();
+        let mm = |[x, y]: [f64; 2]| [self.mm_per_pixel * x, y_scale * y];
+        let mut frames = self.frames.iter().zip(self.curves).peekable();
         let frame = |number: u64| {
             let lost = CurvedFrame {
                 number,
@@ -103,14 +103,14 @@ impl<'a> Curves<'a> {
                 points_mm: Vec::new(),
                 pole_mm: None,
             };
-            let Some((frame, curve)) = own.next_if(|(frame, _)| frame.number == number) else {
+            let Some((frame, curve)) = frames.next_if(|(frame, _)| frame.number == number) else {
                 return lost;
             };
             let curve = match self.is_mirrored {
                 true => curve.map(FrameCurve::mirrored),
                 false => curve,
             };
-            let points = frame.points_px.iter().flatten().map(|own| mm(*own));
+            let points = frame.points_px.iter().flatten().map(|point| mm(*point));
             CurvedFrame {
                 points_mm: if curve.is_ok() {
                     points.collect()
@@ -146,31 +146,32 @@ fn traced_frames(
 ) -> Vec<Result<FrameCurve, NoFrame>> {
     let points = frames
         .iter()
-        .map(|own| points_mm(own, options.mm_per_pixel));
+        .map(|frame| points_mm(frame, options.mm_per_pixel));
     let points: Vec<Option<Vec<[f64; 2]>>> = points.collect();
     let known = || points.iter().flatten();
-    let far =
-        |own: &[[f64; 2]], i: usize| libm::hypot(own[i][0] - own[0][0], own[i][1] - own[0][1]);
-    let length = |own: &Vec<[f64; 2]>| {
-        let steps = own.windows(2);
+    let far = |points: &[[f64; 2]], i: usize| {
+        libm::hypot(points[i][0] - points[0][0], points[i][1] - points[0][1])
+    };
+    let length = |points: &Vec<[f64; 2]>| {
+        let steps = points.windows(2);
         steps
             .map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]))
             .sum::<f64>()
     };
     let length_mm = median(known().map(length));
-    let few = median(known().map(|own| far(own, (MANY_POINTS - 1).min(own.len() - 1))));
+    let few = median(known().map(|points| far(points, (MANY_POINTS - 1).min(points.len() - 1))));
     // A little more, so that rounding leaves no point out.
     let reach_mm = options
         .fit_to_mm
         .unwrap_or_else(|| (NEAR * length_mm).max(few + 1e-3 * length_mm));
-    let near = |own: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
-        let first = own
+    let near = |points: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
+        let first = points
             .iter()
             .enumerate()
-            .take_while(|(i, _)| far(own, *i) <= reach_mm);
+            .take_while(|(i, _)| far(points, *i) <= reach_mm);
         first.map(|(_, point)| *point).collect()
     };
-    let points_each = median(known().map(|own| own.len() as f64));
+    let points_each = median(known().map(|points| points.len() as f64));
     if points_each < ENOUGH_POINTS {
         notes.push(format!(
             "{points_each} points along the whisker are few: angles and curvatures of a bent whisker may be far off; {ENOUGH_POINTS} or more are enough, or 5 with --pole"
@@ -187,8 +188,8 @@ fn traced_frames(
         &format!("near the base, up to {part} mm from it,"),
     );
     let whole_degree = degree_of(known().cloned().collect(), "of whole whiskers");
-    let frame = |own: &Option<Vec<[f64; 2]>>| {
-        let whole = own.as_ref().ok_or(NoFrame::Missing)?;
+    let frame = |points: &Option<Vec<[f64; 2]>>| {
+        let whole = points.as_ref().ok_or(NoFrame::Missing)?;
         let fit = |points: Vec<[f64; 2]>, degree: usize| {
             let is_enough = points.len() >= degree + MORE_POINTS;
             if !is_enough || cancel.load(Ordering::Relaxed) {
@@ -212,11 +213,11 @@ fn degree(
 ) -> usize {
     let many: Vec<_> = shapes
         .iter()
-        .filter(|own| own.len() >= MANY_POINTS)
+        .filter(|shape| shape.len() >= MANY_POINTS)
         .collect();
     // Cross-validation in a few frames does not speak for all.
     let (degree, how) = if 2 * many.len() <= shapes.len() {
-        let count = median(shapes.iter().map(|own| own.len() as f64)) as usize;
+        let count = median(shapes.iter().map(|shape| shape.len() as f64)) as usize;
         let degree = count.saturating_sub(MORE_POINTS) / 2;
         (degree.min(MOST_DEGREE), format!("for {count} points"))
     } else {
@@ -263,8 +264,8 @@ fn from_x(angle_deg: f64, axis: FaceAxis) -> f64 {
 /// The axis with which the angles are nearest to those of arcs through the ends of the segments.
 fn face_axis(frames: &[ImageFrame]) -> FaceAxis {
     let closeness = |axis: FaceAxis| -> f64 {
-        let each = frames.iter().filter_map(|own| {
-            let (_, chord, curvature, angle) = measured(own)?;
+        let each = frames.iter().filter_map(|frame| {
+            let (_, chord, curvature, angle) = measured(frame)?;
             let base = libm::atan2(chord.y, chord.x) - half_turn(chord, curvature)?;
             Some(libm::cos(from_x(angle, axis) - base))
         });

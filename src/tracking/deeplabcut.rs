@@ -63,7 +63,7 @@ pub(super) fn read(
         true => parts
             .iter()
             .copied()
-            .filter(|own| Some(*own) != pole)
+            .filter(|part| Some(*part) != pole)
             .collect(),
         false => options.points.iter().map(String::as_str).collect(),
     };
@@ -76,18 +76,18 @@ pub(super) fn read(
         };
         let must = "a number between -1e6 and 1e6";
         let [x, y] = ["x", "y"].map(|coord| {
-            column(coord, must, |own| own.abs() <= 1e6)?.ok_or_else(|| {
+            column(coord, must, |coordinate| coordinate.abs() <= 1e6)?.ok_or_else(|| {
                 let what = format!("has no column {coord} of {part}: must have x and y");
                 CsvError::at(origin, header[2].number, what)
             })
         });
-        let likelihood = column("likelihood", "a number between 0 and 1", |own| {
-            (0.0..=1.0).contains(&own)
+        let likelihoods = column("likelihood", "a number between 0 and 1", |likelihood| {
+            (0.0..=1.0).contains(&likelihood)
         })?;
         let is_known = |i: usize| {
-            likelihood
+            likelihoods
                 .as_ref()
-                .is_none_or(|own| own[i] >= options.likelihood)
+                .is_none_or(|likelihoods| likelihoods[i] >= options.likelihood)
         };
         let pairs = x?.into_iter().zip(y?).enumerate();
         let place = |(i, (x, y)): (usize, (f64, f64))| {
@@ -109,7 +109,7 @@ pub(super) fn read(
     let mut frames: Vec<ImageFrame> = Vec::with_capacity(numbers.len());
     for ((i, line), number) in table.lines().enumerate().zip(numbers) {
         let number = number.filter(|_| are_numbered).unwrap_or(i as u64);
-        if let Some(before) = frames.last().filter(|own| own.number >= number) {
+        if let Some(before) = frames.last().filter(|frame| frame.number >= number) {
             let what = format!(
                 "frame {number}: must be more than {} of the line before",
                 before.number
@@ -118,9 +118,9 @@ pub(super) fn read(
         }
         frames.push(ImageFrame {
             number,
-            points_px: whiskers.iter().map(|own| own[i]).collect(),
+            points_px: whiskers.iter().map(|positions| positions[i]).collect(),
             bend: None,
-            pole_px: poles.as_ref().map_or(fixed, |own| own[i]),
+            pole_px: poles.as_ref().map_or(fixed, |poles| poles[i]),
         });
     }
     let is_used = |name: &&str| along.contains(name) || Some(*name) == pole;
@@ -138,7 +138,7 @@ pub(super) fn read(
     Ok(ImageFrames {
         frames,
         order: match options.points.is_empty() {
-            true => PointOrder::Named(along.iter().map(|own| (*own).to_owned()).collect()),
+            true => PointOrder::Named(along.iter().map(|part| (*part).to_owned()).collect()),
             false => PointOrder::FromBase,
         },
         notes: unused.into_iter().collect(),

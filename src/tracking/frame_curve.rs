@@ -92,18 +92,18 @@ impl PlaneCurve {
         let first = places.min_by(|one, other| far(*one).total_cmp(&far(*other)));
         let mut s = first.unwrap_or_default();
         for _ in 0..MOST_STEPS {
-            let (own, tangent) = rest.at_arclength(s);
-            let slowed = 1.0 - (point - own).dot(tangent.perp()) * self.curvature.at(s);
-            let next = (s + (point - own).dot(tangent) / slowed.max(0.1)).clamp(0.0, 1.0);
+            let (foot, tangent) = rest.at_arclength(s);
+            let slowed = 1.0 - (point - foot).dot(tangent.perp()) * self.curvature.at(s);
+            let next = (s + (point - foot).dot(tangent) / slowed.max(0.1)).clamp(0.0, 1.0);
             let step = (next - s).abs();
             s = next;
             if step < 4.0 * f64::EPSILON {
                 break;
             }
         }
-        let (own, tangent) = rest.at_arclength(s);
-        let side = tangent.perp_dot(point - own).signum();
-        (s, side * own.distance(point) * self.length_mm)
+        let (foot, tangent) = rest.at_arclength(s);
+        let side = tangent.perp_dot(point - foot).signum();
+        (s, side * foot.distance(point) * self.length_mm)
     }
 }
 
@@ -121,7 +121,7 @@ impl FrameCurve {
 
     /// Creates the curve of two polynomials: of the points near the base, and of all points.
     pub fn traced(near: &TracedShape, whole: &TracedShape) -> Self {
-        let [near, fitted] = [near, whole].map(|own| Arc::new(PlaneCurve::of(own)));
+        let [near, fitted] = [near, whole].map(|shape| Arc::new(PlaneCurve::of(shape)));
         Self::polynomials(near, fitted, whole.length_mm, Some(whole.rms_mm))
     }
 
@@ -137,7 +137,7 @@ impl FrameCurve {
                 length_mm: scale,
             });
             return Self {
-                loaded: loaded.map(|own| (Arc::clone(whisker), own.pose)),
+                loaded: loaded.map(|fit| (Arc::clone(whisker), fit.pose)),
                 ..Self::polynomials(Arc::clone(&rest), rest, length_mm, rms_mm)
             };
         };
@@ -183,13 +183,13 @@ impl FrameCurve {
     }
 
     /// Returns a number that changes its sign with the y axis.
-    fn signed(&self, own: f64) -> f64 {
-        if self.is_mirrored { -own } else { own }
+    fn signed(&self, number: f64) -> f64 {
+        if self.is_mirrored { -number } else { number }
     }
 
     /// Returns a vector in the axes of the curve.
-    fn turned(&self, own: DVec2) -> DVec2 {
-        DVec2::new(own.x, self.signed(own.y))
+    fn turned(&self, vector: DVec2) -> DVec2 {
+        DVec2::new(vector.x, self.signed(vector.y))
     }
 
     /// Returns the angle of the tangent at the base, in radians, counterclockwise from the x axis.
@@ -253,8 +253,8 @@ impl FrameCurve {
                 let rest = whole.rest();
                 let pole = self.turned(pole_mm.into());
                 let (s, offset_mm) = whole.nearest(&rest, pole);
-                let own = rest.at_arclength(s).0 * whole.length_mm;
-                let at = whole.base + DVec2::from_angle(whole.angle).rotate(own);
+                let position = rest.at_arclength(s).0 * whole.length_mm;
+                let at = whole.base + DVec2::from_angle(whole.angle).rotate(position);
                 NearestPlace {
                     at_mm: DVec2::from_angle(-near.angle).rotate(at - near.base),
                     angle: whole.angle + whole.curvature.angle(s) - near.angle,

@@ -49,7 +49,7 @@ pub(super) fn read(
     let numbers = NEEDED[0].iter().find_map(|name| {
         table
             .values(name, whole, |cell| {
-                whole_number(cell).and_then(|own| u64::try_from(own).ok())
+                whole_number(cell).and_then(|number| u64::try_from(number).ok())
             })
             .transpose()
     });
@@ -61,8 +61,8 @@ pub(super) fn read(
     };
     let number = |name: &str| {
         let must = "a number between -1e6 and 1e6";
-        let own = table.measurements(name, must, |own| own.abs() <= MOST)?;
-        Ok::<_, CsvError>(own.unwrap_or_default())
+        let numbers = table.measurements(name, must, |number| number.abs() <= MOST)?;
+        Ok::<_, CsvError>(numbers.unwrap_or_default())
     };
     let [angle, curvature] = [number("angle")?, number("curvature")?];
     let [x, y] = [number("follicle_x")?, number("follicle_y")?];
@@ -78,12 +78,12 @@ pub(super) fn read(
         let is_known = [follicle, tip, bend]
             .concat()
             .iter()
-            .all(|own| !own.is_nan());
+            .all(|number| !number.is_nan());
         if identity != whisker || !is_known {
             continue;
         }
         let chord = libm::hypot(tip[0] - follicle[0], tip[1] - follicle[1]);
-        let own = ImageFrame {
+        let segment = ImageFrame {
             number: frame,
             points_px: vec![Some(follicle), Some(tip)],
             bend: Some(bend),
@@ -92,7 +92,7 @@ pub(super) fn read(
         let before = frames.get(&frame).map(|(chord, _)| *chord);
         doubles += usize::from(before.is_some());
         if before.is_none_or(|before| chord > before) {
-            frames.insert(frame, (chord, own));
+            frames.insert(frame, (chord, segment));
         }
     }
     let doubles = (doubles > 0).then(|| {
@@ -165,9 +165,9 @@ fn whole_number(cell: &str) -> Option<i64> {
 /// Returns the identity of the whisker of each row, with the name of its column. Without such a column, all rows are of one whisker.
 fn identities(table: &CsvTable) -> Result<(&'static str, Vec<i64>), CsvError> {
     for column in IDENTITY {
-        let own = table.values(column, "a whole number", whole_number)?;
-        if let Some(own) = own.filter(|own| own.iter().any(|label| *label >= 0)) {
-            return Ok((column, own));
+        let labels = table.values(column, "a whole number", whole_number)?;
+        if let Some(labels) = labels.filter(|labels| labels.iter().any(|label| *label >= 0)) {
+            return Ok((column, labels));
         }
     }
     Ok((IDENTITY[0], vec![0; table.lines().count()]))
@@ -176,8 +176,8 @@ fn identities(table: &CsvTable) -> Result<(&'static str, Vec<i64>), CsvError> {
 /// Returns the only whisker among `identities`; -1 is none.
 fn only(given: Option<i64>, column: &str, identities: &[i64]) -> Result<i64, TrackingError> {
     let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
-    for own in identities.iter().filter(|own| **own >= 0) {
-        *counts.entry(*own).or_default() += 1;
+    for label in identities.iter().filter(|label| **label >= 0) {
+        *counts.entry(*label).or_default() += 1;
     }
     match (given, counts.len()) {
         (None, 1) => Ok(counts.into_keys().next().unwrap_or_default()),
@@ -185,13 +185,13 @@ fn only(given: Option<i64>, column: &str, identities: &[i64]) -> Result<i64, Tra
             let shown = counts
                 .iter()
                 .take(10)
-                .map(|(own, count)| format!("{own} ({count} rows)"));
+                .map(|(label, count)| format!("{label} ({count} rows)"));
             let more = if counts.len() > 10 { ", ..." } else { "" };
             let must = format!(
                 "must be an identity in the column {column}: {}{more}",
                 shown.collect::<Vec<_>>().join(", ")
             );
-            let given = given.map_or_else(|| "(left out)".to_owned(), |own| own.to_string());
+            let given = given.map_or_else(|| "(left out)".to_owned(), |label| label.to_string());
             Err(refused("whisker", &given, must))
         }
     }

@@ -165,7 +165,7 @@ impl Tracking {
         orient::order(&mut image, options)?;
         let curves = curve::Curves::new(&image.frames, options, cancel, &mut image.notes)?;
         let curves = curves.of_frames(from..=last);
-        if curves.iter().all(|own| own.curve.is_err()) {
+        if curves.iter().all(|frame| frame.curve.is_err()) {
             let what = format!(
                 "has no frame with a curve: must have at least one with the base and {} points along a smooth curve",
                 curve::MORE_POINTS
@@ -174,7 +174,9 @@ impl Tracking {
         }
         let mut notes = image.notes;
         let (frames, contacts) = rows::frames(&curves, options, &mut notes)?;
-        let shapes = curves.iter().map(|own| (own.number, own.points_mm.clone()));
+        let shapes = curves
+            .iter()
+            .map(|frame| (frame.number, frame.points_mm.clone()));
         Ok(Self {
             format,
             detachments: detachment::detachments(&frames, &contacts),
@@ -196,10 +198,10 @@ impl Tracking {
                     .to_owned(),
             ));
         }
-        let found = self.shapes.iter().find(|(own, _)| *own == frame);
+        let found = self.shapes.iter().find(|(number, _)| *number == frame);
         let Some((_, points)) = found else {
-            let ends =
-                [self.shapes.first(), self.shapes.last()].map(|own| own.map_or(0, |own| own.0));
+            let ends = [self.shapes.first(), self.shapes.last()]
+                .map(|shape| shape.map_or(0, |(number, _)| *number));
             return Err(refused(format!(
                 "must be between {} and {}, the numbers of the frames",
                 ends[0], ends[1]

@@ -143,7 +143,7 @@ impl TrackingOptions {
             ("fit_to_mm", self.fit_to_mm),
         ];
         for (option, number) in numbers {
-            if let Some(number) = number.filter(|own| !positive(*own)) {
+            if let Some(number) = number.filter(|number| !positive(*number)) {
                 let must = "must be a number between 1e-9 and 1e9".to_owned();
                 return Err(refused(option, &digits(number), must));
             }

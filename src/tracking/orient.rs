@@ -42,15 +42,15 @@ pub(super) fn order(
         Some(follicle) => {
             let far = ends
                 .each_ref()
-                .map(|own| median(own.iter().map(|at| distance(*at, follicle))));
+                .map(|positions| median(positions.iter().map(|at| distance(*at, follicle))));
             far[1] < far[0]
         }
-        None if ends.iter().any(|own| own.len() < 2) => {
+        None if ends.iter().any(|positions| positions.len() < 2) => {
             image.notes.push("one frame does not show the base: points are taken from base to tip as they are given".to_owned());
             false
         }
         None => {
-            let spreads = ends.each_ref().map(|own| spread(own));
+            let spreads = ends.each_ref().map(|positions| spread(positions));
             let [first, last] = spreads;
             if STEADIER * first > last && STEADIER * last > first {
                 let must = format!(
@@ -79,13 +79,13 @@ pub(super) fn order(
 /// Orders named points along the whisker, from one of the two that are farthest apart. The first point of the file stays in the first half.
 /// Points that are lost in all frames are left out. Returns those of their `names` whose points are beside the line of the others.
 fn chain<'a>(frames: &mut [ImageFrame], names: &'a [String]) -> Vec<&'a str> {
-    let count = frames.first().map_or(0, |own| own.points_px.len());
-    let is_seen = |i: &usize| frames.iter().any(|own| own.points_px[*i].is_some());
+    let count = frames.first().map_or(0, |frame| frame.points_px.len());
+    let is_seen = |i: &usize| frames.iter().any(|frame| frame.points_px[*i].is_some());
     let seen: Vec<usize> = (0..count).filter(is_seen).collect();
     let step = frames.len().div_ceil(ORDER_FRAMES);
     let far = |a: usize, b: usize| {
         let some = frames.iter().step_by(step);
-        median(some.filter_map(|own| Some(distance(own.points_px[a]?, own.points_px[b]?))))
+        median(some.filter_map(|frame| Some(distance(frame.points_px[a]?, frame.points_px[b]?))))
     };
     let pairs = seen
         .iter()
@@ -103,8 +103,8 @@ fn chain<'a>(frames: &mut [ImageFrame], names: &'a [String]) -> Vec<&'a str> {
     }
     let order: Vec<usize> = order.into_iter().map(|(i, _)| i).collect();
     let detours = order.windows(3).map(|three| {
-        let detour = |own: &ImageFrame| {
-            let [before, at, after] = [0, 1, 2].map(|i| own.points_px[three[i]]);
+        let detour = |frame: &ImageFrame| {
+            let [before, at, after] = [0, 1, 2].map(|i| frame.points_px[three[i]]);
             let (before, at, after) = (before?, at?, after?);
             let way = distance(before, at) + distance(at, after);
             Some(way / distance(before, after) - 1.0)
@@ -151,11 +151,14 @@ fn ends(frame: &ImageFrame) -> Option<[[f64; 2]; 2]> {
 
 /// Positions of the first (0) or the last (1) point in all frames that have it.
 fn places(frames: &[ImageFrame], end: usize) -> Vec<[f64; 2]> {
-    let at = |own: &ImageFrame| match end {
-        0 => own.points_px.first().copied(),
-        _ => own.points_px.last().copied(),
+    let at = |frame: &ImageFrame| match end {
+        0 => frame.points_px.first().copied(),
+        _ => frame.points_px.last().copied(),
     };
-    frames.iter().filter_map(|own| at(own).flatten()).collect()
+    frames
+        .iter()
+        .filter_map(|frame| at(frame).flatten())
+        .collect()
 }
 
 fn distance([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
@@ -171,11 +174,11 @@ pub(super) fn median(numbers: impl Iterator<Item = f64>) -> f64 {
 
 /// Median position, by coordinate.
 fn centre(places: &[[f64; 2]]) -> [f64; 2] {
-    [0, 1].map(|axis| median(places.iter().map(|own| own[axis])))
+    [0, 1].map(|axis| median(places.iter().map(|place| place[axis])))
 }
 
 /// Median distance of positions from their median.
 fn spread(places: &[[f64; 2]]) -> f64 {
     let centre = centre(places);
-    median(places.iter().map(|own| distance(*own, centre)))
+    median(places.iter().map(|place| distance(*place, centre)))
 }

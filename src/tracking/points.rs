@@ -53,7 +53,7 @@ pub(super) fn read(
         };
         let table = lines.table(header, origin)?;
         let must = "a number between -1e6 and 1e6";
-        let column = |name: &str| table.numbers(name, must, |own| own.abs() <= 1e6);
+        let column = |name: &str| table.numbers(name, must, |coordinate| coordinate.abs() <= 1e6);
         let (x, y) = (
             column("x")?.unwrap_or_default(),
             column("y")?.unwrap_or_default(),
@@ -62,7 +62,7 @@ pub(super) fn read(
         let numbers = table.values("frame", whole, |cell| cell.parse::<u64>().ok())?;
         let mut add =
             |number: u64, points: &mut dyn Iterator<Item = [f64; 2]>| match frames.last_mut() {
-                Some(own) if own.number == number => own.points_px.extend(points.map(Some)),
+                Some(frame) if frame.number == number => frame.points_px.extend(points.map(Some)),
                 _ => frames.push(ImageFrame {
                     number,
                     points_px: points.map(Some).collect(),

@@ -69,7 +69,8 @@ const OFF: f64 = 2.0;
 
 /// Frame with what its fits need, in lengths of the whisker.
 struct RodFrame {
-    frame: FramePoints,
+    /// Points and pole of the frame.
+    traced: FramePoints,
     /// Guess of the angle of the base, in radians.
     angle: f64,
     /// Place of the pole along the line through the points.
@@ -85,7 +86,9 @@ impl RodFrame {
             return None;
         }
         let pole = DVec2::from(pole_mm) / length_mm;
-        let points = points_mm.iter().map(|own| DVec2::from(*own) / length_mm);
+        let points = points_mm
+            .iter()
+            .map(|point| DVec2::from(*point) / length_mm);
         let points: Vec<DVec2> = points.collect();
         let places = places(&points);
         let near = |i: usize| {
@@ -103,7 +106,7 @@ impl RodFrame {
             angle: libm::atan2(chord.y, chord.x),
             contact,
             far,
-            frame: FramePoints {
+            traced: FramePoints {
                 points,
                 pole,
                 places,
@@ -113,7 +116,7 @@ impl RodFrame {
 
     /// Fits the curve with this load.
     fn fit(&self, whisker: &TrackedRod, load: FittedLoad, cancel: &AtomicBool) -> Option<FrameFit> {
-        fit(whisker, &self.frame, self.angle, load, cancel).ok()
+        fit(whisker, &self.traced, self.angle, load, cancel).ok()
     }
 
     /// Fits the shape at rest.
@@ -161,10 +164,10 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> BoundedProblem for CommonProblem<F> {
     fn jacobian(&self, x: &[f64], _: &[f64]) -> Option<Vec<Vec<f64>>> {
         let [least, most] = self.range;
         let column = |i: usize| {
-            let ends = [x[i] - DIFFERENCE, x[i] + DIFFERENCE].map(|own| own.clamp(least, most));
-            let at = |own: f64| {
+            let ends = [x[i] - DIFFERENCE, x[i] + DIFFERENCE].map(|end| end.clamp(least, most));
+            let at = |parameter: f64| {
                 let mut moved = x.to_vec();
-                moved[i] = own;
+                moved[i] = parameter;
                 (self.residuals)(&moved)
             };
             let pairs = at(ends[0])?.into_iter().zip(at(ends[1])?);
@@ -184,7 +187,7 @@ fn residuals(
     frames: &[&RodFrame],
     fit: impl Fn(&RodFrame) -> Option<FrameFit> + Sync,
 ) -> Option<Vec<f64>> {
-    let each = frames.par_iter().map(|own| Some(fit(own)?.residuals));
+    let each = frames.par_iter().map(|frame| Some(fit(frame)?.residuals));
     let each: Option<Vec<Vec<f64>>> = each.collect();
     Some(each?.concat())
 }
@@ -224,9 +227,12 @@ impl CommonRest {
         let problem = CommonProblem {
             residuals: |x: &[f64]| {
                 let whisker = TrackedRod::new(0.0, polynomial(x), 1.0);
-                residuals(frames, |own| own.at_rest(&whisker, cancel))
+                residuals(frames, |frame| frame.at_rest(&whisker, cancel))
             },
-            count: frames.iter().map(|own| own.frame.points.len() + 1).sum(),
+            count: frames
+                .iter()
+                .map(|frame| frame.traced.points.len() + 1)
+                .sum(),
             range: [f64::NEG_INFINITY, f64::INFINITY],
         };
         let found = search(&problem, &start, TOLERANCE, "a frame has no fit");
@@ -290,9 +296,12 @@ impl CommonTaper {
         let problem = CommonProblem {
             residuals: |x: &[f64]| {
                 let whisker = whisker(x[0]);
-                residuals(frames, |own| own.bent(&whisker, cancel))
+                residuals(frames, |frame| frame.bent(&whisker, cancel))
             },
-            count: frames.iter().map(|own| own.frame.points.len() + 2).sum(),
+            count: frames
+                .iter()
+                .map(|frame| frame.traced.points.len() + 2)
+                .sum(),
             range: [0.0, 1.0],
         };
         let found = search(&problem, &[TYPICAL_TAPER], TOLERANCE, "a frame has no fit");
@@ -308,7 +317,8 @@ impl CommonTaper {
 
     /// Returns a note on the taper, which `count` frames have given.
     fn note(&self, count: usize) -> String {
-        let [taper, deviation] = [self.taper, self.deviation].map(|own| digits(rounded(own, 3)));
+        let [taper, deviation] =
+            [self.taper, self.deviation].map(|number| digits(rounded(number, 3)));
         let advice = if self.deviation > ROUGH_TAPER {
             ": give it by --taper, if it is known"
         } else {
@@ -324,13 +334,13 @@ impl CommonTaper {
 fn poles(frames: &[ImageFrame]) -> Option<Vec<[f64; 2]>> {
     let known = frames.iter().enumerate();
     let known: Vec<(usize, [f64; 2])> = known
-        .filter_map(|(i, own)| Some((i, own.pole_px?)))
+        .filter_map(|(i, frame)| Some((i, frame.pole_px?)))
         .collect();
     let nearest = |i: usize| {
-        let after = known.partition_point(|own| own.0 < i);
+        let after = known.partition_point(|(frame, _)| *frame < i);
         let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
         let around = around.filter_map(|k| known.get(k));
-        Some(around.min_by_key(|own| own.0.abs_diff(i))?.1)
+        Some(around.min_by_key(|(frame, _)| frame.abs_diff(i))?.1)
     };
     (0..frames.len()).map(nearest).collect()
 }
@@ -373,7 +383,7 @@ impl Film<'_> {
         // The length is first that of chords, then that of the curve.
         let chords = self.frames(1.0);
         let ends = chords.iter().flatten();
-        let chord_mm = median(ends.filter_map(|own| own.frame.places.last().copied()));
+        let chord_mm = median(ends.filter_map(|frame| frame.traced.places.last().copied()));
         if chord_mm <= 0.0 {
             return None;
         }
@@ -382,18 +392,20 @@ impl Film<'_> {
         let sample: Vec<&RodFrame> = free.iter().filter_map(|i| frames[*i].as_ref()).collect();
         let first = CommonRest::new(&sample, &[], FIRST_DEGREE, cancel)?;
         let whisker = TrackedRod::new(0.0, polynomial(&first.coefficients), chord_mm);
-        let fits = sample.par_iter().map(|own| own.at_rest(&whisker, cancel));
+        let fits = sample
+            .par_iter()
+            .map(|frame| frame.at_rest(&whisker, cancel));
         let fits: Vec<FrameFit> = fits.collect::<Option<_>>()?;
-        let length_mm = chord_mm * median(fits.iter().map(|own| own.end));
+        let length_mm = chord_mm * median(fits.iter().map(|fit| fit.end));
         if length_mm <= 0.0 {
             return None;
         }
         let usual = median(fits.iter().map(FrameFit::rms));
         let frames = self.frames(length_mm);
         let pairs = free.iter().zip(&fits);
-        let good = pairs.filter(|(_, own)| own.rms() <= OUTLIER * usual);
+        let good = pairs.filter(|(_, fit)| fit.rms() <= OUTLIER * usual);
         let good: Vec<&RodFrame> = good.filter_map(|(i, _)| frames[*i].as_ref()).collect();
-        let points = median(good.iter().map(|own| own.frame.points.len() as f64)) as usize;
+        let points = median(good.iter().map(|frame| frame.traced.points.len() as f64)) as usize;
         let most = points.saturating_sub(MORE_POINTS).min(MOST_DEGREE);
         let rest = CommonRest::best(&good, degree, most, cancel)?;
         Some(FilmRest {
@@ -415,7 +427,7 @@ impl Film<'_> {
         let within = self.within_mm / typical.length_mm;
         let bent = most_bent(frames, &typical, within, self.cancel);
         let found = CommonTaper::new(&bent, whisker, self.cancel);
-        match found.filter(|own| own.deviation <= UNKNOWN_TAPER) {
+        match found.filter(|taper| taper.deviation <= UNKNOWN_TAPER) {
             Some(found) => (found.taper, found.note(bent.len())),
             None => {
                 let note = format!(
@@ -436,8 +448,8 @@ impl Film<'_> {
     /// curvature of a whisker at rest, so that its scatter is that of measured loads.
     fn usual_contact(&self, whisker: &TrackedRod, frames: &[Option<RodFrame>]) -> f64 {
         let near = frames.iter().flatten();
-        let near = near.filter(|own| self.is_near(whisker, own));
-        median(near.map(|own| own.contact))
+        let near = near.filter(|frame| self.is_near(whisker, frame));
+        median(near.map(|frame| frame.contact))
     }
 
     /// Fits the rod to a frame: in contact if it is within the largest distance from the pole, or at rest.
@@ -449,9 +461,9 @@ impl Film<'_> {
         } else {
             None
         };
-        let held = bent.filter(|own| own.offset.is_some_and(|own| own.abs() <= within));
+        let held = bent.filter(|fit| fit.offset.is_some_and(|offset| offset.abs() <= within));
         let found = held.or_else(|| frame.at_rest(whisker, self.cancel));
-        let found = found.filter(|own| own.rms() <= LARGEST_RMS);
+        let found = found.filter(|fit| fit.rms() <= LARGEST_RMS);
         found.ok_or(NoFrame::NoCurve)
     }
 }
@@ -470,7 +482,7 @@ pub(super) fn curves(
     let scale = options.mm_per_pixel;
     let poles = poles(frames)?.into_iter();
     let film = Film {
-        points: frames.iter().map(|own| points_mm(own, scale)).collect(),
+        points: frames.iter().map(|frame| points_mm(frame, scale)).collect(),
         poles: poles.map(|[x, y]| [scale * x, -scale * y]).collect(),
         within_mm,
         cancel,
@@ -495,7 +507,7 @@ pub(super) fn curves(
     let whisker = Arc::new(whisker(taper));
     let fits = frames
         .par_iter()
-        .map(|own| film.fit(&whisker, own.as_ref()));
+        .map(|frame| film.fit(&whisker, frame.as_ref()));
     let fits: Vec<Result<FrameFit, NoFrame>> = fits.collect();
     let pairs = frames.iter().zip(&fits);
     let near = pairs.filter_map(|(frame, found)| {
@@ -507,7 +519,7 @@ pub(super) fn curves(
     let curve = |(frame, found): (&Option<RodFrame>, &Result<FrameFit, NoFrame>)| {
         let found = found.as_ref().map_err(|why| *why)?;
         let loaded = frame.as_ref().filter(|_| found.offset.is_none());
-        let loaded = loaded.and_then(|own| own.fit(&whisker, FittedLoad::Place(usual), cancel));
+        let loaded = loaded.and_then(|frame| frame.fit(&whisker, FittedLoad::Place(usual), cancel));
         Ok(FrameCurve::rod(&whisker, found, loaded.as_ref()))
     };
     let pairs = frames.par_iter().zip(&fits);
@@ -517,7 +529,7 @@ pub(super) fn curves(
 /// Returns the indices of frames without contact, from all over the film: those that are farther than `beyond` from the pole, in lengths of the
 /// whisker. `None` if they are too few.
 fn free(frames: &[Option<RodFrame>], beyond: f64) -> Option<Vec<usize>> {
-    let is_free = |i: &usize| frames[*i].as_ref().is_some_and(|own| own.far > beyond);
+    let is_free = |i: &usize| frames[*i].as_ref().is_some_and(|frame| frame.far > beyond);
     let free: Vec<usize> = (0..frames.len()).filter(is_free).collect();
     (free.len() >= FEWEST_FREE).then(|| evenly(&free, SAMPLE))
 }
@@ -532,19 +544,19 @@ fn most_bent<'a>(
     let near = frames
         .iter()
         .flatten()
-        .filter(|own| own.far <= within + BESIDE);
+        .filter(|frame| frame.far <= within + BESIDE);
     let near = evenly(&near.collect::<Vec<_>>(), CANDIDATES * SAMPLE);
-    let moment = |own: &&'a RodFrame| {
-        let found = own.bent(whisker, cancel)?;
+    let moment = |frame: &&'a RodFrame| {
+        let found = frame.bent(whisker, cancel)?;
         let [contact, force] = found.pose.load?;
         // With another taper, the curve is a little off the pole.
-        (found.offset?.abs() <= 2.0 * within).then(|| (*own, (contact * force).abs()))
+        (found.offset?.abs() <= 2.0 * within).then(|| (*frame, (contact * force).abs()))
     };
     let moments = near.par_iter().filter_map(moment);
     let mut moments: Vec<(&RodFrame, f64)> = moments.collect();
-    let usual = median(moments.iter().map(|own| own.1));
-    moments.retain(|own| own.1 >= usual);
-    let bent: Vec<&RodFrame> = moments.into_iter().map(|own| own.0).collect();
+    let usual = median(moments.iter().map(|(_, moment)| *moment));
+    moments.retain(|(_, moment)| *moment >= usual);
+    let bent: Vec<&RodFrame> = moments.into_iter().map(|(frame, _)| frame).collect();
     evenly(&bent, SAMPLE)
 }
 
@@ -566,7 +578,7 @@ fn compared<'a>(
     } else {
         ""
     };
-    let [near, free] = [near_mm, free_mm].map(|own| digits(rounded(own, 2)));
+    let [near, free] = [near_mm, free_mm].map(|distance| digits(rounded(distance, 2)));
     Some(format!(
         "points are {near} mm from the rod near the pole, {free} mm without contact (rms){warning}"
     ))

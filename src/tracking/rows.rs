@@ -64,10 +64,10 @@ pub(super) fn frames(
     options: &TrackingOptions,
     notes: &mut Vec<String>,
 ) -> Result<(Vec<TrackedFrame>, Vec<Option<NearestPlace>>), TrackingError> {
-    let known = || curves.iter().filter_map(|own| own.curve.as_ref().ok());
-    let length_mm = median(known().map(|own| own.length_mm));
+    let known = || curves.iter().filter_map(|frame| frame.curve.as_ref().ok());
+    let length_mm = median(known().map(|curve| curve.length_mm));
     let near_mm = median(known().map(FrameCurve::near_mm));
-    let is_mean = known().any(|own| own.rms_mm.is_none());
+    let is_mean = known().any(|curve| curve.rms_mm.is_none());
     let at_mm = match options.curvature_at_mm {
         Some(mm) if (0.0..=near_mm).contains(&mm) => Some(mm),
         Some(mm) => {
@@ -92,16 +92,16 @@ pub(super) fn frames(
             Some(mm)
         }
     };
-    let places = curves.par_iter().map(|own| {
-        let pole = own.pole_mm?;
-        Some(own.curve.as_ref().ok()?.nearest(pole))
+    let places = curves.par_iter().map(|frame| {
+        let pole = frame.pole_mm?;
+        Some(frame.curve.as_ref().ok()?.nearest(pole))
     });
     let places: Vec<Option<NearestPlace>> = places.collect();
     let within = options.contact_within_mm.unwrap_or_default();
     let mut angle = None;
     let mut angles = Vec::with_capacity(curves.len());
-    for own in curves {
-        let turned = own.curve.as_ref().ok().map(|curve| {
+    for frame in curves {
+        let turned = frame.curve.as_ref().ok().map(|curve| {
             // A positive angle pushes CB: the base turns clockwise.
             let turned = -curve.angle();
             angle.map_or(turned, |before| nearest_turn(turned, before))
@@ -109,35 +109,35 @@ pub(super) fn frames(
         angle = turned.or(angle);
         angles.push(turned);
     }
-    let row = |((own, place), angle): ((&CurvedFrame, &Option<NearestPlace>), &Option<f64>)| {
-        let curve = own.curve.as_ref().ok();
+    let row = |((frame, place), angle): ((&CurvedFrame, &Option<NearestPlace>), &Option<f64>)| {
+        let curve = frame.curve.as_ref().ok();
         let at = curve.map(|curve| at_mm.unwrap_or(0.5 * curve.length_mm));
         let at = at.filter(|at| curve.is_some_and(|curve| *at <= curve.near_mm()));
         let position = curve.zip(at).map(|(curve, at)| curve.position_mm(at));
         let is_near = place.map(|place| place.offset_mm.abs() <= within);
         let contact = place.filter(|_| is_near == Some(true));
         TrackedFrame {
-            frame: own.number,
-            time_s: own.number as f64 / options.fps,
+            frame: frame.number,
+            time_s: frame.number as f64 / options.fps,
             angle_deg: angle.map(f64::to_degrees),
             curvature_per_mm: curve.zip(at).map(|(curve, at)| curve.curvature_per_mm(at)),
             at_arc_length_mm: at,
-            at_x_mm: position.map(|own| own.x),
-            at_y_mm: position.map(|own| own.y),
+            at_x_mm: position.map(|point| point.x),
+            at_y_mm: position.map(|point| point.y),
             contact: is_near.map(u8::from),
-            contact_x_mm: contact.map(|own| own.at_mm.x),
-            contact_y_mm: contact.map(|own| own.at_mm.y),
-            contact_angle_deg: contact.map(|own| own.angle.to_degrees()),
-            length_mm: curve.map(|own| own.length_mm),
-            rms_mm: curve.and_then(|own| own.rms_mm),
-            reason: own.curve.as_ref().err().copied(),
+            contact_x_mm: contact.map(|place| place.at_mm.x),
+            contact_y_mm: contact.map(|place| place.at_mm.y),
+            contact_angle_deg: contact.map(|place| place.angle.to_degrees()),
+            length_mm: curve.map(|curve| curve.length_mm),
+            rms_mm: curve.and_then(|curve| curve.rms_mm),
+            reason: frame.curve.as_ref().err().copied(),
         }
     };
     let rows = curves.par_iter().zip(&places).zip(&angles).map(row);
     let mut rows: Vec<TrackedFrame> = rows.collect();
     let zero_deg = zero(&rows, options, notes)?;
-    for own in &mut rows {
-        own.angle_deg = own.angle_deg.map(|angle| angle - zero_deg);
+    for row in &mut rows {
+        row.angle_deg = row.angle_deg.map(|angle| angle - zero_deg);
     }
     count(&rows, notes);
     Ok((rows, places))
@@ -155,22 +155,22 @@ fn zero(
                 .abs()
                 .total_cmp(&(other.time_s - time_s).abs())
         });
-        let near = near.filter(|own| (own.time_s - time_s).abs() <= 0.5001 / options.fps);
-        return near.and_then(|own| own.angle_deg).ok_or_else(|| {
+        let near = near.filter(|row| (row.time_s - time_s).abs() <= 0.5001 / options.fps);
+        return near.and_then(|row| row.angle_deg).ok_or_else(|| {
             let must = "must be the time of a frame with a whisker".to_owned();
             refused("zero_s", &digits(time_s), must)
         });
     }
     let touches = || {
         let pairs = rows.windows(2);
-        pairs.filter(|own| own[0].contact == Some(0) && own[1].contact == Some(1))
+        pairs.filter(|pair| pair[0].contact == Some(0) && pair[1].contact == Some(1))
     };
     // On CB, the base turns on in the positive direction.
-    let is_cb = |own: &&[TrackedFrame]| own[1].angle_deg > own[0].angle_deg;
+    let is_cb = |pair: &&[TrackedFrame]| pair[1].angle_deg > pair[0].angle_deg;
     let (row, what) = match touches().find(is_cb).or_else(|| touches().next()) {
-        Some(own) => (Some(&own[1]), "first touch"),
+        Some(pair) => (Some(&pair[1]), "first touch"),
         None => (
-            rows.iter().find(|own| own.angle_deg.is_some()),
+            rows.iter().find(|row| row.angle_deg.is_some()),
             "the first frame with a whisker",
         ),
     };
@@ -180,13 +180,13 @@ fn zero(
             row.frame
         ));
     }
-    Ok(row.and_then(|own| own.angle_deg).unwrap_or_default())
+    Ok(row.and_then(|row| row.angle_deg).unwrap_or_default())
 }
 
 /// Adds a note with the numbers of gaps, and of frames in contact.
 fn count(rows: &[TrackedFrame], notes: &mut Vec<String>) {
     let all = rows.len();
-    let of = |reason: NoFrame| rows.iter().filter(|own| own.reason == Some(reason)).count();
+    let of = |reason: NoFrame| rows.iter().filter(|row| row.reason == Some(reason)).count();
     let [missing, off] = [NoFrame::Missing, NoFrame::NoCurve].map(of);
     if missing + off > 0 {
         notes.push(format!(
@@ -194,9 +194,9 @@ fn count(rows: &[TrackedFrame], notes: &mut Vec<String>) {
             missing + off
         ));
     }
-    let is_known = rows.iter().any(|own| own.contact.is_some());
+    let is_known = rows.iter().any(|row| row.contact.is_some());
     if is_known {
-        let touching = rows.iter().filter(|own| own.contact == Some(1)).count();
+        let touching = rows.iter().filter(|row| row.contact == Some(1)).count();
         notes.push(format!("{touching} of {all} frames are in contact"));
     }
 }
