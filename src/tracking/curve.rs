@@ -2,8 +2,8 @@
 
 use super::frame_curve::FrameCurve;
 use super::options::{FaceAxis, TrackingError, TrackingOptions};
-use super::orient::median;
-use super::{CurvedFrame, ImageFrame, NoFrame, rods};
+use super::sample::{evenly, median};
+use super::{CurvedFrame, ImageFrame, MORE_POINTS, NoFrame, rods};
 use crate::scene::{digits, rounded};
 use crate::traced::{MOST_DEGREE, TracedShape, common_degree};
 use glam::DVec2;
@@ -12,9 +12,6 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial};
-
-/// Points more than the degree that a curve needs.
-pub(super) const MORE_POINTS: usize = 4;
 
 /// Number of points from which on cross-validation chooses the degree.
 const MANY_POINTS: usize = 8;
@@ -126,13 +123,6 @@ impl<'a> Curves<'a> {
     }
 }
 
-/// Points of a frame in mm with the y axis upward, from the base on; `None` if the base is lost.
-pub(super) fn points_mm(frame: &ImageFrame, scale: f64) -> Option<Vec<[f64; 2]>> {
-    (*frame.points_px.first()?)?;
-    let points = frame.points_px.iter().flatten();
-    Some(points.map(|[x, y]| [scale * x, -scale * y]).collect())
-}
-
 /// Number of points along a whisker below which a note says that they are few. With 8 exact points along the cone of `cone.toml`, detachments
 /// were off by up to 7 degrees, with 10 by 2, with 12 by 0.7, and with 16 by 0.4.
 const ENOUGH_POINTS: f64 = 12.0;
@@ -146,7 +136,7 @@ fn traced_frames(
 ) -> Vec<Result<FrameCurve, NoFrame>> {
     let points = frames
         .iter()
-        .map(|frame| points_mm(frame, options.mm_per_pixel));
+        .map(|frame| frame.points_mm(options.mm_per_pixel));
     let points: Vec<Option<Vec<[f64; 2]>>> = points.collect();
     let known = || points.iter().flatten();
     let far = |points: &[[f64; 2]], i: usize| {
@@ -222,9 +212,7 @@ fn degree(
         (degree.min(MOST_DEGREE), format!("for {count} points"))
     } else {
         let count = many.len().min(CHOSEN_FRAMES);
-        let some: Vec<_> = (0..count)
-            .map(|i| many[(2 * i + 1) * many.len() / (2 * count)].clone())
-            .collect();
+        let some: Vec<_> = evenly(&many, count).into_iter().cloned().collect();
         let degree = common_degree(&some, cancel).unwrap_or_default();
         (
             degree,

@@ -5,6 +5,7 @@
 //! `whisk` and `force` (`rows`) and points for `fit` (`detachment`).
 
 mod bent;
+mod common;
 mod curve;
 mod deeplabcut;
 mod detachment;
@@ -15,6 +16,7 @@ mod orient;
 mod points;
 mod rods;
 mod rows;
+mod sample;
 
 pub use detachment::TrackedDetachment;
 pub use options::{FaceAxis, ImagePole, TrackingError, TrackingFormat, TrackingOptions};
@@ -37,6 +39,9 @@ const MOST_FRAMES: u64 = 1_000_000;
 /// First bytes of an HDF5 file, and so of an NWB file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
+/// Points more than the degree that a curve needs.
+const MORE_POINTS: usize = 4;
+
 /// Frame of a film as a tracker gives it, in pixels with the y axis downward.
 #[derive(Clone, Debug, PartialEq)]
 struct ImageFrame {
@@ -48,6 +53,15 @@ struct ImageFrame {
     bend: Option<[f64; 2]>,
     /// Centre of the pole; `None` if it is lost or there is none.
     pole_px: Option<[f64; 2]>,
+}
+
+impl ImageFrame {
+    /// Returns the points in mm with the y axis upward, from the base on, at this scale in mm per pixel; `None` if the base is lost.
+    fn points_mm(&self, scale: f64) -> Option<Vec<[f64; 2]>> {
+        (*self.points_px.first()?)?;
+        let points = self.points_px.iter().flatten();
+        Some(points.map(|[x, y]| [scale * x, -scale * y]).collect())
+    }
 }
 
 /// Frames of a file before their calibration.
@@ -168,7 +182,7 @@ impl Tracking {
         if curves.iter().all(|frame| frame.curve.is_err()) {
             let what = format!(
                 "has no frame with a curve: must have at least one with the base and {} points along a smooth curve",
-                curve::MORE_POINTS
+                MORE_POINTS
             );
             return Err(CsvError::whole(origin, what).into());
         }

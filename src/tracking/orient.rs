@@ -1,6 +1,7 @@
 //! Order of points along the whisker, and the end at its base.
 
 use super::options::{TrackingError, TrackingOptions, refused};
+use super::sample::median;
 use super::{ImageFrame, ImageFrames, PointOrder};
 
 /// Ratio of the scatters of both ends from which on the steadier one is the base. The tip of a whisker of 20 mm whose base turns by 1 degree
@@ -163,13 +164,6 @@ fn places(frames: &[ImageFrame], end: usize) -> Vec<[f64; 2]> {
 
 fn distance([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
     libm::hypot(x - u, y - v)
-}
-
-/// Median of numbers, 0 without any.
-pub(super) fn median(numbers: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = numbers.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
 
 /// Median position, by coordinate.

@@ -3,7 +3,7 @@
 use super::CurvedFrame;
 use super::frame_curve::{FrameCurve, NearestPlace};
 use super::options::{TrackingError, TrackingOptions, refused};
-use super::orient::median;
+use super::sample::median;
 use crate::scene::{digits, rounded};
 use crate::trace::row;
 use rayon::prelude::*;

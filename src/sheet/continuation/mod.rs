@@ -24,7 +24,7 @@ pub struct Continuation {
     pub nodes: Vec<CurveNode>,
     /// Index of the continuation's node at the fold; `None` if the tip comes first.
     pub fold: Option<usize>,
-    /// Edge of the sheet at which the last node lies; `None` if the curve goes on beyond nine turns of the base.
+    /// Edge of the sheet at the last node. `None` means that the push angle exceeds nine turns before the curve meets an edge.
     pub end: Option<Edge>,
 }
 
