@@ -115,10 +115,12 @@ impl RowWriter<'_> {
             }
             self.contacts.sort_unstable_by_key(|(index, _)| *index);
         }
-        let points = self.points.iter().map(|(_, point)| *point);
-        let strains = side.peak_strains(points);
-        for ((index, _), strain) in self.points.iter().zip(strains) {
-            self.into.peak_strain[columns[*index].index] = strain;
+        if !self.points.is_empty() {
+            let points = self.points.iter().map(|(_, point)| *point);
+            let strains = side.peak_strains(points);
+            for ((index, _), strain) in self.points.iter().zip(strains) {
+                self.into.peak_strain[columns[*index].index] = strain;
+            }
         }
         // Without a push from first touch there is no history.
         let end = self.boundary.detachment().map(|span| span.to);

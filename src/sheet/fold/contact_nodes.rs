@@ -169,10 +169,16 @@ impl ContactNodes {
     /// Returns the magnitude `|f/rho^2|` of the load at the fold of the contact at `tau`, dimensionless, by interpolation.
     #[must_use]
     pub fn fold_load(&self, tau: f64) -> f64 {
-        let place = (u_of(&self.rod, tau) - self.first_u) / self.spacing;
+        libm::exp(self.fold_ln_q(u_of(&self.rod, tau))) / (tau * tau)
+    }
+
+    /// Returns `ln(|load| tau^2)` at the fold of the contact with the coordinate `u`, by interpolation.
+    #[must_use]
+    pub fn fold_ln_q(&self, u: f64) -> f64 {
+        let place = (u - self.first_u) / self.spacing;
         let before = (place as usize).min(self.folds.len() - 2);
         let start = stencil(before, STENCIL, self.folds.len());
-        libm::exp(self.ln_q[start].at(place - start as f64).0) / (tau * tau)
+        self.ln_q[start].at(place - start as f64).0
     }
 }
 

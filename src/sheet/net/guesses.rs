@@ -19,14 +19,36 @@ use whiskmap_mechanics::numerics::inverse::Inverse;
 use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
 use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
 use whiskmap_mechanics::rod::{Rod, arclength};
-use whiskmap_mechanics::shooting::ShootingMap;
+use whiskmap_mechanics::shooting::{Resolution, ShootingMap};
 
-/// Largest error of `ln D` and `phi` of a guess, by the last coefficients. The error is mostly much smaller, and one step of Newton's method from
-/// there is exact. The steps of coarse trajectories change with the load, which leaves up to 6e-6.
-pub const GUESS_ERROR: f64 = 1e-5;
+/// Accuracy of panels for guesses.
+#[derive(Clone, Copy, Debug)]
+pub struct GuessAccuracy {
+    /// Largest error of `ln D` and `phi` of a guess, by the last coefficients. The error is mostly much smaller.
+    pub error: f64,
+    /// Resolution of the trajectories. Coarse steps change with the load, which leaves up to 6e-6.
+    pub resolution: Resolution,
+}
 
-/// Largest error of `ln D` and `phi`, by the last coefficients, where the panels only show the folds.
-pub const FOLD_ERROR: f64 = 1e-3;
+impl GuessAccuracy {
+    /// Accuracy of panels that only show the folds.
+    pub const FOLDS: Self = Self {
+        error: 1e-3,
+        resolution: Resolution::COARSE,
+    };
+
+    /// Accuracy of the guesses for few cells: one step of Newton's method from there is exact.
+    pub const COARSE: Self = Self {
+        error: 1e-5,
+        resolution: Resolution::COARSE,
+    };
+
+    /// Accuracy of the guesses for many cells: nearly all steps of Newton's method are so short that no trajectory follows.
+    pub const FINE: Self = Self {
+        error: 1e-7,
+        resolution: Resolution::of(8),
+    };
+}
 
 /// Smallest number of points of contact and scale of the load as functions of `u`.
 const ALONG: usize = 16;
@@ -128,12 +150,17 @@ impl GuessPanel {
         pushes: &[f64],
         guesses: &mut [Option<Guess>],
     ) {
+        let known = ends.map(|end| end.map_or(0.0, |end| end.push));
+        let from = pushes.partition_point(|push| *push < known[0] - PUSH_MARGIN);
+        let to = pushes.partition_point(|push| *push <= known[1] + PUSH_MARGIN);
+        if from == to {
+            return;
+        }
         let part = |end: Option<&Crossing>| end.map_or(0.0, |end| self.0.part(case.rod, end));
         let Some(line) = self.0.line(row, ends.map(part)) else {
             return;
         };
         let sign = case.side.sign();
-        let known = ends.map(|end| end.map_or(0.0, |end| end.push));
         // The first state is next to the first end.
         let near = row.touch + sign * known[0];
         let turned = row.touch + nearest_turn(near, line.points[0].values[1][0]) - near;
@@ -154,8 +181,6 @@ impl GuessPanel {
         let Some(inverse) = fits.then(|| Inverse::new(functions, line.end)).flatten() else {
             return;
         };
-        let from = pushes.partition_point(|push| *push < known[0] - PUSH_MARGIN);
-        let to = pushes.partition_point(|push| *push <= known[1] + PUSH_MARGIN);
         let targets: Vec<f64> = pushes[from..to]
             .iter()
             .map(|push| push.max(first))
@@ -237,11 +262,15 @@ impl GuessPanel {
 
     /// Returns two places in the range of loads of the contact at `place`: the end of the surely stable loads, and the first fold of `contacts`.
     fn loads_at(&self, rod: &Rod, contacts: &ContactNodes, place: f64) -> [f64; 2] {
+        let [from, to] = self.0.contacts;
         let [ln_tau, ln_q] = self.0.along.at(place);
         let tau = libm::exp(ln_tau);
-        let scale = tau * tau * libm::exp(-ln_q) / TOP;
-        let surely_stable = surely_stable(rod) / arclength(rod, tau).powi(2);
-        [surely_stable, contacts.fold_load(tau)].map(|load| load * scale)
+        let surely_stable = surely_stable(rod) * (tau / arclength(rod, tau)).powi(2);
+        let fold = contacts.fold_ln_q(from + place * (to - from));
+        [
+            surely_stable * libm::exp(-ln_q) / TOP,
+            libm::exp(fold - ln_q) / TOP,
+        ]
     }
 }
 
@@ -378,7 +407,7 @@ mod tests {
         let rest = Rest::new(&rod);
         let rows: Vec<Row> = [0.3, 0.5, 0.7].map(|d| Row::new(&rest, d)).into();
         let contacts = ContactNodes::new(case, &rows[0], SPACING).unwrap();
-        let panels = Panels::for_guesses(case, &contacts, &rows, GUESS_ERROR);
+        let panels = Panels::for_guesses(case, &contacts, &rows, GuessAccuracy::COARSE.error);
         let panel = &panels.of_all_rows().unwrap()[0];
         assert!(panel.shows_folds(&rod, &contacts));
         let value = |x: f64, y: f64| {

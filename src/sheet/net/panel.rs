@@ -55,19 +55,15 @@ pub struct PanelLine<const F: usize> {
 
 /// Returns `ln tau` and `ln q` over the `range` of contacts by this number of `points`, where `q` is near the fold's `|load| tau^2`.
 pub fn along(rod: &Rod, contacts: &ContactNodes, range: [f64; 2], points: usize) -> Chebyshev<2> {
-    let mut near = 1.0;
-    let mut tau_at = |part: f64| {
-        near = tau_of(rod, range[0] + part * (range[1] - range[0]), near);
-        near
-    };
-    let scale = chebyshev_points(SCALE).iter().map(|part| {
-        let tau = tau_at(*part);
-        [libm::log(contacts.fold_load(tau) * tau * tau)]
-    });
+    let u_at = |part: f64| range[0] + part * (range[1] - range[0]);
+    let scale = chebyshev_points(SCALE).iter();
+    let scale = scale.map(|part| [contacts.fold_ln_q(u_at(*part))]);
     let scale = Chebyshev::through(&scale.collect::<Vec<_>>());
+    let mut tau = 1.0;
     let both = chebyshev_points(points).iter().map(|part| {
+        tau = tau_of(rod, u_at(*part), tau);
         let [ln_q] = scale.at(*part);
-        [libm::log(tau_at(*part)), ln_q]
+        [libm::log(tau), ln_q]
     });
     Chebyshev::through(&both.collect::<Vec<_>>())
 }
