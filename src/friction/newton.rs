@@ -220,7 +220,7 @@ impl FrictionTarget<'_> {
         FrictionStep::Solved(FrictionState {
             at: FrictionPoint::of(level, &node),
             sliding: Sliding::Sticks,
-            full: here.full,
+            variation: *here,
             slid: slid(&level.rod, &node),
             residual,
             steps: 0,

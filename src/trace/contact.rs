@@ -50,14 +50,8 @@ impl Branch {
                 return Ok(unmoved(node, Some(phase.sliding())));
             }
             let state: FrictionState = found.next().flatten().ok_or_else(|| lost(node))?;
-            let node = CurveNode {
-                point: state.at.point,
-                full: state.full,
-                push: node.push,
-                angle: state.at.angle,
-            };
             Ok(StateAtPush::of(
-                &node,
+                &state.node(node.push),
                 true,
                 state.at.ratio,
                 Some(state.sliding),

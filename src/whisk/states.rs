@@ -162,7 +162,7 @@ impl SideStates {
                     self.sheet.side.sign() * contact.push,
                 );
                 return Some(ContactState {
-                    reading: reader.read(state.at.point.x, &state.full, touch, push),
+                    reading: reader.read(state.at.point.x, &state.variation.full, touch, push),
                     sliding: Some(state.sliding),
                     point: state.at.point,
                     ratio: state.at.ratio,
