@@ -28,15 +28,35 @@ pub struct Responses {
     pub states: Sender<Response<Vec<PlainState>>>,
 }
 
+/// What an engine has computed for a request.
+enum Computed {
+    Cells(Cells),
+    States(Vec<PlainState>),
+}
+
 impl Responses {
+    /// Sends what the engine has `computed`. Returns false if the caller no longer receives.
+    fn send(&self, computed: Computed, busy: Duration) -> bool {
+        match computed {
+            Computed::Cells(cells) => {
+                let result = Ok(cells);
+                self.cells.send(Response { result, busy }).is_ok()
+            }
+            Computed::States(states) => {
+                let result = Ok(states);
+                self.states.send(Response { result, busy }).is_ok()
+            }
+        }
+    }
+
     /// Sends a failure, whatever the caller waits for.
-    fn fail(&self, failure: &EngineError, busy: Duration) {
+    fn fail(&self, failure: EngineError, busy: Duration) {
         let cells = Response {
             result: Err(failure.clone()),
             busy,
         };
         let states = Response {
-            result: Err(failure.clone()),
+            result: Err(failure),
             busy: Duration::ZERO,
         };
         // A caller that no longer receives has ended.
@@ -49,44 +69,35 @@ pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &R
     let (mut submitted, mut is_received) = (0, true);
     let mut since = Instant::now();
     loop {
-        let mut taken = Ok(());
-        while is_received && submitted < AT_ONCE && taken.is_ok() {
-            let request = match submitted {
-                0 => requested.recv().ok(),
-                _ => requested.try_recv().ok(),
-            };
-            let Some(request) = request else { break };
-            if submitted == 0 {
-                since = Instant::now();
-            }
-            match request {
-                Request::Cells(batch) => {
-                    taken = engine.submit(batch);
-                    submitted += 1;
-                }
-                Request::Nodes(nodes) => {
-                    let result = engine.shoot_nodes(&nodes);
-                    let now = Instant::now();
-                    let busy = now - since;
-                    if let Err(failure) = &result {
-                        return respond.fail(failure, busy);
-                    }
-                    is_received &= respond.states.send(Response { result, busy }).is_ok();
-                    since = now;
-                }
-            }
-        }
+        let request = match submitted {
+            _ if !is_received => None,
+            0 => requested.recv().ok(),
+            1..AT_ONCE => requested.try_recv().ok(),
+            _ => None,
+        };
         if submitted == 0 {
-            return;
+            since = Instant::now();
         }
-        let result = taken.and_then(|()| engine.collect());
-        submitted -= 1;
+        let computed = match request {
+            Some(Request::Cells(batch)) => match engine.submit(batch) {
+                Ok(()) => {
+                    submitted += 1;
+                    continue;
+                }
+                Err(failure) => Err(failure),
+            },
+            Some(Request::Nodes(nodes)) => engine.shoot_nodes(&nodes).map(Computed::States),
+            None if submitted == 0 => return,
+            None => {
+                submitted -= 1;
+                engine.collect().map(Computed::Cells)
+            }
+        };
         let now = Instant::now();
-        let busy = now - since;
-        if let Err(failure) = &result {
-            return respond.fail(failure, busy);
+        match computed {
+            Ok(computed) => is_received &= respond.send(computed, now - since),
+            Err(failure) => return respond.fail(failure, now - since),
         }
-        is_received &= respond.cells.send(Response { result, busy }).is_ok();
         since = now;
     }
 }

@@ -137,17 +137,18 @@ fn a_first_push_has_the_states_of_the_course() {
             }
             let mut course = limits.begin();
             course.to(push);
-            let own = ContactQuery {
+            let first_push = ContactQuery {
                 history,
                 push,
                 phase: history.phase(push),
             };
-            let found = states(&[own, limits.query(course.phase, push)]);
-            let [own, other] = [0, 1].map(|i| found[i].map(|state| state.full.force));
+            let found = states(&[first_push, limits.query(course.phase, push)]);
+            let [by_history, by_course] =
+                [0, 1].map(|i| found[i].map(|state| state.variation.full.force));
             // Of 120 pairs of states, Newton's method finds neither state of one pair.
-            assert_eq!(own.is_some(), other.is_some(), "{seed} {push}");
-            if let Some((own, other)) = own.zip(other) {
-                worst = worst.max((own / other - 1.0).abs());
+            assert_eq!(by_history.is_some(), by_course.is_some(), "{seed} {push}");
+            if let Some((by_history, by_course)) = by_history.zip(by_course) {
+                worst = worst.max((by_history / by_course - 1.0).abs());
                 count += 1;
             }
         }
