@@ -1,7 +1,7 @@
 //! Detachments to which the contact slides without doubt, by a few states of the row in place of its history.
 
 use super::limit::SlidingLimit;
-use super::segment::{LimitSegment, SlidingKnot};
+use super::segment::SlidingKnot;
 use crate::sheet::{Crossing, CurveNode, Edge, Sheet};
 use glam::DVec2;
 use std::f64::consts::PI;
@@ -50,17 +50,8 @@ pub fn surely_slides_to_end(
                 before = Some(node);
                 SlidingKnot::new(&level, node, &state)
             });
-            let mut knots: Vec<SlidingKnot> = knots.collect();
-            if let Some(last) = knots.last_mut()
-                && end.edge == Edge::Fold
-            {
-                *last = last.at_fold();
-            }
-            is_farthest_at_end(&SlidingLimit {
-                is_stable: true,
-                segments: LimitSegment::between(&knots),
-                level,
-            })
+            let (knots, has_fold) = (knots.collect(), end.edge == Edge::Fold);
+            is_farthest_at_end(&SlidingLimit::through(level, true, knots, has_fold))
         });
     surely.collect()
 }

@@ -22,6 +22,23 @@ pub struct SlidingLimit {
 }
 
 impl SlidingLimit {
+    /// Creates the limit of `level` through `knots`. The last one is a fold if `has_fold` is true.
+    pub fn through(
+        level: LevelCurve,
+        is_stable: bool,
+        mut knots: Vec<SlidingKnot>,
+        has_fold: bool,
+    ) -> Self {
+        if let Some(last) = knots.last_mut().filter(|_| has_fold) {
+            *last = last.at_fold();
+        }
+        Self {
+            level,
+            is_stable,
+            segments: LimitSegment::between(&knots),
+        }
+    }
+
     /// Computes the sliding limits of `levels`, `[level]`; `None` where the continuation fails. All levels have one method, and their
     /// trajectories share batches.
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
@@ -141,17 +158,8 @@ impl<'a> LimitPart<'a> {
     fn limit(&self, variations: impl Iterator<Item = FirstVariation>) -> SlidingLimit {
         let pairs = self.nodes.iter().zip(variations);
         let knots = pairs.map(|(node, variation)| SlidingKnot::new(self.level, *node, &variation));
-        let mut knots: Vec<SlidingKnot> = knots.collect();
-        if let Some(last) = knots.last_mut()
-            && self.has_fold
-        {
-            *last = last.at_fold();
-        }
-        SlidingLimit {
-            level: self.level.clone(),
-            is_stable: self.is_stable,
-            segments: LimitSegment::between(&knots),
-        }
+        let (level, knots) = (self.level.clone(), knots.collect());
+        SlidingLimit::through(level, self.is_stable, knots, self.has_fold)
     }
 }
 
