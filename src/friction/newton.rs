@@ -5,7 +5,7 @@
 //!
 //! Trajectories carry the derivatives by contact and load. The derivative by the force ratio is a difference quotient, which slows
 //! convergence, and leaves no error. Its second trajectory is one more lane of a block. The exact derivative
-//! ([`differentiate`](whiskmap_mechanics::shooting::differentiate)) needs blocks of its own, and takes 1.7 to 2.6 times the time.
+//! ([`differentiate`](whiskmap_mechanics::shooting::differentiate)) needs blocks of its own: maps and courses take 1.7 to 2.6 times as long.
 
 use super::limit::SlidingLimit;
 use super::sliding::{Sliding, slid};

@@ -31,12 +31,12 @@ fn film() -> Place {
 #[test]
 fn frames_are_those_that_force_and_whisk_read() {
     let place = film();
-    let words = [
+    let own = [
         &FILM[..],
         &["--fps", "500", "-o", "frames.csv", "--curvature-at", "2mm"],
     ]
     .concat();
-    let run = place.run(&words);
+    let run = place.run(&own);
     assert_eq!((run.code, &*run.out), (Some(0), "frames.csv\n"), "{run:?}");
     for note in [
         "note: base at ",
@@ -100,12 +100,12 @@ fn frames_are_those_that_force_and_whisk_read() {
 #[test]
 fn detachments_are_those_that_fit_reads() {
     let place = film();
-    let words = [
+    let own = [
         &FILM[..],
         &["--fps", "500", "--detachments", "-o", "points.csv"],
     ]
     .concat();
-    let run = place.run(&words);
+    let run = place.run(&own);
     assert_eq!((run.code, &*run.out), (Some(0), "points.csv\n"), "{run:?}");
     let table = String::from_utf8(place.bytes("points.csv")).unwrap();
     assert!(
@@ -117,7 +117,7 @@ fn detachments_are_those_that_fit_reads() {
     assert!(run.out.contains("slip-off"), "{run:?}");
     // A pole that is not reached leaves none.
     let parts = "base,w1,w2,w3,w4,w5,w6,w7,tip";
-    let mut far = [&words[..], &["--points", parts]].concat();
+    let mut far = [&own[..], &["--points", parts]].concat();
     far[5] = "500,500";
     let run = place.run(&far);
     assert_eq!(run.code, Some(0), "{run:?}");

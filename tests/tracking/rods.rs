@@ -163,7 +163,7 @@ const CONE: &str = include_str!("../../scenes/cone.toml");
 
 /// Root mean square.
 fn rms(numbers: &[f64]) -> f64 {
-    let squares: f64 = numbers.iter().map(|number| number * number).sum();
+    let squares: f64 = numbers.iter().map(|own| own * own).sum();
     (squares / numbers.len() as f64).sqrt()
 }
 
@@ -191,10 +191,7 @@ fn few_points_with_errors_show_angles_forces_and_taper() {
                 // First touch and detachment are in the middle between frames.
                 let wanted = side.sign() * 0.5 * held as f64;
                 assert_near(Some(end.push_angle_deg), wanted, 0.9);
-                let note = found
-                    .notes
-                    .iter()
-                    .find(|note| note.contains("the taper is "));
+                let note = found.notes.iter().find(|own| own.contains("the taper is "));
                 let note = note.unwrap().split(['s', ',', ' ']);
                 let numbers: Vec<f64> = note.filter_map(|own| own.parse().ok()).collect();
                 assert!(
@@ -233,7 +230,7 @@ fn the_curvature_scatters_alike_with_and_without_contact() {
             .filter(|(row, exact)| row.0 == is_held && exact.0 == is_held);
         let errors: Vec<f64> = own.map(|(row, exact)| row.1 - exact.1).collect();
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-        rms(&errors.iter().map(|error| error - mean).collect::<Vec<_>>())
+        rms(&errors.iter().map(|own| own - mean).collect::<Vec<_>>())
     };
     let ratio = scatter(true) / scatter(false);
     assert!((0.5..2.0).contains(&ratio), "{ratio}");
@@ -248,7 +245,7 @@ fn points_off_the_rod_are_named() {
         let note = found
             .notes
             .iter()
-            .find(|note| note.contains("from the rod near the pole"));
+            .find(|own| own.contains("from the rod near the pole"));
         note.unwrap()
             .contains("the whisker at the pole is off the rod")
     };
