@@ -1,6 +1,6 @@
 //! Contacts along a course: one after the other, each from its touch to its release or detachment, with friction or without.
 
-use super::states::SideStates;
+use super::states::BothSides;
 use crate::friction::{ContactCourse, ContactPhase, CourseLimits, Sliding};
 use whiskmap_mechanics::rod::Side;
 
@@ -26,7 +26,7 @@ pub struct ContactChange {
 
 /// Contacts of a course, followed in the order of time. Without friction, they have no limits, and nothing is dissipated.
 pub struct CourseContacts<'a> {
-    limits: [Option<&'a CourseLimits>; 2],
+    sides: &'a BothSides,
     /// Contact that has begun and not ended, with its side.
     open: Option<(Side, ContactCourse<'a>)>,
     /// Energy dissipated in contacts that have ended, in `E I_base/L_w`.
@@ -36,10 +36,10 @@ pub struct CourseContacts<'a> {
 }
 
 impl<'a> CourseContacts<'a> {
-    /// Creates the contacts of a course that begins without contact. `sides` are the states on `[CB, CF]`.
-    pub fn new(sides: [Option<&'a SideStates>; 2]) -> Self {
+    /// Creates the contacts of a course that begins without contact.
+    pub const fn new(sides: &'a BothSides) -> Self {
         Self {
-            limits: sides.map(|states| states?.limits(0)),
+            sides,
             open: None,
             ended: 0.0,
             is_lost: false,
@@ -49,15 +49,20 @@ impl<'a> CourseContacts<'a> {
     /// Forgets the contact after a gap in the course. The energy dissipated so far is no longer known.
     pub fn forget(&mut self) {
         self.open = None;
-        if self.limits.iter().any(Option::is_some) {
+        if Side::BOTH.iter().any(|side| self.limits(*side).is_some()) {
             self.ended = f64::NAN;
         }
         self.is_lost = false;
     }
 
+    /// Returns the limits of a contact on `side`; `None` without friction.
+    fn limits(&self, side: Side) -> Option<&'a CourseLimits> {
+        self.sides.of(side)?.limits(0)
+    }
+
     /// Begins a contact on `side`, moves it from first touch to `push`, a magnitude in radians, and returns it.
     pub fn touch(&mut self, side: Side, push: f64) -> CourseContact {
-        let limits = self.limits[usize::from(side == Side::Cf)];
+        let limits = self.limits(side);
         self.open = limits.map(|limits| (side, limits.begin()));
         self.to(side, push).0
     }

@@ -4,7 +4,7 @@
 
 use super::contact::{ContactChange, CourseContact, CourseContacts};
 use super::phase::{Obstacles, Passage, Phase};
-use super::states::SideStates;
+use super::states::BothSides;
 use super::turns::Turns;
 use super::{Undecided, WhiskEventKind};
 use whiskmap_mechanics::rod::Side;
@@ -68,8 +68,8 @@ impl Leg {
 }
 
 impl<'a> Legs<'a> {
-    /// Creates the course in progress that begins in `phase`. `sides` are the states on `[CB, CF]`.
-    pub fn new(turns: &'a Turns, phase: Phase, sides: [Option<&'a SideStates>; 2]) -> Self {
+    /// Creates the course in progress that begins in `phase`, with the states on both `sides`.
+    pub const fn new(turns: &'a Turns, phase: Phase, sides: &'a BothSides) -> Self {
         Self {
             turns,
             phase,

@@ -239,7 +239,7 @@ pub fn whisk_with(
     let known = course.known();
     let first = course.angles_deg[known[0]];
     let phase = begin(&turns, first, options.start)?;
-    let mut legs = Legs::new(&turns, phase, Side::BOTH.map(|side| found.of(side)));
+    let mut legs = Legs::new(&turns, phase, &found);
     legs.first(first.to_radians(), course.times_s[known[0]]);
     let gaps = course.gaps(options.bridge_s);
     let is_open = |end: usize| {
