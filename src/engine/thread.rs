@@ -28,27 +28,7 @@ pub struct Responses {
     pub states: Sender<Response<Vec<PlainState>>>,
 }
 
-/// What an engine has computed for a request.
-enum Computed {
-    Cells(Cells),
-    States(Vec<PlainState>),
-}
-
 impl Responses {
-    /// Sends what the engine has `computed`. Returns false if the caller no longer receives.
-    fn send(&self, computed: Computed, busy: Duration) -> bool {
-        match computed {
-            Computed::Cells(cells) => {
-                let result = Ok(cells);
-                self.cells.send(Response { result, busy }).is_ok()
-            }
-            Computed::States(states) => {
-                let result = Ok(states);
-                self.states.send(Response { result, busy }).is_ok()
-            }
-        }
-    }
-
     /// Sends a failure, whatever the caller waits for.
     fn fail(&self, failure: EngineError, busy: Duration) {
         let cells = Response {
@@ -78,7 +58,7 @@ pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &R
         if submitted == 0 {
             since = Instant::now();
         }
-        let computed = match request {
+        let sent = match request {
             Some(Request::Cells(batch)) => match engine.submit(batch) {
                 Ok(()) => {
                     submitted += 1;
@@ -86,20 +66,30 @@ pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &R
                 }
                 Err(failure) => Err(failure),
             },
-            Some(Request::Nodes(nodes)) => engine.shoot_nodes(&nodes).map(Computed::States),
+            Some(Request::Nodes(nodes)) => {
+                let states = engine.shoot_nodes(&nodes);
+                states.map(|states| send(&respond.states, states, &mut since))
+            }
             None if submitted == 0 => return,
             None => {
                 submitted -= 1;
-                engine.collect().map(Computed::Cells)
+                let cells = engine.collect();
+                cells.map(|cells| send(&respond.cells, cells, &mut since))
             }
         };
-        let now = Instant::now();
-        match computed {
-            Ok(computed) => is_received &= respond.send(computed, now - since),
-            Err(failure) => return respond.fail(failure, now - since),
+        match sent {
+            Ok(sent) => is_received &= sent,
+            Err(failure) => return respond.fail(failure, since.elapsed()),
         }
-        since = now;
     }
+}
+
+/// Sends the result of a request, for which the engine has been busy `since` the previous one. Returns false if it is not received.
+fn send<R>(to: &Sender<Response<R>>, result: R, since: &mut Instant) -> bool {
+    let now = Instant::now();
+    let busy = now - std::mem::replace(since, now);
+    let result = Ok(result);
+    to.send(Response { result, busy }).is_ok()
 }
 
 #[cfg(test)]
