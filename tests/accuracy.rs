@@ -76,7 +76,7 @@ fn the_estimate_bounds_the_error_of_every_scene() {
             assert!(found.resolution.least >= last);
             last = found.resolution.least;
             let (mut at_ends, mut in_cells) = (0.0_f64, 0.0_f64);
-            for whisker in scene.whiskers().flatten().map(|own| own.whisker) {
+            for whisker in scene.whiskers().flatten().map(|swept| swept.whisker) {
                 for side in Side::BOTH {
                     let ends = ends(&scene, &whisker, side, found.resolution);
                     let cells = cells(&scene, &whisker, side, found.resolution);

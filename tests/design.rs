@@ -77,8 +77,13 @@ fn known_values_come_back() {
         (&scene, 18.5, Side::Cb),
         (&spiral, 12.0, Side::Cb),
     ] {
-        let own = end(scene, distance, side);
-        let target = target(distance, side, own.kind, own.push_angle_deg.unwrap());
+        let reached = end(scene, distance, side);
+        let target = target(
+            distance,
+            side,
+            reached.kind,
+            reached.push_angle_deg.unwrap(),
+        );
         for parameter in Parameter::ALL {
             let Some(value) = parameter.value(scene) else {
                 continue;
@@ -164,7 +169,9 @@ fn kinds_are_told_apart() {
     ] {
         let values = ask(kind, push).values;
         assert!(
-            values.iter().any(|own| (own - value).abs() < 1e-6),
+            values
+                .iter()
+                .any(|solution| (solution - value).abs() < 1e-6),
             "{values:?}"
         );
     }
@@ -235,8 +242,8 @@ fn what_cannot_be_asked_for_is_refused() {
 #[test]
 fn a_number_that_does_not_matter_has_no_solution() {
     let scene = robot();
-    let own = end(&scene, 60.0, Side::Cb).push_angle_deg.unwrap();
-    for push in [own, own + 1.0] {
+    let slip_off = end(&scene, 60.0, Side::Cb).push_angle_deg.unwrap();
+    for push in [slip_off, slip_off + 1.0] {
         let target = target(60.0, Side::Cb, DetachmentKind::SlipOff, push);
         let design = design(&scene, Parameter::YoungsModulusGpa, &target).unwrap();
         assert_eq!(design.values, [0.0; 0]);
@@ -284,8 +291,11 @@ fn the_largest_load_of_a_push_reaches_the_target() {
             };
             let parameter = Parameter::BaseRadiusUm;
             let design = design(scene, parameter, &target).unwrap();
-            let own = parameter.value(scene).unwrap();
-            let off = design.values.iter().map(|value| (value / own - 1.0).abs());
+            let current = parameter.value(scene).unwrap();
+            let off = design
+                .values
+                .iter()
+                .map(|value| (value / current - 1.0).abs());
             let off = off.fold(f64::INFINITY, f64::min);
             let values = &design.values;
             assert!(off < 2e-6, "{goal:?} {side:?} at {distance_mm}: {values:?}");
@@ -382,11 +392,11 @@ fn several_numbers_come_back_from_as_many_targets() {
             !found.is_undetermined && found.nearest.is_none(),
             "{found:?}"
         );
-        let own = |own: &Variable| own.value(scene).unwrap_or(distance_mm);
+        let current = |variable: &Variable| variable.value(scene).unwrap_or(distance_mm);
         // The largest values of 2,000 states are up to 1e-6 below those of the push.
         let is_own = |values: &Vec<f64>| {
             let mut pairs = values.iter().zip(variables);
-            pairs.all(|(value, variable)| (value / own(variable) - 1.0).abs() < 1e-4)
+            pairs.all(|(value, variable)| (value / current(variable) - 1.0).abs() < 1e-4)
         };
         assert!(found.solutions.iter().any(is_own), "{goals:?}: {found:?}");
         for values in &found.solutions {
@@ -458,18 +468,18 @@ fn what_follows_a_varied_number_follows() {
     let short = scene
         .with(Parameter::LengthMm, 0.8 * whisker.length_mm)
         .unwrap();
-    let own = end(&short, 0.6 * short.whisker.length_mm, Side::Cb);
+    let short_end = end(&short, 0.6 * short.whisker.length_mm, Side::Cb);
     let sought = target(
         0.6 * whisker.length_mm,
         Side::Cb,
-        own.kind,
-        own.push_angle_deg.unwrap(),
+        short_end.kind,
+        short_end.push_angle_deg.unwrap(),
     );
     let found = design(&scene, length, &sought).unwrap();
     let off = found
         .values
         .iter()
-        .map(|own| (own / short.whisker.length_mm - 1.0).abs());
+        .map(|distance| (distance / short.whisker.length_mm - 1.0).abs());
     assert!(off.fold(f64::INFINITY, f64::min) < 1e-9, "{found:?}");
 
     let keeping = DesignVaried {
@@ -500,8 +510,13 @@ fn what_follows_a_varied_number_follows() {
     };
     assert_eq!(design(&scene, other, &load), Err(DesignError::NoTaper));
 
-    let own = end(&scene, 60.0, Side::Cb);
-    let sought = target(45.0, Side::Cb, own.kind, own.push_angle_deg.unwrap());
+    let reached = end(&scene, 60.0, Side::Cb);
+    let sought = target(
+        45.0,
+        Side::Cb,
+        reached.kind,
+        reached.push_angle_deg.unwrap(),
+    );
     let found = design(&scene, Variable::DistanceMm, &sought).unwrap();
     assert!(
         found.values.iter().any(|value| (value - 60.0).abs() < 1e-7),

@@ -36,6 +36,7 @@ fn pages() -> Vec<(PathBuf, String)> {
         "ARCHITECTURE.md",
         "CHANGELOG.md",
         "CONTRIBUTING.md",
+        "tests/README.md",
     ];
     let paths = names.map(|name| root().join(name)).into_iter();
     let paths = paths.chain(files(&root().join("docs"), "md"));
@@ -241,9 +242,9 @@ fn paths_on_pages_about_the_code_exist() {
         "tests",
         "outputs",
     ];
+    let about_the_code = ["ARCHITECTURE.md", "CONTRIBUTING.md", "tests/README.md"];
     for (page, text) in pages() {
-        let name = page.file_name().unwrap_or_default();
-        if name != "ARCHITECTURE.md" && name != "CONTRIBUTING.md" {
+        if !about_the_code.iter().any(|name| page.ends_with(name)) {
             continue;
         }
         for word in text.split('`').skip(1).step_by(2) {
@@ -303,13 +304,14 @@ fn the_architecture_has_at_most_150_lines() {
     assert!(text.lines().count() <= 150, "{}", text.lines().count());
 }
 
-/// Cargo finds no test by itself here, so a file that no program names would never run.
+/// Cargo finds no test by itself here, so a file that no program names would never run. The page of the tests names each, too.
 #[test]
-fn every_test_file_is_in_a_program() {
+fn every_test_file_is_in_a_program_and_on_the_page_of_the_tests() {
     let tests = root().join("tests");
     let programs = ["main.rs", "portable/main.rs", "machine/main.rs"];
     let read = |name: &str| fs::read_to_string(tests.join(name)).expect("a program");
     let text: String = programs.map(read).concat();
+    let page = read("README.md");
     for entry in fs::read_dir(&tests).expect("tests") {
         let path = entry.expect("a test").path();
         let is_module = path.join("mod.rs").exists() || path.extension().is_some_and(|e| e == "rs");
@@ -317,6 +319,8 @@ fn every_test_file_is_in_a_program() {
         let name = name.expect("a name");
         if is_module && name != "main" {
             assert!(text.contains(&format!("mod {name};")), "{}", path.display());
+            let is_named = ["/", ".rs"].map(|end| page.contains(&format!("`{name}{end}`")));
+            assert!(is_named.contains(&true), "{}", path.display());
         }
         assert!(
             !path.join("main.rs").exists() || ["portable", "machine"].contains(&name),

@@ -105,7 +105,8 @@ fn a_stiff_follicle_is_a_clamp() {
         };
         for side in Side::BOTH {
             let distances = [2.0, 5.0, 8.0, 11.0, 14.0];
-            let [held, clamped] = [&held, &clamped].map(|own| curve(own, &pole, side, &distances));
+            let [held, clamped] =
+                [&held, &clamped].map(|whisker| curve(whisker, &pole, side, &distances));
             for (held, clamped) in held.iter().zip(&clamped) {
                 assert_eq!(held.kind, clamped.kind);
                 if let (Some(held), Some(clamped)) = (held.push_angle_deg, clamped.push_angle_deg) {
@@ -163,9 +164,9 @@ fn engines_agree_from_hinge_to_clamp() {
     let [trajectories, nets] = &maps;
     let engine = &nets.summary.engine_cells;
     assert!(engine.solved > nets.summary.refined / 2, "{engine:?}");
-    for (own, other) in trajectories.cells().zip(nets.cells()) {
-        assert_eq!(own.regime, other.regime, "{own:?}");
-        assert_ne!(own.regime, Regime::Unresolved, "{own:?}");
+    for (cell, other) in trajectories.cells().zip(nets.cells()) {
+        assert_eq!(cell.regime, other.regime, "{cell:?}");
+        assert_ne!(cell.regime, Regime::Unresolved, "{cell:?}");
     }
     // The softer the follicle, the later the whisker lets go.
     let contacts = |whisker: usize| {
@@ -194,7 +195,9 @@ fn soft_scene(whisker: &Whisker, stiffness: f64, distances_mm: &[f64]) -> Scene 
         youngs_modulus_gpa,
         ..
     } = whisker;
-    let bend = whisker.curvature.map_or(0.0, |own| own.parabola_per_mm);
+    let bend = whisker
+        .curvature
+        .map_or(0.0, |parabola| parabola.parabola_per_mm);
     let text = format!(
         "title = 'Soft'\n[whisker]\nlength_mm = {length_mm}\nbase_radius_um = {base_radius_um}\ntip_radius_um = {tip_radius_um}\n\
          youngs_modulus_gpa = {youngs_modulus_gpa}\ncurvature.parabola_per_mm = {bend}\n\
@@ -231,9 +234,9 @@ fn pushes_in_soft_follicles_end_within_nine_turns_or_are_unresolved() {
                 options.engine = engine;
                 map(&soft_scene(&held, stiffness, &distances), options).unwrap()
             });
-            let [own, other] = [&maps[0].panels[0], &maps[1].panels[0]];
+            let [by_cpu, other] = [&maps[0].panels[0], &maps[1].panels[0]];
             assert_eq!(
-                (&own.regime, &own.status),
+                (&by_cpu.regime, &by_cpu.status),
                 (&other.regime, &other.status),
                 "{held:?}"
             );
@@ -263,9 +266,9 @@ fn pushes_in_soft_follicles_end_within_nine_turns_or_are_unresolved() {
                         if side.sign() * push_deg <= 0.0 {
                             continue;
                         }
-                        let is_open = own.regime[cell] == Regime::Unresolved.code();
+                        let is_open = by_cpu.regime[cell] == Regime::Unresolved.code();
                         assert_eq!(is_open, end > MOST_TURNS, "{case} {push_deg}");
-                        let has_reason = own.status[cell] == Status::NoBoundary.code();
+                        let has_reason = by_cpu.status[cell] == Status::NoBoundary.code();
                         assert_eq!(is_open, has_reason, "{case} {push_deg}");
                     }
                 }
@@ -321,8 +324,8 @@ fn states_beyond_nine_turns_are_left_out() {
     assert!((end - kinds[1].1.unwrap()).abs() < 1e-6, "{end} {kinds:?}");
     let marks = |branch: &Branch| {
         let points = branch.points(200).unwrap();
-        let largest = points.iter().map(|own| own.push_angle_deg.abs());
-        let marks: Vec<BranchMark> = points.iter().filter_map(|own| own.mark).collect();
+        let largest = points.iter().map(|point| point.push_angle_deg.abs());
+        let marks: Vec<BranchMark> = points.iter().filter_map(|point| point.mark).collect();
         (marks, largest.fold(0.0, f64::max))
     };
     let (cut, largest) = marks(&cut);

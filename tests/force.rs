@@ -96,11 +96,11 @@ fn forces_of_states_come_back() {
                 for method in [ForceMethod::Lever, ForceMethod::Model] {
                     let found = force(&scene, &frame, method);
                     let context = format!("{name} {push} {part} {method:?} {found:?} {wanted}");
-                    let own = found.force_un.unwrap_or_else(|| panic!("{context}"));
-                    assert!((own / wanted - 1.0).abs() < 1e-9, "{context}");
+                    let force_un = found.force_un.unwrap_or_else(|| panic!("{context}"));
+                    assert!((force_un / wanted - 1.0).abs() < 1e-9, "{context}");
                     // The moment and the force at the base change their signs along some pushes.
                     let force = wanted;
-                    for (own, wanted, size) in [
+                    for (value, wanted, size) in [
                         (
                             found.base_moment_nnm,
                             state.base_moment_nnm,
@@ -110,7 +110,7 @@ fn forces_of_states_come_back() {
                         (found.base_force_y_un, state.base_force_y_un, force),
                         (found.contact_angle_deg, state.contact_angle_deg, 1.0),
                     ] {
-                        let off = own.unwrap() - wanted;
+                        let off = value.unwrap() - wanted;
                         assert!(off.abs() < 1e-9 * size, "{context} {wanted} {off:e}");
                     }
                     if method == ForceMethod::Model {
@@ -170,15 +170,15 @@ fn forces_of_a_follicle_come_back_in_both_frames() {
                     },
                     ..ForceOptions::new(method)
                 };
-                let own = forces_of(&scene, std::slice::from_ref(frame), &options)[0];
-                let context = format!("{push} {axis:?} {method:?} {own:?} {state:?}");
+                let row = forces_of(&scene, std::slice::from_ref(frame), &options)[0];
+                let context = format!("{push} {axis:?} {method:?} {row:?} {state:?}");
                 let size = state.force_un;
                 for (found, wanted, size) in [
-                    (own.force_un, size, size),
-                    (own.base_force_x_un, on_base[0], size),
-                    (own.base_force_y_un, on_base[1], size),
-                    (own.base_moment_nnm, state.base_moment_nnm, 16.0 * size),
-                    (own.contact_angle_deg, angle, 1.0),
+                    (row.force_un, size, size),
+                    (row.base_force_x_un, on_base[0], size),
+                    (row.base_force_y_un, on_base[1], size),
+                    (row.base_moment_nnm, state.base_moment_nnm, 16.0 * size),
+                    (row.contact_angle_deg, angle, 1.0),
                 ] {
                     let found = found.unwrap_or_else(|| panic!("{context}"));
                     assert!((found - wanted).abs() < 1e-8 * size, "{wanted} {context}");
@@ -186,7 +186,7 @@ fn forces_of_a_follicle_come_back_in_both_frames() {
                 // The first-order deviation of each load is that of a small change of the curvature and of each coordinate.
                 let by = |step: [f64; 4]| {
                     let [to, from] = [1.0, -1.0].map(|sign| {
-                        let frame = off(frame, step.map(|own| sign * own));
+                        let frame = off(frame, step.map(|step| sign * step));
                         loads(&forces_of(&scene, &[frame], &options)[0])
                     });
                     [0, 1, 2, 3].map(|i| (to[i] - from[i]) / 2e-3)
@@ -198,16 +198,16 @@ fn forces_of_a_follicle_come_back_in_both_frames() {
                 ];
                 let by = steps.map(by);
                 let sds = [
-                    own.force_sd_un,
-                    own.base_force_x_sd_un,
-                    own.base_force_y_sd_un,
-                    own.base_moment_sd_nnm,
+                    row.force_sd_un,
+                    row.base_force_x_sd_un,
+                    row.base_force_y_sd_un,
+                    row.base_moment_sd_nnm,
                 ];
                 for (i, sd) in sds.into_iter().enumerate() {
                     let wanted = by
-                        .map(|own| own[i])
+                        .map(|numbers| numbers[i])
                         .iter()
-                        .map(|own| own * own)
+                        .map(|number| number * number)
                         .sum::<f64>();
                     let relative = sd.unwrap() / wanted.sqrt() - 1.0;
                     assert!(relative.abs() < 1e-4, "{i} {relative:e} {context}");
@@ -315,11 +315,11 @@ fn a_point_without_a_position_is_at_rest() {
     let rest = Rest::new(&scene.whisker.rod(&scene.pole, Side::Cb));
     let length = scene.whisker.length_mm;
     let (at, _) = rest.at_arclength(given.at_arc_length_mm / length);
-    let [own, other] = [None, Some((at * length).to_array())].map(|at_mm| {
+    let [one, other] = [None, Some((at * length).to_array())].map(|at_mm| {
         let frame = CurvatureFrame { at_mm, ..given };
         force(&scene, &frame, ForceMethod::Lever)
     });
-    assert_eq!(own, other);
+    assert_eq!(one, other);
 }
 
 /// The model returns no unstable state, although it has the measured curvature and distance.
@@ -363,9 +363,9 @@ fn states_beside_the_largest_curvature_come_back() {
             let found = force(&scene, &frame, ForceMethod::Model);
             let wanted = state.force_un;
             let context = format!("{name} {side:?} {distance} {push} {part}: {found:?} {wanted}");
-            let own = found.force_un.unwrap_or_else(|| panic!("{context}"));
+            let force = found.force_un.unwrap_or_else(|| panic!("{context}"));
             // Measured: 7.3e-11.
-            assert!((own / wanted - 1.0).abs() < 1e-9, "{context}");
+            assert!((force / wanted - 1.0).abs() < 1e-9, "{context}");
         }
     }
 }
@@ -405,10 +405,16 @@ fn a_baseline_takes_away_an_offset() {
     let (offset, sd) = (0.05 * frame.curvature_per_mm, 1e-4);
     let read = with_baseline(&scene, frame, offset, sd);
     let baseline = read.baseline(&scene.whisker, Some([0.0, 1.0])).unwrap();
-    let own = baseline.unwrap();
-    assert_eq!(own.count, 2);
-    assert!((own.mean_per_mm / offset - 1.0).abs() < 1e-12, "{own:?}");
-    assert!((own.sd_per_mm / sd - 1.0).abs() < 1e-9, "{own:?}");
+    let estimated = baseline.unwrap();
+    assert_eq!(estimated.count, 2);
+    assert!(
+        (estimated.mean_per_mm / offset - 1.0).abs() < 1e-12,
+        "{estimated:?}"
+    );
+    assert!(
+        (estimated.sd_per_mm / sd - 1.0).abs() < 1e-9,
+        "{estimated:?}"
+    );
     let options = ForceOptions {
         baseline,
         ..ForceOptions::new(ForceMethod::Model)
@@ -427,7 +433,7 @@ fn a_baseline_takes_away_an_offset() {
         ..options
     };
     // The scatter counts as the scene's deviation would, which replaces it.
-    let [same, twice] = [own.sd_per_mm, 2.0 * own.sd_per_mm].map(|sd| last(&given(sd)));
+    let [same, twice] = [estimated.sd_per_mm, 2.0 * estimated.sd_per_mm].map(|sd| last(&given(sd)));
     assert_eq!(same.force_sd_un, with.force_sd_un);
     let twice = twice.force_sd_un.unwrap() / with.force_sd_un.unwrap();
     assert!((twice - 2.0).abs() < 1e-12, "{twice}");
@@ -495,7 +501,7 @@ fn standard_deviations_are_those_of_random_frames() {
                 sd.map(Option::unwrap)
             };
             let none = FrameDeviations::default();
-            let one = |own: usize| match own {
+            let one = |group: usize| match group {
                 0 => FrameDeviations {
                     curvature_per_mm: Some(sd[0]),
                     ..none
@@ -519,13 +525,13 @@ fn standard_deviations_are_those_of_random_frames() {
             };
             let changes = [0, 1, 2, 3].map(change);
             let size = loads(&forces(&scene.whisker, &scene.pole, &[frame], method)[0]);
-            for (own, numbers) in [&[0][..], &[1, 2], &[3]].into_iter().enumerate() {
-                for (i, found) in found(one(own)).into_iter().enumerate() {
+            for (group, numbers) in [&[0][..], &[1, 2], &[3]].into_iter().enumerate() {
+                for (i, found) in found(one(group)).into_iter().enumerate() {
                     let squares = numbers.iter().map(|number| changes[*number][i].powi(2));
                     let wanted = squares.sum::<f64>().sqrt();
                     // Rounding of the differences: forces are found to 1e-11.
                     let allowed = 1e-5 * wanted + 1e-8 * size[i].abs();
-                    let context = format!("{name} {method:?} {own} {i}: {found} {wanted}");
+                    let context = format!("{name} {method:?} {group} {i}: {found} {wanted}");
                     assert!((found - wanted).abs() < allowed, "{context}");
                 }
             }
@@ -543,8 +549,11 @@ fn standard_deviations_are_those_of_random_frames() {
             let drawn = forces(&scene.whisker, &scene.pole, &frames, method);
             let drawn: Vec<[f64; 4]> = drawn.iter().map(loads).collect();
             for (i, found) in found(all).into_iter().enumerate() {
-                let mean = drawn.iter().map(|own| own[i]).sum::<f64>() / SAMPLES as f64;
-                let squares = drawn.iter().map(|own| (own[i] - mean).powi(2)).sum::<f64>();
+                let mean = drawn.iter().map(|forces| forces[i]).sum::<f64>() / SAMPLES as f64;
+                let squares = drawn
+                    .iter()
+                    .map(|forces| (forces[i] - mean).powi(2))
+                    .sum::<f64>();
                 let wanted = (squares / (SAMPLES - 1) as f64).sqrt();
                 // The standard deviation of that of 500 samples is 3.2 %.
                 let context = format!("{name} {method:?} {i}: {found} {wanted}");

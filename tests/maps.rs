@@ -50,8 +50,8 @@ fn append(panel: &mut Panel, more: &Panel) {
     panel.newton_steps.extend(&more.newton_steps);
     panel.residual.extend(&more.residual);
     panel.margin_deg.extend(&more.margin_deg);
-    for (own, more) in panel.state.iter_mut().zip(&more.state) {
-        own.extend(more);
+    for (channel, more) in panel.state.iter_mut().zip(&more.state) {
+        channel.extend(more);
     }
 }
 

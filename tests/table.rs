@@ -48,7 +48,7 @@ fn every_row_is_the_map_of_its_whisker() {
         if [1, 3].contains(&row) {
             let [unresolved, none] = [Regime::Unresolved.code(), Status::NoWhisker.code()];
             assert!(panel.regime.iter().all(|own| *own == unresolved));
-            assert!(panel.status.iter().all(|own| *own == none));
+            assert!(panel.status.iter().all(|status| *status == none));
             assert!(panel.state.iter().flatten().all(|own| own.is_nan()));
             assert!(
                 panel

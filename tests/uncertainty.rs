@@ -42,12 +42,12 @@ fn spreads(scene: &Scene, samples: usize, seed: u64) -> Vec<EndSpread> {
 /// A small share of each number, all at once. Sampling leaves 0.7 % of 10,000 samples' deviation (1/sqrt(2n)).
 #[test]
 fn small_deviations_spread_as_derivatives_foretell() {
-    let own = scene("length_mm = 0");
+    let undrawn = scene("length_mm = 0");
     let table: Vec<String> = Parameter::ALL
         .into_iter()
         .filter(|one| !matches!(one, Parameter::Taper))
         .filter_map(|one| {
-            let deviation = 1e-4 * one.value(&own)?;
+            let deviation = 1e-4 * one.value(&undrawn)?;
             Some(format!("{} = {deviation:?}", one.name()))
         })
         .collect();
@@ -321,11 +321,11 @@ fn measured_radii_spread_loads_by_their_factor_and_pull_offs_by_their_tip() {
                 row.base_moment_p95_nnm,
             ),
         ];
-        for (own, mean, sd, p95) in loads {
-            let part = sd.unwrap() / own.abs();
+        for (load, mean, sd, p95) in loads {
+            let part = sd.unwrap() / load.abs();
             assert!((part / 4e-3 - 1.0).abs() < 0.05, "{row:?}");
-            assert!((mean.unwrap() / own - 1.0).abs() < 4e-4, "{row:?}");
-            let wide = (p95.unwrap() - own) / (1.644_854 * sd.unwrap());
+            assert!((mean.unwrap() / load - 1.0).abs() < 4e-4, "{row:?}");
+            let wide = (p95.unwrap() - load) / (1.644_854 * sd.unwrap());
             assert!((wide - 1.0).abs() < 0.1, "{row:?}");
         }
     }
@@ -368,7 +368,7 @@ fn largest_loads_of_samples_spread_as_the_loads_of_one_push() {
             let stable = points.iter().filter(|point| point.stable);
             stable.map(of).fold(0.0, f64::max)
         };
-        for (own, wanted, mean, sd, power) in [
+        for (load, wanted, mean, sd, power) in [
             (
                 largest.max_contact_force_un,
                 most(|point| point.contact_force_un),
@@ -391,19 +391,19 @@ fn largest_loads_of_samples_spread_as_the_loads_of_one_push() {
                 1.0,
             ),
         ] {
-            let own = own.unwrap();
+            let load = load.unwrap();
             // 2,000 states are up to 1e-6 below the largest one.
             assert!(
-                (-1e-9..2e-6).contains(&(own / wanted - 1.0)),
-                "{side:?} {own} {wanted}"
+                (-1e-9..2e-6).contains(&(load / wanted - 1.0)),
+                "{side:?} {load} {wanted}"
             );
             // 200 samples leave 5 % of the deviation, and 7 % of it in the mean.
             assert!(
-                (sd.unwrap() / own / (power * 1e-3) - 1.0).abs() < 0.2,
+                (sd.unwrap() / load / (power * 1e-3) - 1.0).abs() < 0.2,
                 "{largest:?}"
             );
             assert!(
-                (mean.unwrap() / own - 1.0).abs() < 3e-4 * power,
+                (mean.unwrap() / load - 1.0).abs() < 3e-4 * power,
                 "{largest:?}"
             );
         }

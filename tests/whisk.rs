@@ -63,21 +63,21 @@ fn events_and_states_are_those_of_curves_and_branches() {
                 (event.force_un.unwrap(), end.force_un),
                 (event.energy_nj.unwrap(), end.energy_nj),
             ];
-            for (own, wanted) in ends {
+            for (value, wanted) in ends {
                 // The pole's distance is the root of an equation: 1e-15 of it can change a push by 1e-12.
                 assert!(
-                    (own / wanted.unwrap() - 1.0).abs() < 1e-11,
-                    "{name} {own} {wanted:?}"
+                    (value / wanted.unwrap() - 1.0).abs() < 1e-11,
+                    "{name} {value} {wanted:?}"
                 );
             }
             let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
-            let own = found
+            let in_contact = found
                 .samples
                 .iter()
                 .filter(|sample| sample.side == Some(side));
-            let own: Vec<_> = own.collect();
-            assert!(own.len() > 3, "{name}");
-            for sample in own {
+            let in_contact: Vec<_> = in_contact.collect();
+            assert!(in_contact.len() > 3, "{name}");
+            for sample in in_contact {
                 let push = sample.push_angle_deg.unwrap();
                 let state = branch.state(push.to_radians(), true).unwrap();
                 let wanted = branch.read(&state);
@@ -87,11 +87,11 @@ fn events_and_states_are_those_of_curves_and_branches() {
                     (sample.energy_nj, wanted.energy_nj),
                     (sample.arc_length_mm, wanted.arc_length_mm),
                 ];
-                for (own, wanted) in pairs {
-                    let own = own.unwrap();
+                for (value, wanted) in pairs {
+                    let value = value.unwrap();
                     assert!(
-                        (own - wanted).abs() <= 1e-9 * wanted.abs(),
-                        "{name} {push} {own} {wanted}"
+                        (value - wanted).abs() <= 1e-9 * wanted.abs(),
+                        "{name} {push} {value} {wanted}"
                     );
                 }
             }
@@ -173,7 +173,7 @@ fn the_work_of_the_base_is_the_lost_energy() {
                 .map(|u| touch + push * (1.0 - (1.0 - u).powi(2)));
             let angles: Vec<f64> = [touch].into_iter().chain(angles).collect();
             let found = through(&scene, distance, &angles).unwrap();
-            let own: f64 = rest
+            let work_of_leg: f64 = rest
                 .zip(&found.samples[1..])
                 .map(|(u, sample)| {
                     let by_u = push.to_radians() * 2.0 * (1.0 - u);
@@ -182,11 +182,11 @@ fn the_work_of_the_base_is_the_lost_energy() {
                 .sum();
             let energy = end.energy_nj.unwrap();
             assert!(
-                (own / energy - 1.0).abs() < 1e-6,
-                "{name} {:?}: {own} {energy}",
+                (work_of_leg / energy - 1.0).abs() < 1e-6,
+                "{name} {:?}: {work_of_leg} {energy}",
                 end.side
             );
-            work += own;
+            work += work_of_leg;
         }
         assert!((work / first.lost_nj() - 1.0).abs() < 1e-6, "{name}");
     }
@@ -270,7 +270,7 @@ fn a_cut_course_begins_in_contact() {
             let is_beyond = assumed
                 .warnings()
                 .iter()
-                .any(|own| own.contains("beyond first touch"));
+                .any(|warning| warning.contains("beyond first touch"));
             assert_eq!(is_beyond, sign > 0.0);
         }
     }
@@ -315,22 +315,25 @@ fn a_course_continues_across_a_bridged_gap() {
         let wanted = through(&scene, DISTANCE, &whole).unwrap();
         let found = with_gaps(&scene, &angles, 3.0);
         assert_eq!(kinds(&found.events), kinds(&wanted.events));
-        for (own, other) in found.events.iter().zip(&wanted.events) {
+        for (event, other) in found.events.iter().zip(&wanted.events) {
             // Times are interpolated over longer lines.
             assert!(
-                (own.time_s - other.time_s).abs() < 1e-12,
-                "{own:?} {other:?}"
+                (event.time_s - other.time_s).abs() < 1e-12,
+                "{event:?} {other:?}"
             );
-            assert_eq!(own.force_un, other.force_un);
+            assert_eq!(event.force_un, other.force_un);
         }
-        for ((own, other), angle) in found.samples.iter().zip(&wanted.samples).zip(angles) {
-            assert_eq!(own.time_s, other.time_s);
+        for ((sample, other), angle) in found.samples.iter().zip(&wanted.samples).zip(angles) {
+            assert_eq!(sample.time_s, other.time_s);
             match angle.is_nan() {
                 true => {
-                    assert_eq!(own.reason, Some(Undecided::Bridged), "{own:?}");
-                    assert_eq!((own.angle_deg, own.force_un, own.side), (None, None, None));
+                    assert_eq!(sample.reason, Some(Undecided::Bridged), "{sample:?}");
+                    assert_eq!(
+                        (sample.angle_deg, sample.force_un, sample.side),
+                        (None, None, None)
+                    );
                 }
-                false => assert_eq!(own, other),
+                false => assert_eq!(sample, other),
             }
         }
         let counts: Vec<_> = found
@@ -358,7 +361,10 @@ fn a_course_is_undecided_after_a_gap_until_one_phase_is_left() {
             missing, None, None, missing, after, None, None, None, missing,
         ];
         assert_eq!(reasons(&found), wanted, "{friction}");
-        let regimes: Vec<_> = found.samples[5..8].iter().map(|own| own.regime).collect();
+        let regimes: Vec<_> = found.samples[5..8]
+            .iter()
+            .map(|sample| sample.regime)
+            .collect();
         let (free, contact) = (WhiskRegime::Free, WhiskRegime::Contact);
         assert_eq!(regimes, [free, free, contact]);
         let held = through(&scene, DISTANCE, &[-10.0, 20.0, 5.0, -5.0]).unwrap();
@@ -399,8 +405,8 @@ fn contacts_and_curvatures_are_those_of_shapes() {
         for sample in &found.samples {
             let Some(side) = sample.side else {
                 assert_eq!(sample.contact_x_mm, None);
-                let own = sample.curvature_per_mm.unwrap();
-                assert_eq!(own, rest.curvature(at_mm / length) / length);
+                let curvature = sample.curvature_per_mm.unwrap();
+                assert_eq!(curvature, rest.curvature(at_mm / length) / length);
                 continue;
             };
             let is_cf = side == Side::Cf;
@@ -416,9 +422,9 @@ fn contacts_and_curvatures_are_those_of_shapes() {
             let contact = shape
                 .points
                 .iter()
-                .find(|own| own.part == WhiskerPart::Contact)
+                .find(|point| point.part == WhiskerPart::Contact)
                 .unwrap();
-            let near = |own: &&ShapePoint| (own.arc_length_mm - at_mm).abs() < 1e-9;
+            let near = |point: &&ShapePoint| (point.arc_length_mm - at_mm).abs() < 1e-9;
             let at = shape.points.iter().find(near).unwrap();
             // The axes of first touch on CF are turned by the touch.
             let turn = if is_cf {
@@ -429,9 +435,9 @@ fn contacts_and_curvatures_are_those_of_shapes() {
             let (sin, cos) = turn.sin_cos();
             let [x, y] = [contact.x_mm, contact.y_mm];
             let wanted = [x * cos - y * sin, x * sin + y * cos];
-            let own = [sample.contact_x_mm.unwrap(), sample.contact_y_mm.unwrap()];
-            let miss = (own[0] - wanted[0]).hypot(own[1] - wanted[1]);
-            assert!(miss < 1e-8, "{name} {friction} {own:?} {wanted:?}");
+            let contact = [sample.contact_x_mm.unwrap(), sample.contact_y_mm.unwrap()];
+            let miss = (contact[0] - wanted[0]).hypot(contact[1] - wanted[1]);
+            assert!(miss < 1e-8, "{name} {friction} {contact:?} {wanted:?}");
             let curvature = sample.curvature_per_mm.unwrap();
             assert!(
                 (curvature - at.curvature_per_mm).abs() < 1e-9,

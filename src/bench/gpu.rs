@@ -1,6 +1,6 @@
 //! Measurements of every GPU adapter, in `f32` and, if supported, in `f64`.
 
-use super::request::{Points, Request, loads};
+use super::request::{Points, SideRequest, loads};
 use super::task::Task;
 use super::timing::{median, timed};
 use super::{BenchEngine, Measurement, Report, Rung};
@@ -90,7 +90,7 @@ fn measure_one(
     let start = Instant::now();
     let mut gpu = Gpu::open(Some(one.adapter), one.precision)?;
     gpu.is_timed = true;
-    let requests = Request::all(scene, task, |side| side.with_net(gpu.row_residual()));
+    let requests = SideRequest::all(scene, task, |side| side.with_net(gpu.row_residual()));
     let mut first_result_s = None;
     let mut of_runs: [Vec<f64>; 4] = Default::default();
     let mut run = || {

@@ -8,8 +8,8 @@ use crate::sheet::net::ValueNet;
 use std::sync::Arc;
 use whiskmap_mechanics::shooting::batch::Method;
 
-/// Request to an engine for all cells of one whisker side.
-pub struct Request {
+/// SideRequest to an engine for all cells of one whisker side.
+pub struct SideRequest {
     pub batch: RowBatch,
     /// Index of the target of each cell, if it has one.
     targets: Vec<Option<usize>>,
@@ -18,7 +18,7 @@ pub struct Request {
 /// Solved targets, `[target]`: the index of each, and `(tau, load)` of its state, dimensionless.
 pub type Points = Vec<(usize, (f64, f64))>;
 
-impl Request {
+impl SideRequest {
     /// Returns a request for each whisker side of `scene`, `[side]`, with the net that `with_net` adds to it.
     pub fn all(
         scene: &Scene,
@@ -58,7 +58,7 @@ impl Request {
 }
 
 /// Returns the largest number of loads of a net of the `requests`.
-pub fn loads(requests: &[Request]) -> usize {
+pub fn loads(requests: &[SideRequest]) -> usize {
     let sides = requests
         .iter()
         .flat_map(|request| request.batch.sides.iter());

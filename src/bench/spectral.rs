@@ -1,6 +1,6 @@
 //! Measurements of the spectral engine at several bounds: cells of expanded rows, and the one-time cost of the expansions.
 
-use super::request::{Points, Request, loads};
+use super::request::{Points, SideRequest, loads};
 use super::task::Task;
 use super::timing::{Timing, timed};
 use super::{BenchEngine, Measurement, Report, Rung, pool};
@@ -53,7 +53,7 @@ pub fn measure(
         return Ok(());
     }
     let all = rayon::current_num_threads();
-    let plain = Request::all(scene, task, |side| side);
+    let plain = SideRequest::all(scene, task, |side| side);
     let mut engines = vec![1];
     engines.extend((all > 1).then_some(all));
     for threads in engines {
@@ -102,7 +102,7 @@ fn row(
     bound: f64,
 ) -> Option<Measurement> {
     let expand = |side: WhiskerSide| side.with_net(bound);
-    let requests = Request::all(scene, task, expand);
+    let requests = SideRequest::all(scene, task, expand);
     let solver = Spectral::new(bound);
     let Ok((seconds, cells)) = timed(runs, || {
         let cells = requests.iter().map(|request| {
@@ -131,7 +131,7 @@ fn row(
 }
 
 /// Times the expansions of all whisker sides.
-fn one_time(requests: &[Request], runs: usize, bound: f64) -> Timing {
+fn one_time(requests: &[SideRequest], runs: usize, bound: f64) -> Timing {
     let sides = || {
         requests
             .iter()

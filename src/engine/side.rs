@@ -109,7 +109,7 @@ impl WhiskerSide {
         let reader = self.reader.with_contact(&rod);
         let touch = self.sheet.rows[row].touch;
         reader
-            .read(state.at.point.x, &state.full, touch, push)
+            .read(state.at.point.x, &state.variation.full, touch, push)
             .channels()
     }
 

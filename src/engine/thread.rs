@@ -30,13 +30,13 @@ pub struct Responses {
 
 impl Responses {
     /// Sends a failure, whatever the caller waits for.
-    fn fail(&self, failure: &EngineError, busy: Duration) {
+    fn fail(&self, failure: EngineError, busy: Duration) {
         let cells = Response {
             result: Err(failure.clone()),
             busy,
         };
         let states = Response {
-            result: Err(failure.clone()),
+            result: Err(failure),
             busy: Duration::ZERO,
         };
         // A caller that no longer receives has ended.
@@ -49,46 +49,47 @@ pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &R
     let (mut submitted, mut is_received) = (0, true);
     let mut since = Instant::now();
     loop {
-        let mut taken = Ok(());
-        while is_received && submitted < AT_ONCE && taken.is_ok() {
-            let request = match submitted {
-                0 => requested.recv().ok(),
-                _ => requested.try_recv().ok(),
-            };
-            let Some(request) = request else { break };
-            if submitted == 0 {
-                since = Instant::now();
-            }
-            match request {
-                Request::Cells(batch) => {
-                    taken = engine.submit(batch);
-                    submitted += 1;
-                }
-                Request::Nodes(nodes) => {
-                    let result = engine.shoot_nodes(&nodes);
-                    let now = Instant::now();
-                    let busy = now - since;
-                    if let Err(failure) = &result {
-                        return respond.fail(failure, busy);
-                    }
-                    is_received &= respond.states.send(Response { result, busy }).is_ok();
-                    since = now;
-                }
-            }
-        }
+        let request = match submitted {
+            _ if !is_received => None,
+            0 => requested.recv().ok(),
+            1..AT_ONCE => requested.try_recv().ok(),
+            _ => None,
+        };
         if submitted == 0 {
-            return;
+            since = Instant::now();
         }
-        let result = taken.and_then(|()| engine.collect());
-        submitted -= 1;
-        let now = Instant::now();
-        let busy = now - since;
-        if let Err(failure) = &result {
-            return respond.fail(failure, busy);
+        let sent = match request {
+            Some(Request::Cells(batch)) => match engine.submit(batch) {
+                Ok(()) => {
+                    submitted += 1;
+                    continue;
+                }
+                Err(failure) => Err(failure),
+            },
+            Some(Request::Nodes(nodes)) => {
+                let states = engine.shoot_nodes(&nodes);
+                states.map(|states| send(&respond.states, states, &mut since))
+            }
+            None if submitted == 0 => return,
+            None => {
+                submitted -= 1;
+                let cells = engine.collect();
+                cells.map(|cells| send(&respond.cells, cells, &mut since))
+            }
+        };
+        match sent {
+            Ok(sent) => is_received &= sent,
+            Err(failure) => return respond.fail(failure, since.elapsed()),
         }
-        is_received &= respond.cells.send(Response { result, busy }).is_ok();
-        since = now;
     }
+}
+
+/// Sends the result of a request, for which the engine has been busy `since` the previous one. Returns false if it is not received.
+fn send<R>(to: &Sender<Response<R>>, result: R, since: &mut Instant) -> bool {
+    let now = Instant::now();
+    let busy = now - std::mem::replace(since, now);
+    let result = Ok(result);
+    to.send(Response { result, busy }).is_ok()
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Detachments to which the contact slides without doubt, by a few states of the row in place of its history.
 
-use super::limit::{LimitPart, SlidingLimit, through};
-use crate::sheet::{Crossing, Edge, LevelCurve, Sheet};
+use super::limit::SlidingLimit;
+use super::segment::SlidingKnot;
+use crate::sheet::{Crossing, CurveNode, Edge, Sheet};
 use glam::DVec2;
 use std::f64::consts::PI;
 use whiskmap_mechanics::shooting::FirstVariation;
@@ -14,43 +15,49 @@ const BETWEEN: u32 = 12;
 /// error of the cubics between them.
 const AHEAD: f64 = 0.01;
 
-/// Returns true for each of the `rows` of `sheet` whose contact slides toward the tip at the end of the push without doubt, `[row]`. The
-/// contact is never ahead of all places where the tip limit has been. So it slides if the tip limit is farthest at the end.
-pub fn surely_slides_to_end(sheet: &Sheet, rows: &[(usize, Crossing)]) -> Vec<bool> {
-    let levels: Vec<LevelCurve> = rows.iter().map(|(row, _)| sheet.level(*row)).collect();
-    let points = rows.iter().map(|(row, end)| points(sheet, *row, end));
+/// Returns true for each of the `rows` of `sheet` whose contact slides toward the tip at the end of the push without doubt, `[row]`. Each has
+/// its index, the crossing at its end, and the state there. The contact is never ahead of all places where the tip limit has been. So it
+/// slides if the tip limit is farthest at the end.
+pub fn surely_slides_to_end(
+    sheet: &Sheet,
+    rows: &[(usize, Crossing, FirstVariation)],
+) -> Vec<bool> {
+    let points = rows.iter().map(|(row, end, _)| points(sheet, *row, end));
     let points: Vec<Option<Vec<DVec2>>> = points.collect();
-    let Some(first) = levels.first() else {
-        return Vec::new();
-    };
     let all = points.iter().flatten().flatten();
     let states: Vec<FirstVariation> =
-        Batch::new(first.method).shoot_at(&sheet.rod, all.map(|point| (point.x, point.y)));
+        Batch::new(sheet.method()).shoot_at(&sheet.rod, all.map(|point| (point.x, point.y)));
     let mut states = states.into_iter();
-    let parts = rows.iter().zip(&levels).zip(&points);
-    let parts = parts.map(|(((_, end), level), points)| {
-        let points = points.as_ref()?;
-        let mut last = level.touch();
-        let mut nodes = vec![last];
-        for (point, state) in points.iter().zip(states.by_ref()) {
-            last = level.node(*point, &state.full, last.push, last.angle);
-            nodes.push(last);
-        }
-        Some(LimitPart {
-            level,
-            nodes,
-            has_fold: end.edge == Edge::Fold,
-            is_stable: true,
-        })
-    });
-    let limits = through(&parts.collect::<Vec<_>>()).into_iter();
-    limits
-        .map(|limit| limit.is_some_and(|limit| is_farthest_at_end(&limit)))
-        .collect()
+    let surely = rows
+        .iter()
+        .zip(&points)
+        .map(|((row, end, at_end), points)| {
+            let Some(points) = points else {
+                return false;
+            };
+            let level = sheet.level(*row);
+            let pairs = points.iter().copied().zip(states.by_ref());
+            let pairs = pairs.chain([(DVec2::new(end.tau, end.load), *at_end)]);
+            let mut before: Option<CurveNode> = None;
+            let knots = pairs.map(|(point, state)| {
+                let node = match before {
+                    Some(before) => level.node(point, &state.full, before.push, before.angle),
+                    None => CurveNode {
+                        push: 0.0,
+                        ..level.node(point, &state.full, 0.0, 0.0)
+                    },
+                };
+                before = Some(node);
+                SlidingKnot::new(&level, node, &state)
+            });
+            let (knots, has_fold) = (knots.collect(), end.edge == Edge::Fold);
+            is_farthest_at_end(&SlidingLimit::through(level, true, knots, has_fold))
+        });
+    surely.collect()
 }
 
-/// Points `(tau, load)` of a row after first touch, up to the `end` of its push; `None` without a guess, and for pushes beyond half a turn,
-/// on which the contact angle can change by a turn from state to state.
+/// Points `(tau, load)` of a row from first touch up to the `end` of its push, which is left out; `None` without a guess, and for pushes beyond
+/// half a turn, on which the contact angle can change by a turn from state to state.
 fn points(sheet: &Sheet, row: usize, end: &Crossing) -> Option<Vec<DVec2>> {
     if end.push > PI {
         return None;
@@ -58,8 +65,8 @@ fn points(sheet: &Sheet, row: usize, end: &Crossing) -> Option<Vec<DVec2>> {
     let pushes = (1..=BETWEEN).map(|i| end.push * f64::from(i) / f64::from(BETWEEN + 1));
     let guesses = sheet.guesses(row, &pushes.collect::<Vec<_>>()).into_iter();
     let between = guesses.map(|guess| guess.map(|guess| DVec2::new(guess.tau, guess.load)));
-    let end = Some(DVec2::new(end.tau, end.load));
-    between.chain([end]).collect()
+    let touch = Some(sheet.rows[row].first_touch(&sheet.rod));
+    [touch].into_iter().chain(between).collect()
 }
 
 /// Returns true if the slid distance at the end of `limit` is larger than everywhere before.

@@ -234,7 +234,9 @@ impl ContactCourse<'_> {
         let after = ContactPhase::Slides(Sliding::Base);
         let states = held(&[before, after].map(|phase| limits.query(phase, push)));
         let lost = match states[..] {
-            [Some(before), Some(after)] => before.full.energy - after.full.energy,
+            [Some(before), Some(after)] => {
+                before.variation.full.energy - after.variation.full.energy
+            }
             _ => f64::NAN,
         };
         self.dissipated += lost;

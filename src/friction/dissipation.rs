@@ -2,12 +2,10 @@
 
 use super::limit::SlidingLimit;
 use super::sliding::ContactRate;
-use super::state::FrictionPoint;
+use super::state::FrictionState;
 use super::states::at_limits;
 use whiskmap_mechanics::numerics::gauss::QUADRATURE;
 use whiskmap_mechanics::numerics::newton_form::{Polynomial, through_nodes};
-use whiskmap_mechanics::shooting::FirstVariation;
-use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
 
 /// Dissipated energy along one limit, in `E I_base/L_w`, as a polynomial on each segment of the limit.
 #[derive(Clone, Debug)]
@@ -37,18 +35,11 @@ impl Dissipation {
         let level = &limit.level;
         let nodes = limit.inner(&QUADRATURE.map(|[at, _]| at));
         let pairs: Vec<_> = nodes.iter().map(|node| (limit, node.push)).collect();
-        let points = at_limits(&pairs).into_iter().map(|state| Some(state?.at));
-        let points: Vec<FrictionPoint> = points.collect::<Option<_>>()?;
-        let conditions = points.iter().map(|at| InitialCondition {
-            rod: &level.rod,
-            tau: at.point.x,
-            load: at.point.y,
-        });
-        let conditions: Vec<InitialCondition> = conditions.collect();
-        let shot: Vec<FirstVariation> = Batch::new(level.method).shoot(&conditions);
+        let states = at_limits(&pairs).into_iter();
+        let states: Vec<FrictionState> = states.collect::<Option<_>>()?;
         let friction = level.rod.friction.abs() * level.rod.contact_tangent().x;
-        let states = shot.iter().zip(&points).zip(&nodes);
-        let powers = states.map(|((variation, at), node)| {
+        let powers = states.iter().zip(&nodes).map(|(state, node)| {
+            let FrictionState { variation, at, .. } = state;
             let rate = ContactRate::new(variation, &level.rod, at.point.x);
             let by_phi = rate.slid / variation.full.map.det();
             let slides = level.side.sign() * by_phi * node.push_by_x;

@@ -1,62 +1,50 @@
 //! Division of the segments of a limit at exact states, where an error of the slid distance would change the state of a contact that sticks.
 
-use super::limit::{LimitPart, SlidingLimit, through};
+use super::limit::SlidingLimit;
 use super::segment::{LimitSegment, SlidingKnot};
-use super::state::FrictionState;
 use super::states::at_limits;
-use crate::sheet::CurveNode;
 
 impl SlidingLimit {
     /// Divides segments of `limits`, given by index, at exact states, `[limit]`. A segment without such states, as at a corner of fold and
     /// tip, stays whole.
     pub fn divided(limits: &[(&Self, Vec<usize>)]) -> Vec<Self> {
-        let pushes = limits.iter().map(|(limit, segments)| {
-            let parts = (0..=DIVISIONS).map(|i| f64::from(i) / f64::from(DIVISIONS));
-            let parts: Vec<f64> = parts.collect();
-            let of = |segment: &usize| {
-                let segment = &limit.segments[*segment];
-                let places = parts.iter().map(|part| segment.inner(*part).push);
-                places.collect::<Vec<f64>>()
-            };
-            (*limit, segments.iter().flat_map(of).collect::<Vec<f64>>())
-        });
-        let pushes: Vec<(&Self, Vec<f64>)> = pushes.collect();
-        let wanted = pushes
-            .iter()
-            .flat_map(|(limit, pushes)| pushes.iter().map(|push| (*limit, *push)));
-        let mut found = at_limits(&wanted.collect::<Vec<_>>()).into_iter();
-        let parts = limits
+        let of_limit = |(limit, segments): &(&Self, Vec<usize>)| {
+            let pushes = segments.iter().map(|segment| limit.divisions(*segment));
+            pushes.collect()
+        };
+        let pushes: Vec<Vec<Vec<f64>>> = limits.iter().map(of_limit).collect();
+        let pairs = limits
             .iter()
             .zip(&pushes)
-            .map(|((limit, segments), (_, pushes))| {
-                let states: Vec<Option<FrictionState>> =
-                    found.by_ref().take(pushes.len()).collect();
-                let mut states = states.into_iter();
-                let each = DIVISIONS as usize + 1;
-                let runs = segments.iter().map(|segment| {
-                    let states: Vec<Option<FrictionState>> = states.by_ref().take(each).collect();
-                    limit.run(*segment, &states)
-                });
-                runs.collect::<Vec<Option<LimitPart>>>()
+            .flat_map(|((limit, _), of_limit)| {
+                let pushes = of_limit.iter().flatten();
+                pushes.map(move |push| (*limit, *push))
             });
-        let parts: Vec<Vec<Option<LimitPart>>> = parts.collect();
-        let mut divided = through(&parts.concat()).into_iter();
-        let limits = limits.iter().map(|(limit, segments)| {
-            let runs: Vec<Option<Self>> = divided.by_ref().take(segments.len()).collect();
-            let mut runs = segments.iter().zip(runs).peekable();
-            let mut joined = Vec::new();
-            for (index, segment) in limit.segments.iter().enumerate() {
-                match runs.next_if(|(at, _)| **at == index) {
-                    Some((_, Some(run))) => joined.extend(run.segments),
-                    _ => joined.push(segment.clone()),
+        let mut found = knots_at(&pairs.collect::<Vec<_>>()).into_iter();
+        let divided = limits
+            .iter()
+            .zip(&pushes)
+            .map(|((limit, segments), of_limit)| {
+                let knots = segments.iter().zip(of_limit).map(|(segment, pushes)| {
+                    let inner: Vec<Option<SlidingKnot>> =
+                        found.by_ref().take(pushes.len()).collect();
+                    (*segment, limit.with_ends(*segment, inner))
+                });
+                let knots: Vec<(usize, Option<Vec<SlidingKnot>>)> = knots.collect();
+                let mut knots = knots.into_iter().peekable();
+                let mut joined = Vec::new();
+                for (index, segment) in limit.segments.iter().enumerate() {
+                    match knots.next_if(|(at, _)| *at == index) {
+                        Some((_, Some(knots))) => joined.extend(LimitSegment::between(&knots)),
+                        _ => joined.push(segment.clone()),
+                    }
                 }
-            }
-            Self {
-                segments: joined,
-                ..(*limit).clone()
-            }
-        });
-        limits.collect()
+                Self {
+                    segments: joined,
+                    ..(*limit).clone()
+                }
+            });
+        divided.collect()
     }
 
     /// Divides the segments of `limits` in which the limit reverses at the reversal, `[limit]`. A segment without the state there stays whole.
@@ -118,32 +106,27 @@ impl SlidingLimit {
         polished.collect()
     }
 
-    /// Nodes of a divided segment. The segment keeps its states at touch and fold, which are singular or exact.
-    fn run(&self, segment: usize, states: &[Option<FrictionState>]) -> Option<LimitPart<'_>> {
-        let LimitSegment { from, to, .. } = &self.segments[segment];
-        let last = states.len() - 1;
-        let is_end =
-            |i: usize| i == 0 && segment == 0 || i == last && (segment + 1 == self.segments.len());
-        let nodes = states.iter().enumerate().map(|(i, state)| {
-            let knot = if i == 0 { from } else { to };
-            let sign = self.level.side.sign();
-            match state {
-                _ if is_end(i) => Some(knot.node),
-                Some(state) => Some(CurveNode {
-                    point: state.at.point,
-                    full: state.full,
-                    push: sign * self.segments[segment].inner(i as f64 / last as f64).push,
-                    angle: state.at.angle,
-                }),
-                None => None,
-            }
-        });
-        Some(LimitPart {
-            level: &self.level,
-            nodes: nodes.collect::<Option<_>>()?,
-            has_fold: to.by_push.is_none(),
-            is_stable: self.is_stable,
-        })
+    /// Returns the push angles at which a segment is divided, in radians, with its ends. The limit's states at touch and fold are left out,
+    /// because they are singular or exact.
+    fn divisions(&self, index: usize) -> Vec<f64> {
+        let first = u32::from(index == 0);
+        let last = DIVISIONS - u32::from(index + 1 == self.segments.len());
+        let parts = (first..=last).map(|i| f64::from(i) / f64::from(DIVISIONS));
+        let segment = &self.segments[index];
+        parts.map(|part| segment.inner(part).push).collect()
+    }
+
+    /// Returns the knots of a divided segment: those at its divisions, and the limit's at touch and fold. `None` if one is not found.
+    fn with_ends(
+        &self,
+        index: usize,
+        divisions: Vec<Option<SlidingKnot>>,
+    ) -> Option<Vec<SlidingKnot>> {
+        let LimitSegment { from, to, .. } = &self.segments[index];
+        let touch = (index == 0).then_some(Some(*from));
+        let end = (index + 1 == self.segments.len()).then_some(Some(*to));
+        let knots = touch.into_iter().chain(divisions).chain(end);
+        knots.collect()
     }
 
     /// Returns the indices of all segments.
@@ -180,26 +163,11 @@ const DIVISIONS: u32 = 8;
 
 /// Exact knots of limits at push angles, magnitudes in radians, `[pair]`; `None` where the state is not found.
 fn knots_at(pairs: &[(&SlidingLimit, f64)]) -> Vec<Option<SlidingKnot>> {
-    let parts = pairs
-        .iter()
-        .zip(at_limits(pairs))
-        .map(|((limit, push), state)| {
-            let state = state?;
-            let node = CurveNode {
-                point: state.at.point,
-                full: state.full,
-                push: limit.level.side.sign() * push,
-                angle: state.at.angle,
-            };
-            // A segment needs two nodes.
-            Some(LimitPart {
-                level: &limit.level,
-                nodes: vec![node; 2],
-                has_fold: false,
-                is_stable: limit.is_stable,
-            })
-        });
-    let limits = through(&parts.collect::<Vec<_>>());
-    let first = |limit: SlidingLimit| limit.segments.first().map(|segment| segment.from);
-    limits.into_iter().map(|limit| first(limit?)).collect()
+    let states = pairs.iter().zip(at_limits(pairs));
+    let knots = states.map(|((limit, push), state)| {
+        let (level, state) = (&limit.level, state?);
+        let node = state.node(level.side.sign() * push);
+        Some(SlidingKnot::new(level, node, &state.variation))
+    });
+    knots.collect()
 }

@@ -6,7 +6,7 @@
 
 use super::Sliding;
 use super::limit::SlidingLimit;
-use super::target::with_friction;
+use super::newton::with_friction;
 use crate::sheet::{Continuation, LevelCurve};
 use std::collections::BTreeSet;
 

@@ -4,7 +4,6 @@
 //! every stable row.
 
 use super::segment::{LimitPlace, LimitSegment, SlidingKnot};
-use super::sliding::{ContactRate, slid};
 use super::state::FrictionPoint;
 use crate::sheet::{Continuation, CurveNode, LevelCurve, NODE_MISS, Stretch, continuations};
 use glam::DVec2;
@@ -23,6 +22,23 @@ pub struct SlidingLimit {
 }
 
 impl SlidingLimit {
+    /// Creates the limit of `level` through `knots`. The last one is a fold if `has_fold` is true.
+    pub fn through(
+        level: LevelCurve,
+        is_stable: bool,
+        mut knots: Vec<SlidingKnot>,
+        has_fold: bool,
+    ) -> Self {
+        if let Some(last) = knots.last_mut().filter(|_| has_fold) {
+            *last = last.at_fold();
+        }
+        Self {
+            level,
+            is_stable,
+            segments: LimitSegment::between(&knots),
+        }
+    }
+
     /// Computes the sliding limits of `levels`, `[level]`; `None` where the continuation fails. All levels have one method, and their
     /// trajectories share batches.
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
@@ -118,12 +134,12 @@ impl SlidingLimit {
 
 /// States of a limit whose push angles grow.
 #[derive(Clone, Debug)]
-pub struct LimitPart<'a> {
-    pub level: &'a LevelCurve,
-    pub nodes: Vec<CurveNode>,
+struct LimitPart<'a> {
+    level: &'a LevelCurve,
+    nodes: Vec<CurveNode>,
     /// True if the last node is a fold.
-    pub has_fold: bool,
-    pub is_stable: bool,
+    has_fold: bool,
+    is_stable: bool,
 }
 
 impl<'a> LimitPart<'a> {
@@ -137,10 +153,19 @@ impl<'a> LimitPart<'a> {
             is_stable: true,
         }
     }
+
+    /// Makes the limit through the nodes, whose states have the derivatives `variations`, `[node]`.
+    fn limit(&self, variations: impl Iterator<Item = FirstVariation>) -> SlidingLimit {
+        let pairs = self.nodes.iter().zip(variations);
+        let knots = pairs.map(|(node, variation)| SlidingKnot::new(self.level, *node, &variation));
+        let (level, knots) = (self.level.clone(), knots.collect());
+        SlidingLimit::through(level, self.is_stable, knots, self.has_fold)
+    }
 }
 
-/// Makes limits through the nodes of `parts`, `[part]`. Trajectories share batches.
-pub fn through(parts: &[Option<LimitPart>]) -> Vec<Option<SlidingLimit>> {
+/// Makes limits through the nodes of `parts`, `[part]`. Nodes have no derivatives of the contact, because most of them are
+/// extrapolated, so that each takes a trajectory. Trajectories share batches.
+fn through(parts: &[Option<LimitPart>]) -> Vec<Option<SlidingLimit>> {
     let known = parts.iter().flatten();
     let conditions = known.clone().flat_map(|part| {
         part.nodes.iter().map(|node| InitialCondition {
@@ -153,28 +178,8 @@ pub fn through(parts: &[Option<LimitPart>]) -> Vec<Option<SlidingLimit>> {
     let method = known.clone().next().map(|part| part.level.method);
     let shot = method.map(|method| Batch::new(method).shoot::<FirstVariation>(&conditions));
     let mut shot = shot.into_iter().flatten();
-    let limits = parts.iter().map(|part| {
-        let LimitPart { level, nodes, .. } = part.as_ref()?;
-        let fold = part.as_ref()?.has_fold.then(|| nodes.len() - 1);
-        let states = nodes.iter().zip(&mut shot).enumerate();
-        let sign = level.side.sign();
-        let knots = states.map(|(i, (node, variation))| SlidingKnot {
-            push: sign * node.push,
-            slid: slid(&level.rod, node),
-            node: *node,
-            by_push: (Some(i) != fold).then(|| {
-                let rate = ContactRate::new(&variation, &level.rod, node.point.x);
-                rate.times(sign / variation.full.map.det())
-            }),
-        });
-        let knots: Vec<SlidingKnot> = knots.collect();
-        let segments = knots.windows(2);
-        let segments = segments.map(|pair| LimitSegment::new(pair[0], pair[1]));
-        Some(SlidingLimit {
-            level: (*level).clone(),
-            is_stable: part.as_ref()?.is_stable,
-            segments: segments.collect(),
-        })
-    });
-    limits.collect()
+    let limits = parts.iter();
+    limits
+        .map(|part| Some(part.as_ref()?.limit(&mut shot)))
+        .collect()
 }

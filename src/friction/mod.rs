@@ -17,7 +17,6 @@ mod sliding;
 mod state;
 mod states;
 mod stuck;
-mod target;
 
 pub use at_end::surely_slides_to_end;
 pub use course::{ContactCourse, CourseLimits, Snap};

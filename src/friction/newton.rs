@@ -1,16 +1,19 @@
 //! Newton's method for states with friction, in batches.
 //!
 //! A sliding state has two unknowns, contact and load, and two equations: the pole is at its place. A sticking state has the force ratio
-//! as a third unknown, and its slid distance as a third equation. Trajectories carry the derivatives by contact and load; the derivative
-//! by the force ratio is a difference quotient, which slows convergence, and leaves no error.
+//! as a third unknown, and its slid distance as a third equation, so that the rod of an iterate changes with its force ratio.
+//!
+//! Trajectories carry the derivatives by contact and load. The derivative by the force ratio is a difference quotient, which slows
+//! convergence, and leaves no error. Its second trajectory is one more lane of a block. The exact derivative
+//! ([`differentiate`](whiskmap_mechanics::shooting::differentiate)) needs blocks of its own: maps and courses take 1.7 to 2.6 times as long.
 
+use super::limit::SlidingLimit;
 use super::sliding::{Sliding, slid};
 use super::state::{FrictionPoint, FrictionState};
-use super::target::FrictionTarget;
 use crate::refine::TOLERANCE;
 use crate::sheet::LevelCurve;
 use glam::{DMat3, DVec2, DVec3};
-use whiskmap_mechanics::rod::arclength;
+use whiskmap_mechanics::rod::{Rod, arclength};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
 use whiskmap_mechanics::shooting::{FirstVariation, LONGEST_STEP, limited};
 
@@ -36,6 +39,57 @@ const REGULAR: f64 = 0.3;
 
 /// Maximum number of Newton steps for each state.
 const FRICTION_STEPS: u32 = 40;
+
+/// Target of Newton's method for one state.
+#[derive(Clone, Copy, Debug)]
+pub struct FrictionTarget<'a> {
+    /// Level curve of the state's row, at a limit of sliding.
+    pub level: &'a LevelCurve,
+    /// Signed push angle, in radians.
+    pub push: f64,
+    /// Slid distance of a contact that sticks, in whisker lengths; `None` if it slides.
+    pub slid: Option<f64>,
+    /// Start of Newton's method.
+    pub start: FrictionPoint,
+    /// True if a contact that slides is at a stable state.
+    pub is_stable: bool,
+}
+
+impl<'a> FrictionTarget<'a> {
+    /// Returns the target of a contact that slides at `limit`, at `push`, a magnitude in radians; `None` beyond the end of the limit.
+    pub fn sliding(limit: &'a SlidingLimit, push: f64) -> Option<Self> {
+        Some(Self {
+            level: &limit.level,
+            push: limit.level.side.sign() * push,
+            slid: None,
+            start: limit.near(push)?,
+            is_stable: limit.is_stable,
+        })
+    }
+
+    /// Returns this target at another push, a magnitude in radians, with another start.
+    pub fn at(&self, push: f64, start: FrictionPoint) -> Self {
+        Self {
+            push: self.level.side.sign() * push,
+            start,
+            ..*self
+        }
+    }
+
+    /// Returns the level curve of the target with the force ratio `ratio`.
+    pub fn level(&self, ratio: f64) -> LevelCurve {
+        with_friction(self.level, ratio)
+    }
+}
+
+/// Returns the level curve of the row of `level` with this friction.
+pub fn with_friction(level: &LevelCurve, friction: f64) -> LevelCurve {
+    let rod = Rod {
+        friction,
+        ..level.rod.clone()
+    };
+    LevelCurve::new(level.method, &rod, level.side, &level.row)
+}
 
 /// Iterate of Newton's method.
 #[derive(Clone, Copy)]
@@ -220,7 +274,7 @@ impl FrictionTarget<'_> {
         FrictionStep::Solved(FrictionState {
             at: FrictionPoint::of(level, &node),
             sliding: Sliding::Sticks,
-            full: here.full,
+            variation: *here,
             slid: slid(&level.rod, &node),
             residual,
             steps: 0,

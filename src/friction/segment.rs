@@ -1,8 +1,9 @@
 //! Segment of a limit: the slid distance between two states as a polynomial.
 
-use super::sliding::ContactRate;
-use crate::sheet::CurveNode;
+use super::sliding::{ContactRate, slid};
+use crate::sheet::{CurveNode, LevelCurve};
 use whiskmap_mechanics::numerics::newton_form::{Polynomial, through_runs};
+use whiskmap_mechanics::shooting::FirstVariation;
 
 /// State at which a limit is interpolated.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +19,24 @@ pub struct SlidingKnot {
 }
 
 impl SlidingKnot {
+    /// Creates the knot at a `node` of `level`. `variation` has the derivatives of the node's state.
+    pub fn new(level: &LevelCurve, node: CurveNode, variation: &FirstVariation) -> Self {
+        let sign = level.side.sign();
+        let rate = ContactRate::new(variation, &level.rod, node.point.x);
+        Self {
+            push: sign * node.push,
+            slid: slid(&level.rod, &node),
+            node,
+            by_push: Some(rate.times(sign / variation.full.map.det())),
+        }
+    }
+
+    /// Returns this knot as one at a fold.
+    pub fn at_fold(self) -> Self {
+        let by_push = None;
+        Self { by_push, ..self }
+    }
+
     /// Returns the derivative of the slid distance by the push; infinite at the fold.
     pub fn slope(&self) -> f64 {
         self.by_push.map_or(f64::INFINITY, |rate| rate.slid)
@@ -70,6 +89,12 @@ pub struct LimitSegment {
 }
 
 impl LimitSegment {
+    /// Returns the segments between neighbouring `knots`, `[segment]`.
+    pub fn between(knots: &[SlidingKnot]) -> Vec<Self> {
+        let pairs = knots.windows(2);
+        pairs.map(|pair| Self::new(pair[0], pair[1])).collect()
+    }
+
     /// Cubic Hermite polynomials or, next to a fold, the parabolas that have the slopes of the first knot. The first knot is no fold.
     pub fn new(from: SlidingKnot, to: SlidingKnot) -> Self {
         let values = [from, to].map(|knot| knot.values());

@@ -4,7 +4,7 @@ use super::sliding::Sliding;
 use crate::sheet::{CurveNode, LevelCurve};
 use glam::DVec2;
 use whiskmap_mechanics::rod::Rod;
-use whiskmap_mechanics::shooting::FullState;
+use whiskmap_mechanics::shooting::FirstVariation;
 
 /// Contact, load and force ratio of a state with friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,8 +46,8 @@ pub struct FrictionState {
     pub at: FrictionPoint,
     /// Sliding direction of the contact.
     pub sliding: Sliding,
-    /// Pole of the state with first derivatives, pose of the base, force and energy, in axes of the state's own force ratio.
-    pub full: FullState,
+    /// State with its first derivatives by contact and load, in the axes of the force ratio.
+    pub variation: FirstVariation,
     /// Slid distance of the contact, in whisker lengths.
     pub slid: f64,
     /// Distance of the pole from its target, in whisker lengths.
@@ -57,6 +57,17 @@ pub struct FrictionState {
 }
 
 impl FrictionState {
+    /// Returns the state as a node of a level curve at the signed `push`, in radians.
+    #[must_use]
+    pub fn node(&self, push: f64) -> CurveNode {
+        CurveNode {
+            point: self.at.point,
+            full: self.variation.full,
+            push,
+            angle: self.at.angle,
+        }
+    }
+
     /// Returns `rod` with the force ratio of this state as its friction.
     #[must_use]
     pub fn rod(&self, rod: &Rod) -> Rod {

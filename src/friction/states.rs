@@ -2,11 +2,10 @@
 
 use super::history::{CLEAR_OF_CONTACT, ContactHistory, ContactPhase, ContactQuery, SlidingEnd};
 use super::limit::SlidingLimit;
-use super::newton::solve;
+use super::newton::{FrictionTarget, solve};
 use super::sliding::Sliding;
 use super::state::FrictionState;
 use super::stuck::{StuckPath, StuckRun};
-use super::target::FrictionTarget;
 
 /// Rounding error of slid distances, in whisker lengths.
 const SLID_ROUNDING: f64 = 1e-14;

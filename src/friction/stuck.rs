@@ -3,9 +3,8 @@
 
 use super::history::ContactQuery;
 use super::history::{ContactHistory, ContactPhase, SlidingEnd};
-use super::newton::solve;
+use super::newton::{FrictionTarget, solve};
 use super::state::{FrictionPoint, FrictionState};
-use super::target::FrictionTarget;
 use std::ops::Range;
 
 /// Number of steps of a path to each side of the push at which sliding ended.

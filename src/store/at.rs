@@ -67,7 +67,7 @@ pub fn scene_at(
     exact: bool,
 ) -> Result<(Scene, ChosenValues), InvalidAxisValue> {
     let sweep = scene.grid.sweep.iter();
-    let axes: Vec<_> = sweep.map(AxisValues::of).collect();
+    let axes: Vec<_> = sweep.map(NamedAxis::of).collect();
     let (mut builder, mut chosen) = (scene.to_builder(), ChosenValues::new());
     for at in wanted {
         let select = select(&axes, &chosen, at, exact);
@@ -99,13 +99,13 @@ pub fn scene_at(
 pub type ChosenValues = Vec<(&'static str, Coordinate)>;
 
 /// Name and values of an axis, and the names of the whiskers of a table whose rows the values number.
-pub(super) struct AxisValues<'a> {
+pub(super) struct NamedAxis<'a> {
     pub name: &'static str,
     pub values: &'a [f64],
     pub names: &'a [String],
 }
 
-impl<'a> AxisValues<'a> {
+impl<'a> NamedAxis<'a> {
     /// Returns name and values of a sweep axis.
     pub fn of(axis: &'a SweepAxis) -> Self {
         Self {
@@ -132,7 +132,7 @@ pub(super) fn titled(title: &str, chosen: &ChosenValues) -> String {
 
 /// Returns the indices of the axis and of the value that `at` selects on `axes`, of which some are `chosen` already.
 pub(super) fn select(
-    axes: &[AxisValues<'_>],
+    axes: &[NamedAxis<'_>],
     chosen: &ChosenValues,
     at: &AxisValue,
     exact: bool,
@@ -147,7 +147,7 @@ pub(super) fn select(
         }
     };
     let axis = axis.ok_or_else(unknown)?;
-    let AxisValues {
+    let NamedAxis {
         name,
         values,
         names,

@@ -1,7 +1,7 @@
 //! Events of a course behind a surface.
 
 use super::rows::TextureEvent;
-use super::sample::{Crossing, Held};
+use super::sample::{Held, SurfaceCrossing};
 use crate::trace::StateRow;
 use crate::whisk::phase::Passage;
 use crate::whisk::{WhiskEventKind, signed_deg};
@@ -12,7 +12,7 @@ pub fn events(
     passages: &[Passage],
     kinds: &[WhiskEventKind],
     held: &[Option<Held>],
-    crossed: Option<Crossing>,
+    crossed: Option<SurfaceCrossing>,
 ) -> Vec<TextureEvent> {
     let energy = |i: usize| Some(held[i].as_ref()?.reading()?.energy_nj);
     let is_before = |time_s: f64| crossed.is_none_or(|crossing| time_s < crossing.time_s);

@@ -26,7 +26,7 @@ use crate::whisk::states::{BothSides, RowPush};
 use crate::whisk::{AngleCourse, STATES_AT_ONCE, WhiskEventKind};
 use asperities::Asperities;
 use rayon::prelude::*;
-use sample::{Crossing, Held};
+use sample::{Held, SurfaceCrossing};
 use std::sync::atomic::{AtomicBool, Ordering};
 use tip::TipFrame;
 use whiskmap_mechanics::rod::Side;
@@ -197,7 +197,7 @@ pub fn texture_until(
     let kinds: Vec<WhiskEventKind> = kinds.collect();
 
     let samples = held.iter().zip(&moments);
-    let crossed = Crossing::first(samples.chain(held_then.iter().zip(&changes)));
+    let crossed = SurfaceCrossing::first(samples.chain(held_then.iter().zip(&changes)));
     Ok(Texture {
         samples: sample::samples(
             course,
@@ -254,7 +254,7 @@ impl Placed<'_> {
             if cancel.load(Ordering::Relaxed) {
                 return Err(TextureError::Cancelled);
             }
-            found.extend(states.states(&chunk.iter().map(row).collect::<Vec<_>>()));
+            found.extend(states.pushed(&chunk.iter().map(row).collect::<Vec<_>>()));
         }
         let held = contacts.par_iter().zip(found).zip(moments);
         let held = held.map(|((contact, state), [_, angle])| {

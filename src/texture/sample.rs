@@ -31,14 +31,14 @@ impl Held {
 
 /// First state in which the whisker meets the surface in two places. Other asperities would bend it there, too.
 #[derive(Clone, Copy)]
-pub struct Crossing {
+pub struct SurfaceCrossing {
     pub time_s: f64,
     /// Angle of the base at the crossing, in radians.
     pub angle: f64,
     pub held: Held,
 }
 
-impl Crossing {
+impl SurfaceCrossing {
     /// Returns the first crossing among states, each at its `[time in s, angle in radians]`; `None` without one.
     pub fn first<'a>(
         states: impl Iterator<Item = (&'a Option<Held>, &'a [f64; 2])>,
@@ -63,7 +63,7 @@ pub fn samples(
     passages: &[Passage],
     held: &[Option<Held>],
     tips: &TipFrame,
-    crossed: Option<Crossing>,
+    crossed: Option<SurfaceCrossing>,
     curvature_at_mm: Option<f64>,
 ) -> Vec<TextureSample> {
     let mut passages = passages.iter().peekable();

@@ -145,7 +145,7 @@ pub(crate) fn detachments(
     };
     let mut peaks = peaks.into_iter();
     let slidings = match has_strain {
-        true => slidings(&sheet),
+        true => slidings(&sheet, &ends),
         false => vec![None; distances.len()],
     };
     let rows = distances_mm.iter().zip(&sheet.rows).zip(ends).zip(slidings);
@@ -247,29 +247,29 @@ pub(crate) fn snaps_deg(sheet: &Sheet, row: usize) -> Option<f64> {
     Some((sheet.side.sign() * span.to).to_degrees())
 }
 
-/// Returns the sliding direction of the contact at the detachment of each row of `sheet` by its history, `[row]`; `None` without friction,
-/// and where the history is not found.
-fn slidings(sheet: &Sheet) -> Vec<Option<Sliding>> {
+/// Returns the sliding direction of the contact at the detachment of each row of `sheet` by its history, `[row]`; `None` without friction or
+/// an end, and where the history is not found.
+fn slidings(sheet: &Sheet, ends: &[Result<RowEnd, DetachmentKind>]) -> Vec<Option<Sliding>> {
     let mut slidings = vec![None; sheet.rows.len()];
     if sheet.rod.friction == 0.0 {
         return slidings;
     }
-    let is_pushed = |end: &&Crossing| end.push > TIE;
-    let touching = (0..slidings.len()).filter(|row| sheet.touches(*row));
-    let rows =
-        touching.filter_map(|row| Some((row, *sheet.crossings[row].first().filter(is_pushed)?)));
-    let rows: Vec<(usize, Crossing)> = rows.collect();
+    let rows = ends.iter().enumerate().filter_map(|(row, end)| {
+        let RowEnd { crossing, state } = *end.as_ref().ok()?;
+        (crossing.push > TIE).then_some((row, crossing, state))
+    });
+    let rows: Vec<(usize, Crossing, FirstVariation)> = rows.collect();
     let mut doubtful = Vec::new();
-    for (row, is_sure) in rows.iter().zip(surely_slides_to_end(sheet, &rows)) {
+    for ((row, end, _), is_sure) in rows.iter().zip(surely_slides_to_end(sheet, &rows)) {
         match is_sure {
-            true => slidings[row.0] = Some(Sliding::Tip),
-            false => doubtful.push(row),
+            true => slidings[*row] = Some(Sliding::Tip),
+            false => doubtful.push((*row, end.push)),
         }
     }
     let levels = doubtful.iter().map(|(row, _)| sheet.level(*row));
     let histories = ContactHistory::of(&levels.collect::<Vec<_>>());
-    for ((row, end), history) in doubtful.into_iter().zip(histories) {
-        slidings[*row] = history.and_then(|history| history.sliding_at_end(end.push));
+    for ((row, push), history) in doubtful.into_iter().zip(histories) {
+        slidings[row] = history.and_then(|history| history.sliding_at_end(push));
     }
     slidings
 }

@@ -5,7 +5,6 @@
 
 mod branch;
 mod columns;
-mod contact;
 mod corner;
 mod curve;
 mod peak;

@@ -2,10 +2,9 @@
 //!
 //! Events belong to the course, not to its samples: a contact is moved to events and turning points alone, and read at samples.
 
-use super::contact::CourseContact;
-use super::friction::{ContactChange, FrictionCourse};
+use super::contact::{ContactChange, CourseContact, CourseContacts};
 use super::phase::{Obstacles, Passage, Phase};
-use super::states::SideStates;
+use super::states::BothSides;
 use super::turns::Turns;
 use super::{Undecided, WhiskEventKind};
 use whiskmap_mechanics::rod::Side;
@@ -40,7 +39,7 @@ pub struct Legs<'a> {
     phase: Phase,
     /// Phases in which the course can be after a gap; none while its phase is known.
     possible: Vec<Phase>,
-    friction: FrictionCourse<'a>,
+    contacts: CourseContacts<'a>,
     /// Change of the angle on the last leg on which the base moved, in radians; 0 before it.
     heading: f64,
     /// Samples of the course so far, `[sample]`.
@@ -69,13 +68,13 @@ impl Leg {
 }
 
 impl<'a> Legs<'a> {
-    /// Creates the course in progress that begins in `phase`. `sides` are the states on `[CB, CF]`.
-    pub fn new(turns: &'a Turns, phase: Phase, sides: [Option<&'a SideStates>; 2]) -> Self {
+    /// Creates the course in progress that begins in `phase`, with the states on both `sides`.
+    pub const fn new(turns: &'a Turns, phase: Phase, sides: &'a BothSides) -> Self {
         Self {
             turns,
             phase,
             possible: Vec::new(),
-            friction: FrictionCourse::new(sides),
+            contacts: CourseContacts::new(sides),
             heading: 0.0,
             samples: Vec::new(),
             events: Vec::new(),
@@ -87,7 +86,7 @@ impl<'a> Legs<'a> {
     pub fn first(&mut self, angle: f64, time_s: f64) {
         if let Phase::Contact { side, obstacle } = self.phase {
             let push = self.turns.push(side, obstacle, angle).max(0.0);
-            self.friction.touch(side, push);
+            self.contacts.touch(side, push);
         }
         self.end(Leg {
             angles: [angle; 2],
@@ -99,7 +98,7 @@ impl<'a> Legs<'a> {
     /// which the whisker can be.
     pub fn resume(&mut self, angle: f64, time_s: f64) {
         self.possible = self.turns.possible(angle);
-        self.friction.forget();
+        self.contacts.forget();
         self.heading = 0.0;
         self.decide();
         self.end(Leg {
@@ -149,7 +148,7 @@ impl<'a> Legs<'a> {
             && let Some((side, _, push)) = self.contact(angle)
         {
             // The sample at the turning point has the changes before it.
-            self.friction.to(side, push);
+            self.contacts.to(side, push);
         }
         self.heading = heading;
     }
@@ -157,7 +156,7 @@ impl<'a> Legs<'a> {
     /// Returns side, obstacle and push of the contact at an `angle` of the base, in radians; `None` without a known one.
     fn contact(&self, angle: f64) -> Option<(Side, i32, f64)> {
         match self.phase {
-            Phase::Contact { side, obstacle } if !self.friction.is_lost => {
+            Phase::Contact { side, obstacle } if !self.contacts.is_lost => {
                 let push = self.turns.push(side, obstacle, angle).max(0.0);
                 Some((side, obstacle, push))
             }
@@ -174,23 +173,23 @@ impl<'a> Legs<'a> {
             push,
             ..
         } = passage;
-        if self.friction.is_lost {
+        if self.contacts.is_lost {
             return;
         }
         let (mut kind, phase) = (event, None);
         let mut contact = CourseContact { side, push, phase };
         match event {
-            Some(WhiskEventKind::Touch) => contact = self.friction.touch(side, push),
+            Some(WhiskEventKind::Touch) => contact = self.contacts.touch(side, push),
             Some(WhiskEventKind::Undecided) => {}
             _ => {
-                let (reached, changes) = self.friction.to(side, push);
+                let (reached, changes) = self.contacts.to(side, push);
                 self.change(leg, side, obstacle, changes);
-                if self.friction.is_lost {
+                if self.contacts.is_lost {
                     return;
                 }
                 contact = reached;
-                self.friction.leave(event.is_some());
-                if self.friction.is_lost {
+                self.contacts.leave(event.is_some());
+                if self.contacts.is_lost {
                     kind = Some(WhiskEventKind::Undecided);
                 }
             }
@@ -233,7 +232,7 @@ impl<'a> Legs<'a> {
         let mut sample = LegSample {
             phase: self.phase,
             contact: None,
-            dissipated: self.friction.dissipated(),
+            dissipated: self.contacts.dissipated(),
         };
         if !self.possible.is_empty() {
             sample.phase = Phase::Undecided {
@@ -244,12 +243,12 @@ impl<'a> Legs<'a> {
             return;
         }
         if let Some((side, obstacle, push)) = self.contact(leg.angles[1]) {
-            let (contact, dissipated, changes) = self.friction.at(side, push);
+            let (contact, dissipated, changes) = self.contacts.at(side, push);
             self.change(&leg, side, obstacle, changes);
             sample.contact = Some(contact);
             sample.dissipated = dissipated;
         }
-        if self.friction.is_lost {
+        if self.contacts.is_lost {
             sample.phase = Phase::Undecided {
                 obstacle: 0,
                 reason: Undecided::Stuck,

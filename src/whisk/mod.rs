@@ -7,21 +7,20 @@
 
 mod contact;
 mod course;
-mod friction;
 mod gaps;
 mod legs;
+mod options;
 pub(crate) mod phase;
 mod readings;
 mod rows;
-mod start;
 pub(crate) mod states;
 mod turns;
 
 pub use course::{AngleCourse, CourseError};
 pub use gaps::CourseGap;
+pub use options::{CourseStart, WhiskOptions};
 pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
-pub use start::{CourseStart, WhiskOptions};
 
 use crate::scene::{Pole, Whisker, digits};
 use crate::sheet::Row;
@@ -29,8 +28,8 @@ use crate::trace::NoState;
 use glam::DVec2;
 use legs::Legs;
 use phase::{Phase, ROUNDING};
-use readings::{CurvaturePoint, FixedPole, Found};
-use states::SideStates;
+use readings::{CurvaturePoint, FixedPole};
+use states::{BothSides, SideStates};
 use turns::Turns;
 use whiskmap_mechanics::rod::{Rest, Side};
 
@@ -233,14 +232,14 @@ pub fn whisk_with(
         cb_end: cb_states.end(0),
         cf_end: cf_states.as_ref().map(|states| states.end(0)),
     };
+    let found = BothSides {
+        cb: Some(cb_states),
+        cf: cf_states,
+    };
     let known = course.known();
     let first = course.angles_deg[known[0]];
     let phase = begin(&turns, first, options.start)?;
-    let found = Found {
-        cb: &cb_states,
-        cf: cf_states.as_ref(),
-    };
-    let mut legs = Legs::new(&turns, phase, [Some(found.cb), found.cf]);
+    let mut legs = Legs::new(&turns, phase, &found);
     legs.first(first.to_radians(), course.times_s[known[0]]);
     let gaps = course.gaps(options.bridge_s);
     let is_open = |end: usize| {
@@ -269,7 +268,8 @@ pub fn whisk_with(
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
-        samples.extend(found.samples(chunk, point.as_ref()));
+        let unit_nj = whisker.units().moment_nnm;
+        samples.extend(found.samples(chunk, point.as_ref(), unit_nj));
     }
     let mut events = Vec::with_capacity(legs.events.len());
     for chunk in legs.events.chunks(STATES_AT_ONCE) {

@@ -3,21 +3,13 @@
 use super::contact::CourseContact;
 use super::legs::{LegEvent, LegSample};
 use super::phase::Phase;
-use super::rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
-use super::states::{ContactState, SideStates, SolveContacts};
+use super::rows::{Undecided, WhiskEvent, WhiskRegime, WhiskSample};
+use super::states::{BothSides, CourseState, SideStates};
 use crate::friction::{ContactPhase, held, states};
-use crate::trace::{DetachmentKind, StateRow};
+use crate::trace::StateRow;
 use glam::DVec2;
 use rayon::prelude::*;
 use whiskmap_mechanics::rod::{Rest, Side};
-
-/// Stable states of the whisker on both sides, CB and CF.
-pub struct Found<'a> {
-    /// Stable states of the whisker on CB.
-    pub cb: &'a SideStates,
-    /// Stable states of the whisker on CF; `None` if the resting whisker does not reach the pole there.
-    pub cf: Option<&'a SideStates>,
-}
 
 /// Pole in front of the whisker, in mm in the axes of first touch on CB: the base is at the origin, its tangent then along the first axis.
 #[derive(Clone, Copy, Debug)]
@@ -65,47 +57,20 @@ pub fn signed_deg(side: Side, push: f64) -> f64 {
     side.sign() * push.to_degrees() + 0.0
 }
 
-impl Found<'_> {
-    fn of(&self, side: Side) -> Option<&SideStates> {
-        match side {
-            Side::Cb => Some(self.cb),
-            Side::Cf => self.cf,
-        }
-    }
-
-    /// Returns the state of each of the `contacts`; `None` where there is none. States with friction are solved by `solve`.
-    fn readings(
-        &self,
-        contacts: &[Option<CourseContact>],
-        solve: SolveContacts,
-    ) -> Vec<Option<ContactState>> {
-        let mut readings = vec![None; contacts.len()];
-        for side in Side::BOTH {
-            let indexed = contacts.iter().enumerate();
-            let on_side = indexed.filter_map(|(i, contact)| {
-                Some((i, contact.filter(|contact| contact.side == side)?))
-            });
-            let (places, contacts): (Vec<usize>, Vec<CourseContact>) = on_side.unzip();
-            let states = self.of(side).map(|states| states.at(&contacts, solve));
-            for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
-                readings[i] = state;
-            }
-        }
-        readings
-    }
-
-    /// Returns the samples of a course with their states and the curvature at a point, without times and angles: `[sample]`.
+impl BothSides {
+    /// Returns the samples of a course with their states and the curvature at a point, without times and angles: `[sample]`. `unit_nj` is
+    /// the unit of energies, in nJ.
     pub fn samples(
         &self,
         samples: &[LegSample],
         point: Option<&CurvaturePoint>,
+        unit_nj: f64,
     ) -> Vec<WhiskSample> {
         let contacts: Vec<Option<CourseContact>> =
             samples.iter().map(|sample| sample.contact).collect();
-        let readings = self.readings(&contacts, states);
-        let unit = self.cb.energy_nj();
+        let readings = self.at(&contacts, states);
         let samples = samples.par_iter().zip(readings);
-        let with_curvature = |(leg_sample, state): (&LegSample, Option<ContactState>)| {
+        let with_curvature = |(leg_sample, state): (&LegSample, Option<CourseState>)| {
             let curvature = point.and_then(|point| match leg_sample.phase {
                 Phase::Free { .. } => Some(point.at_rest_per_mm()),
                 _ => {
@@ -115,7 +80,7 @@ impl Found<'_> {
             });
             WhiskSample {
                 curvature_per_mm: curvature,
-                ..sample(leg_sample, state, unit)
+                ..sample(leg_sample, state, unit_nj)
             }
         };
         samples.map(with_curvature).collect()
@@ -127,17 +92,13 @@ impl Found<'_> {
         let contacts =
             contacts.map(|event| Some(event.contact).filter(|contact| !contact.push.is_nan()));
         // A snap begins at a limit, where rounding may hide that the contact still sticks.
-        let readings = self.readings(&contacts.collect::<Vec<_>>(), held);
+        let readings = self.at(&contacts.collect::<Vec<_>>(), held);
         let events = events.iter().zip(readings).map(|(event, reading)| {
             let CourseContact { side, push, .. } = event.contact;
-            let end = self.of(side).map(|states| states.kind(0));
             let push = Some(push).filter(|push| !push.is_nan());
             let event = WhiskEvent {
                 time_s: event.time_s,
-                event: event.kind.unwrap_or(match end {
-                    Some(DetachmentKind::PullOff) => WhiskEventKind::PullOff,
-                    _ => WhiskEventKind::SlipOff,
-                }),
+                event: event.kind.unwrap_or_else(|| self.detachment(side, 0)),
                 side,
                 angle_deg: event.angle.to_degrees(),
                 push_angle_deg: push.map(|push| signed_deg(side, push)),
@@ -171,7 +132,7 @@ pub fn missing(time_s: f64, reason: Undecided) -> WhiskSample {
 }
 
 /// Returns a sample without time and angle. `unit` is the unit of energies, in nJ.
-fn sample(leg_sample: &LegSample, state: Option<ContactState>, unit: f64) -> WhiskSample {
+fn sample(leg_sample: &LegSample, state: Option<CourseState>, unit: f64) -> WhiskSample {
     let LegSample {
         phase,
         contact,

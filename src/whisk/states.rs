@@ -1,5 +1,6 @@
 //! States of a course on one side of its obstacles, in batches.
 
+use super::WhiskEventKind;
 use super::contact::CourseContact;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, RefineOutcome, refine};
@@ -26,7 +27,7 @@ pub struct SideStates {
 
 /// State of a contact: its values in physical units, and what its shape follows from.
 #[derive(Clone, Copy, Debug)]
-pub struct ContactState {
+pub struct CourseState {
     pub reading: Reading,
     /// Sliding direction of the contact; `None` without friction.
     pub sliding: Option<Sliding>,
@@ -36,7 +37,7 @@ pub struct ContactState {
     ratio: f64,
 }
 
-impl ContactState {
+impl CourseState {
     /// Creates a state without friction, or without a load.
     fn smooth(reading: Reading, tau: f64, load: f64) -> Self {
         Self {
@@ -115,13 +116,8 @@ impl SideStates {
         self.limits.get(row)
     }
 
-    /// Returns the unit of energy of the whisker, in nJ: a dimensionless energy of 1.
-    pub fn energy_nj(&self) -> f64 {
-        self.whisker.units().moment_nnm
-    }
-
     /// Returns the curvature of the whisker in `state` at the arclength `at_mm`, in 1/mm.
-    pub fn curvature_per_mm(&self, state: &ContactState, at_mm: f64) -> f64 {
+    pub fn curvature_per_mm(&self, state: &CourseState, at_mm: f64) -> f64 {
         let length = self.whisker.length_mm;
         let rod = Rod {
             friction: state.ratio,
@@ -136,11 +132,7 @@ impl SideStates {
 
     /// Returns the states of `contacts` in the first row, `[contact]`; `None` where no state is found. States with friction are solved by
     /// `solve`.
-    pub fn at(
-        &self,
-        contacts: &[CourseContact],
-        solve: SolveContacts,
-    ) -> Vec<Option<ContactState>> {
+    fn at(&self, contacts: &[CourseContact], solve: SolveContacts) -> Vec<Option<CourseState>> {
         let Some(limits) = self.limits(0) else {
             let pushes: Vec<RowPush> = contacts.iter().map(|contact| (0, contact.push)).collect();
             return self.without_friction(&pushes);
@@ -161,8 +153,8 @@ impl SideStates {
                     self.sheet.rows[0].touch,
                     self.sheet.side.sign() * contact.push,
                 );
-                return Some(ContactState {
-                    reading: reader.read(state.at.point.x, &state.full, touch, push),
+                return Some(CourseState {
+                    reading: reader.read(state.at.point.x, &state.variation.full, touch, push),
                     sliding: Some(state.sliding),
                     point: state.at.point,
                     ratio: state.at.ratio,
@@ -173,30 +165,30 @@ impl SideStates {
                 false => self.at_touch(0),
             };
             let sliding = contact.phase.map(|phase| phase.sliding());
-            Some(ContactState { sliding, ..state })
+            Some(CourseState { sliding, ..state })
         });
         states.collect()
     }
 
     /// Returns the state at the end of the push of `row`, where the contact slides.
-    fn at_end(&self, row: usize) -> ContactState {
+    fn at_end(&self, row: usize) -> CourseState {
         let end = &self.ends[row];
         let reading = end.reading(&self.reader, &self.sheet, row);
-        ContactState {
+        CourseState {
             ratio: self.sheet.rod.friction,
-            ..ContactState::smooth(reading, end.crossing.tau, end.crossing.load)
+            ..CourseState::smooth(reading, end.crossing.tau, end.crossing.load)
         }
     }
 
-    fn at_touch(&self, row: usize) -> ContactState {
+    fn at_touch(&self, row: usize) -> CourseState {
         let row = &self.sheet.rows[row];
         let contact = row.contact.min(row.end);
         let reading = self.reader.at_first_touch(contact, row.touch);
-        ContactState::smooth(reading, self.sheet.rod.tau(contact), 0.0)
+        CourseState::smooth(reading, self.sheet.rod.tau(contact), 0.0)
     }
 
     /// Returns the states without friction at `contacts`, `[contact]`; `None` where no state is found.
-    fn without_friction(&self, contacts: &[RowPush]) -> Vec<Option<ContactState>> {
+    fn without_friction(&self, contacts: &[RowPush]) -> Vec<Option<CourseState>> {
         let sign = self.sheet.side.sign();
         let mut order: Vec<usize> = (0..contacts.len()).collect();
         let of = |i: usize| contacts[i];
@@ -224,7 +216,7 @@ impl SideStates {
                 let (state, (row, push)) = (cell.state, of(i));
                 let touch = self.sheet.rows[row].touch;
                 let reading = self.reader.read(state.tau, &state.full, touch, sign * push);
-                states[i] = Some(ContactState::smooth(reading, state.tau, state.load));
+                states[i] = Some(CourseState::smooth(reading, state.tau, state.load));
             }
         }
         self.fill(contacts, &mut states);
@@ -232,7 +224,7 @@ impl SideStates {
     }
 
     /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation.
-    fn fill(&self, contacts: &[RowPush], states: &mut [Option<ContactState>]) {
+    fn fill(&self, contacts: &[RowPush], states: &mut [Option<CourseState>]) {
         let side = self.sheet.side;
         let mut last: Option<(usize, Option<StableBranch>)> = None;
         for (state, &(row, push)) in states.iter_mut().zip(contacts) {
@@ -249,7 +241,7 @@ impl SideStates {
                 *state = branch.as_ref().and_then(|branch| {
                     let state = branch.state(side.sign() * push).ok()?;
                     let reading = branch.read(&state);
-                    Some(ContactState::smooth(reading, state.tau, state.load))
+                    Some(CourseState::smooth(reading, state.tau, state.load))
                 });
                 last = Some((row, branch));
             }
@@ -271,16 +263,39 @@ impl BothSides {
         }
     }
 
-    /// Returns the state of each of the `contacts`, `[contact]`; `None` where there is none.
-    pub fn states(&self, contacts: &[Option<(Side, RowPush)>]) -> Vec<Option<ContactState>> {
+    /// Returns the state of each push without friction, `[contact]`; `None` where there is none.
+    pub fn pushed(&self, pushes: &[Option<(Side, RowPush)>]) -> Vec<Option<CourseState>> {
+        self.by_side(pushes, SideStates::without_friction)
+    }
+
+    /// Returns the state of each of the `contacts` in the first rows, `[contact]`; `None` where there is none. States with friction are solved by
+    /// `solve`.
+    pub fn at(
+        &self,
+        contacts: &[Option<CourseContact>],
+        solve: SolveContacts,
+    ) -> Vec<Option<CourseState>> {
+        let contacts = contacts.iter();
+        let contacts = contacts.map(|contact| contact.map(|contact| (contact.side, contact)));
+        self.by_side(&contacts.collect::<Vec<_>>(), |states, contacts| {
+            states.at(contacts, solve)
+        })
+    }
+
+    /// Returns the state of each of the `contacts`, `[contact]`, which `solve` finds for the contacts of one side.
+    fn by_side<C: Copy>(
+        &self,
+        contacts: &[Option<(Side, C)>],
+        solve: impl Fn(&SideStates, &[C]) -> Vec<Option<CourseState>>,
+    ) -> Vec<Option<CourseState>> {
         let mut found = vec![None; contacts.len()];
         for side in Side::BOTH {
             let indexed = contacts.iter().enumerate();
             let on_side = indexed.filter_map(|(i, contact)| {
                 Some((i, contact.filter(|contact| contact.0 == side)?.1))
             });
-            let (places, pushes): (Vec<usize>, Vec<RowPush>) = on_side.unzip();
-            let states = self.of(side).map(|states| states.without_friction(&pushes));
+            let (places, contacts): (Vec<usize>, Vec<C>) = on_side.unzip();
+            let states = self.of(side).map(|states| solve(states, &contacts));
             for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
                 found[i] = state;
             }
@@ -289,10 +304,10 @@ impl BothSides {
     }
 
     /// Returns the kind of the event at which a push against the pole of `row` ends.
-    pub fn detachment(&self, side: Side, row: usize) -> super::WhiskEventKind {
+    pub fn detachment(&self, side: Side, row: usize) -> WhiskEventKind {
         match self.of(side).map(|states| states.kind(row)) {
-            Some(DetachmentKind::PullOff) => super::WhiskEventKind::PullOff,
-            _ => super::WhiskEventKind::SlipOff,
+            Some(DetachmentKind::PullOff) => WhiskEventKind::PullOff,
+            _ => WhiskEventKind::SlipOff,
         }
     }
 }

@@ -26,13 +26,13 @@ fn errors_fall_from_rung_to_rung() {
     let engines = report["engines"].as_array().unwrap();
     assert!(engines.len() >= 2);
     for engine in engines {
-        let own: Vec<Value> = rows
+        let of_engine: Vec<Value> = rows
             .iter()
             .filter(|row| row["engine"] == engine["name"] && row["threads"] == engine["threads"])
             .cloned()
             .collect();
         let is_cpu = engine["name"].as_str().unwrap().starts_with("cpu");
-        let errors = numbers(&own, "/errors/angle_deg/worst");
+        let errors = numbers(&of_engine, "/errors/angle_deg/worst");
         // The last two rungs of the CPU are at the rounding error. A GPU has no such rung: measured 2.3e-5 in `f32`. Small bounds of the
         // spectral engine can take the same number of states.
         let (rungs, falling, exact) = match engine["name"].as_str().unwrap() {
@@ -57,9 +57,9 @@ fn errors_fall_from_rung_to_rung() {
             false => &["/us_per_state"],
         };
         for key in keys {
-            assert!(numbers(&own, key).iter().all(|number| *number > 0.0));
+            assert!(numbers(&of_engine, key).iter().all(|number| *number > 0.0));
         }
-        let p99 = numbers(&own, "/errors/angle_deg/p99");
+        let p99 = numbers(&of_engine, "/errors/angle_deg/p99");
         assert!(p99.iter().zip(&errors).all(|(most, worst)| most <= worst));
     }
     let places: Vec<(f64, f64, bool)> = numbers(rows, "/us_per_state")
@@ -130,18 +130,18 @@ fn expansions_hang_together(report: &Value) {
     let rows = rows
         .iter()
         .filter(|row| row["engine"] == "spectral" && row["threads"] == 1);
-    for (own, row) in all.iter().zip(rows) {
-        assert_eq!(own["us_per_state"], row["us_per_state"]);
-        let number = |key: &str| own[key].as_f64();
+    for (engine, row) in all.iter().zip(rows) {
+        assert_eq!(engine["us_per_state"], row["us_per_state"]);
+        let number = |key: &str| engine[key].as_f64();
         let saved = number("us_by_trajectories").unwrap() - number("us_per_state").unwrap();
         let from = (saved > 0.0).then(|| 1e3 * number("ms_per_side").unwrap() / saved);
         let found = number("pays_from");
-        assert_eq!(found.is_some(), from.is_some(), "{own}");
+        assert_eq!(found.is_some(), from.is_some(), "{engine}");
         assert!(
             found
                 .zip(from)
                 .is_none_or(|(a, b)| (a - b).abs() < 1e-9 * b),
-            "{own}"
+            "{engine}"
         );
     }
 }

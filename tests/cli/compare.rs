@@ -56,7 +56,7 @@ fn channel<'a>(document: &'a Value, name: &str) -> &'a Value {
     let mut all = ["codes", "quantities"]
         .into_iter()
         .flat_map(|kind| document[kind].as_array().unwrap());
-    all.find(|own| own["channel"] == name).unwrap()
+    all.find(|row| row["channel"] == name).unwrap()
 }
 
 #[test]

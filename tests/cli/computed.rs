@@ -61,11 +61,11 @@ fn a_part_of_a_scene_is_that_of_its_map() {
             assert!(run.err.starts_with(&begin), "{run:?}");
             for format in formats {
                 let stored = format!("{engine}/scene.{format}");
-                let own = good(
+                let of_stored = good(
                     &place,
                     &[&["extract", &stored, "-o", output], part].concat(),
                 );
-                assert!(run.err.ends_with(&own.err), "{run:?} {own:?}");
+                assert!(run.err.ends_with(&of_stored.err), "{run:?} {of_stored:?}");
                 match output {
                     "part.zarr" => {
                         assert_same(&place, output, &computed);

@@ -177,10 +177,10 @@ fn blocks_under_a_wrong_root_stay() {
 fn arrays_in_each_others_folder_are_computed_again() {
     let place = Place::with(SMALL);
     for channels in ["regime", "regime,force_un"] {
-        let own = ["--channels", channels];
-        good(&place, "whole", &own);
+        let only = ["--channels", channels];
+        good(&place, "whole", &only);
         for option in ["--verify", "--repair"] {
-            good(&place, "out", &own);
+            good(&place, "out", &only);
             let folder = |name: &str| place.path("out/scene.zarr").join(name);
             for (from, to) in [
                 ("regime", "aside"),
@@ -190,7 +190,7 @@ fn arrays_in_each_others_folder_are_computed_again() {
                 fs::rename(folder(from), folder(to)).unwrap();
             }
             status(&place, option).assert_said(1, "1 block is missing");
-            let run = good(&place, "out", &[&own[..], &["--resume"]].concat());
+            let run = good(&place, "out", &[&only[..], &["--resume"]].concat());
             assert!(run.err.contains("blocks: 1 of 1"), "{run:?}");
             for (name, bytes) in files(&place.path("whole")) {
                 let found = fs::read(place.path("out").join(&name)).unwrap();

@@ -46,12 +46,12 @@ fn a_value_is_a_line() {
     let better = String::from_utf8(place.bytes("better.toml")).unwrap();
     let radius = better.split("tip_radius_um = ").nth(1).unwrap();
     let radius = radius.split_whitespace().next().unwrap();
-    let own: f64 = radius.parse().unwrap();
+    let tip_radius: f64 = radius.parse().unwrap();
     assert!(
         better.starts_with("# mine\n") && radius.len() <= 12,
         "{better}"
     );
-    assert!((own / 30.0 + taper - 1.0).abs() < 1e-9, "{better}");
+    assert!((tip_radius / 30.0 + taper - 1.0).abs() < 1e-9, "{better}");
     assert_eq!(run(&place, &["--slip-off", "20deg", "-o", "-"]).out, better);
     // The plot does not change the result, and has one dot at the solution.
     let plotted = run(&place, &["--slip-off", "20deg", "--plot", "p.svg"]);
@@ -286,7 +286,7 @@ fn several_targets_have_a_line_of_values() {
         .next()
         .unwrap()
         .split(',')
-        .map(|own| own.parse().unwrap());
+        .map(|value| value.parse().unwrap());
     let values: Vec<f64> = values.collect();
     assert_eq!((values.len(), lines.next()), (2, None), "{found:?}");
     let again = [

@@ -15,7 +15,7 @@ fn assert_rounded(whole: &MapSource, found: &MapSource, whiskers: usize) {
     for (channel, whisker) in whole
         .channels()
         .iter()
-        .flat_map(|own| (0..whiskers).map(move |at| (own, at)))
+        .flat_map(|channel| (0..whiskers).map(move |at| (channel, at)))
     {
         let values = [whole, found].map(|map| map.read_panel(channel, whisker).unwrap());
         match values {

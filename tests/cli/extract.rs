@@ -47,12 +47,12 @@ fn a_slice_is_what_the_store_has_there() {
             let code = regime.value(row * 64) as u32;
             let named = Regime::ALL
                 .into_iter()
-                .find(|own| own.code() == code)
+                .find(|regime| regime.code() == code)
                 .unwrap();
             assert_eq!(cells[6], named.name());
-            let own = force.value(row * 64);
+            let value = force.value(row * 64);
             let found = cells[7].parse::<f32>().map(f64::from).ok();
-            assert_eq!(found, Some(own).filter(|own| own.is_finite()));
+            assert_eq!(found, Some(value).filter(|value| value.is_finite()));
         }
     }
     assert_eq!(lines.next(), None);
@@ -165,9 +165,9 @@ fn a_map_of_a_slice_can_be_drawn() {
     for panel in 0..12 {
         let whisker = panel % 3 + 3 + panel / 3 * 6;
         for name in slice.channels() {
-            let own = slice.read_panel(name, panel).unwrap();
+            let part = slice.read_panel(name, panel).unwrap();
             let whole = store.read_panel(name, whisker).unwrap();
-            let mut pairs = own.values().zip(whole.values());
+            let mut pairs = part.values().zip(whole.values());
             assert!(
                 pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()),
                 "{name}"
@@ -230,11 +230,11 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
     assert_eq!(slice.channels, whole.channels);
     for name in slice.channels.names() {
         for whisker in 0..12 {
-            let own = slice.read_panel(name, whisker).unwrap();
+            let part = slice.read_panel(name, whisker).unwrap();
             let from = whole
                 .read_panel(name, whisker % 3 + 3 + whisker / 3 * 6)
                 .unwrap();
-            let mut pairs = own.values().zip(from.values().skip(row * 64));
+            let mut pairs = part.values().zip(from.values().skip(row * 64));
             let same = pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan());
             assert!(same, "{name}, whisker {whisker}");
         }

@@ -63,12 +63,12 @@ fn table_scene_and_document_agree() {
         let words: Vec<&str> = line.split_whitespace().collect();
         assert_eq!(words[2], "+-");
         // The last digit of the error is that of the value.
-        let [own, of_error] = [words[1], words[3]].map(|own| own.parse::<f64>().unwrap());
+        let [estimate, of_error] = [words[1], words[3]].map(|word| word.parse::<f64>().unwrap());
         let places = words[3].split('.').nth(1).unwrap().len();
         assert_eq!(words[1].split('.').nth(1).unwrap().len(), places);
         let half = 0.5 * 10_f64.powi(-(places as i32)) * (1.0 + 1e-9);
         assert!(
-            (own - value).abs() <= half && (of_error - error).abs() <= half,
+            (estimate - value).abs() <= half && (of_error - error).abs() <= half,
             "{line}"
         );
         assert!(half < 0.2 * error, "{line}");
@@ -125,7 +125,7 @@ fn table_scene_and_document_agree() {
     ];
     assert_eq!(place.run(&[&start[..], &free].concat()).code, Some(0));
     let again = json(&place, "again.json");
-    let [one, other] = [&found, &again].map(|own| own["values"]["tip_radius_um"].as_f64().unwrap());
+    let [one, other] = [&found, &again].map(|fit| fit["values"]["tip_radius_um"].as_f64().unwrap());
     assert!((one / other - 1.0).abs() < 1e-5, "{one} {other}");
 }
 
@@ -313,13 +313,13 @@ fn wrong_input_is_refused_before_any_file_is_made() {
 #[test]
 fn points_with_a_missing_number_are_left_out() {
     let place = place();
-    let own = String::from_utf8(place.bytes("points.csv")).unwrap();
+    let points = String::from_utf8(place.bytes("points.csv")).unwrap();
     let options = ["--free", "tip_radius_um", "--json", "fit.json"];
     fit(&place, &options);
     let whole = json(&place, "fit.json");
     place.write(
         "points.csv",
-        &format!("{}\n,cb,,12\n,cf,9,NaN\n", own.trim_end()),
+        &format!("{}\n,cb,,12\n,cf,9,NaN\n", points.trim_end()),
     );
     let run = fit(&place, &options);
     assert!(
@@ -365,7 +365,7 @@ fn points_of_whiskers_share_the_fitted_values() {
         let csv = place.run(&[&["curve", "scene.toml"], &at[..]].concat()).out;
         let mut lines = csv.lines().map(|line| line.split(','));
         let header: Vec<&str> = lines.next().unwrap().collect();
-        let column = |name: &str| header.iter().position(|own| *own == name).unwrap();
+        let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
         for line in lines {
             let cells: Vec<&str> = line.collect();
             let push_deg = cells[column("push_angle_deg")];

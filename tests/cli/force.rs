@@ -244,9 +244,9 @@ fn a_scene_gives_standard_deviations_of_frames() {
     ];
     let parts = keys.map(|key| sd(key, &[]));
     let all = sd(&keys.join("\n"), &[]);
-    for (i, own) in all.into_iter().enumerate() {
+    for (i, value) in all.into_iter().enumerate() {
         let wanted: f64 = parts.iter().map(|part| part[i] * part[i]).sum();
-        assert!((own / wanted.sqrt() - 1.0).abs() < 1e-9, "{own}");
+        assert!((value / wanted.sqrt() - 1.0).abs() < 1e-9, "{value}");
         assert!(parts.iter().all(|part| part[i] > 0.0), "{parts:?}");
     }
     assert_eq!(sd(keys[2], &["--model"]), [0.0; 4]);

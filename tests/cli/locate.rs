@@ -25,7 +25,7 @@ fn a_state_of_shape_comes_back() {
             .next()
             .unwrap()
             .iter()
-            .position(|own| *own == name)
+            .position(|column| *column == name)
             .unwrap();
         lines.next().unwrap()[at].parse().unwrap()
     };
@@ -44,8 +44,8 @@ fn a_state_of_shape_comes_back() {
     ]);
     assert_eq!(located.code, Some(0), "{located:?}");
     for (name, wanted) in [("distance_mm", 15.66), ("push_angle_deg", 10.0)] {
-        let own = table(&located.out, name);
-        assert!((own - wanted).abs() < 1e-8, "{name} {own}");
+        let value = table(&located.out, name);
+        assert!((value - wanted).abs() < 1e-8, "{name} {value}");
     }
     assert!(table(&located.out, "lab_contact_x_mm") < table(&located.out, "contact_x_mm"));
 }

@@ -10,7 +10,7 @@ fn lines(out: &str) -> Vec<Vec<String>> {
 
 /// A cell of the column `name` in a line with these `cells`.
 fn cell<'a>(header: &[String], cells: &'a [String], name: &str) -> &'a str {
-    let column = header.iter().position(|own| own == name).unwrap();
+    let column = header.iter().position(|column| column == name).unwrap();
     &cells[column]
 }
 
@@ -34,7 +34,7 @@ fn the_table_has_every_variable_of_the_scene() {
     let table = lines(&run.out);
     let (header, rows) = table.split_first().unwrap();
     let sum = |side: &str| -> f64 {
-        let own = rows.iter().filter(|row| row[0] == side);
+        let of_side = rows.iter().filter(|row| row[0] == side);
         let part = |row: &Vec<String>| {
             let [value, slope] =
                 ["value", "d_push_deg"].map(|name| cell(header, row, name).parse::<f64>().unwrap());
@@ -44,7 +44,7 @@ fn the_table_has_every_variable_of_the_scene() {
                 _ => 0.0,
             }
         };
-        own.map(part).sum()
+        of_side.map(part).sum()
     };
     assert!(
         sum("cb").abs() < 1e-9 && sum("cf").abs() < 1e-9,
@@ -93,13 +93,13 @@ fn curves_and_branches_have_columns_of_derivatives() {
     );
     let curve = lines(&curve.out);
     for (side, line) in [("cf", &curve[1]), ("cb", &curve[2])] {
-        let own = all
+        let push_row = all
             .iter()
             .find(|row| row[0] == side && row[4] == "taper")
             .unwrap();
         assert_eq!(
             cell(&curve[0], line, "d_push_d_taper"),
-            cell(&all[0], own, "d_push_deg")
+            cell(&all[0], push_row, "d_push_deg")
         );
     }
     let branch = good(

@@ -57,7 +57,10 @@ fn the_tasks_of_the_script_fill_the_store_and_a_last_job_verifies_it() {
         "#SBATCH --cpus-per-task=2",
         "#SBATCH --mem=500M",
     ] {
-        assert!(run.out.lines().any(|own| own == line), "{line}: {run:?}");
+        assert!(
+            run.out.lines().any(|printed| printed == line),
+            "{line}: {run:?}"
+        );
     }
     assert!(run.out.lines().count() < 25, "{run:?}");
     place.write("sweep.sbatch", &run.out);
@@ -130,7 +133,7 @@ fn submit_refuses_what_no_task_could_do() {
         submit(&["--shards=2", &format!("--mem={memory}")])
             .assert_refused(&["must be a whole number with K, M (the default), G or T"]);
     }
-    for (own, said) in [
+    for (given, said) in [
         (&["--colour"][..], "unexpected argument '--colour'"),
         (
             &["--shard", "0/2"],
@@ -142,7 +145,7 @@ fn submit_refuses_what_no_task_could_do() {
         ),
         (&["another.toml"], "unexpected argument 'another.toml'"),
     ] {
-        let options = [&["--shards=2", "--"], own].concat();
+        let options = [&["--shards=2", "--"], given].concat();
         submit(&options).assert_refused(&["error: -- ", said]);
     }
     submit(&["--shards=2", "-o", "a\nb"]).assert_refused(&["--output", "without line breaks"]);
@@ -165,7 +168,10 @@ fn time_and_memory_are_proposed() {
     assert_eq!(run.code, Some(0), "{run:?}");
     let value = |option: &str| {
         let line = format!("#SBATCH --{option}=");
-        let value = run.out.lines().find_map(|own| own.strip_prefix(&line));
+        let value = run
+            .out
+            .lines()
+            .find_map(|printed| printed.strip_prefix(&line));
         value
             .unwrap_or_else(|| panic!("no {line}: {run:?}"))
             .to_owned()

@@ -43,11 +43,11 @@ fn assert_plain(text: &str, about: &[String]) {
 fn on_terminal(mut command: Command) -> [String; 2] {
     let flags = libc::O_RDWR | libc::O_NOCTTY | libc::O_CLOEXEC;
     // SAFETY: the descriptor is a new one that nothing else owns, and its name is copied before another call can change it.
-    let (own, name) = unsafe {
-        let own = libc::posix_openpt(flags);
-        assert!(own >= 0 && libc::grantpt(own) == 0 && libc::unlockpt(own) == 0);
-        let name = CStr::from_ptr(libc::ptsname(own)).to_owned();
-        (OwnedFd::from_raw_fd(own), name)
+    let (master, name) = unsafe {
+        let master = libc::posix_openpt(flags);
+        assert!(master >= 0 && libc::grantpt(master) == 0 && libc::unlockpt(master) == 0);
+        let name = CStr::from_ptr(libc::ptsname(master)).to_owned();
+        (OwnedFd::from_raw_fd(master), name)
     };
     let mut options = fs::File::options();
     options.read(true).write(true).custom_flags(libc::O_NOCTTY);
@@ -60,7 +60,7 @@ fn on_terminal(mut command: Command) -> [String; 2] {
     // The command holds the program's end of the terminal open.
     drop(command);
     let (mut shown, mut buffer) = (Vec::new(), [0; 4096]);
-    let mut terminal = fs::File::from(own);
+    let mut terminal = fs::File::from(master);
     // Linux reports an error when the last program has closed its end.
     while let Ok(count @ 1..) = terminal.read(&mut buffer) {
         shown.extend_from_slice(&buffer[..count]);

@@ -201,14 +201,14 @@ fn samples_have_the_curvature_at_an_arclength() {
     let run = place.run(&[&sweep[..], &["--curvature-at", "2"]].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     let header = run.out.lines().next().unwrap().to_owned();
-    let column = |name: &str| header.split(',').position(|own| own == name).unwrap();
-    let (phase, own) = (column("phase"), column("curvature_per_mm"));
+    let column = |name: &str| header.split(',').position(|column| column == name).unwrap();
+    let (phase, curvature) = (column("phase"), column("curvature_per_mm"));
     let (x, y) = (column("contact_x_mm"), column("contact_y_mm"));
     let rows = cells(&run.out, &header);
-    let at_rest = rows.iter().find(|row| row[phase] == "free").unwrap()[own];
+    let at_rest = rows.iter().find(|row| row[phase] == "free").unwrap()[curvature];
     let mut held = 0;
     for row in rows.iter().filter(|row| row[phase] == "stuck") {
-        assert_ne!(row[own], at_rest, "{row:?}");
+        assert_ne!(row[curvature], at_rest, "{row:?}");
         let [x, y]: [f64; 2] = [row[x], row[y]].map(|cell| cell.parse().unwrap());
         // On the whisker's side of an asperity, whose radius is 0.02 mm.
         assert!((y - 18.0).abs() <= 0.02 && x.abs() < 10.1, "{row:?}");

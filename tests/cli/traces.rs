@@ -46,7 +46,7 @@ fn a_curve_at_a_distance_has_the_loads_at_detachment() {
     let branch = table(&["branch", "scene.toml", "--distance", "12"]);
     let column = |text: &str, name: &str, row: usize| -> String {
         let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
-        let place = lines[0].iter().position(|own| *own == name).unwrap();
+        let place = lines[0].iter().position(|column| *column == name).unwrap();
         lines[row][place].to_owned()
     };
     assert_eq!(curve.lines().count(), 3, "{curve}");

@@ -16,11 +16,11 @@ fn a_spread_is_a_table_and_bands() {
     let run = good(&place, &sample);
     let rows = cells(&run.out, SPREAD);
     assert_eq!(rows.len(), 48);
-    let own = good(&place, &["curve", "scene.toml"]).out;
-    for (row, own) in rows.iter().zip(cells(&own, CURVE)) {
+    let curve = good(&place, &["curve", "scene.toml"]).out;
+    for (row, curve) in rows.iter().zip(cells(&curve, CURVE)) {
         assert_eq!(
             (row[0], row[1], row[2], row[3]),
-            (own[0], own[1], own[3], own[4])
+            (curve[0], curve[1], curve[3], curve[4])
         );
         let counts = row[4..8].iter().map(|count| count.parse::<u32>().unwrap());
         assert_eq!(counts.sum::<u32>(), 20, "{row:?}");
@@ -76,9 +76,9 @@ fn samples_and_measured_points_share_a_plot() {
     );
     // Measured: at most 4e-14 apart, because continuation starts elsewhere.
     for (row, alone) in [(&rows[0], &spread[2]), (&rows[1], &spread[1])] {
-        for (own, other) in row[10..].iter().zip(&alone[8..13]) {
-            let [own, other] = [own, other].map(|cell| cell.parse::<f64>().unwrap());
-            assert!((own / other - 1.0).abs() < 1e-9, "{row:?} {alone:?}");
+        for (cell, other) in row[10..].iter().zip(&alone[8..13]) {
+            let [cell, other] = [cell, other].map(|cell| cell.parse::<f64>().unwrap());
+            assert!((cell / other - 1.0).abs() < 1e-9, "{row:?} {alone:?}");
         }
     }
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
@@ -203,12 +203,13 @@ fn samples_without_sense_are_refused() {
 fn largest_loads_are_more_columns() {
     let place = uncertain();
     let words = ["curve", "scene.toml", "--distance", "10", "--samples", "5"];
-    let own = good(&place, &words).out;
+    let ends = good(&place, &words).out;
     let largest = good(&place, &[&words[..], &["--largest"]].concat()).out;
-    let (own, largest): (Vec<&str>, Vec<&str>) = (own.lines().collect(), largest.lines().collect());
-    assert_eq!(own.len(), largest.len());
-    for (own, largest) in own.iter().zip(&largest) {
-        let more = largest.strip_prefix(&format!("{own},")).unwrap();
+    let (ends, largest): (Vec<&str>, Vec<&str>) =
+        (ends.lines().collect(), largest.lines().collect());
+    assert_eq!(ends.len(), largest.len());
+    for (end, largest) in ends.iter().zip(&largest) {
+        let more = largest.strip_prefix(&format!("{end},")).unwrap();
         assert_eq!(more.split(',').count(), 24, "{more}");
     }
     assert!(

@@ -18,13 +18,13 @@ fn distances_and_angles_take_units() {
         assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
         run.out
     };
-    let own = shape("15", "5");
+    let plain = shape("15", "5");
     for (distance, angle) in [
         ("15mm", "5deg"),
         ("1.5cm", "5°"),
         ("15000um", "0.08726646259971647rad"),
     ] {
-        assert!(shape(distance, angle) == own, "{distance} {angle}");
+        assert!(shape(distance, angle) == plain, "{distance} {angle}");
     }
     let branch = |distances: &str| {
         let run = place.run(&[

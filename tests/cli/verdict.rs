@@ -84,7 +84,7 @@ fn values_that_are_not_a_fit_are_reported() {
 fn tables_of_other_programs_are_read() {
     let place = place();
     let free = ["--free", "tip_radius_um"];
-    let own = fit(&place, &free);
+    let plain = fit(&place, &free);
     let text = DATA.replace(',', ";").replace('.', ",").replace("cb", "CB");
     let text: String = text
         .lines()
@@ -105,5 +105,5 @@ fn tables_of_other_programs_are_read() {
         run.err,
         "note: points.csv:2: columns that are not used: rat\n"
     );
-    assert_eq!(run.out, own.out);
+    assert_eq!(run.out, plain.out);
 }

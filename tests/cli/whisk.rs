@@ -48,8 +48,8 @@ fn a_sine_and_its_angles_give_one_course() {
     );
     let curve = good(&place, &["curve", "scene.toml", "--distance", "15.66"]).out;
     let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
-    let [own, wanted]: [f64; 2] = [events[1][3], end[4]].map(|cell| cell.parse().unwrap());
-    assert!((own - wanted).abs() < 1e-9, "{own} {wanted}");
+    let [push, wanted]: [f64; 2] = [events[1][3], end[4]].map(|cell| cell.parse().unwrap());
+    assert!((push - wanted).abs() < 1e-9, "{push} {wanted}");
     // A table on standard output stays alone there.
     let piped = whisk(&place, &[&sine[..], &["--events", "e.csv"]].concat());
     assert_eq!(piped.out, text("s.csv"), "{piped:?}");
@@ -221,19 +221,22 @@ fn samples_have_the_curvature_at_an_arclength() {
             .lines()
             .map(|line| line.split(',').collect::<Vec<_>>());
         let header = lines.next().unwrap();
-        let own = header
+        let place = header
             .iter()
             .position(|name| *name == "curvature_per_mm")
             .unwrap();
-        lines.map(|line| line[own].to_owned()).collect()
+        lines.map(|line| line[place].to_owned()).collect()
     };
-    let own = column(&["--curvature-at", "2mm"]);
-    assert_eq!(own, column(&["--curvature-at", "0.2cm"]));
+    let curvatures = column(&["--curvature-at", "2mm"]);
+    assert_eq!(curvatures, column(&["--curvature-at", "0.2cm"]));
     assert!(
-        own.iter().all(|cell| cell.parse::<f64>().is_ok()),
-        "{own:?}"
+        curvatures.iter().all(|cell| cell.parse::<f64>().is_ok()),
+        "{curvatures:?}"
     );
-    assert!(own.iter().any(|cell| *cell != own[0]), "{own:?}");
+    assert!(
+        curvatures.iter().any(|cell| *cell != curvatures[0]),
+        "{curvatures:?}"
+    );
     assert!(column(&[]).iter().all(String::is_empty));
     for (at, said) in [
         (

@@ -32,12 +32,12 @@ fn neutral_values_are_absence() {
         ..Effects::default()
     };
     // The turn of a mount is rounded to 256 times the rounding of numbers.
-    let clamped = |own: InitialCondition| InitialCondition {
+    let clamped = |condition: InitialCondition| InitialCondition {
         rod: kept(Rod {
             mount: 0.0,
-            ..own.rod.clone()
+            ..condition.rod.clone()
         }),
-        ..own
+        ..condition
     };
     let usual: Vec<InitialCondition> = conditions(tapered, 200).into_iter().map(clamped).collect();
     let spiral = Effects {

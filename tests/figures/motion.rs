@@ -83,8 +83,8 @@ fn fig7b_scatters_around_the_true_force() {
     for line in [lever, model] {
         let pairs = line.points.iter().zip(&truth.points);
         let misses: Vec<f64> = pairs
-            .filter(|(own, _)| own[1].is_finite())
-            .map(|(own, truth)| own[1] - truth[1])
+            .filter(|(point, _)| point[1].is_finite())
+            .map(|(point, truth)| point[1] - truth[1])
             .collect();
         let rms = (misses.iter().map(|miss| miss * miss).sum::<f64>() / misses.len() as f64).sqrt();
         let mean = misses.iter().sum::<f64>() / misses.len() as f64;

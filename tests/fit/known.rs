@@ -76,7 +76,8 @@ fn from_far_away() {
 #[test]
 fn an_euler_spiral_and_measured_radii() {
     let spiral = shipped::scene("euler_spiral");
-    let [per_mm, per_mm2] = [SpiralPerMm, SpiralPerMm2].map(|own| own.value(&spiral).unwrap());
+    let [per_mm, per_mm2] =
+        [SpiralPerMm, SpiralPerMm2].map(|parameter| parameter.value(&spiral).unwrap());
     let truth = [(SpiralPerMm, 1.1 * per_mm), (SpiralPerMm2, 0.9 * per_mm2)];
     comes_back(&spiral, MeasuredAngle::Push, &truth);
     let measured = shipped::scene("measured");

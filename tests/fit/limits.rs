@@ -12,8 +12,8 @@ fn determined(fit: &Fit) -> Vec<Parameter> {
     let known = fit
         .estimates
         .iter()
-        .filter(|own| own.standard_error.is_some());
-    known.map(|own| own.parameter).collect()
+        .filter(|estimate| estimate.standard_error.is_some());
+    known.map(|estimate| estimate.parameter).collect()
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn parameters_stay_within_the_scene() {
         assert_eq!(found.estimates[0].standard_error, None);
         assert_eq!(found.degrees_of_freedom, alone.degrees_of_freedom);
         for (one, other) in found.estimates[1..].iter().zip(&alone.estimates) {
-            let errors = [one, other].map(|own| own.standard_error.unwrap());
+            let errors = [one, other].map(|estimate| estimate.standard_error.unwrap());
             // Measured: 2e-6.
             assert!((errors[0] / errors[1] - 1.0).abs() < 1e-4, "{errors:?}");
             assert!(

@@ -292,7 +292,11 @@ fn points_are_compared_one_by_one() {
         .map(|row| row.residual_deg.unwrap())
         .collect();
     let mean = residuals.iter().sum::<f64>() / 4.0;
-    let square = residuals.iter().map(|own| own * own).sum::<f64>() / 4.0;
+    let square = residuals
+        .iter()
+        .map(|residual| residual * residual)
+        .sum::<f64>()
+        / 4.0;
     assert!((beside.bias_deg().unwrap() - mean).abs() < 1e-12);
     assert!((beside.rms_deg().unwrap() - square.sqrt()).abs() < 1e-12);
 

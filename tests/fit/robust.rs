@@ -31,7 +31,7 @@ fn fitted(points: &MeasuredPoints, loss: FitLoss) -> Fit {
 fn errors(fit: &Fit) -> Vec<f64> {
     let pairs = fit.estimates.iter().zip(TRUTH);
     pairs
-        .map(|(own, (_, truth))| (own.value - truth) / own.standard_error.unwrap())
+        .map(|(estimate, (_, truth))| (estimate.value - truth) / estimate.standard_error.unwrap())
         .collect()
 }
 
@@ -48,12 +48,12 @@ fn outliers_are_named_and_hardly_pull() {
         squares
             .warnings(&points)
             .iter()
-            .all(|own| !own.contains("outlier"))
+            .all(|point| !point.contains("outlier"))
     );
     for loss in [FitLoss::SoftL1, FitLoss::Huber] {
         let found = fitted(&points, loss);
         assert!(
-            errors(&found).iter().all(|own| own.abs() < 3.0),
+            errors(&found).iter().all(|error| error.abs() < 3.0),
             "{loss:?}: {:?}",
             errors(&found)
         );
@@ -97,7 +97,11 @@ fn standard_errors_of_robust_fits_are_as_large_as_their_errors() {
                 point.angle_deg += if i == 14 { -3.0 } else { 3.0 };
             }
             let found = fitted(&points, loss);
-            squares += errors(&found).iter().map(|own| own * own).sum::<f64>() / 200.0;
+            squares += errors(&found)
+                .iter()
+                .map(|error| error * error)
+                .sum::<f64>()
+                / 200.0;
         }
         // 1 if they are right; of so many numbers, 0.7 and 1.3 are three deviations off.
         assert!((0.7..1.3).contains(&squares), "{loss:?}: {squares}");
@@ -123,7 +127,7 @@ fn a_pull_is_the_change_without_the_row() {
         let place = whole
             .estimates
             .iter()
-            .position(|own| own.parameter == strongest.parameter);
+            .position(|estimate| estimate.parameter == strongest.parameter);
         let place = place.unwrap();
         let [before, after] = [&whole, &other].map(|fit| fit.estimates[place].value);
         let moved = (after - before) / whole.estimates[place].standard_error.unwrap();

@@ -35,7 +35,7 @@ fn wrong_units_are_not_a_fit() {
                 found
                     .estimates
                     .iter()
-                    .all(|own| own.standard_error.is_none())
+                    .all(|estimate| estimate.standard_error.is_none())
             );
             assert_eq!(found.correlation, [[None; 2]; 2]);
         }

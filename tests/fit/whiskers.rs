@@ -32,11 +32,11 @@ fn table() -> Scene {
 fn points(scene: &Scene) -> MeasuredPoints {
     let mut text = "whisker,side,distance_mm,push_angle_deg\n".to_owned();
     for part in [0.3, 0.5, 0.7] {
-        for own in scene.whiskers().flatten() {
-            let name = own.place.whisker().unwrap();
-            let distance_mm = part * own.whisker.length_mm;
+        for swept in scene.whiskers().flatten() {
+            let name = swept.place.whisker().unwrap();
+            let distance_mm = part * swept.whisker.length_mm;
             for side in Side::BOTH {
-                let end = curve(&own.whisker, &own.pole, side, &[distance_mm])[0];
+                let end = curve(&swept.whisker, &swept.pole, side, &[distance_mm])[0];
                 let side = format!("{side:?}").to_lowercase();
                 let push_deg = end.push_angle_deg.unwrap();
                 text += &format!("{name},{side},{distance_mm},{push_deg}\n");
@@ -59,7 +59,12 @@ fn whiskers_of_a_table_share_the_fitted_values() {
         (Friction, 0.3),
         (PoleRadiusMm, 0.4),
     ]);
-    let found = fit(&start.unwrap(), &points, &truth.map(|(own, _)| own)).unwrap();
+    let found = fit(
+        &start.unwrap(),
+        &points,
+        &truth.map(|(parameter, _)| parameter),
+    )
+    .unwrap();
     for (estimate, (parameter, value)) in found.estimates.iter().zip(truth) {
         let off = (estimate.value / value - 1.0).abs();
         assert!(off < 1e-9, "{parameter:?}: {off:e}");
@@ -77,10 +82,10 @@ fn whiskers_of_a_table_share_the_fitted_values() {
 fn points_of_one_whisker_are_taken_out() {
     let table = table();
     let all = points(&table);
-    for own in table.whiskers().flatten() {
-        let points = all.at(&own.place).unwrap();
+    for swept in table.whiskers().flatten() {
+        let points = all.at(&swept.place).unwrap();
         assert_eq!((points.whiskers.len(), points.points.len()), (0, 6));
-        let beside = points.beside(&own.whisker, &own.pole);
+        let beside = points.beside(&swept.whisker, &swept.pole);
         assert!(beside.rms_deg().unwrap() < 1e-12);
     }
     let refused = table.grid.place(3);

@@ -46,22 +46,22 @@ impl RoughCourse {
             whisker.curvature = None;
             whisker.traced = Some(CurvaturePolynomial::new(terms));
         }
-        let mut own = Self {
+        let mut course = Self {
             whisker,
             pole: scene.pole,
             distance_mm: 2.0 + 17.5 * random.unit(),
             turns: vec![-1.0, 170.0, -170.0],
         };
-        let found = own.sampled(1)?;
+        let found = course.sampled(1)?;
         let ends = found.events.iter();
-        let ends = ends.filter(|own| own.energy_nj.is_some_and(|energy| energy > 0.0));
-        let ends: Vec<f64> = ends.map(|own| own.angle_deg).collect();
+        let ends = ends.filter(|event| event.energy_nj.is_some_and(|energy| energy > 0.0));
+        let ends: Vec<f64> = ends.map(|event| event.angle_deg).collect();
         let [cb, cf] = ends[..] else { return None };
         let [low, high] = [cf.min(-1.0), cb.max(found.cf_touch_deg)];
         // To one side, back, and so on: at least half of the turning points are in contact.
-        own.turns = vec![-0.5];
+        course.turns = vec![-0.5];
         if seed.is_multiple_of(2) {
-            own.turns.push(1.5 * high + 0.5);
+            course.turns.push(1.5 * high + 0.5);
         }
         for i in 0..7 {
             let part = match i % 2 {
@@ -72,9 +72,9 @@ impl RoughCourse {
                 0 => found.cf_touch_deg + part * (low - found.cf_touch_deg),
                 _ => part * high,
             };
-            own.turns.push(turn.clamp(-350.0, 350.0));
+            course.turns.push(turn.clamp(-350.0, 350.0));
         }
-        Some(own)
+        Some(course)
     }
 
     /// The course with `parts` samples from turning point to turning point, one turning point a second.
@@ -107,7 +107,7 @@ fn scene(taper: f64, a_per_mm: f64, radius_mm: f64, friction: f64) -> Scene {
 /// Returns true if two events agree: kind and side, angles to 1e-9 degrees, times to 1e-9 s and values to 1e-9 of them.
 fn agree(one: &WhiskEvent, other: &WhiskEvent) -> bool {
     let near = |a: f64, b: f64, scale: f64| (a - b).abs() <= 1e-9 * scale;
-    let values = |own: &WhiskEvent| [own.force_un, own.base_moment_nnm, own.energy_nj];
+    let values = |event: &WhiskEvent| [event.force_un, event.base_moment_nnm, event.energy_nj];
     let values = values(one).into_iter().zip(values(other));
     (one.event, one.side) == (other.event, other.side)
         && near(one.angle_deg, other.angle_deg, 1.0)
@@ -138,7 +138,7 @@ impl RoughCourse {
             );
             let at_turns = fine.samples.iter().step_by(*parts as usize);
             for (one, other) in coarse.samples.iter().zip(at_turns) {
-                let phase = |own: &WhiskSample| (own.regime, own.sliding, own.reason);
+                let phase = |sample: &WhiskSample| (sample.regime, sample.sliding, sample.reason);
                 assert_eq!(phase(one), phase(other), "{:?} {}", self.turns, one.time_s);
             }
         }
@@ -150,8 +150,8 @@ impl RoughCourse {
 #[test]
 fn events_do_not_depend_on_samples() {
     let mut kinds = BTreeMap::<String, usize>::new();
-    for own in (0..COURSES).filter_map(RoughCourse::random) {
-        for event in own.check().events {
+    for course in (0..COURSES).filter_map(RoughCourse::random) {
+        for event in course.check().events {
             *kinds.entry(format!("{:?}", event.event)).or_default() += 1;
         }
     }
@@ -183,15 +183,20 @@ fn a_contact_that_slides_back_is_released() {
             vec![-0.5, 69.6, 57.8, 69.6, -0.5],
         ),
     ] {
-        let own = RoughCourse {
+        let course = RoughCourse {
             whisker: scene.whisker.clone(),
             pole: scene.pole,
             distance_mm,
             turns,
         };
-        let kinds: Vec<_> = own.check().events.iter().map(|own| own.event).collect();
+        let kinds: Vec<_> = course
+            .check()
+            .events
+            .iter()
+            .map(|event| event.event)
+            .collect();
         assert_eq!(kinds, [WhiskEventKind::Touch, WhiskEventKind::Release]);
-        let found = own.sampled(4000).unwrap();
+        let found = course.sampled(4000).unwrap();
         let pairs = found.samples.windows(2);
         let work: f64 = pairs
             .map(|pair| {

@@ -6,7 +6,8 @@ use whiskmap::friction::{
     surely_slides_to_end,
 };
 use whiskmap::mechanics::rod::{Effects, Rod, Side};
-use whiskmap::mechanics::shooting::batch::Method;
+use whiskmap::mechanics::shooting::FirstVariation;
+use whiskmap::mechanics::shooting::batch::{Batch, Method};
 use whiskmap::sheet::{LevelCurve, Sheet};
 
 /// Row of a random whisker with the end of its push.
@@ -110,7 +111,8 @@ fn every_state_of_a_random_push_is_found() {
                     *(if is_last { &mut low } else { &mut high }) = middle;
                 }
                 let [one, other] = [low, high].map(|push| at(history, push).unwrap());
-                let jump = (one.full.force.abs() / other.full.force.abs() - 1.0).abs();
+                let jump =
+                    (one.variation.full.force.abs() / other.variation.full.force.abs() - 1.0).abs();
                 worst = worst.max(jump);
                 changes += 1;
             }
@@ -131,10 +133,17 @@ fn at_ends(rod: &Rod, side: Side, distances: &[f64]) -> Vec<(Option<Sliding>, bo
     let rows = (0..distances.len()).filter(|row| sheet.touches(*row));
     let rows = rows.filter_map(|row| Some((row, *sheet.crossings[row].first()?)));
     let rows: Vec<_> = rows.filter(|(_, end)| end.push > 1e-3).collect();
-    let levels: Vec<LevelCurve> = rows.iter().map(|(row, _)| sheet.level(*row)).collect();
+    let points = rows.iter().map(|(_, end)| (end.tau, end.load));
+    let states: Vec<FirstVariation> = Batch::new(Method::fine()).shoot_at(rod, points);
+    let rows = rows.into_iter().zip(states);
+    let rows: Vec<_> = rows.map(|((row, end), state)| (row, end, state)).collect();
+    let levels: Vec<LevelCurve> = rows.iter().map(|(row, ..)| sheet.level(*row)).collect();
     let histories = ContactHistory::of(&levels);
     let ends = rows.iter().zip(&histories);
-    let by_history = ends.map(|((_, end), own)| own.as_ref()?.sliding_at_end(end.push));
+    let by_history = ends.map(|((_, end, _), history)| {
+        let history = history.as_ref()?;
+        history.sliding_at_end(end.push)
+    });
     by_history
         .zip(surely_slides_to_end(&sheet, &rows))
         .collect()

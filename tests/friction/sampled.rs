@@ -79,22 +79,25 @@ fn a_course_does_not_depend_on_its_samples() {
         };
         let turns = turns(reach, seed % 2 == 0, random);
         let [coarse, fine] = [1, 6].map(|parts| course(&scene, distance, &turns, parts).unwrap());
-        for (own, other) in coarse.samples.iter().zip(fine.samples.iter().step_by(6)) {
-            assert_eq!((own.sliding, own.reason), (other.sliding, other.reason));
+        for (sample, other) in coarse.samples.iter().zip(fine.samples.iter().step_by(6)) {
+            assert_eq!(
+                (sample.sliding, sample.reason),
+                (other.sliding, other.reason)
+            );
             let pairs = [
-                (own.force_un, other.force_un),
-                (own.base_moment_nnm, other.base_moment_nnm),
-                (own.dissipated_nj, other.dissipated_nj),
+                (sample.force_un, other.force_un),
+                (sample.base_moment_nnm, other.base_moment_nnm),
+                (sample.dissipated_nj, other.dissipated_nj),
             ];
-            for (own, other) in pairs {
-                let [own, other] = [own, other].map(|value| value.unwrap_or(0.0));
+            for (value, other) in pairs {
+                let [value, other] = [value, other].map(|value| value.unwrap_or(0.0));
                 // Measured in 150 courses: below 1e-9.
                 assert!(
-                    (own - other).abs() <= 1e-9 * own.abs().max(1e-3),
-                    "{seed}: {own} {other}"
+                    (value - other).abs() <= 1e-9 * value.abs().max(1e-3),
+                    "{seed}: {value} {other}"
                 );
             }
-            if let Some(sliding) = own.sliding {
+            if let Some(sliding) = sample.sliding {
                 counts[sliding as usize] += 1;
             }
         }
@@ -137,17 +140,18 @@ fn a_first_push_has_the_states_of_the_course() {
             }
             let mut course = limits.begin();
             course.to(push);
-            let own = ContactQuery {
+            let first_push = ContactQuery {
                 history,
                 push,
                 phase: history.phase(push),
             };
-            let found = states(&[own, limits.query(course.phase, push)]);
-            let [own, other] = [0, 1].map(|i| found[i].map(|state| state.full.force));
+            let found = states(&[first_push, limits.query(course.phase, push)]);
+            let [by_history, by_course] =
+                [0, 1].map(|i| found[i].map(|state| state.variation.full.force));
             // Of 120 pairs of states, Newton's method finds neither state of one pair.
-            assert_eq!(own.is_some(), other.is_some(), "{seed} {push}");
-            if let Some((own, other)) = own.zip(other) {
-                worst = worst.max((own / other - 1.0).abs());
+            assert_eq!(by_history.is_some(), by_course.is_some(), "{seed} {push}");
+            if let Some((by_history, by_course)) = by_history.zip(by_course) {
+                worst = worst.max((by_history / by_course - 1.0).abs());
                 count += 1;
             }
         }

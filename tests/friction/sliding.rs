@@ -42,7 +42,10 @@ fn friction_takes_energy_where_the_contact_slides() {
                         let state = branch.state(push + side.sign() * step, true);
                         state.unwrap().sliding
                     });
-                    if neighbours.iter().any(|own| *own != point.sliding) {
+                    if neighbours
+                        .iter()
+                        .any(|neighbour| *neighbour != point.sliding)
+                    {
                         continue;
                     }
                     let sliding = point.sliding.unwrap();

@@ -158,19 +158,23 @@ fn a_first_push_has_the_states_of_the_branch() {
     let mut counts = [0; 3];
     for (side, distance) in Side::BOTH.into_iter().zip(distances) {
         let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
-        for sample in found.samples.iter().filter(|own| own.side == Some(side)) {
+        for sample in found
+            .samples
+            .iter()
+            .filter(|sample| sample.side == Some(side))
+        {
             let push = sample.push_angle_deg.unwrap().to_radians();
             let state = branch.state(push, true).unwrap();
             let wanted = branch.read(&state);
-            for (own, wanted) in [
+            for (value, wanted) in [
                 (sample.force_un, wanted.force_un),
                 (sample.base_moment_nnm, wanted.base_moment_nnm),
                 (sample.energy_nj, wanted.energy_nj),
             ] {
-                let own = own.unwrap();
+                let value = value.unwrap();
                 assert!(
-                    (own - wanted).abs() <= 1e-8 * wanted.abs(),
-                    "{push} {own} {wanted}"
+                    (value - wanted).abs() <= 1e-8 * wanted.abs(),
+                    "{push} {value} {wanted}"
                 );
             }
             assert_eq!(sample.sliding, state.sliding);
@@ -228,11 +232,11 @@ fn a_course_is_that_of_small_steps() {
                 (sample.base_moment_nnm, wanted.moment * units.moment_nnm),
                 (sample.arc_length_mm, wanted.arclength * units.length_mm),
             ];
-            for (own, wanted) in pairs {
-                let own = own.unwrap();
+            for (value, wanted) in pairs {
+                let value = value.unwrap();
                 assert!(
-                    (own / wanted - 1.0).abs() < allowed(sample.sliding.unwrap()),
-                    "{friction} {turns:?}: {own} {wanted} {sample:?}"
+                    (value / wanted - 1.0).abs() < allowed(sample.sliding.unwrap()),
+                    "{friction} {turns:?}: {value} {wanted} {sample:?}"
                 );
             }
             counts[sample.sliding.unwrap() as usize] += 1;

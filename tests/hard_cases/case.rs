@@ -96,8 +96,11 @@ impl Case {
         const ROWS: i32 = 24;
         let more = (1..=PUSHES).map(|i| 70.0 * (f64::from(i) / f64::from(PUSHES)).powi(2));
         self.pushes_deg.extend(more.flat_map(|push| [-push, push]));
-        let own = self.distances.iter().copied();
-        let [nearest, farthest] = [own.clone().fold(1.0, f64::min), own.fold(0.0, f64::max)];
+        let distances = self.distances.iter().copied();
+        let [nearest, farthest] = [
+            distances.clone().fold(1.0, f64::min),
+            distances.fold(0.0, f64::max),
+        ];
         let more = (1..ROWS).map(|i| f64::from(i) / f64::from(ROWS));
         let more = more.map(|part| nearest + part * (farthest - nearest));
         self.distances.extend(more);

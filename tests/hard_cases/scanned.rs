@@ -38,10 +38,10 @@ fn scan(count: u32, whiskers: &impl Strategy<Value = Case>) -> Seen {
         prop_assert!(is_complete(&panel));
 
         let seen = &mut *seen.borrow_mut();
-        let own = States::of(&scene, &panel);
-        let states = own.conditions();
-        let fine = halving(own.effects, &states, Resolution::FINE);
-        let half = halving(own.effects, &states, HALF);
+        let scanned = States::of(&scene, &panel);
+        let states = scanned.conditions();
+        let fine = halving(scanned.effects, &states, Resolution::FINE);
+        let half = halving(scanned.effects, &states, HALF);
         seen.states += states.len();
         for ((fine, half), state) in fine.iter().zip(half).zip(&states) {
             seen.fine = seen.fine.max(*fine);

@@ -28,7 +28,7 @@ impl States {
         let states = cells.filter_map(|((push, status), (arc_length_mm, force_un))| {
             let side = Side::BOTH
                 .iter()
-                .position(|own| *own == Side::of_push(*push))?;
+                .position(|side| *side == Side::of_push(*push))?;
             let rod = &rods[side];
             let s = f64::from(*arc_length_mm) / scene.whisker.length_mm;
             let tau = match rod.taper {

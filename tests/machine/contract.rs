@@ -51,7 +51,10 @@ fn bits(cells: &Cells) -> Vec<CellBits> {
 }
 
 fn solved(cells: &Cells) -> usize {
-    let solved = cells.outcome.iter().filter(|own| **own == Outcome::Solved);
+    let solved = cells
+        .outcome
+        .iter()
+        .filter(|outcome| **outcome == Outcome::Solved);
     solved.count()
 }
 
@@ -187,10 +190,10 @@ fn a_nan_hurts_only_the_cells_of_its_row(precision: Precision) {
         let mut spoilt = batch.clone();
         spoil(spoilt.expansions[number].as_mut().unwrap());
         let cells = bits(&solve(&mut gpu, &spoilt));
-        let own = &batch.rows[number];
-        let own = own.first..own.first + own.count();
+        let row = &batch.rows[number];
+        let cells_of_row = row.first..row.first + row.count();
         for (index, (cell, sound)) in cells.iter().zip(&sound).enumerate() {
-            match own.contains(&index) {
+            match cells_of_row.contains(&index) {
                 true => assert!(cell.1.is_none(), "{what}"),
                 false => assert_eq!(cell, sound, "{what}"),
             }

@@ -18,13 +18,13 @@ tests! {
 }
 
 /// Largest differences of base and pole in whisker lengths, of the tangent, and of the energy over force times length.
-fn apart(own: &PlainState, other: &PlainState) -> [f64; 4] {
+fn apart(one: &PlainState, other: &PlainState) -> [f64; 4] {
     let lever = other.force.abs().max(1.0);
     [
-        own.position.distance(other.position),
-        own.tangent.distance(other.tangent),
-        own.pole.distance(other.pole),
-        (own.energy - other.energy).abs() / lever,
+        one.position.distance(other.position),
+        one.tangent.distance(other.tangent),
+        one.pole.distance(other.pole),
+        (one.energy - other.energy).abs() / lever,
     ]
 }
 
@@ -39,7 +39,7 @@ const fn allowed(precision: Precision) -> f64 {
 /// Every effect that the shader has, by the method and by the rods alone.
 fn trajectories_are_those_of_the_cpu(precision: Precision) {
     let mut gpu = open(precision);
-    for effects in effect_sets::all().filter(|own| shoots(*own).is_ok()) {
+    for effects in effect_sets::all().filter(|set| shoots(*set).is_ok()) {
         let method = Method::fine().with_effects(effects);
         let conditions = conditions(effects, 2000, 6.0, 7);
         let found = gpu.shoot(method, &conditions).unwrap();
@@ -53,7 +53,7 @@ fn trajectories_are_those_of_the_cpu(precision: Precision) {
         {
             let apart = apart(found, wanted);
             assert!(
-                apart.iter().all(|own| *own < allowed(precision)),
+                apart.iter().all(|part| *part < allowed(precision)),
                 "{effects:?}: {apart:?}"
             );
         }
@@ -70,15 +70,15 @@ fn effects_that_a_whisker_lacks_change_rounding_alone(precision: Precision) {
         ..Effects::default()
     };
     let conditions = conditions(Effects::default(), 100, 6.0, 9);
-    let [own, with_all] = [Effects::default(), all].map(|effects| {
+    let [alone, with_all] = [Effects::default(), all].map(|effects| {
         gpu.shoot(Method::fine().with_effects(effects), &conditions)
             .unwrap()
     });
-    for (own, other) in own.iter().zip(&with_all) {
+    for (one, other) in alone.iter().zip(&with_all) {
         assert!(
-            apart(own, other)
+            apart(one, other)
                 .iter()
-                .all(|own| *own < allowed(precision))
+                .all(|part| *part < allowed(precision))
         );
     }
 }
@@ -101,10 +101,10 @@ fn measured_radii_are_refused(precision: Precision) {
 fn fans_are_those_of_the_cpu(precision: Precision) {
     let mut gpu = open(precision);
     let all = conditions(Effects::default(), 300, 6.0, 5);
-    let fans = all.iter().enumerate().flat_map(|(i, own)| {
+    let fans = all.iter().enumerate().flat_map(|(i, condition)| {
         (0..=i % 5).map(|part| InitialCondition {
-            load: own.load * (1.0 - 0.2 * part as f64),
-            ..*own
+            load: condition.load * (1.0 - 0.2 * part as f64),
+            ..*condition
         })
     });
     let fans: Vec<InitialCondition> = fans.collect();
@@ -114,7 +114,7 @@ fn fans_are_those_of_the_cpu(precision: Precision) {
     for (found, wanted) in found.iter().zip(&wanted) {
         let apart = apart(found, wanted);
         assert!(
-            apart.iter().all(|own| *own < allowed(precision)),
+            apart.iter().all(|part| *part < allowed(precision)),
             "{apart:?}"
         );
     }

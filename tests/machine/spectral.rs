@@ -56,14 +56,14 @@ fn states_and_values_are_within_their_bounds() {
                 );
                 assert_eq!(wanted.outcome[*i], Outcome::Solved, "{name}");
                 let sizes = side.sizes(&side.sheet.crossings[row][0]);
-                let (own, other) = (cells.get(*i).values, wanted.get(*i).values);
+                let (value, other) = (cells.get(*i).values, wanted.get(*i).values);
                 for (channel, size) in sizes.into_iter().enumerate() {
-                    let [own, other] = [own[channel], other[channel]].map(f64::from);
+                    let [value, other] = [value[channel], other[channel]].map(f64::from);
                     let rounding = f64::from(f32::EPSILON) * other.abs();
-                    let apart = (own - other).abs();
+                    let apart = (value - other).abs();
                     assert!(
                         apart <= 1e-9 * size + rounding,
-                        "{name} {channel}: {own} {other}"
+                        "{name} {channel}: {value} {other}"
                     );
                 }
             }
@@ -93,7 +93,7 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
         for (wanted, found) in statuses.filter(|(wanted, found)| wanted != found) {
             // Where the row ends next to the corner of fold and tip, either edge may be named.
             let edges = [Status::BeyondFold, Status::BeyondTip].map(Status::code);
-            let are_edges = [wanted, found].map(|own| edges.contains(own));
+            let are_edges = [wanted, found].map(|regime| edges.contains(regime));
             assert_eq!(are_edges, [true; 2], "{title}: {whisker}");
         }
         let swept = scene.whisker(whisker).unwrap();
@@ -117,8 +117,9 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
                 let largest = |channel: usize| {
                     let values = &wanted.state[channel][row * width..(row + 1) * width];
                     let values = values.iter().zip(&grid.push_angle_deg);
-                    let own = values.filter(|(_, push)| Side::of_push(**push) == side.sheet.side);
-                    own.fold(0.0, |most, (value, _)| {
+                    let of_side =
+                        values.filter(|(_, push)| Side::of_push(**push) == side.sheet.side);
+                    of_side.fold(0.0, |most, (value, _)| {
                         f64::max(most, f64::from(value.abs()))
                     })
                 };
@@ -126,11 +127,11 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
                 sizes[FORCE..FORCE + 3].fill(force);
                 (sizes[FORCE + 3], sizes[FORCE + 6]) = (largest(FORCE + 3), largest(FORCE + 6));
                 let cells = grid.push_angle_deg.iter().enumerate();
-                let own = cells.filter(|(_, push)| Side::of_push(**push) == side.sheet.side);
-                for (column, push) in own {
+                let of_side = cells.filter(|(_, push)| Side::of_push(**push) == side.sheet.side);
+                for (column, push) in of_side {
                     let cell = row * grid.push_angle_deg.len() + column;
                     for (channel, size) in sizes.into_iter().enumerate() {
-                        let values = [wanted, found].map(|own| own.state[channel][cell]);
+                        let values = [wanted, found].map(|panel| panel.state[channel][cell]);
                         let [wanted, found] = values.map(f64::from);
                         let apart = (wanted - found).abs();
                         let rounding = f64::from(f32::EPSILON) * wanted.abs();

@@ -65,7 +65,7 @@ fn compare(rows: &RandomRows, gpu: &mut Gpu) -> Seen {
             contradicted += usize::from(wanted.outcome[index] != Outcome::OffSheet);
             continue;
         }
-        let [found, right] = [&cells, &wanted].map(|own| own.get(index).values.map(f64::from));
+        let [found, right] = [&cells, &wanted].map(|cells| cells.get(index).values.map(f64::from));
         for (largest, right) in largest[side].iter_mut().zip(right) {
             *largest = f64::max(*largest, right.abs());
         }

@@ -84,7 +84,7 @@ proptest! {
                     prop_assert!(!axis.is_empty() && axis.iter().all(|x| x.is_finite()));
                     prop_assert!(axis.is_sorted_by(|a, b| a < b));
                 }
-                for whisker in scene.whiskers().flatten().map(|own| own.whisker) {
+                for whisker in scene.whiskers().flatten().map(|swept| swept.whisker) {
                     prop_assert!((0.0..=whisker.base_radius_um).contains(&whisker.tip_radius_um));
                 }
             }

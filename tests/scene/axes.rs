@@ -50,8 +50,8 @@ fn every_axis_takes_the_place_of_its_number() {
         assert_eq!(scene.grid.sweep[0].variable.name(), axis);
         assert_eq!(scene.whisker_count(), 2, "{axis}");
         let plain = swept("").unwrap();
-        for (own, value) in scene.whiskers().flatten().zip(values) {
-            let place: Vec<f64> = own.place.values().map(|(_, value)| value).collect();
+        for (swept, value) in scene.whiskers().flatten().zip(values) {
+            let place: Vec<f64> = swept.place.values().map(|(_, value)| value).collect();
             assert_eq!(place, [value], "{axis}");
             let value = if axis == "taper" {
                 30.0 * (1.0 - value)
@@ -59,9 +59,9 @@ fn every_axis_takes_the_place_of_its_number() {
                 value
             };
             let alone = plain.with(parameter, value).unwrap();
-            assert_eq!(own.whisker, alone.first_whisker().whisker, "{axis}");
-            assert_eq!(own.pole, alone.pole, "{axis}");
-            assert_eq!(own.rod(Side::Cf), alone.first_whisker().rod(Side::Cf));
+            assert_eq!(swept.whisker, alone.first_whisker().whisker, "{axis}");
+            assert_eq!(swept.pole, alone.pole, "{axis}");
+            assert_eq!(swept.rod(Side::Cf), alone.first_whisker().rod(Side::Cf));
         }
     }
 }
@@ -84,7 +84,7 @@ fn axes_are_in_the_order_of_the_file_and_the_first_varies_fastest() {
     let seen: Vec<(f64, f64)> = scene
         .whiskers()
         .flatten()
-        .map(|own| (own.pole.friction, own.pole.radius_mm))
+        .map(|swept| (swept.pole.friction, swept.pole.radius_mm))
         .collect();
     assert_eq!(seen[..4], [(0.0, 0.1), (0.5, 0.1), (0.0, 0.2), (0.5, 0.2)]);
     assert_eq!(

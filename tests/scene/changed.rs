@@ -81,14 +81,14 @@ fn a_scene_survives_its_own_text() {
     let shipped = shipped::scenes().into_iter();
     for scene in shipped.chain([full, parse(&sweep()).unwrap()]) {
         // The same numbers without the source text.
-        let own = scene.to_builder().build().unwrap();
-        let again = Scene::parse(&own.to_toml(), &format!("{}.toml", own.name)).unwrap();
-        assert_eq!(*again, *own, "{}", own.to_toml());
+        let built = scene.to_builder().build().unwrap();
+        let again = Scene::parse(&built.to_toml(), &format!("{}.toml", built.name)).unwrap();
+        assert_eq!(*again, *built, "{}", built.to_toml());
         let data = SceneData {
-            text: own.text.clone(),
+            text: built.text.clone(),
             ..SceneData::clone(&scene)
         };
-        assert_eq!(data, *own);
+        assert_eq!(data, *built);
     }
     let log = AxisValues::Range {
         from: 1e-7,
@@ -105,13 +105,18 @@ fn a_scene_survives_its_own_text() {
 fn parameters_are_read_and_replaced() {
     let scene = cone();
     for parameter in Parameter::ALL {
-        let Some(own) = parameter.value(&scene) else {
+        let Some(current) = parameter.value(&scene) else {
             continue;
         };
-        let same = scene.with(parameter, own).unwrap();
-        assert_eq!(parameter.value(&same), Some(own), "{}", parameter.name());
+        let same = scene.with(parameter, current).unwrap();
+        assert_eq!(
+            parameter.value(&same),
+            Some(current),
+            "{}",
+            parameter.name()
+        );
         let [least, most] = parameter.range(&scene);
-        assert!(least <= own && own <= most, "{}", parameter.name());
+        assert!(least <= current && current <= most, "{}", parameter.name());
         let accepts = |value| scene.with(parameter, value).is_ok();
         assert_eq!(
             [least.next_down(), least, most, most.next_up()].map(accepts),

@@ -166,7 +166,7 @@ fn a_parabola_of_zero_is_straight_but_lends_its_vertex_to_an_axis() {
     let curvatures: Vec<_> = scene
         .whiskers()
         .flatten()
-        .map(|own| own.whisker.curvature)
+        .map(|swept| swept.whisker.curvature)
         .collect();
     assert_eq!(curvatures, [curvature(0.0, 2.5), curvature(0.04, 2.5)]);
     assert_eq!(
@@ -197,9 +197,9 @@ fn whiskers_come_in_atlas_order_taper_first() {
     let seen: Vec<_> = scene
         .whiskers()
         .flatten()
-        .map(|own| {
-            let taper = own.place.value(Parameter::Taper).unwrap();
-            (taper, own.whisker.tip_radius_um, own.whisker.curvature)
+        .map(|swept| {
+            let taper = swept.place.value(Parameter::Taper).unwrap();
+            (taper, swept.whisker.tip_radius_um, swept.whisker.curvature)
         })
         .collect();
     assert!(scene.is_sweep());
@@ -241,9 +241,9 @@ fn the_chord_grows_along_the_whisker_up_to_the_last_vertex_allowed() {
         chords.is_sorted_by(|near, far| near < far)
     };
     let accepted = |a: f64, v: f64| {
-        let own = BASE.replace("curvature_per_mm = [0, 0.04]", "");
-        let own = own.replace("per_mm = 0.02", &format!("per_mm = {a}"));
-        parse(&own.replace("vertex_mm = 2.5", &format!("vertex_mm = {v}"))).is_ok()
+        let text = BASE.replace("curvature_per_mm = [0, 0.04]", "");
+        let text = text.replace("per_mm = 0.02", &format!("per_mm = {a}"));
+        parse(&text.replace("vertex_mm = 2.5", &format!("vertex_mm = {v}"))).is_ok()
     };
     for (a, v) in [
         (0.05, 28.2),

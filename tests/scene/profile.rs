@@ -335,9 +335,12 @@ fn smoothed(rows: &[[f64; 2]], smooth: &str) -> String {
 #[test]
 fn smooth_radii_replace_the_measured_ones() {
     let rows = noisy_cone(0.3, 1);
-    let own = parse(&smoothed(&rows, "smooth = true")).unwrap();
-    let fit = own.smooth_radii().unwrap();
-    assert_eq!((fit.degree, own.measured_rows()), (1, Some(&rows[..])));
+    let smoothed_scene = parse(&smoothed(&rows, "smooth = true")).unwrap();
+    let fit = smoothed_scene.smooth_radii().unwrap();
+    assert_eq!(
+        (fit.degree, smoothed_scene.measured_rows()),
+        (1, Some(&rows[..]))
+    );
     assert!((0.2..0.4).contains(&fit.rms_um), "{fit:?}");
     // The least squares of a straight line, by the normal equations.
     let count = rows.len() as f64;
@@ -348,15 +351,25 @@ fn smooth_radii_replace_the_measured_ones() {
         sr += (own_s - s) * (own_r - r);
     }
     let line = |place: f64| r + sr / ss * (place - s);
-    assert!((own.whisker.base_radius_um - line(0.0)).abs() < 1e-12);
-    assert!((own.whisker.tip_radius_um - line(20.0)).abs() < 1e-12);
+    assert!((smoothed_scene.whisker.base_radius_um - line(0.0)).abs() < 1e-12);
+    assert!((smoothed_scene.whisker.tip_radius_um - line(20.0)).abs() < 1e-12);
 
     // What is kept with a map is smoothed again, to the same bits; a scene of numbers keeps the key, too.
-    assert_eq!(parse(&own.to_toml()).unwrap().whisker, own.whisker);
-    let built = own.to_builder().build().unwrap();
+    assert_eq!(
+        parse(&smoothed_scene.to_toml()).unwrap().whisker,
+        smoothed_scene.whisker
+    );
+    let built = smoothed_scene.to_builder().build().unwrap();
     assert!(built.to_toml().contains("smooth = true"));
-    assert_eq!(parse(&built.to_toml()).unwrap().whisker, own.whisker);
-    let rough = own.to_builder().smooth_profile(false).build().unwrap();
+    assert_eq!(
+        parse(&built.to_toml()).unwrap().whisker,
+        smoothed_scene.whisker
+    );
+    let rough = smoothed_scene
+        .to_builder()
+        .smooth_profile(false)
+        .build()
+        .unwrap();
     let plain = parse(&smoothed(&rows, "smooth = false")).unwrap();
     assert_eq!(rough.whisker, plain.whisker);
     assert_eq!(
@@ -369,8 +382,8 @@ fn smooth_radii_replace_the_measured_ones() {
 #[test]
 fn smooth_radii_are_linear_in_the_measured_ones() {
     let fit = |rows: &[[f64; 2]]| {
-        let own = parse(&smoothed(rows, "smooth = true")).unwrap();
-        own.smooth_radii().unwrap()
+        let scene = parse(&smoothed(rows, "smooth = true")).unwrap();
+        scene.smooth_radii().unwrap()
     };
     let rows = noisy_cone(0.3, 2);
     let smooth = fit(&rows);
@@ -397,8 +410,8 @@ fn smooth_radii_are_linear_in_the_measured_ones() {
 fn smooth_radii_give_the_detachments_of_the_whisker() {
     let distances = [6.0, 8.0, 10.0, 12.0, 14.0];
     let ends = |text: &str| {
-        let own = parse(text).unwrap();
-        let ends = Side::BOTH.map(|side| curve(&own.whisker, &own.pole, side, &distances));
+        let scene = parse(text).unwrap();
+        let ends = Side::BOTH.map(|side| curve(&scene.whisker, &scene.pole, side, &distances));
         let angles = ends
             .into_iter()
             .flatten()
@@ -407,8 +420,8 @@ fn smooth_radii_give_the_detachments_of_the_whisker() {
     };
     let exact = ends(&smoothed(&noisy_cone(0.0, 0), ""));
     let off = |text: &str| {
-        let own = ends(text);
-        let pairs = own.iter().zip(&exact);
+        let found = ends(text);
+        let pairs = found.iter().zip(&exact);
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     };
     let (mut rough, mut smooth) = (0.0_f64, 0.0_f64);

@@ -112,9 +112,9 @@ fn a_title_has_at_most_a_thousand_characters() {
             1,
         )
     };
-    let own = parse(&scene("", "")).unwrap().title.chars().count();
-    assert_eq!(parse(&titled(1000 - own)).err(), None);
-    let message = refusal(&titled(1001 - own));
+    let untitled = parse(&scene("", "")).unwrap().title.chars().count();
+    assert_eq!(parse(&titled(1000 - untitled)).err(), None);
+    let message = refusal(&titled(1001 - untitled));
     let why = "title: must have at most 1000 characters, has 1001";
     assert!(message.contains(why), "{message}");
 }

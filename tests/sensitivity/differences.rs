@@ -55,7 +55,7 @@ const KNOWN: f64 = 1e-6;
 
 /// Central differences by `variable`, extrapolated twice to a step of 0, with an error of the sixth order of the step. `None` where an end
 /// next to `own` has another kind, or the last extrapolation changes a difference by more than [`KNOWN`].
-fn differences(push: &Push, variable: Variable, own: &Detachment) -> Option<[f64; 11]> {
+fn differences(push: &Push, variable: Variable, here: &Detachment) -> Option<[f64; 11]> {
     let h = push.step(variable);
     let at = |h: f64| {
         let Push {
@@ -66,7 +66,7 @@ fn differences(push: &Push, variable: Variable, own: &Detachment) -> Option<[f64
         } = push.moved(variable, h);
         let finer = Resolution::FINE.doubled();
         let end = curve_without_strain(finer, &whisker, &pole, side, &[distance_mm]).pop()?;
-        quantities(&end).filter(|_| end.kind == own.kind)
+        quantities(&end).filter(|_| end.kind == here.kind)
     };
     let central = |h: f64| {
         let (low, high) = (at(-h)?, at(h)?);
@@ -75,7 +75,7 @@ fn differences(push: &Push, variable: Variable, own: &Detachment) -> Option<[f64
         }))
     };
     let [d1, d2, d4] = [central(h)?, central(0.5 * h)?, central(0.25 * h)?];
-    let values = quantities(own)?;
+    let values = quantities(here)?;
     let mut all = [0.0; 11];
     for i in 0..11 {
         let [first, second] = [(4.0 * d2[i] - d1[i]) / 3.0, (4.0 * d4[i] - d2[i]) / 3.0];
@@ -148,8 +148,8 @@ pub fn compare(index: u64) -> Compared {
         };
         compared.count += 1;
         let size = push.size(*variable);
-        for ((own, difference), value) in listed(by).into_iter().zip(differences).zip(values) {
-            let apart = (own - difference).abs() / (difference.abs() + value.abs() / size);
+        for ((exact, difference), value) in listed(by).into_iter().zip(differences).zip(values) {
+            let apart = (exact - difference).abs() / (difference.abs() + value.abs() / size);
             compared.worst = compared.worst.max(apart);
         }
     }
@@ -185,17 +185,17 @@ fn largest_loads_change_by_their_derivatives() {
                 let Variable::Parameter(parameter) = variable else {
                     panic!()
                 };
-                let own = parameter.value(&scene).unwrap();
-                let step = 1e-4 * own;
+                let current = parameter.value(&scene).unwrap();
+                let step = 1e-4 * current;
                 let [less, more] = [-step, step].map(|step| {
-                    let moved = scene.with(*parameter, own + step).unwrap();
+                    let moved = scene.with(*parameter, current + step).unwrap();
                     let branch =
                         StableBranch::new(&moved.whisker, &moved.pole, side, distance_mm).unwrap();
                     branch.peak(load).size
                 });
                 let difference = (more - less) / (2.0 * step);
                 // Largest values are known to 1e-9, over a step of 1e-4.
-                let most = 1e-4 * (difference.abs() + found.peak.size / own * 0.1);
+                let most = 1e-4 * (difference.abs() + found.peak.size / current * 0.1);
                 assert!(
                     (by.unwrap() - difference).abs() < most,
                     "{load:?} {side:?} {variable}: {by:?} {difference}"

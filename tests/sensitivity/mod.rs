@@ -17,11 +17,11 @@ use whiskmap::trace::{corner, reach_mm};
 #[test]
 fn detachments_of_random_whiskers_are_differentiated() {
     let compared: Vec<Compared> = (0..1000).into_par_iter().map(compare).collect();
-    let count: usize = compared.iter().map(|own| own.count).sum();
-    let left_out: usize = compared.iter().map(|own| own.left_out).sum();
+    let count: usize = compared.iter().map(|part| part.count).sum();
+    let left_out: usize = compared.iter().map(|part| part.left_out).sum();
     let worst = compared
         .iter()
-        .fold(0.0, |worst: f64, own| worst.max(own.worst));
+        .fold(0.0, |worst: f64, part| worst.max(part.worst));
     assert!(worst < 1e-7, "{worst:e}");
     assert!(count > 700 && left_out < count / 8, "{count} {left_out}");
 }
@@ -73,16 +73,16 @@ fn a_straight_whisker_begins_to_bend() {
     let together = detachments(&straight, &pole, Side::Cb, &[15.0], &both);
     for (variable, spiral) in both.into_iter().zip([false, true]) {
         let ends = detachments(&straight, &pole, Side::Cb, &[15.0], &[variable]);
-        let own = ends[0].by[0].unwrap().push_angle_deg;
+        let derivative = ends[0].by[0].unwrap().push_angle_deg;
         let other = together[0].by[usize::from(spiral)].unwrap().push_angle_deg;
-        assert_eq!(other, own);
-        let own = if spiral { 2.0 * own } else { own };
+        assert_eq!(other, derivative);
+        let derivative = if spiral { 2.0 * derivative } else { derivative };
         let h = 1e-4;
         let one_sided = |h: f64| (push(h, spiral) - ends[0].end.push_angle_deg.unwrap()) / h;
         let difference = 2.0 * one_sided(0.5 * h) - one_sided(h);
         assert!(
-            (own / difference - 1.0).abs() < 1e-4,
-            "{variable}: {own} {difference}"
+            (derivative / difference - 1.0).abs() < 1e-4,
+            "{variable}: {derivative} {difference}"
         );
     }
 }

@@ -170,7 +170,7 @@ impl Push {
             Variable::ProfileRadiusUm(row) => {
                 let raw = |radius: f64| radius * whisker.base_radius_um / whisker.profile_scale;
                 let mut rows = whisker.profile.clone().unwrap_or_default();
-                rows.iter_mut().for_each(|own| own[1] = raw(own[1]));
+                rows.iter_mut().for_each(|row| row[1] = raw(row[1]));
                 rows[row][1] += h;
                 moved.set_rows(rows);
                 return moved;

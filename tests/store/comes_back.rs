@@ -184,7 +184,7 @@ fn another_strict_reader_finds_every_cell_where_the_axes_say() {
             .unwrap();
         let names = image.layer_data.iter().map(|layer| &layer.attributes);
         let names: Vec<_> = names
-            .map(|own| own.layer_name.clone().unwrap().to_string())
+            .map(|name| name.layer_name.clone().unwrap().to_string())
             .collect();
         assert_eq!(names, ["regime", "state", "numerics"]);
         let layout = AtlasLayout::of(&scene.grid);

@@ -91,9 +91,9 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
 fn polynomial(random: &mut Random) -> CurvaturePolynomial {
     let mut size = 1.0;
     CurvaturePolynomial::new(std::array::from_fn(|_| {
-        let own = size * random.between(-1.0, 1.0);
+        let drawn = size * random.between(-1.0, 1.0);
         size *= 0.6;
-        own
+        drawn
     }))
 }
 

@@ -27,7 +27,10 @@ fn gauss(panels: usize) -> Vec<[f64; 2]> {
 
 /// Angles at which the moment of the base jumps or turns, in the order of time: events, and the ends of the strokes of `sweep`.
 fn breaks(found: &Texture, sweep: &AngleCourse) -> Vec<f64> {
-    let events = found.events.iter().map(|own| (own.time_s, own.angle_deg));
+    let events = found
+        .events
+        .iter()
+        .map(|event| (event.time_s, event.angle_deg));
     let times = sweep
         .times_s()
         .windows(3)
@@ -71,18 +74,21 @@ fn the_work_of_the_base_is_stored_or_lost() {
         weights.push(0.0);
         let found = texture(&scene.whisker, &surface, &course(&angles)).unwrap();
         assert_eq!(kinds(&found), kinds(&first), "{name}");
-        let moments = found.samples.iter().map(|own| own.base_moment_nnm.unwrap());
+        let moments = found
+            .samples
+            .iter()
+            .map(|sample| sample.base_moment_nnm.unwrap());
         let work: f64 = moments
             .zip(&weights)
             .map(|(moment, weight)| moment * weight)
             .sum();
-        let energies = || found.samples.iter().map(|own| own.energy_nj.unwrap());
+        let energies = || found.samples.iter().map(|sample| sample.energy_nj.unwrap());
         let (stored, lost) = (energies().next_back().unwrap(), found.lost_nj());
         let largest = energies().fold(lost, f64::max);
         let miss = (work - stored - lost) / largest;
         // Measured: 1.2e-11.
         assert!(miss.abs() < 1e-9, "{name}: {work} {stored} {lost} {miss:e}");
-        let mut losses = found.events.iter().filter_map(|own| own.lost_nj);
+        let mut losses = found.events.iter().filter_map(|event| event.lost_nj);
         assert!(losses.all(|lost| lost > 0.0), "{name}");
     }
 }

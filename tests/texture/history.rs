@@ -21,7 +21,7 @@ fn the_state_is_history() {
     let slips = part
         .events
         .iter()
-        .filter(|own| own.event == WhiskEventKind::SlipOff)
+        .filter(|event| event.event == WhiskEventKind::SlipOff)
         .count();
     assert!(slips > 3, "{slips}");
     let [release, touch] = all.events[part.events.len()..] else {

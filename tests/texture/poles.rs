@@ -28,25 +28,28 @@ fn one_asperity_is_one_pole() {
         wanted
             .events
             .iter()
-            .map(|own| (own.event, own.side))
+            .map(|event| (event.event, event.side))
             .collect::<Vec<_>>()
     );
     assert!(kinds(&found).contains(&(WhiskEventKind::SlipOff, Side::Cf)));
-    for (own, other) in found.events.iter().zip(&wanted.events) {
+    for (event, other) in found.events.iter().zip(&wanted.events) {
         // The zero of the angle is the event's own angle. Measured: 6e-15 degrees.
-        assert!((own.angle_deg - touch - other.angle_deg).abs() < 1e-13);
+        assert!((event.angle_deg - touch - other.angle_deg).abs() < 1e-13);
     }
-    for (own, other) in found.samples.iter().zip(&wanted.samples) {
+    for (sample, other) in found.samples.iter().zip(&wanted.samples) {
         let is_free = other.regime == WhiskRegime::Free;
-        assert_eq!(own.asperity.is_none(), is_free, "{own:?}");
-        for (own, other) in [
-            (own.force_un, other.force_un),
-            (own.base_moment_nnm, other.base_moment_nnm),
-            (own.energy_nj, other.energy_nj),
+        assert_eq!(sample.asperity.is_none(), is_free, "{sample:?}");
+        for (value, other) in [
+            (sample.force_un, other.force_un),
+            (sample.base_moment_nnm, other.base_moment_nnm),
+            (sample.energy_nj, other.energy_nj),
         ] {
-            let (own, other) = (own.unwrap(), other.unwrap());
+            let (value, other) = (value.unwrap(), other.unwrap());
             // Measured: 6e-14. Next to the fold a push that differs by 1e-14 degrees would change a force by 1e-8; no sample is there.
-            assert!((own - other).abs() <= 1e-11 * other.abs(), "{own} {other}");
+            assert!(
+                (value - other).abs() <= 1e-11 * other.abs(),
+                "{value} {other}"
+            );
         }
     }
     // Measured: no difference.
@@ -70,7 +73,7 @@ fn a_straight_whisker_touches_points_in_their_direction() {
     let touches: Vec<_> = found
         .events
         .iter()
-        .filter(|own| own.event == WhiskEventKind::Touch)
+        .filter(|event| event.event == WhiskEventKind::Touch)
         .collect();
     let wanted = [-4.0, 0.0, 4.0].map(|x: f64| (x / 15.0).atan().to_degrees());
     assert_eq!(touches.len(), 3);
@@ -103,7 +106,7 @@ fn far_asperities_are_single_poles() {
     assert_eq!(found.reached, 2);
     use WhiskEventKind::{PullOff, SlipOff, Touch};
     let ends = |kind: &WhiskEventKind| matches!(kind, SlipOff | PullOff);
-    let kinds: Vec<WhiskEventKind> = found.events.iter().map(|own| own.event).collect();
+    let kinds: Vec<WhiskEventKind> = found.events.iter().map(|event| event.event).collect();
     assert!(
         kinds.iter().step_by(2).all(|kind| *kind == Touch),
         "{kinds:?}"
@@ -112,14 +115,14 @@ fn far_asperities_are_single_poles() {
     let places: Vec<_> = found
         .events
         .iter()
-        .map(|own| own.asperity.unwrap())
+        .map(|event| event.asperity.unwrap())
         .collect();
     assert_eq!(places, [0, 0, 1, 1, 1, 1, 0, 0]);
     // Mirrored asperities have the same distance from the base, so the same push ends on each side.
     let pushes: Vec<f64> = found
         .events
         .iter()
-        .filter_map(|own| own.push_angle_deg)
+        .filter_map(|event| event.push_angle_deg)
         .collect();
     for (one, other) in [(1, 3), (5, 7)] {
         assert!((pushes[one] - pushes[other]).abs() < 1e-12, "{pushes:?}");
@@ -129,8 +132,8 @@ fn far_asperities_are_single_poles() {
         found
             .events
             .iter()
-            .filter(|own| ends(&own.event))
-            .all(|own| own.lost_nj == own.energy_nj)
+            .filter(|event| ends(&event.event))
+            .all(|event| event.lost_nj == event.energy_nj)
     );
 }
 
@@ -156,7 +159,7 @@ fn a_whisker_without_asperities_in_reach_is_free() {
             found
                 .samples
                 .iter()
-                .all(|own| own.phase == TexturePhase::Free)
+                .all(|sample| sample.phase == TexturePhase::Free)
         );
         let last = found.samples[2];
         // At the angle 0, the chord of the tip is normal to the surface.

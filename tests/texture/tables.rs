@@ -104,7 +104,7 @@ fn histograms_keep_all_weights() {
     let touches = found
         .events
         .iter()
-        .filter(|own| own.event == WhiskEventKind::Touch);
+        .filter(|event| event.event == WhiskEventKind::Touch);
     assert_eq!(stays.len(), touches.count());
     let held: f64 = stays
         .iter()

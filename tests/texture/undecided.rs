@@ -24,12 +24,12 @@ fn what_the_model_does_not_determine_has_a_reason() {
     let first = found
         .samples
         .iter()
-        .position(|own| own.reason.is_some())
+        .position(|sample| sample.reason.is_some())
         .unwrap();
     assert!(
         found.samples[..first]
             .iter()
-            .all(|own| own.energy_nj.is_some())
+            .all(|sample| sample.energy_nj.is_some())
     );
     for sample in &found.samples[first..] {
         assert_eq!(sample.phase, TexturePhase::Undecided);
@@ -58,7 +58,7 @@ fn what_the_model_does_not_determine_has_a_reason() {
         ..SINGLE
     };
     let found = texture(&cone.whisker, &thick, &course(&[-1.0, 0.35, 1.0])).unwrap();
-    let reasons: Vec<_> = found.samples.iter().map(|own| own.reason).collect();
+    let reasons: Vec<_> = found.samples.iter().map(|sample| sample.reason).collect();
     assert_eq!(reasons, [None, Some(NoTextureState::OnAnAsperity), None]);
     // The energy of the undecided state is not known, and neither is that which the detachment loses.
     assert!(found.lost_nj().is_nan());
@@ -110,7 +110,10 @@ fn the_whole_free_part_stays_above_the_contact() {
         let free = points[part(contact_mm + 3.0)..].iter().map(|[_, y]| *y);
         free.fold(f64::INFINITY, f64::min) - contact
     };
-    let crossed = found.samples.iter().position(|own| own.reason.is_some());
+    let crossed = found
+        .samples
+        .iter()
+        .position(|sample| sample.reason.is_some());
     let (held, undecided) = found.samples.split_at(crossed.unwrap());
     for sample in undecided {
         assert_eq!(sample.reason, Some(NoTextureState::CrossesSurface));

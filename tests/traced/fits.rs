@@ -24,8 +24,8 @@ fn exact_points_give_the_curve_back() {
         for count in [12, 200] {
             let points = points(&rod, 20.0, count, 0.0, &mut Random::new(1));
             let found = TracedShape::fit(points, Some(6)).unwrap();
-            for (own, expected) in found.coefficients().iter().zip(shape) {
-                worst[0] = worst[0].max((own - expected).abs());
+            for (coefficient, expected) in found.coefficients().iter().zip(shape) {
+                worst[0] = worst[0].max((coefficient - expected).abs());
             }
             worst[1] = worst[1].max((found.length_mm / 20.0 - 1.0).abs());
             worst[2] = worst[2].max(found.rms_mm);
@@ -71,7 +71,7 @@ fn noisy_points_give_the_degree_back() {
             found.push(shape.degree == degree);
         }
     }
-    let right = found.iter().filter(|own| **own).count();
+    let right = found.iter().filter(|is_right| **is_right).count();
     assert!(right >= 34, "{right} of 40");
 }
 
@@ -86,8 +86,8 @@ fn only_the_shape_counts() {
         .iter()
         .map(|[x, y]| [300.0 - 10.0 * y, 10.0 * x - 70.0]);
     let other = TracedShape::fit(moved.collect(), Some(3)).unwrap();
-    for (own, other) in fit.coefficients().iter().zip(other.coefficients()) {
-        assert!((own - other).abs() < 1e-13, "{own} {other}");
+    for (coefficient, other) in fit.coefficients().iter().zip(other.coefficients()) {
+        assert!((coefficient - other).abs() < 1e-13, "{coefficient} {other}");
     }
     assert!((other.length_mm / fit.length_mm / 10.0 - 1.0).abs() < 1e-14);
     assert!((other.rms_mm / fit.rms_mm / 10.0 - 1.0).abs() < 1e-14);
@@ -139,9 +139,14 @@ fn distances_are_those_from_the_curve() {
     let at_rest = shape.points_at_rest_mm(shape.length_mm);
     let distances = at_rest.iter().map(|point| distance((*point).into()));
     let distances: Vec<f64> = distances.collect();
-    let squares = distances.iter().map(|own| own * own).sum::<f64>();
+    let squares = distances
+        .iter()
+        .map(|distance| distance * distance)
+        .sum::<f64>();
     let rms = (squares / distances.len() as f64).sqrt();
-    let farthest = distances.iter().fold(0.0_f64, |most, own| own.max(most));
+    let farthest = distances
+        .iter()
+        .fold(0.0_f64, |most, distance| distance.max(most));
     assert!((rms / shape.rms_mm - 1.0).abs() < 1e-5, "{rms} {shape:?}");
     assert!(
         (farthest / shape.farthest_mm - 1.0).abs() < 1e-4,
@@ -154,13 +159,16 @@ fn distances_are_those_from_the_curve() {
 fn reflected_and_longer_shapes_have_the_same_distances() {
     let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random::new(3));
     let reflected = points.iter().map(|[x, y]| [*x, -y]).collect();
-    let [own, other] = [points, reflected].map(|all| TracedShape::fit(all, Some(3)).unwrap());
+    let [fit, other] = [points, reflected].map(|all| TracedShape::fit(all, Some(3)).unwrap());
     // Measured: below 1e-13.
-    assert!((own.farthest_mm / other.farthest_mm - 1.0).abs() < 1e-13);
-    let length = own.length_mm;
-    let [same, twice] = [length, 2.0 * length].map(|length| own.points_at_rest_mm(length));
-    for (own, other) in same.iter().flatten().zip(twice.iter().flatten()) {
-        assert!((2.0 * own - other).abs() < 1e-12, "{own} {other}");
+    assert!((fit.farthest_mm / other.farthest_mm - 1.0).abs() < 1e-13);
+    let length = fit.length_mm;
+    let [same, twice] = [length, 2.0 * length].map(|length| fit.points_at_rest_mm(length));
+    for (coordinate, other) in same.iter().flatten().zip(twice.iter().flatten()) {
+        assert!(
+            (2.0 * coordinate - other).abs() < 1e-12,
+            "{coordinate} {other}"
+        );
     }
 }
 
@@ -169,12 +177,16 @@ fn reflected_and_longer_shapes_have_the_same_distances() {
 fn coefficients_of_an_equal_fit_are_accepted() {
     let points = points(&bent(SHAPES[1]), 20.0, 12, 0.0, &mut Random::new(1));
     let shape = TracedShape::fit(points, Some(0)).unwrap();
-    let [own] = shape.coefficients()[..] else {
+    let [coefficient] = shape.coefficients()[..] else {
         panic!("{shape:?}");
     };
     let is_accepted = |coefficients: &[f64]| shape.clone().with_coefficients(coefficients).is_ok();
-    assert!(is_accepted(&[own]) && is_accepted(&[own + 0.9e-6]));
-    assert!(!is_accepted(&[own + 1.1e-6]) && !is_accepted(&[own, 0.0]) && !is_accepted(&[]));
+    assert!(is_accepted(&[coefficient]) && is_accepted(&[coefficient + 0.9e-6]));
+    assert!(
+        !is_accepted(&[coefficient + 1.1e-6])
+            && !is_accepted(&[coefficient, 0.0])
+            && !is_accepted(&[])
+    );
 }
 
 /// Distances from the first point that fall by at most 2% of the largest are noise, however many points they take.

@@ -95,7 +95,7 @@ fn a_longer_whisker_has_the_same_shape() {
         ])
         .unwrap();
     assert_eq!(longer.whisker.traced, scene.whisker.traced);
-    let twice = DISTANCES_MM.map(|own| 2.0 * own);
+    let twice = DISTANCES_MM.map(|distance_mm| 2.0 * distance_mm);
     for side in Side::BOTH {
         let own = curve(&scene.whisker, &scene.pole, side, &DISTANCES_MM);
         let other = curve(&longer.whisker, &longer.pole, side, &twice);

@@ -135,7 +135,7 @@ fn points_that_are_refused() {
             "points[6]: must not fold back: it is",
         ),
         (
-            points(&|all| all.iter_mut().step_by(2).for_each(|own| own[1] += 1.4)),
+            points(&|all| all.iter_mut().step_by(2).for_each(|point| point[1] += 1.4)),
             "must lie along a smooth curve: their rms distance",
         ),
         (

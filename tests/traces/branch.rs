@@ -8,12 +8,12 @@ use whiskmap::trace::{Branch, BranchMark, BranchPoint, DetachmentKind, NoState, 
 /// Runs `check` on the branch of every whisker that reaches its pole, with `count` points.
 fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)) {
     let mut followed = 0;
-    for own in EVERY_BRANCH.iter() {
-        let (case, end) = (own.case(), own.end);
-        match &own.branch {
+    for traced in EVERY_BRANCH.iter() {
+        let (case, end) = (traced.case(), traced.end);
+        match &traced.branch {
             Ok(branch) => {
                 let points = branch.points(count).unwrap();
-                let push = own.side.sign() * end.push_angle_deg.unwrap();
+                let push = traced.side.sign() * end.push_angle_deg.unwrap();
                 check(&case, branch, &points, push);
                 let kind = match points
                     .iter()
@@ -38,9 +38,9 @@ fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)
 #[test]
 fn the_stable_part_has_the_states_of_the_branch() {
     let mut compared = 0;
-    for (own, branch) in branches_at_9_mm() {
-        let case = own.case();
-        let part = StableBranch::new(&own.whisker, &own.pole, own.side, 9.0).unwrap();
+    for (traced, branch) in branches_at_9_mm() {
+        let case = traced.case();
+        let part = StableBranch::new(&traced.whisker, &traced.pole, traced.side, 9.0).unwrap();
         let end = branch.stable_end_deg();
         assert_eq!(part.end_deg(), end, "{case}");
         for share in [-0.1, 0.01, 0.3, 0.7, 0.99, 1.1] {

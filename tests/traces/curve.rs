@@ -109,7 +109,7 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
             });
             let distances: Vec<f64> = (1..20).map(|i| 0.7 * f64::from(i)).collect();
             for side in Side::BOTH {
-                let places: Vec<f64> = distances.iter().map(|own| own / 20.0).collect();
+                let places: Vec<f64> = distances.iter().map(|distance| distance / 20.0).collect();
                 let rod = whisker.rod(&POLE, side);
                 let sheet = Sheet::new(Method::fine(), &rod, side, &places);
                 for ((distance, end), crossings) in distances

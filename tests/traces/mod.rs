@@ -96,6 +96,8 @@ static EVERY_BRANCH: LazyLock<Vec<TestBranch>> = LazyLock::new(|| {
 
 /// Returns the branches of [`EVERY_BRANCH`] at 9 mm, which every whisker reaches.
 fn branches_at_9_mm() -> impl Iterator<Item = (&'static TestBranch, &'static Branch)> {
-    let near = EVERY_BRANCH.iter().filter(|own| own.distance_mm == 9.0);
-    near.map(|own| (own, own.branch.as_ref().unwrap()))
+    let near = EVERY_BRANCH
+        .iter()
+        .filter(|traced| traced.distance_mm == 9.0);
+    near.map(|traced| (traced, traced.branch.as_ref().unwrap()))
 }

@@ -8,10 +8,10 @@ use whiskmap::trace::{Branch, WhiskerPart, WhiskerShape};
 /// equals that of the pole's force.
 #[test]
 fn a_shape_fits_its_state() {
-    for (own, branch) in branches_at_9_mm() {
+    for (traced, branch) in branches_at_9_mm() {
         let points = branch.points(41).unwrap();
         for stable in [true, false] {
-            let case = format!("{}, {stable}", own.case());
+            let case = format!("{}, {stable}", traced.case());
             let mut part = points.iter().filter(|point| point.stable == stable);
             let Some(push) = part.nth(3).map(|point| point.push_angle_deg) else {
                 continue;
@@ -26,7 +26,7 @@ fn a_shape_fits_its_state() {
             assert!(miss < 1e-9, "{case}: {base:?}");
             // The curvature of the base changes by the strain over the radius, 30 um.
             let at_rest = 2.0
-                * own
+                * traced
                     .whisker
                     .curvature
                     .map_or(0.0, |bend| bend.parabola_per_mm);
@@ -48,7 +48,10 @@ fn a_shape_fits_its_state() {
                 .unwrap();
             let [x, y] = shape.pole_mm;
             let (dx, dy) = (x - contact.x_mm, y - contact.y_mm);
-            assert!((dx.hypot(dy) - own.pole.radius_mm).abs() < 1e-11, "{case}");
+            assert!(
+                (dx.hypot(dy) - traced.pole.radius_mm).abs() < 1e-11,
+                "{case}"
+            );
             let (sin, cos) = contact.angle_deg.to_radians().sin_cos();
             assert!(
                 (dx * cos + dy * sin).abs() < 1e-10,
@@ -102,7 +105,7 @@ fn a_shape_is_a_curve() {
 
 #[test]
 fn without_a_push_the_whisker_is_at_rest() {
-    for (own, branch) in branches_at_9_mm().filter(|(own, _)| own.side == Side::Cf) {
+    for (traced, branch) in branches_at_9_mm().filter(|(traced, _)| traced.side == Side::Cf) {
         let state = branch.state(0.0, true).unwrap();
         // The contact is an additional point.
         let shape = WhiskerShape::new(branch, &state, 50);
@@ -112,7 +115,7 @@ fn without_a_push_the_whisker_is_at_rest() {
             .filter(|point| point.part != WhiskerPart::Contact);
         for (point, [x, y]) in places.zip(WhiskerShape::at_rest(branch, 50)) {
             let miss = (point.x_mm - x).hypot(point.y_mm - y);
-            assert!(miss < 1e-10, "{}: {point:?} {x} {y}", own.case());
+            assert!(miss < 1e-10, "{}: {point:?} {x} {y}", traced.case());
         }
     }
 }

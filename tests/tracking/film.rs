@@ -38,7 +38,7 @@ fn a_push_until_slip_off_comes_back() {
             shape(push)
                 .points
                 .iter()
-                .map(|own| pixel([own.x_mm, own.y_mm], 0.0))
+                .map(|point| pixel([point.x_mm, point.y_mm], 0.0))
                 .collect()
         };
         for [x, y] in if (0.0..15.6).contains(&push) {
@@ -74,7 +74,7 @@ fn a_push_until_slip_off_comes_back() {
             let own = shape(push)
                 .points
                 .iter()
-                .find(|own| own.part == whiskmap::trace::WhiskerPart::Contact)
+                .find(|point| point.part == whiskmap::trace::WhiskerPart::Contact)
                 .copied()
                 .unwrap();
             assert_near(Some(far), own.x_mm.hypot(own.y_mm), 2e-3);

@@ -154,6 +154,20 @@ impl Device {
         Ok(kept.insert(buffer))
     }
 
+    /// Returns `kept` with at least `size` bytes each: the buffer of `what` that a shader writes, and the buffer in which the CPU reads it.
+    pub fn results<'a>(
+        &self,
+        what: &'static str,
+        kept: [&'a mut Option<wgpu::Buffer>; 2],
+        size: u64,
+    ) -> Result<[&'a wgpu::Buffer; 2], EngineError> {
+        let [written, readback] = kept;
+        let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
+        let written = self.grown(what, written, size, usage)?;
+        let usage = Usage::MAP_READ | Usage::COPY_DST;
+        Ok([written, self.grown("readback", readback, size, usage)?])
+    }
+
     /// Uploads `bytes` of `what` to `kept`, which is replaced if it is too small.
     pub fn upload<'a>(
         &self,

@@ -2,12 +2,12 @@
 
 use super::EngineError;
 use super::cells::{Planes, read_cells};
-use super::device::{Device, copy_back};
-use super::packing::{CellsOfRow, Packed, WORKGROUP};
+use super::device::Device;
+use super::dispatch::{Dispatch, binding};
+use super::packing::{CellsOfRow, Packed};
 use super::pending::PendingBatch;
 use super::stamps::Stamps;
 use std::time::{Duration, Instant};
-use wgpu::BufferUsages as Usage;
 
 /// Wall times of the stages of submissions, each summed over all submissions.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,18 +46,6 @@ pub struct Flight {
     buffers: Buffers,
 }
 
-/// Binds the first `size` bytes of a buffer, or the whole buffer.
-pub fn binding(binding: u32, buffer: &wgpu::Buffer, size: Option<u64>) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry {
-        binding,
-        resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer,
-            offset: 0,
-            size: size.and_then(wgpu::BufferSize::new),
-        }),
-    }
-}
-
 impl Flight {
     /// Submits the packed `rows` of a batch with these `planes`, in the `buffers` of a finished flight, and returns the flight. There is a cell at
     /// least. If `is_timed`, the device's clock times it.
@@ -73,10 +61,8 @@ impl Flight {
             buffers.stamps = Stamps::new(device)?;
         }
         let bytes = (packed.cells * planes.cell_bytes()) as u64;
-        let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
-        let cells = device.grown("cells", &mut buffers.cells, bytes, usage)?;
-        let usage = Usage::MAP_READ | Usage::COPY_DST;
-        let readback = device.grown("readback", &mut buffers.readback, bytes, usage)?;
+        let results = [&mut buffers.cells, &mut buffers.readback];
+        let [cells, readback] = device.results("cells", results, bytes)?;
         let heads = bytemuck::cast_slice(&packed.heads);
         let heads_size = heads.len() as u64;
         let heads = device.upload("runs", &mut buffers.heads, heads)?;
@@ -90,32 +76,18 @@ impl Flight {
             binding(3, pushes, None),
             binding(4, cells, Some(bytes)),
         ];
-        let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("cells"),
-            layout: &pipeline.get_bind_group_layout(0),
+        let dispatch = Dispatch {
+            label: "cells",
+            pipeline,
             entries: &entries,
-        });
-        let mut commands = device.handle.create_command_encoder(&Default::default());
-        // A cell that the shader does not write must not keep the value of another submission.
-        commands.clear_buffer(cells, 0, Some(bytes));
-        {
-            let mut pass = commands.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("cells"),
-                timestamp_writes: buffers.stamps.as_ref().map(Stamps::writes),
-            });
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            // The pace keeps them below what `u32` can count.
-            let groups = packed.cells.div_ceil(WORKGROUP as usize) as u32;
-            pass.dispatch_workgroups(groups, 1, 1);
-        }
-        copy_back(&mut commands, cells, readback, bytes);
-        if let Some(stamps) = &buffers.stamps {
-            stamps.resolve(&mut commands);
-        }
+            // The pace keeps their groups below what `u32` can count.
+            invocations: packed.cells,
+            results: [cells, readback],
+            size: bytes,
+            stamps: buffers.stamps.as_ref(),
+        };
         let submitted = Instant::now();
-        let index = device.queue.submit([commands.finish()]);
-        device.check()?;
+        let index = dispatch.submit(device)?;
         Ok(Self {
             cells: packed.cells,
             runs: packed.runs,

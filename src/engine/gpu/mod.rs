@@ -10,6 +10,7 @@
 mod adapters;
 mod cells;
 mod device;
+mod dispatch;
 mod flight;
 mod guard;
 mod missing;

@@ -1,15 +1,14 @@
 //! Trajectories on the device: any list of rods, contacts and loads, thousands at once.
 
-use super::device::{Device, copy_back};
-use super::flight::binding;
-use super::packing::{Scalar, WORKGROUP};
+use super::device::Device;
+use super::dispatch::{Dispatch, binding};
+use super::packing::Scalar;
 use super::{EngineError, Gpu, Precision, shaders};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::hash_map::Entry;
 use std::ops::Range;
-use wgpu::BufferUsages as Usage;
 use whiskmap_mechanics::rod::{Effects, Rest, Rod, arclength};
 use whiskmap_mechanics::shooting::PlainState;
 use whiskmap_mechanics::shooting::batch::{InitialCondition, Method};
@@ -288,33 +287,24 @@ impl ShootBuffers {
         read: impl FnOnce(&[u8]),
     ) -> Result<(), EngineError> {
         let size = (count * each) as u64;
-        let written = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
-        let states = device.grown("states", &mut self.states, size, written)?;
-        let mapped = Usage::MAP_READ | Usage::COPY_DST;
-        let readback = device.grown("readback", &mut self.readback, size, mapped)?;
+        let results = [&mut self.states, &mut self.readback];
+        let [states, readback] = device.results("states", results, size)?;
         let mut entries = vec![binding(INPUTS as u32, states, Some(size))];
         for (index, (kept, bytes)) in (0..).zip(self.inputs.iter_mut().zip(inputs)) {
             let buffer = device.upload("trajectories", kept, bytes)?;
             entries.push(binding(index, buffer, Some(bytes.len() as u64)));
         }
-        let bindings = device.handle.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shoot"),
-            layout: &pipeline.get_bind_group_layout(0),
+        let dispatch = Dispatch {
+            label: "shoot",
+            pipeline,
             entries: &entries,
-        });
-        let mut commands = device.handle.create_command_encoder(&Default::default());
-        // An invocation that does not write must not keep the state of another submission.
-        commands.clear_buffer(states, 0, Some(size));
-        {
-            let mut pass = commands.begin_compute_pass(&Default::default());
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            // A submission has fewer groups than `u32` can count.
-            pass.dispatch_workgroups(count.div_ceil(WORKGROUP as usize) as u32, 1, 1);
-        }
-        copy_back(&mut commands, states, readback, size);
-        let index = device.queue.submit([commands.finish()]);
-        device.check()?;
+            // A submission has fewer trajectories than `u32` can count.
+            invocations: count,
+            results: [states, readback],
+            size,
+            stamps: None,
+        };
+        let index = dispatch.submit(device)?;
         device.wait(index)?;
         Device::read(readback, size, read)
     }

@@ -1,7 +1,7 @@
 //! Parts of a grid: the rows, columns and whiskers of selected values.
 
 use crate::scene::{Coordinate, Grid};
-use crate::store::at::{AxisValue, AxisValues, ChosenValues, InvalidAxisValue, select};
+use crate::store::at::{AxisValue, ChosenValues, InvalidAxisValue, NamedAxis, select};
 
 /// Part of a grid in which the values of some axes are fixed.
 #[derive(Clone, Debug)]
@@ -45,12 +45,12 @@ impl GridPart {
 
     fn choose(&mut self, whole: &Grid, at: &AxisValue, exact: bool) -> Result<(), String> {
         let sweep = whole.sweep.iter();
-        let sweep = sweep.map(AxisValues::of);
+        let sweep = sweep.map(NamedAxis::of);
         let inside = [
             ("distance_mm", &*whole.distance_mm),
             ("push_angle_deg", &*whole.push_angle_deg),
         ];
-        let inside = inside.map(|(name, values)| AxisValues {
+        let inside = inside.map(|(name, values)| NamedAxis {
             name,
             values,
             names: &[],

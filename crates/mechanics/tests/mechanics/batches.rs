@@ -91,7 +91,7 @@ fn plain_states_are_those_with_derivatives() {
                 (plain.force - full.force).abs() / (1.0 + full.force.abs()),
                 (plain.energy - full.energy).abs() / (1.0 + full.energy),
             ];
-            assert!(apart.iter().all(|own| *own < 1e-13), "{apart:?}");
+            assert!(apart.iter().all(|part| *part < 1e-13), "{apart:?}");
         }
     }
 }

@@ -25,8 +25,8 @@ fn quotients_are_those_of_differences() {
     for end in [0.0, 0.3, 0.97, 1.0] {
         let (at_end, quotient) = expansion.quotient(end);
         assert_eq!(quotient.coefficients.len(), 23);
-        let apart = |own: [f64; 2], other: [f64; 2]| {
-            f64::max((own[0] - other[0]).abs(), (own[1] - other[1]).abs())
+        let apart = |one: [f64; 2], other: [f64; 2]| {
+            f64::max((one[0] - other[0]).abs(), (one[1] - other[1]).abs())
         };
         assert!(apart(at_end, f(end)) < 1e-14);
         assert!(apart(quotient.at(end), slope(end)) < 1e-12);

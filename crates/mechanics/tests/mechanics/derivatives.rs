@@ -186,11 +186,12 @@ fn trajectories_are_differentiated_by_every_number() {
                 ),
             };
             let differences = richardson(1e-3 * size, at);
-            for (k, (own, difference)) in numbers(&by[i]).into_iter().zip(differences).enumerate() {
-                let apart = (own - difference).abs() / (1.0 / size + difference.abs());
+            for (k, (exact, difference)) in numbers(&by[i]).into_iter().zip(differences).enumerate()
+            {
+                let apart = (exact - difference).abs() / (1.0 / size + difference.abs());
                 assert!(
                     apart < 1e-8,
-                    "{rod:?} {variable:?} number {k}: {own} {difference}"
+                    "{rod:?} {variable:?} number {k}: {exact} {difference}"
                 );
             }
         }
@@ -204,7 +205,7 @@ fn first_touch_is_differentiated() {
         let rest = Rest::new(&rod);
         for (change, by) in changes(&rod) {
             for distance in [0.3, 0.8] {
-                let (own, pole) = (
+                let (moved_pole, pole) = (
                     rest.touch_derivative(distance, 0.7, &by),
                     rest.pole_at_distance(distance),
                 );
@@ -216,11 +217,11 @@ fn first_touch_is_differentiated() {
                     [there.length().ln(), turn(pole, there), point.x, point.y]
                 };
                 let differences = richardson(1e-4, at);
-                let own = [own.x, own.y, point.x, point.y];
-                for (own, difference) in own.into_iter().zip(differences) {
+                let exact = [moved_pole.x, moved_pole.y, point.x, point.y];
+                for (exact, difference) in exact.into_iter().zip(differences) {
                     assert!(
-                        (own - difference).abs() < 1e-10,
-                        "{rod:?} {by:?}: {own} {difference}"
+                        (exact - difference).abs() < 1e-10,
+                        "{rod:?} {by:?}: {exact} {difference}"
                     );
                 }
             }

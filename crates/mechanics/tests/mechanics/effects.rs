@@ -93,9 +93,9 @@ fn additional_effects_change_rounding_alone() {
     );
     for condition in conditions(&rods) {
         let shoot = |method| Batch::new(method).shoot::<SecondVariation>(&[condition])[0];
-        let own = shoot(Method::fine());
+        let alone = shoot(Method::fine());
         let with_all = shoot(Method::fine().with_effects(all));
-        let apart = own.map.pole.distance(with_all.map.pole);
+        let apart = alone.map.pole.distance(with_all.map.pole);
         assert!(apart < 1e-11, "{apart:e} {condition:?}");
     }
 }

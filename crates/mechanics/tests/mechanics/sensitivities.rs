@@ -123,11 +123,11 @@ fn sensitivities_agree_with_num_dual() {
             for (i, (name, pick)) in PICKS.iter().enumerate() {
                 for axis in 0..2 {
                     let dual = second(&rod, tau, load, axis, i);
-                    let own = pick(&hand)[axis];
+                    let by_hand = pick(&hand)[axis];
                     let scale = pick(&hand).length();
                     assert!(
-                        (dual - own).abs() < 1e-6 * scale,
-                        "{name}[{axis}] at taper {taper}, load {load}: {own}, num-dual {dual}"
+                        (dual - by_hand).abs() < 1e-6 * scale,
+                        "{name}[{axis}] at taper {taper}, load {load}: {by_hand}, num-dual {dual}"
                     );
                 }
             }
@@ -162,7 +162,7 @@ fn derivatives_by_the_rod_agree_with_num_dual() {
             ..RodDerivative::default()
         };
         let variables = [&by_taper, &by_gradient].map(TrajectoryVariable::Rod);
-        let (_, own) = differentiate(Resolution::of(128), &condition, &variables);
+        let (_, by) = differentiate(Resolution::of(128), &condition, &variables);
         for (i, value) in [rod.taper, rod.gradient].into_iter().enumerate() {
             let at = |axis: usize| {
                 let along = |(moved, load): (HyperDual64, HyperDual64)| {
@@ -175,9 +175,12 @@ fn derivatives_by_the_rod_agree_with_num_dual() {
             let [ln_d, phi] = [0, 1].map(at);
             let first = DVec2::new(ln_d.1, phi.1);
             let mixed = DVec2::new(ln_d.3, phi.3);
-            for (own, dual) in [(own[i].ln_pole, first), (own[i].by_load, mixed)] {
-                let apart = own.distance(dual) / dual.length();
-                assert!(apart < 1e-7, "{i} at taper {taper}: {own}, num-dual {dual}");
+            for (found, dual) in [(by[i].ln_pole, first), (by[i].by_load, mixed)] {
+                let apart = found.distance(dual) / dual.length();
+                assert!(
+                    apart < 1e-7,
+                    "{i} at taper {taper}: {found}, num-dual {dual}"
+                );
             }
         }
     }

@@ -1,0 +1,36 @@
+//! Options of a course: its start, the point of its curvature, gaps that it bridges, and cancellation.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// State in which a course begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CourseStart {
+    /// The whisker is free. At an angle beyond first touch, it has passed the pole.
+    Free,
+    /// The pole bends the whisker, as after a push from first touch to the first angle: on CB if that side holds it, otherwise on CF.
+    Contact,
+}
+
+/// Start of a course, point of its curvature, gaps that it bridges, and cancellation.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct WhiskOptions {
+    /// State in which the course begins. `None` assumes a free whisker.
+    pub start: Option<CourseStart>,
+    /// Arclength from the base, in mm, at which samples have the curvature; `None` for samples without it.
+    pub curvature_at_mm: Option<f64>,
+    /// Longest gap, in s, across which the course continues along a straight line: the time between the angles before and after missing
+    /// ones. The default 0 bridges none.
+    pub bridge_s: f64,
+    /// Flag that cancels: if true, the course soon ends with [`WhiskError::Cancelled`](super::WhiskError::Cancelled). `None` if nothing cancels.
+    pub cancel: Option<Arc<AtomicBool>>,
+}
+
+impl WhiskOptions {
+    /// Returns true if the course is cancelled.
+    pub(super) fn is_cancelled(&self) -> bool {
+        let cancel = self.cancel.as_ref();
+        cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
+    }
+}
