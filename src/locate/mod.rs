@@ -12,7 +12,7 @@ mod readings;
 pub use map::{SharedMap, SharedState};
 pub use readings::{BaseReadings, MOST_ANGLE, MOST_LOAD};
 
-use crate::newton::{BatchNewton, NewtonOutcome};
+use crate::newton::{BatchNewton, NewtonIterate, NewtonOutcome};
 use crate::scene::{Pole, Whisker};
 use crate::trace::{StateRow, row};
 use glam::{DVec2, DVec3};
@@ -163,6 +163,38 @@ struct FoundState<'a> {
     misfit: f64,
 }
 
+/// End of a search.
+struct SearchEnd<'a> {
+    /// Index of the reading, and grid of the search.
+    origin: (usize, &'a SheetGrid),
+    iterate: NewtonIterate<FullState>,
+    /// The last trajectory.
+    last: FirstVariation,
+}
+
+/// Returns true if two solutions at `(tau, load)` are one state.
+fn is_same_state(one: DVec2, other: DVec2) -> bool {
+    let change = (one - other).abs() / other.abs();
+    change.max_element() < SAME_STATE
+}
+
+/// Yields the origins and points of the different `ends`, which have the order of the readings.
+fn different<'a, 'e>(
+    ends: &'e [SearchEnd<'a>],
+) -> impl Iterator<Item = ((usize, &'a SheetGrid), DVec2)> + use<'a, 'e> {
+    let is_new = |(place, end): &(usize, &SearchEnd)| {
+        let (i, grid) = end.origin;
+        let before = ends[..*place].iter().rev();
+        let mut others = before.take_while(|other| other.origin.0 == i);
+        others.all(|other| {
+            let is_same = is_same_state(end.iterate.point, other.iterate.point);
+            !(is_same && std::ptr::eq(grid, other.origin.1))
+        })
+    };
+    let new = ends.iter().enumerate().filter(is_new);
+    new.map(|(_, end)| (end.origin, end.iterate.point))
+}
+
 /// Returns one line for readings without a state; `None` without such readings.
 #[must_use]
 pub fn warning(located: &[LocatedState]) -> Option<String> {
@@ -273,38 +305,38 @@ impl Locator {
     }
 
     /// Finds the states for each of the `wanted` readings, `[reading][state]`.
+    ///
+    /// With a measured moment, the turn of the base in a follicle is known. States are then searched with a clamped base, where no frame turns with them,
+    /// and the search in the follicle starts at its end.
     fn solve(&self, wanted: &[Wanted], has_deviations: bool) -> Vec<Vec<FoundState<'_>>> {
-        let mut problems = Vec::new();
-        let mut starts = Vec::new();
-        let mut origins = Vec::new();
+        let mut points = Vec::new();
+        let mut origins: Vec<(usize, &SheetGrid)> = Vec::new();
         let mut signs = Vec::new();
         for (i, wanted) in wanted.iter().enumerate() {
             let sides = self.sides.iter().filter(|_| wanted.reason.is_none());
             for grid in sides {
+                let turn = wanted.turn(grid);
                 for pair in wanted.pairs().filter(|pair| grid.is_determined(*pair)) {
-                    grid.add_starts(pair, wanted.numbers, &mut signs, &mut starts);
+                    grid.add_starts(pair, wanted.numbers, turn, &mut signs, &mut points);
                 }
-                origins.resize(starts.len(), (i, grid));
-                problems.resize_with(starts.len(), || BaseProblem {
-                    rod: &grid.rod,
-                    wanted: wanted.numbers,
-                    weights: wanted.weights,
-                    last: FirstVariation::default(),
-                });
+                origins.resize(points.len(), (i, grid));
             }
         }
-        let newton = BatchNewton::new(self.method, MOST_TRAJECTORIES);
-        let iterates = newton.solve(&mut problems, starts);
+        if self.sides.iter().any(|grid| grid.rod.mount != 0.0) {
+            let ends = self.search(origins, points, |i, grid| wanted[i].in_clamp(grid));
+            (origins, points) = different(&ends).unzip();
+        }
+        let ends = self.search(origins, points, |i, grid| wanted[i].in_follicle(grid));
         let mut found: Vec<Vec<FoundState>> = wanted.iter().map(|_| Vec::new()).collect();
-        for (((i, grid), problem), iterate) in origins.into_iter().zip(problems).zip(iterates) {
+        for end in ends {
+            let SearchEnd {
+                origin: (i, grid),
+                iterate,
+                last,
+            } = end;
             let (at, full) = (iterate.point, iterate.state);
-            if iterate.outcome != NewtonOutcome::Converged {
-                continue;
-            }
-            let is_same = |other: &FoundState| {
-                let change = (at - other.at).abs() / other.at.abs();
-                std::ptr::eq(grid, other.grid) && change.max_element() < SAME_STATE
-            };
+            let is_same =
+                |other: &FoundState| std::ptr::eq(grid, other.grid) && is_same_state(at, other.at);
             let misfit = wanted[i].misfit(&full, has_deviations);
             let Some(misfit) = misfit.filter(|_| !found[i].iter().any(is_same)) else {
                 continue;
@@ -314,12 +346,34 @@ impl Locator {
                 grid,
                 at,
                 full,
-                last: problem.last,
+                last,
                 phi,
                 misfit,
             }));
         }
         found
+    }
+
+    /// Searches the states of problems by the indices of their readings and their grids, from `starts`. Returns the ends of the searches that
+    /// converge, in the order of the problems.
+    fn search<'a>(
+        &self,
+        origins: Vec<(usize, &'a SheetGrid)>,
+        starts: Vec<DVec2>,
+        problem: impl Fn(usize, &'a SheetGrid) -> BaseProblem<'a>,
+    ) -> Vec<SearchEnd<'a>> {
+        let problems = origins.iter().map(|(i, grid)| problem(*i, grid));
+        let mut problems: Vec<BaseProblem> = problems.collect();
+        let newton = BatchNewton::new(self.method, MOST_TRAJECTORIES);
+        let iterates = newton.solve(&mut problems, starts).into_iter();
+        let ends = origins.into_iter().zip(problems).zip(iterates);
+        let ends = ends.map(|((origin, problem), iterate)| SearchEnd {
+            origin,
+            iterate,
+            last: problem.last,
+        });
+        ends.filter(|end| end.iterate.outcome == NewtonOutcome::Converged)
+            .collect()
     }
 
     /// Returns the rows of the reading with this `number`.
@@ -410,6 +464,36 @@ impl Wanted<'_> {
     fn pairs(&self) -> impl Iterator<Item = usize> {
         let measured = self.measured;
         (0..PAIRS.len()).filter(move |&pair| PAIRS[pair].iter().all(|&i| measured[i] > 0.0))
+    }
+
+    /// Returns the angle, in radians, from the base's tangent to the axis of the follicle, which the measured moment gives; `None` if it is not known.
+    fn turn(&self, grid: &SheetGrid) -> Option<f64> {
+        let is_known = self.measured.x > 0.0 || grid.rod.mount == 0.0;
+        is_known.then_some(-grid.rod.mount * self.numbers.x)
+    }
+
+    /// Returns the problem of the state with a clamped base that the measured moment turns, or in the follicle if the turn is not known.
+    fn in_clamp<'a>(&self, grid: &'a SheetGrid) -> BaseProblem<'a> {
+        let problem = self.in_follicle(grid);
+        match self.turn(grid) {
+            None => problem,
+            Some(turn) => BaseProblem {
+                rod: &grid.clamped,
+                tangent: DVec2::from_angle(-turn),
+                ..problem
+            },
+        }
+    }
+
+    /// Returns the problem of the state in the follicle, or in the clamp without one.
+    fn in_follicle<'a>(&self, grid: &'a SheetGrid) -> BaseProblem<'a> {
+        BaseProblem {
+            rod: &grid.rod,
+            wanted: self.numbers,
+            weights: self.weights,
+            tangent: DVec2::X,
+            last: FirstVariation::default(),
+        }
     }
 
     /// Returns the misfit of a state; `None` if it is too large.

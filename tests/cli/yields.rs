@@ -152,7 +152,7 @@ fn rows_of_a_table_have_their_own_yield_strains() {
     let marks = ["", "", "true", "true", "false", "false", "", ""];
     assert_eq!(column(&curve.out, "yields").unwrap(), marks);
     let reason = "whisker.yield_strain = 2: must be more than 0 and at most 1";
-    assert!(curve.err.contains(&format!("bad: {reason}")), "{curve:?}");
+    assert!(curve.err.contains(&format!("bad ({reason})")), "{curve:?}");
     let corner = good(&place, &["curve", "scene.toml", "--corner"]);
     assert!(
         corner
