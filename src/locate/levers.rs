@@ -106,10 +106,10 @@ impl<'a> SearchedPair<'a> {
         signs.extend(nodes.map(|(((((first, x), y), force), one), other)| {
             let misses = self.misses_of(*first, *x, *y, *force);
             let sine = self.axis.x * one + self.axis.y * other;
-            u8::from(misses.x > 0.0) * ACROSS
-                | u8::from(misses.y > 0.0) * ALONG
-                | u8::from(sine > 0.0) * POSITIVE
-                | u8::from(sine < 0.0) * NEGATIVE
+            (u8::from(misses.x > 0.0) * ACROSS)
+                | (u8::from(misses.y > 0.0) * ALONG)
+                | (u8::from(sine > 0.0) * POSITIVE)
+                | (u8::from(sine < 0.0) * NEGATIVE)
         }));
     }
 
