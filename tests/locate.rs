@@ -115,6 +115,30 @@ fn states_of_random_whiskers_come_back() {
     }
 }
 
+/// In a soft follicle, the frame of the forces turns by some radians along a push.
+#[test]
+fn states_in_soft_follicles_come_back() {
+    let mut random = Random::new(21);
+    let mut turned: f64 = 0.0;
+    for i in 0..12 {
+        let (whisker, pole) = random_whisker(&mut random);
+        let stiffness = 10f64.powf(random.between(2.3, 3.2));
+        let whisker = Whisker {
+            follicle_stiffness_nnm_per_rad: Some(stiffness),
+            ..whisker
+        };
+        let distances = [random.between(0.15, 0.5), random.between(0.5, 0.93)];
+        let states = states(&whisker, &pole, &distances, &[0.02, 0.3, 0.7, 0.98]);
+        let turns = states
+            .iter()
+            .map(|state| state.base_moment_nnm.abs() / stiffness);
+        turned = turns.fold(turned, f64::max);
+        let name = format!("{i} {whisker:?} {pole:?}");
+        check_round_trips(&name, &whisker, &pole, &states);
+    }
+    assert!(turned > 3.0, "{turned}");
+}
+
 #[test]
 fn states_of_measured_and_traced_whiskers_come_back() {
     for name in ["measured", "traced", "robot"] {

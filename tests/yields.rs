@@ -7,7 +7,7 @@ use whiskmap::friction::Sliding;
 use whiskmap::map::Panel;
 use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::plan::Plan;
-use whiskmap::scene::{Parameter, Scene, Whisker};
+use whiskmap::scene::{Parameter, Scene, Whisker, WhiskerRow};
 use whiskmap::sheet::Sheet;
 use whiskmap::trace::{Branch, BranchPoint, WhiskerShape, corner, curve};
 use whiskmap::yields::{PushMark, StrainMark, YieldMark};
@@ -312,7 +312,7 @@ fn every_whisker_of_a_scene_has_its_yield_strain() {
         .sweep(Parameter::LengthMm, [15.0, 20.0])
         .build()
         .unwrap();
-    let rows = ["a", "b"].map(whiskmap::scene::WhiskerRow::new);
+    let rows = ["a", "b"].map(WhiskerRow::new);
     let table = scene.to_builder().whiskers(rows).build().unwrap();
     for scene in [&swept, &table] {
         let strains = scene
@@ -324,6 +324,21 @@ fn every_whisker_of_a_scene_has_its_yield_strain() {
         let again = Scene::parse(&scene.to_toml(), "y.toml").unwrap();
         assert_eq!(again.whisker, scene.whisker);
     }
+    // A row of a table may have its own, which the scene's does not replace.
+    let rows = [("a", 0.02), ("b", f64::NAN)];
+    let rows = rows.map(|(name, strain)| WhiskerRow::new(name).yield_strain(strain));
+    let table = scene.to_builder().whiskers(rows).build().unwrap();
+    let strains = table
+        .whiskers()
+        .map(|swept| swept.unwrap().whisker.yield_strain);
+    assert_eq!(strains.collect::<Vec<_>>(), [Some(0.02), None]);
+    let one = table.of_whisker(0).unwrap();
+    assert_eq!(one.whisker.yield_strain, Some(0.02));
+    let again = Scene::parse(&table.to_toml(), "y.toml").unwrap();
+    assert_eq!(again.table, table.table);
+    let refused = table.to_builder().yield_strain(0.1).build();
+    let why = "whisker.yield_strain: must be left out: whiskers.table has the column yield_strain";
+    assert!(refused.unwrap_err().to_string().contains(why));
     let text = scene.to_toml_with(&[(Parameter::LengthMm, 21.0)]).unwrap();
     assert!(text.contains("yield_strain = 0.0125"), "{text}");
     let why = scene

@@ -154,7 +154,7 @@ impl CheckedScene {
         let numbers = parameters.filter_map(|parameter| {
             Some((parameter.name().to_owned(), builder.number(parameter)?))
         });
-        let yield_strain = self.0.whisker.yield_strain;
+        let yield_strain = self.0.given_yield_strain();
         let given = numbers.chain(yield_strain.map(|strain| (YIELD_STRAIN.to_owned(), strain)));
         let axes = builder.axes();
         (
@@ -260,7 +260,10 @@ pub fn unused_columns(names: Vec<String>) -> Option<String> {
 fn whisker_row((name, numbers, rows, points): RowTuple) -> PyResult<WhiskerRow> {
     let mut row = WhiskerRow::new(name);
     for (name, value) in numbers {
-        row = row.set(parameter("table", &name)?, value);
+        row = match &*name {
+            YIELD_STRAIN => row.yield_strain(value),
+            _ => row.set(parameter("table", &name)?, value),
+        };
     }
     if let Some(rows) = rows {
         row = row.profile(rows);
@@ -273,10 +276,15 @@ fn whisker_row((name, numbers, rows, points): RowTuple) -> PyResult<WhiskerRow> 
 
 fn row_tuple(row: &WhiskerRow) -> RowTuple {
     let numbers = row.numbers().iter();
+    let numbers = numbers.map(|(parameter, value)| (parameter.name(), *value));
+    let yield_strain = row
+        .given_yield_strain()
+        .map(|strain| (YIELD_STRAIN, strain));
+    let numbers = numbers.chain(yield_strain);
     (
         row.name().to_owned(),
         numbers
-            .map(|(parameter, value)| (parameter.name().to_owned(), *value))
+            .map(|(name, value)| (name.to_owned(), value))
             .collect(),
         row.measured_rows().map(<[_]>::to_vec),
         row.points_mm().map(<[_]>::to_vec),

@@ -32,7 +32,7 @@ pub fn curve<'py>(
     let job = |cancel: &Arc<AtomicBool>| {
         options.cancel = Some(Arc::clone(cancel));
         let ends = whiskmap::curve(&scene.0, options)?;
-        let marks = scene.0.whisker.yield_strain.map(|_| {
+        let marks = scene.0.has_yield_strain().then(|| {
             let ends = ends.par_iter();
             let ends = ends.filter(|_| !cancel.load(Ordering::Relaxed));
             let mark = |(place, end): &(SweepPlace, Detachment)| {

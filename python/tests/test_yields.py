@@ -96,3 +96,18 @@ def test_maps_have_strains(scene: wm.Scene) -> None:
 def test_a_design_that_yields_is_warned_of(scene: wm.Scene) -> None:
     with pytest.warns(wm.SceneWarning, match=r"taper = 0\.\d+: the whisker yields: the largest strain of the push, 0\.\d+, exceeds"):
         wm.design(scene, "taper", distance_mm=8, slip_off_deg=60)
+
+
+def test_rows_of_a_table_have_their_own_yield_strains(scene: wm.Scene) -> None:
+    table = [{"name": "unknown", "yield_strain": None}, {"name": "soft", "yield_strain": 0.002}, {"name": "strong", "yield_strain": 0.9}]
+    pad = scene.replace(yield_strain=None, table=table)
+    assert pad.table == table
+    assert "peak_strain" in wm.map(pad)
+    ends = wm.curve(pad).sel(distance_mm=8)
+    assert not ends.yields.sel(whisker=["unknown", "strong"]).any() and ends.yields.sel(whisker="soft").all()
+    np.testing.assert_array_equal(ends.max_strain.sel(whisker="soft"), wm.curve(scene).max_strain.sel(distance_mm=8))
+    assert pad.select("soft").whisker.yield_strain == 0.002
+    assert pad.select("unknown").whisker.yield_strain is None
+    assert pad.replace(length_mm=21).table == table
+    with pytest.raises(wm.SceneError, match="must be left out: whiskers.table has the column yield_strain"):
+        pad.replace(yield_strain=0.01)

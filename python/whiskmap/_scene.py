@@ -181,7 +181,7 @@ class Scene:
         rest = (points, None if is_dropped else degree_of(texts["rest_degree"]))
         smooth = is_smooth(texts["profile_smooth"]) and (rows is not None or "profile_smooth" in changes)
         rough, whiskers = texts["surface"], rows_of(texts["table"]) if "table" in changes else table
-        names = [PARAMETERS[key] for key in changes if key in PARAMETERS]
+        names = [PARAMETERS.get(key, key) for key in changes if key in PARAMETERS or key == "yield_strain"]
         built = build(texts["title"], changed, (rows, smooth), rest, axes, texts["uncertainty"], rough, whiskers, texts["name"], names)
         return Scene._of(built)._warned()
 

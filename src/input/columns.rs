@@ -39,7 +39,7 @@ impl FromStr for ColumnName {
                 expected: expected.to_owned(),
                 in_file: in_file.to_owned(),
             }),
-            _ => Err("must be an expected name and an own one, such as distance_mm=d".to_owned()),
+            _ => Err("must be NAME=COLUMN, the name that the command expects and the column of the file, such as distance_mm=d".to_owned()),
         }
     }
 }

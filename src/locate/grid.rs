@@ -1,20 +1,22 @@
 //! Grid of states over contact and load on one side of a whisker, and the grid's cells in which a state has given numbers at the base.
 //!
 //! The contacts are evenly spaced in `u = ln tau + tau`, from the tip inward; the loads are parts of the first fold's. A pair of numbers
-//! `w` is the force times the lever `l`. In a cell that has such a state, `l x w` and `l . (f l - w)` have zeros, so that both change
+//! `w` is the force times the lever `l`. In a follicle, the forces have the frame of its axis, from which the base turns by the moment times the
+//! compliance. With a measured moment the turn is known, and the levers are those of a clamped base. Without it, size and direction of the force are
+//! compared. In a cell that has such a state, `l x w` and `l . (f l - w)` have zeros, so that both change
 //! their signs between its corners. Without a load, the resting whisker gives the lever, so that small loads need no more cells.
 //! Where the Jacobian of the pair changes its sign, a cell may have two states; such cells and their neighbours have more starts.
 
-use super::newton::{lever, lever_by};
+use super::levers::{
+    ACROSS, ALONG, NEGATIVE, NodeForces, NodeLevers, PAIRS, POSITIVE, SearchedPair, neighbours,
+};
 use crate::sheet::{SheetCase, directions, first_folds, tau_of, u_of};
 use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
 use whiskmap_mechanics::numerics::nearest_turn;
 use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
 use whiskmap_mechanics::shooting::batch::{Batch, Method};
 use whiskmap_mechanics::shooting::{FirstVariation, Reader, ShootingMap};
-
-/// Indices of the two numbers of each pair in `[M, Fx, Fy]`.
-pub const PAIRS: [[usize; 2]; 3] = [[0, 2], [0, 1], [1, 2]];
 
 /// Arclength of the contact nearest to the base, in whisker lengths, as for the poles of a scene.
 const NEAREST: f64 = 1e-3;
@@ -37,30 +39,24 @@ const NEAR_FOLD: f64 = 1.01;
 /// Change of `ln q` of the fold from contact to contact from which on the fold is computed again at the contact of a state.
 const FOLD_JUMP: f64 = 0.3;
 
-/// Sine of the angle between the gradients of a pair of numbers below which its sign is rounding.
-const SINE_ROUNDING: f64 = 1e-9;
-
-/// Largest sine of the angle between the gradients of a pair that determines no state.
-const DEPENDENT: f64 = 1e-7;
-
 /// Least part of a cell at which a search starts, so that the load is not 0.
 const INSIDE: f64 = 1e-6;
 
-/// Levers of a pair of numbers at the nodes of a grid.
-struct PairGrid {
-    /// First and second component of the lever, `[node]`.
-    levers: [Vec<f64>; 2],
-    /// Signed force times the square of the lever, `[node]`.
-    sizes: Vec<f64>,
-    /// Cells with a singular Jacobian and their neighbours, by the index of the first node.
-    turns: Vec<usize>,
-    /// False if one number of the pair follows from the other.
-    is_determined: bool,
+/// Part of the range of a miss in a cell beyond which it has no zero there, although its derivative may have one.
+const SLACK: f64 = 0.5;
+
+/// Returns the least and the greatest of four numbers.
+fn span(numbers: [f64; 4]) -> [f64; 2] {
+    let least = numbers.into_iter().fold(f64::INFINITY, f64::min);
+    let most = numbers.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    [least, most]
 }
 
 /// Grid of the states of a whisker with its pole on one side.
 pub struct SheetGrid {
     pub rod: Rod,
+    /// The rod with a clamped base.
+    pub clamped: Rod,
     pub side: Side,
     pub rest: Rest,
     pub reader: Reader,
@@ -73,7 +69,12 @@ pub struct SheetGrid {
     parts: Vec<f64>,
     /// Direction of the pole in radians, continuous from first touch, `[contact * parts + part]`.
     phis: Vec<f64>,
-    pairs: [PairGrid; 3],
+    /// Levers with a clamped base.
+    in_clamp: NodeLevers,
+    /// Forces in the follicle; `None` without one.
+    in_follicle: Option<NodeForces>,
+    /// False for a pair of which one number follows from the other, `[pair]`.
+    is_determined: [bool; 3],
 }
 
 /// Returns the parts of the fold's load, `[part]`.
@@ -129,6 +130,22 @@ impl SheetGrid {
             let loads = points.iter().map(|(_, load)| *load);
             directions(0.0, loads.zip(maps))
         });
+        let clamped = Rod {
+            mount: 0.0,
+            ..rod.clone()
+        };
+        let levers = NodeLevers::new(&rod, &nodes);
+        let is_determined = levers.is_determined;
+        let (in_clamp, in_follicle) = match rod.mount == 0.0 {
+            true => (levers, None),
+            false => {
+                let points = points.iter().copied();
+                let nodes: Vec<FirstVariation> = Batch::new(method).shoot_at(&clamped, points);
+                let in_clamp = NodeLevers::new(&clamped, &nodes);
+                let forces = NodeForces::new(rod.mount, &in_clamp, &levers.sines[2], parts.len());
+                (in_clamp, Some(forces))
+            }
+        };
         Self {
             rest: Rest::new(&rod),
             reader: Reader::new(units, &rod),
@@ -136,7 +153,10 @@ impl SheetGrid {
             taus: contacts.iter().map(|[tau, _]| *tau).collect(),
             ln_qs: contacts.iter().map(|[_, q]| libm::log(*q)).collect(),
             phis: phis.collect(),
-            pairs: PAIRS.map(|pair| PairGrid::new(&rod, &nodes, parts.len(), pair)),
+            in_clamp,
+            in_follicle,
+            is_determined,
+            clamped,
             parts,
             side,
             rod,
@@ -145,68 +165,113 @@ impl SheetGrid {
 
     /// Returns true if a pair of numbers, by its index in [`PAIRS`], determines states.
     pub const fn is_determined(&self, pair: usize) -> bool {
-        self.pairs[pair].is_determined
+        self.is_determined[pair]
     }
 
     /// Adds to `starts` points `(tau, load)` near all states with the pair of numbers of `wanted`, by the index of the pair in [`PAIRS`].
-    /// `signs` is memory for the search.
+    /// The base of the states has turned by `turn` in the follicle, if the moment is measured. `signs` is memory for the search.
     pub fn add_starts(
         &self,
         pair: usize,
         wanted: DVec3,
+        turn: Option<f64>,
         signs: &mut Vec<u8>,
         starts: &mut Vec<DVec2>,
     ) {
-        let pair_grid = &self.pairs[pair];
-        let wanted = DVec2::from(PAIRS[pair].map(|i| wanted[i]));
+        let numbers = DVec2::from(PAIRS[pair].map(|i| wanted[i]));
+        let axis = |number: usize| match number {
+            1 => DVec2::X,
+            _ => DVec2::Y,
+        };
+        if let (Some(forces), None) = (&self.in_follicle, turn) {
+            self.add_starts_in_follicle(forces, numbers, starts);
+            return;
+        }
+        let turned = DVec2::from_angle(turn.unwrap_or_default());
+        let searched = match PAIRS[pair] {
+            [0, number] => {
+                let axis = turned.rotate(axis(number));
+                SearchedPair::of_moment(&self.in_clamp, axis, numbers)
+            }
+            _ => SearchedPair::of_forces(&self.in_clamp, turned.rotate(numbers)),
+        };
+        searched.signs(signs);
         let count = self.parts.len();
-        signs.clear();
-        let [first, second] = &pair_grid.levers;
-        let nodes = first.iter().zip(second).zip(&pair_grid.sizes);
-        signs.extend(nodes.map(|((x, y), size)| {
-            let [across, along] = misses(DVec2::new(*x, *y), *size, wanted);
-            u8::from(across > 0.0) | u8::from(along > 0.0) << 1
-        }));
+        let mut turns = Vec::new();
         let columns = signs.chunks(count).zip(signs.chunks(count).skip(1));
         for (i, (here, next)) in columns.enumerate() {
             for k in 0..count - 1 {
                 let corners = [here[k], here[k + 1], next[k], next[k + 1]];
                 let any = corners[0] | corners[1] | corners[2] | corners[3];
                 let all = corners[0] & corners[1] & corners[2] & corners[3];
-                if any & !all == 3 {
-                    starts.push(self.start(pair_grid, i * count + k, wanted));
+                if any & !all & (ACROSS | ALONG) == ACROSS | ALONG {
+                    let cell = i * count + k;
+                    starts.push(self.start(cell, self.corners(cell, |node| searched.misses(node))));
+                }
+                if any & POSITIVE != 0 && any & NEGATIVE != 0 {
+                    turns.push([i, k]);
                 }
             }
         }
-        for &cell in &pair_grid.turns {
-            let corners = self.corners(pair_grid, cell, wanted);
-            let may_vanish = |i: usize| {
-                let values = corners.map(|corner| corner[i]);
-                let least = values.into_iter().fold(f64::INFINITY, f64::min);
-                let most = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-                let slack = 0.5 * (most - least);
-                least - slack <= 0.0 && most + slack >= 0.0
-            };
-            if may_vanish(0) && may_vanish(1) {
-                let places = [[0.2, 0.2], [0.2, 0.8], [0.8, 0.2], [0.8, 0.8]];
-                starts.extend(places.map(|place| self.point(cell, DVec2::from(place))));
+        let contacts = self.taus.len();
+        for cell in neighbours(&turns, [contacts, count]) {
+            let corners = self.corners(cell, |node| searched.misses(node));
+            self.add_turn(cell, corners, starts);
+        }
+    }
+
+    /// Adds to `starts` points near all states with this force in the frame of the follicle, where no moment gives the turn of the base.
+    fn add_starts_in_follicle(&self, forces: &NodeForces, force: DVec2, starts: &mut Vec<DVec2>) {
+        let (size, angle) = (force.length(), force.to_angle());
+        let count = self.parts.len();
+        let at = |node: usize| DVec2::new(forces.angles[node] - angle, forces.sizes[node] - size);
+        let turns_of = |corners: &[DVec2; 4], slack: f64| {
+            let angles = corners.map(|corner| corner.x / TAU);
+            let [least, most] = span(angles);
+            let slack = slack * (most - least);
+            let turns = (least - slack).ceil() as i32..=(most + slack).floor() as i32;
+            let corners = *corners;
+            turns.map(move |turn| corners.map(|at| at - DVec2::new(TAU * f64::from(turn), 0.0)))
+        };
+        for i in 0..self.taus.len().saturating_sub(1) {
+            for cell in i * count..(i + 1) * count - 1 {
+                let corners = self.corners(cell, at);
+                let [least, most] = span(corners.map(|corner| corner.y));
+                if least <= 0.0 && most >= 0.0 {
+                    let corners = turns_of(&corners, 0.0);
+                    starts.extend(corners.map(|corners| self.start(cell, corners)));
+                }
+            }
+        }
+        for &cell in &forces.turns {
+            let corners = self.corners(cell, at);
+            for corners in turns_of(&corners, SLACK) {
+                self.add_turn(cell, corners, starts);
             }
         }
     }
 
-    /// Returns the misses at the corners of the cell, `[contact * 2 + part][across, along]`.
-    fn corners(&self, pair: &PairGrid, cell: usize, wanted: DVec2) -> [[f64; 2]; 4] {
+    /// Adds starts in a cell that may have two states, if both misses may vanish in it.
+    fn add_turn(&self, cell: usize, corners: [DVec2; 4], starts: &mut Vec<DVec2>) {
+        let may_vanish = |i: usize| {
+            let [least, most] = span(corners.map(|corner| corner[i]));
+            let slack = SLACK * (most - least);
+            least - slack <= 0.0 && most + slack >= 0.0
+        };
+        if may_vanish(0) && may_vanish(1) {
+            let places = [[0.2, 0.2], [0.2, 0.8], [0.8, 0.2], [0.8, 0.8]];
+            starts.extend(places.map(|place| self.point(cell, DVec2::from(place))));
+        }
+    }
+
+    /// Returns the misses `at` the corners of the cell, `[contact * 2 + part]`.
+    fn corners(&self, cell: usize, at: impl Fn(usize) -> DVec2) -> [DVec2; 4] {
         let next = cell + self.parts.len();
-        [cell, cell + 1, next, next + 1].map(|node| {
-            let lever = DVec2::new(pair.levers[0][node], pair.levers[1][node]);
-            misses(lever, pair.sizes[node], wanted)
-        })
+        [cell, cell + 1, next, next + 1].map(at)
     }
 
     /// Returns the point of a cell at which both misses vanish if they are linear, or the nearest point in the cell.
-    fn start(&self, pair: &PairGrid, cell: usize, wanted: DVec2) -> DVec2 {
-        let corners = self.corners(pair, cell, wanted).map(DVec2::from);
-        let [a, b, c, d] = corners;
+    fn start(&self, cell: usize, [a, b, c, d]: [DVec2; 4]) -> DVec2 {
         let middle = 0.25 * (a + b + c + d);
         let [by_contact, by_part] = [0.5 * (c + d - a - b), 0.5 * (b + d - a - c)];
         let det = by_contact.perp_dot(by_part);
@@ -274,54 +339,3 @@ const ON_TIP: f64 = 1e-9;
 
 /// Determinant of a stable state at the fold, relative to its scale, that is rounding ([`Sheet::is_stable`](crate::sheet::Sheet::is_stable)).
 const FLAT: f64 = 1e-7;
-
-/// Returns `lever x wanted` and `size - lever . wanted`, where `size` is the force times the square of the lever. Both are 0 in a state with
-/// the numbers `wanted`.
-#[inline(always)]
-fn misses(lever: DVec2, size: f64, wanted: DVec2) -> [f64; 2] {
-    [lever.perp_dot(wanted), size - lever.dot(wanted)]
-}
-
-impl PairGrid {
-    fn new(rod: &Rod, nodes: &[FirstVariation], parts: usize, pair: [usize; 2]) -> Self {
-        let both = |of: DVec3| DVec2::from(pair.map(|i| of[i]));
-        let levers: Vec<DVec2> = nodes.iter().map(|node| both(lever(&node.full))).collect();
-        let sizes = nodes.iter().zip(&levers);
-        let sizes = sizes.map(|(node, lever)| node.full.force * lever.length_squared());
-        // The gradients by contact and load, over the force and without it.
-        let sines = nodes.iter().zip(&levers).map(|(node, lever)| {
-            let full = &node.full;
-            let by_tau = both(lever_by(full, &node.by_tau)) - 2.0 * rod.taper * *lever;
-            let by_load =
-                node.by_load.force * *lever + full.force * both(lever_by(full, &node.by_load));
-            let sine = by_tau.perp_dot(by_load) / (by_tau.length() * by_load.length());
-            if sine.abs() > SINE_ROUNDING {
-                sine
-            } else {
-                0.0
-            }
-        });
-        let sines: Vec<f64> = sines.collect();
-        let turns_in = |cell: usize| {
-            let corners = [cell, cell + 1, cell + parts, cell + parts + 1].map(|node| sines[node]);
-            corners.iter().any(|sine| *sine > 0.0) && corners.iter().any(|sine| *sine < 0.0)
-        };
-        let cells = nodes.len() / parts.max(1);
-        let cell = |i: usize, k: usize| i * parts + k;
-        let near = |i: usize, k: usize| {
-            let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
-            around(i, cells - 1).any(|i| around(k, parts - 1).any(|k| turns_in(cell(i, k))))
-        };
-        let all = (0..cells.saturating_sub(1)).flat_map(|i| (0..parts - 1).map(move |k| (i, k)));
-        let turns = all.filter(|(i, k)| near(*i, *k)).map(|(i, k)| cell(i, k));
-        Self {
-            turns: turns.collect(),
-            is_determined: sines.iter().any(|sine| sine.abs() > DEPENDENT),
-            sizes: sizes.collect(),
-            levers: [
-                levers.iter().map(|lever| lever.x).collect(),
-                levers.iter().map(|lever| lever.y).collect(),
-            ],
-        }
-    }
-}

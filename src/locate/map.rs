@@ -1,6 +1,6 @@
 //! Map of the readings that determine a contact: stable states over distance and push, with the number of states that share their numbers.
 
-use super::grid::PAIRS;
+use super::levers::PAIRS;
 use super::newton::{Triangle, base_derivatives};
 use super::{BaseReading, Locator};
 use crate::scene::{Grid, Pole, Whisker};

@@ -5,25 +5,27 @@
 //! standard deviations that follow from the sensor's standard deviations. With all three numbers, the state nearest to them is returned.
 
 mod grid;
+mod levers;
 mod map;
 mod newton;
 mod readings;
+mod search;
 
 pub use map::{SharedMap, SharedState};
 pub use readings::{BaseReadings, MOST_ANGLE, MOST_LOAD};
 
-use crate::newton::{BatchNewton, NewtonOutcome};
 use crate::scene::{Pole, Whisker};
 use crate::trace::{StateRow, row};
-use glam::{DVec2, DVec3};
-use grid::{PAIRS, SheetGrid};
-use newton::{BaseProblem, Triangle, base_derivatives, base_numbers, by_logarithms};
+use glam::DVec2;
+use grid::SheetGrid;
+use newton::{Triangle, base_derivatives, by_logarithms};
 use rayon::prelude::*;
+use search::{FoundState, Wanted};
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{RodDerivative, Side, Units};
+use whiskmap_mechanics::shooting::Resolution;
 use whiskmap_mechanics::shooting::batch::Method;
-use whiskmap_mechanics::shooting::{FirstVariation, FullState, Resolution};
 
 /// Numbers of a sensor at the base. A state needs two of moment and forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -118,49 +120,11 @@ const POINTS_AT_REST: u32 = 200;
 /// Number of readings that are solved together.
 const READINGS_AT_ONCE: usize = 64;
 
-/// Maximum number of trajectories to a state. On a singular line each step halves the error.
-const MOST_TRAJECTORIES: u32 = 40;
-
-/// Difference of the logarithms of contact and load below which two solutions are one state.
-const SAME_STATE: f64 = 1e-6;
-
-/// Largest misfit of a state to two numbers, over the reading's size.
-const MOST_MISFIT_OF_TWO: f64 = 1e-9;
-
-/// Largest misfit of a state to three numbers without standard deviations, over the reading's size: the misfit of numbers with three digits.
-const MOST_MISFIT_OF_THREE: f64 = 1e-3;
-
-/// Largest misfit of a state to three numbers, in standard deviations: beyond it lies one of two million normal errors.
-const MOST_DEVIATIONS: f64 = 5.0;
-
 /// Locator: finds the stable states of one whisker and pole by the numbers at the base.
 pub struct Locator {
     sides: [SheetGrid; 2],
     units: Units,
     method: Method,
-}
-
-/// Reading in the units of the rod.
-struct Wanted<'a> {
-    reading: &'a BaseReading,
-    /// Moment and forces `[M, Fx, Fy]`; 0 if not measured.
-    numbers: DVec3,
-    /// 1 for each measured number, otherwise 0.
-    measured: DVec3,
-    /// Measured numbers over their standard deviations or, without these, [`Wanted::measured`].
-    weights: DVec3,
-    /// Reason why no state is searched; `None` if one is.
-    reason: Option<NoLocation>,
-}
-
-/// State that a search has found.
-struct FoundState<'a> {
-    grid: &'a SheetGrid,
-    at: DVec2,
-    full: FullState,
-    last: FirstVariation,
-    phi: f64,
-    misfit: f64,
 }
 
 /// Returns one line for readings without a state; `None` without such readings.
@@ -237,89 +201,6 @@ impl Locator {
             rows.collect::<Vec<_>>()
         });
         located.collect()
-    }
-
-    fn wanted<'a>(
-        &self,
-        reading: &'a BaseReading,
-        deviations: Option<SensorDeviations>,
-    ) -> Wanted<'a> {
-        let units = &self.units;
-        let given = [reading.moment_nnm, reading.force_x_un, reading.force_y_un];
-        let measured = DVec3::from(given.map(|number| f64::from(u8::from(number.is_some()))));
-        let in_rod = DVec3::new(units.moment_nnm, units.force_un, units.force_un);
-        let sds = deviations.map(|deviations| {
-            DVec3::new(
-                deviations.moment_nnm,
-                deviations.force_un,
-                deviations.force_un,
-            )
-        });
-        let mut wanted = Wanted {
-            reading,
-            numbers: DVec3::from(given.map(Option::unwrap_or_default)) / in_rod,
-            measured,
-            weights: sds.map_or(measured, |sds| measured * in_rod / sds),
-            reason: None,
-        };
-        let is_determined = |pair| self.sides.iter().any(|grid| grid.is_determined(pair));
-        wanted.reason = match () {
-            () if wanted.pairs().next().is_none() => Some(NoLocation::Incomplete),
-            () if wanted.numbers == DVec3::ZERO => Some(NoLocation::NoLoad),
-            () if !wanted.pairs().any(is_determined) => Some(NoLocation::Undetermined),
-            () => None,
-        };
-        wanted
-    }
-
-    /// Finds the states for each of the `wanted` readings, `[reading][state]`.
-    fn solve(&self, wanted: &[Wanted], has_deviations: bool) -> Vec<Vec<FoundState<'_>>> {
-        let mut problems = Vec::new();
-        let mut starts = Vec::new();
-        let mut origins = Vec::new();
-        let mut signs = Vec::new();
-        for (i, wanted) in wanted.iter().enumerate() {
-            let sides = self.sides.iter().filter(|_| wanted.reason.is_none());
-            for grid in sides {
-                for pair in wanted.pairs().filter(|pair| grid.is_determined(*pair)) {
-                    grid.add_starts(pair, wanted.numbers, &mut signs, &mut starts);
-                }
-                origins.resize(starts.len(), (i, grid));
-                problems.resize_with(starts.len(), || BaseProblem {
-                    rod: &grid.rod,
-                    wanted: wanted.numbers,
-                    weights: wanted.weights,
-                    last: FirstVariation::default(),
-                });
-            }
-        }
-        let newton = BatchNewton::new(self.method, MOST_TRAJECTORIES);
-        let iterates = newton.solve(&mut problems, starts);
-        let mut found: Vec<Vec<FoundState>> = wanted.iter().map(|_| Vec::new()).collect();
-        for (((i, grid), problem), iterate) in origins.into_iter().zip(problems).zip(iterates) {
-            let (at, full) = (iterate.point, iterate.state);
-            if iterate.outcome != NewtonOutcome::Converged {
-                continue;
-            }
-            let is_same = |other: &FoundState| {
-                let change = (at - other.at).abs() / other.at.abs();
-                std::ptr::eq(grid, other.grid) && change.max_element() < SAME_STATE
-            };
-            let misfit = wanted[i].misfit(&full, has_deviations);
-            let Some(misfit) = misfit.filter(|_| !found[i].iter().any(is_same)) else {
-                continue;
-            };
-            let direction = grid.direction(at, &full.map);
-            found[i].extend(direction.map(|phi| FoundState {
-                grid,
-                at,
-                full,
-                last: problem.last,
-                phi,
-                misfit,
-            }));
-        }
-        found
     }
 
     /// Returns the rows of the reading with this `number`.
@@ -402,27 +283,6 @@ impl Locator {
             reason: None,
             ..row.with_state(Some(&reading))
         }
-    }
-}
-
-impl Wanted<'_> {
-    /// Returns the indices of the measured pairs of numbers.
-    fn pairs(&self) -> impl Iterator<Item = usize> {
-        let measured = self.measured;
-        (0..PAIRS.len()).filter(move |&pair| PAIRS[pair].iter().all(|&i| measured[i] > 0.0))
-    }
-
-    /// Returns the misfit of a state; `None` if it is too large.
-    fn misfit(&self, full: &FullState, has_deviations: bool) -> Option<f64> {
-        let difference = base_numbers(full) - self.numbers;
-        let relative = (self.measured * difference).length() / self.numbers.length();
-        let is_overdetermined = self.measured == DVec3::ONE;
-        let (misfit, most) = match (has_deviations, is_overdetermined) {
-            (true, true) => ((self.weights * difference).length(), MOST_DEVIATIONS),
-            (false, true) => (relative, MOST_MISFIT_OF_THREE),
-            (_, false) => (relative, MOST_MISFIT_OF_TWO),
-        };
-        (misfit <= most).then_some(misfit)
     }
 }
 

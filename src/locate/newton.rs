@@ -136,6 +136,8 @@ pub struct BaseProblem<'a> {
     pub rod: &'a Rod,
     pub wanted: DVec3,
     pub weights: DVec3,
+    /// Direction of the base's tangent in the frame of the wanted forces, a unit vector.
+    pub tangent: DVec2,
     /// The last trajectory.
     pub last: FirstVariation,
 }
@@ -149,8 +151,13 @@ impl<'a> NewtonProblem<'a> for BaseProblem<'a> {
 
     fn step(&mut self, at: DVec2, here: &FirstVariation) -> NewtonStep {
         self.last = *here;
-        let columns = base_derivatives(self.rod, at, here).map(|column| self.weights * column);
-        let residual = self.weights * (self.wanted - base_numbers(&here.full));
+        let turned = |numbers: DVec3| {
+            let force = self.tangent.rotate(DVec2::new(numbers.y, numbers.z));
+            DVec3::new(numbers.x, force.x, force.y)
+        };
+        let columns = base_derivatives(self.rod, at, here);
+        let columns = columns.map(|column| self.weights * turned(column));
+        let residual = self.weights * (self.wanted - turned(base_numbers(&here.full)));
         let triangle = Triangle::new(columns);
         let step = step_in_valley(triangle.solve(residual), triangle.condition());
         let length = step.abs().max_element();

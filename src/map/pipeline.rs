@@ -16,6 +16,7 @@ use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::Scene;
 use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
+use std::iter;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 use whiskmap_mechanics::shooting::batch::Method;
@@ -45,6 +46,8 @@ pub struct Pipeline<'a, 'e> {
     groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
     /// The next group, whose nets a device is working on.
     drafted: Option<Drafted>,
+    /// Whisker of each panel that is still to be finished. Bands of a panel have the same whisker.
+    whiskers: Box<dyn Iterator<Item = usize> + 'a>,
     /// The group of the last batch, and the number of its rows in batches: band by band, and in a band side by side.
     begun: Option<(Group, usize)>,
     /// The batches made and not completed.
@@ -116,6 +119,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             columns,
             pushes,
             groups: Box::new(plan.groups()),
+            whiskers: Box::new(iter::repeat_with(|| plan.groups()).flatten().flatten()),
             drafted: None,
             begun: None,
             queue: VecDeque::new(),
@@ -144,11 +148,13 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             return None;
         }
         let mut times = self.summary.stages;
-        let yield_strain = self.scene.whisker.yield_strain;
+        let (scene, summary) = (self.scene, &mut self.summary);
+        let whiskers = self.whiskers.by_ref();
         let count = || {
-            panels
-                .iter()
-                .for_each(|panel| self.summary.count(panel, yield_strain))
+            for (panel, whisker) in panels.iter().zip(whiskers) {
+                let found = scene.whisker(whisker).ok();
+                summary.count(panel, found.and_then(|swept| swept.whisker.yield_strain));
+            }
         };
         times.time(Stage::Classification, count);
         self.summary.stages = times;

@@ -120,7 +120,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Adds the cells of a finished panel of whiskers with this yield strain to the counts.
+    /// Adds the cells of a finished panel of a whisker with this yield strain to the counts.
     pub(super) fn count(&mut self, panel: &Panel, yield_strain: Option<f64>) {
         if let Some(most) = yield_strain {
             let strains = panel.peak_strain.par_iter();

@@ -139,13 +139,13 @@ impl Channels {
         Self(chosen)
     };
 
-    /// Returns the channels of a map of `scene` unless others are selected: [`Self::STANDARD`], and the largest bending strain if the scene has
+    /// Returns the channels of a map of `scene` unless others are selected: [`Self::STANDARD`], and the largest bending strain if any whisker has
     /// a yield strain.
     #[must_use]
     pub fn of_scene(scene: &SceneData) -> Self {
-        match scene.whisker.yield_strain {
-            Some(_) => Self::STANDARD.with(PEAK_STRAIN),
-            None => Self::STANDARD,
+        match scene.has_yield_strain() {
+            true => Self::STANDARD.with(PEAK_STRAIN),
+            false => Self::STANDARD,
         }
     }
 

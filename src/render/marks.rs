@@ -34,8 +34,8 @@ pub enum CellMark {
 pub struct MapMarks {
     /// True if states whose contact does not slide toward the tip are marked.
     has_marks: bool,
-    /// Yield strain beyond which states are marked; `None` without marks.
-    yield_strain: Option<f64>,
+    /// Yield strain of each panel beyond which its states are marked: `[panel]`, empty if there are none.
+    yield_strains: Vec<Option<f64>>,
 }
 
 impl MapMarks {
@@ -43,17 +43,18 @@ impl MapMarks {
     pub fn new(map: &MapSlice, channel: &str) -> Result<Self, RenderError> {
         let mut marks = Self {
             has_marks: has_marks(map, channel)?,
-            yield_strain: None,
+            yield_strains: Vec::new(),
         };
         if !map.channels().contains(&Channel::PeakStrain.name()) {
             return Ok(marks);
         }
-        if let Some(most) = map.yield_strain()? {
-            for index in 0..map.layout().panels() {
-                if beyond(map, most, index)?.contains(&true) {
-                    marks.yield_strain = Some(most);
-                    break;
-                }
+        let yield_strains = map.yield_strains()?;
+        for (index, most) in yield_strains.iter().enumerate() {
+            if let Some(most) = *most
+                && beyond(map, most, index)?.contains(&true)
+            {
+                marks.yield_strains = yield_strains;
+                break;
             }
         }
         Ok(marks)
@@ -61,11 +62,11 @@ impl MapMarks {
 
     /// Returns the name of the marks in a legend; `None` without marks.
     pub fn name(&self) -> Option<String> {
-        match (self.has_marks, self.yield_strain) {
-            (true, Some(_)) => Some(format!("{MARKED}, or {YIELDING}")),
-            (true, None) => Some(MARKED.to_owned()),
-            (false, Some(_)) => Some(YIELDING.to_owned()),
-            (false, None) => None,
+        match (self.has_marks, self.yield_strains.is_empty()) {
+            (true, false) => Some(format!("{MARKED}, or {YIELDING}")),
+            (true, true) => Some(MARKED.to_owned()),
+            (false, false) => Some(YIELDING.to_owned()),
+            (false, true) => None,
         }
     }
 
@@ -76,7 +77,7 @@ impl MapMarks {
         index: usize,
     ) -> Result<Vec<Option<CellMark>>, RenderError> {
         let mut marks = Vec::new();
-        if let Some(most) = self.yield_strain {
+        if let Some(most) = self.yield_strains.get(index).copied().flatten() {
             let beyond = beyond(map, most, index)?.into_iter();
             marks.extend(beyond.map(|yields| yields.then_some(CellMark::Yields)));
         }

@@ -290,9 +290,11 @@ impl SceneBuilder {
     }
 
     /// Sets the largest bending strain at the surface that the whiskers bear elastically: more than 0 and at most 1. States beyond it are
-    /// marked, and not changed. `None` marks none.
+    /// marked, and not changed. `None` marks none. With a column of yield strains in the table of whiskers, it is refused when the scene is built.
     #[must_use]
     pub fn yield_strain(mut self, strain: impl Into<Option<f64>>) -> Self {
+        let refused = self.refuse_yield_strain().err();
+        self.refused = self.refused.or(refused);
         self.yield_strain = strain.into();
         self
     }

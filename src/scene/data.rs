@@ -188,6 +188,14 @@ impl SceneData {
             .any(|swept| swept.pole.friction != 0.0)
     }
 
+    /// Returns true if the scene, or any row of its table of whiskers, has a yield strain.
+    #[must_use]
+    pub fn has_yield_strain(&self) -> bool {
+        let rows = self.table.iter().filter_map(|row| row.found.as_ref().ok());
+        let mut whiskers = rows.map(|(whisker, _)| whisker).chain([&self.whisker]);
+        whiskers.any(|whisker| whisker.yield_strain.is_some())
+    }
+
     /// Returns true if all whiskers of the sweep are straight at rest.
     #[must_use]
     pub fn is_straight(&self) -> bool {

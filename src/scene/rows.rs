@@ -42,6 +42,9 @@ impl SceneBuilder {
         if let Some(rest) = &row.rest {
             one = one.with_traced(rest.shape.clone()?);
         }
+        if let Some(strain) = row.yield_strain {
+            one.yield_strain = Some(strain).filter(|strain| !strain.is_nan());
+        }
         one.with_tip_of_taper()
     }
 

@@ -102,6 +102,12 @@ impl Scene {
         self.builder.traced.as_deref()
     }
 
+    /// Returns the yield strain that the scene gives all whiskers; `None` without one. Rows of a table may have their own.
+    #[must_use]
+    pub fn given_yield_strain(&self) -> Option<f64> {
+        self.builder.yield_strain
+    }
+
     /// Returns the rows of the table of whiskers as they are given, `[row]`; empty without one.
     #[must_use]
     pub fn table_rows(&self) -> &[WhiskerRow] {

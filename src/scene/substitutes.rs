@@ -8,7 +8,7 @@ use super::parameter::Parameter;
 use super::profile::IS_MEASURED;
 use super::shape::IS_TRACED;
 use super::table::WhiskerRow;
-use super::toml::TAPER_KEY;
+use super::toml::{TAPER_KEY, YIELD_KEY, YIELD_STRAIN};
 
 /// Reason why a radius at the tip is refused beside an axis of tapers.
 pub(super) const HAS_TAPERS: &str =
@@ -110,6 +110,15 @@ impl SceneBuilder {
         };
         self.column_of(parameter)
             .map_or(Ok(()), |column| Err(fault(column)))
+    }
+
+    /// Refuses a yield strain of the scene that a column of the table leaves without effect.
+    pub(super) fn refuse_yield_strain(&self) -> Result<(), SceneFault> {
+        let mut rows = self.table.iter().flat_map(|rows| rows.iter());
+        match rows.any(|row| row.yield_strain.is_some()) {
+            true => Err(SceneFault::new(YIELD_KEY, must(YIELD_STRAIN))),
+            false => Ok(()),
+        }
     }
 
     /// Refuses sweep axes of parameters that a column of the table gives, or of which it takes the place.

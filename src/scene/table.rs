@@ -30,6 +30,8 @@ pub struct WhiskerRow {
     /// Measured rows, `[row][arclength_mm, radius_um]`.
     pub(super) profile: Option<Vec<[f64; 2]>>,
     pub(super) rest: Option<RestShape>,
+    /// Yield strain of the whisker; NaN if it is not known, `None` without a column.
+    pub(super) yield_strain: Option<f64>,
 }
 
 /// Traced points in millimetres, `[point][x, y]`, with the shape through them, or the reason why there is none.
@@ -53,6 +55,13 @@ impl WhiskerRow {
     #[must_use]
     pub fn set(mut self, parameter: Parameter, value: f64) -> Self {
         self.numbers.push((parameter, value));
+        self
+    }
+
+    /// Sets the largest bending strain that the whisker bears elastically, dimensionless. Without it, NaN, the whisker has no marks.
+    #[must_use]
+    pub fn yield_strain(mut self, strain: f64) -> Self {
+        self.yield_strain = Some(strain);
         self
     }
 
@@ -85,6 +94,12 @@ impl WhiskerRow {
     #[must_use]
     pub fn numbers(&self) -> &[(Parameter, f64)] {
         &self.numbers
+    }
+
+    /// Returns the yield strain of the whisker; NaN if it is not known, `None` if the row does not give it.
+    #[must_use]
+    pub const fn given_yield_strain(&self) -> Option<f64> {
+        self.yield_strain
     }
 
     /// Returns the measured radii of the whisker, `[row][arclength_mm, radius_um]`; `None` without them.

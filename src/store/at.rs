@@ -167,10 +167,26 @@ fn named(values: &[f64], names: &[String], wanted: &str) -> Result<usize, String
     let row = names.iter().position(|name| name == wanted);
     let index = row.and_then(|row| values.iter().position(|value| *value == (row + 1) as f64));
     index.ok_or_else(|| {
-        let hint = did_you_mean(wanted, names.iter().map(String::as_str));
-        format!("there is no whisker {}{hint}", shortened(wanted))
+        let rows = values
+            .iter()
+            .filter_map(|value| names.get(*value as usize - 1));
+        let known: Vec<&str> = rows.map(String::as_str).collect();
+        let hint = did_you_mean(wanted, known.iter().copied());
+        let shown = known.iter().take(MOST_SHOWN).map(|name| shortened(name));
+        let shown = shown.collect::<Vec<_>>().join(", ");
+        let rest = match known.len().saturating_sub(MOST_SHOWN) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        format!(
+            "there is no whisker {}; must be one of {shown}{rest}{hint}",
+            shortened(wanted)
+        )
     })
 }
+
+/// Number of names of whiskers that a message lists.
+const MOST_SHOWN: usize = 12;
 
 /// Returns the index of the value of the axis `name` that is nearest to `wanted`, and equal to it if `exact`.
 fn numbered(name: &str, values: &[f64], wanted: f64, exact: bool) -> Result<usize, String> {

@@ -2,7 +2,7 @@
 
 use super::MORE_POINTS;
 use super::bent::{FittedLoad, FrameFit, FramePoints, TrackedRod, fit};
-use crate::least_squares::{BoundedProblem, norm, search};
+use crate::least_squares::{BoundedProblem, Svd, dot, norm, search};
 use crate::scene::{digits, rounded};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -185,7 +185,19 @@ impl CommonRest {
     ) -> Option<Self> {
         let mut start = start.to_vec();
         start.resize(degree + 1, 0.0);
-        let problem = CommonProblem {
+        let problem = Self::problem(frames, cancel);
+        let found = search(&problem, &start, TOLERANCE, "a frame has no fit");
+        let (coefficients, sum) = found.ok()?;
+        Some(Self {
+            coefficients,
+            mean_square: sum / problem.count() as f64,
+            count: problem.count(),
+        })
+    }
+
+    /// Returns the search for the coefficients.
+    fn problem(frames: &[&RodFrame], cancel: &AtomicBool) -> impl BoundedProblem {
+        CommonProblem {
             residuals: |x: &[f64]| {
                 let whisker = TrackedRod::new(0.0, polynomial(x), 1.0);
                 residuals(frames, |frame| frame.at_rest(&whisker, cancel))
@@ -195,13 +207,18 @@ impl CommonRest {
                 .map(|frame| frame.traced.points.len() + 1)
                 .sum(),
             range: [f64::NEG_INFINITY, f64::INFINITY],
-        };
-        let found = search(&problem, &start, TOLERANCE, "a frame has no fit");
-        let (coefficients, sum) = found.ok()?;
-        Some(Self {
-            coefficients,
-            mean_square: sum / problem.count as f64,
-            count: problem.count,
+        }
+    }
+
+    /// Returns the scatter of the coefficients, which were fitted to these frames.
+    pub fn scatter(&self, frames: &[&RodFrame], cancel: &AtomicBool) -> Option<RestScatter> {
+        let problem = Self::problem(frames, cancel);
+        // Each frame has the unknowns of its pose.
+        let unknown = 3 * frames.len() + self.coefficients.len();
+        let left = self.count.saturating_sub(unknown).max(1);
+        Some(RestScatter {
+            slopes: Svd::new(problem.jacobian(&self.coefficients, &[])?),
+            rms: (self.mean_square * self.count as f64 / left as f64).sqrt(),
         })
     }
 
@@ -241,38 +258,69 @@ impl CommonRest {
     }
 }
 
+/// Scatter of the coefficients of a common shape at rest.
+pub(super) struct RestScatter {
+    /// Derivatives of the residuals by the coefficients.
+    slopes: Svd,
+    /// Standard deviation of a residual, in lengths.
+    rms: f64,
+}
+
+impl RestScatter {
+    /// Returns the standard deviation of a quantity with this `gradient` by the coefficients.
+    fn deviation(&self, gradient: &[f64]) -> f64 {
+        let values = self.slopes.values();
+        let parts = values.map(|(value, direction, _)| dot(direction, gradient) / value);
+        self.rms * norm(&parts.collect::<Vec<_>>())
+    }
+}
+
 /// Taper that frames in contact have in common.
 pub(super) struct CommonTaper {
     pub taper: f64,
-    /// Standard deviation of the taper, from the scatter of the points.
+    /// Standard deviation of the taper, from the scatter of the points in contact and without.
     pub deviation: f64,
 }
 
 impl CommonTaper {
     pub fn new(
         frames: &[&RodFrame],
-        whisker: impl Fn(f64) -> TrackedRod + Sync,
+        coefficients: &[f64],
+        scatter: &RestScatter,
+        length_mm: f64,
         cancel: &AtomicBool,
     ) -> Option<Self> {
+        let of_rod = |taper: f64, coefficients: &[f64]| {
+            let whisker = TrackedRod::new(taper, polynomial(coefficients), length_mm);
+            residuals(frames, |frame| frame.bent(&whisker, cancel))
+        };
+        let count = frames
+            .iter()
+            .map(|frame| frame.traced.points.len() + 2)
+            .sum();
         let problem = CommonProblem {
-            residuals: |x: &[f64]| {
-                let whisker = whisker(x[0]);
-                residuals(frames, |frame| frame.bent(&whisker, cancel))
-            },
-            count: frames
-                .iter()
-                .map(|frame| frame.traced.points.len() + 2)
-                .sum(),
+            residuals: |x: &[f64]| of_rod(x[0], coefficients),
+            count,
             range: [0.0, 1.0],
         };
         let found = search(&problem, &[TYPICAL_TAPER], TOLERANCE, "a frame has no fit");
         let (x, sum) = found.ok()?;
-        let slopes = problem.jacobian(&x, &[])?;
+        let slopes = problem.jacobian(&x, &[])?.swap_remove(0);
+        let at_rest = CommonProblem {
+            residuals: |coefficients: &[f64]| of_rod(x[0], coefficients),
+            count,
+            range: [f64::NEG_INFINITY, f64::INFINITY],
+        };
+        // The taper at which the sum of squares is least follows the coefficients (implicit function theorem).
+        let by_coefficients = at_rest.jacobian(coefficients, &[])?;
+        let gradient = by_coefficients.iter();
+        let gradient = gradient.map(|by| -dot(&slopes, by) / dot(&slopes, &slopes));
+        let of_rest = scatter.deviation(&gradient.collect::<Vec<_>>());
         // Each frame has five unknowns.
-        let left = problem.count.saturating_sub(5 * frames.len() + 1).max(1);
+        let left = count.saturating_sub(5 * frames.len() + 1).max(1);
         Some(Self {
             taper: x[0],
-            deviation: (sum / left as f64).sqrt() / norm(&slopes[0]),
+            deviation: libm::hypot((sum / left as f64).sqrt() / norm(&slopes), of_rest),
         })
     }
 

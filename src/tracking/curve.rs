@@ -33,6 +33,8 @@ pub(super) struct Curves<'a> {
     /// Curve of each frame, `[frame]`.
     curves: Vec<Result<FrameCurve, NoFrame>>,
     is_mirrored: bool,
+    /// What a frame with a curve has, for messages.
+    pub needs: String,
 }
 
 impl<'a> Curves<'a> {
@@ -44,7 +46,9 @@ impl<'a> Curves<'a> {
         notes: &mut Vec<String>,
     ) -> Result<Self, TrackingError> {
         let scale = options.mm_per_pixel;
-        let curves = if frames.iter().any(|frame| frame.bend.is_some()) {
+        let points =
+            |count: usize| format!("{count} points along a smooth curve, the base among them");
+        let (curves, needs) = if frames.iter().any(|frame| frame.bend.is_some()) {
             let axis = options.face_axis.unwrap_or_else(|| face_axis(frames));
             let name = match axis {
                 FaceAxis::X => "x",
@@ -58,16 +62,26 @@ impl<'a> Curves<'a> {
             notes.push(format!(
                 "angles are measured from the {name} axis of the image{found}"
             ));
-            frames.iter().map(|frame| arc(frame, axis, scale)).collect()
+            let arcs = frames.iter().map(|frame| arc(frame, axis, scale));
+            (
+                arcs.collect(),
+                "angle, curvature, follicle and tip".to_owned(),
+            )
         } else {
             if let Some(axis) = options.face_axis {
                 let axis = if axis == FaceAxis::X { "x" } else { "y" };
                 let must = "must be left out: only measurements of whisk have angles".to_owned();
                 return Err(super::refused("face_axis", axis, must));
             }
-            rods::curves(frames, options, cancel, notes)
-                .unwrap_or_else(|| traced_frames(frames, options, cancel, notes))
+            match rods::curves(frames, options, cancel, notes) {
+                Some(rods) => (rods, points(MORE_POINTS + 1)),
+                None => (
+                    traced_frames(frames, options, cancel, notes),
+                    points(MORE_POINTS),
+                ),
+            }
         };
+        let curves: Vec<Result<FrameCurve, NoFrame>> = curves;
         let turn = median(curves.iter().flatten().map(FrameCurve::turn));
         let is_mirrored = options.mirror.unwrap_or(turn < -STRAIGHT);
         if is_mirrored && options.mirror.is_none() {
@@ -81,6 +95,7 @@ impl<'a> Curves<'a> {
             mm_per_pixel: scale,
             curves,
             is_mirrored,
+            needs,
         })
     }
 

@@ -178,12 +178,10 @@ impl Tracking {
         };
         orient::order(&mut image, options)?;
         let curves = curve::Curves::new(&image.frames, options, cancel, &mut image.notes)?;
+        let needs = curves.needs.clone();
         let curves = curves.of_frames(from..=last);
         if curves.iter().all(|frame| frame.curve.is_err()) {
-            let what = format!(
-                "has no frame with a curve: must have at least one with the base and {} points along a smooth curve",
-                MORE_POINTS
-            );
+            let what = format!("has no frame with a curve: must have at least one with {needs}");
             return Err(CsvError::whole(origin, what).into());
         }
         let mut notes = image.notes;

@@ -4,7 +4,7 @@
 //! bends most where it is thin. With both known, few points determine a frame.
 
 use super::bent::{FittedLoad, FrameFit, TrackedRod};
-use super::common::{CommonRest, CommonTaper, RodFrame, TYPICAL_TAPER, polynomial};
+use super::common::{CommonRest, CommonTaper, RestScatter, RodFrame, TYPICAL_TAPER, polynomial};
 use super::frame_curve::FrameCurve;
 use super::options::TrackingOptions;
 use super::sample::{evenly, median};
@@ -15,7 +15,6 @@ use crate::traced::{LARGEST_RMS, MOST_DEGREE};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use whiskmap_mechanics::rod::CurvaturePolynomial;
 
 /// Largest number of frames, from all over the film, that give the shape at rest or the taper.
 const SAMPLE: usize = 40;
@@ -73,14 +72,21 @@ struct Film<'a> {
 
 /// Shape at rest of the whisker of a film.
 struct FilmRest {
-    curvature: CurvaturePolynomial,
+    /// Coefficients of the curvature, `[degree]`.
+    coefficients: Vec<f64>,
+    scatter: RestScatter,
     length_mm: f64,
-    /// Degree of the curvature.
-    degree: usize,
     /// Number of frames that give the shape.
     count: usize,
     /// Root mean square of the distances of their points, in mm.
     rms_mm: f64,
+}
+
+impl FilmRest {
+    /// Returns the whisker with this taper.
+    fn whisker(&self, taper: f64) -> TrackedRod {
+        TrackedRod::new(taper, polynomial(&self.coefficients), self.length_mm)
+    }
 }
 
 impl Film<'_> {
@@ -124,24 +130,26 @@ impl Film<'_> {
         let most = points.saturating_sub(MORE_POINTS).min(MOST_DEGREE);
         let rest = CommonRest::best(&good, degree, most, cancel)?;
         Some(FilmRest {
-            curvature: polynomial(&rest.coefficients),
+            scatter: rest.scatter(&good, cancel)?,
             length_mm,
-            degree: rest.coefficients.len() - 1,
             count: good.len(),
             rms_mm: length_mm * rest.rms(good.len()),
+            coefficients: rest.coefficients,
         })
     }
 
     /// Returns the taper that frames in contact give, with a note.
-    fn taper(
-        &self,
-        frames: &[Option<RodFrame>],
-        whisker: impl Fn(f64) -> TrackedRod + Sync,
-    ) -> (f64, String) {
-        let typical = whisker(TYPICAL_TAPER);
+    fn taper(&self, frames: &[Option<RodFrame>], rest: &FilmRest) -> (f64, String) {
+        let typical = rest.whisker(TYPICAL_TAPER);
         let within = self.within_mm / typical.length_mm;
         let bent = most_bent(frames, &typical, within, self.cancel);
-        let found = CommonTaper::new(&bent, whisker, self.cancel);
+        let FilmRest {
+            coefficients,
+            scatter,
+            length_mm,
+            ..
+        } = rest;
+        let found = CommonTaper::new(&bent, coefficients, scatter, *length_mm, self.cancel);
         match found.filter(|taper| taper.deviation <= UNKNOWN_TAPER) {
             Some(found) => (found.taper, found.note(bent.len())),
             None => {
@@ -210,16 +218,16 @@ pub(super) fn curves(
     };
     notes.push(format!(
         "curves are those of a rod: at rest, its curvature has the degree {}, from {} frames without contact",
-        rest.degree, rest.count
+        rest.coefficients.len() - 1,
+        rest.count
     ));
-    let whisker = |taper: f64| TrackedRod::new(taper, rest.curvature, rest.length_mm);
     let frames = film.frames(rest.length_mm);
     let taper = options.taper.unwrap_or_else(|| {
-        let (taper, note) = film.taper(&frames, whisker);
+        let (taper, note) = film.taper(&frames, &rest);
         notes.push(note);
         taper
     });
-    let whisker = Arc::new(whisker(taper));
+    let whisker = Arc::new(rest.whisker(taper));
     let fits = frames
         .par_iter()
         .map(|frame| film.fit(&whisker, frame.as_ref()));

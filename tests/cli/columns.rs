@@ -91,9 +91,12 @@ fn names_of_columns_that_do_not_fit_are_refused() {
         ),
         (
             "distance",
-            "must be an expected name and an own one, such as distance_mm=d",
+            "must be NAME=COLUMN, the name that the command expects and the column of the file, such as distance_mm=d",
         ),
-        ("=d", "must be an expected name and an own one"),
+        (
+            "=d",
+            "must be NAME=COLUMN, the name that the command expects",
+        ),
     ] {
         place
             .run(&[&curve[..], &[names]].concat())

@@ -227,7 +227,7 @@ fn bad_imports_are_refused() {
         (
             "film.csv",
             curved(&["--points", "base,tip"]),
-            "film.csv: has no frame with a curve: must have at least one with the base and 4 points along a smooth curve",
+            "film.csv: has no frame with a curve: must have at least one with 4 points along a smooth curve, the base among them",
         ),
         (
             "film.csv",

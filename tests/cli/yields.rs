@@ -136,11 +136,61 @@ fn a_row_without_a_whisker_has_no_mark() {
         ["true", "true", "", ""]
     );
     assert_eq!(column(&run.out, "whisker").unwrap(), ["a", "a", "b", "b"]);
-    // It is no column of the table: whiskers of one scene have one material.
-    let column = table.replace("length_mm = 20", "yield_strain = 0.01");
-    let place = Place::with(&format!("{}{column}", yielding(0.002)));
-    let run = place.run(&["curve", "scene.toml"]);
-    run.assert_refused(&["whiskers.table[0]: yield_strain: is not known; must be one of name,"]);
+}
+
+/// Each row of a table of whiskers has its own yield strain: in tables, counts and pictures. A row without a number has no marks, and one
+/// with a number that is not allowed has no whisker.
+#[test]
+fn rows_of_a_table_have_their_own_yield_strains() {
+    const LEGEND: &str = "beyond the yield strain";
+    let place = Place::with(&format!("{SCENE}[whiskers]\ntable = 'w.csv'\n"));
+    place.write(
+        "w.csv",
+        "name,yield_strain\nunknown,\nsoft,0.002\nstrong,0.9\nbad,2\n",
+    );
+    let curve = good(&place, &["curve", "scene.toml", "--distance=10"]);
+    let marks = ["", "", "true", "true", "false", "false", "", ""];
+    assert_eq!(column(&curve.out, "yields").unwrap(), marks);
+    let reason = "whisker.yield_strain = 2: must be more than 0 and at most 1";
+    assert!(curve.err.contains(&format!("bad ({reason})")), "{curve:?}");
+    let corner = good(&place, &["curve", "scene.toml", "--corner"]);
+    assert!(
+        corner
+            .out
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with("max_strain,yields")
+    );
+    let of = |words: &[&str]| {
+        good(
+            &place,
+            &[words, &["--distance=10", "--at=whisker=soft"]].concat(),
+        )
+    };
+    assert!(of(&["branch", "scene.toml"]).out.contains(",true\n"));
+    let map = place.map(&["scene.toml"]);
+    // The count is that of the one whisker with marks.
+    let alone = Place::with(&yielding(0.002));
+    assert_eq!(map.count(LEGEND), alone.map(&["scene.toml"]).count(LEGEND));
+    for file in ["scene.toml", "outputs/scene.exr"] {
+        for (whisker, has_marks) in [("unknown", false), ("soft", true), ("strong", false)] {
+            let at = format!("--at=whisker={whisker}");
+            good(&place, &["render", file, &at, "-o", "s.svg"]);
+            let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+            assert_eq!(picture.contains(LEGEND), has_marks, "{file} {whisker}");
+        }
+    }
+    // The text of the map has the rows of the file.
+    let again = MapSource::open(&place.path("outputs/scene.exr")).unwrap();
+    let scene = again.scene().unwrap().unwrap();
+    let strains = scene
+        .whiskers()
+        .map(|found| found.ok().and_then(|swept| swept.whisker.yield_strain));
+    assert_eq!(
+        strains.collect::<Vec<_>>(),
+        [None, Some(0.002), Some(0.9), None]
+    );
 }
 
 /// Maps and stores have the channel, and pictures hatch cells beyond the yield strain.

@@ -116,13 +116,24 @@ struct Truth {
 
 /// Film of a whisker at a pole 14 mm from the base: text of the points, centre of the pole in pixels, and truth. Pushes are 0.5 degrees apart.
 fn film(scene: &str, side: Side, count: usize, error_px: f64) -> (String, [f64; 2], Vec<Truth>) {
+    film_of(1, scene, side, count, error_px)
+}
+
+/// Film as of [`film`], with the errors of a seed.
+fn film_of(
+    seed: u64,
+    scene: &str,
+    side: Side,
+    count: usize,
+    error_px: f64,
+) -> (String, [f64; 2], Vec<Truth>) {
     let scene = Scene::parse(scene, "scene.toml").unwrap();
     let whisker = scene.first_whisker().whisker;
     let branch = Branch::new(&whisker, &scene.pole, side, 14.0).unwrap();
     let rest = WhiskerShape::at_rest(&branch, count);
     let state = |push: f64| branch.state(push.to_radians(), true).ok();
     let mut pixel_error = {
-        let mut bits = 1_u64;
+        let mut bits = seed;
         move || {
             bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             error_px * 12.0_f64.sqrt() * ((bits >> 11) as f64 / (1_u64 << 53) as f64 - 0.5)
@@ -211,6 +222,29 @@ fn few_points_with_errors_show_angles_forces_and_taper() {
             }
         }
     }
+}
+
+/// Tapers of films that differ in their errors scatter as their standard deviations say: two of three are within one.
+#[test]
+fn tapers_scatter_by_their_standard_deviations() {
+    const FILMS: u64 = 50;
+    let thick = CONE.replace("tip_radius_um = 1.5", "tip_radius_um = 6.0");
+    let off = (1..=FILMS).map(|seed| {
+        let (text, pole, _) = film_of(seed, &thick, Side::Cb, 8, 0.2);
+        let found = parse(&text, &at_pole(pole, &|_| ())).unwrap();
+        let mut notes = found.notes.iter();
+        let note = notes.find_map(|note| note.strip_prefix("the taper is "));
+        let numbers = note.unwrap().split([' ', ',']);
+        let numbers: Vec<f64> = numbers.filter_map(|number| number.parse().ok()).collect();
+        (numbers[0] - 0.8) / numbers[1]
+    });
+    let off: Vec<f64> = off.collect();
+    let within = off.iter().filter(|off| off.abs() < 1.0).count();
+    let rms = rms(&off);
+    assert!(
+        (27..=41).contains(&within) && (0.75..1.3).contains(&rms),
+        "{within} {rms}"
+    );
 }
 
 /// The scatter of the curvature without contact is that of its errors in contact, so that `force` has honest standard deviations.

@@ -14,7 +14,7 @@ pub struct ColumnArgs {
     /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
     #[arg(
         long,
-        value_name = "NAME=OWN",
+        value_name = "NAME=COLUMN",
         value_delimiter = ',',
         requires = "table"
     )]

@@ -1,4 +1,4 @@
-//! Columns that mark rows beyond the yield strain of the scene; a scene without one has none.
+//! Columns that mark rows beyond the yield strain of their whisker; a scene without one has none.
 
 use serde::{Serialize, Serializer};
 use whiskmap::yields::{PushMark, StrainMark, YieldMark};

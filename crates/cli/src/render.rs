@@ -89,7 +89,7 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
 pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     let channel = args.channel.as_deref();
     let wanted = |scene: &Scene| {
-        let strain = scene.whisker.yield_strain.map(|_| "peak_strain");
+        let strain = scene.has_yield_strain().then_some("peak_strain");
         let wanted = ["regime", "status", "margin_deg"].into_iter();
         wanted.chain(channel).chain(strain).collect()
     };
@@ -135,7 +135,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     if !map.channels().contains(&"margin_deg") {
         message("note: no detachment line is drawn: the map has no channel margin_deg");
     }
-    if map.yield_strain()?.is_some() && !map.channels().contains(&"peak_strain") {
+    if !map.yield_strains()?.is_empty() && !map.channels().contains(&"peak_strain") {
         message(
             "note: no cell is hatched beyond the yield strain: the map has no channel peak_strain",
         );

@@ -7,6 +7,7 @@ mod whiskers;
 mod write;
 
 pub(in crate::scene) use tables::SceneFile;
+pub(in crate::scene) use whiskers::YIELD_STRAIN;
 pub use write::SceneText;
 
 use crate::input::shortened;

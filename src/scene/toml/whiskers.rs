@@ -24,6 +24,9 @@ const KEY: &str = SweepVariable::TABLE;
 /// Column with the names of the whiskers.
 const NAME: &str = "name";
 
+/// Column with yield strains, which are no parameters: they change no state.
+pub(in crate::scene) const YIELD_STRAIN: &str = "yield_strain";
+
 /// Column with measured radii: in a CSV file, the name of a CSV file.
 const PROFILE: &str = Substitute::Profile.column();
 
@@ -109,6 +112,10 @@ impl RowTable {
         };
         let mut row = WhiskerRow::new(self.name);
         for (name, value) in self.numbers {
+            if name == YIELD_STRAIN {
+                row = row.yield_strain(value);
+                continue;
+            }
             let Some(parameter) = Parameter::named(&name) else {
                 let hint = did_you_mean(&name, WhiskerRow::columns());
                 let known = WhiskerRow::columns().collect::<Vec<_>>().join(", ");
@@ -154,7 +161,7 @@ fn refused(why: CsvError) -> SceneFault {
 impl WhiskerRow {
     /// Returns the names of all columns of a table of whiskers.
     pub fn columns() -> impl Iterator<Item = &'static str> + Clone {
-        let others = [NAME, PROFILE, REST_POINTS].into_iter();
+        let others = [NAME, YIELD_STRAIN, PROFILE, REST_POINTS].into_iter();
         others.chain(Parameter::ALL.map(Parameter::name))
     }
 }
@@ -175,12 +182,17 @@ fn read_csv(
         cells.map(Option::unwrap_or_default).map_err(refused)
     };
     let mut list: Vec<WhiskerRow> = text(NAME)?.into_iter().map(WhiskerRow::new).collect();
+    let numbers = |column: &str| {
+        let numbers = table.measurements(column, "a number", f64::is_finite);
+        numbers.map_err(refused).map(Option::unwrap_or_default)
+    };
     for parameter in Parameter::ALL {
-        let numbers = table.measurements(parameter.name(), "a number", f64::is_finite);
-        let numbers = numbers.map_err(refused)?.unwrap_or_default();
-        for (row, number) in list.iter_mut().zip(numbers) {
+        for (row, number) in list.iter_mut().zip(numbers(parameter.name())?) {
             *row = std::mem::take(row).set(parameter, number);
         }
+    }
+    for (row, strain) in list.iter_mut().zip(numbers(YIELD_STRAIN)?) {
+        *row = std::mem::take(row).yield_strain(strain);
     }
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     files.push(PairsCsv {
@@ -218,6 +230,9 @@ pub(super) fn row_array(rows: &[WhiskerRow]) -> Array {
         table.insert(NAME, row.name.as_str().into());
         for (parameter, value) in &row.numbers {
             table.insert(parameter.name(), (*value).into());
+        }
+        if let Some(strain) = row.yield_strain {
+            table.insert(YIELD_STRAIN, strain.into());
         }
         if let Some(rows) = &row.profile {
             table.insert(PROFILE, pair_array(rows).into());

@@ -143,13 +143,24 @@ impl MapSlice {
         Ok(scene.is_some_and(|scene| scene.is_straight()))
     }
 
-    /// Returns the yield strain of the whiskers of the whole map or store; `None` without one, or if this version cannot read the scene.
+    /// Returns the yield strain of the whisker of each panel of the slice: `[panel]`, `None` where it is not known. Empty if no whisker of the
+    /// map or store has one, or if this version cannot read the scene.
     ///
     /// # Errors
     /// The map or store has no scene.
-    pub fn yield_strain(&self) -> Result<Option<f64>, StoreError> {
-        let scene = self.scene()?;
-        Ok(scene.and_then(|scene| scene.whisker.yield_strain))
+    pub fn yield_strains(&self) -> Result<Vec<Option<f64>>, StoreError> {
+        let Some(scene) = self.scene()?.filter(|scene| scene.has_yield_strain()) else {
+            return Ok(Vec::new());
+        };
+        let panels = 0..self.part.grid.whisker_count();
+        let strain = |panel| {
+            scene
+                .whisker(self.in_whole(panel))
+                .ok()?
+                .whisker
+                .yield_strain
+        };
+        Ok(panels.map(strain).collect())
     }
 
     /// The scene of the map or store; `None` if this version cannot read it.

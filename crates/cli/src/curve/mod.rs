@@ -180,6 +180,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         })?;
         return uncertainty::check(&rows, &draws);
     }
+    let unmarked = scene.has_yield_strain().then(PushMark::default);
     let (mut unresolved, mut all) = (0, 0);
     let distances = &scene.grid.distance_mm;
     let of_side = if args.corner { 1 } else { distances.len() };
@@ -193,12 +194,9 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
                     Ok(swept) => {
                         let corner = trace::corner(&swept.whisker, &swept.pole, side);
                         let mark = PushMark::of_corner(&swept.whisker, &swept.pole, &corner);
-                        Marked(corner, mark)
+                        Marked(corner, mark.or(unmarked))
                     }
-                    Err(_) => {
-                        let mark = scene.whisker.yield_strain.map(|_| PushMark::default());
-                        Marked(Corner::without_whisker(side), mark)
-                    }
+                    Err(_) => Marked(Corner::without_whisker(side), unmarked),
                 }]
             };
             write(&scene, &mut outputs, &trace::sides(&group, corner))?;
@@ -217,9 +215,8 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             let Ok(swept) = swept else {
                 let ends = Detachment::without_whisker(side, distances).into_iter();
                 let by = || vec![Err(NoDerivative::NoDetachment); variables.len()];
-                let mark = scene.whisker.yield_strain.map(|_| PushMark::default());
                 return ends
-                    .map(|end| row(DetachmentDerivatives { end, by: by() }, mark))
+                    .map(|end| row(DetachmentDerivatives { end, by: by() }, unmarked))
                     .collect();
             };
             let (whisker, pole) = (&swept.whisker, &swept.pole);
@@ -231,7 +228,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
             );
             ends.into_iter()
                 .zip(marks)
-                .map(|(end, mark)| row(end, mark))
+                .map(|(end, mark)| row(end, mark.or(unmarked)))
                 .collect()
         };
         let rows: Vec<(SweepPlace, MarkedEnd)> = trace::sides(&group, ends);
