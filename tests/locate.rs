@@ -269,6 +269,33 @@ fn states_of_nearly_straight_cylinders_come_back() {
     assert!(most > 1e5, "{most:e}");
 }
 
+/// States that rounding cannot distinguish are one state: moment and axial force of a cylinder with hardly any curvature nearly follow from each other.
+#[test]
+fn states_that_differ_by_rounding_are_one() {
+    let pole = Pole::smooth(0.25);
+    let mut most: f64 = 0.0;
+    for parabola_per_mm in [1e-4, 3e-4] {
+        let whisker = Whisker {
+            curvature: Some(Curvature {
+                parabola_per_mm,
+                vertex_mm: 0.0,
+            }),
+            ..Whisker::cone(20.0, [30.0, 30.0], 3.0)
+        };
+        let states = states(&whisker, &pole, &[0.3, 0.6], &[0.05, 0.2, 0.4, 0.7, 0.95]);
+        let readings = states
+            .iter()
+            .map(|state| reading(state, [true, true, false]));
+        let readings: Vec<BaseReading> = readings.collect();
+        let rows = Locator::new(&whisker, &pole).locate(&readings, None);
+        for row in rows {
+            assert_eq!(row.states, 1, "{parabola_per_mm} {row:?}");
+            most = most.max(row.condition.unwrap());
+        }
+    }
+    assert!(most > 1e9, "{most:e}");
+}
+
 /// The condition of moment and axial force grows as a cone becomes a cylinder, for which they determine nothing.
 #[test]
 fn the_condition_grows_toward_a_singular_line() {

@@ -7,9 +7,7 @@
 //! their signs between its corners. Without a load, the resting whisker gives the lever, so that small loads need no more cells.
 //! Where the Jacobian of the pair changes its sign, a cell may have two states; such cells and their neighbours have more starts.
 
-use super::levers::{
-    ACROSS, ALONG, NEGATIVE, NodeForces, NodeLevers, PAIRS, POSITIVE, SearchedPair, neighbours,
-};
+use super::levers::{ACROSS, ALONG, NodeForces, NodeLevers, PAIRS, SearchedPair};
 use crate::sheet::{SheetCase, directions, first_folds, tau_of, u_of};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -134,14 +132,14 @@ impl SheetGrid {
             mount: 0.0,
             ..rod.clone()
         };
-        let levers = NodeLevers::new(&rod, &nodes);
+        let levers = NodeLevers::new(&rod, &nodes, parts.len());
         let is_determined = levers.is_determined;
         let (in_clamp, in_follicle) = match rod.mount == 0.0 {
             true => (levers, None),
             false => {
                 let points = points.iter().copied();
                 let nodes: Vec<FirstVariation> = Batch::new(method).shoot_at(&clamped, points);
-                let in_clamp = NodeLevers::new(&clamped, &nodes);
+                let in_clamp = NodeLevers::new(&clamped, &nodes, parts.len());
                 let forces = NodeForces::new(rod.mount, &in_clamp, &levers.sines[2], parts.len());
                 (in_clamp, Some(forces))
             }
@@ -179,42 +177,26 @@ impl SheetGrid {
         starts: &mut Vec<DVec2>,
     ) {
         let numbers = DVec2::from(PAIRS[pair].map(|i| wanted[i]));
-        let axis = |number: usize| match number {
-            1 => DVec2::X,
-            _ => DVec2::Y,
-        };
         if let (Some(forces), None) = (&self.in_follicle, turn) {
             self.add_starts_in_follicle(forces, numbers, starts);
             return;
         }
-        let turned = DVec2::from_angle(turn.unwrap_or_default());
-        let searched = match PAIRS[pair] {
-            [0, number] => {
-                let axis = turned.rotate(axis(number));
-                SearchedPair::of_moment(&self.in_clamp, axis, numbers)
-            }
-            _ => SearchedPair::of_forces(&self.in_clamp, turned.rotate(numbers)),
-        };
-        searched.signs(signs);
+        let searched = SearchedPair::new(&self.in_clamp, pair, turn.unwrap_or_default(), numbers);
         let count = self.parts.len();
-        let mut turns = Vec::new();
+        let turns = searched.signs(count, signs);
         let columns = signs.chunks(count).zip(signs.chunks(count).skip(1));
         for (i, (here, next)) in columns.enumerate() {
             for k in 0..count - 1 {
                 let corners = [here[k], here[k + 1], next[k], next[k + 1]];
                 let any = corners[0] | corners[1] | corners[2] | corners[3];
                 let all = corners[0] & corners[1] & corners[2] & corners[3];
-                if any & !all & (ACROSS | ALONG) == ACROSS | ALONG {
+                if any & !all == ACROSS | ALONG {
                     let cell = i * count + k;
                     starts.push(self.start(cell, self.corners(cell, |node| searched.misses(node))));
                 }
-                if any & POSITIVE != 0 && any & NEGATIVE != 0 {
-                    turns.push([i, k]);
-                }
             }
         }
-        let contacts = self.taus.len();
-        for cell in neighbours(&turns, [contacts, count]) {
+        for &cell in turns.iter() {
             let corners = self.corners(cell, |node| searched.misses(node));
             self.add_turn(cell, corners, starts);
         }

@@ -2,6 +2,7 @@
 
 use super::newton::{lever, lever_by};
 use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 use whiskmap_mechanics::numerics::nearest_turn;
 use whiskmap_mechanics::rod::Rod;
 use whiskmap_mechanics::shooting::FirstVariation;
@@ -15,11 +16,9 @@ const SINE_ROUNDING: f64 = 1e-9;
 /// Largest sine of the angle between the gradients of a pair that determines no state.
 const DEPENDENT: f64 = 1e-7;
 
-/// Bits of the signs at a node: of both misses, and of the Jacobian if it is positive or negative.
+/// Bits of the signs of both misses at a node.
 pub const ACROSS: u8 = 1;
 pub const ALONG: u8 = 2;
-pub const POSITIVE: u8 = 4;
-pub const NEGATIVE: u8 = 8;
 
 /// Levers of moment and force at the nodes of a grid, with a clamped base or in the follicle.
 pub struct NodeLevers {
@@ -30,6 +29,8 @@ pub struct NodeLevers {
     /// Sine of the angle between the gradients of each pair of numbers, by its index in [`PAIRS`], up to a factor of the order of 1:
     /// `[pair][node]`. 0 if it is rounding.
     pub sines: [Vec<f64>; 3],
+    /// Cells in which a pair's Jacobian is singular, and their neighbours: `[pair]`, by the index of the first node.
+    turns: [Vec<usize>; 3],
     /// False for a pair of which one number follows from the other, `[pair]`.
     pub is_determined: [bool; 3],
 }
@@ -44,85 +45,134 @@ pub struct NodeForces {
     pub turns: Vec<usize>,
 }
 
-/// Pair of numbers that are searched: a first one, and a sum of two others.
+/// Pair of numbers that are searched.
 pub struct SearchedPair<'a> {
     /// Lever of the first number, `[node]`.
     first: &'a [f64],
-    /// Levers of the two others, `[node]`.
-    others: [&'a [f64]; 2],
-    /// Sines of the first number with each of the others, `[node]`.
-    sines: [&'a [f64]; 2],
+    second: SecondNumber<'a>,
     /// Signed forces at the contact, `[node]`.
     forces: &'a [f64],
-    /// Factors of the two others.
-    axis: DVec2,
     wanted: DVec2,
 }
 
+/// Second number of a searched pair.
+enum SecondNumber<'a> {
+    /// Number in the frame of the clamped base: its lever, `[node]`, and the cells with a singular Jacobian and their neighbours.
+    OfBase {
+        lever: &'a [f64],
+        turns: &'a [usize],
+    },
+    /// Force along an axis in this frame: the levers of both components, `[component][node]`, and their sines with the first number.
+    AlongAxis {
+        axis: DVec2,
+        levers: [&'a [f64]; 2],
+        sines: [&'a [f64]; 2],
+    },
+}
+
 impl<'a> SearchedPair<'a> {
-    /// Creates the pair of the moment and the force along an `axis`.
-    pub fn of_moment(nodes: &'a NodeLevers, axis: DVec2, wanted: DVec2) -> Self {
+    /// Creates the pair with this index in [`PAIRS`], with `wanted` numbers in a frame from which the base has turned by `turn`, in radians.
+    pub fn new(nodes: &'a NodeLevers, pair: usize, turn: f64, wanted: DVec2) -> Self {
+        let [first, second] = PAIRS[pair];
         let [moment, x, y] = &nodes.levers;
+        let turned = DVec2::from_angle(turn);
+        let axis = if second == 1 { DVec2::X } else { DVec2::Y };
+        let is_of_forces = first != 0;
         let [by_y, by_x, _] = &nodes.sines;
         Self {
-            first: moment,
-            others: [x, y],
-            sines: [by_x, by_y],
+            first: if is_of_forces { x } else { moment },
+            second: if is_of_forces || turn == 0.0 {
+                SecondNumber::OfBase {
+                    lever: &nodes.levers[second],
+                    turns: &nodes.turns[pair],
+                }
+            } else {
+                SecondNumber::AlongAxis {
+                    axis: turned.rotate(axis),
+                    levers: [x, y],
+                    sines: [by_x, by_y],
+                }
+            },
             forces: &nodes.forces,
-            axis,
-            wanted,
-        }
-    }
-
-    /// Creates the pair of both forces.
-    pub fn of_forces(nodes: &'a NodeLevers, wanted: DVec2) -> Self {
-        let [_, x, y] = &nodes.levers;
-        let [.., sines] = &nodes.sines;
-        Self {
-            first: x,
-            others: [x, y],
-            sines: [sines; 2],
-            forces: &nodes.forces,
-            axis: DVec2::Y,
-            wanted,
+            wanted: if is_of_forces {
+                turned.rotate(wanted)
+            } else {
+                wanted
+            },
         }
     }
 
     /// Returns the misses of a node from its levers and its force: `[across, along]`.
     #[inline(always)]
-    fn misses_of(&self, first: f64, x: f64, y: f64, force: f64) -> DVec2 {
-        let lever = DVec2::new(first, self.axis.x * x + self.axis.y * y);
+    fn misses_of(&self, lever: DVec2, force: f64) -> DVec2 {
         let size = force * lever.length_squared();
         DVec2::new(lever.perp_dot(self.wanted), size - lever.dot(self.wanted))
     }
 
-    /// Writes the signs of all nodes, `[node]`.
-    pub fn signs(&self, signs: &mut Vec<u8>) {
-        let [x, y] = self.others;
-        let [one, other] = self.sines;
-        let levers = self.first.iter().zip(x).zip(y).zip(self.forces);
-        let nodes = levers.zip(one).zip(other);
+    /// Writes the `signs` of the misses at all nodes, `[node]`, of a grid with so many `parts` at each contact. Returns the cells with a singular
+    /// Jacobian and their neighbours, by the index of the first node.
+    pub fn signs(&self, parts: usize, signs: &mut Vec<u8>) -> Cow<'a, [usize]> {
+        let bits = |first: f64, second: f64, force: f64| {
+            let misses = self.misses_of(DVec2::new(first, second), force);
+            (u8::from(misses.x > 0.0) * ACROSS) | (u8::from(misses.y > 0.0) * ALONG)
+        };
+        let nodes = self.first.iter().zip(self.forces);
         signs.clear();
-        signs.extend(nodes.map(|(((((first, x), y), force), one), other)| {
-            let misses = self.misses_of(*first, *x, *y, *force);
-            let sine = self.axis.x * one + self.axis.y * other;
-            (u8::from(misses.x > 0.0) * ACROSS)
-                | (u8::from(misses.y > 0.0) * ALONG)
-                | (u8::from(sine > 0.0) * POSITIVE)
-                | (u8::from(sine < 0.0) * NEGATIVE)
-        }));
+        match self.second {
+            SecondNumber::OfBase { lever, turns } => {
+                let nodes = nodes.zip(lever);
+                signs.extend(nodes.map(|((first, force), second)| bits(*first, *second, *force)));
+                Cow::Borrowed(turns)
+            }
+            SecondNumber::AlongAxis {
+                axis,
+                levers: [x, y],
+                sines: [by_x, by_y],
+            } => {
+                let along = |x: f64, y: f64| axis.x * x + axis.y * y;
+                let nodes = nodes.zip(x).zip(y);
+                signs.extend(
+                    nodes.map(|(((first, force), x), y)| bits(*first, along(*x, *y), *force)),
+                );
+                let sines = by_x.iter().zip(by_y).map(|(x, y)| along(*x, *y));
+                Cow::Owned(turns(sines, parts))
+            }
+        }
     }
 
     /// Returns the misses at a node: `[across, along]`.
     pub fn misses(&self, node: usize) -> DVec2 {
-        let [x, y] = self.others;
-        self.misses_of(self.first[node], x[node], y[node], self.forces[node])
+        let second = match self.second {
+            SecondNumber::OfBase { lever, .. } => lever[node],
+            SecondNumber::AlongAxis {
+                axis,
+                levers: [x, y],
+                ..
+            } => axis.x * x[node] + axis.y * y[node],
+        };
+        self.misses_of(DVec2::new(self.first[node], second), self.forces[node])
     }
+}
+
+/// Returns the cells in which the `sines` of a pair, `[node]`, change their sign, and their neighbours, by the index of the first node. The grid has
+/// so many `parts` at each contact.
+fn turns(sines: impl ExactSizeIterator<Item = f64>, parts: usize) -> Vec<usize> {
+    let contacts = sines.len() / parts;
+    let signs = sines.map(|sine| u8::from(sine > 0.0) | u8::from(sine < 0.0) << 1);
+    let signs: Vec<u8> = signs.collect();
+    let mut turned = Vec::new();
+    let columns = signs.chunks(parts).zip(signs.chunks(parts).skip(1));
+    for (i, (here, next)) in columns.enumerate() {
+        let cells = here.windows(2).zip(next.windows(2)).enumerate();
+        let cells = cells.filter(|(_, (here, next))| here[0] | here[1] | next[0] | next[1] == 3);
+        turned.extend(cells.map(|(k, _)| [i, k]));
+    }
+    neighbours(&turned, [contacts, parts])
 }
 
 /// Returns the cells with these indices `[contact, part]` and their neighbours, by the index of the first node, in a grid with so many contacts and
 /// parts.
-pub fn neighbours(cells: &[[usize; 2]], [contacts, parts]: [usize; 2]) -> Vec<usize> {
+fn neighbours(cells: &[[usize; 2]], [contacts, parts]: [usize; 2]) -> Vec<usize> {
     let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
     let cells = cells.iter().flat_map(|&[i, k]| {
         let columns = around(i, contacts - 1);
@@ -135,7 +185,8 @@ pub fn neighbours(cells: &[[usize; 2]], [contacts, parts]: [usize; 2]) -> Vec<us
 }
 
 impl NodeLevers {
-    pub fn new(rod: &Rod, nodes: &[FirstVariation]) -> Self {
+    /// Creates the levers of `rod` from its `nodes`, with so many `parts` at each contact.
+    pub fn new(rod: &Rod, nodes: &[FirstVariation], parts: usize) -> Self {
         let levers = nodes.iter().map(|node| lever(&node.full));
         let levers: Vec<DVec3> = levers.collect();
         // The gradients by contact and load, over the force and without it.
@@ -147,7 +198,7 @@ impl NodeLevers {
         });
         let gradients: Vec<[DVec3; 2]> = gradients.collect();
         let mut is_determined = [false; 3];
-        let sines = [0, 1, 2].map(|pair| {
+        let sines: [Vec<f64>; 3] = [0, 1, 2].map(|pair| {
             let sine = |gradients: &[DVec3; 2]| {
                 let both = |of: DVec3| DVec2::from(PAIRS[pair].map(|i| of[i]));
                 let [by_tau, by_load] = gradients.map(both);
@@ -167,6 +218,7 @@ impl NodeLevers {
         Self {
             levers: [0, 1, 2].map(|i| levers.iter().map(|lever| lever[i]).collect()),
             forces: nodes.iter().map(|node| node.full.force).collect(),
+            turns: [0, 1, 2].map(|pair| turns(sines[pair].iter().copied(), parts)),
             sines,
             is_determined,
         }
@@ -191,25 +243,16 @@ impl NodeForces {
             let near = before.map_or(0.0, |before| directions[before]);
             directions.push(nearest_turn(direction.to_angle(), near));
         }
-        let turns = forces.iter().zip(moments);
-        let turns = turns.map(|(force, moment)| compliance * force * moment);
-        let sign = |node: usize| [sines[node] > 0.0, sines[node] < 0.0];
-        let contacts = forces.len() / parts;
-        let all = (0..contacts.saturating_sub(1)).flat_map(|i| (0..parts - 1).map(move |k| [i, k]));
-        let is_turn = |[i, k]: &[usize; 2]| {
-            let cell = i * parts + k;
-            let corners = [cell, cell + 1, cell + parts, cell + parts + 1].map(sign);
-            [0, 1].map(|of| corners.iter().any(|signs| signs[of])) == [true, true]
-        };
-        let turned: Vec<[usize; 2]> = all.filter(is_turn).collect();
+        let of_base = forces.iter().zip(moments);
+        let of_base = of_base.map(|(force, moment)| compliance * force * moment);
         Self {
             sizes: forces.iter().map(|force| force.abs()).collect(),
             angles: directions
                 .iter()
-                .zip(turns)
+                .zip(of_base)
                 .map(|(angle, turn)| angle + turn)
                 .collect(),
-            turns: neighbours(&turned, [contacts, parts]),
+            turns: turns(sines.iter().copied(), parts),
         }
     }
 }

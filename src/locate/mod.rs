@@ -18,7 +18,7 @@ use crate::scene::{Pole, Whisker};
 use crate::trace::{StateRow, row};
 use glam::DVec2;
 use grid::SheetGrid;
-use newton::{Triangle, base_derivatives, by_logarithms};
+use newton::{Triangle, by_logarithms};
 use rayon::prelude::*;
 use search::{FoundState, Wanted};
 use serde::Serialize;
@@ -242,9 +242,7 @@ impl Locator {
         let to_base = DVec2::new(full.tangent.x, -full.tangent.y);
         let contact = units.length_mm * to_base.rotate(-full.position);
         let pole = units.length_mm * full.map.pole;
-        let columns = base_derivatives(&grid.rod, at, &found.last);
-        let condition = Triangle::new(columns.map(|column| wanted.measured * column)).condition();
-        let weighted = Triangle::new(columns.map(|column| wanted.weights * column));
+        let weighted = Triangle::new(found.derivatives.map(|by| wanted.weights * by));
         let deviation = |gradient: DVec2, unit: f64| {
             has_deviations.then(|| weighted.deviation(gradient) * unit)
         };
@@ -271,7 +269,7 @@ impl Locator {
             distance_mm: Some(distance * units.length_mm),
             push_angle_deg: Some(push.to_degrees()),
             misfit: Some(found.misfit),
-            condition: Some(condition),
+            condition: Some(found.condition),
             arc_length_sd_mm: deviation(DVec2::new(arclength, 0.0), units.length_mm),
             distance_sd_mm: deviation(of_distance, units.length_mm),
             push_angle_sd_deg: deviation(of_push, 1f64.to_degrees()),

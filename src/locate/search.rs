@@ -5,7 +5,7 @@
 
 use super::grid::SheetGrid;
 use super::levers::PAIRS;
-use super::newton::{BaseProblem, base_numbers};
+use super::newton::{BaseProblem, Triangle, base_derivatives, base_numbers};
 use super::{BaseReading, Locator, NoLocation, SensorDeviations};
 use crate::newton::{BatchNewton, NewtonIterate, NewtonOutcome};
 use glam::{DVec2, DVec3};
@@ -16,6 +16,9 @@ const MOST_TRAJECTORIES: u32 = 40;
 
 /// Difference of the logarithms of contact and load below which two solutions are one state.
 const SAME_STATE: f64 = 1e-6;
+
+/// Largest error of the logarithms of contact and load, over the condition of the inverse. Round trips of states stay within it.
+const ERROR_BY_CONDITION: f64 = 1e-11;
 
 /// Largest misfit of a state to two numbers, over the reading's size.
 const MOST_MISFIT_OF_TWO: f64 = 1e-9;
@@ -44,7 +47,10 @@ pub(super) struct FoundState<'a> {
     pub grid: &'a SheetGrid,
     pub at: DVec2,
     pub full: FullState,
-    pub last: FirstVariation,
+    /// Derivatives of `[M, Fx, Fy]` by the logarithms of contact and load.
+    pub derivatives: [DVec3; 2],
+    /// Condition of the inverse for the measured numbers.
+    pub condition: f64,
     pub phi: f64,
     pub misfit: f64,
 }
@@ -58,10 +64,10 @@ struct SearchEnd<'a> {
     last: FirstVariation,
 }
 
-/// Returns true if two solutions at `(tau, load)` are one state.
-fn is_same_state(one: DVec2, other: DVec2) -> bool {
+/// Returns true if two solutions at `(tau, load)`, with an inverse of this `condition`, are one state to rounding.
+fn is_same_state(one: DVec2, other: DVec2, condition: f64) -> bool {
     let change = (one - other).abs() / other.abs();
-    change.max_element() < SAME_STATE
+    change.max_element() < SAME_STATE.max(ERROR_BY_CONDITION * condition)
 }
 
 /// Yields the origins and points of the different `ends`, which have the order of the readings.
@@ -73,7 +79,7 @@ fn different<'a, 'e>(
         let before = ends[..*place].iter().rev();
         let mut others = before.take_while(|other| other.origin.0 == i);
         others.all(|other| {
-            let is_same = is_same_state(end.iterate.point, other.iterate.point);
+            let is_same = is_same_state(end.iterate.point, other.iterate.point, 1.0);
             !(is_same && std::ptr::eq(grid, other.origin.1))
         })
     };
@@ -148,8 +154,13 @@ impl Locator {
                 last,
             } = end;
             let (at, full) = (iterate.point, iterate.state);
-            let is_same =
-                |other: &FoundState| std::ptr::eq(grid, other.grid) && is_same_state(at, other.at);
+            let derivatives = base_derivatives(&grid.rod, at, &last);
+            let measured = derivatives.map(|by| wanted[i].measured * by);
+            let condition = Triangle::new(measured).condition();
+            let is_same = |other: &FoundState| {
+                let condition = condition.min(other.condition);
+                std::ptr::eq(grid, other.grid) && is_same_state(at, other.at, condition)
+            };
             let misfit = wanted[i].misfit(&full, has_deviations);
             let Some(misfit) = misfit.filter(|_| !found[i].iter().any(is_same)) else {
                 continue;
@@ -159,7 +170,8 @@ impl Locator {
                 grid,
                 at,
                 full,
-                last,
+                derivatives,
+                condition,
                 phi,
                 misfit,
             }));
