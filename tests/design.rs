@@ -227,7 +227,7 @@ fn what_cannot_be_asked_for_is_refused() {
         .build()
         .unwrap();
     let why = design(&axis, Parameter::ParabolaPerMm, &asked).unwrap_err();
-    assert_eq!(why, DesignError::Sweep("curvature_per_mm"));
+    assert_eq!(why, DesignError::Sweep("grid.curvature_per_mm"));
     let far = DesignTarget {
         distance_mm: 1e9,
         ..asked

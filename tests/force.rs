@@ -39,6 +39,7 @@ fn frame_of(
         at_arc_length_mm: at.arc_length_mm,
         at_mm: Some(in_base(at.x_mm, at.y_mm)),
         contact: Some(FrameContact {
+            is_known: true,
             contact_mm: in_base(contact.x_mm, contact.y_mm),
             contact_angle_deg: Some(contact.angle_deg + push_deg),
         }),
@@ -144,6 +145,7 @@ fn forces_of_a_follicle_come_back_in_both_frames() {
         let in_film = CurvatureFrame {
             at_mm: in_follicle.at_mm.map(turned),
             contact: Some(FrameContact {
+                is_known: true,
                 contact_mm: turned(contact.contact_mm),
                 contact_angle_deg: Some(angle),
             }),
@@ -267,13 +269,18 @@ fn frames_without_a_force_have_a_reason() {
             ..good
         }
     };
-    let far = with(|contact| contact.contact_mm = [25.0, 0.0]);
-    assert_eq!(
-        force(&scene, &far, ForceMethod::Model).reason,
-        Some(NoForce::OutOfReach)
-    );
+    let far = with(|contact| contact.contact_mm = [20.01, 0.0]);
     let behind = with(|contact| contact.contact_mm = [1.0, 0.0]);
+    let unknown = with(|contact| contact.is_known = false);
     for method in [ForceMethod::Lever, ForceMethod::Model] {
+        assert_eq!(
+            force(&scene, &far, method).reason,
+            Some(NoForce::OutOfReach)
+        );
+        assert_eq!(
+            force(&scene, &unknown, method).reason,
+            Some(NoForce::Missing)
+        );
         assert_eq!(
             force(&scene, &behind, method).reason,
             Some(NoForce::NoLever)

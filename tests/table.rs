@@ -216,7 +216,11 @@ fn wrong_tables_are_refused() {
         ),
         (
             "[{ name = \"A\", length_mm = 20 }, { name = \"A\", length_mm = 21 }]",
-            "whiskers.table[1]: the name of a whisker must be unlike those before it",
+            "whiskers.table[1]: the name of a whisker must be unlike those before it; row 1 is A too",
+        ),
+        (
+            "[{ name = \"A\", parabola_per_mm = 0.1, curvature_per_mm = 0.1 }]",
+            "whiskers.table[0]: must have either parabola_per_mm or curvature_per_mm, which are one",
         ),
         (
             "[{ name = \"A\", length_mm = 20, base_radius_um = 30 }]",

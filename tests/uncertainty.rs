@@ -273,7 +273,7 @@ fn what_cannot_be_drawn_is_refused() {
         .sweep(Parameter::ParabolaPerMm, [0.02])
         .build()
         .unwrap();
-    assert_eq!(why(&axis, 10), DrawError::Sweep("curvature_per_mm"));
+    assert_eq!(why(&axis, 10), DrawError::Sweep("grid.curvature_per_mm"));
     let wide =
         scene("length_mm = 1e5\nbase_radius_um = 1e5\nvertex_mm = 1e5\npole_radius_mm = 1e5");
     let said = why(&wide, 10).to_string();

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{
     BaseAxis, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until,
-    warning as force_warning,
+    warnings as force_warnings,
 };
 use whiskmap::scene::Scene;
 use whiskmap::texture::{
@@ -145,8 +145,8 @@ pub fn texture<'py>(
 /// Mean and scatter of the curvature of frames without contact, in 1/mm, and their number.
 type Baseline = (f64, f64, usize);
 
-/// Columns of forces, a warning, and the baseline.
-type ForceColumns<'py> = (Vec<Column<'py>>, Option<String>, Option<Baseline>);
+/// Columns of forces, warnings, and the baseline.
+type ForceColumns<'py> = (Vec<Column<'py>>, Vec<String>, Option<Baseline>);
 
 /// Computes the forces in the frames of the CSV table `frames`, which messages call `origin`. The baseline comes from frames in
 /// `baseline_s`, or from frames without contact in the column `contact`.
@@ -203,12 +203,12 @@ pub fn force<'py>(
         };
         let table = Table::new(&found, FrameForce::COLUMNS, cancel);
         let table = table.marked(marks, StrainMark::COLUMNS, cancel);
-        (table, force_warning(&found))
+        (table, force_warnings(&whisker, &found))
     };
-    let (table, warning) = threads::run(py, None, |_| Ok(()), job)?;
+    let (table, warnings) = threads::run(py, None, |_| Ok(()), job)?;
     let baseline =
         baseline.map(|baseline| (baseline.mean_per_mm, baseline.sd_per_mm, baseline.count));
-    Ok((table.into_columns(py)?, warning, baseline))
+    Ok((table.into_columns(py)?, warnings, baseline))
 }
 
 fn course(

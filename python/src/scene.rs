@@ -3,7 +3,7 @@
 use crate::arguments::{parameter, refused};
 use crate::errors::of_scene;
 use crate::threads;
-use pyo3::exceptions::PyKeyError;
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -241,9 +241,14 @@ impl CheckedScene {
     }
 }
 
-/// Returns a note about the columns among `names` that a table of whiskers does not have; `None` without such a column.
+/// Returns a note about the columns among `names` that a table of whiskers does not have; `None` without such a column. A name that is most
+/// likely meant as a column that the table lacks is refused.
 #[pyfunction]
-pub fn unused_columns(names: Vec<String>) -> Option<String> {
+pub fn unused_columns(names: Vec<String>) -> PyResult<Option<String>> {
+    let texts: Vec<&str> = names.iter().map(String::as_str).collect();
+    if let Some(what) = WhiskerRow::misnamed(&texts) {
+        return Err(PyValueError::new_err(format!("table: {what}")));
+    }
     let known = WhiskerRow::columns;
     let unused = names
         .iter()
@@ -254,7 +259,8 @@ pub fn unused_columns(names: Vec<String>) -> Option<String> {
         (!hint.is_empty()).then(|| format!("; `{name}` is not known{hint}"))
     });
     let hint = hints.take(1).collect::<String>();
-    (!unused.is_empty()).then(|| format!("columns that are not used: {}{hint}", unused.join(", ")))
+    let note = || format!("columns that are not used: {}{hint}", unused.join(", "));
+    Ok((!unused.is_empty()).then(note))
 }
 
 fn whisker_row((name, numbers, rows, points): RowTuple) -> PyResult<WhiskerRow> {
@@ -262,7 +268,10 @@ fn whisker_row((name, numbers, rows, points): RowTuple) -> PyResult<WhiskerRow> 
     for (name, value) in numbers {
         row = match &*name {
             YIELD_STRAIN => row.yield_strain(value),
-            _ => row.set(parameter("table", &name)?, value),
+            _ => match Parameter::of_column(&name) {
+                Some(parameter) => row.set(parameter, value),
+                None => row.set(parameter("table", &name)?, value),
+            },
         };
     }
     if let Some(rows) = rows {

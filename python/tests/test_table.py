@@ -94,8 +94,10 @@ def test_other_columns_are_named(pad):
     with pytest.warns(wm.SceneWarning, match="table: columns that are not used: remark, tapper; `tapper` is not known; did you mean `taper`"):
         named = pad.replace(table=pd.DataFrame(numbers | {"remark": ["good"], "tapper": [0.9]}))
     assert named.table == pad.replace(table=numbers).table
-    with pytest.warns(wm.SceneWarning, match="`length_cm` is not known; values must be in mm"), pytest.raises(wm.SceneError, match="is left out"):
+    with pytest.raises(ValueError, match="table: has the column length_cm; values must be in mm: convert them, and use the name `length_mm`"):
         pad.replace(table=[{"name": "A", "length_cm": 2}])
+    bent = [pad.replace(table=numbers | {column: [0.01]}) for column in ("parabola_per_mm", "curvature_per_mm")]
+    assert bent[0] == bent[1]
 
 
 def test_missing_elements_leave_the_others():

@@ -226,8 +226,8 @@ def force(
         span = (ends[0], ends[1])
     with naming_rows("frames", frames):
         text, origin = csv_text("frames", frames), origin_of("frames", frames)
-        found, warning, baseline = _whiskmap.force(checked, text, origin, own_names(columns), bool(model), span, axis)
-    warn([warning])
+        found, warnings, baseline = _whiskmap.force(checked, text, origin, own_names(columns), bool(model), span, axis)
+    warn(warnings)
     names = ("baseline_per_mm", "baseline_sd_per_mm", "baseline_frames")
     return _over_time(found, scene, dict(zip(names, baseline or ())))
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 # Columns of numbers of a table of whiskers.
-_NUMBERS = {name for name, *_ in parameters()} | {"yield_strain"}
+_NUMBERS = {column for name, _, axis, _ in parameters() for column in (name, axis) if column} | {"yield_strain"}
 
 # Columns of the numbers that come in pairs.
 PAIRS = {"profile": ("arc_length_mm", "radius_um"), "rest_points": ("x_mm", "y_mm")}

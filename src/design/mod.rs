@@ -55,8 +55,8 @@ pub struct Design {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DesignError {
-    /// The scene sweeps whiskers along this axis, but a design needs one whisker.
-    #[error("grid.{0}: must be left out, as numbers of one whisker are varied")]
+    /// The scene sweeps whiskers along the axis of this key, but a design needs one whisker.
+    #[error("{0}: must be left out, as numbers of one whisker are varied")]
     Sweep(&'static str),
     /// The scene does not give the parameter of the design.
     #[error("{}: must be one of {given}, which the scene has; it has no {}", .parameter.name(), .parameter.key())]
@@ -252,7 +252,7 @@ fn checked(
     targets: &[DesignTarget],
 ) -> Result<CheckedDesign, DesignError> {
     if let Some(axis) = scene.grid.sweep.first() {
-        return Err(DesignError::Sweep(axis.variable.name()));
+        return Err(DesignError::Sweep(axis.variable.key()));
     }
     let count = varied.variables.len();
     let first = targets.first();

@@ -53,7 +53,7 @@ impl CurvatureBaseline {
 
 impl CurvatureFrames {
     /// Returns the baseline of `whisker`: of the frames from `span_s[0]` to `span_s[1]`, in s, or without a span of all frames that the column
-    /// `contact` gives as free. `None` without both.
+    /// `contact` gives as free. `None` without both. A frame for which this column has no value does not count.
     ///
     /// # Errors
     /// If a frame of the span is in contact, or fewer than 2 frames have a curvature.
@@ -72,7 +72,9 @@ impl CurvatureFrames {
             format!(" from {} to {} s", digits(from), digits(to))
         });
         let in_span = self.frames.iter().filter(|frame| is_inside(frame));
-        if let Some(frame) = in_span.clone().find(|frame| frame.contact.is_some())
+        let is_in_contact =
+            |frame: &&CurvatureFrame| frame.contact.is_some_and(|contact| contact.is_known);
+        if let Some(frame) = in_span.clone().find(is_in_contact)
             && span_s.is_some()
         {
             let time = digits(frame.time_s);

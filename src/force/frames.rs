@@ -118,22 +118,17 @@ impl CurvatureFrames {
         let contacts = table.measurements(CONTACT, "0 or 1", |cell| [0.0, 1.0].contains(&cell))?;
         let mut frames = Vec::with_capacity(times.len());
         for (i, line) in table.lines().enumerate() {
-            let mut contact_mm = [xs[i], ys[i]];
+            let contact_mm = [xs[i], ys[i]];
             let angle = angles.as_ref().map(|angles| angles[i]);
             // Without the column `contact`, a frame in which no position was measured has no contact.
-            let is_in_contact = match &contacts {
-                Some(contacts) => {
-                    // The contact flag is missing, so that the position may not be a contact's position.
-                    if contacts[i].is_nan() {
-                        contact_mm = [f64::NAN; 2];
-                    }
-                    contacts[i] != 0.0
-                }
-                None => contact_mm
-                    .into_iter()
-                    .any(|coordinate| !coordinate.is_nan()),
+            let is_free = match &contacts {
+                Some(contacts) => contacts[i] == 0.0,
+                None => contact_mm.into_iter().all(f64::is_nan),
             };
-            let contact = is_in_contact.then_some(FrameContact {
+            let contact = (!is_free).then_some(FrameContact {
+                is_known: contacts
+                    .as_ref()
+                    .is_none_or(|contacts| !contacts[i].is_nan()),
                 contact_mm,
                 contact_angle_deg: angle,
             });

@@ -89,6 +89,9 @@ impl Bending {
         };
         let tangent = DVec2::new(libm::cos(angle.to_radians()), libm::sin(angle.to_radians()));
         let position = DVec2::from(contact.contact_mm);
+        if position.length() > self.length_mm {
+            return self.none(frame.time_s, NoForce::OutOfReach);
+        }
         let lever = (position - self.at).dot(tangent);
         // A shorter lever is a rounding error of the two positions.
         if lever <= f64::EPSILON * self.length_mm {

@@ -13,6 +13,6 @@ pub use quantity::Quantity;
 pub use table::{CsvError, CsvTable};
 
 pub(crate) use lines::CsvLine;
-pub(crate) use names::shortened;
+pub(crate) use names::{is_meant_as, shortened};
 pub(crate) use source::{TEXT_MIB, bounded, open, open_regular};
 pub(crate) use table::{CsvLines, MOST_SECONDS, read_bytes, text_of};

@@ -49,6 +49,22 @@ pub fn did_you_mean<'a>(
     found.map_or_else(String::new, |known| format!("; did you mean `{known}`?"))
 }
 
+/// Returns true if `name` is most likely meant as the `known` name: they differ in one letter, in case, or in the unit alone.
+pub(crate) fn is_meant_as(name: &str, known: &str) -> bool {
+    let [name, known] = [name, known].map(str::to_lowercase);
+    strsim::osa_distance(&name, &known) <= 1 || stem(&name) == stem(&known)
+}
+
+/// Returns a lower-case name without the unit at its end.
+fn stem(name: &str) -> &str {
+    match name.rsplit_once('_') {
+        Some((stem, unit)) if UNITS.iter().any(|units| units.contains(&unit)) => {
+            stem.strip_suffix("_per").unwrap_or(stem)
+        }
+        _ => name,
+    }
+}
+
 /// Returns the values of a list in their order, each once: a name that is given twice counts once.
 ///
 /// ```
@@ -101,7 +117,7 @@ pub(crate) fn shortened(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{did_you_mean, shortened};
+    use super::{did_you_mean, is_meant_as, shortened};
 
     #[test]
     fn names_in_other_units_ask_for_a_conversion() {
@@ -126,6 +142,29 @@ mod tests {
         ] {
             let hint = did_you_mean(name, ["side", known]);
             assert_eq!(hint, format!("; did you mean `{known}`?"), "{name}");
+        }
+    }
+
+    #[test]
+    fn names_with_one_difference_are_meant_as_known_ones() {
+        for (name, known) in [
+            ("length_um", "length_mm"),
+            ("Length_mm", "length_mm"),
+            ("tip_radius", "tip_radius_um"),
+            ("curvature", "curvature_per_mm"),
+            ("lenght_mm", "length_mm"),
+            ("tapper", "taper"),
+        ] {
+            assert!(is_meant_as(name, known), "{name}");
+        }
+        for (name, known) in [
+            ("length_sd_mm", "length_mm"),
+            ("length_px", "length_mm"),
+            ("layer", "taper"),
+            ("notes", "name"),
+            ("base_diameter_um", "base_radius_um"),
+        ] {
+            assert!(!is_meant_as(name, known), "{name}");
         }
     }
 

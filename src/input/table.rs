@@ -153,12 +153,12 @@ impl CsvTable {
     }
 
     /// Returns the line number of the header, from 1.
-    pub(super) const fn header_line(&self) -> usize {
+    pub(crate) const fn header_line(&self) -> usize {
         self.header.number
     }
 
     /// Yields the names of the columns, `[column]`.
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> + Clone {
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> + Clone {
         self.header.cells.iter()
     }
 
@@ -209,7 +209,10 @@ impl CsvTable {
         let values = self.rows.iter().map(|row| {
             let cell = row.cells.get(place).unwrap_or_default();
             value(cell).ok_or_else(|| {
-                let what = format!("{column} = {}: must be {must}", shortened(cell));
+                let what = match cell {
+                    "" => format!("{column} is empty: must be {must}"),
+                    cell => format!("{column} = {}: must be {must}", shortened(cell)),
+                };
                 CsvError::at(&self.origin, row.number, what)
             })
         });

@@ -212,6 +212,12 @@ impl Parameter {
         Self::ALL.into_iter().find(|one| one.name() == name)
     }
 
+    /// Returns the parameter of a column of a table of whiskers, under its own name or the name of its sweep axis; `None` without one.
+    #[must_use]
+    pub fn of_column(name: &str) -> Option<Self> {
+        Self::named(name).or_else(|| Self::SWEPT.into_iter().find(|one| one.axis() == name))
+    }
+
     /// Returns the end of a message about a name that is not one of a parameter, but of its sweep axis; `None` for other names.
     ///
     /// ```

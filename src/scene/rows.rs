@@ -1,12 +1,13 @@
 //! Whiskers of a table: each row is checked as a scene of its own.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use super::builder::SceneBuilder;
 use super::error::SceneFault;
 use super::grid::SweepVariable;
 use super::parameter::Parameter;
 use super::table::{TableWhisker, WhiskerRow};
+use crate::input::shortened;
 
 /// Largest number of rows of a table of whiskers.
 const MOST_ROWS: usize = 65_536;
@@ -93,7 +94,7 @@ fn check_names(rows: &[WhiskerRow]) -> Result<(), SceneFault> {
         );
         return Err(SceneFault::new(key, must));
     }
-    let mut names = HashSet::new();
+    let mut places = HashMap::new();
     for (index, row) in rows.iter().enumerate() {
         let name = &row.name;
         let key = format!("{key}[{index}]");
@@ -101,9 +102,13 @@ fn check_names(rows: &[WhiskerRow]) -> Result<(), SceneFault> {
             return Err(SceneFault::new(key, "the name of the whisker is missing"));
         }
         let must = if name.contains(char::is_control) {
-            "the name of a whisker must be one line of text"
-        } else if !names.insert(name) {
-            "the name of a whisker must be unlike those before it"
+            "the name of a whisker must be one line of text".to_owned()
+        } else if let Some(first) = places.insert(name, index) {
+            format!(
+                "the name of a whisker must be unlike those before it; row {} is {} too",
+                first + 1,
+                shortened(name)
+            )
         } else if let Some(twice) = given_twice(row) {
             twice
         } else {
@@ -115,7 +120,7 @@ fn check_names(rows: &[WhiskerRow]) -> Result<(), SceneFault> {
 }
 
 /// Returns what is wrong with a row that gives a parameter twice.
-fn given_twice(row: &WhiskerRow) -> Option<&'static str> {
+fn given_twice(row: &WhiskerRow) -> Option<String> {
     let count = |parameter| {
         row.numbers
             .iter()
@@ -123,12 +128,15 @@ fn given_twice(row: &WhiskerRow) -> Option<&'static str> {
             .count()
     };
     if count(Parameter::Taper) + count(Parameter::TipRadiusUm) > 1 {
-        return Some("must have either a taper or a tip_radius_um");
+        return Some("must have either a taper or a tip_radius_um".to_owned());
     }
-    let is_twice = Parameter::ALL
-        .into_iter()
-        .any(|parameter| count(parameter) > 1);
-    is_twice.then_some("must give each parameter at most once")
+    let mut parameters = Parameter::ALL.into_iter();
+    let twice = parameters.find(|parameter| count(*parameter) > 1)?;
+    let (name, axis) = (twice.name(), twice.axis());
+    Some(match name == axis {
+        true => format!("must have {name} at most once"),
+        false => format!("must have either {name} or {axis}, which are one"),
+    })
 }
 
 /// Returns a fault as the reason why a row has no whisker.

@@ -47,8 +47,8 @@ pub enum DrawError {
         "the scene's [uncertainty] is of frames alone: add a parameter of the scene, such as `base_radius_um = 1.0`, a standard deviation"
     )]
     FramesAlone,
-    /// The scene sweeps whiskers along this axis, but draws need one whisker.
-    #[error("grid.{0}: must be left out, as one whisker is drawn around")]
+    /// The scene sweeps whiskers along the axis of this key, but draws need one whisker.
+    #[error("{0}: must be left out, as one whisker is drawn around")]
     Sweep(&'static str),
     /// The number of samples times the number of distances exceeds the limit.
     #[error(
@@ -82,7 +82,7 @@ impl Draws {
             return Err(DrawError::FramesAlone);
         }
         if let Some(axis) = scene.grid.sweep.first() {
-            return Err(DrawError::Sweep(axis.variable.name()));
+            return Err(DrawError::Sweep(axis.variable.key()));
         }
         let distances = scene.grid.distance_mm.len();
         let ends = samples.saturating_mul(distances);

@@ -222,6 +222,51 @@ fn a_baseline_is_reported_and_used() {
     }
 }
 
+/// A frame that the tracker has lost does not count in a baseline; a frame in contact whose position is missing is refused.
+#[test]
+fn a_baseline_leaves_out_lost_frames() {
+    let place = Place::with(SCENE);
+    let rows = |lost: &str| {
+        let rows = [
+            "0,0.011,2,,,,0",
+            lost,
+            "0.1,0.013,2,,,,0",
+            "0.2,0.03,2,15,4,30,1",
+        ];
+        format!("{HEADER},contact\n{}\n", rows.join("\n"))
+    };
+    for lost in ["0.05,,,,,,", "0.05,0.02,2,,,,NA", "0.05,0.02,2,15,4,30,"] {
+        place.write("f.csv", &rows(lost));
+        let run = force(&place, &["--baseline", "0..0.1"]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let note = "baseline of 2 frames without contact: ";
+        assert!(run.err.contains(note), "{run:?}");
+        let reasons = cells(&run.out, TABLE);
+        let reasons: Vec<&str> = reasons.iter().map(|row| *row.last().unwrap()).collect();
+        assert_eq!(reasons, ["", "missing", "", ""]);
+    }
+    place.write("f.csv", &rows("0.05,0.02,2,,,,1"));
+    force(&place, &["--baseline", "0..0.1"])
+        .assert_refused(&["f.csv:3: time_s = 0.05: is in contact"]);
+}
+
+/// A contact that is not on the whisker has no force, and one on the other side of the base has a warning.
+#[test]
+fn impossible_contacts_are_noticed() {
+    let place = Place::with(SCENE);
+    let rows = ["0,0.05,5,-11,-4,40", "1,0.05,5,30,4,40"];
+    place.write("f.csv", &format!("{HEADER}\n{}\n", rows.join("\n")));
+    let lever = force(&place, &[]);
+    let reasons = cells(&lever.out, TABLE);
+    let reasons: Vec<&str> = reasons.iter().map(|row| *row.last().unwrap()).collect();
+    assert_eq!(reasons, ["no-lever", "out-of-reach"], "{lever:?}");
+    let model = force(&place, &["--model"]);
+    let warning = "1 of 2 frames have a contact_off_mm of more than 2, a tenth of the whisker's length, and up to 23.399: check";
+    assert!(model.err.contains(warning), "{model:?}");
+    place.write("f.csv", include_str!("../../scenes/frames.csv"));
+    assert_eq!(force(&place, &["--model"]).err, "");
+}
+
 /// The scene's standard deviations of frames are those of forces.
 #[test]
 fn a_scene_gives_standard_deviations_of_frames() {

@@ -168,6 +168,70 @@ fn a_plot_names_the_whiskers() {
     let picture = String::from_utf8(place.bytes("curve.svg")).unwrap();
     let shown = ["C1", "C2", "C3"].map(|name| picture.contains(&format!(">{name}<")));
     assert_eq!(shown, [true, false, true]);
+    assert!(picture.contains(">A pad (1 of 3 rows have no whisker)<"));
+    // Only rows with a whisker share the names of the legend.
+    let row = |i: usize| format!("W{i},{},30,{}\n", 20 + i, if i < 10 { "" } else { "1.5" });
+    let rows: String = (0..18).map(row).collect();
+    let header = "name,length_mm,base_radius_um,tip_radius_um\n";
+    place.write("pad.csv", &format!("{header}{rows}"));
+    place.run(&["curve", "scene.toml", "--plot", "curve.svg"]);
+    let picture = String::from_utf8(place.bytes("curve.svg")).unwrap();
+    let shown = (0..18).filter(|i| picture.contains(&format!(">W{i}<")));
+    assert_eq!(shown.collect::<Vec<_>>(), [10, 12, 14, 15, 17]);
+}
+
+/// A column has the name of its parameter or of its sweep axis. An unknown name that is meant as a known one is refused.
+#[test]
+fn columns_share_the_names_of_axes() {
+    let place = place();
+    let curve = |header: &str, row: &str| {
+        place.write("pad.csv", &format!("{header}\n{row}\n"));
+        place.run(&["curve", "scene.toml"])
+    };
+    let numbers = "name,length_mm,base_radius_um,tip_radius_um";
+    let [parabola, axis, straight] = [
+        (",parabola_per_mm", ",0.02"),
+        (",curvature_per_mm", ",0.02"),
+        (",notes", ",0.02"),
+    ]
+    .map(|(column, cell)| {
+        curve(
+            &format!("{numbers}{column}"),
+            &format!("C1,20,30,1.5{cell}"),
+        )
+    });
+    assert_eq!((axis.code, &axis.out), (Some(0), &parabola.out), "{axis:?}");
+    assert!(straight.err.starts_with("note: "), "{straight:?}");
+    assert_ne!(axis.out, straight.out);
+    let both = format!("{numbers},parabola_per_mm,curvature_per_mm");
+    curve(&both, "C1,20,30,1.5,0.02,0.02").assert_refused(&[
+        "line 2: must have either parabola_per_mm or curvature_per_mm, which are one",
+    ]);
+    let whole = PAD.replace(
+        "[whiskers]",
+        "length_mm = 20\nbase_radius_um = 30\ntip_radius_um = 1.5\n[whiskers]",
+    );
+    place.write("scene.toml", &whole);
+    for (column, said) in [
+        (
+            "length_um",
+            "pad.csv:1: has the column length_um; values must be in mm: convert them, and use the name `length_mm`",
+        ),
+        (
+            "tip_radius",
+            "pad.csv:1: has the column tip_radius; did you mean `tip_radius_um`?",
+        ),
+        ("Length_mm", "did you mean `length_mm`?"),
+        ("lenght_mm", "did you mean `length_mm`?"),
+        ("curvature_per_m", "values must be in 1/mm"),
+    ] {
+        curve(&format!("name,{column}"), "C1,5").assert_refused(&[said]);
+    }
+    for column in ["notes", "length_sd_mm", "animal", "layer"] {
+        let run = curve(&format!("name,{column}"), "C1,5");
+        assert_eq!(run.code, Some(0), "{column} {run:?}");
+        assert!(run.err.contains("columns that are not used"), "{run:?}");
+    }
 }
 
 /// An axis would replace the numbers of a column, or leave the tip of a row where its taper does not put it.
@@ -211,6 +275,10 @@ fn wrong_uses_of_tables_are_refused() {
             "--at whisker: C2: tip_radius_um is missing".to_owned(),
         ),
         (
+            &["curve", "scene.toml", "--samples", "20"],
+            "whiskers.table: the scene sweeps 3 whiskers, but curve --samples needs one; select it by --at whisker=VALUE".to_owned(),
+        ),
+        (
             &["branch", "scene.toml", "--distance", "10"],
             "whiskers.table: the scene sweeps 3 whiskers, but branch needs one; select it by --at whisker=VALUE".to_owned(),
         ),
@@ -234,13 +302,12 @@ fn wrong_uses_of_tables_are_refused() {
             "pad.csv:1: has the column length_mm 2 times: must have it once",
         ),
         (
-            "name,length_cm,remark\nC1,2,good\n",
+            "name,size_mm,remark\nC1,2,good\n",
             "row 1: whisker.length_mm: is left out; ",
         ),
         (
-            "name,length_cm,remark\nC1,2,good\n",
-            "pad.csv:1: columns that are not used: length_cm, remark; `length_cm` is not known; values must be in mm: convert \
-             them, and use the name `length_mm`",
+            "name,size_mm,remark\nC1,2,good\n",
+            "pad.csv:1: columns that are not used: size_mm, remark",
         ),
         (
             "name,profile\nC1,no.csv\n",
@@ -248,7 +315,7 @@ fn wrong_uses_of_tables_are_refused() {
         ),
         (
             "name,length_mm\nC1,20\nC1,21\n",
-            "line 3: the name of a whisker must be unlike those before it",
+            "line 3: the name of a whisker must be unlike those before it; row 1 is C1 too",
         ),
     ] {
         place.write("pad.csv", rows);

@@ -144,6 +144,6 @@ fn points_of_other_whiskers_are_refused() {
         assert!(why.starts_with(said), "{row}: {why}");
     }
     let empty = MeasuredPoints::parse(&format!("{head},cb,8,20\n"), "p.csv").unwrap_err();
-    let said = "p.csv:3: whisker = : must be the name of a whisker";
+    let said = "p.csv:3: whisker is empty: must be the name of a whisker";
     assert!(empty.to_string().starts_with(said), "{empty}");
 }

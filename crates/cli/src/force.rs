@@ -112,7 +112,7 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         &options,
         &AtomicBool::new(false),
     );
-    if let Some(warning) = force::warning(&found) {
+    for warning in force::warnings(&whisker, &found) {
         message(&format!("warning: {warning}"));
     }
     let marks = match method {

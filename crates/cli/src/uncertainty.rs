@@ -2,6 +2,7 @@
 
 use super::arguments::whole;
 use super::failure::{Failure, check_resolved, message};
+use super::pole::check_single;
 use super::progress::Progress;
 use clap::Args;
 use whiskmap::Side;
@@ -29,6 +30,7 @@ impl SampleArgs {
         let Some(samples) = self.samples else {
             return Ok(None);
         };
+        check_single(scene, "curve --samples")?;
         let draws = Draws::new(scene, samples as usize, u64::from(self.seed));
         let draws = draws.map_err(|why| match why {
             DrawError::Sweep(_) => Failure::Input(format!("{why} with --samples")),

@@ -67,6 +67,7 @@ fn frame(motion: &Motion, i: usize, sample: &WhiskSample) -> Result<CurvatureFra
     frame.contact = points
         .find(|point| point.part == WhiskerPart::Contact)
         .map(|point| FrameContact {
+            is_known: true,
             contact_mm: turn.rotate(DVec2::new(point.x_mm, point.y_mm)).to_array(),
             contact_angle_deg: Some(point.angle_deg + push),
         });

@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer};
 use toml_edit::{Array, InlineTable, Value};
 
 use super::pairs::{PairKind, Pairs, PairsCsv, named_file, pair_array, points, rows};
-use crate::input::{CsvError, CsvTable, did_you_mean, shortened};
+use crate::input::{CsvError, CsvTable, did_you_mean, is_meant_as, shortened};
 use crate::scene::error::SceneFault;
 use crate::scene::grid::SweepVariable;
 use crate::scene::limits::digits;
@@ -116,7 +116,7 @@ impl RowTable {
                 row = row.yield_strain(value);
                 continue;
             }
-            let Some(parameter) = Parameter::named(&name) else {
+            let Some(parameter) = Parameter::of_column(&name) else {
                 let hint = did_you_mean(&name, WhiskerRow::columns());
                 let known = WhiskerRow::columns().collect::<Vec<_>>().join(", ");
                 let must = format!("is not known; must be one of {known}{hint}");
@@ -159,11 +159,49 @@ fn refused(why: CsvError) -> SceneFault {
 }
 
 impl WhiskerRow {
-    /// Returns the names of all columns of a table of whiskers.
+    /// Returns the names of all columns of a table of whiskers. A parameter has its own name, and the name of its sweep axis.
     pub fn columns() -> impl Iterator<Item = &'static str> + Clone {
         let others = [NAME, YIELD_STRAIN, PROFILE, REST_POINTS].into_iter();
-        others.chain(Parameter::ALL.map(Parameter::name))
+        let parameters = Parameter::ALL.into_iter().flat_map(column_names);
+        others.chain(parameters)
     }
+
+    /// Returns what is wrong with a table of whiskers with columns of these names: one of them is no name of a column, but most likely meant as
+    /// a column that the table lacks. `None` without such a name.
+    ///
+    /// ```
+    /// use whiskmap::scene::WhiskerRow;
+    ///
+    /// let misnamed = WhiskerRow::misnamed(&["name", "tip_radius"]);
+    /// assert_eq!(misnamed.as_deref(), Some("has the column tip_radius; did you mean `tip_radius_um`?"));
+    /// assert_eq!(WhiskerRow::misnamed(&["name", "taper", "tip_radius", "notes"]), None);
+    /// ```
+    #[must_use]
+    pub fn misnamed(names: &[&str]) -> Option<String> {
+        let has = |name: &str| names.contains(&name);
+        let is_given = |parameter: &Parameter| {
+            let substitutes = parameter.substitutes().iter();
+            let mut others = substitutes.map(|part| part.column());
+            column_names(*parameter).any(has) || others.any(has)
+        };
+        let lacking = Parameter::ALL.into_iter().filter(|own| !is_given(own));
+        let lacking: Vec<&str> = lacking.flat_map(column_names).collect();
+        let unknown = names
+            .iter()
+            .filter(|name| Self::columns().all(|own| own != **name));
+        let mut meant = unknown.filter_map(|name| {
+            let known = lacking.iter().find(|known| is_meant_as(name, known))?;
+            let hint = did_you_mean(name, [*known]);
+            Some(format!("has the column {}{hint}", shortened(name)))
+        });
+        meant.next()
+    }
+}
+
+/// Returns the names of a column of the parameter: its own, and the name of its sweep axis if that is another one.
+fn column_names(parameter: Parameter) -> impl Iterator<Item = &'static str> + Clone {
+    let axis = Some(parameter.axis()).filter(|axis| *axis != parameter.name());
+    [parameter.name()].into_iter().chain(axis)
 }
 
 /// Sets the pairs of a row.
@@ -177,6 +215,13 @@ fn read_csv(
 ) -> Result<Vec<WhiskerRow>, SceneFault> {
     let optional: Vec<&str> = WhiskerRow::columns().filter(|name| *name != NAME).collect();
     let note = table.require(&[&[NAME]], &optional).map_err(refused)?;
+    if let Some(what) = WhiskerRow::misnamed(&table.names().collect::<Vec<_>>()) {
+        return Err(refused(CsvError::at(
+            &table.origin,
+            table.header_line(),
+            what,
+        )));
+    }
     let text = |column: &str| {
         let cells = table.values(column, "", |cell| Some(cell.to_owned()));
         cells.map(Option::unwrap_or_default).map_err(refused)
@@ -187,8 +232,10 @@ fn read_csv(
         numbers.map_err(refused).map(Option::unwrap_or_default)
     };
     for parameter in Parameter::ALL {
-        for (row, number) in list.iter_mut().zip(numbers(parameter.name())?) {
-            *row = std::mem::take(row).set(parameter, number);
+        for column in column_names(parameter) {
+            for (row, number) in list.iter_mut().zip(numbers(column)?) {
+                *row = std::mem::take(row).set(parameter, number);
+            }
         }
     }
     for (row, strain) in list.iter_mut().zip(numbers(YIELD_STRAIN)?) {

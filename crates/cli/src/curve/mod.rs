@@ -17,7 +17,7 @@ use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
 use clap::Args;
-use plot::{CurveColumn, MOST_WHISKERS, scene_curves};
+use plot::{CurveColumn, MOST_WHISKERS, plot_title, scene_curves};
 use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::Side;
@@ -239,7 +239,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         all += rows.len() as u64;
     }
     bar.finish();
-    outputs.finish(scene.title.clone(), || {
+    outputs.finish(plot_title(&scene), || {
         scene_curves(&scene, resolution, args.x.axis())
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")

@@ -8,7 +8,7 @@ use whiskmap::render::{
     CurveAxis, DISTANCE, DrawnCurve, END_CHORD, END_FORCE, END_MOMENT, END_PUSH, Ink, Plot, Stroke,
     curves, regions,
 };
-use whiskmap::scene::{Scene, SweepVariable, SweptWhisker};
+use whiskmap::scene::{Coordinate, Scene, SweepVariable, SweptWhisker};
 use whiskmap::trace::{self, Detachment};
 use whiskmap::uncertainty::EndSpread;
 
@@ -27,15 +27,38 @@ const MOST_COLOURS: usize = 7;
 /// Names of values in the legend if there are more than [`MOST_COLOURS`].
 const NAMED: usize = 5;
 
+/// Returns the title of the plot: that of the scene, and how many rows of the table have no whisker.
+pub fn plot_title(scene: &Scene) -> String {
+    match scene.refused().count() {
+        0 => scene.title.clone(),
+        count => format!(
+            "{} ({count} of {} rows have no whisker)",
+            scene.title,
+            scene.table.len()
+        ),
+    }
+}
+
 /// Plots the detachment curves of all whiskers of the scene. The colour shows the value on the first sweep axis with several values, or the row of
 /// the table. A single curve has the colours of the kinds of detachment.
 pub fn scene_curves(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot {
+    let whiskers: Vec<SweptWhisker> = scene.whiskers().flatten().collect();
+    let coordinate = |swept: &SweptWhisker, index| {
+        let mut coordinates = swept.place.coordinates();
+        coordinates.nth(index).map(|(_, value)| value)
+    };
     let axes = scene.grid.sweep.iter();
     let coloured = axes
         .enumerate()
         .find(|(_, axis)| axis.values.len() > 1)
-        .map(|(index, axis)| (index, axis, axis.coordinates().collect::<Vec<_>>()));
-    let whiskers: Vec<SweptWhisker> = scene.whiskers().flatten().collect();
+        .map(|(index, axis)| {
+            // A row without a whisker has no curve, so no colour and no name.
+            let drawn = whiskers.iter().map(|swept| coordinate(swept, index));
+            let drawn: Vec<Option<Coordinate>> = drawn.collect();
+            let values = axis.coordinates().map(Some);
+            let values = values.filter(|value| drawn.contains(value));
+            (index, axis, values.collect::<Vec<_>>())
+        });
     let drawn: Vec<(f64, Vec<Detachment>)> = whiskers
         .par_iter()
         .map(|swept| detachments(scene, resolution, swept))
@@ -44,14 +67,8 @@ pub fn scene_curves(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot
         let Some((index, axis, values)) = &coloured else {
             return (None, String::new());
         };
-        let value = swept
-            .place
-            .coordinates()
-            .nth(*index)
-            .map(|(_, value)| value);
-        let place = values
-            .iter()
-            .position(|known| Some(known) == value.as_ref());
+        let value = coordinate(swept, *index);
+        let place = values.iter().position(|known| *known == value);
         let (place, last) = (place.unwrap_or_default(), values.len() - 1);
         let step = last as f64 / (NAMED - 1) as f64;
         let is_named = |i: usize| (step * i as f64).round() as usize == place;
