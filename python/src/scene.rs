@@ -227,6 +227,11 @@ impl CheckedScene {
         Some((smooth.degree, smooth.rms_um))
     }
 
+    /// Returns the yield strain of the whisker, of a table the first one that exists; `None` without one.
+    fn yield_strain(&self) -> Option<f64> {
+        self.0.whisker.yield_strain
+    }
+
     /// Scenes are equal if all their values are, whatever their texts.
     fn __eq__(&self, other: &Self) -> bool {
         let (scene, other) = (&*self.0, &*other.0);

@@ -109,5 +109,8 @@ def test_rows_of_a_table_have_their_own_yield_strains(scene: wm.Scene) -> None:
     assert pad.select("soft").whisker.yield_strain == 0.002
     assert pad.select("unknown").whisker.yield_strain is None
     assert pad.replace(length_mm=21).table == table
+    for strain in (None, 0.9):
+        one = scene.replace(yield_strain=strain).replace(table=[table[1]])
+        assert wm.detachment(one, distance_mm=[8.0], side="cb").yields.all()
     with pytest.raises(wm.SceneError, match="must be left out: whiskers.table has the column yield_strain"):
         pad.replace(yield_strain=0.01)

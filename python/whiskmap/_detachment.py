@@ -195,7 +195,7 @@ def detachment(
         array[present] = values.reshape((present.size, *more))
         return array.reshape((*shape, *more))
 
-    most = None if scene is None else scene.whisker.yield_strain
+    most = None if scene is None else _checked(scene).yield_strain()
     max_strain = None if strains is None else full(strains, np.nan)
     return Detachment(
         kind=_KINDS[full(kinds, len(_KINDS) - 1)],

@@ -8,7 +8,7 @@ use crate::sheet::net::ValueNet;
 use std::sync::Arc;
 use whiskmap_mechanics::shooting::batch::Method;
 
-/// SideRequest to an engine for all cells of one whisker side.
+/// Request to an engine for all cells of one whisker side.
 pub struct SideRequest {
     pub batch: RowBatch,
     /// Index of the target of each cell, if it has one.

@@ -16,8 +16,10 @@ const SINE_ROUNDING: f64 = 1e-9;
 /// Largest sine of the angle between the gradients of a pair that determines no state.
 const DEPENDENT: f64 = 1e-7;
 
-/// Bits of the signs of both misses at a node.
+/// Bit of a positive miss across the lever.
 pub const ACROSS: u8 = 1;
+
+/// Bit of a positive miss along the lever.
 pub const ALONG: u8 = 2;
 
 /// Levers of moment and force at the nodes of a grid, with a clamped base or in the follicle.

@@ -44,14 +44,19 @@ pub(super) struct Wanted<'a> {
 
 /// State that a search has found.
 pub(super) struct FoundState<'a> {
+    /// Grid of the side of the pole.
     pub grid: &'a SheetGrid,
+    /// Contact and load, `(tau, load)`.
     pub at: DVec2,
+    /// State at the base, with first derivatives.
     pub full: FullState,
     /// Derivatives of `[M, Fx, Fy]` by the logarithms of contact and load.
     pub derivatives: [DVec3; 2],
     /// Condition of the inverse for the measured numbers.
     pub condition: f64,
+    /// Direction of the pole in radians, continuous from first touch.
     pub phi: f64,
+    /// Misfit to the measured numbers ([`Wanted::misfit`]).
     pub misfit: f64,
 }
 
@@ -64,14 +69,17 @@ struct SearchEnd<'a> {
     last: FirstVariation,
 }
 
+/// Largest difference of the logarithms of contact and load of one state, whatever the condition.
+const MOST_DIFFERENT: f64 = 0.1;
+
 /// Returns true if two solutions at `(tau, load)`, with an inverse of this `condition`, are one state to rounding.
 fn is_same_state(one: DVec2, other: DVec2, condition: f64) -> bool {
     let change = (one - other).abs() / other.abs();
-    change.max_element() < SAME_STATE.max(ERROR_BY_CONDITION * condition)
+    change.max_element() < SAME_STATE.max((ERROR_BY_CONDITION * condition).min(MOST_DIFFERENT))
 }
 
-/// Yields the origins and points of the different `ends`, which have the order of the readings.
-fn different<'a, 'e>(
+/// Yields the origins and points of distinct `ends`. The `ends` are in the order of the readings.
+fn distinct<'a, 'e>(
     ends: &'e [SearchEnd<'a>],
 ) -> impl Iterator<Item = ((usize, &'a SheetGrid), DVec2)> + use<'a, 'e> {
     let is_new = |(place, end): &(usize, &SearchEnd)| {
@@ -143,7 +151,7 @@ impl Locator {
         }
         if self.sides.iter().any(|grid| grid.rod.mount != 0.0) {
             let ends = self.search(origins, points, |i, grid| wanted[i].in_clamp(grid));
-            (origins, points) = different(&ends).unzip();
+            (origins, points) = distinct(&ends).unzip();
         }
         let ends = self.search(origins, points, |i, grid| wanted[i].in_follicle(grid));
         let mut found: Vec<Vec<FoundState>> = wanted.iter().map(|_| Vec::new()).collect();

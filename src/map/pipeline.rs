@@ -48,6 +48,8 @@ pub struct Pipeline<'a, 'e> {
     drafted: Option<Drafted>,
     /// Whisker of each panel that is still to be finished. Bands of a panel have the same whisker.
     whiskers: Box<dyn Iterator<Item = usize> + 'a>,
+    /// True if a whisker has a yield strain.
+    has_yield_strain: bool,
     /// The group of the last batch, and the number of its rows in batches: band by band, and in a band side by side.
     begun: Option<(Group, usize)>,
     /// The batches made and not completed.
@@ -119,6 +121,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             columns,
             pushes,
             groups: Box::new(plan.groups()),
+            has_yield_strain: scene.has_yield_strain(),
             whiskers: Box::new(iter::repeat_with(|| plan.groups()).flatten().flatten()),
             drafted: None,
             begun: None,
@@ -150,9 +153,12 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let mut times = self.summary.stages;
         let (scene, summary) = (self.scene, &mut self.summary);
         let whiskers = self.whiskers.by_ref();
+        let has_yield_strain = self.has_yield_strain;
         let count = || {
             for (panel, whisker) in panels.iter().zip(whiskers) {
-                let found = scene.whisker(whisker).ok();
+                let found = has_yield_strain
+                    .then(|| scene.whisker(whisker).ok())
+                    .flatten();
                 summary.count(panel, found.and_then(|swept| swept.whisker.yield_strain));
             }
         };

@@ -290,7 +290,7 @@ impl SceneBuilder {
     }
 
     /// Sets the largest bending strain at the surface that the whiskers bear elastically: more than 0 and at most 1. States beyond it are
-    /// marked, and not changed. `None` marks none. With a column of yield strains in the table of whiskers, it is refused when the scene is built.
+    /// marked, and not changed. `None` marks none. A yield strain beside a table with a column `yield_strain` is refused when the scene is built.
     #[must_use]
     pub fn yield_strain(mut self, strain: impl Into<Option<f64>>) -> Self {
         let refused = self.refuse_yield_strain().err();

@@ -58,7 +58,8 @@ impl WhiskerRow {
         self
     }
 
-    /// Sets the largest bending strain that the whisker bears elastically, dimensionless. Without it, NaN, the whisker has no marks.
+    /// Sets the largest bending strain that the whisker bears elastically, dimensionless; NaN for a whisker without marks. A row without this
+    /// number has the yield strain of the scene.
     #[must_use]
     pub fn yield_strain(mut self, strain: f64) -> Self {
         self.yield_strain = Some(strain);

@@ -48,7 +48,7 @@ pub fn rows_per_batch(rows: usize) -> usize {
 /// Relative difference of `tau` from the tip's within which a contact counts as at the tip, in addition to the residual.
 const TIP_TIE: f64 = 1e-12;
 
-/// Number of cells of a sheet from which on accurate guesses pay.
+/// Least number of cells of a sheet for which accurate guesses save time ("Accuracy of guesses" in `benches/NOTES.md`).
 const MANY_CELLS: usize = 2048;
 
 /// The stable sheet of one whisker on one side of the pole, with the rows of a map.
@@ -91,9 +91,11 @@ impl Sheet {
         distances: &[f64],
         cells: usize,
     ) -> Self {
-        let accuracy = match cells < MANY_CELLS {
-            true => GuessAccuracy::COARSE,
-            false => GuessAccuracy::FINE,
+        // Guesses that are more accurate than the trajectories of the method save none.
+        let is_finer = method.resolution.least >= GuessAccuracy::FINE.resolution.least;
+        let accuracy = match cells >= MANY_CELLS && is_finer {
+            true => GuessAccuracy::FINE,
+            false => GuessAccuracy::COARSE,
         };
         Self::with_guesses(accuracy, method, rod, side, distances)
     }

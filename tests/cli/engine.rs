@@ -18,8 +18,7 @@ fn auto_does_not_start_a_gpu_for_a_small_map() {
     let run = place.run(&["map", "scene.toml", "--no-png"]);
     let said = said(&run);
     assert!(said.starts_with("cpu f64 on "), "{said}");
-    let counts =
-        "(auto: at most 288 cells a side, expansions cost 672; a GPU is not timed below 0.1 s)";
+    let counts = "(auto: at most 288 cells a side, expansions cost 672; a GPU is not timed below 0.1 s on all threads)";
     assert!(said.ends_with(counts), "{said}");
 }
 

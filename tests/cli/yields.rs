@@ -181,6 +181,20 @@ fn rows_of_a_table_have_their_own_yield_strains() {
             assert_eq!(picture.contains(LEGEND), has_marks, "{file} {whisker}");
         }
     }
+    // Without strains, a note says so of a whisker with a yield strain.
+    let few = [
+        "map",
+        "scene.toml",
+        "-o",
+        "few",
+        "--channels=regime,margin_deg",
+    ];
+    good(&place, &few);
+    for (whisker, has_note) in [("unknown", false), ("soft", true)] {
+        let at = format!("--at=whisker={whisker}");
+        let run = good(&place, &["render", "few/scene.exr", &at, "-o", "s.svg"]);
+        assert_eq!(run.err.contains("no cell is hatched"), has_note, "{run:?}");
+    }
     // The text of the map has the rows of the file.
     let again = MapSource::open(&place.path("outputs/scene.exr")).unwrap();
     let scene = again.scene().unwrap().unwrap();

@@ -51,7 +51,7 @@ const FIRST_LOOK: f64 = 0.01;
 /// Seconds for samples that compare GPU and CPU, unless the smallest ones take longer.
 const COMPARISON: f64 = 0.04;
 
-/// Seconds from opening a GPU to its first response, measured on lavapipe. A map that takes all threads of the CPU less opens no GPU.
+/// Seconds from opening a GPU to its first response, measured on lavapipe. A map that takes less time on all threads of the CPU opens no GPU.
 const OPENING: f64 = 0.1;
 
 impl EngineArgs {
@@ -206,7 +206,10 @@ impl EngineArgs {
         // Wall time would depend on what else the machine does.
         let cost = estimate(map.scene, &map.plan, &mut None, FIRST_LOOK)?;
         if cost.cpu_seconds < OPENING * rayon::current_num_threads() as f64 {
-            return Ok((host, format!("{why}; a GPU is not timed below {OPENING} s")));
+            return Ok((
+                host,
+                format!("{why}; a GPU is not timed below {OPENING} s on all threads"),
+            ));
         }
         let (index, report) = self.adapter()?.unzip();
         let name = report.as_ref().map(|report| report.info.name.clone());

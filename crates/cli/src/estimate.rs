@@ -202,10 +202,9 @@ impl MapSample {
         });
         let seconds: f64 = seconds.iter().sum();
         let threads = rayon::current_num_threads() as f64;
-        let used = self
-            .summary
-            .cpu_seconds
-            .map(|cpu| cpu / self.summary.wall_seconds);
+        // A clock with long steps may show no CPU time.
+        let used = self.summary.cpu_seconds.filter(|cpu| *cpu > 0.0);
+        let used = used.map(|cpu| cpu / self.summary.wall_seconds);
         MapCost {
             seconds,
             cpu_seconds: seconds * used.unwrap_or(threads),

@@ -135,7 +135,8 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
     if !map.channels().contains(&"margin_deg") {
         message("note: no detachment line is drawn: the map has no channel margin_deg");
     }
-    if !map.yield_strains()?.is_empty() && !map.channels().contains(&"peak_strain") {
+    let has_yield_strain = map.yield_strains()?.iter().any(Option::is_some);
+    if has_yield_strain && !map.channels().contains(&"peak_strain") {
         message(
             "note: no cell is hatched beyond the yield strain: the map has no channel peak_strain",
         );
