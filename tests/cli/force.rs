@@ -261,7 +261,7 @@ fn impossible_contacts_are_noticed() {
     let reasons: Vec<&str> = reasons.iter().map(|row| *row.last().unwrap()).collect();
     assert_eq!(reasons, ["no-lever", "out-of-reach"], "{lever:?}");
     let model = force(&place, &["--model"]);
-    let warning = "1 of 2 frames have a contact_off_mm of more than 2, a tenth of the whisker's length, and up to 23.399: check";
+    let warning = "1 of 2 frames have a contact_off_mm of more than 2, a tenth of the whisker's length, and up to 23.4: check";
     assert!(model.err.contains(warning), "{model:?}");
     place.write("f.csv", include_str!("../../scenes/frames.csv"));
     assert_eq!(force(&place, &["--model"]).err, "");
