@@ -117,6 +117,11 @@ impl TrackedFilm {
         self.0.notes.clone()
     }
 
+    /// Returns warnings about what may be wrong or is not known.
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings.clone()
+    }
+
     /// Returns the points of a frame from base to tip, `[point][x, y]` in mm.
     fn shape(&self, frame: u64) -> PyResult<Vec<[f64; 2]>> {
         let points = self.0.shape(frame).map_err(|why| refused(&why))?;

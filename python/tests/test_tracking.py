@@ -114,3 +114,8 @@ def test_bad_values_are_refused(tmp_path):
         assert why in str(refused.value)
     with pytest.raises(OSError):
         wm.read_tracking(tmp_path / "no.csv", **SCALE)
+
+
+def test_a_distance_in_contact_that_is_too_small_warns():
+    with pytest.warns(wm.SceneWarning, match="more than 0.1 mm: check --contact-within"):
+        wm.read_tracking(FILM, **SCALE, pole="pole", contact_within_mm=0.1)

@@ -14,7 +14,7 @@ import xarray as xr
 
 from whiskmap._datasets import variables
 from whiskmap._values import csv_text, number, numbers
-from whiskmap._warnings import require
+from whiskmap._warnings import require, warn
 from whiskmap._whiskmap import TrackedFilm
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Tracking:
     ----------
     frames : xarray.Dataset
         Frames by `time_s`, from the first to the last one, as `force` takes them. `angle_deg` is the angle of the base for `whisk`,
-        `curvature_per_mm` the curvature at `at_arc_length_mm`, and `contact` is 1 or 0. Numbers of gaps are NaN, with a `reason`: "missing"
+        `curvature_per_mm` the curvature at `at_arc_length_mm`, and `contact` is 1 or 0, or NaN where it is not known. Numbers of gaps are NaN, with a `reason`: "missing"
         (the tracker has lost the whisker or its base, or has too few points) or "no-curve" (the points lie along no smooth curve).
     detachments : xarray.Dataset
         Detachments from the pole by `number`, as `fit` takes them: `side`, `distance_mm`, `push_angle_deg` and `time_s`. Empty without a pole.
@@ -135,6 +135,11 @@ def read_tracking(
         If a file cannot be read.
     ImportError
         If an NWB file is read without the extra `nwb`.
+
+    Warns
+    -----
+    SceneWarning
+        If the pole, an option or the points do not fit, points are few, a body part is lost in all frames, or contacts are not known.
     """
     paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if isinstance(points, str):
@@ -159,6 +164,7 @@ def read_tracking(
     }
     film = TrackedFilm.parse([(_text(Path(path)), os.fspath(path)) for path in paths], options)
     frames = xr.Dataset(variables(film.frames(), ("time_s",), (-1,))).set_coords("time_s")
+    warn(film.warnings())
     detachments = xr.Dataset(variables(film.detachments(), ("number",), (-1,)))
     return Tracking(frames, detachments, film.notes(), film.format(), film)
 

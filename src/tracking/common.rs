@@ -2,7 +2,7 @@
 
 use super::MORE_POINTS;
 use super::bent::{FittedLoad, FrameFit, FramePoints, TrackedRod, fit};
-use crate::least_squares::{BoundedProblem, Svd, dot, norm, search};
+use crate::least_squares::{BoundedProblem, FAINT, Svd, dot, norm, search};
 use crate::scene::{digits, rounded};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -29,6 +29,12 @@ const CHORDS: usize = 16;
 
 /// Part of the whisker whose chord gives the angle of the base with which a fit begins.
 const FIRST_CHORD: f64 = 0.3;
+
+/// Ratio of the scatter about a common shape at rest to that about shapes of each frame from which on frames have no shape in common.
+const UNLIKE: f64 = 2.0;
+
+/// Standard deviations of the logarithm of this ratio beyond which it counts.
+const SURE: f64 = 4.0;
 
 /// Frame with what its fits need, in lengths of the whisker.
 pub(super) struct RodFrame {
@@ -213,13 +219,35 @@ impl CommonRest {
     /// Returns the scatter of the coefficients, which were fitted to these frames.
     pub fn scatter(&self, frames: &[&RodFrame], cancel: &AtomicBool) -> Option<RestScatter> {
         let problem = Self::problem(frames, cancel);
-        // Each frame has the unknowns of its pose.
-        let unknown = 3 * frames.len() + self.coefficients.len();
-        let left = self.count.saturating_sub(unknown).max(1);
+        let left = self.left(frames.len()).max(1);
         Some(RestScatter {
             slopes: Svd::new(problem.jacobian(&self.coefficients, &[])?),
             rms: (self.mean_square * self.count as f64 / left as f64).sqrt(),
         })
+    }
+
+    /// Returns the standard deviations of a residual, in lengths, about the common shape and about a shape of each frame, `[common, own]`, if
+    /// the former is far larger. The logarithm of their ratio scatters as Fisher's z.
+    pub fn unlike(&self, frames: &[&RodFrame], cancel: &AtomicBool) -> Option<[f64; 2]> {
+        let each = frames.par_iter().filter_map(|frame| {
+            let most = frame.traced.points.len() - MORE_POINTS;
+            let degree = most.min(self.coefficients.len() - 1);
+            let own = Self::new(&[*frame], &self.coefficients[..=degree], degree, cancel)?;
+            Some((own.mean_square * own.count as f64, own.left(1)))
+        });
+        let (sums, left): (Vec<f64>, Vec<usize>) = each.unzip();
+        let left = [self.left(frames.len()), left.iter().sum()].map(|left| left.max(1) as f64);
+        let common = (self.mean_square * self.count as f64 / left[0]).sqrt();
+        let own = (sums.iter().sum::<f64>() / left[1]).sqrt();
+        let deviation = (0.5 * (left[0].recip() + left[1].recip())).sqrt();
+        let most = UNLIKE * libm::exp(SURE * deviation) * own;
+        (common > most.max(FAINT)).then_some([common, own])
+    }
+
+    /// Returns the number of residuals over that of unknowns, with the pose of each frame.
+    fn left(&self, frames: usize) -> usize {
+        self.count
+            .saturating_sub(3 * frames + self.coefficients.len())
     }
 
     /// Returns the root mean square of the distances of points in so many frames. Each frame has one more residual than points.

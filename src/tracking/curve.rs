@@ -2,8 +2,9 @@
 
 use super::frame_curve::FrameCurve;
 use super::options::{FaceAxis, TrackingError, TrackingOptions};
+use super::rods::{self, NoRods};
 use super::sample::{evenly, median};
-use super::{CurvedFrame, ImageFrame, MORE_POINTS, NoFrame, rods};
+use super::{CurvedFrame, ImageFrame, MORE_POINTS, NoFrame, Remarks};
 use crate::scene::{digits, rounded};
 use crate::traced::{MOST_DEGREE, TracedShape, common_degree};
 use glam::DVec2;
@@ -43,11 +44,12 @@ impl<'a> Curves<'a> {
         frames: &'a [ImageFrame],
         options: &TrackingOptions,
         cancel: &AtomicBool,
-        notes: &mut Vec<String>,
+        remarks: &mut Remarks,
     ) -> Result<Self, TrackingError> {
         let scale = options.mm_per_pixel;
         let points =
             |count: usize| format!("{count} points along a smooth curve, the base among them");
+        let mut is_unlike = false;
         let (curves, needs) = if frames.iter().any(|frame| frame.bend.is_some()) {
             let axis = options.face_axis.unwrap_or_else(|| face_axis(frames));
             let name = match axis {
@@ -59,7 +61,7 @@ impl<'a> Curves<'a> {
             } else {
                 ", as the ends of the segments show"
             };
-            notes.push(format!(
+            remarks.notes.push(format!(
                 "angles are measured from the {name} axis of the image{found}"
             ));
             let arcs = frames.iter().map(|frame| arc(frame, axis, scale));
@@ -73,20 +75,21 @@ impl<'a> Curves<'a> {
                 let must = "must be left out: only measurements of whisk have angles".to_owned();
                 return Err(super::refused("face_axis", axis, must));
             }
-            match rods::curves(frames, options, cancel, notes) {
-                Some(rods) => (rods, points(MORE_POINTS + 1)),
-                None => (
-                    traced_frames(frames, options, cancel, notes),
-                    points(MORE_POINTS),
-                ),
+            match rods::curves(frames, options, cancel, remarks) {
+                Ok(rods) => (rods, points(MORE_POINTS + 1)),
+                Err(why) => {
+                    is_unlike = matches!(why, NoRods::Unlike(_));
+                    let traced = traced_frames(frames, options, &why, cancel, remarks);
+                    (traced, points(MORE_POINTS))
+                }
             }
         };
         let curves: Vec<Result<FrameCurve, NoFrame>> = curves;
         let turn = median(curves.iter().flatten().map(FrameCurve::turn));
-        let is_mirrored = options.mirror.unwrap_or(turn < -STRAIGHT);
+        let is_mirrored = options.mirror.unwrap_or(!is_unlike && turn < -STRAIGHT);
         if is_mirrored && options.mirror.is_none() {
             let degrees = -turn.to_degrees();
-            notes.push(format!(
+            remarks.notes.push(format!(
                 "the image is mirrored, so that the concave side is CF: from base to tip, the whisker turns clockwise, by {degrees:.1} deg (median)"
             ));
         }
@@ -138,7 +141,7 @@ impl<'a> Curves<'a> {
     }
 }
 
-/// Number of points along a whisker below which a note says that they are few. With 8 exact points along the cone of `cone.toml`, detachments
+/// Number of points along a whisker below which a warning says that they are few. With 8 exact points along the cone of `cone.toml`, detachments
 /// were off by up to 7 degrees, with 10 by 2, with 12 by 0.7, and with 16 by 0.4.
 const ENOUGH_POINTS: f64 = 12.0;
 
@@ -146,8 +149,9 @@ const ENOUGH_POINTS: f64 = 12.0;
 fn traced_frames(
     frames: &[ImageFrame],
     options: &TrackingOptions,
+    why: &NoRods,
     cancel: &AtomicBool,
-    notes: &mut Vec<String>,
+    remarks: &mut Remarks,
 ) -> Vec<Result<FrameCurve, NoFrame>> {
     let points = frames
         .iter()
@@ -177,11 +181,24 @@ fn traced_frames(
         first.map(|(_, point)| *point).collect()
     };
     let points_each = median(known().map(|points| points.len() as f64));
-    if points_each < ENOUGH_POINTS {
-        notes.push(format!(
-            "{points_each} points along the whisker are few: angles and curvatures of a bent whisker may be far off; {ENOUGH_POINTS} or more are enough, or 5 with --pole"
+    let are_few = points_each < ENOUGH_POINTS;
+    if are_few {
+        let or = if options.pole.is_none() {
+            ", or 5 with --pole"
+        } else {
+            ""
+        };
+        remarks.warnings.push(format!(
+            "{points_each} points along the whisker are few: angles and curvatures of a bent whisker may be far off; {ENOUGH_POINTS} or more are enough{or}"
         ));
     }
+    let shows_contact = match why {
+        NoRods::Selected => true,
+        NoRods::Few { .. } => !are_few,
+        NoRods::Unlike(_) => false,
+    };
+    remarks.warnings.extend(why.warning(shows_contact));
+    let notes = &mut remarks.notes;
     let mut degree_of = |shapes: Vec<Vec<[f64; 2]>>, what: &str| {
         options
             .degree
@@ -204,7 +221,12 @@ fn traced_frames(
         };
         let near = fit(near(whole), near_degree)?;
         let whole = fit(whole.clone(), whole_degree)?;
-        Ok(FrameCurve::traced(&near, &whole))
+        let curve = FrameCurve::traced(&near, &whole);
+        Ok(if shows_contact {
+            curve
+        } else {
+            curve.hiding_contact()
+        })
     };
     points.par_iter().map(frame).collect()
 }

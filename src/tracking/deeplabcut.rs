@@ -1,7 +1,7 @@
 //! CSV files of DeepLabCut: the rows `scorer`, `bodyparts` and `coords`, then a row for each frame.
 
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused, unknown};
-use super::{ImageFrame, ImageFrames, PointOrder};
+use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
 use crate::input::{CsvError, CsvLine, CsvLines, each_once, shortened};
 
 /// Names of the rows of the header.
@@ -135,12 +135,30 @@ pub(super) fn read(
             shortened(&unused.join(", "))
         )
     });
+    let along = along.iter().zip(&whiskers);
+    let all = along.clone().chain(pole.iter().zip(&poles));
+    let lost = all.filter(|(_, positions)| positions.iter().all(Option::is_none));
+    let lost = lost.map(|(name, _)| {
+        let what = if Some(*name) == pole {
+            "contacts are not known"
+        } else {
+            "the whisker is traced without it"
+        };
+        format!(
+            "body part {}: lost in all frames, at a likelihood of at least {}: {what}",
+            shortened(name),
+            options.likelihood
+        )
+    });
     Ok(ImageFrames {
         frames,
         order: match options.points.is_empty() {
-            true => PointOrder::Named(along.iter().map(|part| (*part).to_owned()).collect()),
+            true => PointOrder::Named(along.map(|(part, _)| (*part).to_owned()).collect()),
             false => PointOrder::FromBase,
         },
-        notes: unused.into_iter().collect(),
+        remarks: Remarks {
+            notes: unused.into_iter().collect(),
+            warnings: lost.collect(),
+        },
     })
 }

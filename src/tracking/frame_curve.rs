@@ -3,6 +3,7 @@
 use super::bent::{BentPose, FrameFit, TrackedRod};
 use crate::traced::TracedShape;
 use glam::DVec2;
+use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 use whiskmap_mechanics::rod::{CurvaturePolynomial, Rest, Rod};
 
@@ -34,6 +35,8 @@ pub(super) struct NearestPlace {
     pub angle: f64,
     /// Distance of the pole's centre from the whisker, in mm, positive on its left.
     pub offset_mm: f64,
+    /// True if the pole is ahead of the end of the curve, within 45 degrees and one length.
+    pub is_ahead: bool,
 }
 
 /// Form of the curve of one frame.
@@ -60,6 +63,8 @@ pub(super) struct FrameCurve {
     loaded: Option<(Arc<TrackedRod>, BentPose)>,
     /// True if the y axis of the form has the other sign.
     is_mirrored: bool,
+    /// True if the curve shows whether the whisker touches the pole.
+    pub shows_contact: bool,
     /// Length of the traced whisker, in mm.
     pub length_mm: f64,
     /// Root mean square of the points' distances from the curve, in mm; `None` without points.
@@ -145,6 +150,7 @@ impl FrameCurve {
             at_mm: scale * at,
             angle,
             offset_mm: scale * offset,
+            is_ahead: false,
         };
         Self {
             form: CurveForm::Bent {
@@ -154,6 +160,7 @@ impl FrameCurve {
             },
             loaded: None,
             is_mirrored: false,
+            shows_contact: true,
             length_mm,
             rms_mm,
         }
@@ -169,8 +176,17 @@ impl FrameCurve {
             form: CurveForm::Polynomials { near, whole },
             loaded: None,
             is_mirrored: false,
+            shows_contact: true,
             length_mm,
             rms_mm,
+        }
+    }
+
+    /// Returns the curve as one that does not show whether the whisker touches the pole.
+    pub fn hiding_contact(self) -> Self {
+        Self {
+            shows_contact: false,
+            ..self
         }
     }
 
@@ -253,12 +269,17 @@ impl FrameCurve {
                 let rest = whole.rest();
                 let pole = self.turned(pole_mm.into());
                 let (s, offset_mm) = whole.nearest(&rest, pole);
-                let position = rest.at_arclength(s).0 * whole.length_mm;
-                let at = whole.base + DVec2::from_angle(whole.angle).rotate(position);
+                let (position, tangent) = rest.at_arclength(s);
+                let position = position * whole.length_mm;
+                let axis = DVec2::from_angle(whole.angle);
+                let at = whole.base + axis.rotate(position);
+                let away = pole - at;
+                let is_along = away.dot(axis.rotate(tangent)) > FRAC_1_SQRT_2 * away.length();
                 NearestPlace {
                     at_mm: DVec2::from_angle(-near.angle).rotate(at - near.base),
                     angle: whole.angle + whole.curvature.angle(s) - near.angle,
                     offset_mm,
+                    is_ahead: is_along && s > 0.5 && away.length() <= whole.length_mm,
                 }
             }
         };
@@ -266,6 +287,7 @@ impl FrameCurve {
             at_mm: self.turned(place.at_mm),
             angle: self.signed(place.angle),
             offset_mm: self.signed(place.offset_mm),
+            is_ahead: place.is_ahead,
         }
     }
 }

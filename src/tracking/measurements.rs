@@ -5,7 +5,7 @@
 //! curvature in 1/px. Tables of `ndx-whisk` call the first two `frame_id` and `whisker_id`.
 
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
-use super::{ImageFrame, ImageFrames, PointOrder};
+use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
 use crate::input::{CsvError, CsvTable};
 use std::collections::BTreeMap;
 
@@ -101,7 +101,10 @@ pub(super) fn read(
     Ok(ImageFrames {
         frames: frames.into_values().map(|(_, frame)| frame).collect(),
         order: PointOrder::FromBase,
-        notes: note.into_iter().chain(doubles).collect(),
+        remarks: Remarks {
+            notes: note.into_iter().chain(doubles).collect(),
+            ..Remarks::default()
+        },
     })
 }
 

@@ -71,8 +71,16 @@ struct ImageFrames {
     frames: Vec<ImageFrame>,
     /// Order of the points of each frame.
     order: PointOrder,
-    /// Notes about the file.
+    remarks: Remarks,
+}
+
+/// Notes and warnings about a film.
+#[derive(Debug, Default)]
+struct Remarks {
+    /// What was found.
     notes: Vec<String>,
+    /// What may be wrong, or is not known.
+    warnings: Vec<String>,
 }
 
 /// Order of the points of a frame.
@@ -97,6 +105,8 @@ pub struct Tracking {
     pub detachments: Vec<TrackedDetachment>,
     /// Notes on what was found: the base, mirrored images, the degree of curves, gaps.
     pub notes: Vec<String>,
+    /// Warnings: a pole, an option or points that do not fit, and contacts that are not known.
+    pub warnings: Vec<String>,
     /// Number of each frame, and its traced points in millimetres from base to tip, `[frame]`.
     shapes: Vec<(u64, Vec<[f64; 2]>)>,
 }
@@ -177,15 +187,15 @@ impl Tracking {
             return Err(CsvError::whole(origin, what).into());
         };
         orient::order(&mut image, options)?;
-        let curves = curve::Curves::new(&image.frames, options, cancel, &mut image.notes)?;
+        let curves = curve::Curves::new(&image.frames, options, cancel, &mut image.remarks)?;
         let needs = curves.needs.clone();
         let curves = curves.of_frames(from..=last);
         if curves.iter().all(|frame| frame.curve.is_err()) {
             let what = format!("has no frame with a curve: must have at least one with {needs}");
             return Err(CsvError::whole(origin, what).into());
         }
-        let mut notes = image.notes;
-        let (frames, contacts) = rows::frames(&curves, options, &mut notes)?;
+        let mut remarks = image.remarks;
+        let (frames, contacts) = rows::frames(&curves, options, &mut remarks)?;
         let shapes = curves
             .iter()
             .map(|frame| (frame.number, frame.points_mm.clone()));
@@ -193,7 +203,8 @@ impl Tracking {
             format,
             detachments: detachment::detachments(&frames, &contacts),
             frames,
-            notes,
+            notes: remarks.notes,
+            warnings: remarks.warnings,
             shapes: shapes.collect(),
         })
     }

@@ -30,7 +30,7 @@ pub(super) fn order(
         PointOrder::FromBase => return Ok(()),
         PointOrder::Named(names) => {
             let beside = chain(&mut image.frames, names);
-            image.notes.extend(beside.into_iter().map(|name| {
+            image.remarks.notes.extend(beside.into_iter().map(|name| {
                 format!(
                     "body part {name} is beside the whisker in most frames: give the parts along the whisker by --points, and the pole by --pole"
                 )
@@ -47,7 +47,7 @@ pub(super) fn order(
             far[1] < far[0]
         }
         None if ends.iter().any(|positions| positions.len() < 2) => {
-            image.notes.push("one frame does not show the base: points are taken from base to tip as they are given".to_owned());
+            image.remarks.notes.push("one frame does not show the base: points are taken from base to tip as they are given".to_owned());
             false
         }
         None => {
@@ -69,7 +69,7 @@ pub(super) fn order(
     }
     let base = places(&image.frames, 0);
     let [x, y] = centre(&base);
-    image.notes.push(format!(
+    image.remarks.notes.push(format!(
         "base at {x:.1},{y:.1} px; it moves by {:.2} px, the tip by {:.2} px (medians)",
         spread(&base),
         spread(&places(&image.frames, 1))

@@ -1,7 +1,7 @@
 //! Points along the whisker without a header: `x,y`, a file for each frame, or `frame,x,y`.
 
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
-use super::{ImageFrame, ImageFrames, PointOrder};
+use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
 use crate::input::{CsvError, CsvLine, CsvLines};
 
 /// Reads the frames of files. An empty file among several is a lost frame.
@@ -89,6 +89,6 @@ pub(super) fn read(
     Ok(ImageFrames {
         frames,
         order: PointOrder::Along,
-        notes: Vec::new(),
+        remarks: Remarks::default(),
     })
 }

@@ -1,9 +1,10 @@
 //! Rows of frames, for `whisk` and `force`.
 
-use super::CurvedFrame;
 use super::frame_curve::{FrameCurve, NearestPlace};
 use super::options::{TrackingError, TrackingOptions, refused};
+use super::rods::BESIDE;
 use super::sample::median;
+use super::{CurvedFrame, Remarks};
 use crate::scene::{digits, rounded};
 use crate::trace::row;
 use rayon::prelude::*;
@@ -58,12 +59,13 @@ row! {
     }
 }
 
-/// Computes the rows of all frames, and the nearest place to the pole in each; adds notes.
+/// Computes the rows of all frames, and the nearest place to the pole in each; adds notes and warnings.
 pub(super) fn frames(
     curves: &[CurvedFrame],
     options: &TrackingOptions,
-    notes: &mut Vec<String>,
+    remarks: &mut Remarks,
 ) -> Result<(Vec<TrackedFrame>, Vec<Option<NearestPlace>>), TrackingError> {
+    let Remarks { notes, warnings } = remarks;
     let known = || curves.iter().filter_map(|frame| frame.curve.as_ref().ok());
     let length_mm = median(known().map(|curve| curve.length_mm));
     let near_mm = median(known().map(FrameCurve::near_mm));
@@ -114,7 +116,8 @@ pub(super) fn frames(
         let at = curve.map(|curve| at_mm.unwrap_or(0.5 * curve.length_mm));
         let at = at.filter(|at| curve.is_some_and(|curve| *at <= curve.near_mm()));
         let position = curve.zip(at).map(|(curve, at)| curve.position_mm(at));
-        let is_near = place.map(|place| place.offset_mm.abs() <= within);
+        let shown = place.filter(|_| curve.is_some_and(|curve| curve.shows_contact));
+        let is_near = shown.map(|place| place.offset_mm.abs() <= within);
         let contact = place.filter(|_| is_near == Some(true));
         TrackedFrame {
             frame: frame.number,
@@ -135,12 +138,50 @@ pub(super) fn frames(
     };
     let rows = curves.par_iter().zip(&places).zip(&angles).map(row);
     let mut rows: Vec<TrackedFrame> = rows.collect();
+    let reach_mm = within + BESIDE * length_mm;
+    warnings.extend(aside(&rows, &places, reach_mm));
+    warnings.extend(hide_ahead(&mut rows, &places));
     let zero_deg = zero(&rows, options, notes)?;
     for row in &mut rows {
         row.angle_deg = row.angle_deg.map(|angle| angle - zero_deg);
     }
     count(&rows, notes);
     Ok((rows, places))
+}
+
+/// Returns a warning if no frame is within this distance of the pole's centre.
+fn aside(rows: &[TrackedFrame], places: &[Option<NearestPlace>], reach_mm: f64) -> Option<String> {
+    let pairs = rows.iter().zip(places);
+    let all = pairs.filter_map(|(row, place)| Some((row.frame, place.as_ref()?.offset_mm.abs())));
+    let (frame, least_mm) = all.min_by(|one, other| one.1.total_cmp(&other.1))?;
+    (least_mm > reach_mm).then(|| {
+        format!(
+            "no frame comes near the pole: the whisker is {} mm or more from its centre (frame {frame}); check its position, whose y axis points downward, and --mm-per-pixel",
+            digits(rounded(least_mm, 2))
+        )
+    })
+}
+
+/// In a film without contact, removes that of frames whose whisker may reach the pole beyond its traced end; returns a warning.
+fn hide_ahead(rows: &mut [TrackedFrame], places: &[Option<NearestPlace>]) -> Option<String> {
+    if rows.iter().any(|row| row.contact == Some(1)) {
+        return None;
+    }
+    let mut count = 0;
+    for (row, _) in rows
+        .iter_mut()
+        .zip(places)
+        .filter(|(row, place)| row.contact.is_some() && place.is_some_and(|place| place.is_ahead))
+    {
+        row.contact = None;
+        count += 1;
+    }
+    (count > 0).then(|| {
+        format!(
+            "in {count} of {} frames, the pole is ahead of the end of the trace: contact is not known, and empty; trace the whisker past the pole",
+            rows.len()
+        )
+    })
 }
 
 /// Returns the angle of the base in the frame whose angle is 0, in degrees.

@@ -295,3 +295,43 @@ fn bad_imports_are_refused() {
         "{run:?}"
     );
 }
+
+/// Counts the frames of a run by their contact.
+fn contacts(out: &str, contact: &str) -> usize {
+    let rows = out.lines().skip(1);
+    rows.filter(|row| row.split(',').nth(7) == Some(contact))
+        .count()
+}
+
+/// The pole of the shipped film has a radius of 0.25 mm.
+#[test]
+fn a_film_that_does_not_fit_its_pole_has_warnings_and_no_contact_of_0() {
+    let place = film();
+    let own = [&FILM[..], &["--fps", "500"]].concat();
+    let run = place.run(&own);
+    assert!(!run.err.contains("warning: "), "{run:?}");
+    assert_eq!([contacts(&run.out, "0"), contacts(&run.out, "1")], [23, 30]);
+    let small = own
+        .iter()
+        .map(|own| if *own == "0.35mm" { "0.15mm" } else { *own });
+    let small = place.run(&small.collect::<Vec<_>>());
+    let why = "frames, the whisker is bent at the pole, but is 0.25 mm from its centre (median), more than 0.15 mm";
+    assert!(small.err.contains("warning: in "), "{small:?}");
+    assert!(small.err.contains(why), "{small:?}");
+    // The two lightest pushes bend the whisker by less than the errors of points.
+    assert_eq!(
+        [contacts(&small.out, "0"), contacts(&small.out, "1")],
+        [25, 0]
+    );
+    let names = "base,w1,w2,w3,w4,w5,w6,w7,w8,w9,w10,w11,w12,tip";
+    let aside = [&own[..], &["--points", names]].concat();
+    let aside = aside
+        .iter()
+        .map(|own| if *own == "pole" { "300,900" } else { *own });
+    let aside = place.run(&aside.collect::<Vec<_>>());
+    let why = "warning: no frame comes near the pole: ";
+    assert!(aside.err.contains(why), "{aside:?}");
+    let why = "warning: frames far from the pole have no shape at rest in common";
+    assert!(aside.err.contains(why), "{aside:?}");
+    assert_eq!(contacts(&aside.out, "0"), 0, "{aside:?}");
+}

@@ -143,18 +143,22 @@ fn the_shipped_film_has_a_slip_off() {
     let named = "body part pole is beside the whisker in most frames: give the parts along the whisker by --points, and the pole by --pole";
     assert_eq!(notes.collect::<Vec<_>>(), [named]);
     let are_few = |note: &String| note.contains("points along the whisker are few");
-    assert!(!found.notes.iter().any(are_few), "{:?}", found.notes);
+    assert!(!found.warnings.iter().any(are_few), "{:?}", found.warnings);
     let mut some = with(&|own| {
         own.points = ["base", "w3", "w6", "w9", "w12", "tip"]
             .map(str::to_owned)
             .to_vec()
     });
     let few = parse(text, &some).unwrap();
-    assert!(few.notes.iter().any(are_few), "{:?}", few.notes);
+    assert!(few.warnings.iter().any(are_few), "{:?}", few.warnings);
     // With a pole, six points are enough.
     (some.pole, some.contact_within_mm) = (own.pole, own.contact_within_mm);
     let enough = parse(text, &some).unwrap();
-    assert!(!enough.notes.iter().any(are_few), "{:?}", enough.notes);
+    assert!(
+        !enough.warnings.iter().any(are_few),
+        "{:?}",
+        enough.warnings
+    );
     let [end] = enough.detachments[..] else {
         panic!("{:?}", enough.detachments)
     };

@@ -4,6 +4,7 @@
 mod film;
 mod refused;
 mod rods;
+mod warnings;
 
 use std::sync::atomic::AtomicBool;
 use whiskmap::tracking::{

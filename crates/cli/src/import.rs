@@ -215,6 +215,9 @@ pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
     for note in &tracking.notes {
         message(&format!("note: {note}"));
     }
+    for warning in &tracking.warnings {
+        message(&format!("warning: {warning}"));
+    }
     match shape {
         Some(points) => write(OutputTable::new(output), points),
         None if args.detachments => {
