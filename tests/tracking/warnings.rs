@@ -127,7 +127,7 @@ fn body_parts_that_are_lost_in_all_frames_are_named() {
     );
 }
 
-/// A frame in contact and one without are displaced by 30 pixels.
+/// A frame in contact is displaced by 30 pixels.
 #[test]
 fn a_displaced_frame_has_no_curve() {
     let (text, pole, truth) = film(CONE, Side::Cb, 8, 0.05);
