@@ -38,12 +38,7 @@ pub fn whisker_sides(
         let rod = swept.rod(columns.side);
         let distances = grid.distance_mm.iter();
         let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
-        // An engine solves the cells of most rows without guesses.
-        let cells = match net {
-            Some(_) => 0,
-            None => columns.columns.len() * distances.len(),
-        };
-        let sheet = Sheet::for_cells(method, &rod, columns.side, &distances, cells);
+        let sheet = Sheet::new(method, &rod, columns.side, &distances);
         let mut side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
         if !derivatives.is_empty() {
             let (resolution, sheet) = (method.resolution, &side.sheet);

@@ -1,7 +1,6 @@
 //! The whisker side that a sheet is computed for.
 
 use whiskmap_mechanics::rod::{Rod, Side};
-use whiskmap_mechanics::shooting::Resolution;
 use whiskmap_mechanics::shooting::batch::{Batch, Method, OutputSet};
 
 /// Description of the sheet to sample: method of integration, rod, and side.
@@ -16,23 +15,20 @@ pub struct SheetCase<'a> {
 }
 
 impl SheetCase<'_> {
-    /// Returns this case of a sheet at another `resolution`.
-    pub const fn at(self, resolution: Resolution) -> Self {
+    /// Returns this case of a sheet at the coarse resolution.
+    pub const fn coarsely(self) -> Self {
+        let method = self.method.coarsely();
+        Self { method, ..self }
+    }
+
+    /// Returns this case of a sheet at the fine resolution, or its own if that is finer.
+    pub const fn finely(self) -> Self {
+        let resolution = self.method.resolution.at_least_fine();
         let method = Method {
             resolution,
             ..self.method
         };
         Self { method, ..self }
-    }
-
-    /// Returns this case of a sheet at the coarse resolution.
-    pub const fn coarsely(self) -> Self {
-        self.at(Resolution::COARSE)
-    }
-
-    /// Returns this case of a sheet at the fine resolution, or its own if that is finer.
-    pub const fn finely(self) -> Self {
-        self.at(self.method.resolution.at_least_fine())
     }
 
     /// Computes the outputs of trajectories at `points` `(tau, load)`, `[point]`, in padded blocks ([`Batch::padded`]).

@@ -31,7 +31,7 @@ pub(crate) use span::RowSpan;
 
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
-use net::{GuessAccuracy, ValueNet};
+use net::{FOLD_ERROR, GUESS_ERROR, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
 use std::sync::Arc;
@@ -47,9 +47,6 @@ pub fn rows_per_batch(rows: usize) -> usize {
 
 /// Relative difference of `tau` from the tip's within which a contact counts as at the tip, in addition to the residual.
 const TIP_TIE: f64 = 1e-12;
-
-/// Least number of cells of a sheet for which accurate guesses save time ("Accuracy of guesses" in `benches/NOTES.md`).
-const MANY_CELLS: usize = 2048;
 
 /// The stable sheet of one whisker on one side of the pole, with the rows of a map.
 #[derive(Clone, Debug)]
@@ -79,48 +76,24 @@ impl Sheet {
     /// Computes the sheet of `rod` by `method` for rows at `distances` (at first touch, in whisker lengths).
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_guesses(GuessAccuracy::COARSE, method, rod, side, distances)
-    }
-
-    /// Computes the sheet as [`Sheet::new`] does, with guesses for this number of `cells`: for many, accurate ones save more time than they take.
-    #[must_use]
-    pub fn for_cells(
-        method: Method,
-        rod: &Rod,
-        side: Side,
-        distances: &[f64],
-        cells: usize,
-    ) -> Self {
-        // Guesses that are more accurate than the trajectories of the method save none.
-        let is_finer = method.resolution.least >= GuessAccuracy::FINE.resolution.least;
-        let accuracy = match cells >= MANY_CELLS && is_finer {
-            true => GuessAccuracy::FINE,
-            false => GuessAccuracy::COARSE,
-        };
-        Self::with_guesses(accuracy, method, rod, side, distances)
+        Self::with_error(GUESS_ERROR, method, rod, side, distances)
     }
 
     /// Computes the sheet as [`Sheet::new`] does, for the crossings of its rows alone: rows may have no [`Sheet::guesses`].
     #[must_use]
     pub fn of_ends(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_guesses(GuessAccuracy::FOLDS, method, rod, side, distances)
+        Self::with_error(FOLD_ERROR, method, rod, side, distances)
     }
 
-    /// Computes the sheet with panels of this `accuracy`.
-    fn with_guesses(
-        accuracy: GuessAccuracy,
-        method: Method,
-        rod: &Rod,
-        side: Side,
-        distances: &[f64],
-    ) -> Self {
+    /// Computes the sheet with this `error` of its panels.
+    fn with_error(error: f64, method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
         let rest = Rest::new(rod);
         let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
         let case = SheetCase { method, rod, side };
-        let samples = nearest.and_then(|nearest| SheetSamples::new(case, nearest, &rows, accuracy));
+        let samples = nearest.and_then(|nearest| SheetSamples::new(case, nearest, &rows, error));
         let is_certified = samples.as_ref().is_some_and(|samples| samples.is_certified);
         let mut crossings = match &samples {
             Some(samples) => crossings(case, &samples.edges, &rows),

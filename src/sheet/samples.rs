@@ -3,7 +3,7 @@
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::Edges;
 use crate::sheet::fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
-use crate::sheet::net::{GuessAccuracy, GuessPanel, Panels};
+use crate::sheet::net::{GuessPanel, Panels};
 use crate::sheet::row::Row;
 
 /// Largest negative load, relative to the fold load, that counts as unloaded. At the soft tip of a strongly curved cone, rounding of
@@ -21,20 +21,15 @@ pub struct SheetSamples {
 }
 
 impl SheetSamples {
-    /// Samples the sheet of `rows`, the `nearest` of which is nearest to the base, with panels of this `accuracy`. If the samples are not
+    /// Samples the sheet of `rows`, the `nearest` of which is nearest to the base, with this `error` of the panels. If the samples are not
     /// certified, it samples again at a narrow spacing, with panels by fine trajectories. Returns `None` if some contact has no fold, or no stable
     /// state at first touch.
-    pub fn new(
-        case: SheetCase,
-        nearest: &Row,
-        rows: &[Row],
-        accuracy: GuessAccuracy,
-    ) -> Option<Self> {
+    pub fn new(case: SheetCase, nearest: &Row, rows: &[Row], error: f64) -> Option<Self> {
         let nodes = |case, spacing| ContactNodes::new(case, nearest, spacing);
         let sampled = |contacts: ContactNodes, by, folds: Option<ContactNodes>| {
             let edges = Edges::new(case, &contacts);
             let folds = folds.as_ref().unwrap_or(&contacts);
-            let panels = Panels::for_guesses(by, folds, rows, accuracy.error);
+            let panels = Panels::for_guesses(by, folds, rows, error);
             let shows_folds = |panel: &GuessPanel| panel.shows_folds(case.rod, folds);
             let all = panels.of_all_rows();
             let shows_folds = all.is_some_and(|all| all.iter().all(shows_folds));
@@ -46,7 +41,7 @@ impl SheetSamples {
             }
         };
         let contacts = nodes(case, SPACING);
-        match contacts.map(|contacts| sampled(contacts, case.at(accuracy.resolution), None)) {
+        match contacts.map(|contacts| sampled(contacts, case.coarsely(), None)) {
             Some(samples) if samples.is_certified => Some(samples),
             samples => {
                 // Near the tip of a perfect cone, coarse trajectories have other folds: which ones are first is shown by fine ones.

@@ -19,36 +19,14 @@ use whiskmap_mechanics::numerics::inverse::Inverse;
 use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
 use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
 use whiskmap_mechanics::rod::{Rod, arclength};
-use whiskmap_mechanics::shooting::{Resolution, ShootingMap};
+use whiskmap_mechanics::shooting::ShootingMap;
 
-/// Accuracy of panels for guesses.
-#[derive(Clone, Copy, Debug)]
-pub struct GuessAccuracy {
-    /// Largest error of `ln D` and `phi` of a guess, by the last coefficients. The error is mostly much smaller.
-    pub error: f64,
-    /// Resolution of the trajectories. Coarse steps change with the load, which leaves up to 6e-6.
-    pub resolution: Resolution,
-}
+/// Largest error of `ln D` and `phi` of a guess, by the last coefficients. The error is mostly much smaller, and one step of Newton's method from
+/// there is exact. The steps of coarse trajectories change with the load, which leaves up to 6e-6.
+pub const GUESS_ERROR: f64 = 1e-5;
 
-impl GuessAccuracy {
-    /// Accuracy of panels that only show the folds.
-    pub const FOLDS: Self = Self {
-        error: 1e-3,
-        resolution: Resolution::COARSE,
-    };
-
-    /// Accuracy of the guesses for few cells: one step of Newton's method from there is exact.
-    pub const COARSE: Self = Self {
-        error: 1e-5,
-        resolution: Resolution::COARSE,
-    };
-
-    /// Accuracy of the guesses for many cells: nearly all steps of Newton's method are so short that no trajectory follows.
-    pub const FINE: Self = Self {
-        error: 1e-7,
-        resolution: Resolution::of(8),
-    };
-}
+/// Largest error of `ln D` and `phi`, by the last coefficients, where the panels only show the folds.
+pub const FOLD_ERROR: f64 = 1e-3;
 
 /// Smallest number of points of contact and scale of the load as functions of `u`.
 const ALONG: usize = 16;
@@ -407,7 +385,7 @@ mod tests {
         let rest = Rest::new(&rod);
         let rows: Vec<Row> = [0.3, 0.5, 0.7].map(|d| Row::new(&rest, d)).into();
         let contacts = ContactNodes::new(case, &rows[0], SPACING).unwrap();
-        let panels = Panels::for_guesses(case, &contacts, &rows, GuessAccuracy::COARSE.error);
+        let panels = Panels::for_guesses(case, &contacts, &rows, GUESS_ERROR);
         let panel = &panels.of_all_rows().unwrap()[0];
         assert!(panel.shows_folds(&rod, &contacts));
         let value = |x: f64, y: f64| {
