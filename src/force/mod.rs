@@ -175,8 +175,8 @@ impl ForceOptions {
 
 /// Largest distance of a measured contact from the contact of the model without a warning, in whisker lengths.
 ///
-/// Of 68 films that `import` reads with points off by up to 2 pixels, or with a wrong shape at rest, 67 have distances of up to 0.054. With
-/// the axis of another frame of the base, they grow to 0.53.
+/// Measured on 68 films made with points off by up to 2 pixels, or with a wrong shape at rest: 67 films have distances of up to 0.054. The axis
+/// of another frame of the base leads to distances of up to 0.53.
 const MOST_OFF: f64 = 0.1;
 
 /// Returns one line for frames of `whisker` without a force, and one for frames whose contact is far from the contact of the model.

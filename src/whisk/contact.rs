@@ -1,19 +1,8 @@
 //! Contacts along a course: one after the other, each from its touch to its release or detachment, with friction or without.
 
-use super::states::BothSides;
+use super::states::{BothSides, CourseContact};
 use crate::friction::{ContactCourse, ContactPhase, CourseLimits, Sliding};
 use whiskmap_mechanics::rod::Side;
-
-/// Contact of the whisker at one time: side, push and, with friction, the phase of the contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CourseContact {
-    /// Side of the whisker that the pole is on.
-    pub side: Side,
-    /// Push since the touch, in radians, as a magnitude.
-    pub push: f64,
-    /// Phase of the contact; `None` without friction.
-    pub phase: Option<ContactPhase>,
-}
 
 /// Change of a contact between its touch and its end.
 #[derive(Clone, Copy, Debug)]

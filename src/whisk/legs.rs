@@ -2,9 +2,9 @@
 //!
 //! Events belong to the course, not to its samples: a contact is moved to events and turning points alone, and read at samples.
 
-use super::contact::{ContactChange, CourseContact, CourseContacts};
+use super::contact::{ContactChange, CourseContacts};
 use super::phase::{Obstacles, Passage, Phase};
-use super::states::BothSides;
+use super::states::{BothSides, CourseContact};
 use super::turns::Turns;
 use super::{Undecided, WhiskEventKind};
 use whiskmap_mechanics::rod::Side;

@@ -1,10 +1,9 @@
 //! Samples and events of a course with their states.
 
-use super::contact::CourseContact;
 use super::legs::{LegEvent, LegSample};
 use super::phase::Phase;
 use super::rows::{Undecided, WhiskEvent, WhiskRegime, WhiskSample};
-use super::states::{BothSides, CourseState, SideStates};
+use super::states::{BothSides, CourseContact, CourseState, SideStates};
 use crate::friction::{ContactPhase, held, states};
 use crate::trace::StateRow;
 use glam::DVec2;

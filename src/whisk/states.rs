@@ -1,7 +1,6 @@
 //! States of a course on one side of its obstacles, in batches.
 
 use super::WhiskEventKind;
-use super::contact::CourseContact;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, RefineOutcome, refine};
 use crate::scene::{Pole, Whisker};
@@ -12,6 +11,17 @@ use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::shape::profile;
 use whiskmap_mechanics::shooting::{Reader, Reading, Resolution};
+
+/// Contact of the whisker at one time: side, push and, with friction, the phase of the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CourseContact {
+    /// Side of the whisker that the pole is on.
+    pub side: Side,
+    /// Push since the touch, in radians, as a magnitude.
+    pub push: f64,
+    /// Phase of the contact; `None` without friction.
+    pub phase: Option<ContactPhase>,
+}
 
 /// Stable states on one side of poles at several distances, from first touch to the end of the push.
 pub struct SideStates {
