@@ -21,9 +21,9 @@ use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
 use whiskmap_mechanics::rod::{Rod, arclength};
 use whiskmap_mechanics::shooting::ShootingMap;
 
-/// Largest error of `ln D` and `phi` of a guess, by the last coefficients. The error is mostly much smaller, and one step of Newton's method from
-/// there is exact. The steps of coarse trajectories change with the load, which leaves up to 6e-6.
-pub const GUESS_ERROR: f64 = 1e-5;
+/// Largest error of `ln D` and `phi` of a guess, by the last coefficients. The error is mostly much smaller, so that the step of Newton's method
+/// from nearly every guess is short enough to be the last. The steps of coarse trajectories change with the load, which leaves up to 6e-6.
+pub const GUESS_ERROR: f64 = 3e-7;
 
 /// Largest error of `ln D` and `phi`, by the last coefficients, where the panels only show the folds.
 pub const FOLD_ERROR: f64 = 1e-3;
