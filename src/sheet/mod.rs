@@ -31,7 +31,7 @@ pub(crate) use span::RowSpan;
 
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
-use net::{FOLD_ERROR, GUESS_ERROR, ValueNet};
+use net::{FOLD_ERRORS, GUESS_ERRORS, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
 use std::sync::Arc;
@@ -76,25 +76,33 @@ impl Sheet {
     /// Computes the sheet of `rod` by `method` for rows at `distances` (at first touch, in whisker lengths).
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_error(GUESS_ERROR, method, rod, side, distances)
+        Self::with_errors(GUESS_ERRORS, method, rod, side, distances)
     }
 
     /// Computes the sheet as [`Sheet::new`] does, for the crossings of its rows alone: rows may have no [`Sheet::guesses`].
     #[must_use]
     pub fn of_ends(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_error(FOLD_ERROR, method, rod, side, distances)
+        Self::with_errors(FOLD_ERRORS, method, rod, side, distances)
     }
 
-    /// Computes the sheet with this `error` of its panels.
-    fn with_error(error: f64, method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
+    /// Computes the sheet with panels to the first of two `errors`, or else to the second.
+    fn with_errors(
+        errors: [f64; 2],
+        method: Method,
+        rod: &Rod,
+        side: Side,
+        distances: &[f64],
+    ) -> Self {
         let rest = Rest::new(rod);
         let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
         let nearest = rows
             .iter()
             .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
         let case = SheetCase { method, rod, side };
-        let samples = nearest.and_then(|nearest| SheetSamples::new(case, nearest, &rows, error));
-        let is_certified = samples.as_ref().is_some_and(|samples| samples.is_certified);
+        let samples = nearest.and_then(|nearest| SheetSamples::new(case, nearest, &rows, errors));
+        let is_certified = samples
+            .as_ref()
+            .is_some_and(|samples| samples.panels.is_some());
         let mut crossings = match &samples {
             Some(samples) => crossings(case, &samples.edges, &rows),
             None => vec![Vec::new(); rows.len()],
@@ -270,7 +278,7 @@ impl Sheet {
         if let Some(panel) = self
             .samples
             .as_ref()
-            .and_then(|samples| samples.panels.of(row))
+            .and_then(|samples| samples.panels.as_ref()?.of(row))
         {
             for ends in self.pieces(row) {
                 panel.write_guesses(self.case(), &self.rows[row], ends, pushes, &mut guesses);

@@ -15,34 +15,36 @@ const UNLOADED: f64 = 1e-6;
 pub struct SheetSamples {
     pub contacts: ContactNodes,
     pub edges: Edges,
-    pub panels: Panels<GuessPanel>,
-    /// True if the samples show the sheet at the contacts of its rows: no fold and no crossing is hidden between them.
-    pub is_certified: bool,
+    /// Panels that show the sheet at the contacts of its rows: no fold and no crossing is hidden between the samples. `None` if the samples are
+    /// not certified.
+    pub panels: Option<Panels<GuessPanel>>,
 }
 
 impl SheetSamples {
-    /// Samples the sheet of `rows`, the `nearest` of which is nearest to the base, with this `error` of the panels. If the samples are not
-    /// certified, it samples again at a narrow spacing, with panels by fine trajectories. Returns `None` if some contact has no fold, or no stable
-    /// state at first touch.
-    pub fn new(case: SheetCase, nearest: &Row, rows: &[Row], error: f64) -> Option<Self> {
+    /// Samples the sheet of `rows`, the `nearest` of which is nearest to the base, with panels to the first of two `errors`, or to the second if
+    /// those do not show all folds. If the samples are not certified, it samples again at a narrow spacing, with panels by fine trajectories.
+    /// Returns `None` if some contact has no fold, or no stable state at first touch.
+    pub fn new(case: SheetCase, nearest: &Row, rows: &[Row], errors: [f64; 2]) -> Option<Self> {
         let nodes = |case, spacing| ContactNodes::new(case, nearest, spacing);
         let sampled = |contacts: ContactNodes, by, folds: Option<ContactNodes>| {
             let edges = Edges::new(case, &contacts);
             let folds = folds.as_ref().unwrap_or(&contacts);
-            let panels = Panels::for_guesses(by, folds, rows, error);
             let shows_folds = |panel: &GuessPanel| panel.shows_folds(case.rod, folds);
-            let all = panels.of_all_rows();
-            let shows_folds = all.is_some_and(|all| all.iter().all(shows_folds));
+            let show_folds = |panels: &Panels<GuessPanel>| {
+                let all = panels.of_all_rows();
+                all.is_some_and(|all| all.iter().all(shows_folds))
+            };
+            let panels = |error| Panels::for_guesses(by, folds, rows, error);
+            let found = || errors.into_iter().map(panels).find(show_folds);
             Self {
-                is_certified: edges.are_certified() && shows_folds,
+                panels: edges.are_certified().then(found).flatten(),
                 contacts,
                 edges,
-                panels,
             }
         };
         let contacts = nodes(case, SPACING);
         match contacts.map(|contacts| sampled(contacts, case.coarsely(), None)) {
-            Some(samples) if samples.is_certified => Some(samples),
+            Some(samples) if samples.panels.is_some() => Some(samples),
             samples => {
                 // Near the tip of a perfect cone, coarse trajectories have other folds: which ones are first is shown by fine ones.
                 let fine = case.finely();

@@ -27,7 +27,7 @@ use crate::sheet::Row;
 use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::row::REACH_SLACK;
 pub use guesses::PUSH_MARGIN;
-pub(super) use guesses::{FOLD_ERROR, GUESS_ERROR, GuessPanel};
+pub(super) use guesses::{FOLD_ERRORS, GUESS_ERRORS, GuessPanel};
 use size::NetSize;
 use std::ops::Range;
 use whiskmap_mechanics::rod::Rod;
