@@ -82,7 +82,7 @@ const FMA: [(&str, u64); 17] = [
     ("fig5_right", 0xdc62_9b1c_e02c_baaf),
     ("follicle", 0x7d49_97ca_5a75_1c22),
     ("friction", 0x481d_855a_cc30_a4da),
-    ("measured", 0x1f15_b96d_4631_7597),
+    ("measured", 0x4c04_4926_08d8_b6c6),
     ("morphology", 0x8138_01c4_0139_3bc0),
     ("pad", 0xdcf6_83a7_4d0a_5a49),
     ("robot", 0x1d2e_3667_ac36_04fb),

@@ -8,12 +8,15 @@ use compute::{compute, is_contact};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use whiskmap::Side;
 use whiskmap::classify::Regime;
 use whiskmap::engine::Spectral;
 use whiskmap::map::{self, Channels, Panel, STATE_CHANNELS};
+use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::plan::Plan;
 use whiskmap::refine::TOLERANCE;
 use whiskmap::scene::{Parameter, Scene};
+use whiskmap::sheet::Sheet;
 use whiskmap::{Channel, Error, MapEngine, Options};
 
 #[test]
@@ -38,6 +41,24 @@ fn shipped_scenes_have_no_doubtful_cell() {
                     && panel.residual[cell].is_finite()
                     && panel.margin_deg[cell] >= 0.0;
                 assert_eq!(contact, complete, "{} cell {cell}", scene.title);
+            }
+        }
+    }
+}
+
+/// Whiskers of shipped scenes need no continuation, neither for cells nor for ends alone: it takes up to a hundred times as long as panels. Among
+/// them are perfect cones, friction, and measured radii.
+#[test]
+fn panels_show_the_folds_of_shipped_scenes() {
+    for scene in shipped::scenes() {
+        for swept in scene.whiskers().flatten() {
+            let distances = scene.grid.distance_mm.iter();
+            let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
+            for side in Side::BOTH {
+                for sheet in [Sheet::new, Sheet::of_ends] {
+                    let sheet = sheet(Method::fine(), &swept.rod(side), side, &distances);
+                    assert!(!sheet.is_continued(), "{} {side:?} {swept:?}", scene.title);
+                }
             }
         }
     }

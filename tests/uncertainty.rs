@@ -35,7 +35,7 @@ fn scene(uncertainty: &str) -> Scene {
 
 fn spreads(scene: &Scene, samples: usize, seed: u64) -> Vec<EndSpread> {
     let draws = Draws::new(scene, samples, seed).unwrap();
-    let spread = |side| draws.spread(Resolution::FINE, side, || ());
+    let spread = |side| draws.spread(Resolution::FINE, side, &|| ());
     Side::BOTH.into_iter().flat_map(spread).collect()
 }
 
@@ -219,7 +219,7 @@ fn draws_outside_of_the_limits_are_drawn_again() {
     let draws = Draws::new(&limit, 200, 1).unwrap();
     // Half of all draws; 200 more are expected, give or take 20.
     assert!((120..280).contains(&draws.refused), "{}", draws.refused);
-    let rows = draws.spread(Resolution::FINE, Side::Cb, || ());
+    let rows = draws.spread(Resolution::FINE, Side::Cb, &|| ());
     // A thicker tip holds on for longer.
     for row in rows {
         assert!(row.p5_deg.unwrap() > row.push_angle_deg.unwrap(), "{row:?}");
@@ -360,8 +360,8 @@ fn largest_loads_of_samples_spread_as_the_loads_of_one_push() {
     let scene = Scene::parse(text, "measured.toml").unwrap();
     let draws = Draws::new(&scene, 200, 1).unwrap();
     for side in Side::BOTH {
-        let largest = draws.largest(side, || ())[0];
-        let end = draws.spread(Resolution::FINE, side, || ())[0];
+        let largest = draws.largest(side, &|| ())[0];
+        let end = draws.spread(Resolution::FINE, side, &|| ())[0];
         let branch = whiskmap::trace::Branch::new(&scene.whisker, &scene.pole, side, 10.0).unwrap();
         let points = branch.points(4000).unwrap();
         let most = |of: fn(&whiskmap::trace::BranchPoint) -> f64| {

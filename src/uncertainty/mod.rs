@@ -120,7 +120,7 @@ impl Draws {
         &self,
         resolution: Resolution,
         side: Side,
-        tick: impl Fn() + Sync,
+        tick: &(dyn Fn() + Sync),
     ) -> Vec<EndSpread> {
         let distances = &self.scene.grid.distance_mm;
         let curve = |whisker: &Whisker, pole: &Pole| {
@@ -153,7 +153,7 @@ impl Draws {
     /// Computes the spread of the largest loads of pushes on one side, `[distance]`, at every distance of the scene. Each push takes some
     /// milliseconds. `tick` is called after every whisker.
     #[must_use]
-    pub fn largest(&self, side: Side, tick: impl Fn() + Sync) -> Vec<LargestSpread> {
+    pub fn largest(&self, side: Side, tick: &(dyn Fn() + Sync)) -> Vec<LargestSpread> {
         let distances = &self.scene.grid.distance_mm;
         let loads = |whisker: &Whisker, pole: &Pole| {
             let distances = distances.iter();

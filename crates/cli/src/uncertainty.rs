@@ -43,7 +43,7 @@ impl SampleArgs {
 /// Computes the percentiles of the `draws`, `[side][distance]`. Prints the number of repeated draws.
 pub fn spread(draws: &Draws, resolution: Resolution) -> Vec<EndSpread> {
     let bar = Progress::over(Side::BOTH.len() * draws.len(), "curves");
-    let spread = |side| draws.spread(resolution, side, || bar.inc(1));
+    let spread = |side| draws.spread(resolution, side, &|| bar.inc(1));
     let rows: Vec<EndSpread> = Side::BOTH.into_iter().flat_map(spread).collect();
     bar.finish();
     if draws.refused > 0 {
@@ -59,7 +59,7 @@ pub fn spread(draws: &Draws, resolution: Resolution) -> Vec<EndSpread> {
 /// Computes the percentiles of the largest loads of the `draws`, `[side][distance]`, in the order of [`spread`].
 pub fn largest(draws: &Draws) -> Vec<LargestSpread> {
     let bar = Progress::over(Side::BOTH.len() * draws.len(), "whiskers");
-    let spread = |side| draws.largest(side, || bar.inc(1));
+    let spread = |side| draws.largest(side, &|| bar.inc(1));
     let rows = Side::BOTH.into_iter().flat_map(spread).collect();
     bar.finish();
     rows
