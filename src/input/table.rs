@@ -247,10 +247,6 @@ impl CsvTable {
         is_allowed: impl Fn(f64) -> bool,
     ) -> Result<Option<Vec<f64>>, CsvError> {
         let must = format!("{must}, or empty where it is missing");
-        let is_missing = |cell: &str| {
-            let mut markers = MISSING.iter();
-            markers.any(|marker| cell.eq_ignore_ascii_case(marker))
-        };
         self.parsed(column, &must, |cell| match cell {
             cell if is_missing(cell) => Some(f64::NAN),
             cell => {
@@ -392,6 +388,12 @@ const MOST_HINTS: usize = 100;
 
 /// The end of a message about numbers with commas where commas separate columns.
 const DECIMAL_COMMAS: &str = "; where numbers have decimal commas, separate columns by `;`";
+
+/// Returns true if a cell of measurements stands for a missing value.
+pub(crate) fn is_missing(cell: &str) -> bool {
+    let mut markers = MISSING.iter();
+    markers.any(|marker| cell.eq_ignore_ascii_case(marker))
+}
 
 /// Number of cells of a line, without empty cells at its end.
 fn filled(line: &CsvLine) -> usize {

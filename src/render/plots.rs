@@ -3,11 +3,13 @@
 //! Solid lines are stable states, dashed lines unstable states. Slip-off is black and pull-off is blue, as in the paper.
 
 use super::labels;
+use super::marks::YIELDING;
 use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
 use crate::locate::{LocatedState, Locator};
 use crate::scene::digits;
 use crate::sensitivity::Variable;
 use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
+use crate::yields::PushMark;
 use whiskmap_plot::{Disc, Dot, Ink, Line, Plot, Stroke};
 
 /// Axis of a plot of table rows: a label and the value of each row.
@@ -89,6 +91,22 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
         plot.lines.push(symbol.named("pull-off"));
     }
     plot
+}
+
+/// Returns a dot at an `end` of a detachment curve if its push exceeds the yield strain.
+#[must_use]
+pub fn yielding_end(
+    end: &Detachment,
+    mark: Option<PushMark>,
+    [x, y]: [CurveAxis; 2],
+) -> Option<Dot> {
+    mark?.yields.filter(|yields| *yields)?;
+    Some(Dot {
+        at: [(x.value)(end)?, (y.value)(end)?],
+        ink: Ink::Grey,
+        open: true,
+        name: Some(YIELDING.to_owned()),
+    })
 }
 
 /// The branches of a whisker at one pole, with their colour and name.

@@ -227,7 +227,7 @@ fn bad_imports_are_refused() {
         (
             "film.csv",
             curved(&["--points", "base,tip"]),
-            "film.csv: has no frame with a curve: must have at least one with 4 points along a smooth curve, the base among them",
+            "film.csv: has no frame with a curve: must have at least one with 5 points along a smooth curve, the base among them and all within ",
         ),
         (
             "film.csv",
@@ -242,7 +242,7 @@ fn bad_imports_are_refused() {
         (
             "film.csv",
             curved(&["--zero", "9s"]),
-            "--zero 9: must be the time of a frame with a whisker",
+            "--zero 9: must be the time of a frame with a whisker, between 0 and ",
         ),
         (
             "film.csv",

@@ -247,6 +247,16 @@ fn maps_have_strains_and_hatched_cells() {
         assert_eq!(picture.contains(LEGEND), has_part, "{scene}");
         assert_eq!(picture.contains("stroke-dasharray"), has_part, "{scene}");
     }
+    // A curve has a dot at each end that the table marks, beside that of the legend. It has no other dots.
+    for (scene, has_marks) in [("scene.toml", true), ("strong.toml", false)] {
+        let run = good(&place, &["curve", scene, "--csv", "-", "--plot", "s.svg"]);
+        let marks = column(&run.out, "yields").unwrap();
+        let count = marks.iter().filter(|mark| *mark == "true").count();
+        let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+        assert_eq!(picture.contains(LEGEND), has_marks, "{scene}");
+        let dots = picture.matches("<circle").count();
+        assert_eq!(dots, count + usize::from(has_marks), "{scene}");
+    }
     // The cells are hatched, not only the legend.
     let body = |picture: &str| {
         let mut rasters = picture.split("<image");

@@ -372,6 +372,46 @@ fn points_without_a_header_come_back() {
     );
 }
 
+/// A lost end does not turn the points of its frame around, and a frame without its base is a gap.
+#[test]
+fn points_without_numbers_are_lost() {
+    let known = (0..ANGLES.len()).map(|frame| (points(frame), format!("{frame}.csv")));
+    let lost = |frame: usize, which: usize, marker: &str| -> String {
+        let text = points(frame);
+        let lines = text.lines().enumerate();
+        lines
+            .map(|(i, line)| format!("{}\n", if i == which { marker } else { line }))
+            .collect()
+    };
+    let mut files: Vec<(String, String)> = known.collect();
+    let cancel = AtomicBool::new(false);
+    let all = Tracking::parse(&files, &options(), &cancel).unwrap().frames;
+    // Odd frames are given from tip to base. Frame 1 loses its tip, 2 its base, 3 its base, and 4 a point between.
+    for (frame, which, marker) in [
+        (1, 0, "NA,NA"),
+        (2, 0, "nan,3"),
+        (3, 20, ",4"),
+        (4, 7, "none,N/A"),
+    ] {
+        files[frame].0 = lost(frame, which, marker);
+    }
+    let some = Tracking::parse(&files, &options(), &cancel).unwrap().frames;
+    for (found, wanted) in some.iter().zip(&all) {
+        if [2, 3].contains(&found.frame) {
+            assert_eq!(found.reason, Some(NoFrame::Missing));
+        } else {
+            assert_near(found.angle_deg, wanted.angle_deg.unwrap(), 1e-7);
+            assert_near(found.curvature_per_mm, 0.04, 1e-9);
+        }
+    }
+    let one = parse("0,NA,NA\n", &options());
+    assert!(
+        one.unwrap_err()
+            .to_string()
+            .contains("has no frame with a curve: must have at least one with 4 points")
+    );
+}
+
 /// The time of the angle 0 may be given.
 #[test]
 fn the_angle_is_0_at_a_given_time() {

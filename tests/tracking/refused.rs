@@ -57,6 +57,10 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
             "film.csv:2: y = far: must be a number between -1e6 and 1e6",
         ),
         (
+            "0,1\n0,2e6\n".to_owned(),
+            "film.csv:2: y = 2e6: must be a number between -1e6 and 1e6, or empty where it is missing",
+        ),
+        (
             "0,1,2,3\n".to_owned(),
             "film.csv:1: has 4 cells: must have x,y or frame,x,y",
         ),
@@ -85,6 +89,28 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
         why.to_string(),
         "b.csv: is a second file: only the format xy may have several, one for each frame"
     );
+}
+
+/// Nine points are enough, but not for every degree, nor near the base alone.
+#[test]
+fn a_degree_that_needs_more_points_is_named() {
+    let film = deeplabcut(exact);
+    for (degree, fit_to_mm, why) in [
+        (
+            6,
+            None,
+            "with 10 points along a smooth curve, the base among them and all within 17.",
+        ),
+        (
+            2,
+            Some(10.0),
+            "with 6 points along a smooth curve, the base among them and all within 10 mm of it; a curvature of degree 2 needs as many",
+        ),
+    ] {
+        let options = with(&|own| (own.degree, own.fit_to_mm) = (Some(degree), fit_to_mm));
+        let message = refusal(&film, &options);
+        assert!(message.contains(why), "{message}\n{why}");
+    }
 }
 
 #[test]
@@ -169,7 +195,7 @@ fn options_that_do_not_fit_are_refused() {
         (
             &film,
             with(&|own| own.zero_s = Some(1.0)),
-            "zero_s = 1: must be the time of a frame with a whisker",
+            "zero_s = 1: must be the time of a frame with a whisker, between 0 and 0.01 s in steps of 1/500 s",
         ),
         (
             &rows,
