@@ -99,15 +99,11 @@ def test_bad_values_are_refused(tmp_path):
         ({"mm_per_pixel": 0}, ValueError, "mm_per_pixel = 0: must be a number between 1e-9 and 1e9"),
         ({"format": "csv"}, ValueError, "format = 'csv': must be one of 'deeplabcut', 'whisk', 'xy'"),
         ({"face_axis": "z"}, ValueError, "face_axis = 'z': must be 'x' or 'y'"),
-        ({"pole": "pole"}, ValueError, "pole = pole: needs contact_within_mm"),
-        ({"taper": 0.9}, ValueError, "taper = 0.9: must be left out without a pole"),
-        ({**POLE, "taper": 2}, ValueError, "taper = 2: must be a number between 0 and 1"),
         ({"pole": [1]}, ValueError, "pole: must be x and y in pixels, has 1 numbers"),
         ({"points": "base"}, TypeError, "points = 'base': must be a list of names"),
         ({"whisker": 1.5}, TypeError, "whisker = 1.5: must be a whole number"),
         ({"degree": -1}, ValueError, "degree = -1: must be between 0 and 6"),
         ({"fps": "500"}, TypeError, "fps = '500': must be a number, without a unit"),
-        ({"curvature_at_mm": 30}, ValueError, "curvature_at_mm = 30: must be between 0 and "),
     ]:
         with pytest.raises(kind) as refused:
             wm.read_tracking(FILM, **{**SCALE, **options})

@@ -124,20 +124,6 @@ fn tables_have_a_mark() {
     }
 }
 
-/// A row of a table of whiskers without a whisker has no mark.
-#[test]
-fn a_row_without_a_whisker_has_no_mark() {
-    let table =
-        "[whiskers]\ntable = [{ name = 'a', length_mm = 20 }, { name = 'b', length_mm = nan }]\n";
-    let place = Place::with(&format!("{}{table}", yielding(0.002)));
-    let run = good(&place, &["curve", "scene.toml", "--distance=10"]);
-    assert_eq!(
-        column(&run.out, "yields").unwrap(),
-        ["true", "true", "", ""]
-    );
-    assert_eq!(column(&run.out, "whisker").unwrap(), ["a", "a", "b", "b"]);
-}
-
 /// Each row of a table of whiskers has its own yield strain: in tables, counts and pictures. A row without a number has no marks, and one
 /// with a number that is not allowed has no whisker.
 #[test]
