@@ -29,8 +29,8 @@ def test_missing_numbers_keep_their_place(cone, readings):
     readings.loc[1] = np.nan
     with pytest.warns(wm.SceneWarning, match="1 of 3 readings have no state"):
         found = wm.locate(cone, readings)
-    own = found.isel(number=np.flatnonzero(found.reading.values == 2))
-    assert own.reason.values.tolist() == ["incomplete"] and np.isnan(own.distance_mm.values).all()
+    missing = found.isel(number=np.flatnonzero(found.reading.values == 2))
+    assert missing.reason.values.tolist() == ["incomplete"] and np.isnan(missing.distance_mm.values).all()
 
 
 def test_bad_readings_are_refused(cone, readings):

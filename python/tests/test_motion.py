@@ -24,11 +24,11 @@ def table(*arguments: object) -> pd.DataFrame:
 def same(ds: xr.Dataset, expected: pd.DataFrame) -> None:
     """Compare every column of a table with the variable of its name: all of its values, texts too."""
     for name in expected.columns:
-        own, other = ds[name].values, expected[name]
-        if own.dtype.kind == "U":
-            assert list(own) == list(other.astype(object).fillna("")), name
+        found, other = ds[name].values, expected[name]
+        if found.dtype.kind == "U":
+            assert list(found) == list(other.astype(object).fillna("")), name
         else:
-            np.testing.assert_array_equal(own, other.astype(float), err_msg=name)
+            np.testing.assert_array_equal(found, other.astype(float), err_msg=name)
 
 
 def sine(amplitude: float, hertz: float, seconds: float) -> tuple[np.ndarray, np.ndarray]:
@@ -59,8 +59,8 @@ def test_a_texture_is_the_programs_tables(tmp_path):
     pd.DataFrame({"time_s": time, "angle_deg": angle}).to_csv(angles, index=False)
     found = wm.texture(wm.Scene.read(path), time, angle)
     same(found.samples, table("texture", path, "--angles", angles, *options))
-    for name, own in (("events", found.events), ("dwells", found.stays), ("histogram", found.histogram)):
-        same(own, pd.read_csv(files[name], keep_default_na=False, na_values=[""]))
+    for name, ds in (("events", found.events), ("dwells", found.stays), ("histogram", found.histogram)):
+        same(ds, pd.read_csv(files[name], keep_default_na=False, na_values=[""]))
     assert set(found.samples.phase.values) == {"stuck", "slipping", "free"} and found.reached > 10
     assert float(found.histogram.tip_time_s.sum()) == pytest.approx(3)
 
@@ -70,10 +70,10 @@ def test_forces_are_the_programs_table(cone, model):
     expected = table("force", CONE, "--frames", FRAMES, *(["--model"] if model else []))
     same(wm.force(cone, FRAMES, model=model), expected)
     frame = pd.read_csv(FRAMES, comment="#")
-    own = wm.force(cone, frame, model=model)
-    same(own, expected)
-    xr.testing.assert_identical(wm.force(cone, frame.to_dict("list"), model=model), own)
-    assert np.nanmax(own.force_un) > 0 and own.reason.dims == ("time_s",)
+    found = wm.force(cone, frame, model=model)
+    same(found, expected)
+    xr.testing.assert_identical(wm.force(cone, frame.to_dict("list"), model=model), found)
+    assert np.nanmax(found.force_un) > 0 and found.reason.dims == ("time_s",)
 
 
 def test_surfaces_stay_in_scenes():
@@ -179,9 +179,9 @@ def test_a_baseline_is_that_of_the_program(cone):
     frame = pd.read_csv(FRAMES, comment="#")
     free = frame.contact_x_mm.isna().to_numpy()
     span = (float(frame.time_s[0]), float(frame.time_s[~free].min()) - 1e-6)
-    own = wm.force(cone, frame, baseline_s=span)
-    same(own, table("force", CONE, "--frames", FRAMES, "--baseline", f"{span[0]}..{span[1]}"))
-    assert own.attrs["baseline_frames"] == int((frame.time_s <= span[1]).sum()) and own.attrs["baseline_sd_per_mm"] >= 0
+    found = wm.force(cone, frame, baseline_s=span)
+    same(found, table("force", CONE, "--frames", FRAMES, "--baseline", f"{span[0]}..{span[1]}"))
+    assert found.attrs["baseline_frames"] == int((frame.time_s <= span[1]).sum()) and found.attrs["baseline_sd_per_mm"] >= 0
     deviating = cone.replace(uncertainty={"curvature_sd_per_mm": 1e-3})
     assert deviating.uncertainty == {"curvature_sd_per_mm": 1e-3}
     sd = wm.force(deviating, frame.assign(contact=(~free).astype(int))).force_sd_un
@@ -209,8 +209,8 @@ def test_forces_of_a_follicle_refer_to_its_axis_or_to_the_base(cone, tmp_path):
     scene, path = cone.replace(follicle_stiffness_nnm_per_rad=5000), tmp_path / "scene.toml"
     path.write_text(scene.to_toml())
     found = {axis: wm.force(scene, FRAMES, model=True, axis=axis) for axis in ("follicle", "tangent")}
-    for axis, own in found.items():
-        same(own, table("force", path, "--frames", FRAMES, "--model", "--axis", axis))
+    for axis, forces in found.items():
+        same(forces, table("force", path, "--frames", FRAMES, "--model", "--axis", axis))
     assert found["follicle"].force_un.max() > 1 and not found["follicle"].equals(found["tangent"])
     with pytest.raises(ValueError, match="axis = 'base': must be 'tangent' or 'follicle'"):
         wm.force(scene, FRAMES, model=True, axis="base")

@@ -38,10 +38,10 @@ def test_rows_have_the_results_of_their_whiskers(pad):
     assert (ends.kind.sel(whisker="C2") == "no-whisker").all() and np.isnan(ends.push_angle_deg.sel(whisker="C2")).all()
     assert (cells.regime.sel(whisker="C2") == 255).all()
     for row in (0, 2):
-        own, name = alone(pad, row), PAD["name"][row]
-        assert pad.select(name).whisker == own.whisker
-        np.testing.assert_array_equal(ends.force_un.sel(whisker=name), wm.curve(own).force_un)
-        np.testing.assert_array_equal(cells.force_un.sel(whisker=name), wm.map(own).force_un)
+        single, name = alone(pad, row), PAD["name"][row]
+        assert pad.select(name).whisker == single.whisker
+        np.testing.assert_array_equal(ends.force_un.sel(whisker=name), wm.curve(single).force_un)
+        np.testing.assert_array_equal(cells.force_un.sel(whisker=name), wm.map(single).force_un)
     lazy = wm.map(pad, lazy=True)
     np.testing.assert_array_equal(lazy.force_un.sel(whisker="C3"), cells.force_un.sel(whisker="C3"))
 
@@ -106,8 +106,8 @@ def test_missing_elements_leave_the_others():
     assert ends.refused[1, 2].startswith("taper[2] = 1.5: must be between 0 and 1")
     for place in np.argwhere(is_there).tolist():
         row, column = place
-        own = wm.detachment(base_radius_um=radius[column], taper=taper[column], distance_mm=[12.0, 15.0][row], side="cb", **cone)
-        assert own.force_un == pytest.approx(ends.force_un[row, column], rel=1e-9) and own.refused == {}
+        single = wm.detachment(base_radius_um=radius[column], taper=taper[column], distance_mm=[12.0, 15.0][row], side="cb", **cone)
+        assert single.force_un == pytest.approx(ends.force_un[row, column], rel=1e-9) and single.refused == {}
     assert np.isfinite(ends.jac["force_un"][is_there]).all() and np.isnan(ends.force_un[~is_there]).all()
     # A refused distance leaves the others of its whisker.
     some = wm.detachment(base_radius_um=30, taper=0.9, distance_mm=[12, 300, 15, 0.001], side="cb", **cone)

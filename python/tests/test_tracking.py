@@ -68,13 +68,13 @@ def test_measurements_come_as_csv_and_as_nwb(tmp_path):
     names = {"fid": "frame_id", "wid": "whisker_id"}
     # The extension has no identity -1.
     kept = columns[columns["label"] >= 0]
-    own = ndx_whisk.WhiskerMeasurementTable(name="whiskers", description="made up")
+    rows = ndx_whisk.WhiskerMeasurementTable(name="whiskers", description="made up")
     kinds = {"frame_id": np.uint32, "whisker_id": np.uint16, "label": np.uint16, "face_x": np.int32, "face_y": np.int32}
     for row in kept:
         cells = {names.get(name, name): row[name] for name in columns.dtype.names}
-        own.add_row({name: kinds.get(name, np.float32)(value) for name, value in cells.items()})
+        rows.add_row({name: kinds.get(name, np.float32)(value) for name, value in cells.items()})
     file = pynwb.NWBFile(session_description="made up", identifier="1", session_start_time=datetime(2020, 1, 1, tzinfo=timezone.utc))
-    file.create_processing_module(name="behavior", description="whiskers").add(own)
+    file.create_processing_module(name="behavior", description="whiskers").add(rows)
     path = tmp_path / "film.nwb"
     with pynwb.NWBHDF5IO(str(path), mode="w") as io:
         io.write(file)

@@ -286,8 +286,9 @@ impl CsvTable {
     /// The first cell that is no number or out of its range, or the first line whose time does not grow.
     pub(crate) fn times_s(&self) -> Result<Vec<f64>, CsvError> {
         let must = format!("a number between -{MOST_SECONDS:e} and {MOST_SECONDS:e}");
-        let times = self.numbers("time_s", &must, |time| time.abs() <= MOST_SECONDS)?;
-        let times = times.unwrap_or_default();
+        let times = self
+            .numbers("time_s", &must, |time| time.abs() <= MOST_SECONDS)?
+            .unwrap_or_default();
         let mut pairs = times.windows(2).zip(self.lines().skip(1));
         match pairs.find(|(pair, _)| pair[1] <= pair[0]) {
             None => Ok(times),
@@ -316,8 +317,8 @@ impl CsvLines {
     pub fn split(text: &str, origin: &str) -> Result<Self, CsvError> {
         let text = normalised(text);
         let separator = separator(&text);
-        let lines = lines(&text, separator);
-        let lines = lines.map_err(|(line, what)| CsvError::at(origin, line, what))?;
+        let lines =
+            lines(&text, separator).map_err(|(line, what)| CsvError::at(origin, line, what))?;
         Ok(Self { separator, lines })
     }
 

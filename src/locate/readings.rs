@@ -63,8 +63,9 @@ impl BaseReadings {
         let numbers = |name: &str, most: f64| {
             let end = digits(most);
             let must = format!("a number between -{end} and {end}");
-            let values = table.measurements(name, &must, |number| number.abs() <= most)?;
-            let values = values.unwrap_or_else(|| vec![f64::NAN; table.lines().count()]);
+            let values = table
+                .measurements(name, &must, |number| number.abs() <= most)?
+                .unwrap_or_else(|| vec![f64::NAN; table.lines().count()]);
             let measured = |number: f64| (!number.is_nan()).then_some(number);
             Ok::<_, CsvError>(values.into_iter().map(measured).collect::<Vec<_>>())
         };

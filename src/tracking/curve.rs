@@ -156,10 +156,10 @@ fn traced_frames(
     cancel: &AtomicBool,
     remarks: &mut Remarks,
 ) -> (Vec<Result<FrameCurve, NoFrame>>, String) {
-    let points = frames
+    let points: Vec<Option<Vec<[f64; 2]>>> = frames
         .iter()
-        .map(|frame| frame.points_mm(options.mm_per_pixel));
-    let points: Vec<Option<Vec<[f64; 2]>>> = points.collect();
+        .map(|frame| frame.points_mm(options.mm_per_pixel))
+        .collect();
     let known = || points.iter().flatten();
     let far = |points: &[[f64; 2]], i: usize| {
         libm::hypot(points[i][0] - points[0][0], points[i][1] - points[0][1])
@@ -315,8 +315,9 @@ fn face_axis(frames: &[ImageFrame]) -> FaceAxis {
 /// The arc of a measured segment, with the y axis upward.
 fn arc(frame: &ImageFrame, axis: FaceAxis, scale: f64) -> Result<FrameCurve, NoFrame> {
     let (follicle, chord, curvature, angle) = measured(frame).ok_or(NoFrame::Missing)?;
-    let half = half_turn(chord, curvature).filter(|_| chord.length() > 0.0);
-    let half = half.ok_or(NoFrame::NoCurve)?;
+    let half = half_turn(chord, curvature)
+        .filter(|_| chord.length() > 0.0)
+        .ok_or(NoFrame::NoCurve)?;
     let length = match half {
         0.0 => chord.length(),
         _ => 2.0 * half / curvature,

@@ -34,10 +34,10 @@ impl TrackingFormat {
         let is_content = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
         let text = text.trim_start_matches('\u{feff}');
         let line = text.lines().find(is_content).unwrap_or_default();
-        let cells = line
+        let cells: Vec<&str> = line
             .split([',', ';', '\t'])
-            .map(|cell| cell.trim().trim_matches('"'));
-        let cells: Vec<&str> = cells.collect();
+            .map(|cell| cell.trim().trim_matches('"'))
+            .collect();
         let is_number =
             |cell: &&str| is_missing(cell) || cell.replace(',', ".").parse::<f64>().is_ok();
         match &cells[..] {

@@ -90,8 +90,8 @@ fn chain<'a>(frames: &mut [ImageFrame], names: &'a [String]) -> Vec<&'a str> {
     };
     let pairs = seen
         .iter()
-        .flat_map(|a| seen.iter().filter(move |b| a < *b).map(move |b| (*a, *b)));
-    let pairs = pairs.map(|(a, b)| (a, far(a, b)));
+        .flat_map(|a| seen.iter().filter(move |b| a < *b).map(move |b| (*a, *b)))
+        .map(|(a, b)| (a, far(a, b)));
     let farthest = pairs.max_by(|(_, one), (_, other)| one.total_cmp(other));
     let Some((end, _)) = farthest else {
         return Vec::new();

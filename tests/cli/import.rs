@@ -31,12 +31,12 @@ fn film() -> Place {
 #[test]
 fn frames_are_those_that_force_and_whisk_read() {
     let place = film();
-    let own = [
+    let words = [
         &FILM[..],
         &["--fps", "500", "-o", "frames.csv", "--curvature-at", "2mm"],
     ]
     .concat();
-    let run = place.run(&own);
+    let run = place.run(&words);
     assert_eq!((run.code, &*run.out), (Some(0), "frames.csv\n"), "{run:?}");
     for note in [
         "note: base at ",
@@ -66,8 +66,15 @@ fn frames_are_those_that_force_and_whisk_read() {
         "[whisker.curvature]\nparabola_per_mm = 0.02\n",
         "[whisker.rest]\npoints = \"traced.csv\"\n",
     );
-    place.write("own.toml", &scene);
-    let run = place.run(&["shape", "own.toml", "--distance", "15", "--push-angle", "0"]);
+    place.write("traced.toml", &scene);
+    let run = place.run(&[
+        "shape",
+        "traced.toml",
+        "--distance",
+        "15",
+        "--push-angle",
+        "0",
+    ]);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert!(
         run.err.contains("note: whisker.rest: curvature of degree "),
@@ -100,12 +107,12 @@ fn frames_are_those_that_force_and_whisk_read() {
 #[test]
 fn detachments_are_those_that_fit_reads() {
     let place = film();
-    let own = [
+    let words = [
         &FILM[..],
         &["--fps", "500", "--detachments", "-o", "points.csv"],
     ]
     .concat();
-    let run = place.run(&own);
+    let run = place.run(&words);
     assert_eq!((run.code, &*run.out), (Some(0), "points.csv\n"), "{run:?}");
     let table = String::from_utf8(place.bytes("points.csv")).unwrap();
     assert!(
@@ -117,7 +124,7 @@ fn detachments_are_those_that_fit_reads() {
     assert!(run.out.contains("slip-off"), "{run:?}");
     // A pole that is not reached leaves none. Curves of a given degree take a tenth of the time.
     let parts = "base,w1,w2,w3,w4,w5,w6,w7,tip";
-    let mut far = [&own[..], &["--points", parts, "--degree", "1"]].concat();
+    let mut far = [&words[..], &["--points", parts, "--degree", "1"]].concat();
     far[5] = "500,500";
     let run = place.run(&far);
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -291,13 +298,13 @@ fn contacts(out: &str, contact: &str) -> usize {
 #[test]
 fn a_film_that_does_not_fit_its_pole_has_warnings_and_no_contact_of_0() {
     let place = film();
-    let own = [&FILM[..], &["--fps", "500"]].concat();
-    let run = place.run(&own);
+    let words = [&FILM[..], &["--fps", "500"]].concat();
+    let run = place.run(&words);
     assert!(!run.err.contains("warning: "), "{run:?}");
     assert_eq!([contacts(&run.out, "0"), contacts(&run.out, "1")], [23, 30]);
-    let small = own
+    let small = words
         .iter()
-        .map(|own| if *own == "0.35mm" { "0.15mm" } else { *own });
+        .map(|word| if *word == "0.35mm" { "0.15mm" } else { *word });
     let small = place.run(&small.collect::<Vec<_>>());
     let why = "frames, the whisker is bent at the pole, but is 0.25 mm from its centre (median), more than 0.15 mm";
     assert!(small.err.contains("warning: in "), "{small:?}");
@@ -308,10 +315,10 @@ fn a_film_that_does_not_fit_its_pole_has_warnings_and_no_contact_of_0() {
         [25, 0]
     );
     let names = "base,w1,w2,w3,w4,w5,w6,w7,w8,w9,w10,w11,w12,tip";
-    let aside = [&own[..], &["--points", names, "--degree", "1"]].concat();
+    let aside = [&words[..], &["--points", names, "--degree", "1"]].concat();
     let aside = aside
         .iter()
-        .map(|own| if *own == "pole" { "300,900" } else { *own });
+        .map(|word| if *word == "pole" { "300,900" } else { *word });
     let aside = place.run(&aside.collect::<Vec<_>>());
     let why = "warning: no frame comes near the pole: ";
     assert!(aside.err.contains(why), "{aside:?}");

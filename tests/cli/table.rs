@@ -86,8 +86,8 @@ fn maps_name_their_whiskers() {
         "c3.zarr",
     ]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    let own = String::from_utf8(place.bytes("c3.zarr/whisker/c.0")).unwrap();
-    assert_eq!(own, "\u{1}\0\0\0\u{2}\0\0\0C3");
+    let coordinate = String::from_utf8(place.bytes("c3.zarr/whisker/c.0")).unwrap();
+    assert_eq!(coordinate, "\u{1}\0\0\0\u{2}\0\0\0C3");
     let run = place.run(&[
         "compare",
         "scene.exr",

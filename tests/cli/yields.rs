@@ -21,7 +21,7 @@ fn good(place: &Place, words: &[&str]) -> Run {
 fn column(text: &str, name: &str) -> Option<Vec<String>> {
     let lines = text.lines().filter(|line| line.contains(','));
     let mut lines = lines.map(|line| line.split(','));
-    let place = lines.next()?.position(|own| own == name)?;
+    let place = lines.next()?.position(|cell| cell == name)?;
     lines
         .map(|mut line| Some(line.nth(place)?.to_owned()))
         .collect()
@@ -101,14 +101,14 @@ fn tables_have_a_mark() {
         let yields = column(&marked, "yields").unwrap();
         let mut seen = [0, 0];
         for (strain, mark) in strains.iter().zip(&yields) {
-            let wanted = strain.parse().ok().map(|own: f64| own > 0.002);
+            let wanted = strain.parse().ok().map(|strain: f64| strain > 0.002);
             assert_eq!(
                 *mark,
-                wanted.map_or(String::new(), |own| own.to_string()),
+                wanted.map_or(String::new(), |is_marked| is_marked.to_string()),
                 "{words:?}"
             );
-            if let Some(own) = wanted {
-                seen[usize::from(own)] += 1;
+            if let Some(is_marked) = wanted {
+                seen[usize::from(is_marked)] += 1;
             }
         }
         assert!(
@@ -118,8 +118,8 @@ fn tables_have_a_mark() {
             "{words:?} {seen:?}"
         );
         // The other columns have the same cells.
-        for (own, other) in marked.lines().zip(elastic.lines()) {
-            assert!(own.starts_with(other), "{words:?}:\n{own}\n{other}");
+        for (line, other) in marked.lines().zip(elastic.lines()) {
+            assert!(line.starts_with(other), "{words:?}:\n{line}\n{other}");
         }
     }
 }
@@ -331,7 +331,7 @@ fn a_store_has_the_strains_of_the_map() {
     });
     assert!(tables.iter().all(|table| *table == tables[0]));
     let strains = column(&tables[0], "peak_strain").unwrap();
-    assert!(strains.iter().filter(|own| !own.is_empty()).count() > 100);
+    assert!(strains.iter().filter(|strain| !strain.is_empty()).count() > 100);
     place.write("scene.toml", &yielding(0.003));
     let resumed = place.run(&[&zarr[..], &["--resume"]].concat());
     resumed.assert_said(2, "differs in `scene`");
