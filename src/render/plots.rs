@@ -93,20 +93,30 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
     plot
 }
 
-/// Returns a dot at an `end` of a detachment curve if its push exceeds the yield strain.
+/// Returns a line over the ends of detachment curves whose pushes exceed the yield strain; `None` without such an end. The `ends` with their
+/// marks are those of one whisker and side after the other, each in order of increasing distance.
 #[must_use]
-pub fn yielding_end(
-    end: &Detachment,
-    mark: Option<PushMark>,
+pub fn yielding_ends<'a>(
+    ends: impl IntoIterator<Item = (&'a Detachment, Option<PushMark>)>,
     [x, y]: [CurveAxis; 2],
-) -> Option<Dot> {
-    mark?.yields.filter(|yields| *yields)?;
-    Some(Dot {
-        at: [(x.value)(end)?, (y.value)(end)?],
-        ink: Ink::Grey,
-        open: true,
-        name: Some(YIELDING.to_owned()),
-    })
+) -> Option<Line> {
+    const BREAK: [f64; 2] = [f64::NAN; 2];
+    let mut points = Vec::new();
+    let mut before_mm = f64::INFINITY;
+    for (end, mark) in ends {
+        if end.distance_mm <= before_mm {
+            points.push(BREAK);
+        }
+        before_mm = end.distance_mm;
+        let yields = mark.and_then(|mark| mark.yields) == Some(true);
+        let place = (x.value)(end).zip((y.value)(end));
+        points.push(place.filter(|_| yields).map_or(BREAK, <[f64; 2]>::from));
+    }
+    let has_points = points
+        .iter()
+        .flatten()
+        .any(|coordinate| coordinate.is_finite());
+    has_points.then(|| Line::new(points, Ink::Grey, Stroke::Dashed).named(YIELDING))
 }
 
 /// The branches of a whisker at one pole, with their colour and name.

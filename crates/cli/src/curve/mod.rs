@@ -23,7 +23,7 @@ use std::path::PathBuf;
 use whiskmap::Side;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
-use whiskmap::render::{Plot, bands, yielding_end};
+use whiskmap::render::{Plot, bands, yielding_ends};
 use whiskmap::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
 use whiskmap::sensitivity::{DetachmentDerivatives, NoDerivative, detachments_at};
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
@@ -234,18 +234,18 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         };
         let rows: Vec<(SweepPlace, MarkedEnd)> = trace::sides(&group, ends);
         write(&scene, &mut outputs, &rows)?;
-        yielding.extend(rows.iter().filter_map(|(_, Marked((end, _), mark))| {
-            yielding_end(end, *mark, [args.x.axis(), UPWARD])
-        }));
+        let ends = rows.iter().map(|(_, Marked((end, _), mark))| (end, *mark));
+        yielding.extend(yielding_ends(ends, [args.x.axis(), UPWARD]));
         let kinds = rows.iter().map(|(_, Marked((end, _), _))| end.kind);
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
         all += rows.len() as u64;
     }
     bar.finish();
-    outputs.finish(plot_title(&scene), || Plot {
-        dots: yielding,
-        ..scene_curves(&scene, resolution, args.x.axis())
+    outputs.finish(plot_title(&scene), || {
+        let mut plot = scene_curves(&scene, resolution, args.x.axis());
+        plot.lines.extend(yielding);
+        plot
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }
