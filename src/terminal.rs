@@ -95,8 +95,7 @@ mod tests {
         let expected = "a\\u{9b}31m\\u{202e}b\\r\n\tc \u{b5}";
         for size in 1..text.len() {
             let mut unfinished = Vec::new();
-            let pieces = text.as_bytes().chunks(size);
-            let pieces = pieces.map(|piece| {
+            let pieces = text.as_bytes().chunks(size).map(|piece| {
                 unfinished.extend_from_slice(piece);
                 shown(&mut unfinished)
             });

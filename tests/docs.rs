@@ -21,7 +21,7 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("a folder");
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("a file").path()).collect();
     paths.sort();
-    let is_wanted = |path: &PathBuf| path.extension().is_some_and(|own| own == extension);
+    let is_wanted = |path: &PathBuf| path.extension().is_some_and(|ending| ending == extension);
     let below = |path: PathBuf| match path.is_dir() {
         true => files(&path, extension),
         false => Some(path).filter(is_wanted).into_iter().collect(),
@@ -224,7 +224,7 @@ fn links_lead_to_files_and_headings() {
             if !heading.is_empty() {
                 let text = fs::read_to_string(&target).expect("a page");
                 let headings = text.lines().filter(|line| line.starts_with('#'));
-                let is_there = headings.map(anchor).any(|own| own == heading);
+                let is_there = headings.map(anchor).any(|anchor| anchor == heading);
                 assert!(is_there, "{}: {link}", page.display());
             }
         }
@@ -363,7 +363,7 @@ fn summaries_stand_alone() {
     let mut summaries = 0;
     let mut folders = vec![root().join("src"), root().join("shaders")];
     let crates = fs::read_dir(root().join("crates")).expect("crates");
-    folders.extend(crates.map(|own| own.expect("a crate").path().join("src")));
+    folders.extend(crates.map(|entry| entry.expect("a crate").path().join("src")));
     for folder in folders {
         for (extension, markers) in [("rs", &["///", "//!"][..]), ("wgsl", &["//"])] {
             for path in files(&folder, extension) {

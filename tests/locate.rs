@@ -31,7 +31,7 @@ fn off(row: &LocatedState, state: &BranchPoint) -> f64 {
     if row.side != Some(state.side) {
         return f64::INFINITY;
     }
-    let relative = |own: Option<f64>, other: f64| (own.unwrap() / other - 1.0).abs();
+    let relative = |found: Option<f64>, other: f64| (found.unwrap() / other - 1.0).abs();
     let push = row.push_angle_deg.unwrap() - state.push_angle_deg;
     [
         relative(row.arc_length_mm, state.arc_length_mm),
@@ -83,18 +83,18 @@ fn check_round_trips(name: &str, whisker: &Whisker, pole: &Pole, states: &[Branc
         let readings: Vec<BaseReading> = states.iter().map(|s| reading(s, measured)).collect();
         let rows = locator.locate(&readings, None);
         for (i, state) in states.iter().enumerate() {
-            let own = rows.iter().filter(|row| row.reading == i + 1);
-            let found = own.clone().filter(|row| row.reason.is_none());
+            let of_reading = rows.iter().filter(|row| row.reading == i + 1);
+            let found = of_reading.clone().filter(|row| row.reason.is_none());
             let nearest = found.min_by(|a, b| off(a, state).total_cmp(&off(b, state)));
             let context = || {
-                let rows: Vec<_> = own.clone().collect();
+                let rows: Vec<_> = of_reading.clone().collect();
                 format!("{name} {measured:?} {state:?} {rows:?}")
             };
             let nearest = nearest.unwrap_or_else(|| panic!("{}", context()));
             // Numbers of states are accurate to 1e-11 of the length, or of the force times it.
             let most = 1e-9f64.max(1e-11 * nearest.condition.unwrap());
             assert!(off(nearest, state) < most, "{}", context());
-            assert_eq!(own.clone().count(), nearest.states, "{}", context());
+            assert_eq!(of_reading.clone().count(), nearest.states, "{}", context());
         }
     }
 }
@@ -172,7 +172,7 @@ fn several_states_have_the_same_numbers() {
             let state = branch.point_of(&state);
             let wanted = &states[row.reading - 1];
             let size = wanted.force_un.abs();
-            for (i, [own, other, size]) in [
+            for (i, [found, other, size]) in [
                 [
                     state.base_moment_nnm,
                     wanted.base_moment_nnm,
@@ -184,8 +184,8 @@ fn several_states_have_the_same_numbers() {
             .into_iter()
             .enumerate()
             {
-                let is_same = (own - other).abs() < 1e-7 * size;
-                assert!(is_same || !measured[i], "{row:?} {own} {other}");
+                let is_same = (found - other).abs() < 1e-7 * size;
+                assert!(is_same || !measured[i], "{row:?} {found} {other}");
             }
         }
     }
@@ -369,7 +369,7 @@ fn deviations_are_first_order_errors() {
                 let moved = |sign: f64| {
                     let mut moved = wanted;
                     let add = |number: &mut Option<f64>, sd: f64| {
-                        *number = number.map(|own| own + sign * step * sd)
+                        *number = number.map(|number| number + sign * step * sd)
                     };
                     match i {
                         0 => add(&mut moved.moment_nnm, sensor.moment_nnm),
@@ -384,16 +384,19 @@ fn deviations_are_first_order_errors() {
                 }
             }
             let row = values(&wanted);
-            let own = [
+            let deviations = [
                 row.arc_length_sd_mm,
                 row.distance_sd_mm,
                 row.push_angle_sd_deg,
                 row.force_sd_un,
             ];
-            for (own, square) in own.into_iter().zip(squares) {
-                let (own, wanted) = (own.unwrap(), f64::sqrt(square));
+            for (deviation, square) in deviations.into_iter().zip(squares) {
+                let (deviation, wanted) = (deviation.unwrap(), f64::sqrt(square));
                 // The truncation of the differences.
-                assert!((own / wanted - 1.0).abs() < 1e-5, "{own} {wanted} {row:?}");
+                assert!(
+                    (deviation / wanted - 1.0).abs() < 1e-5,
+                    "{deviation} {wanted} {row:?}"
+                );
             }
         }
     }
@@ -417,7 +420,7 @@ fn readings_without_a_state_have_a_reason() {
         },
         // No whisker bends its base to the left by a force to the right at every contact.
         BaseReading {
-            moment_nnm: good.moment_nnm.map(|own| -own),
+            moment_nnm: good.moment_nnm.map(|moment| -moment),
             ..good
         },
         good,
@@ -440,7 +443,7 @@ fn three_numbers_give_the_nearest_state() {
     let locator = Locator::new(&scene.whisker, &scene.pole);
     let state = states(&scene.whisker, &scene.pole, &[0.6], &[0.5])[1];
     let mut noisy = reading(&state, [true; 3]);
-    noisy.force_x_un = noisy.force_x_un.map(|own| own + 0.02 * state.force_un);
+    noisy.force_x_un = noisy.force_x_un.map(|force| force + 0.02 * state.force_un);
     let none = locator.locate(&[noisy], None)[0];
     assert_eq!(none.reason, Some(NoLocation::NoState));
     let sensor = |force_un: f64| SensorDeviations {
@@ -467,9 +470,9 @@ fn the_laboratory_is_turned_by_the_angle_of_the_base() {
         ..reading(&state, [true, false, true])
     };
     let row = locator.locate(&[turned], None)[0];
-    let near = |own: Option<f64>, other: Option<f64>, sign: f64| {
+    let near = |found: Option<f64>, other: Option<f64>, sign: f64| {
         assert!(
-            (own.unwrap() - sign * other.unwrap()).abs() < 1e-12,
+            (found.unwrap() - sign * other.unwrap()).abs() < 1e-12,
             "{row:?}"
         );
     };
@@ -507,18 +510,18 @@ fn a_map_has_the_conditions_of_its_states() {
         let nearest = *rows.iter().min_by(by_off).unwrap();
         (rows.len(), nearest.condition.unwrap())
     };
-    for own in map.states.iter().step_by(41) {
-        let state = state_at(own.distance_mm, own.push_angle_deg);
+    for shared in map.states.iter().step_by(41) {
+        let state = state_at(shared.distance_mm, shared.push_angle_deg);
         let found = [
-            (own.moment_x_states, own.moment_x_condition),
-            (own.moment_y_states, own.moment_y_condition),
-            (own.force_states, own.force_condition),
+            (shared.moment_x_states, shared.moment_x_condition),
+            (shared.moment_y_states, shared.moment_y_condition),
+            (shared.force_states, shared.force_condition),
         ];
         for ((states, condition), measured) in found.into_iter().zip(MEASURED) {
             let (expected, of_reading) = nearest(&state, measured);
-            assert_eq!(states, expected, "{own:?} {measured:?}");
+            assert_eq!(states, expected, "{shared:?} {measured:?}");
             let off = condition.unwrap() / of_reading - 1.0;
-            assert!(off.abs() < 1e-4, "{own:?} {measured:?}: {of_reading}");
+            assert!(off.abs() < 1e-4, "{shared:?} {measured:?}: {of_reading}");
         }
     }
     // Between cells, the line is linear.

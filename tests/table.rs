@@ -33,7 +33,7 @@ fn parse(text: &str) -> Result<Scene, String> {
 
 /// A panel without the numbers that depend on which rows an engine got together.
 fn values(panel: &Panel) -> (&[u32], &[u32], Vec<u32>) {
-    let numbers = panel.state.iter().flatten().map(|own| own.to_bits());
+    let numbers = panel.state.iter().flatten().map(|value| value.to_bits());
     (&panel.regime, &panel.status, numbers.collect())
 }
 
@@ -47,22 +47,22 @@ fn every_row_is_the_map_of_its_whisker() {
         let row = index % 6;
         if [1, 3].contains(&row) {
             let [unresolved, none] = [Regime::Unresolved.code(), Status::NoWhisker.code()];
-            assert!(panel.regime.iter().all(|own| *own == unresolved));
+            assert!(panel.regime.iter().all(|regime| *regime == unresolved));
             assert!(panel.status.iter().all(|status| *status == none));
-            assert!(panel.state.iter().flatten().all(|own| own.is_nan()));
+            assert!(panel.state.iter().flatten().all(|value| value.is_nan()));
             assert!(
                 panel
                     .residual
                     .iter()
                     .chain(&panel.margin_deg)
-                    .all(|own| own.is_nan())
+                    .all(|value| value.is_nan())
             );
             assert!(table.of_whisker(index).is_err());
             continue;
         }
         let alone = table.of_whisker(index).unwrap();
-        let (_, own) = compute(&alone, None);
-        assert_eq!(values(panel), values(&own[0]), "{index}");
+        let (_, panels_alone) = compute(&alone, None);
+        assert_eq!(values(panel), values(&panels_alone[0]), "{index}");
         assert!(panel.regime.contains(&Regime::Contact.code()));
     }
     let refused: Vec<_> = table.refused().collect();
@@ -126,10 +126,10 @@ fn every_row_has_the_curve_of_its_whisker() {
         assert_eq!(place, [named, ("friction", Coordinate::Number(friction))]);
         match table.of_whisker(index) {
             Ok(alone) => {
-                let own = curve(&alone, Options::default()).unwrap();
+                let ends_alone = curve(&alone, Options::default()).unwrap();
                 assert!(
                     ends.iter()
-                        .zip(&own)
+                        .zip(&ends_alone)
                         .all(|((_, one), (_, other))| one == other)
                 );
             }
@@ -305,11 +305,11 @@ fn numbers_that_a_column_gives_are_refused() {
     let tapers = with("taper = 0.9").with(Parameter::BaseRadiusUm, 40.0);
     let tapers = tapers.unwrap().whisker(0).unwrap().whisker;
     assert!((tapers.tip_radius_um - 4.0).abs() < 1e-12);
-    let own = Scene::builder("A pad")
+    let tapered = Scene::builder("A pad")
         .set(Parameter::LengthMm, 20.0)
         .set(Parameter::Taper, 0.5);
     let rows = [WhiskerRow::new("A").set(Parameter::BaseRadiusUm, 30.0)];
-    let why = own.whiskers(rows).build().unwrap_err().to_string();
+    let why = tapered.whiskers(rows).build().unwrap_err().to_string();
     let said = "must be left out: whiskers.table has the column base_radius_um";
     assert_eq!(why, format!("error: whisker.taper = 0.5: {said}"));
     let tapered = text.replace("tip_radius_um = 1.5", "taper = 0.95");

@@ -130,7 +130,7 @@ fn contact_and_force_of_a_row_give_its_strain() {
         );
     }
     let [tip, base, sticks] =
-        [Sliding::Tip, Sliding::Base, Sliding::Sticks].map(|own| slidings[own as usize]);
+        [Sliding::Tip, Sliding::Base, Sliding::Sticks].map(|sliding| slidings[sliding as usize]);
     assert!(tip > 100 && base > 3 && sticks > 3, "{slidings:?}");
 }
 
@@ -194,7 +194,7 @@ fn is_continued(scene: &Scene) -> bool {
         .grid
         .distance_mm
         .iter()
-        .map(|own| own / length)
+        .map(|distance| distance / length)
         .collect();
     let rod = |side| scene.whisker.rod(&scene.pole, side);
     let mut sheets = Side::BOTH
@@ -265,7 +265,10 @@ fn cells_beyond_the_yield_strain_are_counted() {
     for more in [CONE, ROUGH] {
         let marked = scene(more, Some(0.003));
         let (summary, panels) = compute(&marked, None);
-        let beyond = panels[0].peak_strain.iter().filter(|own| **own > 0.003);
+        let beyond = panels[0]
+            .peak_strain
+            .iter()
+            .filter(|strain| **strain > 0.003);
         assert_eq!(summary.yielding, beyond.count() as u64);
         assert!(
             0 < summary.yielding && summary.yielding < summary.refined,
@@ -297,7 +300,12 @@ fn strains_are_computed_on_demand() {
         .unwrap();
     let alone = compute_as(&plain, &plan, None).1.remove(0);
     assert!(alone.channel(Channel::Force).is_empty());
-    let bits = |strains: &[f32]| strains.iter().map(|own| own.to_bits()).collect::<Vec<_>>();
+    let bits = |strains: &[f32]| {
+        strains
+            .iter()
+            .map(|strain| strain.to_bits())
+            .collect::<Vec<_>>()
+    };
     assert_eq!(bits(&alone.peak_strain), bits(&strains));
     let few = Plan::new(&plain).unwrap();
     assert!(plan.bytes > few.bytes && few.channels == Channels::STANDARD);
@@ -317,7 +325,7 @@ fn every_whisker_of_a_scene_has_its_yield_strain() {
     for scene in [&swept, &table] {
         let strains = scene
             .whiskers()
-            .map(|own| own.unwrap().whisker.yield_strain);
+            .map(|swept| swept.unwrap().whisker.yield_strain);
         assert_eq!(strains.collect::<Vec<_>>(), [Some(0.0125); 2]);
         let one = scene.of_whisker(1).unwrap();
         assert_eq!(one.whisker.yield_strain, Some(0.0125));

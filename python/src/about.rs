@@ -132,8 +132,8 @@ pub fn inks() -> BTreeMap<String, String> {
         ("slip-off", Ink::Black),
         ("pull-off", Ink::Blue),
         ("background", Ink::Grey),
-    ];
-    let named = named.map(|(name, ink)| (name.to_owned(), ink));
+    ]
+    .map(|(name, ink)| (name.to_owned(), ink));
     let series = (0..7).map(|index| (index.to_string(), Ink::Series(index)));
     let all = named.into_iter().chain(series);
     all.map(|(name, ink)| (name, hexadecimal(ink.rgb())))

@@ -34,8 +34,9 @@ pub fn table(
     columns: Vec<(String, String)>,
     known: &[&str],
 ) -> Result<CsvTable, CsvError> {
-    let names = columns.into_iter();
-    let names = names.map(|(expected, in_file)| ColumnName { expected, in_file });
+    let names = columns
+        .into_iter()
+        .map(|(expected, in_file)| ColumnName { expected, in_file });
     CsvTable::parse(text, origin)?.renamed(&names.collect::<Vec<_>>(), known)
 }
 

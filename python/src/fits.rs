@@ -55,8 +55,9 @@ pub fn fit<'py>(
 ) -> PyResult<FitResult<'py>> {
     let refused = |why: String| PyValueError::new_err(why);
     let table = arguments::table(points, origin, columns, &MeasuredPoints::COLUMNS);
-    let points = table.and_then(|table| MeasuredPoints::of(&table));
-    let points = points.map_err(|why| refused(why.to_string()))?;
+    let points = table
+        .and_then(|table| MeasuredPoints::of(&table))
+        .map_err(|why| refused(why.to_string()))?;
     if points.whiskers.is_empty() {
         single(&scene.0)?;
     }
@@ -88,8 +89,7 @@ pub fn fit<'py>(
     ];
     let warnings = noted.into_iter().flatten().chain(fit.warnings(&points));
     let warnings = warnings.collect();
-    let estimates = fit.estimates.iter();
-    let estimates = estimates.map(|estimate| {
+    let estimates = fit.estimates.iter().map(|estimate| {
         (
             estimate.parameter.name(),
             estimate.parameter.unit(),
@@ -187,9 +187,9 @@ fn varied(
     keeps_taper: bool,
 ) -> PyResult<(DesignVaried, f64)> {
     let variable = |(name, limits): Varied| {
-        let variable = name.parse();
-        let variable =
-            variable.map_err(|must: String| arguments::refused("parameter", &name, &must));
+        let variable = name
+            .parse()
+            .map_err(|must: String| arguments::refused("parameter", &name, &must));
         Ok(DesignVariable {
             variable: variable?,
             limits,

@@ -77,8 +77,8 @@ impl ComputedMap {
                 };
                 self.map.read(channel, &whiskers, &mut on_progress)
             },
-        )?;
-        let values = values.map_err(|why| of_store(&why))?;
+        )?
+        .map_err(|why| of_store(&why))?;
         Ok((array(py, channel, values), self.map.take_warnings()))
     }
 }

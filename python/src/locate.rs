@@ -30,8 +30,9 @@ pub fn locate<'py>(
     single(scene)?;
     without_friction(scene, "the force is taken as normal to the whisker")?;
     let table = arguments::table(readings, origin, columns, &BaseReadings::COLUMNS);
-    let read = table.and_then(|table| BaseReadings::of(&table));
-    let read = read.map_err(|why| refused(&why))?;
+    let read = table
+        .and_then(|table| BaseReadings::of(&table))
+        .map_err(|why| refused(&why))?;
     let deviations = deviations.map(|(moment_nnm, force_un)| SensorDeviations {
         moment_nnm,
         force_un,

@@ -171,8 +171,9 @@ pub fn force<'py>(
     };
     let whisker = scene.first_whisker().whisker;
     let table = arguments::table(frames, origin, columns, &CurvatureFrames::COLUMNS);
-    let read = table.and_then(|table| CurvatureFrames::of(&table, whisker.length_mm, method));
-    let read = read.map_err(|why| refused(&why))?;
+    let read = table
+        .and_then(|table| CurvatureFrames::of(&table, whisker.length_mm, method))
+        .map_err(|why| refused(&why))?;
     let estimated = read.baseline(&whisker, baseline_s);
     let baseline = estimated.map_err(|why| refused(&why))?;
     let deviations = scene

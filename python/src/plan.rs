@@ -12,8 +12,8 @@ type EffectRow = (&'static str, bool, String);
 #[pyfunction]
 pub fn plan(scene: &CheckedScene) -> PyResult<(usize, usize, Option<u64>, Vec<EffectRow>)> {
     let plan = Plan::new(&scene.0).map_err(|why| of_plan(&why))?;
-    let effects = effects(&scene.0, plan.method.effects).into_iter();
-    let effects = effects
+    let effects = effects(&scene.0, plan.method.effects)
+        .into_iter()
         .map(|effect| (effect.name, effect.on, effect.why))
         .collect();
     // A map in memory keeps the panels of all whiskers.

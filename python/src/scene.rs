@@ -255,10 +255,11 @@ pub fn unused_columns(names: Vec<String>) -> PyResult<Option<String>> {
         return Err(PyValueError::new_err(format!("table: {what}")));
     }
     let known = WhiskerRow::columns;
-    let unused = names
+    let unused: Vec<&str> = names
         .iter()
-        .filter(|name| known().all(|column| column != *name));
-    let unused: Vec<&str> = unused.map(String::as_str).collect();
+        .filter(|name| known().all(|column| column != *name))
+        .map(String::as_str)
+        .collect();
     let hints = unused.iter().filter_map(|name| {
         let hint = did_you_mean(name, known());
         (!hint.is_empty()).then(|| format!("; `{name}` is not known{hint}"))
@@ -371,9 +372,10 @@ fn uncertainty(by_name: &BTreeMap<String, f64>) -> PyResult<Deviations> {
 }
 
 fn deviations_by_name(deviations: &Deviations) -> BTreeMap<String, f64> {
-    let parameters = deviations.parameters.iter();
-    let parameters =
-        parameters.map(|(parameter, deviation)| (parameter.name().to_owned(), *deviation));
+    let parameters = deviations
+        .parameters
+        .iter()
+        .map(|(parameter, deviation)| (parameter.name().to_owned(), *deviation));
     let rows = deviations
         .profile_radius_um
         .map(|deviation| (PROFILE_RADIUS.to_owned(), deviation));

@@ -33,8 +33,7 @@ pub fn curve<'py>(
         options.cancel = Some(Arc::clone(cancel));
         let ends = whiskmap::curve(&scene.0, options)?;
         let marks = scene.0.has_yield_strain().then(|| {
-            let ends = ends.par_iter();
-            let ends = ends.filter(|_| !cancel.load(Ordering::Relaxed));
+            let ends = ends.par_iter().filter(|_| !cancel.load(Ordering::Relaxed));
             let mark = |(place, end): &(SweepPlace, Detachment)| {
                 let swept = scene.0.whisker_at(place.clone()).ok()?;
                 PushMark::of_end(&swept.whisker, &swept.pole, end)

@@ -90,8 +90,8 @@ impl TrackedFilm {
     fn parse(py: Python<'_>, texts: Vec<(String, String)>, options: Options) -> PyResult<Self> {
         let options = options.checked()?;
         let job = |cancel: &Arc<AtomicBool>| Tracking::parse(&texts, &options, cancel);
-        let found = threads::run(py, None, |_| Ok(()), job)?;
-        let found = found.map_err(|why: TrackingError| refused(&why))?;
+        let found =
+            threads::run(py, None, |_| Ok(()), job)?.map_err(|why: TrackingError| refused(&why))?;
         Ok(Self(found))
     }
 

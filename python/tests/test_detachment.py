@@ -56,8 +56,8 @@ def test_jacobians_are_those_of_the_arguments(given):
         low, high = (wm.detachment(side="cb", **numbers | {name: numbers[name] + sign * step}) for sign in (-1, 1))
         for quantity in ("push_angle_deg", "push_chord_deg", "force_un", "arc_length_mm", "base_moment_nnm"):
             difference = (getattr(high, quantity) - getattr(low, quantity)) / (2 * step)
-            own = ends.jac[quantity][place]
-            assert own == pytest.approx(difference, rel=1e-6, abs=1e-7), (name, quantity)
+            jacobian = ends.jac[quantity][place]
+            assert jacobian == pytest.approx(difference, rel=1e-6, abs=1e-7), (name, quantity)
 
 
 def test_least_squares_of_scipy_finds_the_whisker(cone):

@@ -40,7 +40,7 @@ PARTS = [
 @pytest.mark.parametrize("chunks", [None, {}, {"taper": 2}], ids=["plain", "whiskers", "chunks"])
 def test_the_dataset_is_that_of_a_map(sweep, eager, part, chunks):
     ds = wm.map(sweep, lazy=True, engine="cpu", chunks=chunks).isel(part)
-    assert {name: own.dtype for name, own in ds.variables.items()} == {name: own.dtype for name, own in eager.variables.items()}
+    assert {name: variable.dtype for name, variable in ds.variables.items()} == {name: variable.dtype for name, variable in eager.variables.items()}
     xr.testing.assert_identical(ds.compute(), eager.isel(part))
 
 
@@ -62,9 +62,9 @@ def test_only_the_selected_whiskers_are_computed(small):
     assert ds.force_un.size == 1000**3 * 16 * 24
     one = ds.sel(taper=0.9, friction=0.3, pole_radius_mm=0.5, method="nearest")
     at = {name: float(one[name]) for name in ("taper", "friction", "pole_radius_mm")}
-    own = wm.map(small.replace(**at), engine="cpu")
-    np.testing.assert_array_equal(one.regime, own.regime)
-    np.testing.assert_allclose(one.force_un, own.force_un, rtol=1e-6)
+    alone = wm.map(small.replace(**at), engine="cpu")
+    np.testing.assert_array_equal(one.regime, alone.regime)
+    np.testing.assert_allclose(one.force_un, alone.force_un, rtol=1e-6)
     row = ds.force_un.isel(taper=slice(5, 8), friction=-1, pole_radius_mm=[0, 999], distance_mm=4)
     assert row.values.shape == (3, 2, 24)
 
@@ -127,7 +127,7 @@ def test_variables_that_are_pickled_one_by_one_share_a_map(sweep, monkeypatch):
             super().__init__(*arguments)
 
     monkeypatch.setattr(_lazy, "ComputedMap", Counted)
-    copies = [pickle.loads(own) for own in pickled]
+    copies = [pickle.loads(data) for data in pickled]
     assert opened == [(sweep, "cpu", None, None, 2)]
     # It is closed with the last variable.
     del copies

@@ -29,11 +29,11 @@ def test_a_map_is_the_programs_store(small, stored):
     store = xr.open_zarr(stored / "sweep.zarr", mask_and_scale=False)
     ds = wm.map(sweep_of(small), engine="cpu")
     assert ds.sizes == {"taper": 3, "curvature_per_mm": 2, "distance_mm": 16, "push_angle_deg": 24}
-    for name, own in ds.variables.items():
+    for name, variable in ds.variables.items():
         other = store.variables[name]
-        np.testing.assert_array_equal(own.values, other.values, err_msg=name)
-        assert (own.dims, own.dtype) == (other.dims, other.dtype)
-        assert own.attrs == {key: other.attrs[key] for key in own.attrs}
+        np.testing.assert_array_equal(variable.values, other.values, err_msg=name)
+        assert (variable.dims, variable.dtype) == (other.dims, other.dtype)
+        assert variable.attrs == {key: other.attrs[key] for key in variable.attrs}
     for name in ("engine", "arithmetic", "whiskmap_version", "Conventions"):
         assert ds.attrs[name] == store.attrs[name]
 

@@ -21,7 +21,7 @@ def test_every_plot_returns_artists_of_its_axes(small, cone):
     mesh = wm.plot.regimes(ds, ax=axes[0])
     colours = {code: colour for code, _, colour, _ in _whiskmap.regimes()}
     drawn = mesh.to_rgba(mesh.get_array()).reshape(-1, 4)
-    assert [to_hex(own) for own in drawn] == [colours[code] for code in ds.regime.values.ravel()]
+    assert [to_hex(colour) for colour in drawn] == [colours[code] for code in ds.regime.values.ravel()]
     curve = wm.plot.curve(wm.curve(cone), ax=axes[1])
     assert [(line.get_label()[:4], line.get_color()) for line in curve][:1] == [("slip", _whiskmap.inks()["slip-off"])]
     branch = wm.plot.branch(wm.branch(cone, 15.66), ax=axes[2])
@@ -32,7 +32,7 @@ def test_every_plot_returns_artists_of_its_axes(small, cone):
     assert pole.get_radius() == 0.25 and len(whisker.get_xdata()) == 201
     bars = wm.plot.sensitivity(wm.sensitivity(cone, 15.66).sel(side="cb"), ax=axes[4])
     assert len(bars) == 6
-    assert all(own.axes is axis for own, axis in zip([mesh, curve[0], branch[0], whisker, bars[0]], axes))
+    assert all(artist.axes is axis for artist, axis in zip([mesh, curve[0], branch[0], whisker, bars[0]], axes))
     assert wm.plot.curve(wm.curve(cone).sel(side="cb"), linewidth=3)[0].get_linewidth() == 3
     plt.gcf().canvas.draw()
 
@@ -51,7 +51,7 @@ def test_courses_forces_and_fits_are_drawn(cone):
     assert line.get_linewidth() == 3 and band.axes is axes[1]
     fit = wm.fit(cone, ROOT / "scenes/cone_points.csv", ["tip_radius_um", "parabola_per_mm"])
     artists = wm.plot.fit(fit, ax=axes[2])
-    drawn = sum(len(own.get_xdata()) for own in artists if own.get_linestyle() == "None")
+    drawn = sum(len(artist.get_xdata()) for artist in artists if artist.get_linestyle() == "None")
     assert drawn == fit.points.sizes["point"] and axes[2].get_ylabel() == wm.plot.DISTANCE
     plt.gcf().canvas.draw()
 
@@ -92,7 +92,7 @@ def test_the_legend_does_not_hide_the_cells_of_narrow_axes(small, size):
     ds = wm.map(small)
     wm.plot.regimes(ds, ax=axes)
     figure.canvas.draw()
-    [legend] = [own for own in axes.get_children() if isinstance(own, matplotlib.legend.Legend)]
+    [legend] = [child for child in axes.get_children() if isinstance(child, matplotlib.legend.Legend)]
     box, inside = legend.get_window_extent(), axes.get_window_extent()
     assert box.overlaps(inside) == (size[0] > 6)
     # It lies in the figure, clear of the title of the axis.
@@ -100,13 +100,13 @@ def test_the_legend_does_not_hide_the_cells_of_narrow_axes(small, size):
     title = axes.xaxis.label.get_window_extent()
     assert box.y1 <= title.y0 or size[0] > 6
     present = {name for code, name, *_ in _whiskmap.regimes() if code in ds.regime.values}
-    assert {own.get_text() for own in legend.get_texts()} == present
+    assert {text.get_text() for text in legend.get_texts()} == present
 
 
 def test_regimes_without_a_cell_have_no_entry(small):
     figure, axes = plt.subplots()
     wm.plot.regimes(wm.map(small).isel(distance_mm=slice(0, 2), push_angle_deg=slice(10, 14)), ax=axes)
-    assert [own.get_text() for own in axes.get_legend().get_texts()] == ["contact"]
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["contact"]
     assert len(figure.legends) == 0
 
 

@@ -17,7 +17,7 @@ README = (ROOT / "README.md").read_text()
 
 def block(language: str, around: str) -> str:
     """Return the block of README with this text."""
-    [found] = (own for own in re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL) if around in own)
+    [found] = (text for text in re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL) if around in text)
     return found
 
 

@@ -41,9 +41,9 @@ def test_values_make_the_scene_of_the_file(cone):
 
 
 def test_every_parameter_of_rust_is_an_argument():
-    own = {field.name for field in fields(wm.Whisker)} - {"profile", "profile_smooth", "rest_points", "rest_degree", "yield_strain"}
+    arguments = {field.name for field in fields(wm.Whisker)} - {"profile", "profile_smooth", "rest_points", "rest_degree", "yield_strain"}
     pole = {"pole_radius_mm", "friction"}
-    assert own | pole == {name for name, *_ in _whiskmap.parameters()}
+    assert arguments | pole == {name for name, *_ in _whiskmap.parameters()}
     assert "curvature_per_mm" in PARAMETERS
 
 
@@ -74,8 +74,8 @@ def test_traced_points_are_arrays():
     traced = wm.Scene.read(ROOT / "scenes/traced.toml")
     points = np.array(traced.whisker.rest_points)
     assert points.shape == (45, 2)
-    own = wm.Whisker(base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, rest_points=points)
-    built = wm.Scene(whisker=own, pole=traced.pole, grid=traced.grid, title=traced.title, name=traced.name)
+    whisker = wm.Whisker(base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, rest_points=points)
+    built = wm.Scene(whisker=whisker, pole=traced.pole, grid=traced.grid, title=traced.title, name=traced.name)
     assert built == traced and built.whisker.length_mm == traced.whisker.length_mm
     assert traced.replace(rest_degree=1) != traced == traced.replace(rest_points=points)
     assert traced.replace(rest_points=None).whisker.rest_points is None
@@ -116,8 +116,8 @@ def test_replace_does_not_depend_on_the_order_of_keywords(cone):
     for shift in range(len(changes)):
         names = [*changes][shift:] + [*changes][:shift]
         for order in (names, names[::-1]):
-            own = cone.replace(**{name: changes[name] for name in order})
-            assert own == wanted and list(own.coords) == list(wanted.coords)
+            changed = cone.replace(**{name: changes[name] for name in order})
+            assert changed == wanted and list(changed.coords) == list(wanted.coords)
 
 
 def test_profiles_and_traced_points_are_data_frames(cone):
@@ -126,10 +126,10 @@ def test_profiles_and_traced_points_are_data_frames(cone):
     frame = pd.DataFrame({"radius_um": rows[:, 1], "note": "", "arc_length_mm": rows[:, 0]})
     points = np.array(traced.whisker.rest_points)
     xy = pd.DataFrame(points, columns=["x_mm", "y_mm"])
-    for own in (rows, frame, frame.to_dict("list"), rows.tolist()):
-        assert measured.replace(profile=own) == measured
-    for own in (points, xy, xy.to_dict("list"), points.tolist()):
-        assert traced.replace(rest_points=own) == traced
+    for given in (rows, frame, frame.to_dict("list"), rows.tolist()):
+        assert measured.replace(profile=given) == measured
+    for given in (points, xy, xy.to_dict("list"), points.tolist()):
+        assert traced.replace(rest_points=given) == traced
     whisker = wm.Whisker(base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, rest_points=xy)
     assert wm.Scene(whisker=whisker, pole=traced.pole, grid=traced.grid, title=traced.title, name=traced.name) == traced
 

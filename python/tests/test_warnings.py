@@ -23,10 +23,10 @@ def issued(call) -> list[str]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         call()
-    assert all(own.category is wm.SceneWarning for own in caught), caught
+    assert all(warning.category is wm.SceneWarning for warning in caught), caught
     # Each is issued at the line of the caller, here that of the function.
-    assert all(own.filename == __file__ for own in caught), caught
-    return [str(own.message) for own in caught]
+    assert all(warning.filename == __file__ for warning in caught), caught
+    return [str(warning.message) for warning in caught]
 
 
 def printed(*arguments: object) -> list[str]:
@@ -102,7 +102,7 @@ def test_angles_of_the_other_side_are_warned_of(cone, points, tmp_path):
 def test_large_residuals_are_warned_of(cone, points, tmp_path):
     points["sd_deg"] /= 10
     found = fitted(cone, points, ["tip_radius_um", "parabola_per_mm"], tmp_path)
-    assert [own for own in found if "times as large as sd_deg" in own]
+    assert [text for text in found if "times as large as sd_deg" in text]
 
 
 def test_an_undetermined_parameter_is_warned_of(cone, points, tmp_path):
@@ -113,10 +113,10 @@ def test_an_undetermined_parameter_is_warned_of(cone, points, tmp_path):
 def test_a_moved_start_is_warned_of(cone, points, tmp_path):
     short = cone.replace(length_mm=17.5, distance_mm=[10.0])
     found = fitted(short, points, ["length_mm", "tip_radius_um"], tmp_path)
-    assert [own for own in found if "length_mm starts at" in own]
+    assert [text for text in found if "length_mm starts at" in text]
     # Of columns, a message names the index instead of the line of a file.
     named = issued(lambda: wm.fit(short, points, ["length_mm", "tip_radius_um"]))
-    assert [own for own in named if own.startswith("points[") and "length_mm starts at" in own]
+    assert [text for text in named if text.startswith("points[") and "length_mm starts at" in text]
 
 
 def test_frames_without_a_force_are_warned_of(cone):
@@ -133,7 +133,7 @@ def test_undecided_samples_are_warned_of(cone):
     found = []
     for distance in (17.0, 18.0, 19.0, 19.5):
         found += issued(lambda: wm.whisk(near, distance, np.arange(angle.size) / 100, angle))
-    assert found and all("samples are undecided" in own for own in found)
+    assert found and all("samples are undecided" in text for text in found)
 
 
 def test_an_engine_without_expansions_is_warned_of():

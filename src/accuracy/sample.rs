@@ -55,12 +55,13 @@ impl SceneSample {
                 });
                 // A push that ends at first touch does so at every resolution.
                 let crossings = sheet.crossings.iter().flatten();
-                let ends = crossings.filter(|end| end.is_sound() && !end.is_at_touch());
-                let ends = ends.map(|end| Point {
-                    tau: end.tau,
-                    load: end.load,
-                    edge: Some(end.edge),
-                });
+                let ends = crossings
+                    .filter(|end| end.is_sound() && !end.is_at_touch())
+                    .map(|end| Point {
+                        tau: end.tau,
+                        load: end.load,
+                        edge: Some(end.edge),
+                    });
                 let points = solved.chain(ends).collect();
                 (rod, points)
             })

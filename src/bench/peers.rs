@@ -67,8 +67,9 @@ impl Peers {
             path: path.to_owned(),
             what,
         };
-        let bytes = open(path).and_then(|file| bounded(file, TEXT_MIB));
-        let bytes = bytes.map_err(|cause| error(format!("cannot read the file: {cause}")))?;
+        let bytes = open(path)
+            .and_then(|file| bounded(file, TEXT_MIB))
+            .map_err(|cause| error(format!("cannot read the file: {cause}")))?;
         Self::parse(&bytes).map_err(error)
     }
 
@@ -82,9 +83,9 @@ impl Peers {
             ("solve_bvp", rows(file.solve_bvp), 0.0),
         ];
         let measured = programs.into_iter();
-        let programs =
-            measured.filter_map(|(name, rows, least)| Some(Peer::new(name, rows?, least)));
-        let programs = programs.collect::<Result<Vec<Peer>, String>>()?;
+        let programs = measured
+            .filter_map(|(name, rows, least)| Some(Peer::new(name, rows?, least)))
+            .collect::<Result<Vec<Peer>, String>>()?;
         if programs.iter().all(|peer| peer.points.is_empty()) {
             return Err("has no program; measure one with benches/peers/run.sh".to_owned());
         }

@@ -111,8 +111,9 @@ fn row(
         });
         Ok::<_, Infallible>(cells.collect::<Vec<_>>())
     });
-    let points = requests.iter().zip(&cells);
-    let points: Points = points
+    let points: Points = requests
+        .iter()
+        .zip(&cells)
         .flat_map(|(request, cells)| request.solved(cells))
         .collect();
     if points.is_empty() {

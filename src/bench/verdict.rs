@@ -102,8 +102,9 @@ mod tests {
         let near = map("gpu 1", Some("A card"), &[0.5, 0.8, 1.0]);
         let verdicts = |maps: &[&WholeMap]| {
             let maps: Vec<WholeMap> = maps.iter().copied().cloned().collect();
-            let all = Verdict::all(&maps).into_iter();
-            let all = all.map(|one| (one.faster, one.slower, one.adapter, one.within_spread));
+            let all = Verdict::all(&maps)
+                .into_iter()
+                .map(|one| (one.faster, one.slower, one.adapter, one.within_spread));
             all.collect::<Vec<_>>()
         };
         let wanted = |faster: &str, slower: &str, adapter: Option<&str>, within_spread| {

@@ -56,8 +56,8 @@ impl CellPlace {
         let inside = [
             ("distance_mm", grid.distance_mm[cell / columns % rows]),
             ("push_angle_deg", grid.push_angle_deg[cell % columns]),
-        ];
-        let inside = inside.map(|(name, value)| (name, Coordinate::Number(value)));
+        ]
+        .map(|(name, value)| (name, Coordinate::Number(value)));
         Self(whisker.coordinates().chain(inside).collect())
     }
 }

@@ -47,8 +47,9 @@ impl<'a> PlannedMap<'a> {
         if let Some(channels) = channels {
             plan = plan.with_channels(channels, scene)?;
         }
-        let left_deg = tolerance_deg.zip(accuracy);
-        let left_deg = left_deg.map(|(tolerance_deg, accuracy)| tolerance_deg - accuracy.error_deg);
+        let left_deg = tolerance_deg
+            .zip(accuracy)
+            .map(|(tolerance_deg, accuracy)| tolerance_deg - accuracy.error_deg);
         Ok(Self {
             scene,
             plan,
@@ -60,8 +61,9 @@ impl<'a> PlannedMap<'a> {
     /// Returns the spectral engine whose residuals keep push angles within [`Self::left_deg`].
     #[must_use]
     pub fn spectral(&self) -> Spectral {
-        let bound = self.left_deg;
-        let bound = bound.map(|left| (left / bound_deg(self.scene, 1.0)).min(LARGEST_BOUND));
+        let bound = self
+            .left_deg
+            .map(|left| (left / bound_deg(self.scene, 1.0)).min(LARGEST_BOUND));
         bound.map_or_else(Spectral::default, Spectral::new)
     }
 

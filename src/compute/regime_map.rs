@@ -130,15 +130,16 @@ mod tests {
 
     #[test]
     fn views_have_the_values_at_distance_and_push_angle() {
-        let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
-        let scene = scene
+        let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml")
+            .unwrap()
             .thinned(8, 1)
             .to_builder()
             .distance_mm([5.0, 10.0, 15.0]);
         let map = map(&scene.build().unwrap(), Options::default()).unwrap();
         let [height, width] = map.shape();
-        let computed = Channel::ALL.into_iter();
-        let computed = computed.filter(|channel| Channels::STANDARD.contains(channel.name()));
+        let computed = Channel::ALL
+            .into_iter()
+            .filter(|channel| Channels::STANDARD.contains(channel.name()));
         for channel in computed {
             let view = map.view(0, channel).unwrap();
             assert_eq!(view.dim(), (height, width));

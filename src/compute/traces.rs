@@ -35,8 +35,9 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
         let Ok(swept) = swept else {
             return Detachment::without_whisker(side, distances);
         };
-        let parts = distances.chunks(DISTANCES_AT_ONCE);
-        let parts = parts.filter(|_| !options.is_cancelled());
+        let parts = distances
+            .chunks(DISTANCES_AT_ONCE)
+            .filter(|_| !options.is_cancelled());
         parts
             .flat_map(|part| curve_at(resolution, &swept.whisker, &swept.pole, side, part))
             .collect()

@@ -231,8 +231,7 @@ impl TogetherSearch<'_> {
         let near = self.scene.ranges(&values);
         let ends = near.into_iter().zip(ranges);
         let ends = ends.map(|(near, range)| near.unwrap_or(*range));
-        let is_at_limit = ends.zip(&values);
-        let is_at_limit = is_at_limit.map(|([low, high], value)| {
+        let is_at_limit = ends.zip(&values).map(|([low, high], value)| {
             let width = 1e-9 * (high - low);
             value - low <= width || high - value <= width
         });
@@ -276,8 +275,7 @@ impl BoundedProblem for TogetherSearch<'_> {
         let scene = self.at(x)?;
         let directions = self.scene.directions(&scene);
         let row = |(i, target): (usize, &DesignTarget)| {
-            let exact = target.gradient(&scene, &directions);
-            let exact = exact.map(|by| {
+            let exact = target.gradient(&scene, &directions).map(|by| {
                 let by = by.iter().zip(&self.sizes);
                 by.map(|(by, size)| by * size / target.value).collect()
             });
@@ -291,8 +289,9 @@ impl BoundedProblem for TogetherSearch<'_> {
 
     fn ranges(&self, x: &[f64]) -> Vec<[f64; 2]> {
         let ranges = self.scene.ranges(&self.values(x)).into_iter();
-        let sized = ranges.zip(&self.sizes).zip(x);
-        let sized = sized
+        let sized = ranges
+            .zip(&self.sizes)
+            .zip(x)
             .map(|((range, size), x)| range.map_or([*x; 2], |range| range.map(|end| end / size)));
         sized.collect()
     }
@@ -312,8 +311,9 @@ impl Places {
     fn new(search: &TogetherSearch<'_>, ranges: &[[f64; 2]]) -> Self {
         let count = ranges.len();
         let side = libm::pow(PLACES, 1.0 / count as f64).round() as usize;
-        let axes = ranges.iter().zip(&search.sizes);
-        let axes: Vec<Vec<f64>> = axes
+        let axes: Vec<Vec<f64>> = ranges
+            .iter()
+            .zip(&search.sizes)
             .map(|(range, size)| samples(range.map(|end| end / size), side))
             .collect();
         let place = |mut index: usize| -> Vec<f64> {

@@ -153,9 +153,10 @@ impl DesignScene<'_> {
             builder = builder.set(parameter, value);
         }
         let varied = self.varied.variables.iter().zip(values);
-        let distance =
-            varied.filter(|(design_variable, _)| design_variable.variable == Variable::DistanceMm);
-        let distance = distance.map(|(_, value)| *value).next();
+        let distance = varied
+            .filter(|(design_variable, _)| design_variable.variable == Variable::DistanceMm)
+            .map(|(_, value)| *value)
+            .next();
         let of_length = || Some(self.varied.distance_to_length? * length_mm);
         let distance_mm = distance.or_else(of_length).unwrap_or(self.distance_mm);
         builder.distance_mm([distance_mm]).build()

@@ -38,16 +38,17 @@ impl Cpu {
         let mut cells = Cells::new(batch, Outcome::OffSheet);
         let mut rest = self.refined.as_slice();
         let rows = batch.rows.iter().zip(&targets).zip(cells.rows_mut(batch));
-        let refined_rows = rows.map(|((row, targets), into)| {
-            let count = targets.iter().flatten().count();
-            (
-                row,
-                targets,
-                rest.split_off(..count).unwrap_or_default(),
-                into,
-            )
-        });
-        let refined_rows: Vec<_> = refined_rows.collect();
+        let refined_rows: Vec<_> = rows
+            .map(|((row, targets), into)| {
+                let count = targets.iter().flatten().count();
+                (
+                    row,
+                    targets,
+                    rest.split_off(..count).unwrap_or_default(),
+                    into,
+                )
+            })
+            .collect();
         refined_rows
             .into_par_iter()
             .for_each(|(row, targets, refined, mut into)| {

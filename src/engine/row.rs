@@ -14,9 +14,9 @@ pub const FUNCTIONS: usize = 3 + STATE_CHANNELS.len();
 
 /// Numbers of a state, `[function]`: magnitude of the push angle since first touch in radians, `tau`, signed load, and the channel values
 /// in map units.
-pub type Numbers = [f64; FUNCTIONS];
+pub type RowNumbers = [f64; FUNCTIONS];
 
-/// Weights that convert errors of [`Numbers`] to whisker lengths, `[function]`.
+/// Weights that convert errors of [`RowNumbers`] to whisker lengths, `[function]`.
 pub type Weights = [f64; FUNCTIONS];
 
 /// Weighted coefficient below which an expansion ends: below the rounding of the states.
@@ -52,11 +52,11 @@ fn weights(side: &WhiskerSide, row: usize) -> Weights {
 }
 
 /// Returns the numbers of the states of a row, `[state]`.
-fn numbers(reader: &Reader, states: &NetRow) -> Vec<Numbers> {
+fn numbers(reader: &Reader, states: &NetRow) -> Vec<RowNumbers> {
     let unit = Unit::detect();
     let mut all = Vec::with_capacity(states.blocks.len() * WIDTH);
     for block in &states.blocks {
-        let channels = unit.run(ChannelValues { reader, block });
+        let channels = unit.run(BlockChannels { reader, block });
         all.extend((0..block.count).map(|lane| {
             let mut numbers = [block.push[lane]; FUNCTIONS];
             (numbers[1], numbers[2]) = (block.tau[lane], block.load[lane]);
@@ -70,12 +70,12 @@ fn numbers(reader: &Reader, states: &NetRow) -> Vec<Numbers> {
 }
 
 /// Channel values of a block of states.
-struct ChannelValues<'a> {
+struct BlockChannels<'a> {
     reader: &'a Reader,
     block: &'a NetBlock,
 }
 
-impl SimdTask for ChannelValues<'_> {
+impl SimdTask for BlockChannels<'_> {
     type Output = [LaneNumbers; STATE_CHANNELS.len()];
 
     #[inline(always)]
@@ -131,7 +131,7 @@ impl RowExpansion {
         sheet: &Sheet,
         row: usize,
     ) -> Option<Self> {
-        let is_rounding = |term: &Numbers| largest(term, weights) < ROUNDING;
+        let is_rounding = |term: &RowNumbers| largest(term, weights) < ROUNDING;
         while functions.coefficients.len() > 1
             && functions.coefficients.last().is_some_and(is_rounding)
         {

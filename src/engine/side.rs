@@ -126,15 +126,15 @@ impl WhiskerSide {
     pub fn peak_strains_with_friction(&self, states: &[&FrictionState]) -> Vec<f32> {
         let rods = states.iter().map(|state| state.rod(&self.sheet.rod));
         let rods: Vec<Rod> = rods.collect();
-        let conditions = rods
+        let conditions: Vec<InitialCondition> = rods
             .iter()
             .zip(states)
             .map(|(rod, state)| InitialCondition {
                 rod,
                 tau: state.at.point.x,
                 load: state.at.point.y,
-            });
-        let conditions: Vec<InitialCondition> = conditions.collect();
+            })
+            .collect();
         let peaks: Vec<PeakStrain> = self.strains().shoot(&conditions);
         peaks.iter().map(|peak| self.strain(peak)).collect()
     }

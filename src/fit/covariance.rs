@@ -25,9 +25,10 @@ impl Covariance {
             _ => 0.0,
         });
         let scales: Vec<f64> = scales.collect();
-        let columns = jacobian.iter().zip(&scales);
-        let columns =
-            columns.map(|(column, scale)| column.iter().map(|entry| entry * scale).collect());
+        let columns = jacobian
+            .iter()
+            .zip(&scales)
+            .map(|(column, scale)| column.iter().map(|entry| entry * scale).collect());
         let svd = Svd::new(columns.collect());
         let mut matrix = vec![vec![0.0; count]; count];
         let mut free = vec![0.0; count];

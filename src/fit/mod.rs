@@ -289,8 +289,7 @@ pub fn fit_until(
             is_at_limit: is_at_limit(i),
         }
     };
-    let estimates = ranges.iter().enumerate().map(estimate);
-    let estimates: Vec<Estimate> = estimates.collect();
+    let estimates: Vec<Estimate> = ranges.iter().enumerate().map(estimate).collect();
     let is_known = |i: usize| estimates[i].standard_error.is_some();
     let correlation = |i, j| {
         covariance

@@ -76,8 +76,9 @@ pub(super) fn pulls(
 /// of the residuals gives the standard deviation of all points.
 pub(super) fn outliers(fit: &Fit, points: &MeasuredPoints) -> Vec<String> {
     let rows = fit.comparison.rows.iter();
-    let residuals = rows.filter_map(|row| Some((row.line, row.residual_deg?, row.sd_deg)));
-    let residuals: Vec<(usize, f64, Option<f64>)> = residuals.collect();
+    let residuals: Vec<(usize, f64, Option<f64>)> = rows
+        .filter_map(|row| Some((row.line, row.residual_deg?, row.sd_deg)))
+        .collect();
     let mut sizes: Vec<f64> = residuals
         .iter()
         .map(|(_, residual, _)| residual.abs())

@@ -58,8 +58,9 @@ impl CurvatureFrame {
             return true;
         }
         let position = contact.map_or([0.0; 2], |contact| contact.contact_mm);
-        let angle = contact.and_then(|contact| contact.contact_angle_deg);
-        let angle = angle.filter(|_| method == ForceMethod::Lever);
+        let angle = contact
+            .and_then(|contact| contact.contact_angle_deg)
+            .filter(|_| method == ForceMethod::Lever);
         let at = self
             .at_mm
             .filter(|_| method == ForceMethod::Lever && contact.is_some());

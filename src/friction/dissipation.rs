@@ -35,8 +35,7 @@ impl Dissipation {
         let level = &limit.level;
         let nodes = limit.inner(&QUADRATURE.map(|[at, _]| at));
         let pairs: Vec<_> = nodes.iter().map(|node| (limit, node.push)).collect();
-        let states = at_limits(&pairs).into_iter();
-        let states: Vec<FrictionState> = states.collect::<Option<_>>()?;
+        let states: Vec<FrictionState> = at_limits(&pairs).into_iter().collect::<Option<_>>()?;
         let friction = level.rod.friction.abs() * level.rod.contact_tangent().x;
         let powers = states.iter().zip(&nodes).map(|(state, node)| {
             let FrictionState { variation, at, .. } = state;

@@ -66,7 +66,7 @@ impl SlidingLimit {
             knots_at(&pairs.collect::<Vec<_>>())
         };
         let mut near = at(&reversals).into_iter();
-        let exact = limits
+        let exact: Vec<Vec<(usize, f64)>> = limits
             .iter()
             .zip(&reversals)
             .map(|(limit, limit_reversals)| {
@@ -80,8 +80,8 @@ impl SlidingLimit {
                     (*index, if is_inside { exact } else { *push })
                 });
                 exact.collect()
-            });
-        let exact: Vec<Vec<(usize, f64)>> = exact.collect();
+            })
+            .collect();
         let mut knots = at(&exact).into_iter();
         let polished = limits.iter().zip(&exact).map(|(limit, limit_reversals)| {
             let found: Vec<Option<SlidingKnot>> =

@@ -131,8 +131,9 @@ impl ContactHistory {
     pub(super) fn with_retreat(level: &LevelCurve) -> Option<(Self, Option<SlidingLimit>)> {
         let tip = SlidingLimit::of(std::slice::from_ref(level)).pop()??;
         let (base, retreat) = SlidingLimit::with_unstable(&opposed(level))?;
-        let limits = [Some(&tip), Some(&base), retreat.as_ref()];
-        let limits = limits.into_iter().flatten();
+        let limits = [Some(&tip), Some(&base), retreat.as_ref()]
+            .into_iter()
+            .flatten();
         let whole: Vec<_> = limits.map(|limit| (limit, limit.segments())).collect();
         let divided = SlidingLimit::divided(&whole);
         let mut divided = SlidingLimit::polished(&divided).into_iter();

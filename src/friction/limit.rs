@@ -44,8 +44,9 @@ impl SlidingLimit {
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
         let starts = levels.iter().map(|level| Some((level, level.touch())));
         let continued = continuations(&starts.collect::<Vec<_>>(), Stretch::Stable, NODE_MISS);
-        let parts = levels.iter().zip(&continued);
-        let parts = parts
+        let parts = levels
+            .iter()
+            .zip(&continued)
             .map(|(level, continuation)| Some(LimitPart::stable(level, continuation.as_ref()?)));
         through(&parts.collect::<Vec<_>>())
     }

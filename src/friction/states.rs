@@ -16,15 +16,16 @@ pub fn states(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
     let mut found = held(queries);
     // The limits are interpolated; the force ratio decides whether a contact next to a limit still sticks.
     let pairs = queries.iter().zip(&found).enumerate();
-    let doubtful = pairs.filter_map(|(i, (query, state))| {
-        let ContactPhase::Sticks(end) = query.phase else {
-            return None;
-        };
-        let friction = query.history.limit(Sliding::Tip)?.level.rod.friction;
-        let holds = state.is_some_and(|state| state.at.ratio.abs() <= friction.abs());
-        (!holds).then_some((i, end))
-    });
-    let doubtful: Vec<(usize, SlidingEnd)> = doubtful.collect();
+    let doubtful: Vec<(usize, SlidingEnd)> = pairs
+        .filter_map(|(i, (query, state))| {
+            let ContactPhase::Sticks(end) = query.phase else {
+                return None;
+            };
+            let friction = query.history.limit(Sliding::Tip)?.level.rod.friction;
+            let holds = state.is_some_and(|state| state.at.ratio.abs() <= friction.abs());
+            (!holds).then_some((i, end))
+        })
+        .collect();
     let again = doubtful.iter().flat_map(|(i, end)| {
         let query = queries[*i];
         let slides = [Sliding::Tip, Sliding::Base].map(|limit| ContactQuery {
@@ -59,8 +60,9 @@ pub fn held(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
         ContactPhase::Slides(limit) => query.history.target(limit, query.push),
         ContactPhase::Sticks(_) => None,
     });
-    let ends = runs.iter();
-    let ends = ends.map(|run| run.history.target(run.end.limit, run.end.push));
+    let ends = runs
+        .iter()
+        .map(|run| run.history.target(run.end.limit, run.end.push));
     let targets: Vec<Option<FrictionTarget>> = slides.chain(ends).collect();
     let mut found = solve_known(&targets);
     let ends = found.split_off(queries.len());
@@ -84,8 +86,9 @@ pub fn held(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
 
 /// Returns the states of limits at pushes, magnitudes in radians, `[pair]`; `None` where no state is found.
 pub(super) fn at_limits(pairs: &[(&SlidingLimit, f64)]) -> Vec<Option<FrictionState>> {
-    let targets = pairs.iter();
-    let targets = targets.map(|(limit, push)| FrictionTarget::sliding(limit, *push));
+    let targets = pairs
+        .iter()
+        .map(|(limit, push)| FrictionTarget::sliding(limit, *push));
     solve_known(&targets.collect::<Vec<_>>())
 }
 

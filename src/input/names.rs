@@ -9,8 +9,9 @@ const SIMILAR: f64 = 0.7;
 pub(crate) fn similar<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
     let known = known.into_iter();
-    let scored = known.map(|other| (strsim::jaro(&name, &other.to_lowercase()), other));
-    let scored = scored.filter(|(score, _)| *score > SIMILAR);
+    let scored = known
+        .map(|other| (strsim::jaro(&name, &other.to_lowercase()), other))
+        .filter(|(score, _)| *score > SIMILAR);
     let best = scored.max_by(|(one, _), (other, _)| one.total_cmp(other));
     best.map(|(_, other)| other)
 }

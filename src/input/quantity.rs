@@ -186,8 +186,7 @@ impl Quantity {
         let names: Vec<&str> = self.units().collect();
         match names[..] {
             [default, ref others @ .., last] => {
-                let others = others.iter().map(|name| format!(", {name}"));
-                let others: String = others.collect();
+                let others: String = others.iter().map(|name| format!(", {name}")).collect();
                 format!("must be {default} (the default){others} or {last}")
             }
             _ => "must be left out".to_owned(),

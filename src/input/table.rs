@@ -247,10 +247,6 @@ impl CsvTable {
         is_allowed: impl Fn(f64) -> bool,
     ) -> Result<Option<Vec<f64>>, CsvError> {
         let must = format!("{must}, or empty where it is missing");
-        let is_missing = |cell: &str| {
-            let mut markers = MISSING.iter();
-            markers.any(|marker| cell.eq_ignore_ascii_case(marker))
-        };
         self.parsed(column, &must, |cell| match cell {
             cell if is_missing(cell) => Some(f64::NAN),
             cell => {
@@ -290,8 +286,9 @@ impl CsvTable {
     /// The first cell that is no number or out of its range, or the first line whose time does not grow.
     pub(crate) fn times_s(&self) -> Result<Vec<f64>, CsvError> {
         let must = format!("a number between -{MOST_SECONDS:e} and {MOST_SECONDS:e}");
-        let times = self.numbers("time_s", &must, |time| time.abs() <= MOST_SECONDS)?;
-        let times = times.unwrap_or_default();
+        let times = self
+            .numbers("time_s", &must, |time| time.abs() <= MOST_SECONDS)?
+            .unwrap_or_default();
         let mut pairs = times.windows(2).zip(self.lines().skip(1));
         match pairs.find(|(pair, _)| pair[1] <= pair[0]) {
             None => Ok(times),
@@ -320,8 +317,8 @@ impl CsvLines {
     pub fn split(text: &str, origin: &str) -> Result<Self, CsvError> {
         let text = normalised(text);
         let separator = separator(&text);
-        let lines = lines(&text, separator);
-        let lines = lines.map_err(|(line, what)| CsvError::at(origin, line, what))?;
+        let lines =
+            lines(&text, separator).map_err(|(line, what)| CsvError::at(origin, line, what))?;
         Ok(Self { separator, lines })
     }
 
@@ -392,6 +389,12 @@ const MOST_HINTS: usize = 100;
 
 /// The end of a message about numbers with commas where commas separate columns.
 const DECIMAL_COMMAS: &str = "; where numbers have decimal commas, separate columns by `;`";
+
+/// Returns true if a cell of measurements stands for a missing value.
+pub(crate) fn is_missing(cell: &str) -> bool {
+    let mut markers = MISSING.iter();
+    markers.any(|marker| cell.eq_ignore_ascii_case(marker))
+}
 
 /// Number of cells of a line, without empty cells at its end.
 fn filled(line: &CsvLine) -> usize {

@@ -53,8 +53,7 @@ pub fn search(
         };
         // The columns of parameters that are beyond a limit, or would go there, are 0.
         let jacobian = |x: &[f64], residuals: &[f64]| {
-            let columns = problem.jacobian(&inside(x), residuals);
-            let mut columns = columns.ok_or(no_jacobian)?;
+            let mut columns = problem.jacobian(&inside(x), residuals).ok_or(no_jacobian)?;
             clear_faint(&mut columns);
             for ((column, [least, most]), x) in columns.iter_mut().zip(&ranges).zip(x) {
                 let growth = dot(column, residuals);

@@ -70,8 +70,9 @@ pub fn minimise(
         let svd = Svd::new(columns);
         let tiny = svd.largest() * f64::EPSILON;
         // Singular value, direction, and scalar product of the residuals and the image.
-        let parts = svd.values().filter(|(value, ..)| *value > tiny);
-        let parts: Vec<_> = parts
+        let parts: Vec<_> = svd
+            .values()
+            .filter(|(value, ..)| *value > tiny)
             .map(|(value, direction, image)| (value, direction, dot(image, &residuals)))
             .collect();
         if length == 0.0 || parts.is_empty() {

@@ -99,16 +99,17 @@ impl SheetGrid {
         let nearest = u_of(&rod, rod.tau(rod.pole.abs().max(NEAREST)));
         let range = u_of(&rod, tip) - nearest;
         let count = (range / CONTACT_STEP).ceil() as usize + 1;
-        let inward = (0..count).scan(tip, |tau, i| {
-            if i != 1 {
-                let beyond = CONTACT_STEP * (1.0 - i as f64);
-                *tau = tau_of(&rod, u_of(&rod, tip) + beyond, *tau);
-            } else {
-                *tau = tip;
-            }
-            Some(*tau)
-        });
-        let inward: Vec<f64> = inward.collect();
+        let inward: Vec<f64> = (0..count)
+            .scan(tip, |tau, i| {
+                if i != 1 {
+                    let beyond = CONTACT_STEP * (1.0 - i as f64);
+                    *tau = tau_of(&rod, u_of(&rod, tip) + beyond, *tau);
+                } else {
+                    *tau = tip;
+                }
+                Some(*tau)
+            })
+            .collect();
         let folds = first_folds(case, &inward)
             .into_iter()
             .map_while(|fold| fold);

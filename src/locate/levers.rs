@@ -160,8 +160,9 @@ impl<'a> SearchedPair<'a> {
 /// so many `parts` at each contact.
 fn turns(sines: impl ExactSizeIterator<Item = f64>, parts: usize) -> Vec<usize> {
     let contacts = sines.len() / parts;
-    let signs = sines.map(|sine| u8::from(sine > 0.0) | u8::from(sine < 0.0) << 1);
-    let signs: Vec<u8> = signs.collect();
+    let signs: Vec<u8> = sines
+        .map(|sine| u8::from(sine > 0.0) | u8::from(sine < 0.0) << 1)
+        .collect();
     let mut turned = Vec::new();
     let columns = signs.chunks(parts).zip(signs.chunks(parts).skip(1));
     for (i, (here, next)) in columns.enumerate() {
@@ -189,8 +190,7 @@ fn neighbours(cells: &[[usize; 2]], [contacts, parts]: [usize; 2]) -> Vec<usize>
 impl NodeLevers {
     /// Creates the levers of `rod` from its `nodes`, with so many `parts` at each contact.
     pub fn new(rod: &Rod, nodes: &[FirstVariation], parts: usize) -> Self {
-        let levers = nodes.iter().map(|node| lever(&node.full));
-        let levers: Vec<DVec3> = levers.collect();
+        let levers: Vec<DVec3> = nodes.iter().map(|node| lever(&node.full)).collect();
         // The gradients by contact and load, over the force and without it.
         let gradients = nodes.iter().zip(&levers).map(|(node, lever)| {
             let full = &node.full;

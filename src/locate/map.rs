@@ -66,11 +66,12 @@ impl Locator {
     pub fn shared_states(&self, whisker: &Whisker, pole: &Pole, grid: &Grid) -> SharedMap {
         let pole = &Pole::smooth(pole.radius_mm);
         let rows = (0..grid.distance_mm.len()).into_par_iter();
-        let cells = rows.flat_map_iter(|row| {
-            let sides = Side::BOTH.into_iter();
-            sides.flat_map(move |side| self.cells(whisker, pole, grid, (row, side)))
-        });
-        let cells: Vec<ContactCell> = cells.collect();
+        let cells: Vec<ContactCell> = rows
+            .flat_map_iter(|row| {
+                let sides = Side::BOTH.into_iter();
+                sides.flat_map(move |side| self.cells(whisker, pole, grid, (row, side)))
+            })
+            .collect();
         let counts = ORDER.map(|pair| self.counts(&cells, pair));
         let states = cells.iter().enumerate().map(|(i, cell)| {
             let shared = |pair: usize| cell.conditions[pair].map_or(0, |_| counts[pair][i]);
@@ -107,11 +108,12 @@ impl Locator {
         };
         let columns = grid.push_angle_deg.iter().enumerate();
         let columns = columns.filter(|(_, push_deg)| side.sign() * **push_deg > 0.0);
-        let states = columns.filter_map(|(column, push_deg)| {
-            let state = branch.state(push_deg.to_radians()).ok()?;
-            Some((column, state))
-        });
-        let states: Vec<(usize, StateAtPush)> = states.collect();
+        let states: Vec<(usize, StateAtPush)> = columns
+            .filter_map(|(column, push_deg)| {
+                let state = branch.state(push_deg.to_radians()).ok()?;
+                Some((column, state))
+            })
+            .collect();
         let sheet_grid = &self.sides[usize::from(side == Side::Cb)];
         let points = states.iter().map(|(_, state)| (state.tau, state.load));
         let variations: Vec<FirstVariation> =

@@ -188,10 +188,10 @@ impl Locator {
                 true => &[],
                 false => readings,
             };
-            let wanted = readings
+            let wanted: Vec<Wanted> = readings
                 .iter()
-                .map(|reading| self.wanted(reading, deviations));
-            let wanted: Vec<Wanted> = wanted.collect();
+                .map(|reading| self.wanted(reading, deviations))
+                .collect();
             let found = self.solve(&wanted, deviations.is_some());
             let first = chunk * READINGS_AT_ONCE + 1;
             let rows = wanted.iter().zip(found).enumerate();

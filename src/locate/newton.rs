@@ -155,8 +155,8 @@ impl<'a> NewtonProblem<'a> for BaseProblem<'a> {
             let force = self.tangent.rotate(DVec2::new(numbers.y, numbers.z));
             DVec3::new(numbers.x, force.x, force.y)
         };
-        let columns = base_derivatives(self.rod, at, here);
-        let columns = columns.map(|column| self.weights * turned(column));
+        let columns =
+            base_derivatives(self.rod, at, here).map(|column| self.weights * turned(column));
         let residual = self.weights * (self.wanted - turned(base_numbers(&here.full)));
         let triangle = Triangle::new(columns);
         let step = step_in_valley(triangle.solve(residual), triangle.condition());

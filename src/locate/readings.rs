@@ -30,7 +30,7 @@ impl BaseReadings {
     ];
 
     /// Reads a CSV file with at least two of the columns `base_moment_nnm`, `base_force_x_un` and `base_force_y_un`, and optionally
-    /// `angle_deg`; `-` is standard input. An empty cell or `nan` is a number that was not measured.
+    /// `angle_deg`; `-` is standard input. A missing value, as in [`CsvTable::measurements`], is a number that was not measured.
     ///
     /// # Errors
     /// If the file cannot be read, two of the columns are missing, or a cell is no number or out of its range.
@@ -62,16 +62,12 @@ impl BaseReadings {
         }
         let numbers = |name: &str, most: f64| {
             let end = digits(most);
-            let must = format!("a number between -{end} and {end}, or empty if not measured");
-            let values = table.values(name, &must, |cell| match cell {
-                "" | "nan" | "NaN" => Some(None),
-                cell => {
-                    let number: Option<f64> = cell.parse().ok();
-                    number.filter(|number| number.abs() <= most).map(Some)
-                }
-            });
-            let rows = table.lines().count();
-            Ok::<_, CsvError>(values?.unwrap_or_else(|| vec![None; rows]))
+            let must = format!("a number between -{end} and {end}");
+            let values = table
+                .measurements(name, &must, |number| number.abs() <= most)?
+                .unwrap_or_else(|| vec![f64::NAN; table.lines().count()]);
+            let measured = |number: f64| (!number.is_nan()).then_some(number);
+            Ok::<_, CsvError>(values.into_iter().map(measured).collect::<Vec<_>>())
         };
         let [moments, xs, ys] = loads.map(|name| numbers(name, MOST_LOAD));
         let (moments, xs, ys) = (moments?, xs?, ys?);

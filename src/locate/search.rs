@@ -195,8 +195,8 @@ impl Locator {
         starts: Vec<DVec2>,
         problem: impl Fn(usize, &'a SheetGrid) -> BaseProblem<'a>,
     ) -> Vec<SearchEnd<'a>> {
-        let problems = origins.iter().map(|(i, grid)| problem(*i, grid));
-        let mut problems: Vec<BaseProblem> = problems.collect();
+        let mut problems: Vec<BaseProblem> =
+            origins.iter().map(|(i, grid)| problem(*i, grid)).collect();
         let newton = BatchNewton::new(self.method, MOST_TRAJECTORIES);
         let iterates = newton.solve(&mut problems, starts).into_iter();
         let ends = origins.into_iter().zip(problems).zip(iterates);

@@ -335,8 +335,9 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let band = self.band(batch.rows[0].row);
         if panels.is_empty() {
             let (cells, channels) = (width * band.len(), self.plan.channels);
-            let spare = std::mem::take(&mut self.spare).into_iter();
-            let spare = spare.map(|panel| panel.resized(cells, channels));
+            let spare = std::mem::take(&mut self.spare)
+                .into_iter()
+                .map(|panel| panel.resized(cells, channels));
             let new = std::iter::repeat_with(|| Panel::unwritten(cells, channels));
             *panels = spare.chain(new).take(batch.sides.len() / sides).collect();
         }

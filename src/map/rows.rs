@@ -86,8 +86,8 @@ impl RowWriter<'_> {
         let is_reached = side.sheet.rows[row].is_reached();
         let touches = columns
             .iter()
-            .take_while(|column| column.push == 0.0 && is_reached);
-        let touches = touches.count();
+            .take_while(|column| column.push == 0.0 && is_reached)
+            .count();
         for index in 0..touches {
             let touch = side.first_touch(row, cells.steps[first + index]);
             self.write_run(index, touch.run());

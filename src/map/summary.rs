@@ -130,14 +130,14 @@ impl Summary {
         let codes = [&panel.regime, &panel.status, &panel.newton_steps];
         let [regimes, statuses, steps] = codes.map(|codes| codes.par_chunks(AT_ONCE));
         let chunks = (regimes, statuses, panel.residual.par_chunks(AT_ONCE), steps);
-        let parts = chunks
+        let parts: Vec<Self> = chunks
             .into_par_iter()
             .map(|(regimes, statuses, residuals, steps)| {
                 let mut part = Self::default();
                 part.count_cells(regimes, statuses, residuals, steps);
                 part
-            });
-        let parts: Vec<Self> = parts.collect();
+            })
+            .collect();
         for part in parts {
             for (cells, more) in self.regimes.iter_mut().zip(part.regimes) {
                 *cells += more;

@@ -104,8 +104,7 @@ impl MeasuredPoints {
         };
         let indices: Option<Vec<usize>> =
             names.map(|names| names.into_iter().map(&mut index_of).collect());
-        let rows = table.lines().zip(sides.unwrap_or_default());
-        let rows = rows.zip(
+        let rows = table.lines().zip(sides.unwrap_or_default()).zip(
             distances_mm
                 .unwrap_or_default()
                 .into_iter()

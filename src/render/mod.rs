@@ -26,7 +26,7 @@ pub use options::MapOptions;
 pub use overlays::{bands, error_bars, measured};
 pub use plots::{
     BranchAxis, CurveAxis, DrawnBranch, DrawnCurve, DrawnShape, PlotAxis, branches, contacts,
-    curves, designs, shapes,
+    curves, designs, shapes, yielding_ends,
 };
 pub use sensitivities::sensitivities;
 pub use shared::shared_states;

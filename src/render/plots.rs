@@ -3,11 +3,13 @@
 //! Solid lines are stable states, dashed lines unstable states. Slip-off is black and pull-off is blue, as in the paper.
 
 use super::labels;
+use super::marks::YIELDING;
 use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
 use crate::locate::{LocatedState, Locator};
 use crate::scene::digits;
 use crate::sensitivity::Variable;
 use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
+use crate::yields::PushMark;
 use whiskmap_plot::{Disc, Dot, Ink, Line, Plot, Stroke};
 
 /// Axis of a plot of table rows: a label and the value of each row.
@@ -89,6 +91,32 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
         plot.lines.push(symbol.named("pull-off"));
     }
     plot
+}
+
+/// Returns a line over the ends of detachment curves whose pushes exceed the yield strain; `None` without such an end. The `ends` with their
+/// marks are those of one whisker and side after the other, each in order of increasing distance.
+#[must_use]
+pub fn yielding_ends<'a>(
+    ends: impl IntoIterator<Item = (&'a Detachment, Option<PushMark>)>,
+    [x, y]: [CurveAxis; 2],
+) -> Option<Line> {
+    const BREAK: [f64; 2] = [f64::NAN; 2];
+    let mut points = Vec::new();
+    let mut before_mm = f64::INFINITY;
+    for (end, mark) in ends {
+        if end.distance_mm <= before_mm {
+            points.push(BREAK);
+        }
+        before_mm = end.distance_mm;
+        let yields = mark.and_then(|mark| mark.yields) == Some(true);
+        let place = (x.value)(end).zip((y.value)(end));
+        points.push(place.filter(|_| yields).map_or(BREAK, <[f64; 2]>::from));
+    }
+    let has_points = points
+        .iter()
+        .flatten()
+        .any(|coordinate| coordinate.is_finite());
+    has_points.then(|| Line::new(points, Ink::Grey, Stroke::Dashed).named(YIELDING))
 }
 
 /// The branches of a whisker at one pole, with their colour and name.

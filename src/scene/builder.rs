@@ -93,8 +93,9 @@ impl Numbers {
     /// Returns the radius at the tip, in micrometres, as given or from a taper; `None` if neither is given.
     pub fn tip_radius_um(&self) -> Option<f64> {
         let base = self.get(Parameter::BaseRadiusUm);
-        let tapered = base.zip(self.get(Parameter::Taper));
-        let tapered = tapered.map(|(base, taper)| base * (1.0 - taper));
+        let tapered = base
+            .zip(self.get(Parameter::Taper))
+            .map(|(base, taper)| base * (1.0 - taper));
         tapered.or(self.get(Parameter::TipRadiusUm))
     }
 }

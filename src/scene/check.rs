@@ -146,8 +146,9 @@ fn whisker(
     let modulus = Parameter::YoungsModulusGpa;
     let youngs_modulus_gpa = check(modulus, modulus.number_limits().remarks(unit))?;
     let (curvature, euler_spiral) = shape::shape(numbers, length_mm)?;
-    let traced = traced.map(|traced| shape::traced(numbers, &traced.curvature));
-    let traced = traced.transpose()?;
+    let traced = traced
+        .map(|traced| shape::traced(numbers, &traced.curvature))
+        .transpose()?;
     let ratio = Parameter::ModulusTipToBase;
     let modulus_tip_to_base = check(ratio, ratio.number_limits())?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;

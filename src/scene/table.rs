@@ -17,7 +17,7 @@ use crate::traced::TracedShape;
 /// let rows = rows.map(|(name, length_mm)| WhiskerRow::new(name).set(Parameter::LengthMm, length_mm));
 /// let table = cone.to_builder().whiskers(rows).build()?;
 /// let whiskers: Vec<_> = table.whiskers().collect();
-/// assert_eq!(whiskers[0].as_ref().map(|own| own.whisker.length_mm), Ok(25.0));
+/// assert_eq!(whiskers[0].as_ref().map(|swept| swept.whisker.length_mm), Ok(25.0));
 /// let refused = whiskers[1].as_ref().unwrap_err();
 /// assert_eq!((&*refused.name, &*refused.reason), ("C2", "length_mm is missing"));
 /// # Ok::<(), whiskmap::scene::SceneError>(())

@@ -150,8 +150,9 @@ impl SceneData {
     fn modulus(&self) -> Option<String> {
         let gpa = self.whisker.youngs_modulus_gpa;
         let unit = unexpected(gpa, MODULUS_GPA, &MODULUS_UNITS)?;
-        let hint = unit.map(|unit| format!("; is it in {unit}?"));
-        let hint = hint.unwrap_or_default();
+        let hint = unit
+            .map(|unit| format!("; is it in {unit}?"))
+            .unwrap_or_default();
         let key = Parameter::YoungsModulusGpa.key();
         let [gpa, least, most] = [gpa, MODULUS_GPA[0], MODULUS_GPA[1]].map(digits);
         Some(format!(
@@ -165,8 +166,7 @@ impl SceneData {
             let whisker = swept.whisker;
             let force_un = whisker.units().force_un;
             unexpected(force_un, FORCE_UN, &FORCE_UNITS)?;
-            let others = other_units(force_un, FORCE_UN, &FORCE_UNITS);
-            let others = others.collect::<Vec<_>>().join(" or ");
+            let others = other_units(force_un, FORCE_UN, &FORCE_UNITS).collect::<Vec<_>>().join(" or ");
             let hint = match others.as_str() {
                 "" => String::new(),
                 others => format!("; are {others}?"),
@@ -194,8 +194,9 @@ fn thickness(radius: &SceneNumber, length: &SceneNumber) -> Option<String> {
     extremes.into_iter().find_map(|(um, mm)| {
         let ratio = um * 1e-3 / mm;
         let other = unexpected(ratio, SLENDER, &SLENDER_UNITS)?;
-        let hint = other.map(|other| format!("; is it in {other}?"));
-        let hint = hint.unwrap_or_default();
+        let hint = other
+            .map(|other| format!("; is it in {other}?"))
+            .unwrap_or_default();
         let [um, mm, least, most] = [um, mm, SLENDER[0], SLENDER[1]].map(digits);
         Some(format!(
             "{} = {um} um: expected {least} to {most} of {} = {mm} mm, is {ratio:.1e}{hint}",
@@ -231,7 +232,8 @@ fn other_units(
     [least, most]: [f64; 2],
     units: &[(&'static str, f64)],
 ) -> impl Iterator<Item = &'static str> {
-    let fitting = units.iter();
-    let fitting = fitting.filter(move |(_, size)| (least..=most).contains(&(value * size)));
+    let fitting = units
+        .iter()
+        .filter(move |(_, size)| (least..=most).contains(&(value * size)));
     fitting.map(|(unit, _)| *unit)
 }

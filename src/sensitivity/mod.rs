@@ -170,12 +170,13 @@ pub fn branch(
     variables: &[Variable],
 ) -> Result<Vec<StateDerivatives>, NoState> {
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
-    let states =
-        Branch::new(whisker, pole, side, distance_mm)?.states(count, &AtomicBool::new(false))?;
-    let states = states.into_iter().map(|(state, point)| StateDerivatives {
-        by: differentiated.of_state(&state, distance_mm),
-        point,
-    });
+    let states = Branch::new(whisker, pole, side, distance_mm)?
+        .states(count, &AtomicBool::new(false))?
+        .into_iter()
+        .map(|(state, point)| StateDerivatives {
+            by: differentiated.of_state(&state, distance_mm),
+            point,
+        });
     Ok(states.collect())
 }
 

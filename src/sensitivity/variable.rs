@@ -78,8 +78,9 @@ impl Variable {
     /// the distance.
     #[must_use]
     pub fn of_detachments(scene: &Scene) -> Vec<Self> {
-        let given = Parameter::ALL.into_iter();
-        let given = given.filter(|parameter| parameter.has_derivative(scene));
+        let given = Parameter::ALL
+            .into_iter()
+            .filter(|parameter| parameter.has_derivative(scene));
         given
             .map(Self::Parameter)
             .chain([Self::DistanceMm])

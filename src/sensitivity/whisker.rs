@@ -174,11 +174,12 @@ impl WhiskerDerivative {
     ) {
         let dual = |value, derivative| Dual { value, derivative };
         let profile = whisker.profile.iter().flatten().enumerate();
-        let rows = profile.map(|(i, [s, radius])| {
-            let [by_s, by_radius] = by_row(i);
-            [dual(*s, by_s), dual(*radius, by_radius)]
-        });
-        let rows: Vec<[Dual<f64>; 2]> = rows.collect();
+        let rows: Vec<[Dual<f64>; 2]> = profile
+            .map(|(i, [s, radius])| {
+                let [by_s, by_radius] = by_row(i);
+                [dual(*s, by_s), dual(*radius, by_radius)]
+            })
+            .collect();
         let stretch = dual(whisker.arc_stretch, by_stretch);
         let (taper, pieces) = RadiusProfile::derivative(&rows, stretch);
         self.rod.taper = taper;

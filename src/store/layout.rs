@@ -150,9 +150,9 @@ impl AtlasLayout {
         let size = Vec2(self.columns * self.push_angles, self.rows * self.distances);
         let described =
             parts(channels).into_iter().map(|(part, channels)| {
-                let channels = channels.into_iter();
-                let channels =
-                    channels.map(|name| ChannelDescription::named(name, sample_type(name)));
+                let channels = channels
+                    .into_iter()
+                    .map(|name| ChannelDescription::named(name, sample_type(name)));
                 let mut header = Header::new(Text::from(part), size, channels.collect())
                     .with_encoding(COMPRESSION, self.description(), LineOrder::Increasing);
                 header.own_attributes.other = attributes.clone();

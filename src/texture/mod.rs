@@ -169,8 +169,9 @@ pub fn texture_until(
         asperities: &asperities,
     };
     let times = course.times_s().iter().zip(angles);
-    let moments = times.map(|(time_s, angle_deg)| [*time_s, angle_deg.to_radians()]);
-    let moments: Vec<[f64; 2]> = moments.collect();
+    let moments: Vec<[f64; 2]> = times
+        .map(|(time_s, angle_deg)| [*time_s, angle_deg.to_radians()])
+        .collect();
     let contacts = phases.iter().zip(&moments).map(|(phase, [_, angle])| {
         let Phase::Contact { side, obstacle } = *phase else {
             return None;
@@ -181,14 +182,14 @@ pub fn texture_until(
     let contacts: Vec<Contact> = contacts.collect();
     let held = place.held(&states, &contacts, &moments, curvature_at_mm, cancel)?;
 
-    let changes = passages
+    let changes: Vec<[f64; 2]> = passages
         .iter()
-        .map(|passage| [passage.time_s, passage.angle]);
-    let changes: Vec<[f64; 2]> = changes.collect();
-    let contacts = passages
+        .map(|passage| [passage.time_s, passage.angle])
+        .collect();
+    let contacts: Vec<Contact> = passages
         .iter()
-        .map(|passage| place.contact(passage.side, passage.obstacle, passage.push));
-    let contacts: Vec<Contact> = contacts.collect();
+        .map(|passage| place.contact(passage.side, passage.obstacle, passage.push))
+        .collect();
     let held_then = place.held(&states, &contacts, &changes, None, cancel)?;
     let kinds = passages.iter().zip(&contacts).map(|(passage, contact)| {
         let end = contact.map(|contact| states.detachment(contact.side, contact.row_push.0));

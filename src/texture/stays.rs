@@ -75,12 +75,13 @@ impl Texture {
             let weight = 0.5 * (time(i + 1) - time(i.saturating_sub(1)));
             Some([samples[i].tip_x_mm?, weight])
         });
-        let bins = histogram(&places.collect::<Vec<_>>(), None, TIP_BINS);
-        let bins = bins.into_iter().map(|(ends, tip_time_s)| TipBin {
-            tip_from_mm: ends[0],
-            tip_to_mm: ends[1],
-            tip_time_s,
-        });
+        let bins = histogram(&places.collect::<Vec<_>>(), None, TIP_BINS)
+            .into_iter()
+            .map(|(ends, tip_time_s)| TipBin {
+                tip_from_mm: ends[0],
+                tip_to_mm: ends[1],
+                tip_time_s,
+            });
         bins.collect()
     }
 }

@@ -105,8 +105,8 @@ fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Result
         .collect();
     let pulled = samples
         .iter()
-        .position(|d| end(*d).kind == DetachmentKind::PullOff);
-    let pulled = pulled.ok_or(NoCorner::AlwaysSlipsOff)?;
+        .position(|d| end(*d).kind == DetachmentKind::PullOff)
+        .ok_or(NoCorner::AlwaysSlipsOff)?;
     let before = pulled.checked_sub(1).ok_or(NoCorner::AlwaysPullsOff)?;
     let mut bracket = Bracket {
         below: samples[before],

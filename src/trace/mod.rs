@@ -72,8 +72,9 @@ pub fn sides<R: Send>(
     let sides: Vec<_> = whiskers.iter().flat_map(both).collect();
     let placed = |(whisker, side): (&Result<SweptWhisker, RefusedWhisker>, Side)| {
         let whisker = whisker.as_ref();
-        let place = whisker.map_or_else(|refused| &refused.place, |swept| &swept.place);
-        let place = place.clone();
+        let place = whisker
+            .map_or_else(|refused| &refused.place, |swept| &swept.place)
+            .clone();
         let rows = of_side(whisker, side).into_iter();
         rows.map(move |row| (place.clone(), row))
     };

@@ -59,13 +59,14 @@ impl StableBranch {
         };
         let (last, mut found) = (sizes[sizes.len() - 1], (sizes[best], nodes[best]));
         let lengths = self.0.lengths();
-        let ends = [best.saturating_sub(1), (best + 1).min(sizes.len() - 1)];
-        let mut ends = ends.map(|end| lengths[end]);
+        let mut ends =
+            [best.saturating_sub(1), (best + 1).min(sizes.len() - 1)].map(|end| lengths[end]);
         for _ in 0..ROUNDS {
             let step = (ends[1] - ends[0]) / (BETWEEN + 1) as f64;
             let targets = (1..=BETWEEN).map(|i| step.mul_add(i as f64, ends[0]));
-            let between = targets.map(|length| (length, interpolate(nodes, &lengths, length)));
-            let between: Vec<(f64, (usize, DVec2))> = between.collect();
+            let between: Vec<(f64, (usize, DVec2))> = targets
+                .map(|length| (length, interpolate(nodes, &lengths, length)))
+                .collect();
             let starts: Vec<DVec2> = between.iter().map(|(_, (_, start))| *start).collect();
             let corrected = level.correct(&starts, ON_CURVE);
             let states = between.iter().zip(corrected);

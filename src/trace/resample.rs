@@ -31,8 +31,9 @@ const NODES: usize = 6;
 /// Interpolates the curve at the length `target` along it; `lengths` are the lengths at the nodes. Returns the index of the last node up to
 /// `target`, and `(tau, load)`.
 pub fn interpolate(nodes: &[CurveNode], lengths: &[f64], target: f64) -> (usize, DVec2) {
-    let near = lengths.partition_point(|length| *length <= target);
-    let near = near.saturating_sub(1);
+    let near = lengths
+        .partition_point(|length| *length <= target)
+        .saturating_sub(1);
     let around = lengths.iter().zip(nodes);
     let around = around.skip(stencil(near, NODES, nodes.len()));
     let point = |(length, node): (&f64, &CurveNode)| (*length, node.point.to_array());

@@ -200,8 +200,7 @@ impl<'a> CurveTable<'a> {
         let place_of =
             |k: usize| (k as f64 - f64::from(KNOTS_BEFORE)) / f64::from(KNOTS_PER_LENGTH);
         let last = self.knots.len() - 1;
-        let ends = [nearest.saturating_sub(1), (nearest + 1).min(last)];
-        let ends = ends.map(place_of);
+        let ends = [nearest.saturating_sub(1), (nearest + 1).min(last)].map(place_of);
         let mut place = place_of(nearest);
         let mut foot = self.foot_at(point, place);
         for _ in 0..MOST_STEPS {

@@ -127,8 +127,9 @@ impl<'a> TracedPoints<'a> {
     pub fn curves(&self, most: usize) -> Result<Vec<CurveFit>, &'static str> {
         let all: Vec<usize> = (0..self.points.len()).collect();
         let last = self.points.len() - 1;
-        let coarse = (0..=COARSE).map(|i| self.points[last * i / COARSE]);
-        let coarse: Vec<DVec2> = coarse.collect();
+        let coarse: Vec<DVec2> = (0..=COARSE)
+            .map(|i| self.points[last * i / COARSE])
+            .collect();
         let mut length: f64 = coarse.windows(2).map(|w| w[0].distance(w[1])).sum();
         let chord = self.points[last] - self.points[0];
         let mut unknowns = vec![libm::atan2(chord.y, chord.x), 0.0];

@@ -55,10 +55,10 @@ impl RodFrame {
             return None;
         }
         let pole = DVec2::from(pole_mm) / length_mm;
-        let points = points_mm
+        let points: Vec<DVec2> = points_mm
             .iter()
-            .map(|point| DVec2::from(*point) / length_mm);
-        let points: Vec<DVec2> = points.collect();
+            .map(|point| DVec2::from(*point) / length_mm)
+            .collect();
         let places = places(&points);
         let near = |i: usize| {
             let (from, step) = (points[i], points[i + 1] - points[i]);
@@ -226,22 +226,22 @@ impl CommonRest {
         })
     }
 
-    /// Returns the standard deviations of a residual, in lengths, about the common shape and about a shape of each frame, `[common, own]`, if
+    /// Returns the standard deviations of a residual, in lengths, about the common shape and about a shape of each frame, `[common, alone]`, if
     /// the former is far larger. The logarithm of their ratio scatters as Fisher's z.
     pub fn unlike(&self, frames: &[&RodFrame], cancel: &AtomicBool) -> Option<[f64; 2]> {
         let each = frames.par_iter().filter_map(|frame| {
             let most = frame.traced.points.len() - MORE_POINTS;
             let degree = most.min(self.coefficients.len() - 1);
-            let own = Self::new(&[*frame], &self.coefficients[..=degree], degree, cancel)?;
-            Some((own.mean_square * own.count as f64, own.left(1)))
+            let alone = Self::new(&[*frame], &self.coefficients[..=degree], degree, cancel)?;
+            Some((alone.mean_square * alone.count as f64, alone.left(1)))
         });
         let (sums, left): (Vec<f64>, Vec<usize>) = each.unzip();
         let left = [self.left(frames.len()), left.iter().sum()].map(|left| left.max(1) as f64);
         let common = (self.mean_square * self.count as f64 / left[0]).sqrt();
-        let own = (sums.iter().sum::<f64>() / left[1]).sqrt();
+        let alone = (sums.iter().sum::<f64>() / left[1]).sqrt();
         let deviation = (0.5 * (left[0].recip() + left[1].recip())).sqrt();
-        let most = UNLIKE * libm::exp(SURE * deviation) * own;
-        (common > most.max(FAINT)).then_some([common, own])
+        let most = UNLIKE * libm::exp(SURE * deviation) * alone;
+        (common > most.max(FAINT)).then_some([common, alone])
     }
 
     /// Returns the number of residuals over that of unknowns, with the pose of each frame.
@@ -341,8 +341,9 @@ impl CommonTaper {
         };
         // The taper at which the sum of squares is least follows the coefficients (implicit function theorem).
         let by_coefficients = at_rest.jacobian(coefficients, &[])?;
-        let gradient = by_coefficients.iter();
-        let gradient = gradient.map(|by| -dot(&slopes, by) / dot(&slopes, &slopes));
+        let gradient = by_coefficients
+            .iter()
+            .map(|by| -dot(&slopes, by) / dot(&slopes, &slopes));
         let of_rest = scatter.deviation(&gradient.collect::<Vec<_>>());
         // Each frame has five unknowns.
         let left = count.saturating_sub(5 * frames.len() + 1).max(1);

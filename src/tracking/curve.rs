@@ -47,8 +47,6 @@ impl<'a> Curves<'a> {
         remarks: &mut Remarks,
     ) -> Result<Self, TrackingError> {
         let scale = options.mm_per_pixel;
-        let points =
-            |count: usize| format!("{count} points along a smooth curve, the base among them");
         let mut is_unlike = false;
         let (curves, needs) = if frames.iter().any(|frame| frame.bend.is_some()) {
             let axis = options.face_axis.unwrap_or_else(|| face_axis(frames));
@@ -76,11 +74,10 @@ impl<'a> Curves<'a> {
                 return Err(super::refused("face_axis", axis, must));
             }
             match rods::curves(frames, options, cancel, remarks) {
-                Ok(rods) => (rods, points(MORE_POINTS + 1)),
+                Ok(rods) => (rods, smooth_points(MORE_POINTS + 1)),
                 Err(why) => {
                     is_unlike = matches!(why, NoRods::Unlike(_));
-                    let traced = traced_frames(frames, options, &why, cancel, remarks);
-                    (traced, points(MORE_POINTS))
+                    traced_frames(frames, options, &why, cancel, remarks)
                 }
             }
         };
@@ -145,18 +142,24 @@ impl<'a> Curves<'a> {
 /// were off by up to 7 degrees, with 10 by 2, with 12 by 0.7, and with 16 by 0.4.
 const ENOUGH_POINTS: f64 = 12.0;
 
-/// The curves through the points of all frames: near the base, and whole. All frames have the same degrees.
+/// Returns what a frame with a curve has, for messages.
+fn smooth_points(count: usize) -> String {
+    format!("{count} points along a smooth curve, the base among them")
+}
+
+/// The curves through the points of all frames: near the base, and whole. All frames have the same degrees. Also returns what a frame with
+/// a curve has, for messages.
 fn traced_frames(
     frames: &[ImageFrame],
     options: &TrackingOptions,
     why: &NoRods,
     cancel: &AtomicBool,
     remarks: &mut Remarks,
-) -> Vec<Result<FrameCurve, NoFrame>> {
-    let points = frames
+) -> (Vec<Result<FrameCurve, NoFrame>>, String) {
+    let points: Vec<Option<Vec<[f64; 2]>>> = frames
         .iter()
-        .map(|frame| frame.points_mm(options.mm_per_pixel));
-    let points: Vec<Option<Vec<[f64; 2]>>> = points.collect();
+        .map(|frame| frame.points_mm(options.mm_per_pixel))
+        .collect();
     let known = || points.iter().flatten();
     let far = |points: &[[f64; 2]], i: usize| {
         libm::hypot(points[i][0] - points[0][0], points[i][1] - points[0][1])
@@ -228,7 +231,13 @@ fn traced_frames(
             curve.hiding_contact()
         })
     };
-    points.par_iter().map(frame).collect()
+    let mut needs = smooth_points(MORE_POINTS + near_degree);
+    if known().next().is_some() {
+        needs += &format!(
+            " and all within {part} mm of it; a curvature of degree {near_degree} needs as many"
+        );
+    }
+    (points.par_iter().map(frame).collect(), needs)
 }
 
 /// The degree for all frames: by cross-validation in some frames together, or one that leaves points over.
@@ -306,8 +315,9 @@ fn face_axis(frames: &[ImageFrame]) -> FaceAxis {
 /// The arc of a measured segment, with the y axis upward.
 fn arc(frame: &ImageFrame, axis: FaceAxis, scale: f64) -> Result<FrameCurve, NoFrame> {
     let (follicle, chord, curvature, angle) = measured(frame).ok_or(NoFrame::Missing)?;
-    let half = half_turn(chord, curvature).filter(|_| chord.length() > 0.0);
-    let half = half.ok_or(NoFrame::NoCurve)?;
+    let half = half_turn(chord, curvature)
+        .filter(|_| chord.length() > 0.0)
+        .ok_or(NoFrame::NoCurve)?;
     let length = match half {
         0.0 => chord.length(),
         _ => 2.0 * half / curvature,

@@ -38,8 +38,9 @@ pub(super) fn read(
     }
     let header: Vec<CsvLine> = lines.lines.drain(..HEADER.len()).collect();
     let names = header[1].cells.iter().skip(1);
-    let columns = names.clone().zip(header[2].cells.iter().skip(1));
-    let columns: Vec<String> = columns
+    let columns: Vec<String> = names
+        .clone()
+        .zip(header[2].cells.iter().skip(1))
         .map(|(name, coord)| format!("{name} {coord}"))
         .collect();
     let parts: Vec<&str> = each_once(&names.collect::<Vec<_>>());
@@ -103,8 +104,9 @@ pub(super) fn read(
         _ => None,
     };
     // Labelled images have the names of files instead of numbers.
-    let numbers = table.values("frame", "", |cell| Some(cell.parse::<u64>().ok()))?;
-    let numbers = numbers.unwrap_or_default();
+    let numbers = table
+        .values("frame", "", |cell| Some(cell.parse::<u64>().ok()))?
+        .unwrap_or_default();
     let are_numbered = numbers.iter().all(Option::is_some);
     let mut frames: Vec<ImageFrame> = Vec::with_capacity(numbers.len());
     for ((i, line), number) in table.lines().enumerate().zip(numbers) {

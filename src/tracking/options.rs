@@ -1,6 +1,6 @@
 //! Formats and options of trackers, and their errors.
 
-use crate::input::{CsvError, did_you_mean};
+use crate::input::{CsvError, did_you_mean, is_missing};
 use crate::scene::digits;
 use crate::traced::MOST_DEGREE;
 
@@ -34,11 +34,12 @@ impl TrackingFormat {
         let is_content = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
         let text = text.trim_start_matches('\u{feff}');
         let line = text.lines().find(is_content).unwrap_or_default();
-        let cells = line
+        let cells: Vec<&str> = line
             .split([',', ';', '\t'])
-            .map(|cell| cell.trim().trim_matches('"'));
-        let cells: Vec<&str> = cells.collect();
-        let is_number = |cell: &&str| cell.replace(',', ".").parse::<f64>().is_ok();
+            .map(|cell| cell.trim().trim_matches('"'))
+            .collect();
+        let is_number =
+            |cell: &&str| is_missing(cell) || cell.replace(',', ".").parse::<f64>().is_ok();
         match &cells[..] {
             ["scorer", ..] => Ok(Self::DeepLabCut),
             _ if cells.contains(&"follicle_x") => Ok(Self::Whisk),

@@ -90,8 +90,8 @@ fn chain<'a>(frames: &mut [ImageFrame], names: &'a [String]) -> Vec<&'a str> {
     };
     let pairs = seen
         .iter()
-        .flat_map(|a| seen.iter().filter(move |b| a < *b).map(move |b| (*a, *b)));
-    let pairs = pairs.map(|(a, b)| (a, far(a, b)));
+        .flat_map(|a| seen.iter().filter(move |b| a < *b).map(move |b| (*a, *b)))
+        .map(|(a, b)| (a, far(a, b)));
     let farthest = pairs.max_by(|(_, one), (_, other)| one.total_cmp(other));
     let Some((end, _)) = farthest else {
         return Vec::new();
@@ -124,42 +124,34 @@ fn chain<'a>(frames: &mut [ImageFrame], names: &'a [String]) -> Vec<&'a str> {
     beside
 }
 
-/// Turns the points of frames around whose ends are nearer to the other ends of the frame before.
+/// Turns the points of frames around whose ends are nearer to the other ends of the last frame that has each. A lost end does not count.
 fn align(frames: &mut [ImageFrame]) {
-    let mut before: Option<[[f64; 2]; 2]> = None;
+    let mut before = [None; 2];
     for frame in frames {
-        let Some([first, last]) = ends(frame) else {
-            continue;
+        let [first, last] = ends(frame);
+        let apart = |end: Option<[f64; 2]>, other: Option<[f64; 2]>| {
+            let pair = end.zip(other);
+            pair.map_or(0.0, |(end, other)| distance(end, other))
         };
-        let [mut first, mut last] = [first, last];
-        if let Some([base, tip]) = before {
-            let straight = distance(first, base) + distance(last, tip);
-            let crossed = distance(first, tip) + distance(last, base);
-            if crossed < straight {
-                frame.points_px.reverse();
-                (first, last) = (last, first);
-            }
+        let straight = apart(first, before[0]) + apart(last, before[1]);
+        let crossed = apart(first, before[1]) + apart(last, before[0]);
+        if crossed < straight {
+            frame.points_px.reverse();
         }
-        before = Some([first, last]);
+        let [first, last] = ends(frame);
+        before = [first.or(before[0]), last.or(before[1])];
     }
 }
 
-/// Both ends of the whisker in a frame; `None` if one is lost.
-fn ends(frame: &ImageFrame) -> Option<[[f64; 2]; 2]> {
+/// First and last point of the whisker in a frame; `None` if it is lost.
+fn ends(frame: &ImageFrame) -> [Option<[f64; 2]>; 2] {
     let points = &frame.points_px;
-    Some([(*points.first()?)?, (*points.last()?)?])
+    [points.first(), points.last()].map(|point| point.copied().flatten())
 }
 
 /// Positions of the first (0) or the last (1) point in all frames that have it.
 fn places(frames: &[ImageFrame], end: usize) -> Vec<[f64; 2]> {
-    let at = |frame: &ImageFrame| match end {
-        0 => frame.points_px.first().copied(),
-        _ => frame.points_px.last().copied(),
-    };
-    frames
-        .iter()
-        .filter_map(|frame| at(frame).flatten())
-        .collect()
+    frames.iter().filter_map(|frame| ends(frame)[end]).collect()
 }
 
 fn distance([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {

@@ -4,7 +4,7 @@ use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
 use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
 use crate::input::{CsvError, CsvLine, CsvLines};
 
-/// Reads the frames of files. An empty file among several is a lost frame.
+/// Reads the frames of files. An empty file among several is a lost frame, and a point without numbers is a lost point.
 pub(super) fn read(
     texts: &[(String, String)],
     options: &TrackingOptions,
@@ -53,24 +53,30 @@ pub(super) fn read(
         };
         let table = lines.table(header, origin)?;
         let must = "a number between -1e6 and 1e6";
-        let column = |name: &str| table.numbers(name, must, |coordinate| coordinate.abs() <= 1e6);
+        let column =
+            |name: &str| table.measurements(name, must, |coordinate| coordinate.abs() <= 1e6);
         let (x, y) = (
             column("x")?.unwrap_or_default(),
             column("y")?.unwrap_or_default(),
         );
         let whole = "a whole number of at least 0";
         let numbers = table.values("frame", whole, |cell| cell.parse::<u64>().ok())?;
-        let mut add =
-            |number: u64, points: &mut dyn Iterator<Item = [f64; 2]>| match frames.last_mut() {
-                Some(frame) if frame.number == number => frame.points_px.extend(points.map(Some)),
-                _ => frames.push(ImageFrame {
-                    number,
-                    points_px: points.map(Some).collect(),
-                    bend: None,
-                    pole_px,
-                }),
-            };
-        let points = x.into_iter().zip(y).map(|(x, y)| [x, y]);
+        let mut add = |number: u64, points: &mut dyn Iterator<Item = Option<[f64; 2]>>| match frames
+            .last_mut()
+        {
+            Some(frame) if frame.number == number => frame.points_px.extend(points),
+            _ => frames.push(ImageFrame {
+                number,
+                points_px: points.collect(),
+                bend: None,
+                pole_px,
+            }),
+        };
+        let is_known = |point: &[f64; 2]| point.iter().all(|coordinate| !coordinate.is_nan());
+        let points = x
+            .into_iter()
+            .zip(y)
+            .map(|(x, y)| Some([x, y]).filter(is_known));
         let Some(numbers) = numbers else {
             add(file as u64, &mut points.into_iter());
             continue;

@@ -56,8 +56,9 @@ const OFF: f64 = 2.0;
 
 /// Returns the position of the pole in each frame, or in the nearest frame that has it, `[frame]`; `None` without any.
 fn poles(frames: &[ImageFrame]) -> Option<Vec<[f64; 2]>> {
-    let known = frames.iter().enumerate();
-    let known: Vec<(usize, [f64; 2])> = known
+    let known: Vec<(usize, [f64; 2])> = frames
+        .iter()
+        .enumerate()
         .filter_map(|(i, frame)| Some((i, frame.pole_px?)))
         .collect();
     let nearest = |i: usize| {
@@ -101,8 +102,8 @@ impl NoRods {
             ),
             Self::Unlike(rms_mm) => {
                 let scatter = rms_mm.map_or_else(String::new, |rms| {
-                    let [common, own] = rms.map(|own| digits(rounded(own, 2)));
-                    format!(" (points are {common} mm from one shape, {own} mm from shapes of each frame)")
+                    let [common, alone] = rms.map(|mm| digits(rounded(mm, 2)));
+                    format!(" (points are {common} mm from one shape, {alone} mm from shapes of each frame)")
                 });
                 format!("frames far from the pole have no shape at rest in common{scatter}")
             }
@@ -170,10 +171,11 @@ impl Film<'_> {
         let sample: Vec<&RodFrame> = free.iter().filter_map(|i| frames[*i].as_ref()).collect();
         let first = CommonRest::new(&sample, &[], FIRST_DEGREE, cancel).ok_or_else(unlike)?;
         let whisker = TrackedRod::new(0.0, polynomial(&first.coefficients), chord_mm);
-        let fits = sample
+        let fits: Vec<FrameFit> = sample
             .par_iter()
-            .map(|frame| frame.at_rest(&whisker, cancel));
-        let fits: Vec<FrameFit> = fits.collect::<Option<_>>().ok_or_else(unlike)?;
+            .map(|frame| frame.at_rest(&whisker, cancel))
+            .collect::<Option<_>>()
+            .ok_or_else(unlike)?;
         let length_mm = chord_mm * median(fits.iter().map(|fit| fit.end));
         if length_mm <= 0.0 {
             return Err(unlike());
@@ -240,8 +242,9 @@ impl Film<'_> {
         let within = self.within_mm / whisker.length_mm;
         let frame = frame.ok_or(NoFrame::Missing)?;
         let at_rest = |bent: Option<FrameFit>| {
-            let fit = frame.at_rest(whisker, self.cancel);
-            let fit = fit.ok_or(NoFrame::NoCurve)?;
+            let fit = frame
+                .at_rest(whisker, self.cancel)
+                .ok_or(NoFrame::NoCurve)?;
             Ok(RodFit { fit, bent })
         };
         if !self.is_near(whisker, frame) {
@@ -266,9 +269,10 @@ impl Film<'_> {
         rest_rms: f64,
         warnings: &mut Vec<String>,
     ) -> Vec<Result<FrameFit, NoFrame>> {
-        let found = frames.par_iter();
-        let found = found.map(|frame| self.fit(whisker, frame.as_ref()));
-        let found: Vec<Result<RodFit, NoFrame>> = found.collect();
+        let found: Vec<Result<RodFit, NoFrame>> = frames
+            .par_iter()
+            .map(|frame| self.fit(whisker, frame.as_ref()))
+            .collect();
         let held = || found.iter().flatten().filter(|found| found.is_held());
         let held_rms = median(held().map(|found| found.fit.rms()));
         let limit = |rms: f64| (OUTLYING * rms.max(FAINT)).min(LARGEST_RMS);
@@ -409,8 +413,7 @@ fn most_bent<'a>(
         // With another taper, the curve is a little off the pole.
         (found.offset?.abs() <= 2.0 * within).then(|| (*frame, (contact * force).abs()))
     };
-    let moments = near.par_iter().filter_map(moment);
-    let mut moments: Vec<(&RodFrame, f64)> = moments.collect();
+    let mut moments: Vec<(&RodFrame, f64)> = near.par_iter().filter_map(moment).collect();
     let usual = median(moments.iter().map(|(_, moment)| *moment));
     moments.retain(|(_, moment)| *moment >= usual);
     let bent: Vec<&RodFrame> = moments.into_iter().map(|(frame, _)| frame).collect();

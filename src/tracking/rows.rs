@@ -198,7 +198,15 @@ fn zero(
         });
         let near = near.filter(|row| (row.time_s - time_s).abs() <= 0.5001 / options.fps);
         return near.and_then(|row| row.angle_deg).ok_or_else(|| {
-            let must = "must be the time of a frame with a whisker".to_owned();
+            let known = || rows.iter().filter(|row| row.angle_deg.is_some());
+            let ends =
+                [known().next(), known().next_back()].map(|row| row.map_or(0.0, |row| row.time_s));
+            let must = format!(
+                "must be the time of a frame with a whisker, between {} and {} s in steps of 1/{} s",
+                digits(rounded(ends[0], 6)),
+                digits(rounded(ends[1], 6)),
+                digits(options.fps)
+            );
             refused("zero_s", &digits(time_s), must)
         });
     }

@@ -90,8 +90,9 @@ impl Draws {
             return Err(DrawError::TooMany { ends, distances });
         }
         let varying = varying(scene, deviations);
-        let draws = (0..samples as u64).into_par_iter();
-        let draws = draws.map(|sample| draw(scene, &varying, RandomStream::new(seed, sample)));
+        let draws = (0..samples as u64)
+            .into_par_iter()
+            .map(|sample| draw(scene, &varying, RandomStream::new(seed, sample)));
         let (drawn, refused): (Vec<_>, Vec<u64>) = draws.collect::<Result<_, _>>()?;
         Ok(Self {
             scene: scene.clone(),

@@ -84,11 +84,12 @@ impl<'a> CourseContacts<'a> {
         let Some((_, course)) = &mut self.open else {
             return Vec::new();
         };
-        let snaps = std::mem::take(&mut course.snaps).into_iter();
-        let snaps = snaps.map(|snap| ContactChange {
-            push: snap.push,
-            before: Some(snap.before),
-        });
+        let snaps = std::mem::take(&mut course.snaps)
+            .into_iter()
+            .map(|snap| ContactChange {
+                push: snap.push,
+                before: Some(snap.before),
+            });
         let lost = course.lost_at.filter(|_| !self.is_lost);
         self.is_lost |= lost.is_some();
         let lost = lost.map(|push| ContactChange { push, before: None });

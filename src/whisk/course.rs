@@ -141,8 +141,7 @@ impl AngleCourse {
                 rate_hz,
             });
         }
-        let times = (0..=intervals as u64).map(|i| i as f64 / rate_hz);
-        let times: Vec<f64> = times.collect();
+        let times: Vec<f64> = (0..=intervals as u64).map(|i| i as f64 / rate_hz).collect();
         let angle = |time: &f64| amplitude_deg * libm::sin(TAU * frequency_hz * time);
         let angles = times.iter().map(angle).collect();
         Self::new(times, angles)
@@ -178,8 +177,8 @@ impl AngleCourse {
         let times_s = table.times_s()?;
         let angles_deg =
             table.measurements("angle_deg", "a number between -360 and 360", is_angle)?;
-        let course = Self::new(times_s, angles_deg.unwrap_or_default());
-        let course = course.map_err(|why| CsvError::whole(&table.origin, why.to_string()))?;
+        let course = Self::new(times_s, angles_deg.unwrap_or_default())
+            .map_err(|why| CsvError::whole(&table.origin, why.to_string()))?;
         Ok(Self { note, ..course })
     }
 

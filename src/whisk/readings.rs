@@ -87,9 +87,9 @@ impl BothSides {
 
     /// Returns the events of a course with their states: `[event]`.
     pub fn events(&self, events: &[LegEvent]) -> Vec<WhiskEvent> {
-        let contacts = events.iter();
-        let contacts =
-            contacts.map(|event| Some(event.contact).filter(|contact| !contact.push.is_nan()));
+        let contacts = events
+            .iter()
+            .map(|event| Some(event.contact).filter(|contact| !contact.push.is_nan()));
         // A snap begins at a limit, where rounding may hide that the contact still sticks.
         let readings = self.at(&contacts.collect::<Vec<_>>(), held);
         let events = events.iter().zip(readings).map(|(event, reading)| {

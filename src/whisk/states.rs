@@ -285,8 +285,9 @@ impl BothSides {
         contacts: &[Option<CourseContact>],
         solve: SolveContacts,
     ) -> Vec<Option<CourseState>> {
-        let contacts = contacts.iter();
-        let contacts = contacts.map(|contact| contact.map(|contact| (contact.side, contact)));
+        let contacts = contacts
+            .iter()
+            .map(|contact| contact.map(|contact| (contact.side, contact)));
         self.by_side(&contacts.collect::<Vec<_>>(), |states, contacts| {
             states.at(contacts, solve)
         })

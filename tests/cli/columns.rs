@@ -41,14 +41,18 @@ const TABLES: [(&[&str], &str, &str, &str, &str); 5] = [
     ),
 ];
 
+/// A column that is not used is named once.
 #[test]
 fn own_names_of_columns_are_the_expected_ones() {
     let place = Place::with(SCENE);
-    for (command, header, row, names, own) in TABLES {
-        place.write("table.csv", &format!("{header}\n{row}\n"));
+    for (command, header, row, names, renamed) in TABLES {
+        let row = row.replace('\n', ",\n");
+        place.write("table.csv", &format!("{header},day\n{row},Monday\n"));
         let expected = place.run(&[command, &["table.csv"]].concat());
         assert_eq!(expected.code, Some(0), "{expected:?}");
-        place.write("table.csv", &format!("{own}\n{row}\n"));
+        let note = "note: table.csv:1: columns that are not used: day\n";
+        assert_eq!(expected.err.matches(note).count(), 1, "{expected:?}");
+        place.write("table.csv", &format!("{renamed},day\n{row},Monday\n"));
         let found = place.run(&[command, &["table.csv", "--columns", names]].concat());
         assert_eq!(
             (found.code, &found.out),

@@ -79,18 +79,6 @@ fn a_sweep_leads_with_the_whisker() {
 }
 
 #[test]
-fn the_corner_of_the_cone() {
-    let place = Place::with(SCENE);
-    let run = good(&place, &["curve", "scene.toml", "--corner"]);
-    let rows = cells(&run.out, "side,distance_mm,push_angle_deg,reason");
-    assert_eq!(rows[0], ["cf", "", "", "always-slips-off"]);
-    assert_eq!(rows[1][3], "");
-    let distance: f64 = rows[1][1].parse().unwrap();
-    assert_eq!(rows[1][0], "cb");
-    assert!((distance - 19.09).abs() < 5e-3, "{distance}");
-}
-
-#[test]
 fn a_curve_without_any_end_is_written_and_fails() {
     let place = Place::with(super::map::HINGED);
     let run = place.run(&["curve", "scene.toml", "--csv", "curve.csv"]);

@@ -263,17 +263,6 @@ fn wrong_input_is_refused_before_any_file_is_made() {
         curve(&place, &["--csv", "t.csv"]).assert_refused(parts);
     };
     data(
-        &DATA.replace("side", "sides"),
-        &[
-            "points.csv:2: found kind, sides, distance_mm, push_angle_deg; needed side, distance_mm, push_angle_deg or \
-             push_chord_deg, each once; `sides` is not known; did you mean `side`?",
-        ],
-    );
-    data(
-        &DATA.replace("18.9\n", "nearly\n"),
-        &["points.csv:6: push_angle_deg = nearly: must be a number between -360 and 360"],
-    );
-    data(
         &DATA.replace("19.3,", "25,"),
         &["points.csv:7: distance_mm = 25: must be between 0.02 (length_mm / 1000) and 19.6"],
     );

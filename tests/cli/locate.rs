@@ -55,7 +55,7 @@ fn readings_of_a_file_have_rows_and_a_picture() {
     let place = Place::with(SCENE);
     place.write(
         "r.csv",
-        "base_moment_nnm,base_force_y_un,day\n60,6,1\n,6,1\n0,0,1\n-60,6,1\n",
+        "base_moment_nnm,base_force_y_un,day\n60,6,1\n,6,1\n0,0,1\n-60,6,1\nNA,nan,1\n",
     );
     let run = place.run(&[
         "locate",
@@ -80,7 +80,7 @@ fn readings_of_a_file_have_rows_and_a_picture() {
         run.err.contains("columns that are not used: day"),
         "{run:?}"
     );
-    assert!(run.err.contains("3 of 4 readings have no state"), "{run:?}");
+    assert!(run.err.contains("4 of 5 readings have no state"), "{run:?}");
     let table = String::from_utf8(place.bytes("out.csv")).unwrap();
     for end in [",incomplete", ",no-load", ",no-state"] {
         assert!(table.lines().any(|line| line.ends_with(end)), "{table}");
@@ -232,7 +232,7 @@ fn bad_readings_are_refused() {
         ("base_moment_nnm,base_force_q_un\n1,2\n", "did you mean"),
         (
             "base_moment_nnm,base_force_x_un\n1,x\n",
-            "r.csv:2: base_force_x_un = x: must be a number between -1e18 and 1e18, or empty if not measured",
+            "r.csv:2: base_force_x_un = x: must be a number between -1e18 and 1e18, or empty where it is missing",
         ),
         (
             "base_moment_nnm,base_force_x_un,angle_deg\n1,2,400\n",

@@ -53,7 +53,6 @@ mod store;
 // Slurm, and its shell.
 #[cfg(unix)]
 mod submit;
-mod sweep;
 mod table;
 #[cfg(unix)]
 mod terminal;

@@ -79,66 +79,7 @@ fn a_sweep_gives_its_tables_and_its_picture() {
 }
 
 #[test]
-fn wrong_surfaces_are_refused() {
-    for (key, value, said) in [
-        (
-            "distance_mm",
-            "300.0",
-            "surface.distance_mm = 300.0: must be between length_mm / 1000 (0.02) and 10 * length_mm (200)",
-        ),
-        (
-            "spacing_um",
-            "0.0",
-            "surface.spacing_um = 0.0: must be between 0.001 and 100000000",
-        ),
-        (
-            "asperity_radius_um",
-            "100.0",
-            "surface.asperity_radius_um = 100.0: must be at least 0 and less than spacing_um * (1 - jitter) / 2, at which asperities touch (100)",
-        ),
-        (
-            "length_mm",
-            "1e9",
-            "surface.length_mm = 1e9: must be between 0 and 99,999 spacings (19999.8)",
-        ),
-        (
-            "length_mm",
-            "\"long\"",
-            "invalid type: string \"long\", expected a number",
-        ),
-    ] {
-        let line = |line: &str| match line.starts_with(key) {
-            true => format!("{key} = {value}\n"),
-            false => format!("{line}\n"),
-        };
-        let surface: String = SURFACE.lines().map(line).collect();
-        place(&surface)
-            .run(&["texture", "scene.toml"])
-            .assert_refused(&["scene.toml:", said]);
-    }
-    for (more, said) in [
-        (
-            "jitter = 1.0\n",
-            "surface.jitter = 1.0: must be at least 0 and less than 1",
-        ),
-        (
-            "jitter = -0.1\n",
-            "surface.jitter = -0.1: must be at least 0 and less than 1",
-        ),
-        ("seed = -1\n", "invalid value: integer `-1`, expected u32"),
-        (
-            "noise = 1\n",
-            "unknown field `noise`, expected one of `distance_mm`, `spacing_um`",
-        ),
-    ] {
-        place(&format!("{SURFACE}{more}"))
-            .run(&["texture", "scene.toml"])
-            .assert_refused(&["scene.toml:", said]);
-    }
-    let without = SURFACE.replace("spacing_um = 200.0\n", "");
-    place(&without)
-        .run(&["texture", "scene.toml"])
-        .assert_refused(&["missing field `spacing_um`"]);
+fn a_sweep_needs_a_surface_and_no_friction() {
     Place::with(SCENE)
         .run(&["texture", "scene.toml"])
         .assert_refused(&["scene.toml: the scene has no [surface]: add that table"]);

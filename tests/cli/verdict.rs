@@ -1,4 +1,4 @@
-//! `whiskmap fit`: best values that are not a fit, and tables of other programs.
+//! `whiskmap fit`: best values that are not a fit.
 
 use super::data::{DATA, place};
 use super::fit::{FIT, fit, json};
@@ -77,33 +77,4 @@ fn values_that_are_not_a_fit_are_reported() {
         ),
         "{run:?}"
     );
-}
-
-/// Tables of other programs are read: separators, decimal commas, UTF-16, capital letters, more columns.
-#[test]
-fn tables_of_other_programs_are_read() {
-    let place = place();
-    let free = ["--free", "tip_radius_um"];
-    let plain = fit(&place, &free);
-    let text = DATA.replace(',', ";").replace('.', ",").replace("cb", "CB");
-    let text: String = text
-        .lines()
-        .map(|line| {
-            format!(
-                "{line};{}\r\n",
-                if line.contains("kind") { "rat" } else { "" }
-            )
-        })
-        .collect();
-    let bytes = format!("\u{feff}{text}")
-        .encode_utf16()
-        .flat_map(u16::to_le_bytes)
-        .collect::<Vec<u8>>();
-    std::fs::write(place.path("points.csv"), bytes).unwrap();
-    let run = fit(&place, &free);
-    assert_eq!(
-        run.err,
-        "note: points.csv:2: columns that are not used: rat\n"
-    );
-    assert_eq!(run.out, plain.out);
 }

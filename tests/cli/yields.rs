@@ -21,7 +21,7 @@ fn good(place: &Place, words: &[&str]) -> Run {
 fn column(text: &str, name: &str) -> Option<Vec<String>> {
     let lines = text.lines().filter(|line| line.contains(','));
     let mut lines = lines.map(|line| line.split(','));
-    let place = lines.next()?.position(|own| own == name)?;
+    let place = lines.next()?.position(|cell| cell == name)?;
     lines
         .map(|mut line| Some(line.nth(place)?.to_owned()))
         .collect()
@@ -101,14 +101,14 @@ fn tables_have_a_mark() {
         let yields = column(&marked, "yields").unwrap();
         let mut seen = [0, 0];
         for (strain, mark) in strains.iter().zip(&yields) {
-            let wanted = strain.parse().ok().map(|own: f64| own > 0.002);
+            let wanted = strain.parse().ok().map(|strain: f64| strain > 0.002);
             assert_eq!(
                 *mark,
-                wanted.map_or(String::new(), |own| own.to_string()),
+                wanted.map_or(String::new(), |is_marked| is_marked.to_string()),
                 "{words:?}"
             );
-            if let Some(own) = wanted {
-                seen[usize::from(own)] += 1;
+            if let Some(is_marked) = wanted {
+                seen[usize::from(is_marked)] += 1;
             }
         }
         assert!(
@@ -118,24 +118,10 @@ fn tables_have_a_mark() {
             "{words:?} {seen:?}"
         );
         // The other columns have the same cells.
-        for (own, other) in marked.lines().zip(elastic.lines()) {
-            assert!(own.starts_with(other), "{words:?}:\n{own}\n{other}");
+        for (line, other) in marked.lines().zip(elastic.lines()) {
+            assert!(line.starts_with(other), "{words:?}:\n{line}\n{other}");
         }
     }
-}
-
-/// A row of a table of whiskers without a whisker has no mark.
-#[test]
-fn a_row_without_a_whisker_has_no_mark() {
-    let table =
-        "[whiskers]\ntable = [{ name = 'a', length_mm = 20 }, { name = 'b', length_mm = nan }]\n";
-    let place = Place::with(&format!("{}{table}", yielding(0.002)));
-    let run = good(&place, &["curve", "scene.toml", "--distance=10"]);
-    assert_eq!(
-        column(&run.out, "yields").unwrap(),
-        ["true", "true", "", ""]
-    );
-    assert_eq!(column(&run.out, "whisker").unwrap(), ["a", "a", "b", "b"]);
 }
 
 /// Each row of a table of whiskers has its own yield strain: in tables, counts and pictures. A row without a number has no marks, and one
@@ -247,6 +233,20 @@ fn maps_have_strains_and_hatched_cells() {
         assert_eq!(picture.contains(LEGEND), has_part, "{scene}");
         assert_eq!(picture.contains("stroke-dasharray"), has_part, "{scene}");
     }
+    // A curve has another stroke over the ends that the table marks.
+    for (scene, has_marks) in [("scene.toml", true), ("strong.toml", false)] {
+        let run = good(&place, &["curve", scene, "--csv", "-", "--plot", "s.svg"]);
+        let marks = column(&run.out, "yields").unwrap();
+        let count = marks.iter().filter(|mark| *mark == "true").count();
+        let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+        assert_eq!(picture.contains(LEGEND), has_marks, "{scene}");
+        // A point has one comma. The line of the legend has two points.
+        let dashed = picture
+            .lines()
+            .filter(|line| line.contains("stroke-dasharray"));
+        let points: usize = dashed.map(|line| line.matches(',').count()).sum();
+        assert_eq!(points, if has_marks { count + 2 } else { 0 }, "{scene}");
+    }
     // The cells are hatched, not only the legend.
     let body = |picture: &str| {
         let mut rasters = picture.split("<image");
@@ -335,7 +335,7 @@ fn a_store_has_the_strains_of_the_map() {
     });
     assert!(tables.iter().all(|table| *table == tables[0]));
     let strains = column(&tables[0], "peak_strain").unwrap();
-    assert!(strains.iter().filter(|own| !own.is_empty()).count() > 100);
+    assert!(strains.iter().filter(|strain| !strain.is_empty()).count() > 100);
     place.write("scene.toml", &yielding(0.003));
     let resumed = place.run(&[&zarr[..], &["--resume"]].concat());
     resumed.assert_said(2, "differs in `scene`");

@@ -47,7 +47,7 @@ fn states_are_those_of_small_steps() {
         (0.04, 1.0, 0.3, Side::Cf, 15.0),
     ] {
         let scene = cone(a_per_mm, radius_mm, friction);
-        let own = stepped(&scene, side);
+        let steps = stepped(&scene, side);
         let rod = scene.whisker.rod(&scene.pole, side);
         let (touch, _) = Rest::new(&rod).touch_at_distance(distance / scene.whisker.length_mm);
         let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
@@ -55,7 +55,7 @@ fn states_are_those_of_small_steps() {
         // The fold is singular, where difference quotients fail.
         let pushes = (1..=PUSHES).map(|i| 0.9 * end * f64::from(i) / f64::from(PUSHES));
         let pushes: Vec<f64> = pushes.collect();
-        let course = own.course(rod.tau(touch), &pushes);
+        let course = steps.course(rod.tau(touch), &pushes);
         let units = scene.whisker.units();
         for (push, wanted) in pushes.iter().zip(&course).skip(20).step_by(7) {
             let state = branch.state(side.sign() * push, true).unwrap();

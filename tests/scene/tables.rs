@@ -90,6 +90,70 @@ fn the_modulus_at_the_tip_of_a_drooping_whisker_has_limits() {
     );
 }
 
+/// The table of a surface, which the base scene does not have.
+#[test]
+fn surfaces_have_their_ranges() {
+    const LINES: [&str; 6] = [
+        "distance_mm = 18",
+        "spacing_um = 200",
+        "asperity_radius_um = 20",
+        "length_mm = 20",
+        "jitter = 0.1",
+        "seed = 1",
+    ];
+    let scene = |lines: [&str; 6]| format!("{BASE}[surface]\n{}\n", lines.join("\n"));
+    assert!(parse(&scene(LINES)).is_ok());
+    for (at, line, said) in [
+        (
+            0,
+            "distance_mm = 300",
+            "surface.distance_mm = 300: must be between length_mm / 1000 (0.02) and 10 * length_mm (200)",
+        ),
+        (
+            1,
+            "spacing_um = 0",
+            "surface.spacing_um = 0: must be between 0.001 and 100000000",
+        ),
+        (1, "", "missing field `spacing_um`"),
+        (
+            2,
+            "asperity_radius_um = 90",
+            "surface.asperity_radius_um = 90: must be at least 0 and less than spacing_um * (1 - jitter) / 2, at which asperities touch (90)",
+        ),
+        (
+            3,
+            "length_mm = 1e9",
+            "surface.length_mm = 1e9: must be between 0 and 99,999 spacings (19999.8)",
+        ),
+        (
+            3,
+            "length_mm = 'long'",
+            "invalid type: string \"long\", expected a number",
+        ),
+        (
+            4,
+            "jitter = 1",
+            "surface.jitter = 1: must be at least 0 and less than 1",
+        ),
+        (
+            4,
+            "jitter = -0.1",
+            "surface.jitter = -0.1: must be at least 0 and less than 1",
+        ),
+        (5, "seed = -1", "invalid value: integer `-1`, expected u32"),
+        (
+            5,
+            "noise = 1",
+            "unknown field `noise`, expected one of `distance_mm`, `spacing_um`",
+        ),
+    ] {
+        let mut lines = LINES;
+        lines[at] = line;
+        let why = parse(&scene(lines)).expect_err(line);
+        assert!(why.contains(said), "{line}: {why}");
+    }
+}
+
 /// The table of standard deviations, which the base scene does not have.
 #[test]
 fn deviations_belong_to_numbers_of_the_scene() {

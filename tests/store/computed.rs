@@ -45,7 +45,7 @@ fn whiskers_are_those_of_the_whole_map_in_any_order() {
                 let (found, _) = read(&map, channel.name(), order);
                 let panels = order.iter().map(|whisker| &whole.panels[*whisker]);
                 let wanted = panels.flat_map(|panel| panel.channel(channel));
-                let wanted = wanted.map(|own| f64::from(*own).to_bits());
+                let wanted = wanted.map(|value| f64::from(*value).to_bits());
                 let found = found.values().map(f64::to_bits);
                 assert!(found.eq(wanted), "{channel:?}");
             }

@@ -76,7 +76,7 @@ fn every_read_of_a_map_that_is_replaced_is_one_of_the_two() {
         is_read.store(true, Ordering::Relaxed);
         for found in reads {
             let found = found.unwrap();
-            let place = expected.iter().position(|own| *own == found);
+            let place = expected.iter().position(|scene| *scene == found);
             met[place.unwrap()] += 1;
         }
     });
@@ -119,8 +119,8 @@ fn a_store_that_is_replaced_while_it_is_read_is_named() {
         assert!(matches!(why, StoreError::Displaced(_)), "{why}");
     }
     // A file that is damaged or missing in its own store is reported as such.
-    let own = MapSource::open(&path).unwrap();
+    let opened = MapSource::open(&path).unwrap();
     fs::remove_file(path.join("regime/c.0.0.0")).unwrap();
-    let missing = own.read_panel("regime", 0).unwrap_err();
+    let missing = opened.read_panel("regime", 0).unwrap_err();
     assert!(matches!(missing, StoreError::Unfinished(_)), "{missing}");
 }

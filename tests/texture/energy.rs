@@ -35,8 +35,8 @@ fn breaks(found: &Texture, sweep: &AngleCourse) -> Vec<f64> {
         .times_s()
         .windows(3)
         .zip(sweep.angles_deg().windows(3));
-    let turns = times.filter(|(_, own)| (own[1] - own[0]) * (own[2] - own[1]) < 0.0);
-    let turns = turns.map(|(time, own)| (time[1], own[1]));
+    let turns = times.filter(|(_, angles)| (angles[1] - angles[0]) * (angles[2] - angles[1]) < 0.0);
+    let turns = turns.map(|(time, angles)| (time[1], angles[1]));
     let mut all: Vec<(f64, f64)> = events.chain(turns).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let last = sweep.angles_deg().last().copied();

@@ -76,10 +76,10 @@ fn a_detached_whisker_lies_on_the_first_asperity_that_holds_it() {
                 continue;
             }
             *checked += 1;
-            let own = first_touch(&scene, &surface, side, from).0;
+            let first = first_touch(&scene, &surface, side, from).0;
             for asperity in ahead {
                 let (touch, distance_mm) = first_touch(&scene, &surface, side, asperity);
-                let push = pair[0].push_angle_deg.unwrap() + own - touch;
+                let push = pair[0].push_angle_deg.unwrap() + first - touch;
                 let end = curve(&scene.whisker, &pole, side, &[distance_mm])[0];
                 let holds = push.abs() < end.push_angle_deg.unwrap().abs();
                 assert_eq!(holds, asperity == to, "{name} {from} {asperity} {to}");

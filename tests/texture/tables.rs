@@ -34,7 +34,7 @@ fn shapes_end_at_the_tip() {
         let surface = scene.surface.unwrap();
         let sweep = AngleCourse::sine(15.0, 0.2, 5.0, 10.0).unwrap();
         let found = texture(&scene.whisker, &surface, &sweep).unwrap();
-        let bent = |own: &&TextureSample| own.asperity.is_some();
+        let bent = |sample: &&TextureSample| sample.asperity.is_some();
         let mut sides = Vec::new();
         for sample in found
             .samples

@@ -118,8 +118,11 @@ fn the_whole_free_part_stays_above_the_contact() {
     for sample in undecided {
         assert_eq!(sample.reason, Some(NoTextureState::CrossesSurface));
     }
-    let held: Vec<_> = held.iter().filter(|own| own.asperity.is_some()).collect();
-    let margins: Vec<f64> = held.iter().map(|own| margin(own)).collect();
+    let held: Vec<_> = held
+        .iter()
+        .filter(|sample| sample.asperity.is_some())
+        .collect();
+    let margins: Vec<f64> = held.iter().map(|sample| margin(sample)).collect();
     assert!(margins.is_sorted_by(|one, next| one > next) && margins.len() > 10);
     let [.., before, last] = margins[..] else {
         panic!("{margins:?}")

@@ -18,9 +18,10 @@ fn cone() -> Scene {
 fn apart(scene: &Scene, one: &Whisker, other: &Whisker) -> f64 {
     let mut worst = 0.0_f64;
     for side in Side::BOTH {
-        let [one, other] = [one, other].map(|own| curve(own, &scene.pole, side, &DISTANCES_MM));
+        let [one, other] =
+            [one, other].map(|whisker| curve(whisker, &scene.pole, side, &DISTANCES_MM));
         for (one, other) in one.iter().zip(&other) {
-            let [a, b] = [one, other].map(|own| own.push_angle_deg.unwrap());
+            let [a, b] = [one, other].map(|end| end.push_angle_deg.unwrap());
             worst = worst.max((a - b).abs());
         }
     }
@@ -97,10 +98,10 @@ fn a_longer_whisker_has_the_same_shape() {
     assert_eq!(longer.whisker.traced, scene.whisker.traced);
     let twice = DISTANCES_MM.map(|distance_mm| 2.0 * distance_mm);
     for side in Side::BOTH {
-        let own = curve(&scene.whisker, &scene.pole, side, &DISTANCES_MM);
+        let ends = curve(&scene.whisker, &scene.pole, side, &DISTANCES_MM);
         let other = curve(&longer.whisker, &longer.pole, side, &twice);
-        for (own, other) in own.iter().zip(other) {
-            let [a, b] = [own.push_angle_deg, other.push_angle_deg].map(Option::unwrap);
+        for (end, other) in ends.iter().zip(other) {
+            let [a, b] = [end.push_angle_deg, other.push_angle_deg].map(Option::unwrap);
             assert!((a - b).abs() < 1e-12, "{a} {b}");
         }
     }

@@ -216,7 +216,10 @@ fn errors_name_the_line_of_the_file() {
 #[test]
 fn a_traced_length_of_no_whisker_must_be_given() {
     let scaled = |scale: f64| {
-        let points: Vec<[f64; 2]> = arc(12).iter().map(|own| own.map(|x| scale * x)).collect();
+        let points: Vec<[f64; 2]> = arc(12)
+            .iter()
+            .map(|point| point.map(|x| scale * x))
+            .collect();
         scene(&format!("points = {points:?}"))
     };
     let why = refusal(&scaled(39.25));

@@ -31,7 +31,7 @@ fn a_push_until_slip_off_comes_back() {
     for (frame, &push) in pushes.iter().enumerate() {
         let free = || {
             rest.iter()
-                .map(|own| pixel(*own, -push))
+                .map(|point| pixel(*point, -push))
                 .collect::<Vec<_>>()
         };
         let held = || {
@@ -49,10 +49,10 @@ fn a_push_until_slip_off_comes_back() {
             text += &format!("{frame},{x:?},{y:?}\n");
         }
     }
-    let found = with(&|own| {
-        own.pole = Some(ImagePole::At(pixel(shape(5.0).pole_mm, 0.0)));
-        own.contact_within_mm = Some(0.26);
-        own.curvature_at_mm = Some(2.0);
+    let found = with(&|options| {
+        options.pole = Some(ImagePole::At(pixel(shape(5.0).pole_mm, 0.0)));
+        options.contact_within_mm = Some(0.26);
+        options.curvature_at_mm = Some(2.0);
     });
     let found = parse(&text, &found).unwrap();
     let [end] = found.detachments[..] else {
@@ -71,13 +71,13 @@ fn a_push_until_slip_off_comes_back() {
             let contact = shape(push).state;
             let at = [row.contact_x_mm, row.contact_y_mm].map(Option::unwrap);
             let far = at[0].hypot(at[1]);
-            let own = shape(push)
+            let point = shape(push)
                 .points
                 .iter()
                 .find(|point| point.part == whiskmap::trace::WhiskerPart::Contact)
                 .copied()
                 .unwrap();
-            assert_near(Some(far), own.x_mm.hypot(own.y_mm), 2e-3);
+            assert_near(Some(far), point.x_mm.hypot(point.y_mm), 2e-3);
             assert_near(row.contact_angle_deg, contact.contact_angle_deg, 0.02);
         }
     }
@@ -85,7 +85,9 @@ fn a_push_until_slip_off_comes_back() {
     let table: String = found.frames.iter().fold(
         "time_s,curvature_per_mm,at_arc_length_mm,contact,contact_x_mm,contact_y_mm\n".to_owned(),
         |text, row| {
-            let cell = |own: Option<f64>| own.map_or_else(String::new, |own| format!("{own:?}"));
+            let cell = |number: Option<f64>| {
+                number.map_or_else(String::new, |number| format!("{number:?}"))
+            };
             let cells = [row.curvature_per_mm, row.at_arc_length_mm].map(cell);
             let contact = [row.contact_x_mm, row.contact_y_mm].map(cell);
             text + &format!(
@@ -108,9 +110,12 @@ fn a_push_until_slip_off_comes_back() {
         // Near slip-off at 15.6 degrees, the force depends on the contact most.
         if (2.0..14.0).contains(&push) {
             let wanted = shape(push).state.force_un;
-            let own = force.force_un.unwrap();
+            let force_un = force.force_un.unwrap();
             // Measured at 12.5 degrees: 0.26 %.
-            assert!((own / wanted - 1.0).abs() < 5e-3, "{push} {own} {wanted}");
+            assert!(
+                (force_un / wanted - 1.0).abs() < 5e-3,
+                "{push} {force_un} {wanted}"
+            );
             compared += 1;
         }
     }
@@ -121,11 +126,11 @@ fn a_push_until_slip_off_comes_back() {
 #[test]
 fn the_shipped_film_has_a_slip_off() {
     let text = include_str!("../../scenes/deeplabcut.csv");
-    let own = with(&|own| {
-        own.pole = Some(ImagePole::Part("pole".to_owned()));
-        own.contact_within_mm = Some(0.35);
+    let held = with(&|options| {
+        options.pole = Some(ImagePole::Part("pole".to_owned()));
+        options.contact_within_mm = Some(0.35);
     });
-    let found = parse(text, &own).unwrap();
+    let found = parse(text, &held).unwrap();
     let [end] = found.detachments[..] else {
         panic!("{:?}", found.detachments)
     };
@@ -144,15 +149,15 @@ fn the_shipped_film_has_a_slip_off() {
     assert_eq!(notes.collect::<Vec<_>>(), [named]);
     let are_few = |note: &String| note.contains("points along the whisker are few");
     assert!(!found.warnings.iter().any(are_few), "{:?}", found.warnings);
-    let mut some = with(&|own| {
-        own.points = ["base", "w3", "w6", "w9", "w12", "tip"]
+    let mut some = with(&|options| {
+        options.points = ["base", "w3", "w6", "w9", "w12", "tip"]
             .map(str::to_owned)
             .to_vec()
     });
     let few = parse(text, &some).unwrap();
     assert!(few.warnings.iter().any(are_few), "{:?}", few.warnings);
     // With a pole, six points are enough.
-    (some.pole, some.contact_within_mm) = (own.pole, own.contact_within_mm);
+    (some.pole, some.contact_within_mm) = (held.pole, held.contact_within_mm);
     let enough = parse(text, &some).unwrap();
     assert!(
         !enough.warnings.iter().any(are_few),

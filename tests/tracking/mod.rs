@@ -26,9 +26,9 @@ fn options() -> TrackingOptions {
 
 /// Options with a change.
 fn with(change: &dyn Fn(&mut TrackingOptions)) -> TrackingOptions {
-    let mut own = options();
-    change(&mut own);
-    own
+    let mut changed = options();
+    change(&mut changed);
+    changed
 }
 
 fn parse(text: &str, options: &TrackingOptions) -> Result<Tracking, TrackingError> {
@@ -136,9 +136,9 @@ fn an_arc_of_deeplabcut_comes_back() {
         assert!((point.x_mm - SCALE * x).abs() < 1e-12 && (point.y_mm + SCALE * y).abs() < 1e-12);
     }
     // Forces are 0 without contact, but whether there is one is not known.
-    let place = with(&|own| {
-        own.curvature_at_mm = Some(2.0);
-        own.degree = Some(2);
+    let place = with(&|options| {
+        options.curvature_at_mm = Some(2.0);
+        options.degree = Some(2);
     });
     let found = parse(&deeplabcut(exact), &place).unwrap();
     assert_near(found.frames[0].at_arc_length_mm, 2.0, 0.0);
@@ -185,7 +185,7 @@ fn lost_points_are_left_out_and_a_lost_base_is_a_gap() {
             .contains("must be between 0 and 5")
     );
     // A lower limit keeps the point.
-    let low = with(&|own| own.likelihood = 0.85);
+    let low = with(&|options| options.likelihood = 0.85);
     assert_eq!(parse(&text, &low).unwrap().frames[1].reason, None);
     // Frames that the file leaves out are gaps, too.
     let lines: Vec<String> = deeplabcut(exact).lines().map(str::to_owned).collect();
@@ -200,8 +200,8 @@ fn lost_points_are_left_out_and_a_lost_base_is_a_gap() {
 fn an_image_is_mirrored_by_its_curvature_or_by_an_option() {
     let mirrored = deeplabcut(|_, _, [x, y]| (format!("{x:?},{:?}", 600.0 - y), 1.0));
     let found = parse(&mirrored, &options()).unwrap();
-    let own = parse(&deeplabcut(exact), &options()).unwrap();
-    for (row, other) in found.frames.iter().zip(&own.frames) {
+    let plain = parse(&deeplabcut(exact), &options()).unwrap();
+    for (row, other) in found.frames.iter().zip(&plain.frames) {
         assert_near(row.angle_deg, other.angle_deg.unwrap(), 1e-7);
         assert_near(row.curvature_per_mm, 0.04, 1e-9);
         assert_near(row.at_y_mm, other.at_y_mm.unwrap(), 1e-7);
@@ -213,7 +213,7 @@ fn an_image_is_mirrored_by_its_curvature_or_by_an_option() {
             .contains("the image is mirrored, so that the concave side is CF")
     );
     assert!(found.shape(0).unwrap()[8].y_mm > found.shape(0).unwrap()[0].y_mm);
-    let not = with(&|own| own.mirror = Some(false));
+    let not = with(&|options| options.mirror = Some(false));
     let found = parse(&mirrored, &not).unwrap();
     assert_near(found.frames[3].curvature_per_mm, -0.04, 1e-9);
     assert_near(found.frames[3].angle_deg, 3.0, 1e-7);
@@ -222,13 +222,13 @@ fn an_image_is_mirrored_by_its_curvature_or_by_an_option() {
 #[test]
 fn the_base_is_named_found_or_near_the_follicle() {
     let names = ["tip", "g", "f", "e", "d", "c", "b", "a", "base"].map(str::to_owned);
-    let reversed = with(&|own| own.points = names.to_vec());
+    let reversed = with(&|options| options.points = names.to_vec());
     let found = parse(&deeplabcut(exact), &reversed).unwrap();
     assert_eq!(
         found.shape(0).unwrap()[0].x_mm,
         SCALE * arc(20.0, ANGLES[0])[0]
     );
-    let follicle = with(&|own| own.follicle_px = Some([400.0, 200.0]));
+    let follicle = with(&|options| options.follicle_px = Some([400.0, 200.0]));
     let found = parse(&deeplabcut(exact), &follicle).unwrap();
     assert_eq!(
         found.shape(0).unwrap()[0].x_mm,
@@ -236,13 +236,13 @@ fn the_base_is_named_found_or_near_the_follicle() {
     );
     // The whisker that shifts as a whole shows no base.
     let shifted = deeplabcut(|frame, name, _| {
-        let s = PARTS.iter().find(|(own, _)| *own == name).unwrap().1;
+        let s = PARTS.iter().find(|(part, _)| *part == name).unwrap().1;
         let [x, y] = arc(s, 0.0);
         (format!("{},{y}", x + frame as f64), 1.0)
     });
     let why = refusal(&shifted, &options());
     assert!(why.starts_with("follicle_px = (left out): must be given: both ends of the whisker move about equally, by "), "{why}");
-    let given = with(&|own| own.follicle_px = Some([40.0, 300.0]));
+    let given = with(&|options| options.follicle_px = Some([40.0, 300.0]));
     assert!(parse(&shifted, &given).is_ok());
 }
 
@@ -252,13 +252,13 @@ fn measurements(axis: FaceAxis) -> String {
     for (frame, angle) in ANGLES.iter().enumerate().filter(|(frame, _)| *frame != 2) {
         let ([x, y], [tip_x, tip_y]) = (arc(0.0, *angle), arc(20.0, *angle));
         // The y axis of the image is downward, where counterclockwise is negative.
-        let own = match axis {
+        let angle = match axis {
             FaceAxis::X => -angle,
             FaceAxis::Y => 90.0 + angle,
         };
         let curvature = -0.04 * SCALE;
         text += &format!(
-            "{frame},3,0,-100,200,400,1500,{own:?},{curvature:?},{x:?},{y:?},{tip_x:?},{tip_y:?}\n"
+            "{frame},3,0,-100,200,400,1500,{angle:?},{curvature:?},{x:?},{y:?},{tip_x:?},{tip_y:?}\n"
         );
         text += &format!("{frame},1,-1,-100,200,50,500,80,0.01,200,100,230,90\n");
     }
@@ -297,9 +297,9 @@ fn measurements_of_whisk_come_back() {
     // The axis may be given, and the table may have the names of ndx-whisk and no labels.
     let named =
         measurements(FaceAxis::Y).replace("fid,wid,label", "frame_id,whisker_id,chunk_start");
-    let third = with(&|own| {
-        own.whisker = Some(3);
-        own.face_axis = Some(FaceAxis::X);
+    let third = with(&|options| {
+        options.whisker = Some(3);
+        options.face_axis = Some(FaceAxis::X);
     });
     let found = parse(&named, &third).unwrap();
     assert_near(found.frames[1].angle_deg, 2.0, 1e-9);
@@ -372,11 +372,51 @@ fn points_without_a_header_come_back() {
     );
 }
 
+/// A lost end does not turn the points of its frame around, and a frame without its base is a gap.
+#[test]
+fn points_without_numbers_are_lost() {
+    let known = (0..ANGLES.len()).map(|frame| (points(frame), format!("{frame}.csv")));
+    let lost = |frame: usize, which: usize, marker: &str| -> String {
+        let text = points(frame);
+        let lines = text.lines().enumerate();
+        lines
+            .map(|(i, line)| format!("{}\n", if i == which { marker } else { line }))
+            .collect()
+    };
+    let mut files: Vec<(String, String)> = known.collect();
+    let cancel = AtomicBool::new(false);
+    let all = Tracking::parse(&files, &options(), &cancel).unwrap().frames;
+    // Odd frames are given from tip to base. Frame 1 loses its tip, 2 its base, 3 its base, and 4 a point between.
+    for (frame, which, marker) in [
+        (1, 0, "NA,NA"),
+        (2, 0, "nan,3"),
+        (3, 20, ",4"),
+        (4, 7, "none,N/A"),
+    ] {
+        files[frame].0 = lost(frame, which, marker);
+    }
+    let some = Tracking::parse(&files, &options(), &cancel).unwrap().frames;
+    for (found, wanted) in some.iter().zip(&all) {
+        if [2, 3].contains(&found.frame) {
+            assert_eq!(found.reason, Some(NoFrame::Missing));
+        } else {
+            assert_near(found.angle_deg, wanted.angle_deg.unwrap(), 1e-7);
+            assert_near(found.curvature_per_mm, 0.04, 1e-9);
+        }
+    }
+    let one = parse("0,NA,NA\n", &options());
+    assert!(
+        one.unwrap_err()
+            .to_string()
+            .contains("has no frame with a curve: must have at least one with 4 points")
+    );
+}
+
 /// The time of the angle 0 may be given.
 #[test]
 fn the_angle_is_0_at_a_given_time() {
-    let own = with(&|own| own.zero_s = Some(0.004));
-    let found = parse(&deeplabcut(exact), &own).unwrap();
+    let options = with(&|options| options.zero_s = Some(0.004));
+    let found = parse(&deeplabcut(exact), &options).unwrap();
     assert_near(found.frames[2].angle_deg, 0.0, 1e-12);
     assert_near(found.frames[0].angle_deg, 5.0, 1e-7);
 }

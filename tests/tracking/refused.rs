@@ -57,6 +57,10 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
             "film.csv:2: y = far: must be a number between -1e6 and 1e6",
         ),
         (
+            "0,1\n0,2e6\n".to_owned(),
+            "film.csv:2: y = 2e6: must be a number between -1e6 and 1e6, or empty where it is missing",
+        ),
+        (
             "0,1,2,3\n".to_owned(),
             "film.csv:1: has 4 cells: must have x,y or frame,x,y",
         ),
@@ -87,145 +91,174 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
     );
 }
 
+/// Nine points are enough, but not for every degree, nor near the base alone.
+#[test]
+fn a_degree_that_needs_more_points_is_named() {
+    let film = deeplabcut(exact);
+    for (degree, fit_to_mm, why) in [
+        (
+            6,
+            None,
+            "with 10 points along a smooth curve, the base among them and all within 17.",
+        ),
+        (
+            2,
+            Some(10.0),
+            "with 6 points along a smooth curve, the base among them and all within 10 mm of it; a curvature of degree 2 needs as many",
+        ),
+    ] {
+        let options =
+            with(&|options| (options.degree, options.fit_to_mm) = (Some(degree), fit_to_mm));
+        let message = refusal(&film, &options);
+        assert!(message.contains(why), "{message}\n{why}");
+    }
+}
+
 #[test]
 fn options_that_do_not_fit_are_refused() {
     let (film, rows, points) = (deeplabcut(exact), measurements(FaceAxis::X), points(0));
     let at = ImagePole::At([0.0, 0.0]);
     let part = |name: &str| ImagePole::Part(name.to_owned());
-    for (text, own, why) in [
+    for (text, options, why) in [
         (
             &film,
-            with(&|own| own.mm_per_pixel = 0.0),
+            with(&|options| options.mm_per_pixel = 0.0),
             "mm_per_pixel = 0: must be a number between 1e-9 and 1e9",
         ),
         (
             &film,
-            with(&|own| own.fps = f64::NAN),
+            with(&|options| options.fps = f64::NAN),
             "fps = NaN: must be a number between",
         ),
         (
             &film,
-            with(&|own| own.likelihood = 1.5),
+            with(&|options| options.likelihood = 1.5),
             "likelihood = 1.5: must be a number between 0 and 1",
         ),
         (
             &film,
-            with(&|own| own.degree = Some(7)),
+            with(&|options| options.degree = Some(7)),
             "degree = 7: must be between 0 and 6",
         ),
         (
             &film,
-            with(&|own| own.pole = Some(at.clone())),
+            with(&|options| options.pole = Some(at.clone())),
             "pole = 0,0: needs contact_within_mm",
         ),
         (
             &film,
-            with(&|own| own.contact_within_mm = Some(1.0)),
+            with(&|options| options.contact_within_mm = Some(1.0)),
             "contact_within_mm = 1: must be left out without a pole",
         ),
         (
             &film,
-            with(&|own| own.taper = Some(0.9)),
+            with(&|options| options.taper = Some(0.9)),
             "taper = 0.9: must be left out without a pole",
         ),
         (
             &film,
-            with(&|own| (own.pole, own.taper) = (Some(at.clone()), Some(1.01))),
+            with(&|options| (options.pole, options.taper) = (Some(at.clone()), Some(1.01))),
             "taper = 1.01: must be a number between 0 and 1",
         ),
         (
             &film,
-            with(&|own| {
-                own.pole = Some(at.clone());
-                (own.taper, own.fit_to_mm) = (Some(0.9), Some(12.0));
+            with(&|options| {
+                options.pole = Some(at.clone());
+                (options.taper, options.fit_to_mm) = (Some(0.9), Some(12.0));
             }),
             "taper = 0.9: must be left out with fit_to_mm, which selects polynomials",
         ),
         (
             &film,
-            with(&|own| (own.pole, own.contact_within_mm) = (Some(part("pole")), Some(1.0))),
+            with(&|options| {
+                (options.pole, options.contact_within_mm) = (Some(part("pole")), Some(1.0))
+            }),
             "pole = pole: must be one of c, base, tip",
         ),
         (
             &film,
-            with(&|own| own.points = vec!["bse".to_owned()]),
+            with(&|options| options.points = vec!["bse".to_owned()]),
             "points = bse: must be one of c, base, tip, a, f, b, g, d, e; did you mean `base`?",
         ),
         (
             &film,
-            with(&|own| own.whisker = Some(1)),
+            with(&|options| options.whisker = Some(1)),
             "whisker = 1: must be left out",
         ),
         (
             &film,
-            with(&|own| own.face_axis = Some(FaceAxis::Y)),
+            with(&|options| options.face_axis = Some(FaceAxis::Y)),
             "face_axis = y: must be left out: only measurements of whisk have angles",
         ),
         (
             &film,
-            with(&|own| own.curvature_at_mm = Some(20.5)),
+            with(&|options| options.curvature_at_mm = Some(20.5)),
             "curvature_at_mm = 20.5: must be between 0 and ",
         ),
         (
             &film,
-            with(&|own| own.zero_s = Some(1.0)),
-            "zero_s = 1: must be the time of a frame with a whisker",
+            with(&|options| options.zero_s = Some(1.0)),
+            "zero_s = 1: must be the time of a frame with a whisker, between 0 and 0.01 s in steps of 1/500 s",
         ),
         (
             &rows,
-            with(&|own| own.whisker = Some(2)),
+            with(&|options| options.whisker = Some(2)),
             "whisker = 2: must be an identity in the column label: 0 (5 rows)",
         ),
         (
             &rows,
-            with(&|own| own.curvature_at_mm = Some(2.0)),
+            with(&|options| options.curvature_at_mm = Some(2.0)),
             "curvature_at_mm = 2: must be left out with measurements of whisk",
         ),
         (
             &rows,
-            with(&|own| own.degree = Some(2)),
+            with(&|options| options.degree = Some(2)),
             "degree = 2: must be left out with measurements of whisk",
         ),
         (
             &rows,
-            with(&|own| {
-                (own.pole, own.contact_within_mm) = (Some(at.clone()), Some(1.0));
-                own.taper = Some(0.9);
+            with(&|options| {
+                (options.pole, options.contact_within_mm) = (Some(at.clone()), Some(1.0));
+                options.taper = Some(0.9);
             }),
             "taper = 0.9: must be left out with measurements of whisk: they have no points",
         ),
         (
             &rows,
-            with(&|own| own.follicle_px = Some([1.0, 2.0])),
+            with(&|options| options.follicle_px = Some([1.0, 2.0])),
             "follicle_px = 1,2: must be left out with measurements of whisk: they name the follicle",
         ),
         (
             &rows,
-            with(&|own| own.points = vec!["a".to_owned()]),
+            with(&|options| options.points = vec!["a".to_owned()]),
             "points = a: must be left out",
         ),
         (
             &rows,
-            with(&|own| (own.pole, own.contact_within_mm) = (Some(part("pole")), Some(1.0))),
+            with(&|options| {
+                (options.pole, options.contact_within_mm) = (Some(part("pole")), Some(1.0))
+            }),
             "pole = pole: must be X,Y in pixels",
         ),
         (
             &points,
-            with(&|own| own.whisker = Some(1)),
+            with(&|options| options.whisker = Some(1)),
             "whisker = 1: must be left out with points without a header",
         ),
         (
             &points,
-            with(&|own| own.points = vec!["a".to_owned()]),
+            with(&|options| options.points = vec!["a".to_owned()]),
             "points = a: must be left out",
         ),
         (
             &points,
-            with(&|own| (own.pole, own.contact_within_mm) = (Some(part("pole")), Some(1.0))),
+            with(&|options| {
+                (options.pole, options.contact_within_mm) = (Some(part("pole")), Some(1.0))
+            }),
             "pole = pole: must be left out",
         ),
     ] {
-        let message = refusal(text, &own);
+        let message = refusal(text, &options);
         assert!(message.starts_with(why), "{message}\n{why}");
     }
 }

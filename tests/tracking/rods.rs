@@ -12,11 +12,11 @@ const OTHER: &str = include_str!("../data/bent_film.csv");
 
 /// Options of a film with this pole, in pixels.
 pub(super) fn at_pole(pole: [f64; 2], change: &dyn Fn(&mut TrackingOptions)) -> TrackingOptions {
-    with(&|own| {
-        own.pole = Some(ImagePole::At(pole));
-        own.contact_within_mm = Some(0.3);
-        own.curvature_at_mm = Some(5.0);
-        change(own);
+    with(&|options| {
+        options.pole = Some(ImagePole::At(pole));
+        options.contact_within_mm = Some(0.3);
+        options.curvature_at_mm = Some(5.0);
+        change(options);
     })
 }
 
@@ -33,14 +33,15 @@ fn forces_un(frames: &[TrackedFrame]) -> Vec<Option<f64>> {
             row.contact_x_mm,
             row.contact_y_mm,
         ];
-        let cell = |own: Option<f64>| own.map_or_else(String::new, |own| own.to_string());
+        let cell =
+            |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
         text + &format!("{},{}\n", row.time_s, numbers.map(cell).join(","))
     });
     let frames =
         CurvatureFrames::parse(&table, "frames.csv", whisker.length_mm, ForceMethod::Model);
     let frames = frames.unwrap().frames;
     let found = forces(&whisker, &scene.pole, &frames, ForceMethod::Model);
-    found.iter().map(|own| own.force_un).collect()
+    found.iter().map(|frame| frame.force_un).collect()
 }
 
 /// Film of another program: numbers of each frame before its points.
@@ -93,10 +94,10 @@ fn states_of_another_program_come_back_from_eight_points() {
 
 #[test]
 fn a_mirrored_film_gives_the_same_rows() {
-    let [(own, _), (mirrored, _)] = [false, true].map(other_film);
+    let [(plain, _), (mirrored, _)] = [false, true].map(other_film);
     let notes = mirrored.notes.join("\n");
     assert!(notes.contains("the image is mirrored"), "{notes}");
-    for (row, other) in mirrored.frames.iter().zip(&own.frames) {
+    for (row, other) in mirrored.frames.iter().zip(&plain.frames) {
         assert_near(row.angle_deg, other.angle_deg.unwrap(), 1e-6);
         assert_near(row.curvature_per_mm, other.curvature_per_mm.unwrap(), 1e-8);
         assert_near(row.at_y_mm, other.at_y_mm.unwrap(), 1e-7);
@@ -155,15 +156,17 @@ fn film_of(
     for step in -10..(2.0 * end) as i32 + 12 {
         let push = 0.25 + 0.5 * f64::from(step);
         let held = state(side.sign() * push).filter(|_| push > 0.0 && push < end);
-        let shape = held.map(|own| WhiskerShape::new(&branch, &own, count));
+        let shape = held.map(|state| WhiskerShape::new(&branch, &state, count));
         let push = side.sign() * push;
         let points: Vec<[f64; 2]> = match &shape {
             Some(shape) => {
-                let own = shape.points.iter();
-                let own = own.filter(|own| own.part != WhiskerPart::Contact);
-                own.map(|own| pixel([own.x_mm, own.y_mm], 0.0)).collect()
+                let points = shape.points.iter();
+                let traced = points.filter(|point| point.part != WhiskerPart::Contact);
+                traced
+                    .map(|point| pixel([point.x_mm, point.y_mm], 0.0))
+                    .collect()
             }
-            None => rest.iter().map(|own| pixel(*own, -push)).collect(),
+            None => rest.iter().map(|point| pixel(*point, -push)).collect(),
         };
         for [x, y] in points {
             text += &format!("{},{x:?},{y:?}\n", step + 10);
@@ -179,7 +182,7 @@ pub(super) const CONE: &str = include_str!("../../scenes/cone.toml");
 
 /// Root mean square.
 fn rms(numbers: &[f64]) -> f64 {
-    let squares: f64 = numbers.iter().map(|own| own * own).sum();
+    let squares: f64 = numbers.iter().map(|number| number * number).sum();
     (squares / numbers.len() as f64).sqrt()
 }
 
@@ -194,31 +197,34 @@ fn few_points_with_errors_show_angles_forces_and_taper() {
                 let (text, pole, truth) = film(scene, side, count, 0.2);
                 let found = parse(&text, &at_pole(pole, &|_| ())).unwrap();
                 let pairs = || found.frames.iter().zip(&truth);
-                let zero = pairs().find(|(_, own)| own.shape.is_none());
-                let zero = zero.map(|(row, own)| row.angle_deg.unwrap() - own.push);
+                let zero = pairs().find(|(_, exact)| exact.shape.is_none());
+                let zero = zero.map(|(row, exact)| row.angle_deg.unwrap() - exact.push);
                 let angles =
-                    pairs().map(|(row, own)| row.angle_deg.unwrap() - own.push - zero.unwrap());
+                    pairs().map(|(row, exact)| row.angle_deg.unwrap() - exact.push - zero.unwrap());
                 let angles: Vec<f64> = angles.collect();
                 assert!(rms(&angles) < 0.3, "{side:?} {count} {}", rms(&angles));
                 let [end] = &found.detachments[..] else {
                     panic!("{side:?} {count} {:?}", found.detachments)
                 };
-                let held = truth.iter().filter(|own| own.shape.is_some()).count();
+                let held = truth.iter().filter(|exact| exact.shape.is_some()).count();
                 // First touch and detachment are in the middle between frames.
                 let wanted = side.sign() * 0.5 * held as f64;
                 assert_near(Some(end.push_angle_deg), wanted, 0.9);
-                let note = found.notes.iter().find(|own| own.contains("the taper is "));
+                let note = found
+                    .notes
+                    .iter()
+                    .find(|note| note.contains("the taper is "));
                 let note = note.unwrap().split(['s', ',', ' ']);
-                let numbers: Vec<f64> = note.filter_map(|own| own.parse().ok()).collect();
+                let numbers: Vec<f64> = note.filter_map(|word| word.parse().ok()).collect();
                 assert!(
                     (numbers[0] - taper).abs() < 0.01,
                     "{side:?} {count} {numbers:?}"
                 );
                 if scene == CONE {
                     let parts = forces_un(&found.frames).into_iter().zip(&truth);
-                    let parts = parts.filter(|(_, own)| (2.0..15.0).contains(&own.push.abs()));
-                    let parts = parts.filter_map(|(force, own)| {
-                        Some(force? / own.shape.as_ref()?.state.force_un - 1.0)
+                    let parts = parts.filter(|(_, exact)| (2.0..15.0).contains(&exact.push.abs()));
+                    let parts = parts.filter_map(|(force, exact)| {
+                        Some(force? / exact.shape.as_ref()?.state.force_un - 1.0)
                     });
                     let parts: Vec<f64> = parts.collect();
                     assert!(parts.len() >= 20, "{}", parts.len());
@@ -258,18 +264,18 @@ fn the_curvature_scatters_alike_with_and_without_contact() {
     let (text, pole, _) = film(CONE, Side::Cb, 8, 0.2);
     let (exact, _, _) = film(CONE, Side::Cb, 8, 0.0);
     let curvatures = |text: &str| {
-        let found = parse(text, &at_pole(pole, &|own| own.taper = Some(0.95))).unwrap();
+        let found = parse(text, &at_pole(pole, &|options| options.taper = Some(0.95))).unwrap();
         let rows = found.frames.into_iter();
         rows.map(|row| (row.contact == Some(1), row.curvature_per_mm.unwrap()))
     };
     let pairs = curvatures(&text).zip(curvatures(&exact));
     let scatter = |is_held: bool| {
-        let own = pairs
+        let compared = pairs
             .clone()
             .filter(|(row, exact)| row.0 == is_held && exact.0 == is_held);
-        let errors: Vec<f64> = own.map(|(row, exact)| row.1 - exact.1).collect();
+        let errors: Vec<f64> = compared.map(|(row, exact)| row.1 - exact.1).collect();
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-        rms(&errors.iter().map(|own| own - mean).collect::<Vec<_>>())
+        rms(&errors.iter().map(|error| error - mean).collect::<Vec<_>>())
     };
     let ratio = scatter(true) / scatter(false);
     assert!((0.5..2.0).contains(&ratio), "{ratio}");
@@ -280,10 +286,10 @@ fn the_curvature_scatters_alike_with_and_without_contact() {
 fn points_off_the_rod_are_named() {
     let (text, pole, _) = film(CONE, Side::Cb, 8, 0.05);
     let is_off = |taper: Option<f64>| {
-        let found = parse(&text, &at_pole(pole, &|own| own.taper = taper)).unwrap();
+        let found = parse(&text, &at_pole(pole, &|options| options.taper = taper)).unwrap();
         let mut warnings = found.warnings.iter();
-        warnings.any(|own| {
-            own.contains("the whisker near the pole is off the rod: check --contact-within")
+        warnings.any(|warning| {
+            warning.contains("the whisker near the pole is off the rod: check --contact-within")
         })
     };
     assert_eq!(
@@ -295,7 +301,7 @@ fn points_off_the_rod_are_named() {
 #[test]
 fn polynomials_remain_where_they_are_selected_or_no_frame_is_free() {
     let (text, pole, truth) = film(CONE, Side::Cb, 20, 0.0);
-    let polynomials = at_pole(pole, &|own| own.fit_to_mm = Some(12.0));
+    let polynomials = at_pole(pole, &|options| options.fit_to_mm = Some(12.0));
     let notes = parse(&text, &polynomials).unwrap().notes.join("\n");
     assert!(
         notes.contains("curves near the base, up to 12 mm from it"),

@@ -21,13 +21,13 @@ fn changed(
 
 /// Returns true if a warning has this text.
 fn warns(found: &Tracking, text: &str) -> bool {
-    found.warnings.iter().any(|own| own.contains(text))
+    found.warnings.iter().any(|warning| warning.contains(text))
 }
 
 /// Frames whose state has a force, but that have the contact 0.
 fn wrongly_free(found: &Tracking, truth: &[Truth]) -> Vec<u64> {
     let pairs = found.frames.iter().zip(truth);
-    let wrong = pairs.filter(|(row, own)| own.shape.is_some() && row.contact == Some(0));
+    let wrong = pairs.filter(|(row, exact)| exact.shape.is_some() && row.contact == Some(0));
     wrong.map(|(row, _)| row.frame).collect()
 }
 
@@ -57,7 +57,7 @@ fn a_trace_that_ends_before_the_pole_leaves_contacts_unknown() {
     let (text, pole, truth) = film(CONE, Side::Cb, 20, 0.0);
     let text = changed(&text, 20, |_, point, at| (point < 11).then_some(at));
     for taper in [None, Some(0.95)] {
-        let found = parse(&text, &at_pole(pole, &|own| own.taper = taper)).unwrap();
+        let found = parse(&text, &at_pole(pole, &|options| options.taper = taper)).unwrap();
         assert!(warns(&found, UNLIKE), "{:?}", found.warnings);
         assert_eq!(wrongly_free(&found, &truth), [0; 0]);
         assert!(!found.notes.iter().any(|note| note.contains("mirrored")));
@@ -68,7 +68,7 @@ fn a_trace_that_ends_before_the_pole_leaves_contacts_unknown() {
 #[test]
 fn a_distance_in_contact_below_the_radius_of_the_pole_is_named() {
     let (text, pole, truth) = film(CONE, Side::Cb, 8, 0.05);
-    let small = at_pole(pole, &|own| own.contact_within_mm = Some(0.2));
+    let small = at_pole(pole, &|options| options.contact_within_mm = Some(0.2));
     let found = parse(&text, &small).unwrap();
     let bent = "frames, the whisker is bent at the pole, but is 0.25 mm from its centre (median), more \
                 than 0.2 mm: check --contact-within, the pole's position, --taper and --mm-per-pixel";
@@ -104,9 +104,9 @@ fn body_parts_that_are_lost_in_all_frames_are_named() {
     let base = parse(&lost("base"), &options()).unwrap();
     let why = "body part base: lost in all frames, at a likelihood of at least 0.9: the whisker is traced without it";
     assert_eq!(base.warnings[0], why);
-    let pole = with(&|own| {
-        own.pole = Some(ImagePole::Part("g".to_owned()));
-        own.contact_within_mm = Some(0.3);
+    let pole = with(&|options| {
+        options.pole = Some(ImagePole::Part("g".to_owned()));
+        options.contact_within_mm = Some(0.3);
     });
     let found = parse(&lost("g"), &pole).unwrap();
     assert!(
@@ -131,7 +131,11 @@ fn body_parts_that_are_lost_in_all_frames_are_named() {
 #[test]
 fn a_displaced_frame_has_no_curve() {
     let (text, pole, truth) = film(CONE, Side::Cb, 8, 0.05);
-    let held = truth.iter().position(|own| own.shape.is_some()).unwrap() + 8;
+    let held = truth
+        .iter()
+        .position(|exact| exact.shape.is_some())
+        .unwrap()
+        + 8;
     let text = changed(&text, 8, |frame, _, [x, y]| {
         Some([if frame == held { x + 30.0 } else { x }, y])
     });

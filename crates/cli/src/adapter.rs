@@ -42,8 +42,9 @@ pub fn chosen(
     if found.is_some() {
         return Ok(found);
     }
-    let list = reports.iter().enumerate();
-    let list: Vec<String> = list
+    let list: Vec<String> = reports
+        .iter()
+        .enumerate()
         .map(|(i, report)| match &report.info.device_pci_bus_id[..] {
             "" => format!("{i} ({})", report.info.name),
             address => format!("{i} ({}) at {address}", report.info.name),

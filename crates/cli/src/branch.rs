@@ -161,8 +161,9 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
 /// Plots branches. Each of several poles has its own colour.
 fn plot(scene: &Scene, points: &[BranchPoint], args: &BranchArgs) -> Plot {
     let y = args.y.axis();
-    let at_poles = points.chunk_by(|a, b| a.distance_mm == b.distance_mm);
-    let at_poles: Vec<_> = at_poles.collect();
+    let at_poles: Vec<_> = points
+        .chunk_by(|a, b| a.distance_mm == b.distance_mm)
+        .collect();
     let named: Vec<_> = match &at_poles[..] {
         [only] => vec![(Ink::Black, "stable".to_owned(), *only)],
         poles => {

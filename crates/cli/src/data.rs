@@ -78,8 +78,8 @@ pub fn summary(comparison: &Comparison) -> Vec<(&'static str, String)> {
     let residuals = [
         ("RMS", comparison.rms_deg()),
         ("bias", comparison.bias_deg()),
-    ];
-    let residuals = residuals.map(|(name, value)| Some((name, degrees(value?))));
+    ]
+    .map(|(name, value)| Some((name, degrees(value?))));
     let count = Some(("points compared", count));
     [count].into_iter().chain(residuals).flatten().collect()
 }

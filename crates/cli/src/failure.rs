@@ -149,11 +149,12 @@ fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
         ),
     ];
     let present = kinds.into_iter().filter(|(count, ..)| *count > 0);
-    let faults = present.map(|(count, [one, several], state)| {
-        let what = if count == 1 { one } else { several };
-        format!("{count} {what} {state}")
-    });
-    let faults: Vec<String> = faults.collect();
+    let faults: Vec<String> = present
+        .map(|(count, [one, several], state)| {
+            let what = if count == 1 { one } else { several };
+            format!("{count} {what} {state}")
+        })
+        .collect();
     let cure = match missing + damaged {
         0 => "`whiskmap status --repair` writes them again",
         _ => "`whiskmap map --format zarr --resume` with the scene computes the rest",

@@ -222,8 +222,8 @@ fn thread_count(option: Option<u32>) -> Result<usize, Failure> {
     if matches!(&*text, "" | "0") {
         return Ok(cores());
     }
-    let count = arguments::whole(arguments::THREADS)(&text);
-    let count = count.map_err(|why| Failure::Input(format!("{THREADS}={text}: {why}")))?;
+    let count = arguments::whole(arguments::THREADS)(&text)
+        .map_err(|why| Failure::Input(format!("{THREADS}={text}: {why}")))?;
     Ok(count as usize)
 }
 

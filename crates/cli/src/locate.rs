@@ -25,7 +25,7 @@ Examples:
   whiskmap locate scenes/cone.toml --map --plot determined.png
 
 FILE has at least two of the columns base_moment_nnm, base_force_x_un and base_force_y_un, and may have angle_deg, the angle of the base \
-in the laboratory. A number that was not measured is an empty cell. Moment and force are those of the pole on the base, in the frame of \
+in the laboratory. A number that was not measured is an empty cell, NaN or NA. Moment and force are those of the pole on the base, in the frame of \
 the base: the first axis is the base's tangent. In a follicle, the frame is that of the follicle.
 
 Each stable state with the numbers of a reading is a row. With all three numbers, it is the state nearest to them, by the standard \

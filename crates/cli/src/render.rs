@@ -157,8 +157,9 @@ fn target(
     let path = match &args.output {
         Some(path) => path.clone(),
         None => {
-            let chosen = map.readable();
-            let chosen = chosen.map(|(name, value)| format!("{name}={value}"));
+            let chosen = map
+                .readable()
+                .map(|(name, value)| format!("{name}={value}"));
             let parts = chosen.chain(args.channel.clone());
             let parts: Vec<String> = parts.chain(["png".to_owned()]).collect();
             beside(args, map, files)?.with_extension(parts.join("."))

@@ -41,8 +41,9 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
 /// Describes the rows of a table of whiskers that have no whisker; `None` if all have one.
 fn without_whisker(scene: &Scene) -> Option<String> {
     let count = scene.refused().count();
-    let rows = scene.refused().take(MOST_REFUSED);
-    let rows: Vec<String> = rows
+    let rows: Vec<String> = scene
+        .refused()
+        .take(MOST_REFUSED)
         .map(|(name, reason)| format!("{name} ({reason})"))
         .collect();
     let more = match count.saturating_sub(MOST_REFUSED) {

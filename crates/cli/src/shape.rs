@@ -71,8 +71,9 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let mut outputs = args.outputs.open(files)?;
     let state_path = args.state.as_deref();
-    let state_table = state_path.map(|path| args.outputs.table(files, "--state", path));
-    let state_table = state_table.transpose()?;
+    let state_table = state_path
+        .map(|path| args.outputs.table(files, "--state", path))
+        .transpose()?;
     let side = args.side.unwrap_or(Side::of_push(push_deg));
     let stable = args.branch == BranchPart::Stable;
     let refused = |why| match why {

@@ -176,8 +176,9 @@ pub fn fill(
                 // The disk takes longer than the next panels, so it has a thread of its own.
                 let panels = mem::take(&mut packed);
                 let write = move || store.write(block, &panels, temporary);
-                let thread = thread::Builder::new().spawn_scoped(scope, write);
-                let thread = thread.map_err(|why| StoreError::Write(path.to_owned(), why))?;
+                let thread = thread::Builder::new()
+                    .spawn_scoped(scope, write)
+                    .map_err(|why| StoreError::Write(path.to_owned(), why))?;
                 written(writing.replace(thread))?;
                 next = due.next();
             }

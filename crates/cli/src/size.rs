@@ -60,8 +60,9 @@ fn sides(text: &str) -> Result<Sides, String> {
         text.trim()
             .ends_with(|c: char| c.is_ascii_digit() || c == '.')
     };
-    let unit = height.unwrap_or_default();
-    let unit = unit.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.' || c == ' ');
+    let unit = height
+        .unwrap_or_default()
+        .trim_start_matches(|c: char| c.is_ascii_digit() || c == '.' || c == ' ');
     let width = match is_number(width) {
         true => format!("{width}{unit}"),
         false => width.to_owned(),

@@ -91,8 +91,8 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
         &course,
         at_mm,
         &AtomicBool::new(false),
-    );
-    let found = found.map_err(|why| match why {
+    )
+    .map_err(|why| match why {
         TextureError::Unresolved { .. } => Failure::Texture(why),
         TextureError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
         TextureError::Blocked { .. } | TextureError::Surface(_) => {

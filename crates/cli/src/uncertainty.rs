@@ -31,11 +31,11 @@ impl SampleArgs {
             return Ok(None);
         };
         check_single(scene, "curve --samples")?;
-        let draws = Draws::new(scene, samples as usize, u64::from(self.seed));
-        let draws = draws.map_err(|why| match why {
-            DrawError::Sweep(_) => Failure::Input(format!("{why} with --samples")),
-            _ => Failure::Input(format!("--samples {samples}: {why}")),
-        })?;
+        let draws =
+            Draws::new(scene, samples as usize, u64::from(self.seed)).map_err(|why| match why {
+                DrawError::Sweep(_) => Failure::Input(format!("{why} with --samples")),
+                _ => Failure::Input(format!("--samples {samples}: {why}")),
+            })?;
         Ok(Some(draws))
     }
 }

@@ -63,10 +63,10 @@ impl ColumnUnits {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .from_reader(&*text);
-        let lines = reader
+        let mut lines = reader
             .records()
-            .map(|line| Ok(line?.iter().map(str::to_owned).collect()));
-        let mut lines = lines.collect::<io::Result<Vec<Vec<String>>>>()?;
+            .map(|line| Ok(line?.iter().map(str::to_owned).collect()))
+            .collect::<io::Result<Vec<Vec<String>>>>()?;
         let Some((header, cells)) = lines.split_first_mut() else {
             return Ok(lines);
         };

@@ -68,8 +68,9 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let course = args.course.course(files)?;
     let mut outputs = args.outputs.open(files)?;
     let event_path = args.events.as_deref();
-    let event_table = event_path.map(|path| args.outputs.table(files, "--events", path));
-    let event_table = event_table.transpose()?;
+    let event_table = event_path
+        .map(|path| args.outputs.table(files, "--events", path))
+        .transpose()?;
     let mut options = WhiskOptions::default();
     options.start = args.start.map(|start| match start {
         StartChoice::Free => CourseStart::Free,

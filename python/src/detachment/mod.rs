@@ -83,9 +83,9 @@ pub fn detachment<'py>(
     for (name, value) in &fixed {
         base = base.set(parameter("argument", name)?, *value);
     }
-    let columns = varying.iter();
-    let columns =
-        columns.map(|(name, values)| Ok((parameter("argument", name)?, values.as_slice()?)));
+    let columns = varying
+        .iter()
+        .map(|(name, values)| Ok((parameter("argument", name)?, values.as_slice()?)));
     let variable = |name: String| {
         name.parse()
             .map_err(|must: String| refused("jac", &name, &must))

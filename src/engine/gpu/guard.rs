@@ -11,8 +11,9 @@ pub const DRIVER_CALL: &str = "driver call";
 /// Returns the result of `call`, or the message with which it panicked.
 pub(super) fn guarded<T: Send>(call: impl FnOnce() -> T + Send) -> Result<T, String> {
     thread::scope(|scope| {
-        let thread = thread::Builder::new().name(DRIVER_CALL.to_owned());
-        let thread = thread.spawn_scoped(scope, call);
+        let thread = thread::Builder::new()
+            .name(DRIVER_CALL.to_owned())
+            .spawn_scoped(scope, call);
         thread
             .map_err(|error| error.to_string())?
             .join()

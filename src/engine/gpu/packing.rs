@@ -1,7 +1,7 @@
 //! Rows of batches as bytes for the shaders: push angles, and the expansions of rows around their ends.
 
 use super::Precision;
-use crate::engine::row::{FUNCTIONS, Numbers};
+use crate::engine::row::{FUNCTIONS, RowNumbers};
 use crate::engine::{RowBatch, RowExpansion};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
@@ -94,7 +94,7 @@ impl Packed {
 /// Expansions of a row around its end, where the push angle may be flat: differences from the end keep their digits in `f32`.
 struct AroundEnd {
     /// Numbers at the end.
-    at_end: Numbers,
+    at_end: RowNumbers,
     /// Expansions of the differences from the end, over the difference of the argument.
     quotient: Chebyshev<FUNCTIONS>,
     /// The push angle that is left to the end is `slope left + curvature left^2` at the end and at first touch, where `left` is the argument

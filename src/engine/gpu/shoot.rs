@@ -69,8 +69,8 @@ impl Fan {
     /// Returns the fans of `conditions`, in order.
     fn all(method: Method, conditions: &[InitialCondition]) -> Vec<Self> {
         let mut end = 0;
-        let fans = conditions.chunk_by(|a, b| std::ptr::eq(a.rod, b.rod) && a.tau == b.tau);
-        let fans: Vec<Range<usize>> = fans
+        let fans: Vec<Range<usize>> = conditions
+            .chunk_by(|a, b| std::ptr::eq(a.rod, b.rod) && a.tau == b.tau)
             .map(|fan| {
                 end += fan.len();
                 end - fan.len()..end

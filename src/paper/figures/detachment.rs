@@ -129,8 +129,7 @@ pub fn fig5c(measured: &Measurements) -> Figure {
     let panels = [
         ("fig5c_left", "C", "truncated whisker", &FIG5_LEFT, &measured.fig5c_left),
         ("fig5c_right", "", "less truncated whisker", &FIG5_RIGHT, &measured.fig5c_right),
-    ];
-    let panels = panels.map(|(table, letter, title, whisker, measured)| {
+    ].map(|(table, letter, title, whisker, measured)| {
         let cylinder = cylinder_of(whisker);
         let whiskers = [
             ("whisker", whisker, Stroke::Solid),

@@ -84,22 +84,24 @@ pub fn fig7b() -> Result<Figure, FigureError> {
         &AngleCourse::new(times, angles)?,
     )?;
     let samples = &motion.whisk.samples;
-    let frames = samples.iter().enumerate();
-    let frames: Vec<CurvatureFrame> = frames
+    let frames: Vec<CurvatureFrame> = samples
+        .iter()
+        .enumerate()
         .map(|(i, sample)| frame(&motion, i, sample))
         .collect::<Result<_, _>>()?;
     let [lever, model] = [ForceMethod::Lever, ForceMethod::Model]
         .map(|method| forces(&FIG4_WHISKER, &POLE, &frames, method));
     let moments = samples.iter().zip(&frames).zip(lever.iter().zip(&model));
-    let rows = moments.map(|((sample, frame), (lever, model))| TrialFrame {
-        time_s: sample.time_s,
-        angle_deg: sample.angle_deg,
-        curvature_per_mm: frame.curvature_per_mm,
-        force_un: sample.force_un,
-        lever_force_un: lever.force_un,
-        model_force_un: model.force_un,
-    });
-    let rows: Vec<TrialFrame> = rows.collect();
+    let rows: Vec<TrialFrame> = moments
+        .map(|((sample, frame), (lever, model))| TrialFrame {
+            time_s: sample.time_s,
+            angle_deg: sample.angle_deg,
+            curvature_per_mm: frame.curvature_per_mm,
+            force_un: sample.force_un,
+            lever_force_un: lever.force_un,
+            model_force_un: model.force_un,
+        })
+        .collect();
     let line = |value: &dyn Fn(&TrialFrame) -> Option<f64>, ink| {
         let points = rows
             .iter()

@@ -215,8 +215,9 @@ fn uncertainty(table: &BTreeMap<String, f64>) -> Result<Deviations, SceneFault> 
             None if name == deviations::ROWS => uncertainty.profile_radius_um = Some(deviation),
             None if uncertainty.frames.set(name, deviation) => {}
             None => {
-                let known = Parameter::ALL.map(Parameter::name).into_iter();
-                let known = known
+                let known = Parameter::ALL
+                    .map(Parameter::name)
+                    .into_iter()
                     .chain([deviations::ROWS])
                     .chain(FrameDeviations::NAMES);
                 let hint = did_you_mean(name, known);

@@ -174,6 +174,8 @@ impl WhiskerRow {
     ///
     /// let misnamed = WhiskerRow::misnamed(&["name", "tip_radius"]);
     /// assert_eq!(misnamed.as_deref(), Some("has the column tip_radius; did you mean `tip_radius_um`?"));
+    /// let misnamed = WhiskerRow::misnamed(&["name", "Yield_strain"]);
+    /// assert_eq!(misnamed.as_deref(), Some("has the column Yield_strain; did you mean `yield_strain`?"));
     /// assert_eq!(WhiskerRow::misnamed(&["name", "taper", "tip_radius", "notes"]), None);
     /// ```
     #[must_use]
@@ -184,11 +186,16 @@ impl WhiskerRow {
             let mut others = substitutes.map(|part| part.column());
             column_names(*parameter).any(has) || others.any(has)
         };
-        let lacking = Parameter::ALL.into_iter().filter(|own| !is_given(own));
-        let lacking: Vec<&str> = lacking.flat_map(column_names).collect();
+        let parameters = Parameter::ALL
+            .into_iter()
+            .filter(|parameter| !is_given(parameter));
+        let others = [YIELD_STRAIN, PROFILE, REST_POINTS]
+            .into_iter()
+            .filter(|name| !has(name));
+        let lacking: Vec<&str> = parameters.flat_map(column_names).chain(others).collect();
         let unknown = names
             .iter()
-            .filter(|name| Self::columns().all(|own| own != **name));
+            .filter(|name| Self::columns().all(|known| known != **name));
         let mut meant = unknown.filter_map(|name| {
             let known = lacking.iter().find(|known| is_meant_as(name, known))?;
             let hint = did_you_mean(name, [*known]);
@@ -257,8 +264,7 @@ fn read_csv(
             if name.is_empty() {
                 continue;
             }
-            let pairs = read_pairs(kind.named(name), Some(&folder), files);
-            let pairs = pairs.map_err(|fault| {
+            let pairs = read_pairs(kind.named(name), Some(&folder), files).map_err(|fault| {
                 SceneFault::new(
                     format!("{KEY}[{index}]"),
                     format!("{column}: {}", fault.must),

@@ -80,9 +80,10 @@ impl Scene {
     /// If a value is not allowed, as in [`Scene::with_parameters`].
     pub fn to_toml_with(&self, values: &[(Parameter, f64)]) -> Result<String, SceneError> {
         let changed = self.with_parameters(values)?;
-        let document = self.to_toml().parse();
-        let mut document: DocumentMut =
-            document.map_err(|why: TomlError| SceneError::whole(&self.name, why.message()))?;
+        let mut document: DocumentMut = self
+            .to_toml()
+            .parse()
+            .map_err(|why: TomlError| SceneError::whole(&self.name, why.message()))?;
         let is_tapered = place_in(&self.to_toml(), TAPER_KEY).is_some();
         for (parameter, _) in values {
             let (parameter, digits) = match parameter {
@@ -189,9 +190,10 @@ impl SceneBuilder {
                 standalone.replace_range(span, &pairs_text(pairs));
             }
         }
-        let of_whiskers = self.table.as_ref();
-        let of_whiskers =
-            of_whiskers.filter(|_| files.iter().any(|csv| csv.key == SweepVariable::TABLE));
+        let of_whiskers = self
+            .table
+            .as_ref()
+            .filter(|_| files.iter().any(|csv| csv.key == SweepVariable::TABLE));
         if self.traced.is_none() && of_whiskers.is_none() {
             return standalone;
         }

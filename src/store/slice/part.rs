@@ -44,13 +44,12 @@ impl GridPart {
     }
 
     fn choose(&mut self, whole: &Grid, at: &AxisValue, exact: bool) -> Result<(), String> {
-        let sweep = whole.sweep.iter();
-        let sweep = sweep.map(NamedAxis::of);
+        let sweep = whole.sweep.iter().map(NamedAxis::of);
         let inside = [
             ("distance_mm", &*whole.distance_mm),
             ("push_angle_deg", &*whole.push_angle_deg),
-        ];
-        let inside = inside.map(|(name, values)| NamedAxis {
+        ]
+        .map(|(name, values)| NamedAxis {
             name,
             values,
             names: &[],

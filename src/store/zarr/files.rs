@@ -126,8 +126,8 @@ pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, StoreError> 
     if read.map_err(StoreError::at(&file, StoreError::Read))? as u64 > MOST_METADATA {
         return Err(foreign(&format!("{METADATA} is longer than 16 MiB")));
     }
-    let root = serde_json::from_slice(&text);
-    let mut root: Value = root.map_err(|why| foreign(&format!("{METADATA}: {why}")))?;
+    let mut root: Value =
+        serde_json::from_slice(&text).map_err(|why| foreign(&format!("{METADATA}: {why}")))?;
     match root.get_mut("attributes").map(Value::take) {
         Some(Value::Object(attributes)) => Ok(attributes),
         _ => Err(foreign(&"it has no attributes")),

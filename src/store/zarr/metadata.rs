@@ -26,8 +26,7 @@ pub(super) fn arrays(
     blocks: &Blocks,
     (channels, digits): (Channels, Digits),
 ) -> Vec<ZarrArray> {
-    let sweep = grid.sweep.iter().map(|axis| axis.variable.name());
-    let sweep: Vec<&str> = sweep.collect();
+    let sweep: Vec<&str> = grid.sweep.iter().map(|axis| axis.variable.name()).collect();
     let of_cells = [&sweep[..], &["distance_mm", "push_angle_deg"]].concat();
     let of_regimes = [&sweep[..], &[CODES]].concat();
     let mut arrays = vec![ZarrArray::in_blocks(

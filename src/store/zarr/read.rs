@@ -49,12 +49,13 @@ impl ZarrStore {
         whiskers: Range<usize>,
     ) -> Result<ChannelValues, StoreError> {
         let mut arrays = self.arrays.iter();
-        let array = arrays.find(|array| array.name == name && name != CELLS);
-        let array = array.ok_or_else(|| StoreError::UnknownChannel {
-            path: self.path.clone(),
-            name: name.to_owned(),
-            known: self.channels.to_string(),
-        })?;
+        let array = arrays
+            .find(|array| array.name == name && name != CELLS)
+            .ok_or_else(|| StoreError::UnknownChannel {
+                path: self.path.clone(),
+                name: name.to_owned(),
+                known: self.channels.to_string(),
+            })?;
         let panel_bytes = self.blocks.panel.iter().product::<usize>() * array.kind.size();
         let mut bytes = Vec::with_capacity(whiskers.len() * panel_bytes);
         let mut next = whiskers.start;
@@ -71,8 +72,9 @@ impl ZarrStore {
             let frames: Vec<&[u8]> = expected.frames(&packed).collect();
             for index in first..first + (end - next) {
                 let slot = self.blocks.slot(block, index) * chunks;
-                let values = array.unpack(frames[slot..slot + chunks].iter().copied());
-                let values = values.map_err(StoreError::at(&file, StoreError::Damaged))?;
+                let values = array
+                    .unpack(frames[slot..slot + chunks].iter().copied())
+                    .map_err(StoreError::at(&file, StoreError::Damaged))?;
                 bytes.extend_from_slice(&values[..panel_bytes]);
             }
             next = end;
@@ -103,8 +105,9 @@ impl ZarrStore {
         let mut bytes = Vec::new();
         let read = file.take(expected.most_bytes() + 1).read_to_end(&mut bytes);
         read.map_err(StoreError::at(path, StoreError::Read))?;
-        let fault = expected.structure_fault(&mut Cursor::new(&bytes));
-        let fault = fault.map_err(StoreError::at(path, StoreError::Read))?;
+        let fault = expected
+            .structure_fault(&mut Cursor::new(&bytes))
+            .map_err(StoreError::at(path, StoreError::Read))?;
         match fault.or_else(|| expected.chunk_fault(&bytes)) {
             Some(why) => Err(StoreError::Damaged(path.to_owned(), why)),
             None => Ok((expected, bytes)),

@@ -305,8 +305,9 @@ impl ZarrStore {
             ));
         }
         let files = self.metadata_files();
-        let faults = files.iter();
-        let faults = faults.filter_map(|(path, bytes)| metadata_fault(path, bytes));
+        let faults = files
+            .iter()
+            .filter_map(|(path, bytes)| metadata_fault(path, bytes));
         Ok(faults.collect())
     }
 

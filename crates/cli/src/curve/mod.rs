@@ -17,13 +17,13 @@ use super::selection::SelectionArgs;
 use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
 use clap::Args;
-use plot::{CurveColumn, MOST_WHISKERS, plot_title, scene_curves};
+use plot::{CurveColumn, MOST_WHISKERS, UPWARD, plot_title, scene_curves};
 use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::Side;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
-use whiskmap::render::{Plot, bands};
+use whiskmap::render::{Plot, bands, yielding_ends};
 use whiskmap::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
 use whiskmap::sensitivity::{DetachmentDerivatives, NoDerivative, detachments_at};
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
@@ -182,6 +182,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let unmarked = scene.has_yield_strain().then(PushMark::default);
     let (mut unresolved, mut all) = (0, 0);
+    let mut yielding = Vec::new();
     let distances = &scene.grid.distance_mm;
     let of_side = if args.corner { 1 } else { distances.len() };
     let bar = Progress::over(whiskers * Side::BOTH.len() * of_side, "ends");
@@ -233,6 +234,8 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         };
         let rows: Vec<(SweepPlace, MarkedEnd)> = trace::sides(&group, ends);
         write(&scene, &mut outputs, &rows)?;
+        let ends = rows.iter().map(|(_, Marked((end, _), mark))| (end, *mark));
+        yielding.extend(yielding_ends(ends, [args.x.axis(), UPWARD]));
         let kinds = rows.iter().map(|(_, Marked((end, _), _))| end.kind);
         let kinds = kinds.filter(|kind| *kind == DetachmentKind::Unresolved);
         unresolved += kinds.count() as u64;
@@ -240,7 +243,9 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     }
     bar.finish();
     outputs.finish(plot_title(&scene), || {
-        scene_curves(&scene, resolution, args.x.axis())
+        let mut plot = scene_curves(&scene, resolution, args.x.axis());
+        plot.lines.extend(yielding);
+        plot
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
 }

@@ -203,7 +203,7 @@ impl CurveColumn {
 }
 
 /// Vertical axis of a plot.
-const UPWARD: CurveAxis = CurveAxis {
+pub const UPWARD: CurveAxis = CurveAxis {
     label: DISTANCE,
     value: |end| Some(end.distance_mm),
 };

@@ -76,8 +76,8 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let (better, picture) = open(files, "--output", args.output.as_deref(), &args.picture)?;
     let solutions = match &asked[..] {
         [one] => {
-            let found = design(&scene, varied.clone(), &one.target);
-            let found = found.map_err(|why| refused(path, why))?;
+            let found =
+                design(&scene, varied.clone(), &one.target).map_err(|why| refused(path, why))?;
             if let Some(picture) = picture {
                 plot(path, &scene, &varied, (&one.target, &found), picture)?;
             }

@@ -26,8 +26,9 @@ impl<'a> Solutions<'a> {
         values: Vec<Vec<f64>>,
         most_digits: usize,
     ) -> Self {
-        let values = values.into_iter();
-        let values = values.map(|exact| written(scene, varied, exact, most_digits));
+        let values = values
+            .into_iter()
+            .map(|exact| written(scene, varied, exact, most_digits));
         Self {
             values: values.collect(),
             scene,
@@ -39,8 +40,9 @@ impl<'a> Solutions<'a> {
     /// Returns the scene with the values of the solution that is nearest to the scene's own, as TOML.
     pub fn nearest_scene(&self) -> Result<String, Failure> {
         let variables = self.varied.variables.iter();
-        let current = variables.filter_map(|variable| variable.variable.value(self.scene));
-        let current: Vec<f64> = current.collect();
+        let current: Vec<f64> = variables
+            .filter_map(|variable| variable.variable.value(self.scene))
+            .collect();
         let apart = |values: &[f64]| {
             let pairs = values.iter().zip(&current);
             let parts = pairs

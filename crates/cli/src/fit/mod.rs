@@ -113,8 +113,9 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     let values: Vec<_> = estimates
         .map(|estimate| (estimate.parameter, estimate.value))
         .collect();
-    let toml = toml_output.map(|output| Ok::<_, Failure>((output, scene.to_toml_with(&values)?)));
-    let toml = toml.transpose()?;
+    let toml = toml_output
+        .map(|output| Ok::<_, Failure>((output, scene.to_toml_with(&values)?)))
+        .transpose()?;
     let outputs = [toml, json].into_iter().flatten().collect();
     let printed = print(&scene.title, &found, outputs);
     match found.not_a_fit {
@@ -163,8 +164,7 @@ fn document(fit: &Fit) -> Value {
     let errors = estimates
         .map(|estimate| json!(estimate.standard_error))
         .collect();
-    let rows = fit.correlation.iter();
-    let rows = rows.map(|row| {
+    let rows = fit.correlation.iter().map(|row| {
         Value::Object(keyed(
             row.iter().map(|correlation| json!(correlation)).collect(),
         ))

@@ -85,15 +85,16 @@ pub fn table(title: &str, fit: &Fit) -> io::Result<()> {
     }
     if !fit.pulls.is_empty() {
         let strongest = fit.pulls.iter().take(PULLS);
-        let texts = strongest.map(|pull| {
-            let moved = rounded(pull.standard_errors, 2);
-            format!(
-                "line {} ({} by {moved:+} standard errors)",
-                pull.line,
-                pull.parameter.name()
-            )
-        });
-        let texts: Vec<String> = texts.collect();
+        let texts: Vec<String> = strongest
+            .map(|pull| {
+                let moved = rounded(pull.standard_errors, 2);
+                format!(
+                    "line {} ({} by {moved:+} standard errors)",
+                    pull.line,
+                    pull.parameter.name()
+                )
+            })
+            .collect();
         writeln!(
             out,
             "without these rows, values would move most: {}",

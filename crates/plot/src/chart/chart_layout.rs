@@ -71,8 +71,9 @@ impl<'a> ChartLayout<'a> {
     ) -> Self {
         let spacing = Spacing::of(size);
         let columns = chart.columns();
-        let layouts = chart.plots.iter();
-        let layouts: Vec<_> = layouts
+        let layouts: Vec<_> = chart
+            .plots
+            .iter()
             .map(|plot| PlotLayout::plan(plot, [width, height], spacing))
             .collect();
         let [left, right] = layouts.iter().fold(least, |most, layout| {
@@ -100,10 +101,10 @@ impl<'a> ChartLayout<'a> {
         let mut rest = layouts.into_iter().peekable();
         while rest.peek().is_some() {
             let row: Vec<_> = rest.by_ref().take(columns).collect();
-            let headings = row
+            let headings: Vec<_> = row
                 .iter()
-                .map(|layout| layout.heading([left, width, right], spacing));
-            let headings: Vec<_> = headings.collect();
+                .map(|layout| layout.heading([left, width, right], spacing))
+                .collect();
             let most = |heights: &mut dyn Iterator<Item = f64>| heights.fold(0.0, f64::max);
             let head = most(&mut headings.iter().map(|heading| heading.height));
             let above = most(&mut row.iter().map(|layout| layout.regions.height()));

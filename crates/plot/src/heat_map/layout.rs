@@ -191,8 +191,8 @@ fn sheet_axes(map: &HeatMap, area: [f64; 2], panels: &PanelGrid, spacing: Spacin
     let ticks = |side: usize| -> Vec<Tick> {
         let labels = axes[side]
             .iter()
-            .flat_map(|axis| axis.texts.iter().cloned());
-        let labels = labels.enumerate();
+            .flat_map(|axis| axis.texts.iter().cloned())
+            .enumerate();
         let ticks = labels.map(|(place, label)| Tick::new(panels.middle(side, place, area), label));
         ticks.collect()
     };

@@ -142,8 +142,7 @@ impl HeatMap {
         };
         let across = format!("each panel, to the right: {}", self.x.summary());
         let upwards = format!("each panel, upwards: {}", self.y.summary());
-        let regions = self.regions.iter();
-        let regions = regions.map(|[left, right]| {
+        let regions = self.regions.iter().map(|[left, right]| {
             format!(
                 "each panel, left of 0: {}; right: {}",
                 left.name, right.name

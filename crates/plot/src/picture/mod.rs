@@ -116,8 +116,8 @@ impl Picture {
 
     /// Draws the outline of a rectangle, `width` pixels wide.
     pub(crate) fn frame(&mut self, area: Area, width: f64) {
-        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
-        let corners = corners.map(|(x, y)| area.point(x, y));
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)]
+            .map(|(x, y)| area.point(x, y));
         self.polyline(&corners, Pen::solid(width, INK));
     }
 

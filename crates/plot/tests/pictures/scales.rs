@@ -201,9 +201,9 @@ fn a_scale_becomes_logarithmic_by_itself_over_two_decades() {
             );
             picture.ok().map(|picture| svg(&picture))
         };
-        let own = document(None);
-        assert!(own == document(Some(true)) || own == document(Some(false)));
-        own == document(Some(true))
+        let chosen = document(None);
+        assert!(chosen == document(Some(true)) || chosen == document(Some(false)));
+        chosen == document(Some(true))
     };
     assert!(is_log(&[1.0, 10.0, 101.0], None) && is_log(&[0.0, 1.0, 101.0], None));
     assert!(!is_log(&[1.0, 10.0, 99.0], None) && !is_log(&[0.0, 0.0, 0.0], None));

@@ -45,16 +45,17 @@ impl ArcSeries {
         loop {
             let half = 0.5 / count as f64;
             let mut from = DVec2::ZERO;
-            let panels = (0..count).map(|panel| {
-                let middle = half * (2 * panel + 1) as f64;
-                let series =
-                    ArcPanel::new(half, &curvature(middle), DVec2::from_angle(angle(middle)));
-                let (begin, end) = (series.at(-1.0).0, series.at(1.0).0);
-                let middle = from - begin;
-                from = middle + end;
-                ArcPanel { middle, ..series }
-            });
-            let panels: Arc<[ArcPanel]> = panels.collect();
+            let panels: Arc<[ArcPanel]> = (0..count)
+                .map(|panel| {
+                    let middle = half * (2 * panel + 1) as f64;
+                    let series =
+                        ArcPanel::new(half, &curvature(middle), DVec2::from_angle(angle(middle)));
+                    let (begin, end) = (series.at(-1.0).0, series.at(1.0).0);
+                    let middle = from - begin;
+                    from = middle + end;
+                    ArcPanel { middle, ..series }
+                })
+                .collect();
             if panels.iter().all(ArcPanel::is_exact) || 2 * count > MOST_PANELS {
                 return Self(panels);
             }

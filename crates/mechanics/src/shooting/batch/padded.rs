@@ -44,8 +44,7 @@ pub fn shoot<O: OutputSet>(
             keep(members, compute(members));
         }
     } else {
-        let computed = blocks.par_iter().map(compute);
-        let computed: Vec<_> = computed.collect();
+        let computed: Vec<_> = blocks.par_iter().map(compute).collect();
         for (members, computed) in blocks.iter().zip(computed) {
             keep(members, computed);
         }
