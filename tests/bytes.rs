@@ -103,7 +103,7 @@ const NO_FMA: [(&str, u64); 17] = [
     ("fig5_right", 0x9cac_204d_1f1d_1350),
     ("follicle", 0x7d1d_4107_6f4d_542e),
     ("friction", 0x732d_573a_bc72_6ea8),
-    ("measured", 0x029b_4e8e_fafa_2c65),
+    ("measured", 0x304d_e194_baf8_809c),
     ("morphology", 0x43fb_a7e7_c8ce_a525),
     ("pad", 0x462e_5240_c78b_dec7),
     ("robot", 0x1d2e_3667_ac36_04fb),
