@@ -1,8 +1,9 @@
 //! Points at which level curves meet the edges of the sheet, between two of their nodes.
 
+use crate::newton::LaneSharing;
 use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
-use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
+use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton};
 use crate::sheet::row::Edge;
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_3;
@@ -241,7 +242,7 @@ fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<CurveNode>> {
         .iter()
         .map(|(chord, edge)| chord.problem(*edge))
         .collect();
-    let iterates = edge_newton(first.level.method, EdgeStart::Fine, &problems);
+    let iterates = edge_newton(first.level.method, LaneSharing::EqualSteps, &problems);
     // At a fold, rounding can leave Newton's method slightly off the curve; at the tip its result is on the curve.
     let points = chords.iter().zip(&iterates);
     let points = points.map(|((chord, edge), iterate)| {

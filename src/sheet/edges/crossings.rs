@@ -4,11 +4,12 @@
 //! two samples if exactly one of them is at most at the row's distance. So the number of crossings has the right parity whatever the
 //! rounding. Each crossing is predicted and then corrected.
 
+use crate::newton::LaneSharing;
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::Edges;
 use crate::sheet::edges::bisection::{EdgeBisection, bisect};
 use crate::sheet::edges::edge_newton::{
-    EdgeIterate, EdgeProblem, EdgeStart, edge_newton, edge_newton_predicted,
+    EdgeIterate, EdgeProblem, edge_newton, edge_newton_predicted,
 };
 use crate::sheet::edges::predictor::{EdgeSample, Prediction};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
@@ -160,7 +161,7 @@ fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> V
             ..problems[i]
         })
         .collect();
-    let finer = edge_newton(method.doubled(), EdgeStart::Shared, &again);
+    let finer = edge_newton(method.doubled(), LaneSharing::Open, &again);
     for (i, iterate) in steep.into_iter().zip(&finer) {
         let c = &candidates[i];
         let found = reached((c, iterate));

@@ -113,7 +113,8 @@ impl Edges {
 )]
 mod tests {
     use super::*;
-    use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
+    use crate::newton::LaneSharing;
+    use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton};
     use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;
@@ -158,7 +159,7 @@ mod tests {
                         start: DVec2::new(predicted.tau, predicted.load),
                         second: None,
                     };
-                    let found = edge_newton(method, EdgeStart::Shared, &[problem])[0];
+                    let found = edge_newton(method, LaneSharing::Open, &[problem])[0];
                     let away = (found.point / problem.start - DVec2::ONE).abs();
                     assert!(
                         found.has_converged && away.max_element() < 1e-7,
