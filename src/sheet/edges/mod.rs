@@ -19,8 +19,7 @@ pub struct Edges {
     /// Samples of the fold edge, from the base to the corner, `[sample]`.
     pub fold: Vec<EdgeSample>,
     fold_edge: FoldEdge,
-    /// True if the distance grows along the fold from the base to the tip, also between the samples, so that no row crosses it twice. Where
-    /// the first fold jumps from contact to contact, the samples do not show all of the fold.
+    /// True if the distance grows along the fold from the base to the tip, also between the samples, so that no row crosses it twice.
     pub fold_grows: bool,
     /// Samples of the tip edge, from first touch to the corner, `[sample]`.
     pub tip: Vec<EdgeSample>,
@@ -77,10 +76,9 @@ impl Edges {
                 && is_as_steep_as(to.phi - from.phi, slopes.map(|by| by.y))
         };
         let fold_edge = FoldEdge::new(contacts);
-        let grows = |i| contacts.grow_after(i) && fold_edge.grows_after(i);
         Self {
             fold_is_certified: fold.windows(2).enumerate().all(is_certified),
-            fold_grows: (0..contacts.tip).all(grows),
+            fold_grows: (0..contacts.tip).all(|i| fold_edge.grows_after(i)),
             fold,
             fold_edge,
             tip,
