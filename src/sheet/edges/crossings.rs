@@ -24,15 +24,11 @@ struct CrossingCandidate {
     between: [EdgeSample; 2],
 }
 
-/// Distance outside the two samples, in parts of their spacing, within which a crossing is attributed to rounding.
-const OUTSIDE_SAMPLES: f64 = 1e-9;
-
 impl CrossingCandidate {
     /// Returns true if `point` is between the samples.
     fn holds(&self, point: DVec2) -> bool {
         let [a, b] = self.between;
-        let is_between =
-            |x: f64, a: f64, b: f64| (x - a) * (x - b) <= OUTSIDE_SAMPLES * (b - a).powi(2);
+        let is_between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= 0.0;
         match self.edge {
             Edge::Fold => is_between(point.x, a.tau, b.tau),
             Edge::Tip => is_between(point.y, a.load, b.load),
