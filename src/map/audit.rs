@@ -80,7 +80,7 @@ pub fn compare(
             }
             (Outcome::Solved, ours) if ours != Outcome::OffSheet => {
                 let theirs = cells.get(index);
-                // The residual is rounded, too.
+                // The residual is rounded to `f32`, and so is its bound.
                 theirs.residual <= residual_bound as f32
                     && holds(batch, (row, cell), row_residual, &theirs, &found.get(from))
             }

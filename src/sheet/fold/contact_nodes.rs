@@ -52,12 +52,17 @@ pub struct ContactNodes {
 /// nodes.
 const SURELY_BELOW: f64 = 0.75;
 
+/// Bound on the magnitude of `d ln q/d ln tau` of a fold; it is 2 toward a slender tip.
+const STEEPEST: f64 = 4.0;
+
 /// Returns the derivatives of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, by the index of the contact node.
 fn slopes_at(rod: &Rod, fold: &FoldPoint, spacing: f64) -> [f64; 2] {
     let ln_tau = spacing / slope_of_u(rod, fold.tau);
     let by_det = fold.variation.det_gradient();
     let ln_load = -by_det.x / by_det.y * fold.tau / fold.load;
-    [ln_tau, (2.0 + ln_load) * ln_tau]
+    // Next to a jump, the fold edge may be vertical in load, and no polynomial approximates it.
+    let ln_q = (2.0 + ln_load).clamp(-STEEPEST, STEEPEST);
+    [ln_tau, ln_q * ln_tau]
 }
 
 /// Returns a lower bound of `|load| tau^2` of the folds, at the nodes and between them. A cubic through two values with their slopes
