@@ -115,8 +115,6 @@ pub struct BatchNewton {
     pub method: Method,
     /// Rule for the sharing of lanes in the loop.
     pub sharing: LaneSharing,
-    /// Number of initial rounds of the loop at the coarse resolution, in which no state is accepted.
-    pub coarse_rounds: u32,
     /// Maximum number of trajectories for each Newton problem.
     pub most_trajectories: u32,
 }
@@ -127,7 +125,6 @@ impl BatchNewton {
         Self {
             method,
             sharing: LaneSharing::EqualSteps,
-            coarse_rounds: 0,
             most_trajectories,
         }
     }
@@ -153,14 +150,13 @@ impl BatchNewton {
             if open.is_empty() {
                 break;
             }
-            let is_coarse = round < self.coarse_rounds;
             let conditions = open.iter().map(|&i| InitialCondition {
                 rod: problems[i].rod(),
                 tau: points[i].x,
                 load: points[i].y,
             });
             let conditions: Vec<InitialCondition> = conditions.collect();
-            self.shoot(is_coarse, &conditions, |place, here: &P::Output| {
+            self.shoot(&conditions, |place, here: &P::Output| {
                 let i = open[place];
                 if !is_open[i] {
                     return;
@@ -169,7 +165,6 @@ impl BatchNewton {
                 let step = problems[i].step(at, here);
                 (iterate.point, iterate.state, iterate.steps) = (at, here.state(), round);
                 let next = match step {
-                    NewtonStep::Extrapolate(step) if is_coarse => Ok(at + step),
                     NewtonStep::Shoot(next) => Ok(next),
                     NewtonStep::Extrapolate(step) => {
                         points[i] = at + step;
@@ -201,15 +196,10 @@ impl BatchNewton {
     /// Shoots `conditions` and passes the index and output of each trajectory to `take`, in any order.
     fn shoot<O: OutputSet>(
         &self,
-        is_coarse: bool,
         conditions: &[InitialCondition],
         mut take: impl FnMut(usize, &O),
     ) {
-        let method = match is_coarse {
-            true => self.method.coarsely(),
-            false => self.method,
-        };
-        let batch = Batch::new(method);
+        let batch = Batch::new(self.method);
         if self.sharing == LaneSharing::EqualSteps {
             batch.for_each(conditions.iter().copied(), take);
         } else {

@@ -61,9 +61,6 @@ const VALUES_PER_MISS: f64 = 10.0;
 /// functions of the argument.
 const BY_ARGUMENT: f64 = 4.0;
 
-/// Relative error of a residual that is rounded to `f32`.
-const ROUNDED: f64 = f32::EPSILON as f64;
-
 /// Compares the solved `cells` of an engine with the cells of the `rest` that the CPU `found`. Residuals of cells are at most
 /// `residual_bound`, and residuals of rows at most `row_residual`, both in whisker lengths. Returns the numbers of compared and of differing cells.
 pub fn compare(
@@ -83,7 +80,8 @@ pub fn compare(
             }
             (Outcome::Solved, ours) if ours != Outcome::OffSheet => {
                 let theirs = cells.get(index);
-                f64::from(theirs.residual) <= (1.0 + ROUNDED) * residual_bound
+                // The residual is rounded to `f32`, and so is its bound.
+                theirs.residual <= residual_bound as f32
                     && holds(batch, (row, cell), row_residual, &theirs, &found.get(from))
             }
             _ => continue,

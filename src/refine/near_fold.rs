@@ -4,7 +4,8 @@
 //! target distance decides whether the target direction has a solution, and gives its `eta`.
 
 use super::CellTarget;
-use crate::sheet::{Edge, EdgeProblem, EdgeStart, Sheet, edge_newton};
+use crate::newton::LaneSharing;
+use crate::sheet::{Edge, EdgeProblem, Sheet, edge_newton};
 use glam::DVec2;
 use whiskmap_mechanics::numerics::nearest_turn;
 use whiskmap_mechanics::shooting::SecondVariation;
@@ -34,7 +35,7 @@ pub fn decide(method: Method, sheets: &[&Sheet], targets: &[CellTarget]) -> Vec<
             second: None,
         })
         .collect();
-    let folds = edge_newton(method, EdgeStart::Coarse, &problems);
+    let folds = edge_newton(method, LaneSharing::EqualSteps, &problems);
     folds
         .into_iter()
         .zip(targets)

@@ -153,7 +153,7 @@ fn stable_push_deg(rod: &Rod, row: &Row, s: f64) -> f64 {
 }
 
 /// A cone whose fold leaps between two samples. Rows in between have a second piece that no sample shows: its states lie beyond the
-/// detachment of the push from first touch. With a `SLOPE_TOLERANCE` of 0.75 in place of 0.25 they are lost.
+/// detachment of the push from first touch. Without `SLOPE_TOLERANCE` and `FOLD_OFF`, which cover each other, they are lost.
 #[test]
 fn a_piece_between_samples_of_the_fold_is_not_missed() {
     let (bend, slope) = (3.388, -1.5577);
@@ -210,6 +210,48 @@ fn folds_that_meet_between_samples_are_not_missed() {
                 agree(&scene, &end).unwrap();
             }
         }
+    }
+}
+
+/// Coiled cylinders whose first fold leaps between two samples. With a `FOLD_LOAD_TOLERANCE` of infinity, without the bisection between the
+/// samples, or with a `SHORT_CHORD` of 0, a row has a piece whose ends are not found.
+#[test]
+fn all_pieces_are_found_where_the_fold_leaps() {
+    let leaping = Case {
+        pole: 0.005195859681852056,
+        ..cylinder(
+            2.9777634126889846,
+            0.4446239876410852,
+            1.0,
+            0.042655084182320564,
+        )
+    };
+    let bisected = Case {
+        pole: 0.000111816758367984,
+        stretch: 1.003922709284042,
+        ..cylinder(
+            0.9974105441445368,
+            0.9607572582694287,
+            0.735862310097628,
+            0.0028471454535629152,
+        )
+    };
+    let whiskers = [
+        (leaping, 8.061794309983636, 0.4183332955529271, 3),
+        (bisected, 0.0, 0.3067723827029361, 5),
+    ];
+    for (case, vertex_mm, farther, most) in whiskers {
+        let scene = case.scene().with(Parameter::VertexMm, vertex_mm).unwrap();
+        let rod = scene.first_whisker().rod(Side::Cb);
+        let distances = [case.distances[0], farther];
+        let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &distances);
+        let ends = sheet.crossings.iter().flatten();
+        assert!(
+            ends.clone().all(|end| end.is_sound()),
+            "{:?}",
+            sheet.crossings
+        );
+        assert_eq!(sheet.crossings.iter().map(Vec::len).max(), Some(most));
     }
 }
 

@@ -1,8 +1,9 @@
 //! Points at which level curves meet the edges of the sheet, between two of their nodes.
 
+use crate::newton::LaneSharing;
 use crate::sheet::continuation::corrector::correct;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
-use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
+use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton};
 use crate::sheet::row::Edge;
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_3;
@@ -13,9 +14,6 @@ const TIP_MISS: f64 = 1e-11;
 
 /// Largest error of a curve's maximum as a cubic predicts it, in parts of the maximum's height above both nodes.
 const GRAZE_OFF: f64 = 0.5;
-
-/// Height above both nodes, in parts of the tip's `tau`, below which a maximum is attributed to rounding.
-const LOWEST_GRAZE: f64 = 1e-12;
 
 /// Error of the slope of a quantity along a chord, in parts of its bulge and of its change from node to node ([`Chord::may_fall`]). The
 /// change counts more on a chord that spans a kink.
@@ -90,7 +88,7 @@ impl Chord<'_> {
         let at = rises / ((square * square - 3.0 * cube * rises).max(0.0).sqrt() - square);
         let highest = from + at * (rises + at * (square + at * cube));
         let height = highest - from.max(to);
-        height > LOWEST_GRAZE * tip && highest + GRAZE_OFF * height > tip
+        highest + GRAZE_OFF * height > tip
     }
 
     /// Returns true if the push angle may turn back and forth between the nodes, over a pair of folds. Both nodes have the same sign of
@@ -241,7 +239,7 @@ fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<CurveNode>> {
         .iter()
         .map(|(chord, edge)| chord.problem(*edge))
         .collect();
-    let iterates = edge_newton(first.level.method, EdgeStart::Fine, &problems);
+    let iterates = edge_newton(first.level.method, LaneSharing::EqualSteps, &problems);
     // At a fold, rounding can leave Newton's method slightly off the curve; at the tip its result is on the curve.
     let points = chords.iter().zip(&iterates);
     let points = points.map(|((chord, edge), iterate)| {

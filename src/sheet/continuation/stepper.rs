@@ -38,9 +38,6 @@ const FIRST_ARC_STEP: f64 = 0.05;
 /// Step length below which a continuation has failed.
 const SHORTEST_ARC_STEP: f64 = 1e-9;
 
-/// Difference between the directions of two nodes up to which the predictor uses the curvature between them.
-const MOST_BEND: f64 = 0.25;
-
 /// Largest push angle of a node of a continuation, in radians: nine turns. Push angles of maps are at most one turn. The largest
 /// detachment that another program has confirmed is at 2924 degrees. Beyond a soft waist, a whisker can coil up for thirty turns, in
 /// thousands of nodes.
@@ -154,11 +151,9 @@ impl<'a> Stepper<'a> {
         let (level, step) = (self.level, self.step);
         let mut moved = step * level.velocity(self.last());
         let chords = self.nodes.windows(2).rev().zip(self.steps.iter().rev());
-        let mut bends = chords.map_while(|(nodes, length)| {
-            let [from, to] = [&nodes[0], &nodes[1]];
-            let turned = level.direction(to) - level.direction(from);
-            let bend = (level.velocity(to) - level.velocity(from)) / *length;
-            (turned.length() < MOST_BEND).then_some((bend, *length))
+        let mut bends = chords.map(|(nodes, length)| {
+            let change = level.velocity(&nodes[1]) - level.velocity(&nodes[0]);
+            (change / *length, *length)
         });
         if let Some((bend, length)) = bends.next() {
             moved += 0.5 * step * step * bend;
@@ -215,13 +210,6 @@ impl<'a> Stepper<'a> {
 
     /// Adds the node of an edge to the continuation. Returns true if it is the first fold.
     pub fn end_at(&mut self, edge: Edge, node: CurveNode) -> bool {
-        // Interpolation between two nodes that are close together is inaccurate.
-        if let [.., before, last] = &self.nodes[..]
-            && self.fold != Some(self.nodes.len() - 1)
-            && self.level.length(last, &node) < 0.2 * self.level.length(before, last)
-        {
-            self.nodes.pop();
-        }
         self.nodes.push(node);
         self.steps.clear();
         let is_first_fold = edge == Edge::Fold && self.fold.is_none();

@@ -4,11 +4,12 @@
 //! two samples if exactly one of them is at most at the row's distance. So the number of crossings has the right parity whatever the
 //! rounding. Each crossing is predicted and then corrected.
 
+use crate::newton::LaneSharing;
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::Edges;
 use crate::sheet::edges::bisection::{EdgeBisection, bisect};
 use crate::sheet::edges::edge_newton::{
-    EdgeIterate, EdgeProblem, EdgeStart, edge_newton, edge_newton_predicted,
+    EdgeIterate, EdgeProblem, edge_newton, edge_newton_predicted,
 };
 use crate::sheet::edges::predictor::{EdgeSample, Prediction};
 use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
@@ -23,15 +24,11 @@ struct CrossingCandidate {
     between: [EdgeSample; 2],
 }
 
-/// Distance outside the two samples, in parts of their spacing, within which a crossing is attributed to rounding.
-const OUTSIDE_SAMPLES: f64 = 1e-9;
-
 impl CrossingCandidate {
     /// Returns true if `point` is between the samples.
     fn holds(&self, point: DVec2) -> bool {
         let [a, b] = self.between;
-        let is_between =
-            |x: f64, a: f64, b: f64| (x - a) * (x - b) <= OUTSIDE_SAMPLES * (b - a).powi(2);
+        let is_between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= 0.0;
         match self.edge {
             Edge::Fold => is_between(point.x, a.tau, b.tau),
             Edge::Tip => is_between(point.y, a.load, b.load),
@@ -160,7 +157,7 @@ fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> V
             ..problems[i]
         })
         .collect();
-    let finer = edge_newton(method.doubled(), EdgeStart::Shared, &again);
+    let finer = edge_newton(method.doubled(), LaneSharing::Open, &again);
     for (i, iterate) in steep.into_iter().zip(&finer) {
         let c = &candidates[i];
         let found = reached((c, iterate));

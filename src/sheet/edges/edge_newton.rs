@@ -81,10 +81,7 @@ fn fold_step(here: &SecondVariation, miss: f64) -> DVec2 {
     -sum.perp() / by_distance.perp_dot(by_det)
 }
 
-/// Number of rounds at the coarse resolution. From the guess of a cell next to the fold, they reach the error of that resolution.
-const COARSE_ROUNDS: u32 = 2;
-
-/// Maximum number of trajectories at the method's own resolution; usually 1 or 2 suffice.
+/// Maximum number of trajectories of an edge problem; usually 1 or 2 suffice.
 const EDGE_TRAJECTORIES: u32 = 20;
 
 /// Step length whose end is extrapolated. The remaining step is its square, and second derivatives determine the end to its cube.
@@ -92,19 +89,6 @@ const LAST_EDGE_STEP: f64 = 3e-7;
 
 /// Largest relative error of predicted second derivatives; usually it is 1e-3.
 const SECOND_OFF: f64 = 1e-2;
-
-/// Quality of the starts of an edge Newton, which decides the resolution and batching of its trajectories.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EdgeStart {
-    /// The first trajectories are coarse: for starts next to the edge, such as the guesses of cells.
-    Coarse,
-    /// All trajectories have the method's resolution: for good starts, and for whiskers that coil up under friction, where the coarse
-    /// resolution fails.
-    Fine,
-    /// All trajectories have the method's resolution, as with [`EdgeStart::Fine`]. All open problems share padded blocks
-    /// of SIMD lanes: only for the batches of a sheet, whose problems do not depend on row batches.
-    Shared,
-}
 
 /// Iteration of one edge problem.
 struct EdgeSearch<'a, 'b> {
@@ -131,18 +115,18 @@ impl<'a> NewtonProblem<'a> for EdgeSearch<'a, '_> {
     }
 }
 
-/// Solves all `problems` of points on edges. Returns one iterate for each, `[problem]`, with its remaining error.
+/// Solves all `problems` of points on edges. Returns one iterate for each, `[problem]`, with its remaining error. Trajectories share blocks by
+/// `sharing`: [`LaneSharing::Open`] is only for the batches of a sheet, whose problems do not depend on row batches.
 #[must_use]
-pub fn edge_newton(method: Method, start: EdgeStart, problems: &[EdgeProblem]) -> Vec<EdgeIterate> {
-    let mut newton = BatchNewton::new(method, EDGE_TRAJECTORIES);
-    match start {
-        EdgeStart::Coarse => {
-            newton.coarse_rounds = COARSE_ROUNDS;
-            newton.most_trajectories += COARSE_ROUNDS;
-        }
-        EdgeStart::Fine => {}
-        EdgeStart::Shared => newton.sharing = LaneSharing::Open,
-    }
+pub fn edge_newton(
+    method: Method,
+    sharing: LaneSharing,
+    problems: &[EdgeProblem],
+) -> Vec<EdgeIterate> {
+    let newton = BatchNewton {
+        sharing,
+        ..BatchNewton::new(method, EDGE_TRAJECTORIES)
+    };
     let search = |problem| EdgeSearch { problem, left: 0.0 };
     let mut searches: Vec<EdgeSearch> = problems.iter().map(search).collect();
     let iterates = newton.solve(&mut searches, problems.iter().map(|problem| problem.start));
@@ -193,7 +177,7 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
     });
     let mut iterates: Vec<EdgeIterate> = predicted.collect();
     let (places, again): (Vec<usize>, Vec<EdgeProblem>) = open.into_iter().unzip();
-    let solved = edge_newton(method, EdgeStart::Shared, &again);
+    let solved = edge_newton(method, LaneSharing::Open, &again);
     for (i, iterate) in places.into_iter().zip(solved) {
         iterates[i] = iterate;
     }
@@ -229,7 +213,7 @@ mod tests {
                 let here: Vec<ShootingMap> = Batch::new(method).shoot_at(&rod, [start]);
                 problem.pole_distance = here[0].pole.length();
             }
-            let known = edge_newton(method, EdgeStart::Shared, &[problem])[0];
+            let known = edge_newton(method, LaneSharing::Open, &[problem])[0];
             assert!(is_found(&known), "{edge:?}");
             let here = &known.here;
             let seconds = [here.by_tau_tau, here.by_tau_load, here.by_load_load];

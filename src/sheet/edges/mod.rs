@@ -19,8 +19,7 @@ pub struct Edges {
     /// Samples of the fold edge, from the base to the corner, `[sample]`.
     pub fold: Vec<EdgeSample>,
     fold_edge: FoldEdge,
-    /// True if the distance grows along the fold from the base to the tip, also between the samples, so that no row crosses it twice. Where
-    /// the first fold jumps from contact to contact, the samples do not show all of the fold.
+    /// True if the distance grows along the fold from the base to the tip, also between the samples, so that no row crosses it twice.
     pub fold_grows: bool,
     /// Samples of the tip edge, from first touch to the corner, `[sample]`.
     pub tip: Vec<EdgeSample>,
@@ -77,10 +76,9 @@ impl Edges {
                 && is_as_steep_as(to.phi - from.phi, slopes.map(|by| by.y))
         };
         let fold_edge = FoldEdge::new(contacts);
-        let grows = |i| contacts.grow_after(i) && fold_edge.grows_after(i);
         Self {
             fold_is_certified: fold.windows(2).enumerate().all(is_certified),
-            fold_grows: (0..contacts.tip).all(grows),
+            fold_grows: (0..contacts.tip).all(|i| fold_edge.grows_after(i)),
             fold,
             fold_edge,
             tip,
@@ -113,7 +111,8 @@ impl Edges {
 )]
 mod tests {
     use super::*;
-    use crate::sheet::edges::edge_newton::{EdgeProblem, EdgeStart, edge_newton};
+    use crate::newton::LaneSharing;
+    use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton};
     use crate::sheet::fold::contact_nodes::SPACING;
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;
@@ -158,7 +157,7 @@ mod tests {
                         start: DVec2::new(predicted.tau, predicted.load),
                         second: None,
                     };
-                    let found = edge_newton(method, EdgeStart::Shared, &[problem])[0];
+                    let found = edge_newton(method, LaneSharing::Open, &[problem])[0];
                     let away = (found.point / problem.start - DVec2::ONE).abs();
                     assert!(
                         found.has_converged && away.max_element() < 1e-7,

@@ -152,7 +152,7 @@ impl FoldEdge {
         let from = (after - start) as f64;
         let change = ln_distance.at(from + 1.0).0 - ln_distance.at(from).0;
         let mut parts = (1..SLOPES).map(|i| f64::from(i) / f64::from(SLOPES));
-        parts.all(|part| ln_distance.at(from + part).1 > LEAST_SLOPE * change)
+        change > 0.0 && parts.all(|part| ln_distance.at(from + part).1 > LEAST_SLOPE * change)
     }
 
     /// Returns the predicted point of the fold edge between the samples of two neighbouring contact nodes at which `ln D` is `target`.

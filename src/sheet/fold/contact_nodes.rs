@@ -48,9 +48,6 @@ pub struct ContactNodes {
     pub ln_q: Vec<Hermite>,
 }
 
-/// Rounding error of a slope of `ln D` that is 0, as at the tip of a perfect cone.
-const FLAT: f64 = 1e-6;
-
 /// Part of the smallest `|load| tau^2` of the folds up to which a load is certainly below the folds. The rest allows for a jump between
 /// nodes.
 const SURELY_BELOW: f64 = 0.75;
@@ -78,16 +75,6 @@ fn least_q(values: &[[f64; 2]], slopes: &[[f64; 2]]) -> f64 {
         values[0][1].min(values[1][1]) - dip
     });
     libm::exp(least.fold(f64::INFINITY, f64::min))
-}
-
-/// Difference between the change of `ln q` from node to node and the slope at one of them from which on the first fold jumps. A jump with
-/// friction led from 29 to 15; without one, `scenes/measured.toml` has 0.19.
-const JUMP: f64 = 0.25;
-
-/// Returns true if the fold jumps between two nodes with these `slopes` of `ln q`, between which `ln q` changes by `change`.
-fn jumps(change: f64, slopes: [f64; 2]) -> bool {
-    let misses = slopes.map(|slope| (change - slope).abs());
-    misses[0].max(misses[1]) >= JUMP
 }
 
 /// Returns the folds of nodes from the base outward. The first ones are so close to the base that a whisker held there does not reach the
@@ -155,17 +142,6 @@ impl ContactNodes {
         map.by_tau * (fold.tau * ln_tau) + map.by_load * (fold.load * ln_load)
     }
 
-    /// Returns true if the distance at the fold grows from the contact node `i` to the next one, and the fold does not jump.
-    #[must_use]
-    pub fn grow_after(&self, i: usize) -> bool {
-        let ends = [i, i + 1];
-        let [here, next] = ends.map(|i| self.folds[i].distance());
-        let grows = |end: usize| self.slope(ends[end]).x > -FLAT;
-        let [from, to] = ends.map(|i| libm::log(self.folds[i].q()));
-        let slopes = ends.map(|i| self.slopes[i][1]);
-        here < next && grows(0) && grows(1) && !jumps(to - from, slopes)
-    }
-
     /// Returns the magnitude `|f/rho^2|` of the load at the fold of the contact at `tau`, dimensionless, by interpolation.
     #[must_use]
     pub fn fold_load(&self, tau: f64) -> f64 {
@@ -188,16 +164,6 @@ mod tests {
     use super::*;
     use whiskmap_mechanics::rod::{Rest, Side};
     use whiskmap_mechanics::shooting::batch::Method;
-
-    /// Right after a jump down, a fold that changes like a square root is as steep as the jump.
-    #[test]
-    fn a_jump_is_seen_whatever_the_slopes() {
-        assert!(jumps(-0.6, [0.0, 0.0]));
-        assert!(jumps(-0.6, [0.0, -1.2]));
-        assert!(jumps(-0.6, [-0.6, -0.1]));
-        assert!(!jumps(0.47, [0.38, 0.29]));
-        assert!(!jumps(1.3, [1.3, 1.3]));
-    }
 
     /// Compares slopes with differences between neighbours, at a node in the middle and at the tip.
     #[test]

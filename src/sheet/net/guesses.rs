@@ -43,18 +43,12 @@ const DETERMINANT: usize = 2;
 /// Weights that convert errors of the functions to whisker lengths. The error of the determinant is a part of its certificate.
 const WEIGHTS: Functions = [1.0, 1.0, 0.0];
 
-/// Coefficient up to which the determinant is cut.
-const CUT: f64 = 1e-5;
-
 /// Samples for each polynomial in both variables that are tried one after the other, with the smallest clearance, in parts of the largest, that
 /// counts as positive between them: `(samples, clearance)`. A polynomial of degree `n` whose values at `m n` Chebyshev points are in `[-1, 1]` is
 /// at most `1/cos(pi/(2 m))` between them (H. Ehlich and K. Zeller, Math. Z. 86, 41, 1964). So deviations of a polynomial of two variables from
-/// the middle grow by at most 1.334 and 1.072. The clearance is nearly one: the fold divides it, and coefficients below [`CUT`] are left out.
-/// This is a margin, not a proof.
+/// the middle grow by at most 1.334 and 1.072. The clearance is nearly one: the fold divides it. This is a margin, not a
+/// proof.
 const SAMPLES: [(usize, f64); 2] = [(3, 0.143), (6, 0.035)];
-
-/// Part of the smallest load that is surely stable at which samples begin: between the contacts of samples, it may be smaller.
-const BELOW: f64 = 0.9;
 
 /// Largest difference between the load of a fold by the panel and by the contact nodes, relative to the load.
 const FOLD_OFF: f64 = 1e-2;
@@ -178,8 +172,7 @@ impl GuessPanel {
     pub fn shows_folds(&self, rod: &Rod, contacts: &ContactNodes) -> bool {
         let [in_contact, in_load] = self.0.tensor.tails().map(|[last, _]| last[DETERMINANT]);
         let error = MARGIN * larger(in_contact, in_load);
-        let mut determinant = self.0.tensor.transposed(DETERMINANT);
-        determinant.shorten(|[term]| term.abs() < CUT);
+        let determinant = self.0.tensor.transposed(DETERMINANT);
         SAMPLES.iter().any(|(over, smallest)| {
             let clearances = self.clearances(&determinant, *over, rod, contacts);
             clearances.is_some_and(|[least, largest]| least > smallest * largest + error)
@@ -196,9 +189,6 @@ impl GuessPanel {
         contacts: &ContactNodes,
     ) -> Option<[f64; 2]> {
         let [in_p, in_u] = determinant.counts();
-        if in_u == 0 || in_p < 2 {
-            return None;
-        }
         // Between the Chebyshev points are the contact nodes, where folds are exact.
         let [from, to] = self.0.contacts;
         let folds = contacts.folds.iter();
@@ -220,7 +210,7 @@ impl GuessPanel {
             if !is_known {
                 return None;
             }
-            stable = f64::min(stable, BELOW * surely_stable);
+            stable = f64::min(stable, surely_stable);
         }
         let samples = points(over * in_p).map(|part| stable + part * (1.0 - stable));
         let (mut least, mut largest) = ([f64::INFINITY; WIDTH], [-f64::INFINITY; WIDTH]);

@@ -1,13 +1,10 @@
 //! Sizes of panels: the first size for a bound, and the next sizes by the decay of coefficients.
 
-use super::bound::{MARGIN, larger};
+use super::bound::MARGIN;
 use whiskmap_mechanics::numerics::expansion::{MOST_POINTS, TAIL};
 
 /// Part of the bound that the coefficients left out are expected to take. At most `1 / MARGIN` is allowed.
 const LEFT_OUT: f64 = 0.5 / MARGIN;
-
-/// Expected error, in whisker lengths, above which coefficients do not yet fall at their final rate.
-const HOPELESS: f64 = 1.0;
 
 /// Factor by which more points are taken than the rate at the last coefficients calls for.
 const SAFETY: f64 = 1.1;
@@ -78,11 +75,6 @@ impl NetSize {
     /// Returns the size that is expected to keep the bound `most`, where a panel of this size has these tails in both coordinates. `None`
     /// without such a size.
     pub fn enough(self, [in_u, in_p]: [NetTail; 2], most: f64) -> Option<Self> {
-        // NaN is not below any bound.
-        let falls = larger(in_u.last, in_p.last) <= HOPELESS;
-        if !falls {
-            return None;
-        }
         Some(Self {
             contacts: in_u.points(self.contacts, LEFT_OUT * most)?,
             loads: in_p.points(self.loads, LEFT_OUT * most)?,
