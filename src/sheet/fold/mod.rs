@@ -46,6 +46,9 @@ const FIRST_SPACING: f64 = 0.75;
 /// wider: no first fold of 2,000 random whiskers with friction up to 2 and `A*` up to 2 lay below 6.5.
 const SURELY_STABLE: f64 = 4.5;
 
+/// Relative widening of a bracket beyond its samples, whose signs come from the coarse resolution.
+const BRACKET_SLACK: f64 = 1e-2;
+
 /// Newton step toward the root between two samples, in parts of their spacing, after which the iteration stops. The remaining error is
 /// its square.
 const LAST_STEP_BETWEEN_SAMPLES: f64 = 1e-4;
@@ -80,8 +83,7 @@ const POLISH_TRAJECTORIES: u32 = 60;
 /// to [`MARCH_END`], or no stable state at first touch.
 pub fn first_folds(case: SheetCase, taus: &[f64]) -> Vec<Option<FoldPoint>> {
     let mut folds = polish(case, march(case.coarsely(), taus, surely_stable(case.rod)));
-    // With friction and a stiff tip, the first fold can lie at `q` of 1000, where the coarse resolution fails. Next to a sample, it can have
-    // the fold on the other side.
+    // With friction and a stiff tip, the first fold can lie at `q` of 1000, where the coarse resolution fails.
     let failed: Vec<usize> = (0..taus.len()).filter(|&i| folds[i].is_none()).collect();
     let again: Vec<f64> = failed.iter().map(|&i| taus[i]).collect();
     let fine = polish(case, march(case, &again, 0.0));
@@ -149,12 +151,13 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
             let Some((at, _)) = pairs.into_iter().find(changed) else {
                 return true;
             };
+            let slack = BRACKET_SLACK * (samples[at + 1] - samples[at]);
             let loads = std::iter::once(0.0).chain(samples[..=at].iter().map(|q| q * march.scale));
             found[march.index] = Some(FoldBracket {
                 tau: taus[march.index],
                 loads: Bracket {
-                    below: samples[at] * march.scale,
-                    above: samples[at + 1] * march.scale,
+                    below: (samples[at] - slack) * march.scale,
+                    above: (samples[at + 1] + slack) * march.scale,
                 },
                 guess: root(&samples, &march.dets, at) * march.scale,
                 // The first map is that at first touch.

@@ -27,7 +27,7 @@ use whiskmap_mechanics::shooting::ShootingMap;
 /// passes from one radius to the next, and few panels have the smaller error.
 pub const GUESS_ERRORS: [f64; 2] = [3e-7, 1e-5];
 
-/// The same where the panels only show the folds. At the tip of a perfect cone, and with measured radii, panels need the smaller error.
+/// [`GUESS_ERRORS`] of panels that only show the folds. At the tip of a perfect cone, and with measured radii, panels need the smaller error.
 pub const FOLD_ERRORS: [f64; 2] = [1e-3, 1e-5];
 
 /// Smallest number of points of contact and scale of the load as functions of `u`.
