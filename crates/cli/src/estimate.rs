@@ -196,15 +196,17 @@ impl MapSample {
             (plan.whiskers * plan.sides.len() * scene.grid.distance_mm.len()) as f64
         };
         let by_rows = rows(scene, plan) / rows(&self.scene, &self.plan);
-        let seconds = Stage::ALL.map(|(stage, _)| match stage {
+        let scaled = Stage::ALL.map(|(stage, _)| match stage {
             Stage::Sheets => self.summary.stage_seconds(stage) * by_rows,
             _ => self.summary.stage_seconds(stage) * self.by_cells(plan),
         });
-        let seconds: f64 = seconds.iter().sum();
+        let seconds: f64 = scaled.iter().sum();
+        let stages = Stage::ALL.map(|(stage, _)| self.summary.stage_seconds(stage));
         let threads = rayon::current_num_threads() as f64;
         // A clock with long steps may show no CPU time.
         let used = self.summary.cpu_seconds.filter(|cpu| *cpu > 0.0);
-        let used = used.map(|cpu| cpu / self.summary.wall_seconds);
+        // Other processes may take the processor between two stages.
+        let used = used.map(|cpu| cpu / stages.iter().sum::<f64>());
         MapCost {
             seconds,
             cpu_seconds: seconds * used.unwrap_or(threads),
