@@ -20,7 +20,7 @@ struct Row {
     tip_radius: real,
 }
 
-// Twelve functions of a row: push angle, tau and load, and the channels.
+// Twelve functions of a row: push angle, tau and load, and the channels. The last two groups are 0 without a channel that is wanted.
 struct Functions {
     state: vec4<real>,
     middle: vec4<real>,
@@ -29,8 +29,8 @@ struct Functions {
 
 @group(0) @binding(0) var<storage, read> heads: array<Head>;
 @group(0) @binding(1) var<storage, read> rows: array<Row>;
-// For each run, the values at the end, then the coefficients of the quotients.
-@group(0) @binding(2) var<storage, read> terms: array<Functions>;
+// For each run, the values at the end, then the coefficients of the quotients, in the groups of functions that are wanted.
+@group(0) @binding(2) var<storage, read> terms: array<vec4<real>>;
 // Magnitudes of push angles as two numbers.
 @group(0) @binding(3) var<storage, read> pushes: array<vec2<real>>;
 // Planes: residuals or outcomes, channels, points.
@@ -38,9 +38,38 @@ struct Functions {
 
 const CHANNELS = 9u;
 
+// Bits of the channels in the last two groups of functions.
+const MIDDLE_CHANNELS = 0x01eu;
+const LAST_CHANNELS = 0x1e0u;
+
+fn is_wanted(channels: u32) -> bool {
+    return (CHANNELS_WANTED & channels) != 0u;
+}
+
 // Number of planes.
 fn plane_count() -> u32 {
-    return 1u + select(0u, CHANNELS, HAS_VALUES) + select(0u, 4u, HAS_POINTS);
+    return 1u + countOneBits(CHANNELS_WANTED) + select(0u, 4u, HAS_POINTS);
+}
+
+// Place in `terms` of the first group of functions of the coefficients `index`.
+fn place_of(index: u32) -> u32 {
+    return index * (1u + u32(is_wanted(MIDDLE_CHANNELS)) + u32(is_wanted(LAST_CHANNELS)));
+}
+
+// The coefficients `index` of all functions.
+fn terms_at(index: u32) -> Functions {
+    var place = place_of(index);
+    var found = Functions();
+    found.state = terms[place];
+    if is_wanted(MIDDLE_CHANNELS) {
+        place++;
+        found.middle = terms[place];
+    }
+    if is_wanted(LAST_CHANNELS) {
+        place++;
+        found.last = terms[place];
+    }
+    return found;
 }
 
 struct Cell {
@@ -73,12 +102,12 @@ fn push_series(first: u32, count: u32, x: real) -> vec3<real> {
     var latest = vec3<real>();
     for (var power = count - 1u; power > 0u; power--) {
         let sum = 2.0 * (y * later + 2.0 * vec3<real>(real(0.0), later.x, later.y)) - latest
-            + vec3<real>(terms[first + power].state.x, real(0.0), real(0.0));
+            + vec3<real>(terms[place_of(first + power)].x, real(0.0), real(0.0));
         latest = later;
         later = sum;
     }
     return y * later + 2.0 * vec3<real>(real(0.0), later.x, later.y) - latest
-        + vec3<real>(terms[first].state.x, real(0.0), real(0.0));
+        + vec3<real>(terms[place_of(first)].x, real(0.0), real(0.0));
 }
 
 // All quotients at `x`.
@@ -87,13 +116,16 @@ fn quotients(first: u32, count: u32, x: real) -> Functions {
     var later = Functions();
     var latest = Functions();
     for (var power = count; power > 0u; power--) {
-        let own = terms[first + power - 1u];
+        let at_power = terms_at(first + power - 1u);
         let factor = select(2.0 * y, y, power == 1u);
-        let sum = Functions(
-            factor * later.state + (own.state - latest.state),
-            factor * later.middle + (own.middle - latest.middle),
-            factor * later.last + (own.last - latest.last),
-        );
+        var sum = Functions();
+        sum.state = factor * later.state + (at_power.state - latest.state);
+        if is_wanted(MIDDLE_CHANNELS) {
+            sum.middle = factor * later.middle + (at_power.middle - latest.middle);
+        }
+        if is_wanted(LAST_CHANNELS) {
+            sum.last = factor * later.last + (at_power.last - latest.last);
+        }
         latest = later;
         later = sum;
     }
@@ -121,7 +153,7 @@ fn solve(row: Row, push: vec2<real>, first: u32, count: u32) -> Cell {
         left += quadratic_root(to_end - left * q.x, q.x - left * q.y, left * q.z - q.y);
     }
     let quotient = quotients(first, count, row.place - left);
-    let end = terms[first - 1u];
+    let end = terms_at(first - 1u);
     let state = end.state - left * quotient.state;
     let middle = end.middle - left * quotient.middle;
     let last = end.last - left * quotient.last;
@@ -149,8 +181,8 @@ fn write_cell(id: u32, cell: Cell) {
     let stride = arrayLength(&planes) / plane_count();
     planes[id] = cell.residual;
     var plane = stride + id;
-    if HAS_VALUES {
-        for (var i = 0u; i < CHANNELS; i++) {
+    for (var i = 0u; i < CHANNELS; i++) {
+        if is_wanted(1u << i) {
             planes[plane] = cell.numbers[i];
             plane += stride;
         }

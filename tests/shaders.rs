@@ -16,16 +16,17 @@ const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 /// Constants of a shader by name.
 type Constants<const N: usize> = [(&'static str, f64); N];
 
-/// The constants of every choice of planes.
+/// The constants of every choice of planes: no channel, each one alone, and all.
 fn choices() -> Vec<Constants<2>> {
-    let flags = [(false, false), (false, true), (true, false), (true, true)];
-    let constants = flags.map(|(has_values, has_points)| {
-        shaders::overrides(Planes {
-            has_values,
+    let each = (0..9).map(|channel| std::array::from_fn(|other| other == channel));
+    let channels = each.chain([[false; 9], [true; 9]]);
+    let planes = channels.flat_map(|channels| {
+        [false, true].map(|has_points| Planes {
+            channels,
             has_points,
         })
     });
-    constants.to_vec()
+    planes.map(shaders::overrides).collect()
 }
 
 /// Parses and validates `text`, for every entry point and with the values of its constants put in.
@@ -74,7 +75,7 @@ fn a_broken_text_is_refused() {
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
         ("cell.point = state.yz", "cell.point = state.xyz"),
-        ("override HAS_VALUES: bool;", ""),
+        ("override HAS_POINTS: bool;", ""),
     ] {
         assert!(text.contains(good));
         assert!(validate(&text.replace(good, bad), Precision::F32, &choices()).is_err());

@@ -2,6 +2,7 @@
 
 use super::task::{Task, whisker_sides};
 use crate::engine::{Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
+use crate::plan::{Channel, Channels};
 use crate::scene::Scene;
 use crate::sheet::Sheet;
 use crate::sheet::net::ValueNet;
@@ -40,7 +41,7 @@ impl SideRequest {
             let side = WhiskerSide::new(Arc::new(columns), swept.whisker.units(), sheet);
             let side = with_net(side);
             let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
-            batch.has_points = true;
+            batch.channels = Channels::STANDARD.with(Channel::PeakStrain.name());
             Self { batch, targets }
         });
         requests.collect()

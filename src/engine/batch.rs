@@ -1,6 +1,7 @@
 //! Row batches: the cells of some rows, as a request to an engine.
 
 use super::{RowExpansion, WhiskerSide};
+use crate::plan::Channels;
 use crate::sheet::Sheet;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -59,16 +60,14 @@ pub struct RowBatch {
     pub rows: Vec<BatchRow>,
     /// Signed push angles of the columns of all sides, in radians: `[column]`.
     pub pushes: Arc<[f64]>,
-    /// True if the engine is to return channel values.
-    pub has_values: bool,
-    /// True if the engine is to return `(tau, load)` of the cells.
-    pub has_points: bool,
+    /// Channels that the map has: an engine returns the values of those of a state, and `(tau, load)` for the largest bending strain.
+    pub channels: Channels,
     /// Expansions of the rows, `[row]`: `None` for a row without a net. Empty before [`RowBatch::with_expansions`].
     pub expansions: Vec<Option<RowExpansion>>,
 }
 
 impl RowBatch {
-    /// Creates a batch of all cells of `rows`, pairs of a side and a row of its sheet.
+    /// Creates a batch of all cells of `rows`, pairs of a side and a row of its sheet, with the standard channels.
     #[must_use]
     pub fn new(
         method: Method,
@@ -90,8 +89,7 @@ impl RowBatch {
         let rows = rows.collect();
         Self {
             method,
-            has_values: true,
-            has_points: false,
+            channels: Channels::STANDARD,
             sides,
             rows,
             pushes,
@@ -104,7 +102,7 @@ impl RowBatch {
     pub fn only(&self, cells: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
         let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
         let mut part = Self::new(self.method, sides, pushes, []);
-        (part.has_values, part.has_points) = (self.has_values, self.has_points);
+        part.channels = self.channels;
         for (row, cells) in self.rows.iter().zip(cells) {
             part.rows.push(BatchRow {
                 cells,

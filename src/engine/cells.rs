@@ -42,7 +42,7 @@ pub struct Cell {
     /// Bound on the distance of the cell's pole from its target, in whisker lengths; NaN without a state.
     pub residual: f32,
     /// Channel values of the cell in map units, in the order of [`STATE_CHANNELS`], `[channel]`. They are unspecified without a solution,
-    /// and NaN if the batch requests none.
+    /// and NaN where the batch does not request the channel.
     pub values: [f32; STATE_CHANNELS.len()],
     /// Contact coordinate and signed load `f/rho^2`, `(tau, load)`, dimensionless; unspecified without a solution, NaN if not requested.
     pub point: DVec2,
@@ -84,7 +84,7 @@ pub struct CellRun<'a> {
     /// Bounds on the distance of the pole from its target, in whisker lengths, for each cell of the run: `[cell]`; NaN without a state.
     pub residual: &'a [f32],
     /// Channel values of the run in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a
-    /// solution, and empty if the batch requests none.
+    /// solution, and empty where the batch does not request the channel.
     pub values: [&'a [f32]; STATE_CHANNELS.len()],
     /// Contacts and signed loads `(tau, load)` of the run: `[cell]`; unspecified without a solution, empty if the batch requests none.
     pub points: &'a [DVec2],
@@ -160,29 +160,34 @@ pub struct Cells {
     pub steps: Vec<u32>,
     /// Bound on the distance of each cell's pole from its target, in whisker lengths: `[cell]`; NaN without a state.
     pub residual: Vec<f32>,
-    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution; empty
-    /// if the batch requests none.
+    /// Channel values in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a solution, and empty
+    /// where the batch does not request the channel.
     pub values: [Vec<f32>; STATE_CHANNELS.len()],
     /// Contact and signed load `(tau, load)` of each cell: `[cell]`; unspecified without a solution, empty if the batch requests none.
     pub points: Vec<DVec2>,
 }
 
-/// Lengths of the columns that `batch` requests: of every cell, of channel values, and of points.
-fn lengths(batch: &RowBatch) -> [usize; 3] {
+/// Lengths of the columns that `batch` requests, of channel values and of points.
+fn lengths(batch: &RowBatch) -> ([usize; STATE_CHANNELS.len()], usize) {
     let cells = batch.cells();
-    [true, batch.has_values, batch.has_points].map(|is_wanted| if is_wanted { cells } else { 0 })
+    let length = |is_wanted| if is_wanted { cells } else { 0 };
+    (
+        batch.channels.states().map(length),
+        length(batch.channels.has_strain()),
+    )
 }
 
 impl Cells {
     /// Creates the cells of `batch`, still to be written, all with `outcome`.
     #[must_use]
     pub fn new(batch: &RowBatch, outcome: Outcome) -> Self {
-        let [cells, values, points] = lengths(batch);
+        let (values, points) = lengths(batch);
+        let cells = batch.cells();
         Self {
             outcome: vec![outcome; cells],
             steps: vec![0; cells],
             residual: vec![0.0; cells],
-            values: std::array::from_fn(|_| vec![0.0; values]),
+            values: values.map(|cells| vec![0.0; cells]),
             points: vec![DVec2::ZERO; points],
         }
     }
@@ -219,10 +224,9 @@ impl Cells {
     /// Returns true if every column has the length that `batch` requests.
     #[must_use]
     pub fn fit(&self, batch: &RowBatch) -> bool {
-        let [cells, values, points] = lengths(batch);
-        [self.outcome.len(), self.steps.len(), self.residual.len()] == [cells; 3]
-            && self.values.iter().all(|column| column.len() == values)
-            && self.points.len() == points
+        let all = [self.outcome.len(), self.steps.len(), self.residual.len()];
+        let wanted = (self.values.each_ref().map(Vec::len), self.points.len());
+        all == [batch.cells(); 3] && wanted == lengths(batch)
     }
 
     /// Returns the cells with the indices `range` as one run. All of them must have the outcome of the first.

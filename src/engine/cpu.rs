@@ -96,7 +96,7 @@ fn solved(batch: &RowBatch, row: &BatchRow, cell: usize, refined: Option<&Refine
         RefineOutcome::Solved => {
             let side = &batch.sides[row.side];
             let push = side.columns.columns[cell].push;
-            return side.solved(row.row, push, state, *steps, batch.has_values);
+            return side.solved(row.row, push, state, *steps, batch.channels.has_state());
         }
         RefineOutcome::BeyondTip => Outcome::BeyondTip,
         RefineOutcome::BeyondFold => Outcome::BeyondFold,

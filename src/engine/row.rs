@@ -1,7 +1,7 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row's part of the load.
 
 use super::{BatchRow, Outcome, Values, WhiskerSide};
-use crate::plan::STATE_CHANNELS;
+use crate::plan::{Channels, STATE_CHANNELS};
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
 use crate::sheet::{Crossing, Edge, PUSH_MARGIN, Sheet};
 use whiskmap_mechanics::numerics::expansion::Chebyshev;
@@ -11,6 +11,14 @@ use whiskmap_mechanics::shooting::Reader;
 
 /// Number of functions that are expanded along a row.
 pub const FUNCTIONS: usize = 3 + STATE_CHANNELS.len();
+
+/// Returns which functions a map with these `channels` needs: push angle, contact and load, and the channels of a state that it has.
+#[must_use]
+pub fn functions(channels: Channels) -> [bool; FUNCTIONS] {
+    let mut wanted = [true; FUNCTIONS];
+    wanted[3..].copy_from_slice(&channels.states());
+    wanted
+}
 
 /// Numbers of a state, `[function]`: magnitude of the push angle since first touch in radians, `tau`, signed load, and the channel values
 /// in map units.

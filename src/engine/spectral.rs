@@ -1,10 +1,8 @@
 //! The spectral engine: cells from the nets of whisker sides ([`ValueNet`](crate::sheet::net::ValueNet)), without trajectories of their own.
 
 use super::cells::CellsMut;
-use super::row::{FUNCTIONS, RowExpansion};
-use super::{
-    BatchRow, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch, WhiskerSide,
-};
+use super::row::{FUNCTIONS, RowExpansion, functions};
+use super::{BatchRow, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
 use crate::sheet::net::NET_RESIDUAL;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -50,7 +48,7 @@ impl Spectral {
         let rows: Vec<_> = rows.zip(cells.rows_mut(batch)).collect();
         rows.into_par_iter().for_each(|((row, expansion), into)| {
             if let Some(expansion) = expansion {
-                write(&batch.sides[row.side], row, expansion, self.most, into);
+                write(batch, row, expansion, self.most, into);
             }
         });
         cells
@@ -58,7 +56,8 @@ impl Spectral {
 }
 
 /// Writes the cells of `row` before its end, and those without a state.
-fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64, into: CellsMut) {
+fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, into: CellsMut) {
+    let side = &batch.sides[row.side];
     let sheet = &side.sheet;
     let distance = sheet.rows[row.row].pole_distance;
     let magnitudes = &side.columns.magnitudes;
@@ -75,9 +74,11 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64
         ..
     } = into;
     expansion.write_beyond(row, magnitudes, outcome);
-    expansion
-        .inverse
-        .solve(&pushes, |from, count, block: &InverseBlock<FUNCTIONS>| {
+    let wanted = functions(batch.channels);
+    expansion.inverse.solve(
+        &pushes,
+        &wanted,
+        |from, count, block: &InverseBlock<FUNCTIONS>| {
             let [found, tau, load, channels @ ..] = &block.values;
             for lane in 0..count {
                 let miss = (found[lane] - pushes[from + lane]).abs() * distance;
@@ -104,7 +105,8 @@ fn write(side: &WhiskerSide, row: &BatchRow, expansion: &RowExpansion, most: f64
             targets
                 .zip(tau.iter().zip(load))
                 .for_each(|(target, (tau, load))| *target = DVec2::new(*tau, *load));
-        });
+        },
+    );
 }
 
 impl Engine for Spectral {

@@ -106,7 +106,8 @@ fn holds(
         Outcome::Solved | Outcome::AtTip => {}
         _ => return false,
     }
-    if !batch.has_values {
+    let wanted = batch.channels.states();
+    if !wanted.contains(&true) {
         return true;
     }
     let side = &batch.sides[row.side];
@@ -121,8 +122,10 @@ fn holds(
     let left = (end.push - push).max(miss_angle);
     let by_miss = VALUES_PER_MISS * miss + BY_ARGUMENT * miss_angle / (end.push * left).sqrt();
     let sizes = sizes(side, side.sizes(end), ours);
-    (0..ours.len())
-        .all(|i| (ours[i] - f64::from(theirs.values[i])).abs() <= (TOLERANCE + by_miss) * sizes[i])
+    let agrees = |i: usize| {
+        (ours[i] - f64::from(theirs.values[i])).abs() <= (TOLERANCE + by_miss) * sizes[i]
+    };
+    (0..ours.len()).all(|i| !wanted[i] || agrees(i))
 }
 
 /// Sizes of the values of a row ([`WhiskerSide::sizes`]): the larger of the sizes at its end and the sizes of `ours`.

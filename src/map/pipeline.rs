@@ -308,8 +308,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             (i / band.len(), band.start + i % band.len())
         });
         let mut batch = RowBatch::new(method, Arc::clone(sides), Arc::clone(&self.pushes), rows);
-        batch.has_values = self.plan.channels.has_state();
-        batch.has_points = self.plan.channels.has_strain();
+        batch.channels = self.plan.channels;
         if let Some(most) = self.net
             && self.worker.is_working()
         {

@@ -105,6 +105,9 @@ pub(crate) const CHANNELS: [ChannelLine; 15] = [
 /// Name of the channel of the largest bending strain, which takes a trajectory more for each cell.
 const PEAK_STRAIN: &str = "peak_strain";
 
+/// Index of the first channel of a state in [`CHANNELS`].
+const FIRST_STATE: usize = 2;
+
 /// Number of channels of a map unless others are selected: all but the largest bending strain and the derivatives.
 const STANDARD: usize = CHANNELS.len() - 1;
 
@@ -191,10 +194,16 @@ impl Channels {
         chosen.filter_map(|(name, is_chosen)| is_chosen.then_some(name))
     }
 
+    /// Returns which channels of a state are selected, in the order of [`STATE_CHANNELS`], `[channel]`.
+    #[must_use]
+    pub fn states(&self) -> [bool; STATE_CHANNELS.len()] {
+        std::array::from_fn(|channel| self.0[FIRST_STATE + channel])
+    }
+
     /// Returns true if the selection has a channel of a state.
     #[must_use]
     pub fn has_state(&self) -> bool {
-        STATE_CHANNELS.iter().any(|name| self.contains(name))
+        self.states().contains(&true)
     }
 }
 
@@ -239,11 +248,8 @@ mod tests {
     #[test]
     fn the_table_has_the_channels_of_a_state_in_their_order() {
         let names = CHANNELS.iter().map(|(name, ..)| *name);
-        assert!(
-            names
-                .filter(|name| STATE_CHANNELS.contains(name))
-                .eq(STATE_CHANNELS)
-        );
+        let states = names.skip(FIRST_STATE).take(STATE_CHANNELS.len());
+        assert!(states.eq(STATE_CHANNELS));
         assert!(
             Channel::ALL
                 .iter()

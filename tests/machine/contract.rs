@@ -8,7 +8,7 @@ use whiskmap::engine::gpu::{Precision, adapters, preferred};
 use whiskmap::engine::{Cells, Cpu, Engine, Outcome, RowExpansion};
 use whiskmap::mechanics::shooting::ShootingMap;
 use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition};
-use whiskmap::plan::STATE_CHANNELS;
+use whiskmap::plan::{Channels, STATE_CHANNELS};
 
 tests! {
     Engine:
@@ -98,12 +98,33 @@ fn a_response_does_not_depend_on_what_else_is_submitted(engine: &mut dyn Engine)
 fn a_response_has_the_columns_wanted(engine: &mut dyn Engine) {
     let mut batch = some().part(engine, 0..16);
     let all = solve(engine, &batch);
-    for (has_values, has_points) in [(true, true), (true, false), (false, true), (false, false)] {
-        (batch.has_values, batch.has_points) = (has_values, has_points);
+    let has_few = |name: &str| ["arc_length_mm", "energy_nj"].contains(&name);
+    let channels = [
+        Channels::STANDARD.with("peak_strain"),
+        Channels::STANDARD,
+        Channels::those(has_few).with("peak_strain"),
+        Channels::those(has_few),
+        Channels::those(|name| name == "regime").with("peak_strain"),
+        Channels::those(|name| name == "regime"),
+    ];
+    for channels in channels {
+        batch.channels = channels;
         let cells = solve(engine, &batch);
         assert!(cells.fit(&batch));
-        assert_eq!(cells.values[0].is_empty(), !has_values);
-        assert_eq!(cells.points.is_empty(), !has_points);
+        assert_eq!(cells.points.is_empty(), !channels.has_strain());
+        let solved = |cells: &Cells, values: &[f32]| {
+            let each = cells.outcome.iter().zip(values);
+            let solved = each.filter(|(outcome, _)| **outcome == Outcome::Solved);
+            solved.map(|(_, value)| *value).collect::<Vec<f32>>()
+        };
+        for (channel, name) in STATE_CHANNELS.into_iter().enumerate() {
+            let found = solved(&cells, &cells.values[channel]);
+            if channels.contains(name) {
+                assert!(found == solved(&all, &all.values[channel]), "{name}");
+            } else {
+                assert!(cells.values[channel].is_empty(), "{name}");
+            }
+        }
         assert!(cells.outcome == all.outcome && cells.steps == all.steps);
     }
 }

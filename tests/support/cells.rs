@@ -9,6 +9,7 @@ use std::sync::Arc;
 use whiskmap::engine::{Cells, Engine, RowBatch, SideColumns, Spectral, WhiskerSide};
 use whiskmap::mechanics::rod::{Effects, Rod, Side, Units};
 use whiskmap::mechanics::shooting::batch::Method;
+use whiskmap::plan::Channels;
 use whiskmap::sheet::Sheet;
 
 /// Columns of each side.
@@ -89,7 +90,7 @@ impl RandomRows {
         let rows = rows.map(|i| (i / self.rows, i % self.rows));
         let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
         let mut batch = RowBatch::new(self.method, sides, pushes, rows);
-        batch.has_points = true;
+        batch.channels = Channels::STANDARD.with("peak_strain");
         batch.with_expansions(engine.row_residual())
     }
 

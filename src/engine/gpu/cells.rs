@@ -15,33 +15,29 @@ pub const OUTCOMES: [(&str, f32, Outcome); 2] = [
 /// Planes that a batch asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Planes {
-    /// True for the channel values.
-    pub has_values: bool,
+    /// Channels with a plane, in the order of [`STATE_CHANNELS`]: `[channel]`.
+    pub channels: [bool; STATE_CHANNELS.len()],
     /// True for contact and load.
     pub has_points: bool,
 }
 
 impl Planes {
     /// Returns the planes that `batch` asks for.
-    pub const fn of(batch: &RowBatch) -> Self {
+    pub fn of(batch: &RowBatch) -> Self {
         Self {
-            has_values: batch.has_values,
-            has_points: batch.has_points,
+            channels: batch.channels.states(),
+            has_points: batch.channels.has_strain(),
         }
     }
 
     /// Returns the number of planes: residuals, channel values, and contact and load as two numbers each.
-    pub const fn count(self) -> usize {
-        let values = if self.has_values {
-            STATE_CHANNELS.len()
-        } else {
-            0
-        };
-        1 + values + if self.has_points { 4 } else { 0 }
+    pub fn count(self) -> usize {
+        let channels = self.channels.iter().filter(|is_wanted| **is_wanted);
+        1 + channels.count() + if self.has_points { 4 } else { 0 }
     }
 
     /// Returns the bytes of a cell in all planes.
-    pub const fn cell_bytes(self) -> usize {
+    pub fn cell_bytes(self) -> usize {
         self.count() * size_of::<f32>()
     }
 }

@@ -1,12 +1,13 @@
 //! Rows of batches as bytes for the shaders: push angles, and the expansions of rows around their ends.
 
 use super::Precision;
-use crate::engine::row::{FUNCTIONS, RowNumbers};
+use crate::engine::row::{FUNCTIONS, RowNumbers, functions};
 use crate::engine::{RowBatch, RowExpansion};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 use whiskmap_mechanics::numerics::Real;
 use whiskmap_mechanics::numerics::expansion::Chebyshev;
+use whiskmap_mechanics::numerics::inverse::{TOGETHER, groups};
 
 /// Number of shader invocations per workgroup; every device allows this many.
 pub const WORKGROUP: u32 = 64;
@@ -77,7 +78,8 @@ pub struct Packed {
     pub heads: Vec<[u32; 4]>,
     /// Bytes of the numbers of each run: see `Row` in `shaders/cells.wgsl`.
     pub rows: Vec<u8>,
-    /// Bytes of the coefficients of the runs: `[power][function]`, the values at the row's end first.
+    /// Bytes of the coefficients of the runs: `[power][group][function]`, the values at the row's end first. Groups of four functions without one
+    /// that is wanted are left out.
     pub terms: Vec<u8>,
 }
 
@@ -119,22 +121,28 @@ impl AroundEnd {
 
 fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
     let mut packed = Packed::default();
-    let mut terms: Vec<[T; FUNCTIONS]> = Vec::new();
+    let groups: Vec<usize> = groups(&functions(batch.channels)).collect();
+    let width = TOGETHER * groups.len();
+    let mut terms: Vec<T> = Vec::new();
     for index in rows {
         let row = &batch.rows[index];
         let Some(Some(expansion)) = batch.expansions.get(index) else {
             continue;
         };
         let side = &batch.sides[row.side];
-        let first = terms.len();
+        let first = terms.len() / width;
         let AroundEnd {
             at_end,
             quotient,
             slope,
             curvature,
         } = AroundEnd::new(expansion);
-        terms.push(at_end.map(T::of));
-        terms.extend(quotient.coefficients.iter().map(|term| term.map(T::of)));
+        for numbers in std::iter::once(&at_end).chain(&quotient.coefficients) {
+            let wanted = groups
+                .iter()
+                .flat_map(|first| &numbers[*first..][..TOGETHER]);
+            terms.extend(wanted.map(|number| T::of(*number)));
+        }
         let [tip, tip_radius] = side.sheet.tip;
         let numbers = GpuRow {
             end: halves(at_end[0]),
@@ -155,7 +163,7 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
                 packed.cells as u32,
                 side.columns.first + cells.start as u32,
                 first as u32,
-                (terms.len() - first) as u32,
+                (terms.len() / width - first) as u32,
             ]);
             packed.rows.extend_from_slice(bytemuck::bytes_of(&numbers));
             packed.runs.push(CellsOfRow {

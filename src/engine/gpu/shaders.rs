@@ -30,13 +30,7 @@ fn constants(precision: Precision) -> String {
     for (name, code, _) in OUTCOMES {
         text += &format!("const {name} = f32({code:e});\n");
     }
-    for (name, _) in overrides(Planes {
-        has_values: true,
-        has_points: true,
-    }) {
-        text += &format!("override {name}: bool;\n");
-    }
-    text
+    text + "override CHANNELS_WANTED: u32;\noverride HAS_POINTS: bool;\n"
 }
 
 /// The coefficients of [`Nystrom8`] that are not 0: `NODE_i`, `STAGE_i_j`, `POSITION_j` and `SPEED_j`, counted from 1.
@@ -83,13 +77,14 @@ pub fn cells(precision: Precision) -> String {
     constants(precision) + include_str!("../../../shaders/cells.wgsl")
 }
 
-/// Returns the values of the shaders' `override` constants, by name.
+/// Returns the values of the `override` constants of [`cells`], by name. Each channel that is wanted is a bit.
 #[must_use]
 pub fn overrides(planes: Planes) -> [(&'static str, f64); 2] {
-    let flag = |on: bool| f64::from(u8::from(on));
+    let bit = |(channel, is_wanted)| u32::from(is_wanted) << channel;
+    let channels: u32 = planes.channels.into_iter().enumerate().map(bit).sum();
     [
-        ("HAS_VALUES", flag(planes.has_values)),
-        ("HAS_POINTS", flag(planes.has_points)),
+        ("CHANNELS_WANTED", channels.into()),
+        ("HAS_POINTS", u8::from(planes.has_points).into()),
     ]
 }
 

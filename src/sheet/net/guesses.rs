@@ -159,7 +159,7 @@ impl GuessPanel {
             .iter()
             .map(|push| push.max(first))
             .collect();
-        inverse.solve(&targets, |index, count, block| {
+        inverse.solve(&targets, &[true; 3], |index, count, block| {
             for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
                 let [_, tau, load] = block.values.map(|values| values[lane]);
                 guess.get_or_insert(Guess { tau, load });

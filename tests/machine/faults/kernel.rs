@@ -125,7 +125,7 @@ fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
 /// Contacts and base moments that are wrong by 1e-5, and whole cells.
 const WRONG: [&str; 3] = [
     "wrong.numbers[0] *= 1.00002;",
-    "wrong.numbers[5] += 1e-5 * f32(terms[head.z].last.x);",
+    "wrong.numbers[5] += 1e-5 * f32(terms_at(head.z).last.x);",
     "wrong = solve(rows[run], push + vec2<real>(real(1e-4), real(0.0)), head.z + 1u, head.w - 1u);",
 ];
 
@@ -155,7 +155,7 @@ const CHOSEN: u32 = 7;
 fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
     let scene = cone(256);
     let wrong = format!(
-        "let mixed = (bitcast<u32>(f32(push.x)) ^ bitcast<u32>(f32(terms[head.z].state.y))) * 2654435761u;
+        "let mixed = (bitcast<u32>(f32(push.x)) ^ bitcast<u32>(f32(terms_at(head.z).state.y))) * 2654435761u;
          if (mixed >> 8u) % 1000u == {CHOSEN}u {{ {} }}
          write_cell(id, wrong);",
         WRONG[0]

@@ -13,8 +13,15 @@ const INTERVALS: usize = 2 * WIDTH;
 /// Number of steps from an interpolated start.
 const STEPS: usize = 2;
 
-/// Functions that are evaluated together: as many as registers hold.
-const TOGETHER: usize = 4;
+/// Functions that are evaluated together, as a group: as many as registers hold.
+pub const TOGETHER: usize = 4;
+
+/// Returns the first function of each group that has a `wanted` function, `[group]`.
+#[inline(always)]
+pub fn groups(wanted: &[bool]) -> impl Iterator<Item = usize> {
+    let groups = wanted.chunks(TOGETHER).enumerate();
+    groups.filter_map(|(group, wanted)| wanted.contains(&true).then_some(group * TOGETHER))
+}
 
 /// Tabulated value of the first function.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,8 +46,8 @@ pub struct Inverse<const D: usize> {
 pub struct InverseBlock<const D: usize> {
     /// Arguments found for the targets, one in each lane.
     pub places: [f64; WIDTH],
-    /// Values of the functions at the arguments found, `[function][lane]`. Where the first differs from the target, the steps have not
-    /// converged.
+    /// Values of the functions at the arguments found, `[function][lane]`; 0 for functions that are not evaluated. Where the first differs from
+    /// the target, the steps have not converged.
     pub values: [[f64; WIDTH]; D],
 }
 
@@ -80,13 +87,19 @@ impl<const D: usize> Inverse<D> {
     }
 
     /// Finds the arguments at which the first function has the growing `targets`. Calls `take` for each [`WIDTH`] targets with the index
-    /// of the first target, the number of targets, and the values there.
-    pub fn solve(&self, targets: &[f64], mut take: impl FnMut(usize, usize, &InverseBlock<D>)) {
+    /// of the first target, the number of targets, and the values there of the functions that are `wanted`: `[function]`.
+    pub fn solve(
+        &self,
+        targets: &[f64],
+        wanted: &[bool; D],
+        mut take: impl FnMut(usize, usize, &InverseBlock<D>),
+    ) {
         let unit = Unit::detect();
         let mut after = 0;
         for (block, chunk) in targets.chunks(WIDTH).enumerate() {
             let mut task = Steps {
                 functions: &self.functions,
+                wanted,
                 targets: [self.last(); WIDTH],
                 starts: [self.end; WIDTH],
             };
@@ -123,6 +136,7 @@ impl<const D: usize> SimdTask for Table<'_, D> {
 /// Steps toward the targets of a block.
 struct Steps<'a, const D: usize> {
     functions: &'a Chebyshev<D>,
+    wanted: &'a [bool; D],
     targets: [f64; WIDTH],
     starts: [f64; WIDTH],
 }
@@ -150,7 +164,7 @@ impl<const D: usize> SimdTask for Steps<'_, D> {
             }
             let here = from..from + T::LANES;
             block.places[here.clone()].copy_from_slice(&place.unpack()[..T::LANES]);
-            for first in (0..D).step_by(TOGETHER) {
+            for first in groups(self.wanted) {
                 let found = self.functions.values::<T, TOGETHER>(first, place);
                 for (values, found) in block.values[first..].iter_mut().zip(found) {
                     values[here.clone()].copy_from_slice(&found.unpack()[..T::LANES]);
@@ -201,7 +215,7 @@ mod tests {
         let inverse = arc(24, end).unwrap();
         let targets: Vec<f64> = (0..=1000).map(|i| f64::from(i) / 1000.0).collect();
         let mut count = 0;
-        inverse.solve(&targets, |from, len, block| {
+        inverse.solve(&targets, &[true; 5], |from, len, block| {
             for lane in 0..len {
                 let target = targets[from + lane];
                 let x = target.asin();
@@ -221,10 +235,27 @@ mod tests {
 
     #[test]
     fn targets_beyond_the_end_are_put_there() {
-        arc(24, 1.0).unwrap().solve(&[0.5, 1.5], |_, len, block| {
+        let inverse = arc(24, 1.0).unwrap();
+        inverse.solve(&[0.5, 1.5], &[true; 5], |_, len, block| {
             assert_eq!(len, 2);
             assert!((block.places[1] - 1.0).abs() < 1e-6 && block.values[0][1] <= 1.0 + 1e-15);
         });
+    }
+
+    #[test]
+    fn only_wanted_functions_are_evaluated() {
+        let inverse = arc(24, 1.0).unwrap();
+        let solved = |wanted: [bool; 5]| {
+            let mut found = Vec::new();
+            inverse.solve(&[0.5], &wanted, |_, _, block| found.push(*block));
+            (found[0].places[0], found[0].values.map(|values| values[0]))
+        };
+        let (place, all) = solved([true; 5]);
+        let last = [0.0, 0.0, 0.0, 0.0, all[4]];
+        let (_, only_last) = solved([false, false, false, false, true]);
+        assert!(all[4] > 0.1 && only_last == last);
+        let (same_place, first) = solved([true, false, false, false, false]);
+        assert!(same_place == place && first[0] == all[0] && first[4] == 0.0);
     }
 
     #[test]
