@@ -7,7 +7,7 @@
 use crate::classify::{RowBoundary, TIE};
 use crate::engine::{Cell, Outcome, WhiskerSide};
 use crate::refine::{ContactState, TOLERANCE};
-use crate::sheet::{CurveNode, Edge, LevelCurve, ON_CURVE, Stretch};
+use crate::sheet::{CurveNode, Edge, LevelCurve, NODE_MISS, ON_CURVE, Stretch, continuations};
 
 /// Maximum distance, relative to contact and load, between the ends of a continuation and of the boundary. The two are computed apart,
 /// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
@@ -24,16 +24,21 @@ pub fn solve(
     let sheet = &side.sheet;
     let level = sheet.level(row);
     let sign = sheet.side.sign();
-    let pieces = boundary.spans().iter().enumerate().map(|(index, span)| {
+    let crossing = |push: f64| sheet.crossings[row].iter().find(|c| c.push == push);
+    let starts = boundary.spans().iter().enumerate().map(|(index, span)| {
         let start = if sheet.touches(row) && index == 0 {
             level.touch()
         } else {
-            let entry = sheet.crossings[row].iter().find(|c| c.push == span.from)?;
-            level.at_crossing(entry)?
+            level.at_crossing(crossing(span.from)?)?
         };
-        let piece = level.continuation(start, Stretch::Stable)?;
+        Some((&level, start))
+    });
+    // Nodes only bracket the states of cells.
+    let followed = continuations(&starts.collect::<Vec<_>>(), Stretch::Stable, NODE_MISS);
+    let pieces = boundary.spans().iter().zip(followed).map(|(span, piece)| {
+        let piece = piece?;
         let end = piece.nodes.last()?.point;
-        let exit = sheet.crossings[row].iter().find(|c| c.push == span.to)?;
+        let exit = crossing(span.to)?;
         let apart = (end.x / exit.tau - 1.0).abs() + (end.y / exit.load - 1.0).abs();
         (apart < SAME_END && piece.end == Some(span.edge)).then_some(piece.nodes)
     });
