@@ -27,7 +27,7 @@ use whiskmap::refine::{CellTarget, refine};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
 use whiskmap::store::{
-    Audit, EngineCells, MapDescription, MapWriter, Panel, StoreError, TemporaryFiles,
+    Audit, EngineCells, MapDescription, MapWriter, Output, Panel, StoreError, TemporaryFiles,
 };
 
 const TRAJECTORIES: usize = 16_384;
@@ -153,7 +153,8 @@ fn files() {
         arithmetic: "fma",
     };
     let write = |path: &Path| -> Result<(), StoreError> {
-        let mut writer = MapWriter::create(path, &about, &TemporaryFiles::default())?;
+        let mut writer =
+            MapWriter::create(Output::create(path, &TemporaryFiles::default())?, &about)?;
         writer.write_panels(std::slice::from_ref(&panel))?;
         writer.finish(EngineCells::default(), Audit::default())?;
         Ok(())

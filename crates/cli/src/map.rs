@@ -4,7 +4,7 @@ use super::arguments::{THREADS, whole};
 use super::digits::DigitsArgs;
 use super::disk;
 use super::failure::{Failure, message};
-use super::files::{Files, unwritten};
+use super::files::Files;
 use super::map_format::MapFormat;
 use super::outputs::PictureFile;
 use super::scene::check_strict;
@@ -21,7 +21,7 @@ use whiskmap::mechanics::numerics::ArithmeticClass;
 use whiskmap::plan::Channels;
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::scene::Scene;
-use whiskmap::store::{MapDescription, MapWriter, Output};
+use whiskmap::store::{MapDescription, MapWriter};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -88,11 +88,10 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         return sharded::fill(&path, &args.run, files, &scene, plan, &about, &mut engine);
     }
     let file = args.output.join(format!("{}.exr", scene.name));
-    files.output("--output", &file)?;
-    let picture = (!args.no_png).then(|| file.with_extension("png"));
-    if let Some(picture) = &picture {
-        files.output("--output", picture)?;
-    }
+    let output = files.output("--output", &file)?;
+    let picture_path = file.with_extension("png");
+    let picture = (!args.no_png).then(|| files.output("--output", &picture_path));
+    let picture = picture.transpose()?;
     if !args.run.force {
         disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
     }
@@ -101,22 +100,21 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     message(&format!("engine: {name} on {adapter} ({why})"));
 
     let start = Instant::now();
-    let mut writer = MapWriter::create(&file, &about, files.temporary())?;
+    let mut writer = MapWriter::create(output, &about)?;
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let keep = |panels: &mut Vec<_>| writer.write_panels(panels);
     let summary = compute(&scene, &plan, engine, plan.cells, keep)?;
     let map = writer.finish(summary.engine_cells, summary.audit)?;
     let mut written = vec![file];
-    if let Some(path) = picture {
+    if let Some(output) = picture {
         let regimes = render::map(&map.into(), &MapOptions::default())?;
-        let output = Output::create(&path, files.temporary()).map_err(unwritten(&path))?;
-        written.push(path);
-        PictureFile {
+        let picture = PictureFile {
             output,
             format: PictureFormat::Png,
             size: PictureSize::Natural,
-        }
-        .write(&regimes)?;
+        };
+        picture.write(&regimes)?;
+        written.push(picture_path);
     }
     report(&scene, &summary, start, &written)
 }

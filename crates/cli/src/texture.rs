@@ -77,10 +77,8 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let course = args.course.course(files)?;
     let mut outputs = args.outputs.open(files)?;
-    let mut table = |option, path: &Option<PathBuf>| {
-        let open = |path: &PathBuf| args.outputs.table(files, option, path);
-        path.as_ref().map(open).transpose()
-    };
+    let mut table =
+        |option, path: &Option<PathBuf>| args.outputs.table(files, option, path.as_deref());
     let events = table("--events", &args.events)?;
     let dwells = table("--dwells", &args.dwells)?;
     let histogram = table("--histogram", &args.histogram)?;
@@ -119,11 +117,8 @@ fn written<R: serde::Serialize>(
     table: Option<OutputTable>,
     rows: &[R],
 ) -> Result<Option<PathBuf>, Failure> {
-    let Some(mut table) = table else {
-        return Ok(None);
-    };
-    table.rows(rows)?;
-    table.finish()
+    let written = table.map(|table| table.finish_with(rows));
+    Ok(written.transpose()?.flatten())
 }
 
 /// Prints the number of events, the energy that detachments lose, and the part of the samples in each phase.

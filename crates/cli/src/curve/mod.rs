@@ -138,7 +138,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let variables = args.derivatives.variables(&scene, &[])?;
     let whiskers = scene.whisker_count();
-    if args.outputs.has_plot() && whiskers > MOST_WHISKERS {
+    if args.outputs.picture.plot.is_some() && whiskers > MOST_WHISKERS {
         let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
         let (keys, values): (Vec<_>, Vec<_>) = axes
             .map(|axis| {

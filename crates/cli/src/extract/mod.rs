@@ -101,8 +101,7 @@ fn map(
         ..SceneData::clone(&scene)
     };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
-    files.output("--output", path)?;
-    let mut writer = MapWriter::create(path, &about, files.temporary())?;
+    let mut writer = MapWriter::create(files.output("--output", path)?, &about)?;
     for whisker in 0..slice.grid().whisker_count() {
         writer.write_panels(&[slice.panel(about.channels, whisker)?])?;
     }
