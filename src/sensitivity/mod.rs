@@ -31,9 +31,7 @@ pub use variable::Variable;
 
 use crate::scene::{Parameter, Pole, Whisker};
 use crate::sheet::{Crossing, Sheet};
-use crate::trace::{
-    Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, crossings, detachments as ends,
-};
+use crate::trace::{self, Branch, BranchPoint, Detachment, FINER, NoState, crossings};
 use differentiated::Differentiated;
 use std::sync::atomic::AtomicBool;
 use whiskmap_mechanics::rod::Side;
@@ -98,7 +96,7 @@ pub fn detachments(
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let pushed = (whisker, pole, side);
-    let ends = ends(Resolution::FINE, pushed, distances_mm, false);
+    let ends = trace::detachments(Resolution::FINE, pushed, distances_mm, false);
     of_ends(Resolution::FINE, pushed, ends, variables)
 }
 
@@ -113,7 +111,7 @@ pub fn detachments_at(
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let pushed = (whisker, pole, side);
-    let ends = ends(resolution, pushed, distances_mm, true);
+    let ends = trace::detachments(resolution, pushed, distances_mm, true);
     of_ends(resolution, pushed, ends, variables)
 }
 
@@ -121,11 +119,11 @@ pub fn detachments_at(
 fn of_ends(
     resolution: Resolution,
     (whisker, pole, side): (&Whisker, &Pole, Side),
-    ends: Vec<DetachmentEnd>,
+    ends: Vec<(Detachment, Option<Crossing>)>,
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let differentiated = Differentiated::new(resolution, whisker, pole, side, variables);
-    let of_end = |DetachmentEnd { end, crossing }| DetachmentDerivatives {
+    let of_end = |(end, crossing): (Detachment, Option<Crossing>)| DetachmentDerivatives {
         by: differentiated.at_crossing(crossing.as_ref(), end.distance_mm),
         end,
     };

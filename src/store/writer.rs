@@ -3,9 +3,9 @@
 use super::attributes::{self, MapDescription, attribute};
 use super::chunk::{chunk, samples};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
-use super::{CellCounts, Channels, Output, Panel, StoreError, StoredMap, header, zip};
-use crate::map::{Audit, EngineCells};
-use crate::plan::{Digits, Plan};
+use super::{CellCounts, Output, StoreError, StoredMap, header, zip};
+use crate::map::{Audit, EngineCells, Panel};
+use crate::plan::{Channels, Digits, Plan};
 use crate::scene::Grid;
 use exr::meta::Headers;
 use exr::meta::header::Header;

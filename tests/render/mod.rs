@@ -12,9 +12,10 @@ mod vision;
 use drawn::Pixels;
 use map::panel;
 use std::collections::BTreeMap;
+use whiskmap::map::{Audit, EngineCells, Panel};
 use whiskmap::render::{self, MapOptions, Picture, RenderError};
 use whiskmap::scene::SceneData;
-use whiskmap::store::{Audit, EngineCells, MapWriter, Output, Panel, StoredMap, TemporaryFiles};
+use whiskmap::store::{MapWriter, Output, StoredMap, TemporaryFiles};
 
 const CONTACT: [u8; 3] = [0x83, 0xc4, 0xa4];
 const SLIP_OFF: [u8; 3] = [0xc8, 0x60, 0x2a];

@@ -5,10 +5,8 @@ use super::sweeps;
 use serde_json::json;
 use std::fs;
 use whiskmap::classify::{Regime, Status};
-use whiskmap::store::{
-    AtlasLayout, Audit, ChannelValues, EngineCells, MapWriter, Output, Panel, STATE_CHANNELS,
-    StoredMap, TemporaryFiles,
-};
+use whiskmap::map::{Audit, EngineCells, Panel, STATE_CHANNELS};
+use whiskmap::store::{AtlasLayout, ChannelValues, MapWriter, Output, StoredMap, TemporaryFiles};
 
 fn bits(samples: &ChannelValues) -> Vec<u32> {
     match samples {

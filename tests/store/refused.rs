@@ -6,9 +6,9 @@ use serde_json::json;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
+use whiskmap::map::{Audit, EngineCells, Panel};
 use whiskmap::store::{
-    Audit, EngineCells, MapSlice, MapSource, MapWriter, Output, Panel, StoreError, StoredMap,
-    TemporaryFiles,
+    MapSlice, MapSource, MapWriter, Output, StoreError, StoredMap, TemporaryFiles,
 };
 
 fn listing(folder: &Path) -> Vec<String> {

@@ -7,10 +7,10 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
+use whiskmap::map::{Audit, EngineCells};
 use whiskmap::scene::SceneData;
 use whiskmap::store::{
-    Audit, ChannelValues, EngineCells, MapSlice, MapSource, MapWriter, Output, StoreError,
-    StoredMap, TemporaryFiles,
+    ChannelValues, MapSlice, MapSource, MapWriter, Output, StoreError, StoredMap, TemporaryFiles,
 };
 
 /// Title and bits of all values of a map, channel by channel, as text.

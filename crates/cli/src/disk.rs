@@ -1,6 +1,6 @@
 //! Check of free disk space before a map is written.
 
-use super::estimate::files;
+use super::estimate::file_costs;
 use super::failure::Failure;
 use super::files::unwritten;
 use super::map_format::MapFormat;
@@ -31,7 +31,7 @@ pub fn check(
         return Ok(());
     }
     let share = cells as f64 / plan.cells as f64;
-    let files = files(scene, plan, &[format])?;
+    let files = file_costs(scene, plan, &[format])?;
     let bytes: f64 = files.iter().map(|files| files.bytes).sum();
     let needed = (share * bytes) as u64;
     if needed <= free {

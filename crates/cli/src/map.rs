@@ -9,8 +9,8 @@ use super::map_format::MapFormat;
 use super::outputs::PictureFile;
 use super::scene::check_strict;
 use super::sharded::{self, RunArgs};
-use super::solver::SolverArgs;
-use super::summary::{compute, report};
+use super::solver::{SolverArgs, compute};
+use super::summary::report;
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -101,7 +101,6 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
 
     let start = Instant::now();
     let mut writer = MapWriter::create(output, &about)?;
-    let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let keep = |panels: &mut Vec<_>| writer.write_panels(panels);
     let summary = compute(&scene, &plan, engine, plan.cells, keep)?;
     let map = writer.finish(summary.engine_cells, summary.audit)?;

@@ -166,7 +166,7 @@ impl OpenOutputs {
         chart: impl FnOnce() -> Chart,
         tables: impl IntoIterator<Item = PathBuf>,
     ) -> Result<(), Failure> {
-        self.finish_picture(|size| picture(&chart(), size), tables)
+        self.finish_picture(|size| drawn(&chart(), size), tables)
     }
 
     /// Finishes the CSV table, draws a picture of the size of the plot, and prints the names of regular files, those of `tables` too. A table
@@ -202,7 +202,7 @@ pub struct PictureFile {
 impl PictureFile {
     /// Draws a chart into the file. Returns the path of a regular file, `None` for another output.
     pub fn chart(self, chart: &Chart) -> Result<Option<PathBuf>, Failure> {
-        let picture = picture(chart, self.size)?;
+        let picture = drawn(chart, self.size)?;
         self.write(&picture)
     }
 
@@ -219,7 +219,7 @@ impl PictureFile {
 }
 
 /// Draws a chart; refuses a size that is too small for it.
-fn picture(chart: &Chart, size: PictureSize) -> Result<Picture, Failure> {
+fn drawn(chart: &Chart, size: PictureSize) -> Result<Picture, Failure> {
     let refused = |why| Failure::Input(format!("--size: {why}"));
     chart.picture(size).map_err(refused)
 }

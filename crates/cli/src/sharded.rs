@@ -5,7 +5,8 @@ use super::engine::OpenEngine;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::map_format::MapFormat;
-use super::summary::{compute, report};
+use super::solver::compute;
+use super::summary::report;
 use clap::Args;
 use rayon::prelude::*;
 use std::iter::Sum;
@@ -184,13 +185,7 @@ pub fn fill(
             }
             Ok(())
         };
-        let summary = compute(
-            scene,
-            &plan,
-            engine.as_mut().map(|engine| &mut **engine as _),
-            cells_of_panel * whiskers,
-            keep,
-        )?;
+        let summary = compute(scene, &plan, engine, cells_of_panel * whiskers, keep)?;
         written(writing)?;
         Ok::<_, Failure>(summary)
     })?;
