@@ -100,7 +100,8 @@ pub fn detachments(
     of_ends(Resolution::FINE, pushed, ends, variables)
 }
 
-/// Computes detachments with derivatives as [`detachments`] does, at another resolution and with the largest strain.
+/// Computes detachments with derivatives as [`detachments`] does, at another resolution and with the largest strain. Without `variables`, they
+/// are the ends of [`trace::curve_at`].
 #[must_use]
 pub fn detachments_at(
     resolution: Resolution,

@@ -3,7 +3,7 @@
 use super::arguments::{column_help, duration, length, whole};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
-use super::outputs::OutputTable;
+use super::outputs::{OutputTable, write_table};
 use clap::{ArgAction, Args, ValueEnum};
 use serde::Serialize;
 use std::io::Write;
@@ -234,7 +234,7 @@ pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
 
 /// Writes the whole table, and prints the name of a regular file.
 fn write<R: Serialize>(table: OutputTable, rows: Vec<R>) -> Result<(), Failure> {
-    if let Some(path) = table.finish_with(rows)? {
+    if let Some(path) = write_table(Some(table), rows)? {
         writeln!(StandardOutput::open(), "{}", path.display())?;
     }
     Ok(())

@@ -70,10 +70,10 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     check_strict(args.run.strict, &scene)?;
     let format = args.format.unwrap_or(MapFormat::Exr);
     let planned = args.plan(&scene, format)?;
-    let mut engine = args.solver.open(&planned)?;
-    let tolerances = planned.tolerances(engine.0.as_deref());
+    let (mut engine, why) = args.solver.open(&planned)?;
+    let tolerances = planned.tolerances(engine.as_deref());
     let plan = planned.plan;
-    let solver = EngineDescription::of(engine.0.as_deref());
+    let solver = EngineDescription::of(engine.as_deref());
     let about = MapDescription {
         scene: &scene,
         engine: &solver,
@@ -85,7 +85,8 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     files.folder("--output", &args.output)?;
     if format == MapFormat::Zarr {
         let path = args.output.join(format!("{}.zarr", scene.name));
-        return sharded::fill(&path, &args.run, files, &scene, plan, &about, &mut engine);
+        let engine = (&mut engine, &*why);
+        return sharded::fill(&path, &args.run, files, &scene, plan, &about, engine);
     }
     let file = args.output.join(format!("{}.exr", scene.name));
     let output = files.output("--output", &file)?;
@@ -95,14 +96,13 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     if !args.run.force {
         disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
     }
-    let (engine, why) = &mut engine;
     let (name, adapter) = (&solver.engine, &solver.adapter);
     message(&format!("engine: {name} on {adapter} ({why})"));
 
     let start = Instant::now();
     let mut writer = MapWriter::create(output, &about)?;
     let keep = |panels: &mut Vec<_>| writer.write_panels(panels);
-    let summary = compute(&scene, &plan, engine, plan.cells, keep)?;
+    let summary = compute(&scene, &plan, &mut engine, plan.cells, keep)?;
     let map = writer.finish(summary.engine_cells, summary.audit)?;
     let mut written = vec![file];
     if let Some(output) = picture {

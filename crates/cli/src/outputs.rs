@@ -64,15 +64,18 @@ impl OutputTable {
         let path = self.table.output().path().to_owned();
         self.table.finish().map_err(unwritten(&path))
     }
+}
 
-    /// Writes the CSV table as a whole. Returns the path of a regular file, `None` for another output.
-    pub fn finish_with<R: Serialize>(
-        mut self,
-        rows: impl IntoIterator<Item = R>,
-    ) -> Result<Option<PathBuf>, Failure> {
-        self.rows(rows)?;
-        self.finish()
-    }
+/// Writes the rows of a whole CSV table, if there is one. Returns the path of a regular file.
+pub fn write_table<R: Serialize>(
+    table: Option<OutputTable>,
+    rows: impl IntoIterator<Item = R>,
+) -> Result<Option<PathBuf>, Failure> {
+    let Some(mut table) = table else {
+        return Ok(None);
+    };
+    table.rows(rows)?;
+    table.finish()
 }
 
 #[derive(Debug, Args)]

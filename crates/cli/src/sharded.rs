@@ -1,7 +1,6 @@
 //! Command `whiskmap map --format zarr`: computation of some blocks of a store.
 
 use super::disk;
-use super::engine::OpenEngine;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::map_format::MapFormat;
@@ -16,6 +15,7 @@ use std::path::Path;
 use std::str::FromStr;
 use std::thread::{self, ScopedJoinHandle};
 use std::time::Instant;
+use whiskmap::engine::Engine;
 use whiskmap::map::Panel;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
@@ -110,7 +110,7 @@ pub fn fill(
     scene: &Scene,
     mut plan: Plan,
     about: &MapDescription<'_>,
-    (engine, why): &mut OpenEngine,
+    (engine, why): (&mut Option<Box<dyn Engine>>, &str),
 ) -> Result<(), Failure> {
     files.store("--output", path)?;
     let temporary = files.temporary();

@@ -5,7 +5,7 @@ use super::course::CourseArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
-use super::outputs::OutputArgs;
+use super::outputs::{OutputArgs, write_table};
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{ArgGroup, Args, ValueEnum};
 use std::path::PathBuf;
@@ -85,8 +85,7 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     })?;
     let marks = StrainMark::of_rows(&whisker, &scene.pole, &found.samples);
     outputs.rows(marked(&found.samples, marks))?;
-    let events = events.map(|table| table.finish_with(&found.events));
-    let event_file = events.transpose()?.flatten();
+    let event_file = write_table(events, &found.events)?;
     summarise(&found);
     outputs.finish_chart(|| courses(&title(&scene, &[distance]), &found), event_file)
 }
