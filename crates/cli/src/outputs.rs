@@ -8,7 +8,6 @@ use clap::Args;
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use whiskmap::paper::TableRows;
 use whiskmap::render::{Chart, Picture, PictureFormat, PictureSize, Plot};
 use whiskmap::store::{Output, TableFile};
 use whiskmap::terminal::StandardOutput;
@@ -50,12 +49,6 @@ impl OutputTable {
             self.has_header = true;
             lines.and_then(|lines| self.table.rows(lines.iter().skip(skipped)))
         };
-        written.map_err(unwritten(self.table.output().path()))
-    }
-
-    /// Appends to the CSV table the rows that `write` makes.
-    pub fn write(&mut self, write: &TableRows) -> Result<(), Failure> {
-        let written = write(&mut self.table);
         written.map_err(unwritten(self.table.output().path()))
     }
 

@@ -102,8 +102,8 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     outputs.rows(marked(&found.samples, marks))?;
     let paths = [
         write_table(events, &found.events)?,
-        write_table(dwells, &found.stays())?,
-        write_table(histogram, &found.tip_histogram())?,
+        write_table(dwells, found.stays())?,
+        write_table(histogram, found.tip_histogram())?,
     ];
     summarise(&found);
     outputs.finish_chart(
