@@ -19,6 +19,7 @@ use whiskmap::Side;
 use whiskmap::engine::gpu::{Gpu, Precision};
 use whiskmap::engine::{Cpu, Engine};
 use whiskmap::map;
+use whiskmap::map::{Audit, EngineCells, Panel};
 use whiskmap::mechanics::numerics::Unit;
 use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap::mechanics::shooting::{FirstVariation, Resolution, SecondVariation, ShootingMap};
@@ -26,9 +27,7 @@ use whiskmap::plan::Plan;
 use whiskmap::refine::{CellTarget, refine};
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::store::{
-    Audit, EngineCells, MapDescription, MapWriter, Panel, StoreError, TemporaryFiles,
-};
+use whiskmap::store::{MapDescription, MapWriter, Output, StoreError, TemporaryFiles};
 
 const TRAJECTORIES: usize = 16_384;
 
@@ -153,7 +152,9 @@ fn files() {
         arithmetic: "fma",
     };
     let write = |path: &Path| -> Result<(), StoreError> {
-        let mut writer = MapWriter::create(path, &about, &TemporaryFiles::default())?;
+        let output = Output::create(path, &TemporaryFiles::default());
+        let output = output.map_err(|why| StoreError::Write(path.to_owned(), why))?;
+        let mut writer = MapWriter::create(output, &about)?;
         writer.write_panels(std::slice::from_ref(&panel))?;
         writer.finish(EngineCells::default(), Audit::default())?;
         Ok(())

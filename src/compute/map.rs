@@ -4,7 +4,7 @@ use super::{Error, Map, MapEngine, Options, PlannedMap};
 #[cfg(feature = "gpu")]
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Precision};
-use crate::map::{self as stages, Panel, Summary};
+use crate::map::{self, Panel, Summary};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::store::ComputedMap;
@@ -128,7 +128,7 @@ fn run<E: From<Error> + Send>(
         let mut numbered = panels.drain(..).zip(&mut whiskers);
         numbered.try_for_each(|(panel, whisker)| each(whisker, panel))
     };
-    let summary = stages::run(scene, &plan, engine, &mut on_progress, &mut keep)?;
+    let summary = map::run(scene, &plan, engine, &mut on_progress, &mut keep)?;
     match summary.is_cancelled {
         true => Err(Error::Cancelled.into()),
         false => Ok(summary),

@@ -2,8 +2,8 @@
 
 use super::RenderError;
 use crate::classify::Status;
-use crate::plan::Channel;
-use crate::store::{ChannelValues, MapSlice, STATE_CHANNELS};
+use crate::plan::{Channel, STATE_CHANNELS};
+use crate::store::{ChannelValues, MapSlice};
 
 /// Name in legends of states whose contact does not slide toward the tip.
 const MARKED: &str = "slides to base, or sticks";

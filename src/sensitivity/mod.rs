@@ -31,9 +31,7 @@ pub use variable::Variable;
 
 use crate::scene::{Parameter, Pole, Whisker};
 use crate::sheet::{Crossing, Sheet};
-use crate::trace::{
-    Branch, BranchPoint, Detachment, DetachmentEnd, FINER, NoState, crossings, detachments as ends,
-};
+use crate::trace::{self, Branch, BranchPoint, Detachment, FINER, NoState, crossings};
 use differentiated::Differentiated;
 use std::sync::atomic::AtomicBool;
 use whiskmap_mechanics::rod::Side;
@@ -98,11 +96,12 @@ pub fn detachments(
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let pushed = (whisker, pole, side);
-    let ends = ends(Resolution::FINE, pushed, distances_mm, false);
+    let ends = trace::detachments(Resolution::FINE, pushed, distances_mm, false);
     of_ends(Resolution::FINE, pushed, ends, variables)
 }
 
-/// Computes detachments with derivatives as [`detachments`] does, at another resolution and with the largest strain.
+/// Computes detachments with derivatives as [`detachments`] does, at another resolution and with the largest strain. Without `variables`, they
+/// are the ends of [`trace::curve_at`].
 #[must_use]
 pub fn detachments_at(
     resolution: Resolution,
@@ -113,7 +112,7 @@ pub fn detachments_at(
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let pushed = (whisker, pole, side);
-    let ends = ends(resolution, pushed, distances_mm, true);
+    let ends = trace::detachments(resolution, pushed, distances_mm, true);
     of_ends(resolution, pushed, ends, variables)
 }
 
@@ -121,11 +120,11 @@ pub fn detachments_at(
 fn of_ends(
     resolution: Resolution,
     (whisker, pole, side): (&Whisker, &Pole, Side),
-    ends: Vec<DetachmentEnd>,
+    ends: Vec<(Detachment, Option<Crossing>)>,
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let differentiated = Differentiated::new(resolution, whisker, pole, side, variables);
-    let of_end = |DetachmentEnd { end, crossing }| DetachmentDerivatives {
+    let of_end = |(end, crossing): (Detachment, Option<Crossing>)| DetachmentDerivatives {
         by: differentiated.at_crossing(crossing.as_ref(), end.distance_mm),
         end,
     };

@@ -3,8 +3,8 @@
 use super::layout::AtlasLayout;
 use super::tally::{CellCounts, regimes, statuses};
 use crate::engine;
-use crate::map::{Audit, Channels, EngineCells};
-use crate::plan::Digits;
+use crate::map::{Audit, EngineCells};
+use crate::plan::{Channels, Digits};
 use crate::scene::{Grid, Parameter, SceneData, SweepAxis, SweepVariable};
 use exr::meta::attribute::{AttributeValue, Text};
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,10 @@
 //! Header of an EXR map: all bytes before the blocks.
 
+use super::StoreError;
 use super::attributes::{CHECKSUM, ExrAttributes, NO_CHECKSUM};
 use super::layout::AtlasLayout;
 use super::stored::is_compatible;
-use super::{Channels, StoreError};
+use crate::plan::Channels;
 use exr::io::PeekRead;
 use exr::meta::attribute;
 use exr::meta::header::Header;

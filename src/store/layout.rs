@@ -1,8 +1,7 @@
 //! Layout of an EXR map: the position of each value in parts, channels, tiles and blocks.
 
 use super::zip::SampleLine;
-use super::{Channels, STATE_CHANNELS};
-use crate::plan::BLOCK_ROWS;
+use crate::plan::{BLOCK_ROWS, Channels, STATE_CHANNELS};
 use crate::scene::Grid;
 use exr::block::BlockIndex;
 use exr::math::{RoundingMode, Vec2};

@@ -48,5 +48,3 @@ pub use writer::MapWriter;
 pub use zarr::{
     AxisCoordinate, BlockState, CheckDepth, PackedPanel, ZarrStore, channel_attributes, coordinates,
 };
-
-pub use crate::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};

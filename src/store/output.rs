@@ -1,11 +1,9 @@
 //! Outputs: files being written. No other module opens files for writing.
 
-use super::temporary::{TemporaryFile, TemporaryFiles, folder_of, sync_folder};
+use super::temporary::{TemporaryFiles, TemporaryName, folder_of, sync_folder};
 use crate::terminal::StandardOutput;
-use std::fs::{self, File, Metadata};
+use std::fs::{self, File, Permissions};
 use std::io::{self, Seek, SeekFrom, Write};
-#[cfg(unix)]
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 /// Output: a file being written.
@@ -16,29 +14,18 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct Output {
     path: PathBuf,
-    place: OutputPlace,
+    bytes: OutputBytes,
+    /// Absolute path of a regular file, behind all symbolic links, and its name until it is finished; `None` for another output.
+    target: Option<(PathBuf, TemporaryName)>,
 }
 
 /// Place of the bytes of an output until it is finished.
 #[derive(Debug)]
-enum OutputPlace {
-    /// Bytes are written at once.
+enum OutputBytes {
+    /// Standard output has the bytes at once.
     Stdout(StandardOutput),
-    /// The target is behind all symbolic links.
-    Regular {
-        file: TemporaryFile,
-        target: PathBuf,
-    },
-    /// A file without a name keeps the bytes until the device or the pipe is opened.
-    Device(File),
-}
-
-/// Time at which the name of a finished file is brought to the disk.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum NameSync {
-    Now,
-    #[cfg(feature = "zarr")]
-    Later,
+    /// A temporary file has the bytes. For a device or a pipe it has no name.
+    File(File),
 }
 
 impl Output {
@@ -47,7 +34,8 @@ impl Output {
     pub fn stdout() -> Self {
         Self {
             path: PathBuf::from("-"),
-            place: OutputPlace::Stdout(StandardOutput::open()),
+            bytes: OutputBytes::Stdout(StandardOutput::open()),
+            target: None,
         }
     }
 
@@ -56,23 +44,20 @@ impl Output {
     /// # Errors
     /// `path` leads to a folder or to a read-only file, or its folder does not exist or is not writable.
     pub fn create(path: &Path, files: &TemporaryFiles) -> io::Result<Self> {
-        let place = if is_device(path) {
-            OutputPlace::Device(tempfile::tempfile()?)
+        let (file, target) = if is_device(path) {
+            (tempfile::tempfile()?, None)
         } else {
-            let replaced = replaced(path)?;
+            let replaced = permissions(path)?;
             let target = resolved(path)?;
-            let mut file = TemporaryFile::create(folder_of(&target), files)?;
-            if let Some(replaced) = replaced {
-                let permissions = replaced.permissions();
-                // Every write drops the set-user-ID and set-group-ID bits.
-                #[cfg(unix)]
-                let permissions = fs::Permissions::from_mode(permissions.mode() & 0o777);
-                file.file().set_permissions(permissions)?;
-            }
-            OutputPlace::Regular { file, target }
+            let (file, name) = files.file(folder_of(&target))?;
+            replaced.map_or(Ok(()), |replaced| file.set_permissions(replaced))?;
+            (file, Some((target, name)))
         };
-        let path = path.to_owned();
-        Ok(Self { path, place })
+        Ok(Self {
+            path: path.to_owned(),
+            bytes: OutputBytes::File(file),
+            target,
+        })
     }
 
     /// Returns the path with which the output was created.
@@ -84,103 +69,84 @@ impl Output {
     /// Returns the absolute path of a regular file, behind all symbolic links; `None` for other outputs.
     #[must_use]
     pub fn target(&self) -> Option<&Path> {
-        match &self.place {
-            OutputPlace::Regular { target, .. } => Some(target),
-            _ => None,
-        }
+        self.target.as_ref().map(|(target, _)| &**target)
     }
 
     /// Returns true if the output is standard output.
     #[must_use]
     pub fn is_stdout(&self) -> bool {
-        matches!(self.place, OutputPlace::Stdout(_))
+        matches!(self.bytes, OutputBytes::Stdout(_))
     }
 
-    /// Finishes the output. The bytes of a regular file are on the disk before its name, and the name before this function returns. So a
-    /// crash of the machine leaves the old file or the new one. The call takes 1 to 5 ms.
+    /// Finishes the output, and returns the path of a regular file; `None` for another output. The bytes of a regular file are on the disk
+    /// before its name, and the name before this function returns. So a crash of the machine leaves the old file or the new one. The call
+    /// takes 1 to 5 ms.
     ///
     /// # Errors
     /// The file cannot be brought to the disk or renamed, or the device takes no more.
-    pub fn finish(self) -> io::Result<()> {
-        self.complete(true, NameSync::Now).map(drop)
+    pub fn finish(self) -> io::Result<Option<PathBuf>> {
+        let path = self.target().map(|_| self.path.clone());
+        self.finish_open()?;
+        Ok(path)
     }
 
-    /// Finishes a regular file like [`Output::finish`], unless a file of its name is there: of several processes that
-    /// do this at the same time one succeeds.
-    ///
-    /// # Errors
-    /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), or an error of [`Output::finish`].
-    #[cfg(feature = "zarr")]
-    pub(super) fn finish_new(self) -> io::Result<()> {
-        self.complete(false, NameSync::Now).map(drop)
-    }
-
-    /// Finishes the output like [`Output::finish`], but leaves the name of a regular file to a later [`sync_folder`]. Until then, a crash of the
-    /// machine may leave the old file.
+    /// Finishes the output like [`Output::finish`], and returns the file with its bytes; `None` for standard output. That is still the file of
+    /// this output when another one has got its name.
     ///
     /// # Errors
     /// An error of [`Output::finish`].
-    #[cfg(feature = "zarr")]
-    pub(super) fn finish_before_sync(self) -> io::Result<()> {
-        self.complete(true, NameSync::Later).map(drop)
+    pub(super) fn finish_open(self) -> io::Result<Option<File>> {
+        let target = self.target().map(Path::to_owned);
+        let file = self.persist(true)?;
+        target.map_or(Ok(()), |target| sync_folder(folder_of(&target)))?;
+        Ok(file)
     }
 
-    /// Finishes the output like [`Output::finish`], and returns its file. That is still the file of this output when another one has
-    /// got its name.
+    /// Finishes the output like [`Output::finish_open`], but leaves the name of a regular file to a later [`sync_folder`]. Until then, a crash of
+    /// the machine may leave the old file. Unless it `may_replace` a file, of several processes that do this at the same time one succeeds;
+    /// this needs a file system with renames that replace nothing or, such as NFS, with hard links.
     ///
     /// # Errors
-    /// An error of [`Output::finish`], or the output is standard output.
-    pub(super) fn finish_open(self) -> io::Result<File> {
-        self.complete(true, NameSync::Now)?
-            .ok_or(io::ErrorKind::NotSeekable.into())
-    }
-
-    /// Finishes the output, and returns the file that has its bytes; `None` for standard output.
-    fn complete(self, may_replace: bool, sync: NameSync) -> io::Result<Option<File>> {
-        match self.place {
-            OutputPlace::Stdout(mut stdout) => stdout.flush().map(|()| None),
-            OutputPlace::Regular { file, target } => {
-                let file = file.persist(&target, may_replace)?;
-                if sync == NameSync::Now {
-                    sync_folder(folder_of(&target))?;
-                }
-                Ok(Some(file))
-            }
-            OutputPlace::Device(mut kept) => {
-                // What is open for appending is never shortened or overwritten, even where it is a file.
-                let mut device = File::options().append(true).open(&self.path)?;
-                kept.rewind()?;
-                io::copy(&mut kept, &mut device)?;
-                Ok(Some(kept))
-            }
+    /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), or an error of [`Output::finish`].
+    pub(super) fn persist(self, may_replace: bool) -> io::Result<Option<File>> {
+        let mut file = match self.bytes {
+            OutputBytes::Stdout(mut stdout) => return stdout.flush().map(|()| None),
+            OutputBytes::File(file) => file,
+        };
+        if let Some((target, name)) = self.target {
+            file.sync_all()?;
+            name.replace(&file, &target, may_replace)?;
+        } else {
+            // What is open for appending is never shortened or overwritten, even where it is a file.
+            let mut device = File::options().append(true).open(&self.path)?;
+            file.rewind()?;
+            io::copy(&mut file, &mut device)?;
         }
+        Ok(Some(file))
     }
 }
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.place {
-            OutputPlace::Stdout(stdout) => stdout.write(bytes),
-            OutputPlace::Regular { file, .. } => file.file().write(bytes),
-            OutputPlace::Device(kept) => kept.write(bytes),
+        match &mut self.bytes {
+            OutputBytes::Stdout(stdout) => stdout.write(bytes),
+            OutputBytes::File(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match &mut self.place {
-            OutputPlace::Stdout(stdout) => stdout.flush(),
-            // A file has no buffer.
-            _ => Ok(()),
+        match &mut self.bytes {
+            OutputBytes::Stdout(stdout) => stdout.flush(),
+            OutputBytes::File(file) => file.flush(),
         }
     }
 }
 
 impl Seek for Output {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        match &mut self.place {
-            OutputPlace::Stdout(_) => Err(io::ErrorKind::NotSeekable.into()),
-            OutputPlace::Regular { file, .. } => file.file().seek(to),
-            OutputPlace::Device(kept) => kept.seek(to),
+        match &mut self.bytes {
+            OutputBytes::Stdout(_) => Err(io::ErrorKind::NotSeekable.into()),
+            OutputBytes::File(file) => file.seek(to),
         }
     }
 }
@@ -192,8 +158,8 @@ fn is_device(path: &Path) -> bool {
     is_null || fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
 }
 
-/// Returns the metadata of the file at `path`, which an output replaces; `None` if there is no file.
-fn replaced(path: &Path) -> io::Result<Option<Metadata>> {
+/// Returns the permissions of the file at `path`, which an output replaces; `None` if there is no file.
+fn permissions(path: &Path) -> io::Result<Option<Permissions>> {
     let about = match fs::metadata(path) {
         Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(None),
         about => about?,
@@ -207,7 +173,7 @@ fn replaced(path: &Path) -> io::Result<Option<Metadata>> {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, why));
     }
     File::options().write(true).open(path)?;
-    Ok(Some(about))
+    Ok(Some(about.permissions()))
 }
 
 /// Returns the absolute path behind all symbolic links. Its last parts need not exist, not even behind a link.

@@ -2,8 +2,9 @@
 
 use super::attributes::{self, DIGITS};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
-use super::{CellCounts, Channels, StoreError, header};
+use super::{CellCounts, StoreError, header};
 use crate::input::open_regular;
+use crate::plan::Channels;
 use crate::plan::Digits;
 use crate::scene::Grid;
 use exr::block::UncompressedBlock;

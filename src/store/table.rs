@@ -3,6 +3,7 @@
 use super::Output;
 use serde::Serialize;
 use std::io::{self, Write};
+use std::path::PathBuf;
 
 /// CSV table that is being written. A number that does not exist is an empty cell.
 #[derive(Debug)]
@@ -33,11 +34,11 @@ impl TableFile {
         &self.0.get_ref().output
     }
 
-    /// Flushes the CSV table and finishes the output.
+    /// Flushes the CSV table and finishes the output. Returns the path of a regular file, `None` for another output.
     ///
     /// # Errors
     /// When the output takes no more.
-    pub fn finish(self) -> io::Result<()> {
+    pub fn finish(self) -> io::Result<Option<PathBuf>> {
         let cells = self.0.into_inner();
         let cells = cells.map_err(csv::IntoInnerError::into_error)?;
         cells.output.finish()

@@ -8,9 +8,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-use tempfile::NamedTempFile;
 #[cfg(feature = "zarr")]
 use tempfile::TempDir;
+use tempfile::{Builder, TempPath};
 
 /// A file of another host counts as a leftover if nothing was written to it for so long.
 const ABANDONED: Duration = Duration::from_secs(24 * 3600);
@@ -55,7 +55,7 @@ impl TemporaryFiles {
     /// # Errors
     /// The folder does not exist or is not writable.
     pub fn prepare(&self, folder: &Path) -> io::Result<()> {
-        TemporaryFile::create(folder, self)?;
+        self.file(folder)?;
         Self::remove_leftovers(folder);
         Ok(())
     }
@@ -66,22 +66,18 @@ impl TemporaryFiles {
         let host_here = host();
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
             let name = entry.file_name();
-            let Some(host) = name.to_str().and_then(host_of) else {
-                continue;
-            };
-            let Ok(about) = entry.metadata() else {
+            let host = name.to_str().and_then(host_of);
+            let Some((host, about)) = host.and_then(|host| Some((host, entry.metadata().ok()?)))
+            else {
                 continue;
             };
             let (is_here, is_folder) = (host == host_here, about.is_dir());
-            let is_gone = match is_folder {
-                true => is_here,
-                false => about.is_file() && (is_here || is_abandoned(&about)),
-            };
-            // No folder is opened for writing, and NFS locks no file that is not.
+            let is_old = is_here || about.is_file() && is_abandoned(&about);
+            // No folder is opened for writing, and NFS locks no file that is not. Without either, a pipe or a link is not opened.
             let mut options = File::options();
-            options.read(is_folder).write(!is_folder);
+            options.read(is_folder).write(about.is_file());
             // The file stays locked until it is removed.
-            if is_gone
+            if is_old
                 && let Ok(file) = options.open(entry.path())
                 && file.try_lock().is_ok()
             {
@@ -97,15 +93,33 @@ impl TemporaryFiles {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Creates an empty file in `folder`, with a temporary name.
+    pub(super) fn file(&self, folder: &Path) -> io::Result<(File, TemporaryName)> {
+        let mut options = File::options();
+        options.read(true).write(true).create_new(true);
+        // `tempfile` itself makes private files, and its errors name them.
+        let make = |builder: &mut Builder| builder.make_in(folder, |path| options.open(path));
+        let (file, listed) = self.make(make, |file| file.as_file().try_clone())?;
+        let (file, path) = file.into_parts();
+        let name = TemporaryName {
+            path,
+            _listed: listed,
+        };
+        Ok((file, name))
+    }
+
     /// Makes a file or a folder, opens, locks and lists it, with no interruption in between.
     fn make<T: AsRef<Path>>(
         &self,
-        make: impl Fn() -> io::Result<T>,
+        make: impl Fn(&mut Builder) -> io::Result<T>,
         open: impl Fn(&T) -> io::Result<File>,
     ) -> io::Result<(T, ListedPath)> {
+        let prefix = format!("{PREFIX}{}{DELIMITER}", host());
+        let mut builder = Builder::new();
+        builder.prefix(&prefix).rand_bytes(RANDOM);
         let mut list = self.list();
         loop {
-            let made = make()?;
+            let made = make(&mut builder)?;
             let path = made.as_ref().to_owned();
             // What cannot be locked, such as a folder of Windows, stays if the process is killed.
             let lock = open(&made).ok();
@@ -116,7 +130,12 @@ impl TemporaryFiles {
             }
             list.push(path.clone());
             let files = self.clone();
-            return Ok((made, ListedPath { path, files, lock }));
+            let listed = ListedPath {
+                path,
+                files,
+                _lock: lock,
+            };
+            return Ok((made, listed));
         }
     }
 }
@@ -126,7 +145,7 @@ impl TemporaryFiles {
 struct ListedPath {
     path: PathBuf,
     files: TemporaryFiles,
-    lock: Option<File>,
+    _lock: Option<File>,
 }
 
 impl Drop for ListedPath {
@@ -135,44 +154,25 @@ impl Drop for ListedPath {
     }
 }
 
-/// Temporary file that gets its name when it is complete.
+/// Name of an unfinished file, which is removed when it is dropped.
 #[derive(Debug)]
-pub(super) struct TemporaryFile {
-    file: NamedTempFile,
-    listed: ListedPath,
+pub(super) struct TemporaryName {
+    path: TempPath,
+    _listed: ListedPath,
 }
 
-impl TemporaryFile {
-    /// Creates a temporary file in `folder`.
-    pub fn create(folder: &Path, files: &TemporaryFiles) -> io::Result<Self> {
-        let mut options = File::options();
-        options.read(true).write(true).create_new(true);
-        // `tempfile` itself makes private files, and its errors name them.
-        let make = || builder(&prefix()).make_in(folder, |path| options.open(path));
-        let (file, listed) = files.make(make, |file| file.as_file().try_clone())?;
-        Ok(Self { file, listed })
-    }
-
-    pub fn file(&mut self) -> &mut File {
-        self.file.as_file_mut()
-    }
-
-    /// Gives the file its `name` when its bytes are on the disk, and returns it, open. Without `may_replace`, no file may have the name; this
-    /// needs a file system with renames that replace nothing or, such as NFS, with hard links.
-    pub fn persist(self, name: &Path, may_replace: bool) -> io::Result<File> {
-        let Self { file, listed } = self;
-        file.as_file().sync_all()?;
-        if let Some(lock) = listed.lock.as_ref().filter(|_| cfg!(windows)) {
+impl TemporaryName {
+    /// Gives the `file` of this name another `name`; without `may_replace`, no file may have it.
+    pub fn replace(self, file: &File, name: &Path, may_replace: bool) -> io::Result<()> {
+        if cfg!(windows) {
             // Nobody can read a locked file of Windows.
-            let _ = lock.unlock();
+            let _ = file.unlock();
         }
-        if !may_replace {
-            return Ok(file.persist_noclobber(name)?);
+        match may_replace {
+            // On Windows, `tempfile` does not replace a file that is open.
+            true => fs::rename(self.path, name),
+            false => Ok(self.path.persist_noclobber(name)?),
         }
-        let (file, path) = file.into_parts();
-        // On Windows, `tempfile` does not replace a file that is open.
-        fs::rename(path, name)?;
-        Ok(file)
     }
 }
 
@@ -193,9 +193,7 @@ impl TemporaryFolder {
     pub fn create(target: &Path, files: &TemporaryFiles) -> io::Result<Self> {
         let beside = folder_of(target);
         files.prepare(beside)?;
-        let make = || {
-            let prefix = prefix();
-            let mut builder = builder(&prefix);
+        let make = |builder: &mut Builder| {
             // `tempfile` itself makes private folders.
             #[cfg(unix)]
             builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
@@ -237,17 +235,6 @@ pub(super) fn host_of(name: &str) -> Option<&str> {
     let (host, random) = name.strip_prefix(PREFIX)?.split_once(DELIMITER)?;
     let is_random = random.len() == RANDOM && random.chars().all(|c| c.is_ascii_alphanumeric());
     is_random.then_some(host)
-}
-
-/// Returns the names of temporary files of this host, but for their random ends.
-fn prefix() -> String {
-    format!("{PREFIX}{}{DELIMITER}", host())
-}
-
-fn builder(prefix: &str) -> tempfile::Builder<'_, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(prefix).rand_bytes(RANDOM);
-    builder
 }
 
 /// Returns the name of this host.

@@ -3,17 +3,15 @@
 use super::attributes::{self, MapDescription, attribute};
 use super::chunk::{chunk, samples};
 use super::layout::{self, AtlasLayout, SAMPLE_BYTES};
-use super::{
-    CellCounts, Channels, Output, Panel, StoreError, StoredMap, TemporaryFiles, header, zip,
-};
-use crate::map::{Audit, EngineCells};
-use crate::plan::{Digits, Plan};
+use super::{CellCounts, Output, StoreError, StoredMap, header, zip};
+use crate::map::{Audit, EngineCells, Panel};
+use crate::plan::{Channels, Digits, Plan};
 use crate::scene::Grid;
 use exr::meta::Headers;
 use exr::meta::header::Header;
 use rayon::prelude::*;
-use std::io::{BufWriter, IntoInnerError, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufWriter, IntoInnerError, Seek, SeekFrom, Write};
+use std::path::PathBuf;
 
 /// Bytes of a place in the file.
 const OFFSET_BYTES: u64 = 8;
@@ -40,19 +38,16 @@ pub struct MapWriter {
 }
 
 impl MapWriter {
-    /// Begins to write the EXR map that will be at `path`. Until it is finished, its bytes are in one of the temporary `files`.
+    /// Begins to write an EXR map into `output`.
     ///
     /// # Errors
-    /// The folder is not writable, or the map is too large for EXR or has more than two sweep axes.
-    pub fn create(
-        path: &Path,
-        about: &MapDescription<'_>,
-        files: &TemporaryFiles,
-    ) -> Result<Self, StoreError> {
+    /// The disk is full, or the map is too large for EXR or has more than two sweep axes.
+    pub fn create(output: Output, about: &MapDescription<'_>) -> Result<Self, StoreError> {
+        let path = output.path().to_owned();
         let grid = &about.scene.grid;
         if grid.sweep.len() > 2 {
             return Err(StoreError::TooManyAxes {
-                path: path.to_owned(),
+                path,
                 axes: grid.sweep_names(),
             });
         }
@@ -65,11 +60,11 @@ impl MapWriter {
             .any(|header| header.chunk_count > i32::MAX as usize)
         {
             let why = exr::error::Error::Invalid("it has more than 2^31 blocks".into());
-            return Err(StoreError::Encode(path.to_owned(), why));
+            return Err(StoreError::Encode(path, why));
         }
 
         let preamble =
-            header::encode(&headers).map_err(StoreError::at(path, StoreError::Encode))?;
+            header::encode(&headers).map_err(StoreError::at(&path, StoreError::Encode))?;
         let mut position = preamble.len() as u64;
         let table = |header: &Header| {
             let table = position;
@@ -77,10 +72,9 @@ impl MapWriter {
             table
         };
         let tables = headers.iter().map(table).collect();
-        let file = Output::create(path, files).map_err(StoreError::at(path, StoreError::Write))?;
         let mut writer = Self {
-            path: path.to_owned(),
-            file: BufWriter::new(file),
+            path,
+            file: BufWriter::new(output),
             position,
             layout,
             channels: about.channels,
@@ -214,6 +208,7 @@ impl MapWriter {
             .into_inner()
             .map_err(IntoInnerError::into_error)
             .and_then(Output::finish_open)
+            .and_then(|file| file.ok_or(io::ErrorKind::NotSeekable.into()))
             .map_err(StoreError::at(&path, StoreError::Write))?;
         StoredMap::of_file(&path, file)
     }

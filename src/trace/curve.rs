@@ -95,7 +95,7 @@ pub fn curve_at(
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
     let ends = detachments(resolution, (whisker, pole, side), distances_mm, true);
-    ends.into_iter().map(|detachment| detachment.end).collect()
+    ends.into_iter().map(|(end, _)| end).collect()
 }
 
 /// Computes the detachment curve as [`curve_at`] does, but leaves out the largest strain, which takes a trajectory more for each end.
@@ -108,24 +108,17 @@ pub fn curve_without_strain(
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
     let ends = detachments(resolution, (whisker, pole, side), distances_mm, false);
-    ends.into_iter().map(|detachment| detachment.end).collect()
+    ends.into_iter().map(|(end, _)| end).collect()
 }
 
-/// A detachment with the crossing of the sheet's edge from which it was read.
-pub(crate) struct DetachmentEnd {
-    pub end: Detachment,
-    /// Crossing of the row over the edge of the sheet; `None` without a detachment.
-    pub crossing: Option<Crossing>,
-}
-
-/// Computes detachments with their crossings, `[distance]`, and the largest strain of each if `has_strain` is true. Then the sliding
-/// direction is taken from the contact's history, too.
+/// Computes detachments, each with the crossing of the sheet's edge from which it is read, `[distance]`; `None` without an end. If `has_strain` is
+/// true, each has its largest strain, and its sliding direction by the contact's history.
 pub(crate) fn detachments(
     resolution: Resolution,
     (whisker, pole, side): (&Whisker, &Pole, Side),
     distances_mm: &[f64],
     has_strain: bool,
-) -> Vec<DetachmentEnd> {
+) -> Vec<(Detachment, Option<Crossing>)> {
     let rod = &whisker.rod(pole, side);
     let method = Method::new(resolution);
     let units = whisker.units();
@@ -136,35 +129,29 @@ pub(crate) fn detachments(
         true => Sheet::new(method, rod, side, &distances),
         false => Sheet::of_ends(method, rod, side, &distances),
     };
-    let ends = RowEnd::of(method, &sheet);
-    let points = ends.iter().flatten();
-    let points = points.map(|RowEnd { crossing, .. }| (crossing.tau, crossing.load));
-    let peaks: Vec<PeakStrain> = match has_strain {
-        true => Batch::new(method.doubled()).shoot_at(rod, points),
-        false => Vec::new(),
+    let row_ends = RowEnd::of(method, &sheet);
+    let (peaks, slidings): (Vec<PeakStrain>, _) = match has_strain {
+        true => {
+            let crossings = row_ends.iter().flatten().map(|end| &end.crossing);
+            let points = crossings.map(|crossing| (crossing.tau, crossing.load));
+            let peaks = Batch::new(method.doubled()).shoot_at(rod, points);
+            (peaks, slidings(&sheet, &row_ends))
+        }
+        false => (Vec::new(), vec![None; distances.len()]),
     };
     let mut peaks = peaks.into_iter();
-    let slidings = match has_strain {
-        true => slidings(&sheet, &ends),
-        false => vec![None; distances.len()],
-    };
-    let rows = distances_mm.iter().zip(&sheet.rows).zip(ends).zip(slidings);
-    let rows = rows.enumerate();
-    let ends = rows.map(|(index, (((distance_mm, row), found), sliding))| {
+    let rows = distances_mm.iter().zip(&sheet.rows).enumerate();
+    let found = rows.zip(row_ends.into_iter().zip(slidings));
+    let detachments = found.map(|((index, (distance_mm, row)), (row_end, sliding))| {
         let none = Detachment {
             side,
             distance_mm: *distance_mm,
             pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
             ..Detachment::default()
         };
-        let row_end: RowEnd = match found {
+        let row_end: RowEnd = match row_end {
             Ok(row_end) => row_end,
-            Err(kind) => {
-                return DetachmentEnd {
-                    end: Detachment { kind, ..none },
-                    crossing: None,
-                };
-            }
+            Err(kind) => return (Detachment { kind, ..none }, None),
         };
         // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
         let off = libm::log(row.pole_distance / row_end.state.full.map.pole.length()).abs();
@@ -179,12 +166,9 @@ pub(crate) fn detachments(
             snaps_deg: snaps_deg(&sheet, index),
             ..none.with_state(Some(&row_end.reading(&reader, &sheet, index)))
         };
-        DetachmentEnd {
-            end,
-            crossing: Some(row_end.crossing),
-        }
+        (end, Some(row_end.crossing))
     });
-    ends.collect()
+    detachments.collect()
 }
 
 /// End of a push from first touch, with its state.

@@ -176,8 +176,12 @@ impl<'a> Legs<'a> {
         if self.contacts.is_lost {
             return;
         }
-        let (mut kind, phase) = (event, None);
-        let mut contact = CourseContact { side, push, phase };
+        let mut kind = event;
+        let mut contact = CourseContact {
+            side,
+            push,
+            phase: None,
+        };
         match event {
             Some(WhiskEventKind::Touch) => contact = self.contacts.touch(side, push),
             Some(WhiskEventKind::Undecided) => {}
@@ -199,17 +203,18 @@ impl<'a> Legs<'a> {
 
     /// Adds the `changes` of the contact on `side` of an obstacle.
     fn change(&mut self, leg: &Leg, side: Side, obstacle: i32, changes: Vec<ContactChange>) {
-        for ContactChange {
-            push,
-            before: phase,
-        } in changes
-        {
+        for ContactChange { push, before } in changes {
             let angle = self.turns.touch(side, obstacle) + side.sign() * push;
-            let kind = match phase {
+            let kind = match before {
                 Some(_) => WhiskEventKind::Snap,
                 None => WhiskEventKind::Undecided,
             };
-            self.add(leg, angle, Some(kind), CourseContact { side, push, phase });
+            let contact = CourseContact {
+                side,
+                push,
+                phase: before,
+            };
+            self.add(leg, angle, Some(kind), contact);
         }
     }
 

@@ -28,7 +28,6 @@ use crate::trace::NoState;
 use glam::DVec2;
 use legs::Legs;
 use phase::{Phase, ROUNDING};
-use readings::{CurvaturePoint, FixedPole};
 use states::{BothSides, SideStates};
 use turns::Turns;
 use whiskmap_mechanics::rod::{Rest, Side};
@@ -258,18 +257,15 @@ pub fn whisk_with(
             false => legs.leg(angles, times),
         }
     }
-    let point = options.curvature_at_mm.map(|at_mm| CurvaturePoint {
-        rest: &rests[0],
-        at_mm,
-        length_mm,
-    });
+    let point = options.curvature_at_mm;
+    let point = point.map(|at_mm| [at_mm, rests[0].curvature(at_mm / length_mm) / length_mm]);
     let mut samples = Vec::with_capacity(legs.samples.len());
     for chunk in legs.samples.chunks(STATES_AT_ONCE) {
         if options.is_cancelled() {
             return Err(WhiskError::Cancelled);
         }
         let unit_nj = whisker.units().moment_nnm;
-        samples.extend(found.samples(chunk, point.as_ref(), unit_nj));
+        samples.extend(found.samples(chunk, point, unit_nj));
     }
     let mut events = Vec::with_capacity(legs.events.len());
     for chunk in legs.events.chunks(STATES_AT_ONCE) {
@@ -278,14 +274,12 @@ pub fn whisk_with(
         }
         events.extend(found.events(chunk));
     }
-    let fixed = FixedPole {
-        centre_mm: DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm),
-        radius_mm: pole.radius_mm,
-    };
+    let centre_mm = DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm);
+    let fixed_pole = (centre_mm, pole.radius_mm);
     let mut samples: Vec<WhiskSample> = known
         .iter()
         .zip(samples)
-        .map(|(&i, sample)| sample.at(course.times_s[i], course.angles_deg[i], &fixed))
+        .map(|(&i, sample)| sample.at(course.times_s[i], course.angles_deg[i], fixed_pole))
         .collect();
     samples.extend(gaps.iter().flat_map(|gap| gap.samples(&course.times_s)));
     samples.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));

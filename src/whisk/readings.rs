@@ -8,38 +8,23 @@ use crate::friction::{ContactPhase, held, states};
 use crate::trace::StateRow;
 use glam::DVec2;
 use rayon::prelude::*;
-use whiskmap_mechanics::rod::{Rest, Side};
-
-/// Pole in front of the whisker, in mm in the axes of first touch on CB: the base is at the origin, its tangent then along the first axis.
-#[derive(Clone, Copy, Debug)]
-pub struct FixedPole {
-    pub centre_mm: DVec2,
-    pub radius_mm: f64,
-}
-
-/// Point of the whisker at which the curvature of samples is taken.
-pub struct CurvaturePoint<'a> {
-    pub rest: &'a Rest,
-    pub at_mm: f64,
-    pub length_mm: f64,
-}
-
-impl CurvaturePoint<'_> {
-    /// Returns the curvature at rest, in 1/mm.
-    pub fn at_rest_per_mm(&self) -> f64 {
-        self.rest.curvature(self.at_mm / self.length_mm) / self.length_mm
-    }
-}
+use whiskmap_mechanics::rod::Side;
 
 impl WhiskSample {
-    /// Returns the sample at a time in s and an angle of the base in degrees, with the position of the contact on `pole`.
-    pub(super) fn at(self, time_s: f64, angle_deg: f64, pole: &FixedPole) -> Self {
+    /// Returns the sample at a time in s and an angle of the base in degrees, with the position of the contact on a pole with this centre and
+    /// radius. Positions are in the axes of first touch on CB: the base is at the origin, its tangent then along the first axis.
+    pub(super) fn at(
+        self,
+        time_s: f64,
+        angle_deg: f64,
+        (centre_mm, radius_mm): (DVec2, f64),
+    ) -> Self {
         let contact = self
             .side
             .zip(self.contact_angle_deg)
             .map(|(side, contact_deg)| {
                 let tangent = DVec2::from_angle((contact_deg - angle_deg).to_radians());
-                pole.centre_mm + side.sign() * pole.radius_mm * tangent.perp()
+                centre_mm + side.sign() * radius_mm * tangent.perp()
             });
         Self {
             time_s,
@@ -57,12 +42,12 @@ pub fn signed_deg(side: Side, push: f64) -> f64 {
 }
 
 impl BothSides {
-    /// Returns the samples of a course with their states and the curvature at a point, without times and angles: `[sample]`. `unit_nj` is
-    /// the unit of energies, in nJ.
+    /// Returns the samples of a course with their states, without times and angles: `[sample]`. They have the curvature at a `point`, which is
+    /// given by its arclength in mm and its curvature at rest in 1/mm. `unit_nj` is the unit of energies, in nJ.
     pub fn samples(
         &self,
         samples: &[LegSample],
-        point: Option<&CurvaturePoint>,
+        point: Option<[f64; 2]>,
         unit_nj: f64,
     ) -> Vec<WhiskSample> {
         let contacts: Vec<Option<CourseContact>> =
@@ -70,11 +55,11 @@ impl BothSides {
         let readings = self.at(&contacts, states);
         let samples = samples.par_iter().zip(readings);
         let with_curvature = |(leg_sample, state): (&LegSample, Option<CourseState>)| {
-            let curvature = point.and_then(|point| match leg_sample.phase {
-                Phase::Free { .. } => Some(point.at_rest_per_mm()),
+            let curvature = point.and_then(|[at_mm, at_rest_per_mm]| match leg_sample.phase {
+                Phase::Free { .. } => Some(at_rest_per_mm),
                 _ => {
                     let states = self.of(leg_sample.contact?.side)?;
-                    Some(states.curvature_per_mm(&state?, point.at_mm))
+                    Some(states.curvature_per_mm(&state?, at_mm))
                 }
             });
             WhiskSample {

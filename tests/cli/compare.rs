@@ -7,7 +7,7 @@ use whiskmap::map::{Audit, Channels, EngineCells, Panel};
 use whiskmap::plan::Digits;
 use whiskmap::scene::Scene;
 use whiskmap::store::{
-    ChannelValues, MapDescription, MapSlice, MapWriter, StoredMap, TemporaryFiles,
+    ChannelValues, MapDescription, MapSlice, MapWriter, Output, StoredMap, TemporaryFiles,
 };
 
 /// Scene with four whiskers in one block of a store.
@@ -29,7 +29,11 @@ fn change(place: &Place, source: &str, change: impl Fn(&mut Panel, usize)) {
         arithmetic: "fma",
     };
     let path = place.path("changed.exr");
-    let mut writer = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
+    let mut writer = MapWriter::create(
+        Output::create(&path, &TemporaryFiles::default()).unwrap(),
+        &about,
+    )
+    .unwrap();
     let slice = MapSlice::from(map);
     for whisker in 0..scene.whisker_count() {
         let mut panel = slice.panel(Channels::STANDARD, whisker).unwrap();

@@ -2,7 +2,7 @@
 
 use super::{Place, Run, SCENE};
 use whiskmap::map::Channels;
-use whiskmap::store::{MapDescription, MapWriter, TemporaryFiles};
+use whiskmap::store::{MapDescription, MapWriter, Output, TemporaryFiles};
 
 /// Writes the small map with this friction into its own folder, and returns its name.
 fn place(friction: f64) -> Place {
@@ -29,8 +29,11 @@ fn write_without_status(place: &Place) {
         digits: whiskmap::plan::Digits::ALL,
         arithmetic: "fma",
     };
-    let mut writer =
-        MapWriter::create(&place.path("old.exr"), &about, &TemporaryFiles::default()).unwrap();
+    let mut writer = MapWriter::create(
+        Output::create(&place.path("old.exr"), &TemporaryFiles::default()).unwrap(),
+        &about,
+    )
+    .unwrap();
     writer.write_panels(&map.panels).unwrap();
     let summary = map.summary;
     writer.finish(summary.engine_cells, summary.audit).unwrap();

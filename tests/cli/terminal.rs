@@ -11,7 +11,7 @@ use whiskmap::engine::EngineDescription;
 use whiskmap::map::{Audit, Channels, EngineCells};
 use whiskmap::plan::Digits;
 use whiskmap::scene::{Scene, SceneData};
-use whiskmap::store::{MapDescription, MapSlice, MapWriter, StoredMap, TemporaryFiles};
+use whiskmap::store::{MapDescription, MapSlice, MapWriter, Output, StoredMap, TemporaryFiles};
 
 /// Texts that a terminal must not get: all control characters of C0 and C1 that a file name can have, sequences that reset, colour
 /// and name a terminal, a line that looks like a message, and all embeddings, overrides and isolates of bidirectional text.
@@ -91,7 +91,11 @@ fn forge(place: &Place, text: &str, name: &str) {
         arithmetic: text,
     };
     let path = place.path(name);
-    let mut writer = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
+    let mut writer = MapWriter::create(
+        Output::create(&path, &TemporaryFiles::default()).unwrap(),
+        &about,
+    )
+    .unwrap();
     let panel = MapSlice::from(map).panel(Channels::STANDARD, 0).unwrap();
     writer.write_panels(&[panel]).unwrap();
     writer

@@ -4,8 +4,9 @@ use super::drawn::{Pixels, rasters, svg, well_formed};
 use super::map::{panel, scene, write};
 use super::{SLIP_OFF, colours, flat, picture};
 use std::fs;
+use whiskmap::map::Panel;
 use whiskmap::render::{self, MapOptions, PictureSize, RenderError};
-use whiskmap::store::{self, Panel, StoredMap};
+use whiskmap::store::{self, StoredMap};
 
 #[test]
 fn an_svg_document_has_the_cells_as_pixels_and_the_rest_as_such() {

@@ -12,9 +12,10 @@ mod vision;
 use drawn::Pixels;
 use map::panel;
 use std::collections::BTreeMap;
+use whiskmap::map::{Audit, EngineCells, Panel};
 use whiskmap::render::{self, MapOptions, Picture, RenderError};
 use whiskmap::scene::SceneData;
-use whiskmap::store::{Audit, EngineCells, MapWriter, Panel, StoredMap, TemporaryFiles};
+use whiskmap::store::{MapWriter, Output, StoredMap, TemporaryFiles};
 
 const CONTACT: [u8; 3] = [0x83, 0xc4, 0xa4];
 const SLIP_OFF: [u8; 3] = [0xc8, 0x60, 0x2a];
@@ -42,9 +43,8 @@ fn picture(
     let file = folder.path().join("map.exr");
     let tolerances = serde_json::json!(null);
     let mut writer = MapWriter::create(
-        &file,
+        Output::create(&file, &TemporaryFiles::default()).unwrap(),
         &map::describe(scene, &tolerances),
-        &TemporaryFiles::default(),
     )
     .unwrap();
     writer.write_panels(panels).unwrap();

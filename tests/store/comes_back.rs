@@ -5,10 +5,8 @@ use super::sweeps;
 use serde_json::json;
 use std::fs;
 use whiskmap::classify::{Regime, Status};
-use whiskmap::store::{
-    AtlasLayout, Audit, ChannelValues, EngineCells, MapWriter, Panel, STATE_CHANNELS, StoredMap,
-    TemporaryFiles,
-};
+use whiskmap::map::{Audit, EngineCells, Panel, STATE_CHANNELS};
+use whiskmap::store::{AtlasLayout, ChannelValues, MapWriter, Output, StoredMap, TemporaryFiles};
 
 fn bits(samples: &ChannelValues) -> Vec<u32> {
     match samples {
@@ -130,7 +128,11 @@ fn unresolved_cells_do_not_count_for_the_worst_residual() {
     let scene = scene(40, 30, None, None);
     let tolerances = json!(null);
     let about = map::describe(&scene, &tolerances);
-    let mut writer = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
+    let mut writer = MapWriter::create(
+        Output::create(&path, &TemporaryFiles::default()).unwrap(),
+        &about,
+    )
+    .unwrap();
     let mut panel = panel(&scene, 0);
     panel.regime[0] = Regime::Unresolved.code();
     panel.residual[0] = 1.0;

@@ -4,10 +4,11 @@ use super::map::{self, panel, scene, write};
 use super::sweeps;
 use serde_json::json;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
+use whiskmap::map::{Audit, EngineCells, Panel};
 use whiskmap::store::{
-    Audit, EngineCells, MapSlice, MapSource, MapWriter, Panel, StoreError, StoredMap,
-    TemporaryFiles,
+    MapSlice, MapSource, MapWriter, Output, StoreError, StoredMap, TemporaryFiles,
 };
 
 fn listing(folder: &Path) -> Vec<String> {
@@ -25,14 +26,22 @@ fn a_map_appears_only_when_it_is_finished() {
     let tolerances = json!(null);
     let about = map::describe(&scene, &tolerances);
 
-    let mut dropped = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
+    let mut dropped = MapWriter::create(
+        Output::create(&path, &TemporaryFiles::default()).unwrap(),
+        &about,
+    )
+    .unwrap();
     dropped.write_panels(&[panel(&scene, 0)]).unwrap();
     assert_eq!(listing(folder.path()).len(), 1);
     assert!(!path.exists());
     drop(dropped);
     assert!(listing(folder.path()).is_empty());
 
-    let mut short = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
+    let mut short = MapWriter::create(
+        Output::create(&path, &TemporaryFiles::default()).unwrap(),
+        &about,
+    )
+    .unwrap();
     short.write_panels(&[panel(&scene, 0)]).unwrap();
     let error = short
         .finish(EngineCells::default(), Audit::default())
@@ -47,10 +56,8 @@ fn a_map_appears_only_when_it_is_finished() {
     StoredMap::open(&path).unwrap();
 
     let nowhere = folder.path().join("no such folder/map.exr");
-    let error = MapWriter::create(&nowhere, &about, &TemporaryFiles::default())
-        .unwrap_err()
-        .to_string();
-    assert!(error.starts_with("cannot write "), "{error}");
+    let error = Output::create(&nowhere, &TemporaryFiles::default()).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::NotFound);
 }
 
 #[cfg(unix)]
@@ -73,9 +80,8 @@ fn a_panel_that_does_not_fit_is_refused() {
     let scene = scene(5, 4, Some(vec![0.5, 0.9]), None);
     let tolerances = json!(null);
     let mut writer = MapWriter::create(
-        &path,
+        Output::create(&path, &TemporaryFiles::default()).unwrap(),
         &map::describe(&scene, &tolerances),
-        &TemporaryFiles::default(),
     )
     .unwrap();
     let good = panel(&scene, 0);
@@ -129,7 +135,11 @@ fn bands_make_the_same_file() {
     };
     let write = |name: &str, bands: &[Panel]| {
         let path = folder.path().join(name);
-        let mut writer = MapWriter::create(&path, &about, &TemporaryFiles::default()).unwrap();
+        let mut writer = MapWriter::create(
+            Output::create(&path, &TemporaryFiles::default()).unwrap(),
+            &about,
+        )
+        .unwrap();
         for band in bands {
             writer.write_panels(std::slice::from_ref(band))?;
         }

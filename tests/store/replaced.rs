@@ -7,10 +7,10 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
+use whiskmap::map::{Audit, EngineCells};
 use whiskmap::scene::SceneData;
 use whiskmap::store::{
-    Audit, ChannelValues, EngineCells, MapSlice, MapSource, MapWriter, StoreError, StoredMap,
-    TemporaryFiles,
+    ChannelValues, MapSlice, MapSource, MapWriter, Output, StoreError, StoredMap, TemporaryFiles,
 };
 
 /// Title and bits of all values of a map, channel by channel, as text.
@@ -40,7 +40,11 @@ fn scenes() -> [SceneData; 2] {
 fn write_from(path: &Path, scene: &SceneData, from: usize) -> StoredMap {
     let tolerances = json!(null);
     let about = map::describe(scene, &tolerances);
-    let mut writer = MapWriter::create(path, &about, &TemporaryFiles::default()).unwrap();
+    let mut writer = MapWriter::create(
+        Output::create(path, &TemporaryFiles::default()).unwrap(),
+        &about,
+    )
+    .unwrap();
     for index in 0..scene.whisker_count() {
         writer.write_panels(&[panel(scene, from + index)]).unwrap();
     }

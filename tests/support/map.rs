@@ -7,7 +7,7 @@ use whiskmap::classify::Regime;
 use whiskmap::engine;
 use whiskmap::map::{Audit, Channels, EngineCells, Panel, STATE_CHANNELS};
 use whiskmap::scene::{Grid, Parameter, Pole, SceneData, SceneText, SweepAxis, Whisker};
-use whiskmap::store::{CellCounts, MapDescription, MapWriter, TemporaryFiles};
+use whiskmap::store::{CellCounts, MapDescription, MapWriter, Output, TemporaryFiles};
 
 /// `count` values from `first` to `last`.
 pub fn spread(first: f64, last: f64, count: usize) -> Vec<f64> {
@@ -126,9 +126,8 @@ pub fn describe<'a>(scene: &'a SceneData, tolerances: &'a Value) -> MapDescripti
 pub fn write(path: &Path, scene: &SceneData) -> CellCounts {
     let tolerances = json!({"rtol": 0.1 + 0.2});
     let mut writer = MapWriter::create(
-        path,
+        Output::create(path, &TemporaryFiles::default()).unwrap(),
         &describe(scene, &tolerances),
-        &TemporaryFiles::default(),
     )
     .unwrap();
     let panels: Vec<Panel> = (0..scene.whisker_count())

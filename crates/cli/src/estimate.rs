@@ -33,7 +33,11 @@ pub struct FileCost {
 const PACKED_CELLS: usize = 1 << 18;
 
 /// Estimates the cost of the files of `plan` in these `formats`, from a packed sample, `[format]`.
-pub fn files(scene: &Scene, plan: &Plan, formats: &[MapFormat]) -> Result<Vec<FileCost>, Failure> {
+pub fn file_costs(
+    scene: &Scene,
+    plan: &Plan,
+    formats: &[MapFormat],
+) -> Result<Vec<FileCost>, Failure> {
     let whiskers = scene.thinned(1, SAMPLE_VALUES).whisker_count();
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
     let (small, small_plan) = thinned(scene, plan, [lines, lines])?;

@@ -177,28 +177,28 @@ fn impossible(option: &str, path: &Path, advice: &str) -> impl FnOnce(io::Error)
 
 /// Returns true for an error that another path would not have.
 fn is_of_path(error: &io::Error) -> bool {
-    use io::ErrorKind::{
-        AlreadyExists, ExecutableFileBusy, InvalidFilename, InvalidInput, IsADirectory,
-        NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem, Unsupported,
-    };
-    let kinds = [
-        AlreadyExists,
-        ExecutableFileBusy,
-        InvalidFilename,
-        InvalidInput,
-        IsADirectory,
-        NotADirectory,
-        NotFound,
-        PermissionDenied,
-        ReadOnlyFilesystem,
-        Unsupported,
-    ];
+    use io::ErrorKind as Kind;
     // Without a stable kind: a circle of links and, on Windows, a file that another program keeps for itself
     // (ERROR_CANT_RESOLVE_FILENAME, ERROR_SHARING_VIOLATION, ERROR_LOCK_VIOLATION).
     #[cfg(unix)]
-    let codes = [libc::ELOOP];
+    const CODES: &[i32] = &[libc::ELOOP];
     #[cfg(not(unix))]
-    let codes = [1921, 32, 33];
-    let code = error.raw_os_error();
-    kinds.contains(&error.kind()) || code.is_some_and(|code| codes.contains(&code))
+    const CODES: &[i32] = &[1921, 32, 33];
+    let has_code = error
+        .raw_os_error()
+        .is_some_and(|code| CODES.contains(&code));
+    has_code
+        || matches!(
+            error.kind(),
+            Kind::AlreadyExists
+                | Kind::ExecutableFileBusy
+                | Kind::InvalidFilename
+                | Kind::InvalidInput
+                | Kind::IsADirectory
+                | Kind::NotADirectory
+                | Kind::NotFound
+                | Kind::PermissionDenied
+                | Kind::ReadOnlyFilesystem
+                | Kind::Unsupported
+        )
 }

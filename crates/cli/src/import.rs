@@ -3,12 +3,14 @@
 use super::arguments::{column_help, duration, length, whole};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
-use super::outputs::OutputTable;
+use super::outputs::{OutputTable, write_table};
 use clap::{ArgAction, Args, ValueEnum};
 use serde::Serialize;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use whiskmap::input::Quantity;
+use whiskmap::terminal::StandardOutput;
 use whiskmap::tracking::{
     FaceAxis, ImagePole, TrackedDetachment, TrackedFrame, TrackedPoint, Tracking, TrackingError,
     TrackingFormat, TrackingOptions,
@@ -231,15 +233,9 @@ pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
 }
 
 /// Writes the whole table, and prints the name of a regular file.
-fn write<R: Serialize>(mut table: OutputTable, rows: Vec<R>) -> Result<(), Failure> {
-    use std::io::Write;
-    table.rows(rows)?;
-    if let Some(path) = table.finish()? {
-        writeln!(
-            whiskmap::terminal::StandardOutput::open(),
-            "{}",
-            path.display()
-        )?;
+fn write<R: Serialize>(table: OutputTable, rows: Vec<R>) -> Result<(), Failure> {
+    if let Some(path) = write_table(Some(table), rows)? {
+        writeln!(StandardOutput::open(), "{}", path.display())?;
     }
     Ok(())
 }

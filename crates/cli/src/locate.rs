@@ -186,9 +186,8 @@ pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
         }
         outputs.rows(&map.states)?;
         let is_straight = scene.is_straight();
-        return outputs.finish_picture(|size| {
-            Ok(shared_states(&scene.title, grid, &map, is_straight, size)?)
-        });
+        let picture = |size| Ok(shared_states(&scene.title, grid, &map, is_straight, size)?);
+        return outputs.finish_picture(picture, []);
     }
     let readings = args.readings(files)?;
     let mut outputs = args.outputs.open(files)?;

@@ -4,13 +4,13 @@ use super::arguments::{THREADS, whole};
 use super::digits::DigitsArgs;
 use super::disk;
 use super::failure::{Failure, message};
-use super::files::{Files, unwritten};
+use super::files::Files;
 use super::map_format::MapFormat;
 use super::outputs::PictureFile;
 use super::scene::check_strict;
 use super::sharded::{self, RunArgs};
-use super::solver::SolverArgs;
-use super::summary::{compute, report};
+use super::solver::{SolverArgs, compute};
+use super::summary::report;
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -21,7 +21,7 @@ use whiskmap::mechanics::numerics::ArithmeticClass;
 use whiskmap::plan::Channels;
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::scene::Scene;
-use whiskmap::store::{MapDescription, MapWriter, Output};
+use whiskmap::store::{MapDescription, MapWriter};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -70,10 +70,10 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     check_strict(args.run.strict, &scene)?;
     let format = args.format.unwrap_or(MapFormat::Exr);
     let planned = args.plan(&scene, format)?;
-    let mut engine = args.solver.open(&planned)?;
-    let tolerances = planned.tolerances(engine.0.as_deref());
+    let (mut engine, why) = args.solver.open(&planned)?;
+    let tolerances = planned.tolerances(engine.as_deref());
     let plan = planned.plan;
-    let solver = EngineDescription::of(engine.0.as_deref());
+    let solver = EngineDescription::of(engine.as_deref());
     let about = MapDescription {
         scene: &scene,
         engine: &solver,
@@ -85,38 +85,35 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     files.folder("--output", &args.output)?;
     if format == MapFormat::Zarr {
         let path = args.output.join(format!("{}.zarr", scene.name));
-        return sharded::fill(&path, &args.run, files, &scene, plan, &about, &mut engine);
+        let engine = (&mut engine, &*why);
+        return sharded::fill(&path, &args.run, files, &scene, plan, &about, engine);
     }
     let file = args.output.join(format!("{}.exr", scene.name));
-    files.output("--output", &file)?;
-    let picture = (!args.no_png).then(|| file.with_extension("png"));
-    if let Some(picture) = &picture {
-        files.output("--output", picture)?;
-    }
+    let output = files.output("--output", &file)?;
+    let picture_path = file.with_extension("png");
+    let picture = (!args.no_png).then(|| files.output("--output", &picture_path));
+    let picture = picture.transpose()?;
     if !args.run.force {
         disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
     }
-    let (engine, why) = &mut engine;
     let (name, adapter) = (&solver.engine, &solver.adapter);
     message(&format!("engine: {name} on {adapter} ({why})"));
 
     let start = Instant::now();
-    let mut writer = MapWriter::create(&file, &about, files.temporary())?;
-    let engine = engine.as_mut().map(|engine| &mut **engine as _);
+    let mut writer = MapWriter::create(output, &about)?;
     let keep = |panels: &mut Vec<_>| writer.write_panels(panels);
-    let summary = compute(&scene, &plan, engine, plan.cells, keep)?;
+    let summary = compute(&scene, &plan, &mut engine, plan.cells, keep)?;
     let map = writer.finish(summary.engine_cells, summary.audit)?;
     let mut written = vec![file];
-    if let Some(path) = picture {
+    if let Some(output) = picture {
         let regimes = render::map(&map.into(), &MapOptions::default())?;
-        let output = Output::create(&path, files.temporary()).map_err(unwritten(&path))?;
-        written.push(path);
-        PictureFile {
+        let picture = PictureFile {
             output,
             format: PictureFormat::Png,
             size: PictureSize::Natural,
-        }
-        .write(&regimes)?;
+        };
+        picture.write(&regimes)?;
+        written.push(picture_path);
     }
     report(&scene, &summary, start, &written)
 }

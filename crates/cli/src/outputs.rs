@@ -8,22 +8,15 @@ use clap::Args;
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use whiskmap::paper::TableRows;
 use whiskmap::render::{Chart, Picture, PictureFormat, PictureSize, Plot};
 use whiskmap::store::{Output, TableFile};
 use whiskmap::terminal::StandardOutput;
 
 /// Writes `bytes` as the whole output. Returns the path of a regular file, `None` for another output.
 pub fn write(mut output: Output, bytes: &[u8]) -> Result<Option<PathBuf>, Failure> {
-    let (path, file) = (output.path().to_owned(), regular(&output));
+    let path = output.path().to_owned();
     let written = output.write_all(bytes).and_then(|()| output.finish());
-    written.map_err(unwritten(&path))?;
-    Ok(file)
-}
-
-/// Returns the path of a regular file; `None` for another output.
-fn regular(output: &Output) -> Option<PathBuf> {
-    output.target().map(|_| output.path().to_owned())
+    written.map_err(unwritten(&path))
 }
 
 /// Open CSV table of a command's output.
@@ -43,11 +36,6 @@ impl OutputTable {
         }
     }
 
-    /// Sets the units of the table's columns.
-    pub fn in_units(self, units: ColumnUnits) -> Self {
-        Self { units, ..self }
-    }
-
     /// Appends `rows` to the CSV table.
     ///
     /// # Errors
@@ -64,24 +52,23 @@ impl OutputTable {
         written.map_err(unwritten(self.table.output().path()))
     }
 
-    /// Appends to the CSV table the rows that `write` makes.
-    pub fn write(&mut self, write: &TableRows) -> Result<(), Failure> {
-        let written = write(&mut self.table);
-        written.map_err(unwritten(self.table.output().path()))
-    }
-
-    /// Returns true for a table on standard output.
-    pub fn is_stdout(&self) -> bool {
-        self.table.output().is_stdout()
-    }
-
     /// Finishes the CSV table. Returns the path of a regular file, `None` for another output.
     pub fn finish(self) -> Result<Option<PathBuf>, Failure> {
-        let output = self.table.output();
-        let (path, file) = (output.path().to_owned(), regular(output));
-        self.table.finish().map_err(unwritten(&path))?;
-        Ok(file)
+        let path = self.table.output().path().to_owned();
+        self.table.finish().map_err(unwritten(&path))
     }
+}
+
+/// Writes the rows of a whole CSV table, if there is one. Returns the path of a regular file.
+pub fn write_table<R: Serialize>(
+    table: Option<OutputTable>,
+    rows: impl IntoIterator<Item = R>,
+) -> Result<Option<PathBuf>, Failure> {
+    let Some(mut table) = table else {
+        return Ok(None);
+    };
+    table.rows(rows)?;
+    table.finish()
 }
 
 #[derive(Debug, Args)]
@@ -93,14 +80,14 @@ pub struct OutputArgs {
     #[arg(long, value_name = "UNITS", value_delimiter = ',')]
     units: Vec<String>,
     #[command(flatten)]
-    picture: PlotArgs,
+    pub picture: PlotArgs,
 }
 
 #[derive(Debug, Args)]
 pub struct PlotArgs {
     /// Write a picture to FILE; the ending selects PNG, SVG or PDF
     #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    pub plot: Option<PathBuf>,
     #[command(flatten)]
     size: SizeArgs,
 }
@@ -112,36 +99,49 @@ pub struct OpenOutputs {
 }
 
 impl PlotArgs {
-    pub const fn is_given(&self) -> bool {
-        self.plot.is_some()
+    /// Opens the picture, whose ending selects its format; `None` without one.
+    pub fn open(&self, files: &mut Files) -> Result<Option<PictureFile>, Failure> {
+        let size = self.size.picture().map_err(Failure::Input)?;
+        let Some(path) = &self.plot else {
+            return match size {
+                PictureSize::Natural => Ok(None),
+                _ => Err(Failure::Input("--size: needs --plot".to_owned())),
+            };
+        };
+        let must = || format!("--plot {}: must end in .png, .svg or .pdf", path.display());
+        let format = PictureFormat::of(path).ok_or_else(|| Failure::Input(must()))?;
+        let output = files.output("--plot", path)?;
+        Ok(Some(PictureFile {
+            output,
+            format,
+            size,
+        }))
     }
 }
 
 impl OutputArgs {
-    pub const fn has_plot(&self) -> bool {
-        self.picture.is_given()
-    }
-
     /// Opens the CSV table and the plot, before any work.
     pub fn open(&self, files: &mut Files) -> Result<OpenOutputs, Failure> {
-        let units = ColumnUnits::new(&self.units)?;
-        let stdout = (!self.has_plot()).then(|| Path::new(STDOUT));
-        let csv = self.csv.as_deref().or(stdout);
-        let (table, plot) = open(files, "--csv", csv, &self.picture)?;
-        let table = table.map(|output| OutputTable::new(output).in_units(units));
-        Ok(OpenOutputs { table, plot })
+        let stdout = self.picture.plot.is_none().then(|| Path::new(STDOUT));
+        Ok(OpenOutputs {
+            table: self.table(files, "--csv", self.csv.as_deref().or(stdout))?,
+            plot: self.picture.open(files)?,
+        })
     }
 
-    /// Opens another CSV table, of the command-line option `option`.
+    /// Opens the CSV table of the command-line option `option`; `None` without a path.
     pub fn table(
         &self,
         files: &mut Files,
         option: &str,
-        path: &Path,
-    ) -> Result<OutputTable, Failure> {
+        path: Option<&Path>,
+    ) -> Result<Option<OutputTable>, Failure> {
         let units = ColumnUnits::new(&self.units)?;
-        let output = files.output(option, path)?;
-        Ok(OutputTable::new(output).in_units(units))
+        let output = path.map(|path| files.output(option, path)).transpose()?;
+        Ok(output.map(|output| OutputTable {
+            units,
+            ..OutputTable::new(output)
+        }))
     }
 }
 
@@ -156,42 +156,32 @@ impl OpenOutputs {
         self.finish_chart(|| Chart::single(title, plot()), [])
     }
 
-    /// Finishes the CSV table, draws the chart, and prints the names of regular files, those of `tables` too. A table on standard output
-    /// stays alone there.
+    /// Finishes the CSV table, draws the chart, and prints the names of regular files, those of `tables` too.
     pub fn finish_chart(
         self,
         chart: impl FnOnce() -> Chart,
         tables: impl IntoIterator<Item = PathBuf>,
     ) -> Result<(), Failure> {
-        self.finish_files(|file| file.chart(&chart()), tables)
+        self.finish_picture(|size| drawn(&chart(), size), tables)
     }
 
-    /// Finishes the CSV table, draws a picture of the size of the plot, and prints the names of regular files.
+    /// Finishes the CSV table, draws a picture of the size of the plot, and prints the names of regular files, those of `tables` too. A table
+    /// on standard output stays alone there.
     pub fn finish_picture(
         self,
         picture: impl FnOnce(PictureSize) -> Result<Picture, Failure>,
-    ) -> Result<(), Failure> {
-        let draw = |file: PictureFile| {
-            let picture = picture(file.size)?;
-            file.write(&picture)
-        };
-        self.finish_files(draw, [])
-    }
-
-    fn finish_files(
-        self,
-        draw: impl FnOnce(PictureFile) -> Result<Option<PathBuf>, Failure>,
         tables: impl IntoIterator<Item = PathBuf>,
     ) -> Result<(), Failure> {
-        let is_alone = self.table.as_ref().is_some_and(OutputTable::is_stdout);
+        let output = self.table.as_ref().map(|table| table.table.output());
+        let is_alone = output.is_some_and(Output::is_stdout);
         let table = self.table.map(OutputTable::finish).transpose()?;
+        let draw = |file: PictureFile| picture(file.size).and_then(|picture| file.write(&picture));
         let plot = self.plot.map(draw).transpose()?;
         if is_alone {
             return Ok(());
         }
         let mut out = StandardOutput::open();
-        let paths = [table, plot].into_iter().flatten().flatten();
-        for path in paths.chain(tables) {
+        for path in [table, plot].into_iter().flatten().flatten().chain(tables) {
             writeln!(out, "{}", path.display())?;
         }
         Ok(())
@@ -206,15 +196,10 @@ pub struct PictureFile {
 }
 
 impl PictureFile {
-    /// Draws one plot below its title into the file. Returns the path of a regular file, `None` for another output.
-    pub fn plot(self, title: String, plot: Plot) -> Result<Option<PathBuf>, Failure> {
-        self.chart(&Chart::single(title, plot))
-    }
-
     /// Draws a chart into the file. Returns the path of a regular file, `None` for another output.
     pub fn chart(self, chart: &Chart) -> Result<Option<PathBuf>, Failure> {
-        let picture = chart.picture(self.size);
-        self.write(&picture.map_err(|why| Failure::Input(format!("--size: {why}")))?)
+        let picture = drawn(chart, self.size)?;
+        self.write(&picture)
     }
 
     /// Writes the picture into the file; warns if a PNG or PDF lacks characters. Returns the path of a regular file, `None` for another output.
@@ -229,29 +214,8 @@ impl PictureFile {
     }
 }
 
-/// Opens the CSV table of `option`, and the picture of `--plot`, whose ending selects its format; `None` without one.
-pub fn open(
-    files: &mut Files,
-    option: &str,
-    data: Option<&Path>,
-    PlotArgs { plot, size }: &PlotArgs,
-) -> Result<(Option<Output>, Option<PictureFile>), Failure> {
-    let format = |path: &Path| {
-        let must = || format!("--plot {}: must end in .png, .svg or .pdf", path.display());
-        PictureFormat::of(path).ok_or_else(|| Failure::Input(must()))
-    };
-    let plot = plot.as_deref();
-    let format = plot.map(format).transpose()?;
-    let size = size.picture().map_err(Failure::Input)?;
-    if plot.is_none() && size != PictureSize::Natural {
-        return Err(Failure::Input("--size: needs --plot".to_owned()));
-    }
-    let data = data.map(|path| files.output(option, path)).transpose()?;
-    let picture = plot.map(|path| files.output("--plot", path)).transpose()?;
-    let picture = picture.zip(format).map(|(output, format)| PictureFile {
-        output,
-        format,
-        size,
-    });
-    Ok((data, picture))
+/// Draws a chart; refuses a size that is too small for it.
+fn drawn(chart: &Chart, size: PictureSize) -> Result<Picture, Failure> {
+    let refused = |why| Failure::Input(format!("--size: {why}"));
+    chart.picture(size).map_err(refused)
 }

@@ -2,8 +2,8 @@
 
 use super::data::{self, ColumnArgs};
 use super::failure::Failure;
-use super::files::Files;
-use super::outputs::{OutputTable, PictureFile};
+use super::files::{Files, unwritten};
+use super::outputs::PictureFile;
 use super::size::SizeArgs;
 use clap::{ArgGroup, Args};
 use std::io::Write;
@@ -12,6 +12,7 @@ use whiskmap::measured::{MeasuredAngle, MeasuredPoint};
 use whiskmap::paper::{self, FIG4_WHISKER, FIG5_LEFT, FIG5_RIGHT, Measurements, POLE};
 use whiskmap::render::PictureFormat;
 use whiskmap::scene::Whisker;
+use whiskmap::store::TableFile;
 use whiskmap::terminal::StandardOutput;
 
 #[derive(Debug, Args)]
@@ -121,9 +122,9 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
         }
         for ((_, rows), output) in figure.tables.iter().zip(tables) {
             let path = output.path().to_owned();
-            let mut table = OutputTable::new(output);
-            table.write(rows)?;
-            table.finish()?;
+            let mut table = TableFile::new(output);
+            let written = rows(&mut table).and_then(|()| table.finish());
+            written.map_err(unwritten(&path))?;
             writeln!(out, "{}", path.display())?;
         }
     }

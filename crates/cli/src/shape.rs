@@ -4,7 +4,7 @@ use super::arguments::{angle, column_help, side, whole};
 use super::failure::Failure;
 use super::files::Files;
 use super::marks::{MARKS, Marked};
-use super::outputs::OutputArgs;
+use super::outputs::{OutputArgs, write_table};
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -70,10 +70,8 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         return Err(Failure::Input(why));
     }
     let mut outputs = args.outputs.open(files)?;
-    let state_path = args.state.as_deref();
-    let state_table = state_path
-        .map(|path| args.outputs.table(files, "--state", path))
-        .transpose()?;
+    let state = args.state.as_deref();
+    let state_table = args.outputs.table(files, "--state", state)?;
     let side = args.side.unwrap_or(Side::of_push(push_deg));
     let stable = args.branch == BranchPart::Stable;
     let refused = |why| match why {
@@ -95,12 +93,8 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let shape = WhiskerShape::new(&branch, &state.map_err(refused)?, count);
     let points = shape.points.iter();
     outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point.strain))))?;
-    let state_file = state_table.map(|mut table| {
-        let mark = YieldMark::new(&whisker, shape.state.peak_strain);
-        table.rows([Marked(&shape.state, mark)])?;
-        table.finish()
-    });
-    let state_file = state_file.transpose()?.flatten();
+    let mark = YieldMark::new(&whisker, shape.state.peak_strain);
+    let state_file = write_table(state_table, [Marked(&shape.state, mark)])?;
     let (stroke, name) = if stable {
         (Stroke::Solid, "stable")
     } else {

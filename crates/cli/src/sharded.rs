@@ -1,11 +1,11 @@
 //! Command `whiskmap map --format zarr`: computation of some blocks of a store.
 
 use super::disk;
-use super::engine::OpenEngine;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::map_format::MapFormat;
-use super::summary::{compute, report};
+use super::solver::compute;
+use super::summary::report;
 use clap::Args;
 use rayon::prelude::*;
 use std::iter::Sum;
@@ -15,6 +15,7 @@ use std::path::Path;
 use std::str::FromStr;
 use std::thread::{self, ScopedJoinHandle};
 use std::time::Instant;
+use whiskmap::engine::Engine;
 use whiskmap::map::Panel;
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
@@ -109,7 +110,7 @@ pub fn fill(
     scene: &Scene,
     mut plan: Plan,
     about: &MapDescription<'_>,
-    (engine, why): &mut OpenEngine,
+    (engine, why): (&mut Option<Box<dyn Engine>>, &str),
 ) -> Result<(), Failure> {
     files.store("--output", path)?;
     let temporary = files.temporary();
@@ -184,13 +185,7 @@ pub fn fill(
             }
             Ok(())
         };
-        let summary = compute(
-            scene,
-            &plan,
-            engine.as_mut().map(|engine| &mut **engine as _),
-            cells_of_panel * whiskers,
-            keep,
-        )?;
+        let summary = compute(scene, &plan, engine, cells_of_panel * whiskers, keep)?;
         written(writing)?;
         Ok::<_, Failure>(summary)
     })?;

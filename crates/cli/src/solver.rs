@@ -1,12 +1,17 @@
-//! Options `--engine` and `--tolerance`: the solver of a map.
+//! Solver of a map: options `--engine` and `--tolerance`, the plan, the engine, and the computation.
 
 use super::engine::{EngineArgs, OpenEngine};
 use super::failure::{Failure, message};
+use super::progress::Progress;
 use super::tolerance::ToleranceArgs;
 use clap::Args;
+use std::ops::ControlFlow;
 use whiskmap::compute::PlannedMap;
+use whiskmap::engine::Engine;
+use whiskmap::map::{self, Panel, Summary};
 use whiskmap::plan::{Channels, Plan};
 use whiskmap::scene::Scene;
+use whiskmap::store::StoreError;
 
 #[derive(Debug, Default, Args)]
 pub struct SolverArgs {
@@ -46,4 +51,30 @@ impl SolverArgs {
         let tolerance = self.tolerance.degrees().map(|_| "--tolerance");
         self.engine.given().or(tolerance)
     }
+}
+
+/// Computes `cells` of `plan` by an open engine, or by the CPU engine without one, with a progress bar, and passes panels to `keep`. Warns if the
+/// engine fails.
+pub fn compute(
+    scene: &Scene,
+    plan: &Plan,
+    engine: &mut Option<Box<dyn Engine>>,
+    cells: usize,
+    mut keep: impl FnMut(&mut Vec<Panel>) -> Result<(), StoreError> + Send,
+) -> Result<Summary, Failure> {
+    let engine = engine.as_mut().map(|engine| &mut **engine as _);
+    let bar = Progress::over(cells, "cells");
+    let mut on_progress = |cells| {
+        bar.inc(cells);
+        ControlFlow::Continue(())
+    };
+    let result = map::run(scene, plan, engine, &mut on_progress, &mut keep);
+    bar.finish();
+    let summary = result?;
+    if let Some(failure) = &summary.engine_failure {
+        message(&format!(
+            "warning: {failure}; the CPU solved the remaining cells"
+        ));
+    }
+    Ok(summary)
 }

@@ -1,42 +1,13 @@
 //! Summary of a run of the command `map` on standard output.
 
-use super::failure::{Failure, check_resolved, message};
-use super::progress::Progress;
+use super::failure::{Failure, check_resolved};
 use std::io::{self, Write};
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 use whiskmap::classify::Regime;
-use whiskmap::engine::Engine;
-use whiskmap::map::{self, EngineCells, Panel, Stage, Summary};
-use whiskmap::plan::Plan;
+use whiskmap::map::{EngineCells, Stage, Summary};
 use whiskmap::scene::Scene;
-use whiskmap::store::StoreError;
 use whiskmap::terminal::StandardOutput;
-
-/// Computes `cells` of `plan` with a progress bar, and passes panels to `keep`; warns if the engine fails.
-pub fn compute(
-    scene: &Scene,
-    plan: &Plan,
-    engine: Option<&mut dyn Engine>,
-    cells: usize,
-    mut keep: impl FnMut(&mut Vec<Panel>) -> Result<(), StoreError> + Send,
-) -> Result<Summary, Failure> {
-    let bar = Progress::over(cells, "cells");
-    let mut on_progress = |cells| {
-        bar.inc(cells);
-        ControlFlow::Continue(())
-    };
-    let result = map::run(scene, plan, engine, &mut on_progress, &mut keep);
-    bar.finish();
-    let summary = result?;
-    if let Some(failure) = &summary.engine_failure {
-        message(&format!(
-            "warning: {failure}; the CPU solved the remaining cells"
-        ));
-    }
-    Ok(summary)
-}
 
 /// Prints the summary of a map since `start` and the names of its `files`; warns of unresolved cells.
 ///

@@ -5,7 +5,7 @@ use super::course::CourseArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
-use super::outputs::{OutputArgs, OutputTable};
+use super::outputs::{OutputArgs, write_table};
 use super::pole::WhiskerArgs;
 use clap::Args;
 use std::path::PathBuf;
@@ -77,10 +77,8 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let course = args.course.course(files)?;
     let mut outputs = args.outputs.open(files)?;
-    let mut table = |option, path: &Option<PathBuf>| {
-        let open = |path: &PathBuf| args.outputs.table(files, option, path);
-        path.as_ref().map(open).transpose()
-    };
+    let mut table =
+        |option, path: &Option<PathBuf>| args.outputs.table(files, option, path.as_deref());
     let events = table("--events", &args.events)?;
     let dwells = table("--dwells", &args.dwells)?;
     let histogram = table("--histogram", &args.histogram)?;
@@ -103,27 +101,15 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     let marks = StrainMark::of_rows(&scene.whisker, &surface.asperity(), &found.samples);
     outputs.rows(marked(&found.samples, marks))?;
     let paths = [
-        written(events, &found.events)?,
-        written(dwells, &found.stays())?,
-        written(histogram, &found.tip_histogram())?,
+        write_table(events, &found.events)?,
+        write_table(dwells, found.stays())?,
+        write_table(histogram, found.tip_histogram())?,
     ];
     summarise(&found);
     outputs.finish_chart(
         || textures(&scene.title, &found),
         paths.into_iter().flatten(),
     )
-}
-
-/// Writes the rows of a table, if there is one. Returns the path of a regular file.
-fn written<R: serde::Serialize>(
-    table: Option<OutputTable>,
-    rows: &[R],
-) -> Result<Option<PathBuf>, Failure> {
-    let Some(mut table) = table else {
-        return Ok(None);
-    };
-    table.rows(rows)?;
-    table.finish()
 }
 
 /// Prints the number of events, the energy that detachments lose, and the part of the samples in each phase.

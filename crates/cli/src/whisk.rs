@@ -5,7 +5,7 @@ use super::course::CourseArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
-use super::outputs::OutputArgs;
+use super::outputs::{OutputArgs, write_table};
 use super::pole::{self, PoleArgs, refuse, title};
 use clap::{ArgGroup, Args, ValueEnum};
 use std::path::PathBuf;
@@ -67,10 +67,8 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let (scene, whisker) = pole::read(files, &args.pole.whisker, "whisk", &[distance])?;
     let course = args.course.course(files)?;
     let mut outputs = args.outputs.open(files)?;
-    let event_path = args.events.as_deref();
-    let event_table = event_path
-        .map(|path| args.outputs.table(files, "--events", path))
-        .transpose()?;
+    let events = args.events.as_deref();
+    let events = args.outputs.table(files, "--events", events)?;
     let mut options = WhiskOptions::default();
     options.start = args.start.map(|start| match start {
         StartChoice::Free => CourseStart::Free,
@@ -87,13 +85,9 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     })?;
     let marks = StrainMark::of_rows(&whisker, &scene.pole, &found.samples);
     outputs.rows(marked(&found.samples, marks))?;
-    let events = event_table.map(|mut table| {
-        table.rows(&found.events)?;
-        table.finish()
-    });
-    let events = events.transpose()?.flatten();
+    let event_file = write_table(events, &found.events)?;
     summarise(&found);
-    outputs.finish_chart(|| courses(&title(&scene, &[distance]), &found), events)
+    outputs.finish_chart(|| courses(&title(&scene, &[distance]), &found), event_file)
 }
 
 /// Prints the number of events of each kind, the energies that detachments lose and that friction dissipates, and warnings.

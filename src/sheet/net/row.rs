@@ -38,43 +38,32 @@ pub struct NetRow {
     pub end: f64,
 }
 
-/// Points of a row, with the parameters that its numbers need.
-pub(super) struct RowLine<'a> {
-    case: SheetCase<'a>,
-    row: &'a Row,
-    line: &'a PanelLine<FUNCTIONS>,
-}
-
-impl<'a> RowLine<'a> {
-    pub const fn new(case: SheetCase<'a>, row: &'a Row, line: &'a PanelLine<FUNCTIONS>) -> Self {
-        Self { case, row, line }
-    }
-
-    /// Returns the states of the row.
-    pub fn row(&self) -> NetRow {
+impl NetRow {
+    /// Computes the states at the points of `line`, which belongs to this `row`.
+    pub(super) fn of(case: SheetCase, row: &Row, line: &PanelLine<FUNCTIONS>) -> Self {
         let unit = Unit::detect();
-        let (touch, points) = (self.row.touch, &self.line.points);
+        let (touch, points) = (row.touch, &line.points);
         // Angle of the contact's tangent from the normal of the force.
-        let tilt = self.case.rod.contact_tangent().to_angle();
+        let tilt = case.rod.contact_tangent().to_angle();
         // The first state is next to first touch.
         let turned = nearest_turn(touch, points[0].values[1][0]);
-        let parts = self.line.parts.chunks(WIDTH);
+        let parts = line.parts.chunks(WIDTH);
         let blocks = points.iter().zip(parts).map(|(points, parts)| {
             let mut padded = [0.0; WIDTH];
             padded[..parts.len()].copy_from_slice(parts);
             unit.run(States {
                 points,
                 parts: &padded,
-                taper: self.case.rod.taper,
-                sign: self.case.side.sign(),
+                taper: case.rod.taper,
+                sign: case.side.sign(),
                 tilt,
                 turned,
                 turns: turned - touch,
             })
         });
-        NetRow {
+        Self {
             blocks: blocks.collect(),
-            end: self.line.end,
+            end: line.end,
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::bound::{MARGIN, SMALLEST_RESIDUAL, VALUE_WEIGHT, larger};
 use super::certificate::certified;
 use super::panel::{NetPanel, along, contacts_of};
-use super::row::{FUNCTIONS, NetRow, RowLine};
+use super::row::{FUNCTIONS, NetRow};
 use super::size::NetSize;
 use super::{Attempt, PanelQueue, PanelRow, Panels};
 use crate::plan::net_cost;
@@ -241,7 +241,7 @@ impl ValuePanel {
         let is_loaded = part >= SMALLEST_END;
         let place = &sheet.rows[row];
         let line = is_loaded.then(|| self.panel.line(place, [0.0, part]))??;
-        Some(RowLine::new(sheet.case(), place, &line).row())
+        Some(NetRow::of(sheet.case(), place, &line))
     }
 }
 

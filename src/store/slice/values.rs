@@ -1,9 +1,9 @@
 //! Values of slices: channels, panels, and the codes that occur.
 
 use super::MapSlice;
-use crate::store::{
-    ChannelValues, Channels, MapSource, NOT_COMPUTED, Panel, STATE_CHANNELS, StoreError,
-};
+use crate::map::Panel;
+use crate::plan::{Channels, STATE_CHANNELS};
+use crate::store::{ChannelValues, MapSource, NOT_COMPUTED, StoreError};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl MapSlice {

@@ -28,8 +28,8 @@ impl ZarrStore {
         let made = temporary.create_folders(&self.path);
         made.map_err(StoreError::at(&self.path, StoreError::Write))?;
         let root = self.path.join(METADATA);
-        let created = finish(&root, &[self.root()], temporary, Output::finish_new);
-        match created {
+        let created = create(&root, &[self.root()], temporary, false);
+        match created.and_then(|()| sync_folder(&self.path)) {
             Err(why) if why.kind() == io::ErrorKind::AlreadyExists => self.agree()?,
             created => created.map_err(StoreError::at(&root, StoreError::Write))?,
         }
@@ -194,15 +194,16 @@ pub(super) fn write(
     pieces: &[impl AsRef<[u8]>],
     temporary: &TemporaryFiles,
 ) -> Result<(), StoreError> {
-    let written = finish(path, pieces, temporary, Output::finish_before_sync);
+    let written = create(path, pieces, temporary, true);
     written.map_err(StoreError::at(path, StoreError::Write))
 }
 
-fn finish(
+/// Writes a file as [`write`] does; unless it `may_replace` one, no file may be there.
+fn create(
     path: &Path,
     pieces: &[impl AsRef<[u8]>],
     temporary: &TemporaryFiles,
-    finish: fn(Output) -> io::Result<()>,
+    may_replace: bool,
 ) -> io::Result<()> {
     let mut output = Output::create(path, temporary)?;
     if output.target().is_none() {
@@ -210,5 +211,5 @@ fn finish(
     }
     let mut pieces = pieces.iter();
     pieces.try_for_each(|piece| output.write_all(piece.as_ref()))?;
-    finish(output)
+    output.persist(may_replace).map(drop)
 }

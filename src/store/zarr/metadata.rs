@@ -8,10 +8,10 @@ use super::encoding::ValueKind::{self, Code, Count};
 use super::identity::{AGREED, IDENTITY, StoreIdentity};
 use crate::classify::Regime;
 use crate::plan::channels::CHANNELS;
-use crate::plan::{Digits, STATE_CHANNELS};
+use crate::plan::{Channels, Digits, STATE_CHANNELS};
 use crate::scene::{Coordinate, Grid, Parameter, SceneData};
+use crate::store::MapDescription;
 use crate::store::attributes::{DIGITS, digits};
-use crate::store::{Channels, MapDescription};
 use serde_json::{Map, Value, json};
 
 /// Name of the array with the number of cells of each regime: `[sweep axes.., regime]`.

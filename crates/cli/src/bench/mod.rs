@@ -5,7 +5,7 @@ mod tables;
 
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
-use super::outputs::{PlotArgs, open, write};
+use super::outputs::{PlotArgs, write};
 use clap::Args;
 use plot::chart;
 use std::io::IsTerminal;
@@ -59,7 +59,8 @@ pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
     peers.inspect(|path| files.input(path));
     let peers = peers.map(Peers::read).transpose()?;
     let json = args.json.as_deref();
-    let (output, picture) = open(files, "--json", json, &args.picture)?;
+    let output = json.map(|path| files.output("--json", path)).transpose()?;
+    let picture = args.picture.open(files)?;
     let effort = if args.quick {
         Effort::QUICK
     } else {

@@ -138,7 +138,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let variables = args.derivatives.variables(&scene, &[])?;
     let whiskers = scene.whisker_count();
-    if args.outputs.has_plot() && whiskers > MOST_WHISKERS {
+    if args.outputs.picture.plot.is_some() && whiskers > MOST_WHISKERS {
         let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
         let (keys, values): (Vec<_>, Vec<_>) = axes
             .map(|axis| {
@@ -180,29 +180,16 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         })?;
         return uncertainty::check(&rows, &draws);
     }
+    if args.corner {
+        return corners(&scene, outputs);
+    }
     let unmarked = scene.has_yield_strain().then(PushMark::default);
     let (mut unresolved, mut all) = (0, 0);
     let mut yielding = Vec::new();
     let distances = &scene.grid.distance_mm;
-    let of_side = if args.corner { 1 } else { distances.len() };
-    let bar = Progress::over(whiskers * Side::BOTH.len() * of_side, "ends");
+    let bar = Progress::over(whiskers * Side::BOTH.len() * distances.len(), "ends");
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
-        if args.corner {
-            let corner = |swept: Result<&SweptWhisker, &RefusedWhisker>, side| {
-                bar.inc(1);
-                vec![match swept {
-                    Ok(swept) => {
-                        let corner = trace::corner(&swept.whisker, &swept.pole, side);
-                        let mark = PushMark::of_corner(&swept.whisker, &swept.pole, &corner);
-                        Marked(corner, mark.or(unmarked))
-                    }
-                    Err(_) => Marked(Corner::without_whisker(side), unmarked),
-                }]
-            };
-            write(&scene, &mut outputs, &trace::sides(&group, corner))?;
-            continue;
-        }
         let row = |DetachmentDerivatives { end, by }, mark: Option<PushMark>| {
             let columns = DerivativeColumns {
                 variables: &variables,
@@ -248,6 +235,29 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         plot
     })?;
     check_resolved(unresolved, all, "ends", "the column `kind`")
+}
+
+/// Writes the corner of each side of each whisker.
+fn corners(scene: &Scene, mut outputs: OpenOutputs) -> Result<(), Failure> {
+    let unmarked = scene.has_yield_strain().then(PushMark::default);
+    let bar = Progress::over(scene.whisker_count() * Side::BOTH.len(), "corners");
+    for group in scene.whisker_groups(trace::whiskers_at_once(1)) {
+        let corner = |swept: Result<&SweptWhisker, &RefusedWhisker>, side| {
+            bar.inc(1);
+            vec![match swept {
+                Ok(SweptWhisker { whisker, pole, .. }) => {
+                    let corner = trace::corner(whisker, pole, side);
+                    let mark = PushMark::of_corner(whisker, pole, &corner);
+                    Marked(corner, mark.or(unmarked))
+                }
+                Err(_) => Marked(Corner::without_whisker(side), unmarked),
+            }]
+        };
+        write(scene, &mut outputs, &trace::sides(&group, corner))?;
+    }
+    bar.finish();
+    // Options refuse a plot of corners.
+    outputs.finish(String::new(), Plot::default)
 }
 
 /// Detachment with its derivatives, and its mark.

@@ -7,7 +7,7 @@ mod solutions;
 use super::arguments::side;
 use super::failure::Failure;
 use super::files::Files;
-use super::outputs::{PictureFile, PlotArgs, open, write};
+use super::outputs::{PictureFile, PlotArgs, write};
 use super::pole::{self, WhiskerArgs, title};
 use clap::Args;
 use messages::{name_strains, refused, unreached, unreached_together};
@@ -18,7 +18,7 @@ use whiskmap::Side;
 use whiskmap::design::{
     Design, DesignTarget, DesignVariable, DesignVaried, design, designs, ends_between,
 };
-use whiskmap::render::designs as chart;
+use whiskmap::render::{Chart, designs as chart};
 use whiskmap::scene::{Scene, digits, rounded};
 use whiskmap::sensitivity::Variable;
 
@@ -73,7 +73,11 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     pole::check_distances(&scene, &[distance_mm])?;
     let asked = args.targets(distance_mm)?;
     args.check(&varied, &asked)?;
-    let (better, picture) = open(files, "--output", args.output.as_deref(), &args.picture)?;
+    let better = args.output.as_deref();
+    let better = better
+        .map(|path| files.output("--output", path))
+        .transpose()?;
+    let picture = args.picture.open(files)?;
     let solutions = match &asked[..] {
         [one] => {
             let found =
@@ -128,7 +132,8 @@ fn plot(
         values: found.values.clone(),
     };
     let chart = chart(varied.variables[0].variable, target, &near);
-    picture.plot(heading(scene, varied, target.distance_mm), chart)?;
+    let title = heading(scene, varied, target.distance_mm);
+    picture.chart(&Chart::single(title, chart))?;
     Ok(())
 }
 

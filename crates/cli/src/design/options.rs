@@ -243,7 +243,7 @@ impl DesignArgs {
                 "--output: must be left out with --for distance_mm, which is no number of a scene";
             return Err(Failure::Input(why.to_owned()));
         }
-        if self.picture.is_given() && variables.len() > 1 {
+        if self.picture.plot.is_some() && variables.len() > 1 {
             let why = "--plot: must be left out with several parameters; it shows one";
             return Err(Failure::Input(why.to_owned()));
         }

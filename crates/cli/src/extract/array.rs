@@ -41,7 +41,7 @@ pub fn array(
     }
     let output = file.into_inner().map_err(IntoInnerError::into_error);
     let done = output.and_then(Output::finish);
-    done.map_err(unwritten(path))
+    done.map(drop).map_err(unwritten(path))
 }
 
 /// Returns the header of a NumPy file, version 1.0.

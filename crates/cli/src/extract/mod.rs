@@ -14,8 +14,8 @@ use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::engine;
-use whiskmap::map::{Audit, Channels, EngineCells};
-use whiskmap::plan::Digits;
+use whiskmap::map::{Audit, EngineCells};
+use whiskmap::plan::{Channels, Digits};
 use whiskmap::scene::{LONGEST_TITLE, Scene, SceneData};
 use whiskmap::store::{MapDescription, MapSlice, MapWriter, TemporaryFolder, ZarrStore};
 use whiskmap::terminal::StandardOutput;
@@ -101,8 +101,7 @@ fn map(
         ..SceneData::clone(&scene)
     };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
-    files.output("--output", path)?;
-    let mut writer = MapWriter::create(path, &about, files.temporary())?;
+    let mut writer = MapWriter::create(files.output("--output", path)?, &about)?;
     for whisker in 0..slice.grid().whisker_count() {
         writer.write_panels(&[slice.panel(about.channels, whisker)?])?;
     }

@@ -4,7 +4,7 @@ mod print;
 
 use super::arguments::whole;
 use super::engine::EngineArgs;
-use super::estimate::{FileCost, MapCost, estimate, files};
+use super::estimate::{FileCost, MapCost, estimate, file_costs};
 use super::failure::Failure;
 use super::map::MapArgs;
 use super::map_format::MapFormat;
@@ -73,7 +73,7 @@ impl PlanEstimate {
         let description = EngineDescription::of(engine.as_deref()).engine;
         Ok(Self {
             cost: estimate(scene, &plan, &mut engine, SAMPLE_SECONDS)?,
-            files: files(scene, &plan, formats)?,
+            files: file_costs(scene, &plan, formats)?,
             plan,
             engine: (description, why),
             may_use_gpu: options.may_use_gpu(),
