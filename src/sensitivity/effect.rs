@@ -61,14 +61,16 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
     let of_side = |side: Side| {
         let ends = detachments(whisker, pole, side, &[distance_mm], &variables);
         let branch = StableBranch::new(whisker, pole, side, distance_mm).ok();
-        let loads = PushLoad::ALL.map(|load| {
+        let loads = [PushLoad::ContactForce, PushLoad::BaseMoment].map(|load| {
             let (branch, end) = (branch.as_ref()?, || ends.first().cloned());
             largest_along(branch, (whisker, pole), distance_mm, load, &variables, end).ok()
         });
-        let [force, moment, strain] = &loads;
+        let [force, moment] = &loads;
+        let strain = branch.as_ref().map(|branch| branch.peak(PushLoad::Strain));
+        let known = |size: &f64| !size.is_nan();
         let size = |load: &Option<LargestLoad>| {
             let size = load.as_ref().map(|load| load.peak.size);
-            size.filter(|size| !size.is_nan())
+            size.filter(known)
         };
         let slope = |load: &Option<LargestLoad>, i: usize| load.as_ref()?.by.get(i)?.ok();
         let row = |detachment: super::DetachmentDerivatives| {
@@ -97,7 +99,7 @@ pub fn effects(scene: &Scene, distance_mm: f64) -> Vec<VariableEffect> {
                         d_max_contact_force_un: slope(force, i),
                         max_base_moment_nnm: size(moment),
                         d_max_base_moment_nnm: slope(moment, i),
-                        max_strain: size(strain),
+                        max_strain: strain.map(|peak| peak.size).filter(known),
                         reason: by.err(),
                     }
                 })

@@ -1,8 +1,9 @@
 //! Derivatives of the largest loads of pushes.
 
-use super::{Derivatives, DetachmentDerivatives, NoDerivative, Variable, detachments, state};
+use super::differentiated::Differentiated;
+use super::{Derivatives, DetachmentDerivatives, NoDerivative, Variable, detachments};
 use crate::scene::{Pole, Whisker};
-use crate::trace::{NoState, PushLoad, PushPeak, StableBranch};
+use crate::trace::{FINER, NoState, PushLoad, PushPeak, StableBranch};
 use whiskmap_mechanics::rod::Side;
 
 /// Largest size of a load during a push, with its derivatives.
@@ -58,8 +59,11 @@ pub(super) fn largest_along(
             },
         ),
         Some(push_deg) => {
-            let found = state(whisker, pole, distance_mm, push_deg, variables)?;
-            (found.point.base_moment_nnm, found.by)
+            let state = branch.state(push_deg.to_radians())?;
+            let side = Side::of_push(push_deg);
+            let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
+            let by = differentiated.of_state(&state, distance_mm);
+            (branch.read(&state).base_moment_nnm, by)
         }
     };
     let quantity = |by: Derivatives| match load {

@@ -276,11 +276,9 @@ pub fn whisk_with(
     }
     let centre_mm = DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm);
     let fixed_pole = (centre_mm, pole.radius_mm);
-    let mut samples: Vec<WhiskSample> = known
-        .iter()
-        .zip(samples)
-        .map(|(&i, sample)| sample.at(course.times_s[i], course.angles_deg[i], fixed_pole))
-        .collect();
+    for (&i, sample) in known.iter().zip(&mut samples) {
+        *sample = sample.at(course.times_s[i], course.angles_deg[i], fixed_pole);
+    }
     samples.extend(gaps.iter().flat_map(|gap| gap.samples(&course.times_s)));
     samples.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
     Ok(Whisk {

@@ -104,6 +104,7 @@ Examples:
   whiskmap man curve | man -l -";
 
 #[derive(Debug, Subcommand)]
+#[command(defer = true)]
 enum Command {
     /// Compute the regime map of a scene, as EXR and PNG or as a Zarr store
     Map(map::MapArgs),
