@@ -22,7 +22,7 @@ pub use columns::{Column, SideColumns};
 pub use cpu::Cpu;
 pub use nodes::Nodes;
 pub use row::RowExpansion;
-pub use side::{FORCE, Values, WhiskerSide};
+pub use side::{Values, WhiskerSide};
 pub use spectral::Spectral;
 pub use worker::Worker;
 

@@ -16,9 +16,6 @@ use whiskmap_mechanics::shooting::{FullState, PeakStrain, Reader};
 /// Channel values of a state in map units, `[channel]`, in the order of [`STATE_CHANNELS`].
 pub type Values = [f64; STATE_CHANNELS.len()];
 
-/// Index of the contact force in [`STATE_CHANNELS`].
-pub const FORCE: usize = 2;
-
 /// Whisker side: its sheet, its columns of the map, and the units.
 #[derive(Debug)]
 pub struct WhiskerSide {
@@ -54,15 +51,10 @@ impl WhiskerSide {
     /// Returns this whisker side with a net that has states with a residual of at most `most` whisker lengths, for the rows whose cells take
     /// more time by trajectories.
     #[must_use]
-    pub fn with_net(self, most: f64) -> Self {
+    pub fn with_net(mut self, most: f64) -> Self {
         let net = self.net(most);
-        self.with_value_net(net)
-    }
-
-    /// Returns this whisker side with a `net` of its sheet.
-    pub(crate) fn with_value_net(self, net: Option<ValueNet>) -> Self {
-        let sheet = self.sheet.with_net(net);
-        Self { sheet, ..self }
+        self.sheet.set_net(net);
+        self
     }
 
     /// Computes the net of this whisker side, as [`Self::with_net`] adds it.

@@ -44,7 +44,7 @@ pub fn run<E: Send>(
 ) -> Result<Summary, E> {
     let description = EngineDescription::of(engine.as_deref());
     let (start, cpu_start) = (Stopwatch::start(), process_seconds());
-    let net = engine.as_ref().map(|engine| engine.row_residual());
+    let row_residual = engine.as_ref().map(|engine| engine.row_residual());
     let has_device = engine.as_ref().is_some_and(|engine| engine.has_device());
     let effects = plan.method.effects;
     let integrates = engine
@@ -52,7 +52,7 @@ pub fn run<E: Send>(
         .is_some_and(|engine| engine.integrates_nodes(effects));
     let mut packing = StageTimes::default();
     let mut summary = Worker::with(engine, has_device, |worker| {
-        let mut pipeline = Pipeline::new(scene, plan, worker, (net, integrates));
+        let mut pipeline = Pipeline::new(scene, plan, worker, (row_residual, integrates));
         let mut finished: Vec<Panel> = Vec::new();
         let mut is_open = true;
         while is_open {

@@ -81,7 +81,10 @@ impl PendingNets {
             self.submit(worker);
         }
         let all = self.sides.into_iter().zip(self.drafts);
-        let all = all.map(|(side, draft)| side.with_value_net(draft.and_then(ValueDraft::finish)));
+        let all = all.map(|(mut side, draft)| {
+            side.sheet.set_net(draft.and_then(ValueDraft::finish));
+            side
+        });
         (all.collect(), waited)
     }
 }

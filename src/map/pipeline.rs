@@ -61,7 +61,7 @@ pub struct Pipeline<'a, 'e> {
     /// True if the engine integrates the trajectories of nets.
     engine_integrates: bool,
     /// Maximum residual of the rows of an engine, in whisker lengths; `None` without an engine.
-    net: Option<f64>,
+    row_residual: Option<f64>,
     summary: Summary,
 }
 
@@ -88,13 +88,13 @@ struct Queued {
 }
 
 impl<'a, 'e> Pipeline<'a, 'e> {
-    /// Creates the pipeline of a run. With an engine, the residual of a `net` is at most this, in whisker lengths, and the engine may integrate
-    /// the trajectories of nets.
+    /// Creates the pipeline of a run. With an engine, the residual of its rows is at most `row_residual`, in whisker lengths, and the engine may
+    /// integrate the trajectories of nets.
     pub fn new(
         scene: &'a Scene,
         plan: &'a Plan,
         worker: Worker<'e>,
-        (net, engine_integrates): (Option<f64>, bool),
+        (row_residual, engine_integrates): (Option<f64>, bool),
     ) -> Self {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
@@ -102,7 +102,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let (columns, pushes) = side_columns(push_angle_deg, &plan.sides);
         let has_device = worker.has_thread();
         let mut method = plan.method;
-        if net.is_some() {
+        if row_residual.is_some() {
             // Coarser steps are so few that their number changes along a row: states would not be analytic.
             method.resolution = method.resolution.at_least_fine();
         }
@@ -110,7 +110,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             scene,
             plan,
             method,
-            rows_at_once: match net {
+            rows_at_once: match row_residual {
                 // After a failed audit, the CPU engine solves the batches that follow. So that equal runs write equal bytes, batches must not depend
                 // on the number of threads.
                 Some(_) if !has_device => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
@@ -128,7 +128,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             queue: VecDeque::new(),
             worker,
             cpu: Cpu::default(),
-            net,
+            row_residual,
             has_device,
             engine_integrates,
             summary: Summary::default(),
@@ -179,7 +179,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         }
         summary.trajectories = self.worker.trajectories;
         summary.engine_failure = self.worker.failure;
-        if self.net.is_none() {
+        if self.row_residual.is_none() {
             summary.engine_cells = EngineCells::default();
         }
         summary
@@ -232,7 +232,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             (Some(drafted), _) => drafted,
             (None, Some(most)) => self.draft_next(most)?,
             (None, None) => {
-                let (sides, without_whisker) = self.sides_of_next(self.net)?;
+                let (sides, without_whisker) = self.sides_of_next(self.row_residual)?;
                 return Some(Group {
                     sides: sides.into(),
                     without_whisker,
@@ -252,7 +252,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
     /// Returns the residual of nets, in whisker lengths, if a device integrates their trajectories.
     fn on_device(&self) -> Option<f64> {
         let integrates = self.engine_integrates && self.worker.has_thread();
-        self.net.filter(|_| integrates)
+        self.row_residual.filter(|_| integrates)
     }
 
     /// Begins the nets of the next group, with a residual of at most `most` whisker lengths.
@@ -267,7 +267,10 @@ impl<'a, 'e> Pipeline<'a, 'e> {
     }
 
     /// Computes the sides of the next group, with nets of this residual, and returns them with the places of rows without a whisker.
-    fn sides_of_next(&mut self, net: Option<f64>) -> Option<(Vec<WhiskerSide>, Arc<[usize]>)> {
+    fn sides_of_next(
+        &mut self,
+        row_residual: Option<f64>,
+    ) -> Option<(Vec<WhiskerSide>, Arc<[usize]>)> {
         let whiskers = self.groups.next()?;
         let (mut found, mut without_whisker) = (Vec::new(), Vec::new());
         for (place, index) in whiskers.enumerate() {
@@ -276,8 +279,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 Err(_) => without_whisker.push(place),
             }
         }
-        let net = net.filter(|_| self.worker.is_working());
-        let of_plan = (self.plan, self.method, net);
+        let row_residual = row_residual.filter(|_| self.worker.is_working());
+        let of_plan = (self.plan, self.method, row_residual);
         let sides = || whisker_sides(self.scene, of_plan, &self.columns, &found);
         let sides = self.summary.stages.time(Stage::Sheets, sides);
         Some((sides, without_whisker.into()))
@@ -309,7 +312,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         });
         let mut batch = RowBatch::new(method, Arc::clone(sides), Arc::clone(&self.pushes), rows);
         batch.channels = self.plan.channels;
-        if let Some(most) = self.net
+        if let Some(most) = self.row_residual
             && self.worker.is_working()
         {
             let times = &mut self.summary.stages;
@@ -343,7 +346,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let summary = &mut self.summary;
         let has_failed = self.worker.failure.is_some();
         let counts = &mut summary.engine_cells;
-        let bounds = (self.worker.residual_bound, self.net.unwrap_or(0.0));
+        let bounds = (self.worker.residual_bound, self.row_residual.unwrap_or(0.0));
         let cells = cells.map(|cells| (cells, bounds));
         let (cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;

@@ -23,10 +23,10 @@ pub fn side_columns(push_angle_deg: &[f64], sides: &[Side]) -> (Vec<Arc<SideColu
 }
 
 /// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the channels of the plan. If an engine evaluates
-/// rows, each side gets a `net` with this residual, in whisker lengths.
+/// rows, each side gets a net whose rows have at most `row_residual`, in whisker lengths.
 pub fn whisker_sides(
     scene: &Scene,
-    (plan, method, net): (&Plan, Method, Option<f64>),
+    (plan, method, row_residual): (&Plan, Method, Option<f64>),
     columns: &[Arc<SideColumns>],
     whiskers: &[SweptWhisker],
 ) -> Vec<WhiskerSide> {
@@ -46,7 +46,7 @@ pub fn whisker_sides(
             side.push_derivatives =
                 of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
         }
-        match net {
+        match row_residual {
             Some(most) => side.with_net(most),
             None => side,
         }

@@ -235,10 +235,9 @@ impl Sheet {
         (is_simple && !self.is_continued()).then_some(end)
     }
 
-    /// Returns this sheet with its `net` for an engine.
-    #[must_use]
-    pub fn with_net(self, net: Option<ValueNet>) -> Self {
-        Self { net, ..self }
+    /// Sets the `net` of this sheet for an engine.
+    pub fn set_net(&mut self, net: Option<ValueNet>) {
+        self.net = net;
     }
 
     /// Returns the net for an engine; `None` without one.

@@ -7,12 +7,12 @@ use crate::random_rods::Random;
 use crate::shipped;
 use std::sync::Arc;
 use whiskmap::classify::Status;
-use whiskmap::engine::{Cpu, FORCE, Outcome, SideColumns, Spectral, WhiskerSide};
+use whiskmap::engine::{Cpu, Outcome, SideColumns, Spectral, WhiskerSide};
 use whiskmap::map::{EngineCells, Panel};
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::mechanics::shooting::ShootingMap;
 use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition};
-use whiskmap::plan::Plan;
+use whiskmap::plan::{Channel, Plan};
 use whiskmap::refine::GOAL;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sheet::Sheet;
@@ -123,9 +123,10 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
                         f64::max(most, f64::from(value.abs()))
                     })
                 };
-                let force = largest(FORCE);
-                sizes[FORCE..FORCE + 3].fill(force);
-                (sizes[FORCE + 3], sizes[FORCE + 6]) = (largest(FORCE + 3), largest(FORCE + 6));
+                let place = Channel::Force as usize;
+                let force = largest(place);
+                sizes[place..place + 3].fill(force);
+                (sizes[place + 3], sizes[place + 6]) = (largest(place + 3), largest(place + 6));
                 let cells = grid.push_angle_deg.iter().enumerate();
                 let of_side = cells.filter(|(_, push)| Side::of_push(**push) == side.sheet.side);
                 for (column, push) in of_side {
