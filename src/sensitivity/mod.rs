@@ -96,8 +96,7 @@ pub fn detachments(
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let pushed = (whisker, pole, side);
-    let ends = trace::detachments(Resolution::FINE, pushed, distances_mm, false);
-    of_ends(Resolution::FINE, pushed, ends, variables)
+    of_ends(Resolution::FINE, pushed, distances_mm, false, variables)
 }
 
 /// Computes detachments with derivatives as [`detachments`] does, at another resolution and with the largest strain. Without `variables`, they
@@ -112,23 +111,23 @@ pub fn detachments_at(
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let pushed = (whisker, pole, side);
-    let ends = trace::detachments(resolution, pushed, distances_mm, true);
-    of_ends(resolution, pushed, ends, variables)
+    of_ends(resolution, pushed, distances_mm, true, variables)
 }
 
-/// Differentiates the `ends` of pushes of one whisker by `variables`, `[distance]`.
+/// Computes detachments with their derivatives by `variables`, `[distance]`; with the largest strain if `has_strain` is true.
 fn of_ends(
     resolution: Resolution,
-    (whisker, pole, side): (&Whisker, &Pole, Side),
-    ends: Vec<(Detachment, Option<Crossing>)>,
+    pushed @ (whisker, pole, side): (&Whisker, &Pole, Side),
+    distances_mm: &[f64],
+    has_strain: bool,
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
     let differentiated = Differentiated::new(resolution, whisker, pole, side, variables);
-    let of_end = |(end, crossing): (Detachment, Option<Crossing>)| DetachmentDerivatives {
+    let of_end = |end: Detachment, crossing: Option<Crossing>| DetachmentDerivatives {
         by: differentiated.at_crossing(crossing.as_ref(), end.distance_mm),
         end,
     };
-    ends.into_iter().map(of_end).collect()
+    trace::detachments(resolution, pushed, distances_mm, has_strain, of_end)
 }
 
 /// Returns the derivatives of the push angle at the detachments of `sheet`, whose rows have these distances, by each of `parameters`, in

@@ -94,8 +94,8 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let ends = detachments(resolution, (whisker, pole, side), distances_mm, true);
-    ends.into_iter().map(|(end, _)| end).collect()
+    let pushed = (whisker, pole, side);
+    detachments(resolution, pushed, distances_mm, true, |end, _| end)
 }
 
 /// Computes the detachment curve as [`curve_at`] does, but leaves out the largest strain, which takes a trajectory more for each end.
@@ -107,18 +107,19 @@ pub fn curve_without_strain(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let ends = detachments(resolution, (whisker, pole, side), distances_mm, false);
-    ends.into_iter().map(|(end, _)| end).collect()
+    let pushed = (whisker, pole, side);
+    detachments(resolution, pushed, distances_mm, false, |end, _| end)
 }
 
-/// Computes detachments, each with the crossing of the sheet's edge from which it is read, `[distance]`; `None` without an end. If `has_strain` is
-/// true, each has its largest strain, and its sliding direction by the contact's history.
-pub(crate) fn detachments(
+/// Computes what to `keep` of detachments, each with the crossing of the sheet's edge from which it is read, `[distance]`; `None` without an end.
+/// If `has_strain` is true, each has its largest strain, and its sliding direction by the contact's history.
+pub(crate) fn detachments<T>(
     resolution: Resolution,
     (whisker, pole, side): (&Whisker, &Pole, Side),
     distances_mm: &[f64],
     has_strain: bool,
-) -> Vec<(Detachment, Option<Crossing>)> {
+    keep: impl Fn(Detachment, Option<Crossing>) -> T,
+) -> Vec<T> {
     let rod = &whisker.rod(pole, side);
     let method = Method::new(resolution);
     let units = whisker.units();
@@ -151,7 +152,7 @@ pub(crate) fn detachments(
         };
         let row_end: RowEnd = match row_end {
             Ok(row_end) => row_end,
-            Err(kind) => return (Detachment { kind, ..none }, None),
+            Err(kind) => return keep(Detachment { kind, ..none }, None),
         };
         // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
         let off = libm::log(row.pole_distance / row_end.state.full.map.pole.length()).abs();
@@ -166,7 +167,7 @@ pub(crate) fn detachments(
             snaps_deg: snaps_deg(&sheet, index),
             ..none.with_state(Some(&row_end.reading(&reader, &sheet, index)))
         };
-        (end, Some(row_end.crossing))
+        keep(end, Some(row_end.crossing))
     });
     detachments.collect()
 }

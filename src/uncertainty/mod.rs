@@ -11,7 +11,7 @@ pub use spread::{EndSpread, LargestSpread, PointSpread};
 
 use crate::random::RandomStream;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
-use crate::trace::{Detachment, DetachmentKind, PushLoad, StableBranch, curve_without_strain};
+use crate::trace::{Detachment, DetachmentKind, PushLoad, StableBranch, detachments};
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
 use whiskmap_mechanics::rod::Side;
@@ -125,8 +125,10 @@ impl Draws {
     ) -> Vec<EndSpread> {
         let distances = &self.scene.grid.distance_mm;
         let curve = |whisker: &Whisker, pole: &Pole| {
-            let curve = curve_without_strain(resolution, whisker, pole, side, distances);
-            curve.iter().map(PushEnd::new).collect::<Vec<PushEnd>>()
+            let pushed = (whisker, pole, side);
+            detachments(resolution, pushed, distances, false, |end, _| {
+                PushEnd::new(&end)
+            })
         };
         let ends: Vec<Vec<PushEnd>> = self
             .drawn
