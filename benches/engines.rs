@@ -152,8 +152,8 @@ fn files() {
         arithmetic: "fma",
     };
     let write = |path: &Path| -> Result<(), StoreError> {
-        let output = Output::create(path, &TemporaryFiles::default());
-        let output = output.map_err(|why| StoreError::Write(path.to_owned(), why))?;
+        let output = Output::create(path, &TemporaryFiles::default())
+            .map_err(|why| StoreError::Write(path.to_owned(), why))?;
         let mut writer = MapWriter::create(output, &about)?;
         writer.write_panels(std::slice::from_ref(&panel))?;
         writer.finish(EngineCells::default(), Audit::default())?;

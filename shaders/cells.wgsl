@@ -36,12 +36,6 @@ struct Functions {
 // Planes: residuals or outcomes, channels, points.
 @group(0) @binding(4) var<storage, read_write> planes: array<f32>;
 
-const CHANNELS = 9u;
-
-// Bits of the channels in the last two groups of functions.
-const MIDDLE_CHANNELS = 0x01eu;
-const LAST_CHANNELS = 0x1e0u;
-
 fn is_wanted(channels: u32) -> bool {
     return (CHANNELS_WANTED & channels) != 0u;
 }

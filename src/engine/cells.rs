@@ -41,8 +41,8 @@ pub struct Cell {
     pub steps: u32,
     /// Bound on the distance of the cell's pole from its target, in whisker lengths; NaN without a state.
     pub residual: f32,
-    /// Channel values of the cell in map units, in the order of [`STATE_CHANNELS`], `[channel]`. They are unspecified without a solution,
-    /// and NaN where the batch does not request the channel.
+    /// Channel values of the cell in map units, in the order of [`STATE_CHANNELS`], `[channel]`. They are unspecified without a solution, and
+    /// where the batch does not request the channel.
     pub values: [f32; STATE_CHANNELS.len()],
     /// Contact coordinate and signed load `f/rho^2`, `(tau, load)`, dimensionless; unspecified without a solution, NaN if not requested.
     pub point: DVec2,

@@ -92,7 +92,7 @@ pub fn compare(
     audit
 }
 
-/// Returns true if the values `theirs` of the engine agree with `ours` of the CPU, or if the CPU has none. The bound on the residual of the row is
+/// Returns true if the values `theirs` of the engine agree with `ours` of the CPU in the channels of the batch, or if the CPU has none. The bound on the residual of the row is
 /// allowed for: next to the tip of a cone the contact angle changes up to 200 times as much as the push.
 fn holds(
     batch: &RowBatch,

@@ -81,5 +81,10 @@ fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
         }
         wanted
     });
-    batch.only(rows.collect::<Vec<_>>())
+    let mut rest = batch.only(rows.collect::<Vec<_>>());
+    if rest.channels.has_state() {
+        // The audit takes the sizes of values from all channels of a state.
+        rest.channels = rest.channels.with_states();
+    }
+    rest
 }

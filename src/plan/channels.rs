@@ -200,6 +200,12 @@ impl Channels {
         std::array::from_fn(|channel| self.0[FIRST_STATE + channel])
     }
 
+    /// Returns the selection with all channels of a state added.
+    #[must_use]
+    pub fn with_states(self) -> Self {
+        Self::those(|name| STATE_CHANNELS.contains(&name) || self.contains(name))
+    }
+
     /// Returns true if the selection has a channel of a state.
     #[must_use]
     pub fn has_state(&self) -> bool {

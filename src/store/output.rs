@@ -4,6 +4,8 @@ use super::temporary::{TemporaryFiles, TemporaryName, folder_of, sync_folder};
 use crate::terminal::StandardOutput;
 use std::fs::{self, File, Permissions};
 use std::io::{self, Seek, SeekFrom, Write};
+#[cfg(unix)]
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 /// Output: a file being written.
@@ -103,8 +105,8 @@ impl Output {
     }
 
     /// Finishes the output like [`Output::finish_open`], but leaves the name of a regular file to a later [`sync_folder`]. Until then, a crash of
-    /// the machine may leave the old file. Unless it `may_replace` a file, of several processes that do this at the same time one succeeds;
-    /// this needs a file system with renames that replace nothing or, such as NFS, with hard links.
+    /// the machine may leave the old file. Unless it `may_replace` a file, an existing one is an error, and one of several concurrent processes
+    /// succeeds. This needs a file system with renames that replace nothing or, such as NFS, with hard links.
     ///
     /// # Errors
     /// [`AlreadyExists`](io::ErrorKind::AlreadyExists), or an error of [`Output::finish`].
@@ -173,7 +175,11 @@ fn permissions(path: &Path) -> io::Result<Option<Permissions>> {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, why));
     }
     File::options().write(true).open(path)?;
-    Ok(Some(about.permissions()))
+    let permissions = about.permissions();
+    // Every write drops the set-user-ID and set-group-ID bits.
+    #[cfg(unix)]
+    let permissions = Permissions::from_mode(permissions.mode() & 0o777);
+    Ok(Some(permissions))
 }
 
 /// Returns the absolute path behind all symbolic links. Its last parts need not exist, not even behind a link.

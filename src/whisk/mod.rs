@@ -19,6 +19,7 @@ mod turns;
 pub use course::{AngleCourse, CourseError};
 pub use gaps::CourseGap;
 pub use options::{CourseStart, WhiskOptions};
+use readings::CurvaturePoint;
 pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 
@@ -257,8 +258,10 @@ pub fn whisk_with(
             false => legs.leg(angles, times),
         }
     }
-    let point = options.curvature_at_mm;
-    let point = point.map(|at_mm| [at_mm, rests[0].curvature(at_mm / length_mm) / length_mm]);
+    let point = options.curvature_at_mm.map(|at_mm| CurvaturePoint {
+        at_mm,
+        at_rest_per_mm: rests[0].curvature(at_mm / length_mm) / length_mm,
+    });
     let mut samples = Vec::with_capacity(legs.samples.len());
     for chunk in legs.samples.chunks(STATES_AT_ONCE) {
         if options.is_cancelled() {

@@ -10,6 +10,15 @@ use glam::DVec2;
 use rayon::prelude::*;
 use whiskmap_mechanics::rod::Side;
 
+/// Point of the whisker at which samples have the curvature.
+#[derive(Clone, Copy)]
+pub struct CurvaturePoint {
+    /// Arclength from the base, in mm.
+    pub at_mm: f64,
+    /// Curvature there at rest, in 1/mm.
+    pub at_rest_per_mm: f64,
+}
+
 impl WhiskSample {
     /// Returns the sample at a time in s and an angle of the base in degrees, with the position of the contact on a pole with this centre and
     /// radius. Positions are in the axes of first touch on CB: the base is at the origin, its tangent then along the first axis.
@@ -42,12 +51,12 @@ pub fn signed_deg(side: Side, push: f64) -> f64 {
 }
 
 impl BothSides {
-    /// Returns the samples of a course with their states, without times and angles: `[sample]`. They have the curvature at a `point`, which is
-    /// given by its arclength in mm and its curvature at rest in 1/mm. `unit_nj` is the unit of energies, in nJ.
+    /// Returns the samples of a course with their states and the curvature at a `point`, without times and angles: `[sample]`. `unit_nj` is
+    /// the unit of energies, in nJ.
     pub fn samples(
         &self,
         samples: &[LegSample],
-        point: Option<[f64; 2]>,
+        point: Option<CurvaturePoint>,
         unit_nj: f64,
     ) -> Vec<WhiskSample> {
         let contacts: Vec<Option<CourseContact>> =
@@ -55,11 +64,11 @@ impl BothSides {
         let readings = self.at(&contacts, states);
         let samples = samples.par_iter().zip(readings);
         let with_curvature = |(leg_sample, state): (&LegSample, Option<CourseState>)| {
-            let curvature = point.and_then(|[at_mm, at_rest_per_mm]| match leg_sample.phase {
-                Phase::Free { .. } => Some(at_rest_per_mm),
+            let curvature = point.and_then(|point| match leg_sample.phase {
+                Phase::Free { .. } => Some(point.at_rest_per_mm),
                 _ => {
                     let states = self.of(leg_sample.contact?.side)?;
-                    Some(states.curvature_per_mm(&state?, at_mm))
+                    Some(states.curvature_per_mm(&state?, point.at_mm))
                 }
             });
             WhiskSample {

@@ -115,6 +115,16 @@ fn redirected_standard_output_is_no_other_output() {
     let parts = ["--output -: must be a folder, but - is standard output"];
     place.keeps(&["map", "scene.toml", "-o-"], &parts);
 
+    // The files of a map are replaced as a whole, and have no messages.
+    place.map(&["scene.toml", "-o."]);
+    for name in ["scene.png", "scene.exr"] {
+        let expected = place.bytes(name);
+        let stdout = fs::File::create(place.path(name)).unwrap();
+        let mut map = place.plain_command(&[&MAP[..], &["."]].concat());
+        assert_eq!(map.stdout(stdout).status().unwrap().code(), Some(0));
+        assert!(place.bytes(name) == expected, "{name}");
+    }
+
     // The shell appends to the scene.
     let stdout = fs::File::options()
         .append(true)
@@ -215,12 +225,13 @@ fn a_replaced_file_keeps_its_mode_and_a_read_only_one_is_refused() {
     ];
     good(&place, &table);
     let expected = place.bytes("t.csv");
-    for mode in [0o600, 0o640, 0o755, 0o666] {
+    // Without the set-user-ID and set-group-ID bits.
+    for mode in [0o600, 0o640, 0o755, 0o666, 0o6755] {
         place.write("t.csv", "old");
         fs::set_permissions(place.path("t.csv"), Permissions::from_mode(mode)).unwrap();
         good(&place, &table);
         assert!(place.bytes("t.csv") == expected);
-        assert_eq!(place.mode("t.csv"), mode);
+        assert_eq!(place.mode("t.csv"), mode & 0o777);
     }
     fs::set_permissions(place.path("t.csv"), Permissions::from_mode(0o444)).unwrap();
     let must = "--csv t.csv: the file there is read-only; name a file that can be written";

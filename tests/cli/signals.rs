@@ -151,7 +151,7 @@ fn leftovers_of_an_interrupted_run_are_removed_by_the_next_one() {
     place.write("small.toml", SCENE);
     let mut killed = begun(
         &place,
-        &mut place.plain_command(&["map", "scene.toml", "--engine=cpu", "--no-png"]),
+        &mut place.plain_command(&["map", "scene.toml", "--engine=cpu"]),
         "outputs",
     );
     // Files of running processes are kept.

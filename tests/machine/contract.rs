@@ -104,6 +104,7 @@ fn a_response_has_the_columns_wanted(engine: &mut dyn Engine) {
         Channels::STANDARD,
         Channels::those(has_few).with("peak_strain"),
         Channels::those(has_few),
+        Channels::those(|name| name == "force_un"),
         Channels::those(|name| name == "regime").with("peak_strain"),
         Channels::those(|name| name == "regime"),
     ];

@@ -85,10 +85,12 @@ fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
 fn a_map_of_regimes_passes_its_audit(engine: &mut dyn Engine) {
     let cone = shipped::scene("cone").thinned(256, 1);
     let mut plan = Plan::new(&cone).unwrap();
-    plan.channels = "regime".parse().unwrap();
-    let (summary, panels) = compute_as(&cone, &plan, Some(engine));
-    assert!(summary.engine_failure.is_none());
-    assert!(summary.engine_cells.solved > 0 && summary.audit.cells > 0);
     let (_, wanted) = compute(&cone, None);
-    assert!(panels[0].regime == wanted[0].regime);
+    for channels in ["regime", "regime,base_moment_nnm"] {
+        plan.channels = channels.parse().unwrap();
+        let (summary, panels) = compute_as(&cone, &plan, Some(engine));
+        assert!(summary.engine_failure.is_none(), "{channels}");
+        assert!(summary.engine_cells.solved > 0 && summary.audit.cells > 0);
+        assert!(panels[0].regime == wanted[0].regime);
+    }
 }

@@ -62,17 +62,22 @@ impl Files {
         let stdout = Path::new(STDOUT);
         let redirected = stored(stdout, Handle::stdout);
         let is_redirected = redirected.is_some() && redirected == stored(path, Handle::stdout);
-        let output = if path == stdout || is_redirected {
-            Output::stdout()
-        } else {
-            let advice = "name a file that can be written";
-            let output = Output::create(path, &self.temporary);
-            output.map_err(impossible(option, path, advice))?
-        };
-        let target = output.target().or(output.is_stdout().then_some(stdout));
-        target.map_or(Ok(()), |target| self.claim(option, path, target))?;
-        if let Some(folder) = output.target().and_then(Path::parent) {
-            TemporaryFiles::remove_leftovers(folder);
+        if path == stdout || is_redirected {
+            self.claim(option, path, stdout)?;
+            return Ok(Output::stdout());
+        }
+        self.file(option, path)
+    }
+
+    /// Opens an output file like [`Files::output`]. A file to which standard output is redirected is replaced: what a map needs to read again,
+    /// or is written with messages, is no stream.
+    pub fn file(&mut self, option: &str, path: &Path) -> Result<Output, Failure> {
+        let advice = "name a file that can be written";
+        let output = Output::create(path, &self.temporary);
+        let output = output.map_err(impossible(option, path, advice))?;
+        if let Some(target) = output.target() {
+            self.claim(option, path, target)?;
+            TemporaryFiles::remove_leftovers(target.parent().unwrap_or(target));
         }
         Ok(output)
     }

@@ -4,7 +4,7 @@ use super::arguments::{THREADS, whole};
 use super::digits::DigitsArgs;
 use super::disk;
 use super::failure::{Failure, message};
-use super::files::Files;
+use super::files::{Files, unwritten};
 use super::map_format::MapFormat;
 use super::outputs::PictureFile;
 use super::scene::check_strict;
@@ -21,7 +21,7 @@ use whiskmap::mechanics::numerics::ArithmeticClass;
 use whiskmap::plan::Channels;
 use whiskmap::render::{self, MapOptions, PictureFormat, PictureSize};
 use whiskmap::scene::Scene;
-use whiskmap::store::{MapDescription, MapWriter};
+use whiskmap::store::{MapDescription, MapWriter, Output};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -89,10 +89,12 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         return sharded::fill(&path, &args.run, files, &scene, plan, &about, engine);
     }
     let file = args.output.join(format!("{}.exr", scene.name));
-    let output = files.output("--output", &file)?;
-    let picture_path = file.with_extension("png");
-    let picture = (!args.no_png).then(|| files.output("--output", &picture_path));
-    let picture = picture.transpose()?;
+    let output = files.file("--output", &file)?;
+    let picture = (!args.no_png).then(|| file.with_extension("png"));
+    if let Some(picture) = &picture {
+        // It is only checked: a temporary file that is not written to is removed after a day.
+        files.file("--output", picture)?;
+    }
     if !args.run.force {
         disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
     }
@@ -105,15 +107,15 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let summary = compute(&scene, &plan, &mut engine, plan.cells, keep)?;
     let map = writer.finish(summary.engine_cells, summary.audit)?;
     let mut written = vec![file];
-    if let Some(output) = picture {
+    if let Some(path) = picture {
         let regimes = render::map(&map.into(), &MapOptions::default())?;
         let picture = PictureFile {
-            output,
+            output: Output::create(&path, files.temporary()).map_err(unwritten(&path))?,
             format: PictureFormat::Png,
             size: PictureSize::Natural,
         };
         picture.write(&regimes)?;
-        written.push(picture_path);
+        written.push(path);
     }
     report(&scene, &summary, start, &written)
 }

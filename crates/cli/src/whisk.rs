@@ -67,8 +67,9 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let (scene, whisker) = pole::read(files, &args.pole.whisker, "whisk", &[distance])?;
     let course = args.course.course(files)?;
     let mut outputs = args.outputs.open(files)?;
-    let events = args.events.as_deref();
-    let events = args.outputs.table(files, "--events", events)?;
+    let events = args
+        .outputs
+        .table(files, "--events", args.events.as_deref())?;
     let mut options = WhiskOptions::default();
     options.start = args.start.map(|start| match start {
         StartChoice::Free => CourseStart::Free,

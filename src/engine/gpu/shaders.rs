@@ -5,6 +5,7 @@ use super::cells::{OUTCOMES, Planes};
 use super::packing::WORKGROUP;
 use crate::engine::row::FUNCTIONS;
 use crate::plan::STATE_CHANNELS;
+use whiskmap_mechanics::numerics::inverse::TOGETHER;
 use whiskmap_mechanics::rod::{CURVATURE_TERMS, Effects};
 use whiskmap_mechanics::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
 
@@ -13,8 +14,13 @@ const _: () = assert!(
     "shaders/shoot.wgsl writes them out"
 );
 
+const CHANNELS: usize = STATE_CHANNELS.len();
+
+/// Names and types of the `override` constants of the shader of cells.
+const OVERRIDES: [(&str, &str); 2] = [("CHANNELS_WANTED", "u32"), ("HAS_POINTS", "bool")];
+
 const _: () = assert!(
-    FUNCTIONS == 12 && STATE_CHANNELS.len() == 9,
+    FUNCTIONS == 12 && CHANNELS == 9 && TOGETHER == 4,
     "shaders/cells.wgsl writes them out"
 );
 
@@ -30,7 +36,17 @@ fn constants(precision: Precision) -> String {
     for (name, code, _) in OUTCOMES {
         text += &format!("const {name} = f32({code:e});\n");
     }
-    text + "override CHANNELS_WANTED: u32;\noverride HAS_POINTS: bool;\n"
+    // Each channel is a bit. The first group of functions has push angle, contact and load.
+    for (name, group) in [("MIDDLE_CHANNELS", 1), ("LAST_CHANNELS", 2)] {
+        let functions = group * TOGETHER..(group + 1) * TOGETHER;
+        let bits: u32 = functions.map(|i| 1 << (i - FUNCTIONS + CHANNELS)).sum();
+        text += &format!("const {name} = {bits}u;\n");
+    }
+    text += &format!("const CHANNELS = {CHANNELS}u;\n");
+    for (name, kind) in OVERRIDES {
+        text += &format!("override {name}: {kind};\n");
+    }
+    text
 }
 
 /// The coefficients of [`Nystrom8`] that are not 0: `NODE_i`, `STAGE_i_j`, `POSITION_j` and `SPEED_j`, counted from 1.
@@ -82,10 +98,8 @@ pub fn cells(precision: Precision) -> String {
 pub fn overrides(planes: Planes) -> [(&'static str, f64); 2] {
     let bit = |(channel, is_wanted)| u32::from(is_wanted) << channel;
     let channels: u32 = planes.channels.into_iter().enumerate().map(bit).sum();
-    [
-        ("CHANNELS_WANTED", channels.into()),
-        ("HAS_POINTS", u8::from(planes.has_points).into()),
-    ]
+    let values = [channels.into(), u8::from(planes.has_points).into()];
+    [0, 1].map(|i| (OVERRIDES[i].0, values[i]))
 }
 
 /// Returns the text of the shader of trajectories; its entry point is `shoot`.

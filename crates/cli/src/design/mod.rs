@@ -73,10 +73,10 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     pole::check_distances(&scene, &[distance_mm])?;
     let asked = args.targets(distance_mm)?;
     args.check(&varied, &asked)?;
-    let better = args.output.as_deref();
-    let better = better
-        .map(|path| files.output("--output", path))
-        .transpose()?;
+    let better = match &args.output {
+        Some(path) => Some(files.output("--output", path)?),
+        None => None,
+    };
     let picture = args.picture.open(files)?;
     let solutions = match &asked[..] {
         [one] => {

@@ -101,7 +101,7 @@ fn map(
         ..SceneData::clone(&scene)
     };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
-    let mut writer = MapWriter::create(files.output("--output", path)?, &about)?;
+    let mut writer = MapWriter::create(files.file("--output", path)?, &about)?;
     for whisker in 0..slice.grid().whisker_count() {
         writer.write_panels(&[slice.panel(about.channels, whisker)?])?;
     }
