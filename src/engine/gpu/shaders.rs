@@ -39,7 +39,7 @@ fn constants(precision: Precision) -> String {
     // Each channel is a bit. The first group of functions has push angle, contact and load.
     for (name, group) in [("MIDDLE_CHANNELS", 1), ("LAST_CHANNELS", 2)] {
         let functions = group * TOGETHER..(group + 1) * TOGETHER;
-        let bits: u32 = functions.map(|i| 1 << (i - FUNCTIONS + CHANNELS)).sum();
+        let bits: u32 = functions.map(|i| 1 << (i + CHANNELS - FUNCTIONS)).sum();
         text += &format!("const {name} = {bits}u;\n");
     }
     text += &format!("const CHANNELS = {CHANNELS}u;\n");
