@@ -69,8 +69,8 @@ impl Files {
         self.file(option, path)
     }
 
-    /// Opens an output file like [`Files::output`]. A file to which standard output is redirected is replaced: what a map needs to read again,
-    /// or is written with messages, is no stream.
+    /// Opens an output file like [`Files::output`], but replaces a file to which standard output is redirected. The files of a map need it: the
+    /// EXR file is not written in order, and the summary goes to standard output, too.
     pub fn file(&mut self, option: &str, path: &Path) -> Result<Output, Failure> {
         let advice = "name a file that can be written";
         let output = Output::create(path, &self.temporary);
