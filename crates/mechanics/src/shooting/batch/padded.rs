@@ -4,7 +4,7 @@
 //! of threads.
 
 use super::block::{Block, StepCounts};
-use super::block_key::BlockKey;
+use super::block_key::{BlockKey, BlockKeys};
 use super::{InitialCondition, Method, OutputSet, SMALLEST_CHUNK};
 use crate::numerics::{Unit, WIDTH};
 use rayon::prelude::*;
@@ -16,25 +16,36 @@ pub fn shoot<O: OutputSet>(
     conditions: &[InitialCondition],
     outputs: &mut [O],
 ) {
-    let mut members: Vec<(BlockKey, usize)> = Vec::with_capacity(conditions.len());
+    let mut keys = BlockKeys::default();
+    let mut members: Vec<(usize, usize)> = Vec::with_capacity(conditions.len());
     for conditions in conditions.chunks(WIDTH) {
         let block = &Block::new(method, conditions.len(), |i| &conditions[i]);
         let steps = unit.run(StepCounts(block));
         for (condition, steps) in conditions.iter().zip(steps) {
-            members.push((BlockKey::new(method, condition, steps), members.len()));
+            let key = keys.index(BlockKey::new(method, condition, steps));
+            members.push((key, members.len()));
         }
     }
+    // Members are sorted by the rank of their keys: keys are few, and slow to compare.
+    let mut sorted = keys.all.clone();
+    sorted.sort_unstable();
+    let ranks: Vec<usize> = (keys.all.iter())
+        .map(|key| sorted.partition_point(|other| other < key))
+        .collect();
+    for (key, _) in &mut members {
+        *key = ranks[*key];
+    }
     members.sort_unstable();
-    let blocks: Vec<&[(BlockKey, usize)]> = members
-        .chunk_by(|(a, _), (b, _)| a.may_pad(b))
+    let blocks: Vec<&[(usize, usize)]> = members
+        .chunk_by(|(a, _), (b, _)| a == b || sorted[*a].may_pad(&sorted[*b]))
         .flat_map(|group| group.chunks(WIDTH))
         .collect();
-    let compute = |members: &&[(BlockKey, usize)]| {
+    let compute = |members: &&[(usize, usize)]| {
         let (most_steps, _) = members[members.len() - 1];
         let block = Block::new(method, members.len(), |i| &conditions[members[i].1]);
-        O::shoot(unit.for_count(members.len()), most_steps, &block)
+        O::shoot(unit.for_count(members.len()), sorted[most_steps], &block)
     };
-    let mut keep = |members: &[(BlockKey, usize)], computed: [O; WIDTH]| {
+    let mut keep = |members: &[(usize, usize)], computed: [O; WIDTH]| {
         for ((_, i), output) in members.iter().zip(computed) {
             outputs[*i] = output;
         }
