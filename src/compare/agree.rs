@@ -1,6 +1,6 @@
 //! Check that two maps have the same scene and grid.
 
-use crate::scene::{Grid, Parameter, Scene, SceneError, digits};
+use crate::scene::{Coordinate, Grid, Parameter, Scene, SceneError, TableWhisker, Whisker, digits};
 use crate::store::MapSource;
 
 /// Difference between two maps that cannot be compared cell by cell.
@@ -36,9 +36,14 @@ pub enum Mismatch {
         /// Value of the parameter in the second map.
         second: String,
     },
-    /// The measured radii of the scenes are different.
-    #[error("the scenes differ: whisker.profile has other radii; compare maps of one scene")]
-    Profile,
+    /// The shapes of the scenes are different, which no number describes; the text is their key.
+    #[error("the scenes differ: {0} is not the same in both maps; compare maps of one scene")]
+    Shape(&'static str),
+    /// A row of the table of whiskers is different; the text is the name of its whisker.
+    #[error(
+        "the scenes differ: the whisker {0} of the table is not the same in both maps; compare maps of one scene"
+    )]
+    TableRow(String),
     /// This version cannot read the scene of a map.
     #[error("the scene of a map: {0}")]
     Unreadable(#[from] SceneError),
@@ -47,17 +52,17 @@ pub enum Mismatch {
 /// Checks that the maps have the same axes, whiskers and poles.
 pub(super) fn check(maps: [&MapSource; 2]) -> Result<(), super::CompareError> {
     check_grids(maps.map(MapSource::grid))?;
-    let texts = [maps[0].attribute("scene")?, maps[1].attribute("scene")?];
-    let [first, second] = texts.map(|text| {
-        Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map")
-            .map_err(Mismatch::Unreadable)
-    });
-    Ok(check_scenes([&first?, &second?])?)
+    let [first, second] = [maps[0].scene()?, maps[1].scene()?];
+    let scenes = [
+        &first.map_err(Mismatch::Unreadable)?,
+        &second.map_err(Mismatch::Unreadable)?,
+    ];
+    Ok(check_scenes(scenes)?)
 }
 
 fn check_grids(grids: [&Grid; 2]) -> Result<(), Mismatch> {
     let [first, second] = grids.map(axes);
-    let names = |axes: &[(&'static str, &[f64])]| {
+    let names = |axes: &[(&'static str, Vec<Coordinate>)]| {
         let sweep = axes[..axes.len() - 2].iter().map(|(name, _)| *name);
         let names = sweep.collect::<Vec<_>>().join(", ");
         if names.is_empty() {
@@ -82,41 +87,57 @@ fn check_grids(grids: [&Grid; 2]) -> Result<(), Mismatch> {
 }
 
 /// Returns names and values of all axes: the sweep axes, distance and push angle.
-fn axes(grid: &Grid) -> Vec<(&'static str, &[f64])> {
+fn axes(grid: &Grid) -> Vec<(&'static str, Vec<Coordinate>)> {
     let sweep = grid.sweep.iter();
-    let sweep = sweep.map(|axis| (axis.variable.name(), &*axis.values));
+    let sweep = sweep.map(|axis| (axis.variable.name(), axis.coordinates().collect()));
+    let numbers = |values: &[f64]| values.iter().copied().map(Coordinate::Number).collect();
     let inside = [
-        ("distance_mm", &*grid.distance_mm),
-        ("push_angle_deg", &*grid.push_angle_deg),
+        ("distance_mm", numbers(&grid.distance_mm)),
+        ("push_angle_deg", numbers(&grid.push_angle_deg)),
     ];
     sweep.chain(inside).collect()
 }
 
 /// Returns texts about two lists of values: number and ends, or the first values that differ.
-fn described(one: &[f64], other: &[f64]) -> [String; 2] {
-    let ends = |values: &[f64]| {
-        (
-            values.len(),
-            values.first().copied(),
-            values.last().copied(),
-        )
+fn described(one: &[Coordinate], other: &[Coordinate]) -> [String; 2] {
+    let ends = |values: &[Coordinate]| {
+        let ends = [values.first().cloned(), values.last().cloned()];
+        (values.len(), ends)
+    };
+    let text = |value: &Coordinate| match value {
+        Coordinate::Number(number) => digits(*number),
+        Coordinate::Name(name) => name.clone(),
     };
     let place = one.iter().zip(other).position(|(one, other)| one != other);
     match place {
         Some(place) if ends(one) == ends(other) => {
-            [one, other].map(|values| format!("value {} is {}", place + 1, digits(values[place])))
+            [one, other].map(|values| format!("value {} is {}", place + 1, text(&values[place])))
         }
         _ => [one, other].map(|values| {
-            let [first, last] = [values[0], values[values.len() - 1]].map(digits);
+            let [first, last] = [&values[0], &values[values.len() - 1]].map(text);
             format!("{} values from {first} to {last}", values.len())
         }),
     }
 }
 
 fn check_scenes([first, second]: [&Scene; 2]) -> Result<(), Mismatch> {
-    let whiskers = [first, second].map(|scene| scene.first_whisker());
-    let [one, other] = &whiskers;
-    if one.whisker == other.whisker && one.pole == other.pole {
+    // Marks of yielding are no part of a state.
+    let unmarked = |whisker: &Whisker| Whisker {
+        yield_strain: None,
+        ..whisker.clone()
+    };
+    let found = |row: &TableWhisker| match &row.found {
+        Ok((whisker, pole)) => Some((unmarked(whisker), *pole)),
+        Err(_) => None,
+    };
+    // The names of the rows are on an axis, and equal.
+    let mut rows = first.table.iter().zip(&*second.table);
+    if let Some((row, _)) = rows.find(|(one, other)| found(one) != found(other)) {
+        return Err(Mismatch::TableRow(row.name.clone()));
+    }
+    let [one, other] = [first, second].map(|scene| scene.first_whisker());
+    let [whisker, other_whisker] = [&one, &other].map(|swept| unmarked(&swept.whisker));
+    if !first.table.is_empty() || whisker == other_whisker && one.pole == other.pole {
         return Ok(());
     }
     let is_swept = |parameter| first.grid.axis(parameter).is_some();
@@ -125,7 +146,11 @@ fn check_scenes([first, second]: [&Scene; 2]) -> Result<(), Mismatch> {
         .filter(|parameter| !is_swept(*parameter));
     let mut differing = all.filter(|parameter| parameter.value(first) != parameter.value(second));
     let Some(parameter) = differing.next() else {
-        return Err(Mismatch::Profile);
+        return Err(Mismatch::Shape(if whisker.traced == other_whisker.traced {
+            "whisker.profile"
+        } else {
+            "whisker.rest"
+        }));
     };
     let value = |scene| parameter.value(scene).map_or("left out".to_owned(), digits);
     Err(Mismatch::Scene {

@@ -229,3 +229,55 @@ fn other_scenes_and_grids_are_refused() {
     let output = [&same[..], &["--json", "outputs/scene.exr"]].concat();
     compare(&place, &output).assert_refused(&["is the input"]);
 }
+
+/// Marks of yielding are no part of a state. Radii along the whisker, traced shapes, and every row of a table are parts of a scene.
+#[test]
+fn marks_are_ignored_and_shapes_and_tables_compared() {
+    let place = Place::with(SCENE);
+    let whisker = |lines: &str| SCENE.replacen("[whisker]\n", &format!("[whisker]\n{lines}"), 1);
+    let profile = |middle: f64| {
+        let radii = format!("[whisker.profile]\nrows = [[0, 30], [10, {middle}], [20, 1.5]]\n");
+        let removed = [
+            "length_mm = 20\n",
+            "base_radius_um = 30.0\n",
+            "tip_radius_um = 1.5\n",
+        ];
+        let lines = removed
+            .iter()
+            .fold(SCENE.to_owned(), |scene, line| scene.replace(line, ""));
+        format!("{lines}{radii}")
+    };
+    let table = |rows: &str| format!("{SCENE}[whiskers]\ntable = [{rows}]\n");
+    let first = r#"{ name = "C1", length_mm = 20 }, "#;
+    let rows = |second: &str| table(&format!("{first}{second}"));
+    for (name, scene) in [
+        ("plain", whisker("")),
+        ("marked", whisker("yield_strain = 0.01\n")),
+        ("radii", profile(15.0)),
+        ("others", profile(16.0)),
+        ("table", rows(r#"{ name = "C2", length_mm = 24 }"#)),
+        ("longer", rows(r#"{ name = "C2", length_mm = 25 }"#)),
+        ("renamed", rows(r#"{ name = "D9", length_mm = 24 }"#)),
+    ] {
+        let file = format!("{name}.toml");
+        place.write(&file, &scene);
+        place.map(&[&file, "--channels", "regime", "--no-png"]);
+    }
+    let maps = |pair: [&str; 2]| pair.map(|name| format!("outputs/{name}.exr"));
+    let [plain, marked] = maps(["plain", "marked"]);
+    assert_eq!(compare(&place, &[&plain, &marked]).code, Some(0));
+    for (pair, said) in [
+        (["radii", "others"], "whisker.profile is not the same"),
+        (
+            ["table", "longer"],
+            "the whisker C2 of the table is not the same",
+        ),
+        (
+            ["table", "renamed"],
+            "the axis whisker differs: 2 values from C1 to C2 in the first map, 2 values from C1 to D9",
+        ),
+    ] {
+        let [one, other] = maps(pair);
+        compare(&place, &[&one, &other]).assert_refused(&[said]);
+    }
+}
