@@ -4,11 +4,12 @@ use super::samples::samples;
 use super::target::{ComputedPush, LargestOf, exactly};
 use super::varied::DesignScene;
 use super::{DesignError, DesignTarget, DesignVaried, checked};
-use crate::least_squares::{self, BoundedProblem, FAINT, Svd, norm};
+use crate::least_squares::{self, BoundedProblem, FAINT, Svd, differences, norm};
 use crate::scene::Scene;
 use crate::sensitivity::Variable;
 use crate::trace::StableBranch;
 use rayon::prelude::*;
+use std::cell::LazyCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Number of places from which starts are chosen, about: evenly distributed over the ranges of all variables.
@@ -241,25 +242,6 @@ impl TogetherSearch<'_> {
             values,
         })
     }
-
-    /// Returns the derivatives of the misses by one target by differences, on one side where the other has no push: `[variable]`.
-    fn differences(&self, target: usize, x: &[f64]) -> Option<Vec<f64>> {
-        let here = self.residuals(x)?[target];
-        let by = |i: usize| {
-            let beside = |step: f64| {
-                let mut moved = x.to_vec();
-                moved[i] += step;
-                Some(self.residuals(&moved)?[target])
-            };
-            match (beside(-STEP), beside(STEP)) {
-                (Some(before), Some(after)) => Some((after - before) / (2.0 * STEP)),
-                (None, Some(after)) => Some((after - here) / STEP),
-                (Some(before), None) => Some((here - before) / STEP),
-                (None, None) => None,
-            }
-        };
-        (0..x.len()).map(by).collect()
-    }
 }
 
 impl BoundedProblem for TogetherSearch<'_> {
@@ -274,12 +256,16 @@ impl BoundedProblem for TogetherSearch<'_> {
     fn jacobian(&self, x: &[f64], _residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
         let scene = self.at(x)?;
         let directions = self.scene.directions(&scene);
+        let by_differences = LazyCell::new(|| differences(|x| self.residuals(x), x, STEP));
         let row = |(i, target): (usize, &DesignTarget)| {
             let exact = target.gradient(&scene, &directions).map(|by| {
                 let by = by.iter().zip(&self.sizes);
                 by.map(|(by, size)| by * size / target.value).collect()
             });
-            exact.or_else(|| self.differences(i, x))
+            exact.or_else(|| {
+                let columns = by_differences.as_ref()?.iter();
+                Some(columns.map(|column| column[i]).collect())
+            })
         };
         let rows = self.targets.iter().enumerate().map(row);
         let rows: Vec<Vec<f64>> = rows.collect::<Option<_>>()?;

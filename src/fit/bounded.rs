@@ -2,7 +2,7 @@
 
 use super::FitError;
 use super::misfit::Misfit;
-use crate::least_squares::{BoundedProblem, search};
+use crate::least_squares::search;
 
 /// Message of a fit for which no Jacobian can be computed.
 pub(super) const NO_JACOBIAN: &str = "a point has no derivative by a parameter: it is out of reach, at the reach, or where slip-off turns into pull-off";
@@ -44,27 +44,4 @@ pub(super) fn best(misfit: &Misfit<'_>) -> Result<Vec<f64>, FitError> {
         }
     }
     Ok(best)
-}
-
-impl BoundedProblem for Misfit<'_> {
-    fn count(&self) -> usize {
-        self.points.points.len()
-    }
-
-    fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
-        self.roots(x)
-    }
-
-    fn jacobian(&self, x: &[f64], residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
-        self.jacobian_of_roots(x, residuals)
-    }
-
-    fn ranges(&self, x: &[f64]) -> Vec<[f64; 2]> {
-        // Searches begin and end where the scene accepts the parameters.
-        let scene = self.scene(x);
-        scene.map_or_else(
-            |_| x.iter().map(|x| [*x; 2]).collect(),
-            |scene| self.ranges(&scene),
-        )
-    }
 }

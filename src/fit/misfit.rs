@@ -1,6 +1,7 @@
 //! Residuals of points, as a function of the free parameters of a scene.
 
 use super::FitLoss;
+use crate::least_squares::{BoundedProblem, differences};
 use crate::measured::MeasuredPoints;
 use crate::scene::{Parameter, Scene, SceneError};
 use crate::sensitivity::Variable;
@@ -85,7 +86,7 @@ impl<'a> Misfit<'a> {
 
     /// Returns predicted less measured angles over their standard deviations, dimensionless: `[point]`. `None` where the scene refuses
     /// the parameters, or a point is out of reach or never detaches.
-    pub fn residuals(&self, parameters: &[f64]) -> Option<Vec<f64>> {
+    pub fn residuals_at(&self, parameters: &[f64]) -> Option<Vec<f64>> {
         let scene = self.accepted(parameters)?;
         let whiskers = self.points.whiskers_in(&scene).ok()?;
         self.points.check_reach_of(&whiskers).ok()?;
@@ -95,24 +96,6 @@ impl<'a> Misfit<'a> {
             residuals.push(-row.residual_deg? / point.sd_deg);
         }
         Some(residuals)
-    }
-
-    /// Returns the signed roots of the losses of the residuals, `[point]`; `None` as for [`Self::residuals`].
-    pub fn roots(&self, parameters: &[f64]) -> Option<Vec<f64>> {
-        let mut residuals = self.residuals(parameters)?;
-        residuals.iter_mut().for_each(|r| *r = self.loss.root(*r));
-        Some(residuals)
-    }
-
-    /// Returns the derivative of each point's root of the loss by each scaled parameter, `[parameter][point]`, where the roots are `roots`.
-    /// `None` as for [`Self::jacobian`].
-    pub fn jacobian_of_roots(&self, parameters: &[f64], roots: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let mut columns = self.jacobian(parameters)?;
-        for column in &mut columns {
-            let slopes = column.iter_mut().zip(roots);
-            slopes.for_each(|(derivative, root)| *derivative *= self.loss.root_slope(*root));
-        }
-        Some(columns)
     }
 
     /// Returns true if a point detaches in another way with these `parameters` than was measured.
@@ -126,30 +109,7 @@ impl<'a> Misfit<'a> {
     /// if a point has no exact one, as at first touch. `None` where the scene refuses the parameters on both sides.
     pub fn jacobian(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
         self.derivatives(parameters)
-            .or_else(|| self.differences(parameters))
-    }
-
-    /// Returns the columns of the Jacobian by differences; `None` where neither side has one.
-    fn differences(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let here = self.residuals(parameters)?;
-        let columns = (0..self.free.len()).into_par_iter().map(|i| {
-            let beside = |step: f64| {
-                let mut beside = parameters.to_vec();
-                beside[i] += step;
-                self.residuals(&beside)
-            };
-            let slope = |from: &[f64], to: &[f64], step: f64| {
-                let pairs = from.iter().zip(to);
-                pairs.map(|(from, to)| (to - from) / step).collect()
-            };
-            match (beside(-STEP), beside(STEP)) {
-                (Some(before), Some(after)) => Some(slope(&before, &after, 2.0 * STEP)),
-                (None, Some(after)) => Some(slope(&here, &after, STEP)),
-                (Some(before), None) => Some(slope(&before, &here, STEP)),
-                (None, None) => None,
-            }
-        });
-        columns.collect()
+            .or_else(|| differences(|x| self.residuals_at(x), parameters, STEP))
     }
 
     /// Returns the exact columns of the Jacobian; `None` where the scene refuses the parameters, or an end has no derivative.
@@ -174,5 +134,36 @@ impl<'a> Misfit<'a> {
             }
         }
         Some(columns)
+    }
+}
+
+/// The residuals of the problem are the signed roots of the losses.
+impl BoundedProblem for Misfit<'_> {
+    fn count(&self) -> usize {
+        self.points.points.len()
+    }
+
+    fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let mut roots = self.residuals_at(x)?;
+        roots.iter_mut().for_each(|r| *r = self.loss.root(*r));
+        Some(roots)
+    }
+
+    fn jacobian(&self, x: &[f64], roots: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let mut columns = Misfit::jacobian(self, x)?;
+        for column in &mut columns {
+            let slopes = column.iter_mut().zip(roots);
+            slopes.for_each(|(derivative, root)| *derivative *= self.loss.root_slope(*root));
+        }
+        Some(columns)
+    }
+
+    fn ranges(&self, x: &[f64]) -> Vec<[f64; 2]> {
+        // Searches begin and end where the scene accepts the parameters.
+        let scene = self.scene(x);
+        scene.map_or_else(
+            |_| x.iter().map(|x| [*x; 2]).collect(),
+            |scene| self.ranges(&scene),
+        )
     }
 }

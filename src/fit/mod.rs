@@ -249,7 +249,7 @@ pub fn fit_until(
     let misfit = Misfit::new(scene, &used, free, loss, cancel);
     let best = best(&misfit)?;
     let fitted = misfit.scene(&best)?;
-    let here = misfit.residuals(&best);
+    let here = misfit.residuals_at(&best);
     let (here, mut jacobian) = here
         .zip(misfit.jacobian(&best))
         .ok_or(FitError::NotConverged(NO_JACOBIAN))?;

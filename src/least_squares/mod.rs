@@ -12,6 +12,8 @@ pub use bounded::{BoundedProblem, FAINT, search};
 pub use degree::smallest_degree;
 pub use svd::{Svd, dot, norm};
 
+use rayon::prelude::*;
+
 /// Most evaluations of the residuals, per parameter.
 const MOST_STEPS: usize = 100;
 
@@ -23,6 +25,34 @@ const RADIUS_SLACK: f64 = 0.1;
 
 /// Least ratio of actual and predicted reduction with which a step is taken.
 const LEAST_RATIO: f64 = 1e-4;
+
+/// Returns the columns of the Jacobian of `residuals_at` by differences of `step`, `[parameter][residual]`: central ones, or on one side where
+/// the other has no residuals. `None` without residuals at `x`, or on both sides.
+pub fn differences(
+    residuals_at: impl Fn(&[f64]) -> Option<Vec<f64>> + Sync,
+    x: &[f64],
+    step: f64,
+) -> Option<Vec<Vec<f64>>> {
+    let here = residuals_at(x)?;
+    let columns = (0..x.len()).into_par_iter().map(|i| {
+        let beside = |step: f64| {
+            let mut beside = x.to_vec();
+            beside[i] += step;
+            residuals_at(&beside)
+        };
+        let slopes = |from: &[f64], to: &[f64], step: f64| {
+            let pairs = from.iter().zip(to);
+            pairs.map(|(from, to)| (to - from) / step).collect()
+        };
+        match (beside(-step), beside(step)) {
+            (Some(before), Some(after)) => Some(slopes(&before, &after, 2.0 * step)),
+            (None, Some(after)) => Some(slopes(&here, &after, step)),
+            (Some(before), None) => Some(slopes(&before, &here, step)),
+            (None, None) => None,
+        }
+    });
+    columns.collect()
+}
 
 /// Minimises the sum of squares of residuals from the parameters `x` on. Returns the parameters and the sum.
 ///
