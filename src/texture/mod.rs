@@ -184,17 +184,20 @@ pub fn texture_until(
 
     let changes: Vec<[f64; 2]> = passages
         .iter()
-        .map(|passage| [passage.time_s, passage.angle])
+        .map(|(time_s, passage)| [*time_s, passage.angle])
         .collect();
     let contacts: Vec<Contact> = passages
         .iter()
-        .map(|passage| place.contact(passage.side, passage.obstacle, passage.push))
+        .map(|(_, passage)| place.contact(passage.side, passage.obstacle, passage.push))
         .collect();
     let held_then = place.held(&states, &contacts, &changes, None, cancel)?;
-    let kinds = passages.iter().zip(&contacts).map(|(passage, contact)| {
-        let end = contact.map(|contact| states.detachment(contact.side, contact.row_push.0));
-        passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
-    });
+    let kinds = passages
+        .iter()
+        .zip(&contacts)
+        .map(|((_, passage), contact)| {
+            let end = contact.map(|contact| states.detachment(contact.side, contact.row_push.0));
+            passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
+        });
     let kinds: Vec<WhiskEventKind> = kinds.collect();
 
     let samples = held.iter().zip(&moments);

@@ -60,7 +60,7 @@ impl SurfaceCrossing {
 pub fn samples(
     course: &AngleCourse,
     phases: &[Phase],
-    passages: &[Passage],
+    passages: &[(f64, Passage)],
     held: &[Option<Held>],
     tips: &TipFrame,
     crossed: Option<SurfaceCrossing>,
@@ -71,7 +71,7 @@ pub fn samples(
     let states = times.zip(phases.iter().zip(held));
     let samples = states.map(|((&time_s, &angle_deg), (phase, held))| {
         let mut has_slipped = false;
-        while let Some(passage) = passages.next_if(|passage| passage.time_s <= time_s) {
+        while let Some((_, passage)) = passages.next_if(|(at, _)| *at <= time_s) {
             has_slipped |= passage.event.is_none();
         }
         let crosses = crossed.is_some_and(|crossing| crossing.time_s <= time_s);

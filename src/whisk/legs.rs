@@ -171,7 +171,6 @@ impl<'a> Legs<'a> {
             side,
             obstacle,
             push,
-            ..
         } = passage;
         if self.contacts.is_lost {
             return;

@@ -21,10 +21,6 @@ pub const ROUNDING: f64 = 8.0 * f64::EPSILON * TAU;
 /// Change of the phase at an angle of the base, in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// Index of the sample at the end of the leg on which the phase changes.
-    pub sample: usize,
-    /// Time of the change, in s.
-    pub time_s: f64,
     /// Angle of the base at which the phase changes, in radians.
     pub angle: f64,
     /// Kind of the event; `None` for a detachment whose kind is the kind of the end of the push.
@@ -53,31 +49,26 @@ pub trait Obstacles {
         side.sign() * (angle - self.touch(side, obstacle))
     }
 
-    /// Returns the phase at each sample of `course`, `[sample]`, which begins in the phase `first`, and the changes between samples, `[change]`.
-    fn follow(&self, first: Phase, course: &AngleCourse) -> (Vec<Phase>, Vec<Passage>) {
+    /// Returns the phase at each sample of `course`, `[sample]`, which begins in the phase `first`, and the changes between samples with their
+    /// times in s, `[change]`.
+    fn follow(&self, first: Phase, course: &AngleCourse) -> (Vec<Phase>, Vec<(f64, Passage)>) {
         let mut phase = first;
         let mut phases = vec![first];
         let mut passages = Vec::new();
         let times = course.times_s.windows(2);
-        for (leg, (angles, times)) in course.angles_deg.windows(2).zip(times).enumerate() {
+        for (angles, times) in course.angles_deg.windows(2).zip(times) {
             let [from, to] = [angles[0], angles[1]].map(f64::to_radians);
-            let sample = leg + 1;
             self.pass(&mut phase, from, to, |passage| {
                 let part = (passage.angle - from) / (to - from);
                 let time_s = (times[1] - times[0]).mul_add(part, times[0]);
-                passages.push(Passage {
-                    sample,
-                    time_s,
-                    ..passage
-                });
+                passages.push((time_s, passage));
             });
             phases.push(phase);
         }
         (phases, passages)
     }
 
-    /// Moves the base from the angle `from` to `to`, in radians, and calls `event` at each touch, release and detachment. The times of
-    /// the changes are NaN, and their samples 0.
+    /// Moves the base from the angle `from` to `to`, in radians, and calls `event` at each touch, release and detachment.
     fn pass(&self, phase: &mut Phase, from: f64, to: f64, mut event: impl FnMut(Passage)) {
         let grows = to > from;
         loop {
@@ -97,11 +88,8 @@ pub trait Obstacles {
 
     /// Returns the event at which the phase `state` begins or ends at `angle`, in radians; `None` for a free whisker.
     fn passage(&self, state: Phase, angle: f64, grows: bool, begins: bool) -> Option<Passage> {
-        let (sample, time_s) = (0, f64::NAN);
         match state {
             Phase::Undecided { obstacle, reason } if begins => Some(Passage {
-                sample,
-                time_s,
                 angle,
                 event: Some(WhiskEventKind::Undecided),
                 side: match reason {
@@ -121,8 +109,6 @@ pub trait Obstacles {
                 // The end itself, without the rounding of angles: just before it, the state is nearly singular.
                 let end = self.end(side, obstacle).filter(|_| event.is_none());
                 Some(Passage {
-                    sample,
-                    time_s,
                     angle,
                     event,
                     side,
