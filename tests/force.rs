@@ -7,6 +7,7 @@ use whiskmap::force::{
     BaseAxis, CurvatureFrame, CurvatureFrames, ForceMethod, ForceOptions, FrameContact, FrameForce,
     NoForce, forces, forces_until,
 };
+use whiskmap::input::CsvTable;
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::random::RandomStream;
 use whiskmap::scene::{FrameDeviations, Scene, Whisker};
@@ -396,7 +397,8 @@ fn with_baseline(scene: &Scene, frame: CurvatureFrame, offset: f64, sd: f64) -> 
     let ([x, y], [at_x, at_y]) = (frame.contact.unwrap().contact_mm, frame.at_mm.unwrap());
     let contact = format!("{x:?},{y:?},{at_x:?},{at_y:?}");
     text += &row(2.0, frame.curvature_per_mm + offset, &contact);
-    CurvatureFrames::parse(&text, "f.csv", length, ForceMethod::Model).unwrap()
+    let table = CsvTable::parse(&text, "f.csv").unwrap();
+    CurvatureFrames::of(&table, length, ForceMethod::Model).unwrap()
 }
 
 fn forces_of(scene: &Scene, frames: &[CurvatureFrame], options: &ForceOptions) -> Vec<FrameForce> {

@@ -1,6 +1,6 @@
 //! Baseline of the curvature: what frames without contact show beside the scene's shape at rest.
 
-use super::lever::Bending;
+use super::bending::Bending;
 use super::{CurvatureFrame, CurvatureFrames};
 use crate::input::CsvError;
 use crate::scene::{Whisker, digits, rounded};

@@ -1,4 +1,4 @@
-//! Moment over lever.
+//! Bending of a frame, and the force by its lever: moment over distance.
 
 use super::deviation::LoadDerivatives;
 use super::{CurvatureFrame, FrameContact, FrameForce, NoForce};

@@ -2,7 +2,6 @@
 
 use super::{CurvatureFrame, ForceMethod, FrameContact};
 use crate::input::{CsvError, CsvTable};
-use std::path::Path;
 
 /// Frames of a film.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,37 +51,11 @@ impl CurvatureFrames {
         CONTACT,
     ];
 
-    /// Reads the frames of a CSV file for a whisker of `length_mm`; `-` is standard input. Frames without contact have empty cells for it,
-    /// or 0 in the column `contact`. Other empty cells, and those with `NaN`, are missing values.
+    /// Returns the frames of a CSV table for a whisker of `length_mm`. Frames without contact have empty cells for it, or 0 in the column
+    /// `contact`. Other empty cells, and those with `NaN`, are missing values.
     ///
     /// # Errors
-    /// If the file cannot be read, a column that `method` needs is missing, a cell is no number or out of its range, or a time does not
-    /// grow.
-    pub fn read(
-        path: impl AsRef<Path>,
-        length_mm: f64,
-        method: ForceMethod,
-    ) -> Result<Self, CsvError> {
-        Self::of(&CsvTable::input(path)?, length_mm, method)
-    }
-
-    /// Reads the frames from the text of a CSV file, as [`CurvatureFrames::read`] does. Messages call the text `origin`.
-    ///
-    /// # Errors
-    /// Fails as [`CurvatureFrames::read`] does.
-    pub fn parse(
-        text: &str,
-        origin: &str,
-        length_mm: f64,
-        method: ForceMethod,
-    ) -> Result<Self, CsvError> {
-        Self::of(&CsvTable::parse(text, origin)?, length_mm, method)
-    }
-
-    /// Returns the frames of a CSV table.
-    ///
-    /// # Errors
-    /// Fails as [`CurvatureFrames::read`] does.
+    /// If a column that `method` needs is missing, a cell is no number or out of its range, or a time does not grow.
     pub fn of(table: &CsvTable, length_mm: f64, method: ForceMethod) -> Result<Self, CsvError> {
         let angle: &[&str] = &[ANGLE];
         let (needed, optional) = match method {

@@ -4,9 +4,9 @@
 //! by the lever of the contact is the force, which is normal to the whisker at the contact: friction and inertia are left out.
 
 mod baseline;
+mod bending;
 mod deviation;
 mod frames;
-mod lever;
 mod model;
 mod state_curve;
 
@@ -15,6 +15,7 @@ pub use frames::CurvatureFrames;
 
 use crate::scene::{FrameDeviations, Pole, Whisker, digits, rounded};
 use crate::trace::row;
+use bending::Bending;
 use glam::DVec2;
 use model::Model;
 use rayon::prelude::*;
@@ -237,17 +238,19 @@ pub fn forces_until(
     let model = || Model::new(whisker, pole, nearest, options.axis);
     let model = (method == ForceMethod::Model).then(model);
     let force = |frame: &CurvatureFrame| {
-        let lever = lever::Bending::new(whisker, frame).less(baseline_per_mm);
+        let bending = Bending::new(whisker, frame).less(baseline_per_mm);
         if frame.is_missing(method) {
-            return lever.none(frame.time_s, NoForce::Missing);
+            return bending.none(frame.time_s, NoForce::Missing);
         }
         let Some(contact) = &frame.contact else {
-            return lever.free(frame.time_s);
+            return bending.free(frame.time_s);
         };
         match &model {
-            Some(_) if cancel.load(Ordering::Relaxed) => lever.none(frame.time_s, NoForce::NoState),
-            Some(model) => model.force(&lever, frame, contact, &deviations),
-            None => lever.force(frame, contact, &deviations),
+            Some(_) if cancel.load(Ordering::Relaxed) => {
+                bending.none(frame.time_s, NoForce::NoState)
+            }
+            Some(model) => model.force(&bending, frame, contact, &deviations),
+            None => bending.force(frame, contact, &deviations),
         }
     };
     frames.par_iter().map(force).collect()

@@ -1,7 +1,7 @@
 //! Force of the full model: the stable state with the measured curvature, at the measured distance of the contact from the base.
 
+use super::bending::Bending;
 use super::deviation::{LoadDerivatives, Loads};
-use super::lever::Bending;
 use super::state_curve::{Measured, ModelState, StateCurve};
 use super::{BaseAxis, CurvatureFrame, FrameContact, FrameForce, NoForce};
 use crate::scene::{FrameDeviations, Pole, Whisker};

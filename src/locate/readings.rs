@@ -3,7 +3,6 @@
 use super::BaseReading;
 use crate::input::{CsvError, CsvTable};
 use crate::scene::digits;
-use std::path::Path;
 
 /// Readings of a sensor at the base.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,27 +28,11 @@ impl BaseReadings {
         "angle_deg",
     ];
 
-    /// Reads a CSV file with at least two of the columns `base_moment_nnm`, `base_force_x_un` and `base_force_y_un`, and optionally
-    /// `angle_deg`; `-` is standard input. A missing value, as in [`CsvTable::measurements`], is a number that was not measured.
+    /// Returns the readings of a CSV table with at least two of the columns `base_moment_nnm`, `base_force_x_un` and `base_force_y_un`, and
+    /// optionally `angle_deg`. A missing value, as in [`CsvTable::measurements`], is a number that was not measured.
     ///
     /// # Errors
-    /// If the file cannot be read, two of the columns are missing, or a cell is no number or out of its range.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
-        Self::of(&CsvTable::input(path)?)
-    }
-
-    /// Reads the readings from the text of a CSV file, as [`BaseReadings::read`] does. Messages call the text `origin`.
-    ///
-    /// # Errors
-    /// Fails as [`BaseReadings::read`] does.
-    pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
-        Self::of(&CsvTable::parse(text, origin)?)
-    }
-
-    /// Returns the readings of a CSV table.
-    ///
-    /// # Errors
-    /// Fails as [`BaseReadings::read`] does.
+    /// If two of the columns are missing, or a cell is no number or out of its range.
     pub fn of(table: &CsvTable) -> Result<Self, CsvError> {
         let [moment, x, y, angle] = Self::COLUMNS;
         let note = table.require(&[], &Self::COLUMNS)?;

@@ -2,7 +2,6 @@
 
 use crate::input::{CsvError, CsvTable, MOST_SECONDS};
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// Angle of the base over time: samples, joined by straight lines.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,27 +149,10 @@ impl AngleCourse {
     /// Names of the columns of a file of a course, `[column]`.
     pub const COLUMNS: [&str; 2] = ["time_s", "angle_deg"];
 
-    /// Reads the course of a CSV file with the columns `time_s` and `angle_deg`; `-` is standard input. A missing angle is an empty cell or
-    /// `NaN`.
+    /// Returns the course of a CSV table with the columns `time_s` and `angle_deg`. A missing angle is an empty cell or `NaN`.
     ///
     /// # Errors
-    /// If the file cannot be read, a column is missing, a cell is no number or out of its range, or a time does not grow.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self, CsvError> {
-        Self::of(&CsvTable::input(path)?)
-    }
-
-    /// Reads the course from the text of a CSV file, as [`AngleCourse::read`] does. Messages call the text `origin`.
-    ///
-    /// # Errors
-    /// Fails as [`AngleCourse::read`] does.
-    pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
-        Self::of(&CsvTable::parse(text, origin)?)
-    }
-
-    /// Returns the course of a CSV table.
-    ///
-    /// # Errors
-    /// Fails as [`AngleCourse::read`] does.
+    /// If a column is missing, a cell is no number or out of its range, or a time does not grow.
     pub fn of(table: &CsvTable) -> Result<Self, CsvError> {
         let [time, angle] = Self::COLUMNS;
         let note = table.require(&[&[time], &[angle]], &[])?;

@@ -3,6 +3,7 @@
 use super::{SCALE, assert_near, parse, with};
 use whiskmap::Side;
 use whiskmap::force::{CurvatureFrames, ForceMethod, forces};
+use whiskmap::input::CsvTable;
 use whiskmap::scene::Scene;
 use whiskmap::trace::{Branch, WhiskerShape};
 use whiskmap::tracking::ImagePole;
@@ -101,9 +102,8 @@ fn a_push_until_slip_off_comes_back() {
             )
         },
     );
-    let frames =
-        CurvatureFrames::parse(&table, "frames.csv", whisker.length_mm, ForceMethod::Model)
-            .unwrap();
+    let table = CsvTable::parse(&table, "frames.csv").unwrap();
+    let frames = CurvatureFrames::of(&table, whisker.length_mm, ForceMethod::Model).unwrap();
     let forces = forces(&whisker, &scene.pole, &frames.frames, ForceMethod::Model);
     let mut compared = 0;
     for (force, push) in forces.iter().zip(pushes) {

@@ -3,6 +3,7 @@
 use super::{SCALE, assert_near, parse, with};
 use whiskmap::Side;
 use whiskmap::force::{CurvatureFrames, ForceMethod, forces};
+use whiskmap::input::CsvTable;
 use whiskmap::scene::Scene;
 use whiskmap::trace::{Branch, WhiskerPart, WhiskerShape};
 use whiskmap::tracking::{ImagePole, NoFrame, TrackedFrame, Tracking, TrackingOptions};
@@ -37,8 +38,8 @@ fn forces_un(frames: &[TrackedFrame]) -> Vec<Option<f64>> {
             |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
         text + &format!("{},{}\n", row.time_s, numbers.map(cell).join(","))
     });
-    let frames =
-        CurvatureFrames::parse(&table, "frames.csv", whisker.length_mm, ForceMethod::Model);
+    let table = CsvTable::parse(&table, "frames.csv").unwrap();
+    let frames = CurvatureFrames::of(&table, whisker.length_mm, ForceMethod::Model);
     let frames = frames.unwrap().frames;
     let found = forces(&whisker, &scene.pole, &frames, ForceMethod::Model);
     found.iter().map(|frame| frame.force_un).collect()
