@@ -4,7 +4,7 @@ use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::input::{CsvError, CsvTable};
 use crate::scene::{NEAREST, Pole, Whisker, digits};
 use crate::sheet::Row;
-use crate::trace::DetachmentKind;
+use crate::trace::{DetachmentKind, reach_mm};
 use std::path::Path;
 use whiskmap_mechanics::rod::{Rest, Side};
 
@@ -152,14 +152,13 @@ impl MeasuredPoints {
         let Some(point) = self.first_out_of_reach(whisker, pole) else {
             return Ok(());
         };
-        let rest = Rest::new(&whisker.rod(pole, Side::Cb));
-        let (tip, _) = rest.at_arclength(rest.end());
+        let reach_mm = reach_mm(whisker, pole, Side::Cb);
         let what = format!(
             "distance_mm = {}: must be between {} (length_mm / 1000) and {} (the tip of the resting whisker), and more than \
              {} (pole.radius_mm)",
             digits(point.distance_mm),
             digits(whisker.length_mm / NEAREST),
-            digits(tip.length() * whisker.length_mm),
+            digits(reach_mm),
             digits(pole.radius_mm)
         );
         Err(CsvError::at(&self.origin, point.line, what))

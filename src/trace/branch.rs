@@ -83,10 +83,8 @@ impl Branch {
         let rest = Rest::new(&rod);
         let row = Row::new(&rest, distance_mm / whisker.length_mm);
         if !row.is_reached() {
-            let (tip, _) = rest.at_arclength(1.0);
-            return Err(NoState::OutOfReach {
-                reach_mm: tip.length() * whisker.length_mm,
-            });
+            let reach_mm = rest.reach() * whisker.length_mm;
+            return Err(NoState::OutOfReach { reach_mm });
         }
         let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
         let followed = level.continuation(level.touch(), stretch);

@@ -75,8 +75,7 @@ impl Detachment {
 /// Returns the distance in mm at which the tip of the resting whisker touches the pole: the largest distance of a detachment curve.
 #[must_use]
 pub fn reach_mm(whisker: &Whisker, pole: &Pole, side: Side) -> f64 {
-    let rest = Rest::new(&whisker.rod(pole, side));
-    rest.at_arclength(rest.end()).0.length() * whisker.length_mm
+    Rest::new(&whisker.rod(pole, side)).reach() * whisker.length_mm
 }
 
 /// Computes the detachment curve of `whisker` on one `side`: one end for each of `distances_mm`, which must increase, `[distance]`.

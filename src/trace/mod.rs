@@ -59,7 +59,7 @@ const MOST_WHISKERS: usize = 64;
 /// Returns the number of whiskers to compute together if each has ends at `distances` distances on both sides.
 #[must_use]
 pub fn whiskers_at_once(distances: usize) -> usize {
-    (ENDS_AT_ONCE / (2 * distances)).clamp(1, MOST_WHISKERS)
+    (ENDS_AT_ONCE / (2 * distances.max(1))).clamp(1, MOST_WHISKERS)
 }
 
 /// Returns the results of `of_side` for each side of each whisker, in the order of `whiskers`, CF before CB. Rows of a table without a

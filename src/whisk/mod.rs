@@ -212,8 +212,7 @@ pub fn whisk_with(
     let rests = rods.each_ref().map(Rest::new);
     let cb = Row::new(&rests[0], distance_mm / whisker.length_mm);
     if !cb.is_reached() {
-        let (tip, _) = rests[0].at_arclength(1.0);
-        let reach_mm = tip.length() * whisker.length_mm;
+        let reach_mm = rests[0].reach() * whisker.length_mm;
         return Err(NoState::OutOfReach { reach_mm }.into());
     }
     let cf_distance = rests[1].distance_of_pole(cb.pole_distance);

@@ -5,9 +5,10 @@ use crate::paper::whiskers::{FIG4_HAIR, FIG6_WHISKER};
 use crate::render::{Ink, Line, Plot, STUCK, Stroke, TIP, tip_histogram, tip_lines};
 use crate::scene::{Pole, Surface, Whisker};
 use crate::texture::{Texture, TexturePhase, TextureSample, shape, texture};
+use crate::trace::reach_mm;
 use crate::whisk::AngleCourse;
 use serde::Serialize;
-use whiskmap_mechanics::rod::{Rest, Side};
+use whiskmap_mechanics::rod::Side;
 
 /// Frames per second, as in the paper.
 const RATE: f64 = 32.0;
@@ -63,8 +64,7 @@ impl<'a> Sweep<'a> {
         push_mm: Option<f64>,
         [course, fine]: &[AngleCourse; 2],
     ) -> Result<Self, FigureError> {
-        let rest = Rest::new(&whisker.rod(&Pole::smooth(0.0), Side::Cb));
-        let reach_mm = rest.at_arclength(rest.end()).0.length() * whisker.length_mm;
+        let reach_mm = reach_mm(whisker, &Pole::smooth(0.0), Side::Cb);
         // In free air the surface is beyond the whisker.
         let distance_mm = reach_mm - push_mm.unwrap_or(-1.0);
         let surface = Surface {

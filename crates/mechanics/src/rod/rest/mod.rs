@@ -48,6 +48,12 @@ impl Rest {
         self.end
     }
 
+    /// Returns the distance from the base to the tip of the resting whisker, in whisker lengths.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.at_arclength(self.end).0.length()
+    }
+
     /// Returns the unit tangent of the parabola of `rod` at arclength `s`, in whisker lengths, in the frame of the parabola.
     #[must_use]
     #[inline(always)]
