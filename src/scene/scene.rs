@@ -171,14 +171,16 @@ impl Scene {
         builder.build()
     }
 
-    /// Returns the scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over the axis.
+    /// Returns the scene with at most `lines` push angles and distances, and at most `values` of each sweep axis, from all over the axis; at
+    /// least one of each.
     /// The new scene keeps the text of the whole scene.
     #[must_use]
     pub fn thinned(&self, lines: usize, values: usize) -> Self {
         self.thinned_to([lines, lines], values)
     }
 
-    /// Returns the scene with at most these numbers of push angles and distances, and at most `values` of each sweep axis.
+    /// Returns the scene with at most these numbers of push angles and distances, and at most `values` of each sweep axis; at least one of
+    /// each.
     #[must_use]
     pub fn thinned_to(&self, [push_angles, distances]: [usize; 2], values: usize) -> Self {
         let mut thinned = self.clone();
@@ -192,9 +194,9 @@ impl Scene {
     }
 }
 
-/// Keeps the middles of at most `most` equal parts.
+/// Keeps the middles of at most `most` equal parts, and at least one value.
 fn thin(values: &mut Vec<f64>, most: usize) {
-    let (all, kept) = (values.len(), values.len().min(most));
+    let (all, kept) = (values.len(), values.len().min(most.max(1)));
     *values = (0..kept)
         .map(|i| values[(2 * i + 1) * all / (2 * kept)])
         .collect();

@@ -11,7 +11,7 @@ use whiskmap_mechanics::rod::Rest;
 /// and toward it. An undecided sample has no points.
 ///
 /// # Errors
-/// If the state of the sample is not found again.
+/// If the state of the sample is not found again, as behind another surface.
 pub fn shape(
     whisker: &Whisker,
     surface: &Surface,
@@ -30,7 +30,9 @@ pub fn shape(
         return Ok(points.collect());
     };
     let pole = surface.asperity();
-    let centre = DVec2::new(surface.asperities_mm()[asperity], surface.distance_mm);
+    let along = surface.asperities_mm().get(asperity).copied();
+    let along = along.ok_or(NoState::Failed { push_deg })?;
+    let centre = DVec2::new(along, surface.distance_mm);
     let rest = Rest::new(&whisker.rod(&pole, side));
     let distance = rest.distance_of_pole(centre.length() / whisker.length_mm);
     let branch = StableBranch::new(whisker, &pole, side, distance * whisker.length_mm)?;
