@@ -33,7 +33,7 @@ impl CourseLimits {
     #[must_use]
     pub fn new(level: &LevelCurve) -> Option<Self> {
         let (history, retreat) = ContactHistory::with_retreat(level)?;
-        let [tip, base] = [Sliding::Tip, Sliding::Base].map(|way| history.limit(way));
+        let [tip, base] = [Sliding::Tip, Sliding::Base].map(|sliding| history.limit(sliding));
         let (tip, base) = (tip?, base?);
         let pushes = tip.pushes().chain(base.pushes());
         let pushes = pushes.chain(retreat.iter().flat_map(SlidingLimit::pushes));
@@ -169,7 +169,7 @@ impl ContactCourse<'_> {
         }
     }
 
-    /// Begins a way on which the push grows or falls. Below the end of the base limit, the contact lies on one side of its unstable states.
+    /// Begins a stretch along which the push grows or falls. Below the end of the base limit, the contact lies on one side of its unstable states.
     fn head(&mut self, grows: bool) {
         let Some(base) = self.limits.base() else {
             return;
@@ -204,22 +204,22 @@ impl ContactCourse<'_> {
         let base = limits.base();
         let base = base.filter(|base| !self.is_beyond && from.push <= base.end());
         let (knot, limit) = limits.history.advance(&from, push, base);
-        if let Some(way) = limit {
-            self.dissipated += self.taken(way, &from, &knot);
+        if let Some(sliding) = limit {
+            self.dissipated += self.taken(sliding, &from, &knot);
         }
         self.phase = limit.map_or(ContactPhase::Sticks(knot.end), ContactPhase::Slides);
         self.knot = knot;
     }
 
-    /// Energy dissipated from one knot to the next by a contact that has reached the limit `way`.
-    fn taken(&self, way: Sliding, from: &HistoryKnot, to: &HistoryKnot) -> f64 {
-        let Some(limit) = self.limits.history.limit(way) else {
+    /// Energy dissipated from one knot to the next by a contact that has reached the limit `sliding`.
+    fn taken(&self, sliding: Sliding, from: &HistoryKnot, to: &HistoryKnot) -> f64 {
+        let Some(limit) = self.limits.history.limit(sliding) else {
             return f64::NAN;
         };
-        let dissipated = &self.limits.dissipated[usize::from(way == Sliding::Base)];
+        let dissipated = &self.limits.dissipated[usize::from(sliding == Sliding::Base)];
         // The contact sticks until the limit reaches it.
         let miss = limit.slid(from.push).map_or(f64::NAN, |at| at - from.slid);
-        let is_there = miss.abs() <= f64::EPSILON || (miss > 0.0) == (way == Sliding::Tip);
+        let is_there = miss.abs() <= f64::EPSILON || (miss > 0.0) == (sliding == Sliding::Tip);
         let start = match is_there {
             true => from.push,
             false => meeting(limit, from.slid, [from.push, to.push]),

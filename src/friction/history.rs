@@ -216,8 +216,11 @@ impl ContactHistory {
         };
         let is_clear = |limit| passed(limit).is_some_and(|passed| passed > CLEAR_OF_CONTACT);
         // The contact stops at an exact reversal, but begins to slide at an interpolated place.
-        let is_begun = limit.and_then(|way| self.limit(way)).is_none_or(is_clear);
-        let begins = limit.is_some_and(|way| before.end.limit != way && before.end.push > 0.0);
+        let is_begun = limit
+            .and_then(|sliding| self.limit(sliding))
+            .is_none_or(is_clear);
+        let begins =
+            limit.is_some_and(|sliding| before.end.limit != sliding && before.end.push > 0.0);
         let slides = limit.filter(|_| !begins || is_begun);
         slides.map_or(ContactPhase::Sticks(before.end), ContactPhase::Slides)
     }

@@ -291,9 +291,8 @@ impl SheetGrid {
         let [tau, load] = [at.x, self.side.sign() * at.y];
         let is_on_whisker =
             tau >= self.taus[0] && self.rod.radius(tau) * (tau - self.rod.tau_tip()) <= ON_TIP;
-        let scale = map.by_tau.length() * map.by_load.length();
         let is_pole_outside = map.pole.length() > self.rod.pole.abs();
-        if !(is_on_whisker && load > 0.0 && map.det() > -FLAT * scale && is_pole_outside) {
+        if !(is_on_whisker && load > 0.0 && map.is_stable() && is_pole_outside) {
             return None;
         }
         let (i, interpolated) = self.fold(tau);
@@ -319,6 +318,3 @@ impl SheetGrid {
 
 /// Distance beyond the tip, in whisker lengths, within which a contact counts as on the whisker.
 const ON_TIP: f64 = 1e-9;
-
-/// Determinant of a stable state at the fold, relative to its scale, that is rounding ([`Sheet::is_stable`](crate::sheet::Sheet::is_stable)).
-const FLAT: f64 = 1e-7;

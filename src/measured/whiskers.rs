@@ -38,10 +38,12 @@ impl MeasuredPoints {
                 .collect()
         };
         Self {
+            origin: self.origin.clone(),
+            note: self.note.clone(),
             whiskers: Vec::new(),
             points: of_index(&self.points),
             incomplete: of_index(&self.incomplete),
-            ..self.clone()
+            ..*self
         }
     }
 

@@ -107,8 +107,8 @@ fn chain<'a>(frames: &mut [ImageFrame], names: &'a [String]) -> Vec<&'a str> {
         let detour = |frame: &ImageFrame| {
             let [before, at, after] = [0, 1, 2].map(|i| frame.points_px[three[i]]);
             let (before, at, after) = (before?, at?, after?);
-            let way = distance(before, at) + distance(at, after);
-            Some(way / distance(before, after) - 1.0)
+            let length = distance(before, at) + distance(at, after);
+            Some(length / distance(before, after) - 1.0)
         };
         let some = frames.iter().step_by(step);
         (three[1], median(some.filter_map(detour)))

@@ -63,11 +63,11 @@ pub fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> St
     let goal = asked.target.goal;
     let wanted = asked.wanted();
     let number = |value: f64| asked.text(value, REACHED_DIGITS);
-    let ways = [
+    let kinds = [
         (DetachmentKind::SlipOff, "slips off"),
         (DetachmentKind::PullOff, "is pulled off"),
     ];
-    let ranges = ways.iter().filter_map(|(kind, way)| {
+    let ranges = kinds.iter().filter_map(|(kind, verb)| {
         let [low, high] = design.reached(*kind)?.map(number);
         let between = match goal.kind() {
             Some(_) if low == high => format!("at {low} for every value"),
@@ -75,7 +75,7 @@ pub fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> St
             None if low == high => format!("with {low} for every value"),
             None => format!("with {low} to {high}"),
         };
-        Some(format!("it {way} {between}"))
+        Some(format!("it {verb} {between}"))
     });
     let ranges: Vec<_> = ranges.collect();
     let reached = match ranges.join(", and ") {

@@ -88,8 +88,8 @@ impl<T: Real> Intrinsic<T> for Spiral<T> {
 
     #[inline(always)]
     fn turn([per_along, curvature, slope]: &[T; 3], along: T) -> Option<T> {
-        let way = *per_along * along;
-        Some(way * slope.mul_add(way, *curvature))
+        let distance = *per_along * along;
+        Some(distance * slope.mul_add(distance, *curvature))
     }
 
     #[inline(always)]
@@ -172,9 +172,9 @@ impl<T: Real> Intrinsic<T> for Polynomial<T> {
 
     #[inline(always)]
     fn turn(course: &PolynomialSeries<T>, along: T) -> Option<T> {
-        let way = course.per_along * along;
+        let distance = course.per_along * along;
         let [a, b, c, d, e, f, g] = course.terms;
-        Some(way * horner!(way; g, f, e, d, c, b, a))
+        Some(distance * horner!(distance; g, f, e, d, c, b, a))
     }
 
     #[inline(always)]

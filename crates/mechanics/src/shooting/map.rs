@@ -38,6 +38,12 @@ impl ShootingMap {
         self.by_tau.perp_dot(self.by_load)
     }
 
+    /// Returns true if the state is stable, or at a fold but for rounding: the determinant is not less than -1e-7 of its scale.
+    #[must_use]
+    pub fn is_stable(&self) -> bool {
+        self.det() > -1e-7 * self.by_tau.length() * self.by_load.length()
+    }
+
     /// Returns the step `(tau, load)` that cancels `residual = ln P_wanted/P` to first order.
     #[must_use]
     pub fn solve(&self, residual: DVec2) -> DVec2 {

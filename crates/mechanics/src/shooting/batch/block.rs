@@ -36,17 +36,17 @@ impl<'a> Block<'a> {
         if T::LANES == WIDTH {
             return compute(&self.conditions);
         }
-        let mut answers = [A::default(); WIDTH];
-        for (conditions, answers) in self.conditions[..self.count]
+        let mut outputs = [A::default(); WIDTH];
+        for (conditions, outputs) in self.conditions[..self.count]
             .chunks(T::LANES)
-            .zip(answers.chunks_mut(T::LANES))
+            .zip(outputs.chunks_mut(T::LANES))
         {
             let part = compute(&std::array::from_fn(|lane| {
                 conditions[lane.min(conditions.len() - 1)]
             }));
-            answers.copy_from_slice(&part[..answers.len()]);
+            outputs.copy_from_slice(&part[..outputs.len()]);
         }
-        answers
+        outputs
     }
 }
 

@@ -216,6 +216,6 @@ where
         // See `Rod::to_pole`.
         let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
         let at_base = S::at_base(&arrival, carried);
-        O::answers(&arrival, to_pole, at_base, (conditions, observer))
+        O::outputs(&arrival, to_pole, at_base, (conditions, observer))
     }
 }

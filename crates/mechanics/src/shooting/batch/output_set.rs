@@ -34,7 +34,7 @@ pub trait OutputSet: Copy + Default + Send + 'static {
 
     /// Returns the outputs of each lane. `pole` is the vector from the contact to the pole's centre. The initial conditions come with the
     /// observer of the trajectories from them.
-    fn answers<T: Lanes>(
+    fn outputs<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         at_base: <Self::General<T> as SensitivitySet<T>>::AtBase,
@@ -66,7 +66,7 @@ impl OutputSet for PlainState {
     type Observer<T: Lanes> = ();
 
     #[inline(always)]
-    fn answers<T: Lanes>(
+    fn outputs<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         ((), energy): ((), T),
@@ -100,7 +100,7 @@ impl OutputSet for ShootingMap {
     type Observer<T: Lanes> = ();
 
     #[inline(always)]
-    fn answers<T: Lanes>(
+    fn outputs<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         first: BaseDerivatives<T>,
@@ -122,7 +122,7 @@ impl OutputSet for FirstVariation {
     type Observer<T: Lanes> = ();
 
     #[inline(always)]
-    fn answers<T: Lanes>(
+    fn outputs<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         (first, energy): (BaseDerivatives<T>, T),
@@ -185,7 +185,7 @@ impl OutputSet for SecondVariation {
     type Observer<T: Lanes> = ();
 
     #[inline(always)]
-    fn answers<T: Lanes>(
+    fn outputs<T: Lanes>(
         arrival: &Arrival<T>,
         pole: [T; 2],
         second: SecondBaseDerivatives<T>,
@@ -220,7 +220,7 @@ impl OutputSet for PeakStrain {
     type Observer<T: Lanes> = StepNodes<T>;
 
     #[inline(always)]
-    fn answers<T: Lanes>(
+    fn outputs<T: Lanes>(
         _: &Arrival<T>,
         _: [T; 2],
         (): (),

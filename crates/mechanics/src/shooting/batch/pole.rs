@@ -101,28 +101,28 @@ impl<T: Lanes> PoleCentre<T> {
     }
 }
 
-/// The result of `answer` for the index and the numbers of each lane. It is outside the kernels, because it computes nothing.
+/// The result of `output` for the index and the numbers of each lane. It is outside the kernels, because it computes nothing.
 #[inline(never)]
 fn transposed<A: Copy + Default, const N: usize>(
     columns: &[[f64; WIDTH]; N],
-    answer: impl Fn(usize, [f64; N]) -> A,
+    output: impl Fn(usize, [f64; N]) -> A,
 ) -> [A; WIDTH] {
-    let mut answers = [A::default(); WIDTH];
-    for (lane, slot) in answers.iter_mut().enumerate() {
-        *slot = answer(lane, columns.each_ref().map(|column| column[lane]));
+    let mut outputs = [A::default(); WIDTH];
+    for (lane, slot) in outputs.iter_mut().enumerate() {
+        *slot = output(lane, columns.each_ref().map(|column| column[lane]));
     }
-    answers
+    outputs
 }
 
-/// Returns the results of `answer` for the index and the `numbers` of each lane, `[lane]`.
+/// Returns the results of `output` for the index and the `numbers` of each lane, `[lane]`.
 #[inline(always)]
 pub fn spread<T: Lanes, A: Copy + Default, const N: usize>(
     numbers: [T; N],
-    answer: impl Fn(usize, [f64; N]) -> A,
+    output: impl Fn(usize, [f64; N]) -> A,
 ) -> [A; WIDTH] {
     let mut columns = [[0.0; WIDTH]; N];
     for (column, number) in columns.iter_mut().zip(numbers) {
         *column = number.unpack();
     }
-    transposed(&columns, answer)
+    transposed(&columns, output)
 }
