@@ -208,89 +208,132 @@ pub fn whisk_with(
     {
         return Err(WhiskError::CurvatureAt { at_mm, length_mm });
     }
-    let rods = [Side::Cb, Side::Cf].map(|side| whisker.rod(pole, side));
-    let rests = rods.each_ref().map(Rest::new);
-    let cb = Row::new(&rests[0], distance_mm / whisker.length_mm);
-    if !cb.is_reached() {
-        let reach_mm = rests[0].reach() * whisker.length_mm;
-        return Err(NoState::OutOfReach { reach_mm }.into());
-    }
-    let cf_distance = rests[1].distance_of_pole(cb.pole_distance);
-    let cf = Row::new(&rests[1], cf_distance);
-    let states = |side, distance_mm| {
-        let states = SideStates::new(whisker, pole, side, vec![distance_mm]);
-        states.map_err(|_| WhiskError::Unresolved(side))
-    };
-    let cb_states = states(Side::Cb, distance_mm)?;
-    let cf_states = match cf.is_reached() {
-        true => Some(states(Side::Cf, cf_distance * whisker.length_mm)?),
-        false => None,
-    };
-    let turns = Turns {
-        cf_touch: cf.touch - cb.touch,
-        cb_end: cb_states.end(0),
-        cf_end: cf_states.as_ref().map(|states| states.end(0)),
-    };
-    let found = BothSides {
-        cb: Some(cb_states),
-        cf: cf_states,
-    };
-    let known = course.known();
-    let first = course.angles_deg[known[0]];
-    let phase = begin(&turns, first, options.start)?;
-    let mut legs = Legs::new(&turns, phase, &found);
-    legs.first(first.to_radians(), course.times_s[known[0]]);
+    let front = Front::new(whisker, pole, distance_mm)?;
     let gaps = course.gaps(options.bridge_s);
-    let is_open = |end: usize| {
-        gaps.iter()
-            .any(|gap| !gap.is_bridged && gap.end == Some(end))
-    };
-    for pair in known.windows(2) {
-        if options.is_cancelled() {
-            return Err(WhiskError::Cancelled);
-        }
-        let ends = [pair[0], pair[1]];
-        let angles = ends.map(|i| course.angles_deg[i].to_radians());
-        let times = ends.map(|i| course.times_s[i]);
-        match is_open(ends[1]) {
-            true => legs.resume(angles[1], times[1]),
-            false => legs.leg(angles, times),
-        }
-    }
-    let point = options.curvature_at_mm.map(|at_mm| CurvaturePoint {
-        at_mm,
-        at_rest_per_mm: rests[0].curvature(at_mm / length_mm) / length_mm,
-    });
-    let mut samples = Vec::with_capacity(legs.samples.len());
-    for chunk in legs.samples.chunks(STATES_AT_ONCE) {
-        if options.is_cancelled() {
-            return Err(WhiskError::Cancelled);
-        }
-        let unit_nj = whisker.units().moment_nnm;
-        samples.extend(found.samples(chunk, point, unit_nj));
-    }
-    let mut events = Vec::with_capacity(legs.events.len());
-    for chunk in legs.events.chunks(STATES_AT_ONCE) {
-        if options.is_cancelled() {
-            return Err(WhiskError::Cancelled);
-        }
-        events.extend(found.events(chunk));
-    }
-    let centre_mm = DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm);
-    let fixed_pole = (centre_mm, pole.radius_mm);
+    let legs = front.follow(course, &gaps, options)?;
+    let (mut samples, events) = front.states(&legs, options)?;
+    let known = course.known();
     for (&i, sample) in known.iter().zip(&mut samples) {
-        *sample = sample.at(course.times_s[i], course.angles_deg[i], fixed_pole);
+        let (time_s, angle_deg) = (course.times_s[i], course.angles_deg[i]);
+        *sample = sample.at(time_s, angle_deg, (front.pole_mm, pole.radius_mm));
     }
     samples.extend(gaps.iter().flat_map(|gap| gap.samples(&course.times_s)));
     samples.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+    let first = course.angles_deg[known[0]];
     Ok(Whisk {
         samples,
         events,
         gaps,
-        cf_touch_deg: turns.cf_touch.to_degrees(),
+        cf_touch_deg: front.turns.cf_touch.to_degrees(),
         assumed_free_deg: (options.start.is_none() && first.to_radians() > ROUNDING)
             .then_some(first),
     })
+}
+
+/// A whisker in front of its pole.
+struct Front<'a> {
+    whisker: &'a Whisker,
+    sides: BothSides,
+    turns: Turns,
+    /// Centre of the pole in mm, in the axes of first touch on CB.
+    pole_mm: DVec2,
+}
+
+impl<'a> Front<'a> {
+    fn new(whisker: &'a Whisker, pole: &Pole, distance_mm: f64) -> Result<Self, WhiskError> {
+        let length_mm = whisker.length_mm;
+        let rests = [Side::Cb, Side::Cf].map(|side| Rest::new(&whisker.rod(pole, side)));
+        let cb = Row::new(&rests[0], distance_mm / length_mm);
+        if !cb.is_reached() {
+            let reach_mm = rests[0].reach() * length_mm;
+            return Err(NoState::OutOfReach { reach_mm }.into());
+        }
+        let cf_distance = rests[1].distance_of_pole(cb.pole_distance);
+        let cf = Row::new(&rests[1], cf_distance);
+        let states = |side, distance_mm| {
+            let states = SideStates::new(whisker, pole, side, vec![distance_mm]);
+            states.map_err(|_| WhiskError::Unresolved(side))
+        };
+        let cb_states = states(Side::Cb, distance_mm)?;
+        let cf_states = match cf.is_reached() {
+            true => Some(states(Side::Cf, cf_distance * length_mm)?),
+            false => None,
+        };
+        let turns = Turns {
+            cf_touch: cf.touch - cb.touch,
+            cb_end: cb_states.end(0),
+            cf_end: cf_states.as_ref().map(|states| states.end(0)),
+        };
+        Ok(Self {
+            whisker,
+            sides: BothSides {
+                cb: Some(cb_states),
+                cf: cf_states,
+            },
+            turns,
+            pole_mm: DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm),
+        })
+    }
+
+    /// Moves the base along `course` from one known angle to the next.
+    fn follow(
+        &self,
+        course: &AngleCourse,
+        gaps: &[CourseGap],
+        options: &WhiskOptions,
+    ) -> Result<Legs<'_>, WhiskError> {
+        let known = course.known();
+        let first = course.angles_deg[known[0]];
+        let phase = begin(&self.turns, first, options.start)?;
+        let mut legs = Legs::new(&self.turns, phase, &self.sides);
+        legs.first(first.to_radians(), course.times_s[known[0]]);
+        let is_open = |end: usize| {
+            gaps.iter()
+                .any(|gap| !gap.is_bridged && gap.end == Some(end))
+        };
+        for pair in known.windows(2) {
+            if options.is_cancelled() {
+                return Err(WhiskError::Cancelled);
+            }
+            let ends = [pair[0], pair[1]];
+            let angles = ends.map(|i| course.angles_deg[i].to_radians());
+            let times = ends.map(|i| course.times_s[i]);
+            match is_open(ends[1]) {
+                true => legs.resume(angles[1], times[1]),
+                false => legs.leg(angles, times),
+            }
+        }
+        Ok(legs)
+    }
+
+    /// Computes the samples and the events of `legs` with their states. Times and angles of samples are missing.
+    fn states(
+        &self,
+        legs: &Legs,
+        options: &WhiskOptions,
+    ) -> Result<(Vec<WhiskSample>, Vec<WhiskEvent>), WhiskError> {
+        let rest = Rest::new(&self.whisker.rod(&Pole::smooth(0.0), Side::Cb));
+        let point = options.curvature_at_mm.map(|at_mm| CurvaturePoint {
+            at_mm,
+            at_rest_per_mm: rest.curvature(at_mm / self.whisker.length_mm) / self.whisker.length_mm,
+        });
+        let unit_nj = self.whisker.units().moment_nnm;
+        let mut samples = Vec::with_capacity(legs.samples.len());
+        for chunk in legs.samples.chunks(STATES_AT_ONCE) {
+            if options.is_cancelled() {
+                return Err(WhiskError::Cancelled);
+            }
+            samples.extend(self.sides.samples(chunk, point, unit_nj));
+        }
+        let mut events = Vec::with_capacity(legs.events.len());
+        for chunk in legs.events.chunks(STATES_AT_ONCE) {
+            if options.is_cancelled() {
+                return Err(WhiskError::Cancelled);
+            }
+            events.extend(self.sides.events(chunk));
+        }
+        Ok((samples, events))
+    }
 }
 
 /// Number of states that are computed between two looks at the flag that cancels.
