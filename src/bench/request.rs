@@ -1,7 +1,8 @@
 //! The cells of whisker sides as requests to an engine, with the targets of their states.
 
 use super::task::{Task, whisker_sides};
-use crate::engine::{Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
+use crate::classify::Outcome;
+use crate::engine::{Cells, RowBatch, SideColumns, WhiskerSide};
 use crate::plan::{Channel, Channels};
 use crate::scene::Scene;
 use crate::sheet::Sheet;

@@ -1,9 +1,11 @@
-//! Regimes and statuses of map cells.
+//! Outcomes, regimes and statuses of map cells.
 //!
-//! [`RowBoundary::classify`] is total: every push angle and every status has a regime, possibly `unresolved`.
+//! [`RowBoundary::classify`] is total: every push angle and every outcome has a regime, possibly `unresolved`.
 
+mod outcome;
 mod row;
 
+pub use outcome::Outcome;
 pub use row::{PushSpan, RowBoundary, TIE};
 
 /// Defines an enum whose variants each have a code, for files, and a name, for files and messages.

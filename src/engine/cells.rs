@@ -1,36 +1,11 @@
 //! Cells: the response of an engine, with one column for each number of a cell.
 
 use super::RowBatch;
+use crate::classify::Outcome;
 use crate::plan::STATE_CHANNELS;
 use glam::DVec2;
 use std::ops::Range;
 use std::slice;
-
-/// Outcome of an engine for one cell. A cell without a solution is data, not an error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Outcome {
-    /// The cell is solved, with a bound on the residual.
-    Solved,
-    /// The cell is solved, with the contact at the tip up to the residual.
-    AtTip,
-    /// The cell has no solution: the contact lies beyond the tip.
-    BeyondTip,
-    /// The cell has no solution: the push angle lies beyond the fold.
-    BeyondFold,
-    /// The cell has no solution: the sheet has no guess there.
-    OffSheet,
-    /// The engine failed on the cell: it found neither a solution nor a proof that there is none.
-    NotConverged,
-    /// The cell is not certified: a number is not finite, or nothing was written.
-    NotFinite,
-    /// The cell is not certified: it lies next to the tip.
-    NearEdge,
-    /// The cell is not certified: the bound on the residual is too large.
-    Missed,
-    /// The cell is not computed: its row has no expansions, or ends before it.
-    NoRow,
-}
 
 /// Result of an engine for one cell of [`Cells`].
 #[derive(Clone, Copy, Debug, PartialEq)]

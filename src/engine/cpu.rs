@@ -1,7 +1,8 @@
 //! The CPU engine: guesses from the net, refined by Newton's method in `f64` on the threads of the current pool.
 
-use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
-use crate::refine::{CellTarget, RefineOutcome, Refined, TOLERANCE, refine_into};
+use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, RowBatch};
+use crate::classify::Outcome;
+use crate::refine::{CellTarget, Refined, TOLERANCE, refine_into};
 use crate::stopwatch::Stopwatch;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -74,8 +75,7 @@ fn targets(batch: &RowBatch, row: &BatchRow) -> Vec<Option<CellTarget>> {
         guess.map(|guess| CellTarget {
             // Sides of a group are few.
             rod: row.side as u32,
-            tau: guess.tau,
-            load: guess.load,
+            guess,
             pole: side.columns.columns[cell].turn.rotate(at_touch),
         })
     });
@@ -92,19 +92,14 @@ fn solved(batch: &RowBatch, row: &BatchRow, cell: usize, refined: Option<&Refine
     else {
         return Cell::new(Outcome::OffSheet, 0);
     };
-    let outcome = match outcome {
-        RefineOutcome::Solved => {
-            let side = &batch.sides[row.side];
-            let push = side.columns.columns[cell].push;
-            return side.solved(row.row, push, state, *steps, batch.channels.has_state());
-        }
-        RefineOutcome::BeyondTip => Outcome::BeyondTip,
-        RefineOutcome::BeyondFold => Outcome::BeyondFold,
-        RefineOutcome::NotConverged => Outcome::NotConverged,
-    };
+    if outcome.is_solved() {
+        let side = &batch.sides[row.side];
+        let push = side.columns.columns[cell].push;
+        return side.solved(row.row, push, state, *steps, batch.channels.has_state());
+    }
     Cell {
         residual: state.residual as f32,
-        ..Cell::new(outcome, *steps)
+        ..Cell::new(*outcome, *steps)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Engines solve the cells of row batches under one contract: by trajectories on the CPU, or from expansions of rows on the CPU or the GPU.
 //!
 //! An [`Engine`] takes a [`RowBatch`] and returns [`Cells`]: for each cell channel values in map units, a bound on the residual, and an
-//! [`Outcome`]. Cells that an engine cannot certify fall back to the CPU engine, which also audits a sample of all others.
+//! [`Outcome`](crate::classify::Outcome). Cells that an engine cannot certify fall back to the CPU engine, which also audits a sample of all others.
 
 mod batch;
 mod cells;
@@ -17,7 +17,7 @@ mod thread;
 mod worker;
 
 pub use batch::{BatchRow, RowBatch};
-pub use cells::{Cell, CellRun, Cells, Outcome};
+pub use cells::{Cell, CellRun, Cells};
 pub use columns::{Column, SideColumns};
 pub use cpu::Cpu;
 pub use nodes::Nodes;

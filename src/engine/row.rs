@@ -1,6 +1,7 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row's part of the load.
 
-use super::{BatchRow, Outcome, Values, WhiskerSide};
+use super::{BatchRow, Values, WhiskerSide};
+use crate::classify::Outcome;
 use crate::plan::{Channels, STATE_CHANNELS};
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
 use crate::sheet::{Crossing, Edge, PUSH_MARGIN, Sheet};

@@ -1,6 +1,7 @@
 //! Whisker sides: one side of one whisker, and the channel values of its states in map units.
 
-use super::{Cell, Outcome, SideColumns};
+use super::{Cell, SideColumns};
+use crate::classify::Outcome;
 use crate::friction::FrictionState;
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;

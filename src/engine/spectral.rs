@@ -2,7 +2,8 @@
 
 use super::cells::CellsMut;
 use super::row::{FUNCTIONS, RowExpansion, functions};
-use super::{BatchRow, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
+use super::{BatchRow, Cells, Engine, EngineDescription, EngineError, RowBatch};
+use crate::classify::Outcome;
 use crate::sheet::net::NET_RESIDUAL;
 use glam::DVec2;
 use rayon::prelude::*;

@@ -1,7 +1,8 @@
 //! Audit of an engine: a sample of its cells, solved or without a state, is compared with the CPU engine.
 
 use super::summary::Audit;
-use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSide};
+use crate::classify::Outcome;
+use crate::engine::{BatchRow, Cell, Cells, RowBatch, Values, WhiskerSide};
 use crate::random::hash;
 use crate::sheet::Sheet;
 use std::ops::Range;
@@ -75,9 +76,7 @@ pub fn compare(
     let rows = rows.flat_map(|(row, part)| part.each().map(move |cell| (row, cell)));
     for ((row, cell), (index, from)) in rows.zip(batch.places_in(rest)) {
         let holds = match (cells.outcome[index], found.outcome[from]) {
-            (Outcome::BeyondTip | Outcome::OffSheet, ours) => {
-                !matches!(ours, Outcome::Solved | Outcome::AtTip)
-            }
+            (Outcome::BeyondTip | Outcome::OffSheet, ours) => !ours.is_solved(),
             (Outcome::Solved, ours) if ours != Outcome::OffSheet => {
                 let theirs = cells.get(index);
                 // The residual is rounded to `f32`, and so is its bound.
@@ -103,7 +102,7 @@ fn holds(
 ) -> bool {
     match ours.outcome {
         Outcome::NotConverged => return true,
-        Outcome::Solved | Outcome::AtTip => {}
+        solved if solved.is_solved() => {}
         _ => return false,
     }
     let wanted = batch.channels.states();

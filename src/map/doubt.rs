@@ -4,8 +4,8 @@
 //! line of constant load, as near the tip of a perfect cone. The other is where it turns back, as with friction. Continuation needs no
 //! guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
-use crate::classify::{RowBoundary, TIE};
-use crate::engine::{Cell, Outcome, WhiskerSide};
+use crate::classify::{Outcome, RowBoundary, TIE};
+use crate::engine::{Cell, WhiskerSide};
 use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{CurveNode, Edge, LevelCurve, NODE_MISS, ON_CURVE, Stretch, continuations};
 
@@ -73,7 +73,7 @@ pub fn solve(
             _ => None,
         };
         let found = found.unwrap_or(before);
-        let is_solved = matches!(found.outcome, Outcome::Solved | Outcome::AtTip);
+        let is_solved = found.outcome.is_solved();
         let is_touch = push.abs() <= TIE && boundary.detachment().is_some();
         let touch = (!is_solved && is_touch).then(|| first_touch(&level, push));
         *cell = touch.flatten().map_or(found, |state| solved(&state));

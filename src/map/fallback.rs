@@ -2,7 +2,8 @@
 
 use super::audit::{self, AuditSample};
 use super::summary::{Audit, EngineCells};
-use crate::engine::{Cells, Cpu, Outcome, RowBatch};
+use crate::classify::Outcome;
+use crate::engine::{Cells, Cpu, RowBatch};
 use rayon::prelude::*;
 use std::ops::Range;
 

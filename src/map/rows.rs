@@ -3,8 +3,8 @@
 use super::friction::{self, FrictionRow};
 use super::panel::RowMut;
 use super::{Panel, doubt};
-use crate::classify::{Regime, RowBoundary, Status, TIE};
-use crate::engine::{Cell, CellRun, Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
+use crate::classify::{Regime, RowBoundary, TIE};
+use crate::engine::{Cell, CellRun, Cells, RowBatch, SideColumns, WhiskerSide};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -45,23 +45,6 @@ pub fn fill(
             friction::replace(side, &found, [width, first_row], panel);
         }
     });
-}
-
-/// The status of an outcome before it is compared with the boundary; `is_on_span` if the boundary has a state there.
-const fn status(outcome: Outcome, is_on_span: bool) -> Status {
-    match outcome {
-        Outcome::Solved => Status::Solved,
-        // At the tip both verdicts are right; the verdict of the boundary is taken.
-        Outcome::AtTip if is_on_span => Status::Solved,
-        Outcome::AtTip | Outcome::BeyondTip => Status::BeyondTip,
-        Outcome::BeyondFold => Status::BeyondFold,
-        Outcome::OffSheet => Status::Outside,
-        Outcome::NotConverged
-        | Outcome::NotFinite
-        | Outcome::NearEdge
-        | Outcome::Missed
-        | Outcome::NoRow => Status::NotConverged,
-    }
 }
 
 /// Writes one row of one whisker side.
@@ -140,8 +123,7 @@ impl RowWriter<'_> {
         let ours = &columns.columns[run.clone()];
         let push = ours[0].push.abs();
         let span = self.boundary.span(push);
-        let status = status(cells.outcome, span.is_some());
-        let (regime, status) = self.boundary.classify(push, status);
+        let (regime, status) = self.boundary.classify(push, cells.outcome);
         let (place, into) = (columns.span(&run), &mut self.into);
         let clear = |row: &mut [f32]| {
             if let Some(values) = row.get_mut(place.clone()) {
@@ -206,6 +188,7 @@ impl RowWriter<'_> {
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+    use crate::classify::Outcome;
     use crate::engine::Cpu;
     use crate::plan::Channels;
     use crate::scene::Scene;

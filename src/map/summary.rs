@@ -2,8 +2,8 @@
 
 use super::stages::StageTimes;
 use super::{Panel, Stage};
-use crate::classify::{Regime, Status};
-use crate::engine::{EngineDescription, EngineError, Outcome};
+use crate::classify::{Outcome, Regime, Status};
+use crate::engine::{EngineDescription, EngineError};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

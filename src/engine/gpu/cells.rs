@@ -1,7 +1,8 @@
 //! Cells as the shaders write them: one plane for each number of a cell.
 
 use super::packing::CellsOfRow;
-use crate::engine::{Cells, Outcome, RowBatch};
+use crate::classify::Outcome;
+use crate::engine::{Cells, RowBatch};
 use crate::plan::STATE_CHANNELS;
 use glam::DVec2;
 

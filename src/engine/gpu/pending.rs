@@ -1,6 +1,7 @@
 //! Pending batches: a batch on the device is sent in parts, whose cells return in the same order.
 
-use crate::engine::{BatchRow, Cells, Outcome, RowBatch};
+use crate::classify::Outcome;
+use crate::engine::{BatchRow, Cells, RowBatch};
 use std::ops::Range;
 use std::sync::Arc;
 
