@@ -181,7 +181,7 @@ impl Cells {
     pub(super) fn rows_mut(&mut self, batch: &RowBatch) -> Vec<CellsMut<'_>> {
         let mut rest = self.all_mut();
         let rows = batch.rows.iter();
-        rows.map(|row| rest.split_off(row.count())).collect()
+        rows.map(|row| rest.split_off(row.cells().len())).collect()
     }
 
     /// Returns the number of cells.

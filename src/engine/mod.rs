@@ -18,7 +18,7 @@ mod worker;
 
 pub use batch::{BatchRow, RowBatch};
 pub use cells::{Cell, CellRun, Cells};
-pub use columns::{Column, SideColumns};
+pub use columns::SideColumns;
 pub use cpu::Cpu;
 pub use nodes::Nodes;
 pub use row::RowExpansion;

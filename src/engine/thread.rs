@@ -141,7 +141,7 @@ mod tests {
     }
 
     fn nothing() -> Arc<RowBatch> {
-        Arc::new(RowBatch::new(Method::fine(), [].into(), [].into(), []))
+        Arc::new(RowBatch::new(Method::fine(), [].into(), []))
     }
 
     /// Returns how many of `count` batches stay submitted, how many are collected, and the number of responses.

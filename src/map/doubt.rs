@@ -44,22 +44,25 @@ pub fn solve(
     });
     let pieces: Vec<Option<Vec<CurveNode>>> = pieces.collect();
     for (index, cell) in &mut cells {
-        let push = side.columns.columns[*index].push;
+        let (push, signed_push) = (
+            side.columns.pushes[*index],
+            side.columns.signed_push(*index),
+        );
         let before = *cell;
-        let solved = |state: &ContactState| side.solved(row, push, state, before.steps, true);
-        let magnitude = sign * push;
+        let solved =
+            |state: &ContactState| side.solved(row, signed_push, state, before.steps, true);
         let mut spans = boundary.spans().iter().zip(&pieces);
-        let found = match spans.find(|(span, _)| span.contains(magnitude)) {
+        let found = match spans.find(|(span, _)| span.contains(push)) {
             Some((span, Some(nodes))) => {
                 let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].push);
-                if magnitude > last {
+                if push > last {
                     Some(Cell {
                         outcome: beyond(span.edge),
                         ..before
                     })
                 } else {
-                    let node = level.state_at_push(nodes, sign * magnitude.max(first));
-                    let state = node.map(|node| state(&level, &node, push));
+                    let node = level.state_at_push(nodes, sign * push.max(first));
+                    let state = node.map(|node| state(&level, &node, signed_push));
                     let state = state.filter(|state| state.residual <= TOLERANCE);
                     state.map(|state| solved(&state))
                 }
@@ -74,8 +77,8 @@ pub fn solve(
         };
         let found = found.unwrap_or(before);
         let is_solved = found.outcome.is_solved();
-        let is_touch = push.abs() <= TIE && boundary.detachment().is_some();
-        let touch = (!is_solved && is_touch).then(|| first_touch(&level, push));
+        let is_touch = push <= TIE && boundary.detachment().is_some();
+        let touch = (!is_solved && is_touch).then(|| first_touch(&level, signed_push));
         *cell = touch.flatten().map_or(found, |state| solved(&state));
     }
     cells
@@ -83,16 +86,16 @@ pub fn solve(
 
 /// First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone. A Newton
 /// step from there mostly leaves a smaller one.
-fn first_touch(level: &LevelCurve, push: f64) -> Option<ContactState> {
+fn first_touch(level: &LevelCurve, signed_push: f64) -> Option<ContactState> {
     let touch = level.touch();
     let map = &touch.full.map;
-    let step = map.solve(map.residual(level.row.pole(push)));
+    let step = map.solve(map.residual(level.row.pole(signed_push)));
     let stepped = level.correct(&[touch.point + step], ON_CURVE).pop()?;
     let stepped = stepped.map(|(point, full)| level.node(point, &full, touch.push, touch.angle));
     [Some(touch), stepped]
         .into_iter()
         .flatten()
-        .map(|node| state(level, &node, push))
+        .map(|node| state(level, &node, signed_push))
         .filter(|state| state.residual.is_finite())
         .min_by(|a, b| a.residual.total_cmp(&b.residual))
 }
@@ -104,11 +107,11 @@ const fn beyond(edge: Edge) -> Outcome {
     }
 }
 
-fn state(level: &LevelCurve, node: &CurveNode, push: f64) -> ContactState {
+fn state(level: &LevelCurve, node: &CurveNode, signed_push: f64) -> ContactState {
     ContactState {
         tau: node.point.x,
         load: node.point.y,
         full: node.full,
-        residual: node.full.map.pole.distance(level.row.pole(push)),
+        residual: node.full.map.pole.distance(level.row.pole(signed_push)),
     }
 }

@@ -8,7 +8,7 @@ use super::fallback::complete;
 use super::nets::PendingNets;
 use super::panel::Panel;
 use super::rows;
-use super::sides::{side_columns, whisker_sides};
+use super::sides::whisker_sides;
 use super::stages::Stage;
 use super::summary::{EngineCells, Summary};
 use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker};
@@ -19,6 +19,7 @@ use std::collections::VecDeque;
 use std::iter;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
+use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::batch::Method;
 
 /// Cells per thread in a batch for the CPU alone: nearly all blocks of the refinement are full, and little memory is new.
@@ -39,9 +40,8 @@ pub struct Pipeline<'a, 'e> {
     rows_at_once: usize,
     /// Panels whose memory is used again for the next panels: `[panel]`.
     pub spare: Vec<Panel>,
+    /// Columns of the map on each side: `[side]`.
     columns: Vec<Arc<SideColumns>>,
-    /// Signed push angles of the columns of all sides, in radians.
-    pushes: Arc<[f64]>,
     /// The whiskers of each group of panels whose batches are still to be made.
     groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
     /// The next group, whose nets a device is working on.
@@ -99,7 +99,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
         let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
-        let (columns, pushes) = side_columns(push_angle_deg, &plan.sides);
+        let of_side = |side: &Side| Arc::new(SideColumns::new(push_angle_deg, *side));
         let has_device = worker.has_thread();
         let mut method = plan.method;
         if row_residual.is_some() {
@@ -118,8 +118,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 None => rows(cells),
             },
             spare: Vec::new(),
-            columns,
-            pushes,
+            columns: plan.sides.iter().map(of_side).collect(),
             groups: Box::new(plan.groups()),
             has_yield_strain: scene.has_yield_strain(),
             whiskers: Box::new(iter::repeat_with(|| plan.groups()).flatten().flatten()),
@@ -310,7 +309,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             let i = i - band.start * sides.len();
             (i / band.len(), band.start + i % band.len())
         });
-        let mut batch = RowBatch::new(method, Arc::clone(sides), Arc::clone(&self.pushes), rows);
+        let mut batch = RowBatch::new(method, Arc::clone(sides), rows);
         batch.channels = self.plan.channels;
         if let Some(most) = self.row_residual
             && self.worker.is_working()

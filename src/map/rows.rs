@@ -39,7 +39,7 @@ pub fn fill(
                     points: Vec::new(),
                     doubtful: Vec::new(),
                 };
-                writer.write(cells, row.first)
+                writer.write(cells, row.first_cell)
             });
             let found: Vec<FrictionRow> = found.flatten_iter().collect();
             friction::replace(side, &found, [width, first_row], panel);
@@ -53,8 +53,8 @@ struct RowWriter<'a> {
     row: usize,
     boundary: RowBoundary,
     into: RowMut<'a>,
-    /// Cells in contact with friction that a push from first touch reaches: column of the side, and magnitude of the push in radians.
-    contacts: Vec<(usize, f64)>,
+    /// Columns of the side whose cells are in contact with friction and reached by a push from first touch.
+    contacts: Vec<usize>,
     /// Contact and load `(tau, load)` of the cells with a state, with their columns of the side; empty without the channel of strains.
     points: Vec<(usize, DVec2)>,
     /// Cells whose regime may be found by continuation, with their columns of the side.
@@ -65,22 +65,21 @@ impl RowWriter<'_> {
     /// Writes the row whose cells begin at `first`; cells in doubt are solved once more. Returns the cells in contact if there is friction.
     fn write(mut self, cells: &Cells, first: usize) -> Option<FrictionRow> {
         let (side, row) = (self.side, self.row);
-        let columns = &side.columns.columns;
+        let pushes = &side.columns.pushes;
         let is_reached = side.sheet.rows[row].is_reached();
-        let touches = columns
+        let touches = pushes
             .iter()
-            .take_while(|column| column.push == 0.0 && is_reached)
+            .take_while(|push| **push == 0.0 && is_reached)
             .count();
         for index in 0..touches {
             let touch = side.first_touch(row, cells.steps[first + index]);
             self.write_run(index, touch.run());
         }
-        let outcomes = &cells.outcome[first + touches..first + columns.len()];
+        let outcomes = &cells.outcome[first + touches..first + pushes.len()];
         let mut from = touches;
         for run in outcomes.chunk_by(PartialEq::eq) {
             let to = from + run.len();
-            let [least, largest] = [from, to - 1].map(|index| columns[index].push.abs());
-            let length = match self.boundary.is_one_verdict(least, largest) {
+            let length = match self.boundary.is_one_verdict(pushes[from], pushes[to - 1]) {
                 true => run.len(),
                 false => 1,
             };
@@ -92,25 +91,27 @@ impl RowWriter<'_> {
         let doubtful = std::mem::take(&mut self.doubtful);
         if !doubtful.is_empty() {
             for (index, cell) in doubt::solve(side, row, &self.boundary, doubtful) {
-                self.contacts.retain(|(other, _)| *other != index);
+                self.contacts.retain(|other| *other != index);
                 self.points.retain(|(other, _)| *other != index);
                 self.write_run(index, cell.run());
             }
-            self.contacts.sort_unstable_by_key(|(index, _)| *index);
+            self.contacts.sort_unstable();
         }
         if !self.points.is_empty() {
             let points = self.points.iter().map(|(_, point)| *point);
             let strains = side.peak_strains(points);
             for ((index, _), strain) in self.points.iter().zip(strains) {
-                self.into.peak_strain[columns[*index].index] = strain;
+                let column = *index..index + 1;
+                side.columns
+                    .write(self.into.peak_strain, &column, |_| strain);
             }
         }
         // Without a push from first touch there is no history.
-        let end = self.boundary.detachment().map(|span| span.to);
-        let end = end.filter(|end| side.has_friction() && *end > TIE)?;
+        let end_push = self.boundary.detachment().map(|span| span.to);
+        let end_push = end_push.filter(|end| side.has_friction() && *end > TIE)?;
         Some(FrictionRow {
             row,
-            end,
+            end_push,
             contacts: self.contacts,
         })
     }
@@ -120,11 +121,11 @@ impl RowWriter<'_> {
     fn write_run(&mut self, from: usize, cells: CellRun) {
         let columns: &SideColumns = &self.side.columns;
         let run = from..from + cells.steps.len();
-        let ours = &columns.columns[run.clone()];
-        let push = ours[0].push.abs();
+        let pushes = &columns.pushes[run.clone()];
+        let push = pushes[0];
         let span = self.boundary.span(push);
         let (regime, status) = self.boundary.classify(push, cells.outcome);
-        let (place, into) = (columns.span(&run), &mut self.into);
+        let (place, into) = (columns.in_map(&run), &mut self.into);
         let clear = |row: &mut [f32]| {
             if let Some(values) = row.get_mut(place.clone()) {
                 values.fill(f32::NAN);
@@ -141,7 +142,7 @@ impl RowWriter<'_> {
         }
         match span {
             Some(span) => {
-                let margin = |i: usize| span.margin_deg(ours[i].push.abs());
+                let margin = |i: usize| span.margin_deg(pushes[i]);
                 columns.write(into.margin_deg, &run, margin);
                 let derivatives = self.side.push_derivatives.get(self.row);
                 for (parameter, by) in derivatives.into_iter().flatten() {
@@ -176,10 +177,7 @@ impl RowWriter<'_> {
             self.doubtful.extend(cells);
         }
         if self.side.has_friction() && regime == Regime::Contact {
-            let contacts = run
-                .zip(ours)
-                .map(|(index, column)| (index, column.push.abs()));
-            self.contacts.extend(contacts);
+            self.contacts.extend(run);
         }
     }
 }
@@ -203,11 +201,10 @@ mod tests {
         let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
         let (method, swept) = (Method::fine(), scene.first_whisker());
         let push_angle_deg: Vec<f64> = (1..60).map(f64::from).collect();
-        let columns = SideColumns::new(&push_angle_deg, Side::Cb, 0);
-        let pushes: Arc<[f64]> = columns.magnitudes.clone().into();
+        let columns = SideColumns::new(&push_angle_deg, Side::Cb);
         let sheet = Sheet::new(method, &swept.rod(Side::Cb), Side::Cb, &[0.7]);
         let side = WhiskerSide::new(Arc::new(columns), swept.whisker.units(), sheet);
-        let batch = RowBatch::new(method, [side].into(), pushes, [(0, 0)]);
+        let batch = RowBatch::new(method, [side].into(), [(0, 0)]);
         let regimes = |cells: &Cells| {
             let mut panel = Panel::unwritten(cells.len(), Channels::STANDARD);
             fill(

@@ -214,7 +214,7 @@ fn a_nan_hurts_only_the_cells_of_its_row(precision: Precision) {
         spoil(spoilt.expansions[number].as_mut().unwrap());
         let cells = bits(&solve(&mut gpu, &spoilt));
         let row = &batch.rows[number];
-        let cells_of_row = row.first..row.first + row.count();
+        let cells_of_row = row.cells();
         for (index, (cell, sound)) in cells.iter().zip(&sound).enumerate() {
             match cells_of_row.contains(&index) {
                 true => assert!(cell.1.is_none(), "{what}"),

@@ -102,7 +102,7 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
         for side in Side::BOTH {
             let rest = Rest::new(&swept.rod(side));
             let reach = rest.at_arclength(1.0).0.length();
-            let columns = Arc::new(SideColumns::new(&grid.push_angle_deg, side, 0));
+            let columns = Arc::new(SideColumns::new(&grid.push_angle_deg, side));
             let sheet = Sheet::new(plan.method, &swept.rod(side), side, &distances);
             let side = WhiskerSide::new(columns, swept.whisker.units(), sheet);
             for (row, distance) in distances.iter().enumerate() {
