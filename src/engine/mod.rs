@@ -17,7 +17,8 @@ mod thread;
 mod worker;
 
 pub use batch::{BatchRow, RowBatch};
-pub use cells::{Cell, CellRun, Cells};
+pub(crate) use cells::RowCells;
+pub use cells::{Cell, Cells};
 pub use columns::SideColumns;
 pub use cpu::Cpu;
 pub use nodes::Nodes;

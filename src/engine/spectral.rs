@@ -1,6 +1,6 @@
 //! The spectral engine: cells from the nets of whisker sides ([`ValueNet`](crate::sheet::net::ValueNet)), without trajectories of their own.
 
-use super::cells::CellsMut;
+use super::cells::RowCells;
 use super::row::{FUNCTIONS, RowExpansion, functions};
 use super::{BatchRow, Cells, Engine, EngineDescription, EngineError, RowBatch};
 use crate::classify::Outcome;
@@ -57,7 +57,7 @@ impl Spectral {
 }
 
 /// Writes the cells of `row` before its end, and those without a state.
-fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, into: CellsMut) {
+fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, into: RowCells) {
     let side = &batch.sides[row.side];
     let sheet = &side.sheet;
     let distance = sheet.rows[row.row].pole_distance;
@@ -67,7 +67,7 @@ fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, 
         .flat_map(|columns| &pushes[columns])
         .copied()
         .collect();
-    let CellsMut {
+    let RowCells {
         outcome,
         residual,
         mut values,

@@ -5,7 +5,7 @@
 //! guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
 use crate::classify::{Outcome, RowBoundary, TIE};
-use crate::engine::{Cell, WhiskerSide};
+use crate::engine::{RowCells, WhiskerSide};
 use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{CurveNode, Edge, LevelCurve, NODE_MISS, ON_CURVE, Stretch, continuations};
 
@@ -13,14 +13,14 @@ use crate::sheet::{CurveNode, Edge, LevelCurve, NODE_MISS, ON_CURVE, Stretch, co
 /// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
 const SAME_END: f64 = 1e-5;
 
-/// Solves `cells` of `row`, pairs of index and cell, once more by continuation, and returns them. Cells that no continuation reaches stay as they
-/// are.
+/// Solves the cells in some `columns` of `row` once more by continuation. Cells that no continuation reaches stay as they are.
 pub fn solve(
     side: &WhiskerSide,
     row: usize,
     boundary: &RowBoundary,
-    mut cells: Vec<(usize, Cell)>,
-) -> Vec<(usize, Cell)> {
+    columns: &[usize],
+    cells: &mut RowCells,
+) {
     let sheet = &side.sheet;
     let level = sheet.level(row);
     let sign = sheet.side.sign();
@@ -43,45 +43,42 @@ pub fn solve(
         (apart < SAME_END && piece.end == Some(span.edge)).then_some(piece.nodes)
     });
     let pieces: Vec<Option<Vec<CurveNode>>> = pieces.collect();
-    for (index, cell) in &mut cells {
+    for &column in columns {
         let (push, signed_push) = (
-            side.columns.pushes[*index],
-            side.columns.signed_push(*index),
+            side.columns.pushes[column],
+            side.columns.signed_push(column),
         );
-        let before = *cell;
-        let solved =
-            |state: &ContactState| side.solved(row, signed_push, state, before.steps, true);
+        let steps = cells.steps[column];
+        let solved = |state: &ContactState| side.solved(row, signed_push, state, steps, true);
         let mut spans = boundary.spans().iter().zip(&pieces);
-        let found = match spans.find(|(span, _)| span.contains(push)) {
+        match spans.find(|(span, _)| span.contains(push)) {
             Some((span, Some(nodes))) => {
                 let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].push);
                 if push > last {
-                    Some(Cell {
-                        outcome: beyond(span.edge),
-                        ..before
-                    })
+                    cells.outcome[column] = beyond(span.edge);
                 } else {
                     let node = level.state_at_push(nodes, sign * push.max(first));
                     let state = node.map(|node| state(&level, &node, signed_push));
-                    let state = state.filter(|state| state.residual <= TOLERANCE);
-                    state.map(|state| solved(&state))
+                    if let Some(state) = state.filter(|state| state.residual <= TOLERANCE) {
+                        cells.set(column, &solved(&state));
+                    }
                 }
             }
             // Every piece of the level curve has been followed from end to end, and none has this push angle.
             None if pieces.iter().all(Option::is_some) => {
                 let end = boundary.detachment();
-                let outcome = end.map_or(Outcome::OffSheet, |span| beyond(span.edge));
-                Some(Cell { outcome, ..before })
+                cells.outcome[column] = end.map_or(Outcome::OffSheet, |span| beyond(span.edge));
             }
-            _ => None,
-        };
-        let found = found.unwrap_or(before);
-        let is_solved = found.outcome.is_solved();
-        let is_touch = push <= TIE && boundary.detachment().is_some();
-        let touch = (!is_solved && is_touch).then(|| first_touch(&level, signed_push));
-        *cell = touch.flatten().map_or(found, |state| solved(&state));
+            _ => {}
+        }
+        if !cells.outcome[column].is_solved()
+            && push <= TIE
+            && boundary.detachment().is_some()
+            && let Some(state) = first_touch(&level, signed_push)
+        {
+            cells.set(column, &solved(&state));
+        }
     }
-    cells
 }
 
 /// First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone. A Newton

@@ -347,9 +347,9 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let counts = &mut summary.engine_cells;
         let bounds = (self.worker.residual_bound, self.row_residual.unwrap_or(0.0));
         let cells = cells.map(|cells| (cells, bounds));
-        let (cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
+        let (mut cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;
-        let fill = || rows::fill(batch, &cells, sides, [width, band.start], panels);
+        let fill = || rows::fill(batch, &mut cells, sides, [width, band.start], panels);
         summary.stages.time(Stage::Classification, fill);
         if audit.differing > 0 {
             self.worker.fail_audit(audit.differing, audit.cells);
