@@ -58,7 +58,8 @@ named! {
 }
 
 named! {
-    /// Status of a cell: how it was solved, or why it was not. The discriminants are the codes of the stored map.
+    /// Status of a cell in a map: how it was solved, or why it was not. The discriminants are the codes of the stored map. A status follows from
+    /// the [`Outcome`] of the cell and the boundary of its row, and with friction from the history of the contact.
     pub enum Status {
         /// A state of the cell was found on the stable sheet.
         Solved = 0, "state found";

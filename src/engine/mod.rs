@@ -2,6 +2,8 @@
 //!
 //! An [`Engine`] takes a [`RowBatch`] and returns [`Cells`]: for each cell channel values in map units, a bound on the residual, and an
 //! [`Outcome`](crate::classify::Outcome). Cells that an engine cannot certify fall back to the CPU engine, which also audits a sample of all others.
+//!
+//! A `push` is the magnitude of a push angle, in radians. A `signed_push` is positive on CB and negative on CF.
 
 mod batch;
 mod cells;

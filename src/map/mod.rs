@@ -9,8 +9,8 @@ mod panel;
 mod pipeline;
 mod rows;
 mod sides;
-mod stages;
 mod summary;
+mod times;
 
 use crate::engine::{Engine, EngineDescription, Worker};
 use crate::plan::Plan;
@@ -19,10 +19,10 @@ use crate::scene::Scene;
 use crate::stopwatch::Stopwatch;
 pub use panel::Panel;
 use pipeline::Pipeline;
-pub use stages::{Stage, thread_seconds};
-use stages::{StageTimes, process_seconds};
 use std::ops::ControlFlow;
 pub use summary::{Audit, EngineCells, Summary};
+pub use times::{Stage, thread_seconds};
+use times::{StageTimes, process_seconds};
 
 /// Computes the panels of `scene` according to `plan`, on the threads of the current pool; call it within
 /// `rayon::ThreadPool::install`, or every stage of every row batch wakes the pool up.

@@ -1,6 +1,6 @@
 //! Counts and times of a run.
 
-use super::stages::StageTimes;
+use super::times::StageTimes;
 use super::{Panel, Stage};
 use crate::classify::{Outcome, Regime, Status};
 use crate::engine::{EngineDescription, EngineError};

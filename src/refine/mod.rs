@@ -132,36 +132,29 @@ fn refine_chunk(method: Method, sheets: &[&Sheet], targets: &[CellTarget], cells
     }
 }
 
-/// Returns the targets of the cells of `sheet` at those of the signed push angles, in degrees, that are on its side, `[target]`. They are
-/// sorted by row, then by magnitude of the push angle; `rod` is the index of the sheet's rod.
+/// Returns the stable states of `sheet` with their targets, `[state]`, for those of the signed push angles, in degrees, that are on its side. They
+/// are sorted by row, then by magnitude of the push angle.
 #[must_use]
-pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarget> {
+pub fn states(
+    method: Method,
+    sheet: &Sheet,
+    signed_pushes_deg: &[f64],
+) -> Vec<(CellTarget, ContactState)> {
     let sign = sheet.side.sign();
-    let pushes = pushes_deg.iter().map(|push| push * sign);
+    let pushes = signed_pushes_deg.iter().map(|push| push * sign);
     let mut pushes: Vec<f64> = pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
     pushes.sort_by(f64::total_cmp);
     let mut targets = Vec::new();
     for (row, place) in sheet.rows.iter().enumerate() {
         let guesses = sheet.guesses(row, &pushes);
-        for (guess, push) in guesses.iter().zip(&pushes) {
+        for (guess, push) in guesses.into_iter().zip(&pushes) {
             targets.extend(guess.map(|guess| CellTarget {
-                rod,
+                rod: 0,
                 guess,
                 pole: place.pole(sign * push),
             }));
         }
     }
-    targets
-}
-
-/// Returns the stable states of `sheet` with their targets, `[state]`, for those of the signed push angles, in degrees, that are on its side.
-#[must_use]
-pub fn states(
-    method: Method,
-    sheet: &Sheet,
-    pushes_deg: &[f64],
-) -> Vec<(CellTarget, ContactState)> {
-    let targets = cell_targets(sheet, 0, pushes_deg);
     let cells = refine(method, &[sheet], &targets);
     let solved = targets.into_iter().zip(cells);
     let solved = solved.filter(|(_, cell)| cell.outcome.is_solved());
