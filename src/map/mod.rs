@@ -44,15 +44,13 @@ pub fn run<E: Send>(
 ) -> Result<Summary, E> {
     let description = EngineDescription::of(engine.as_deref());
     let (start, cpu_start) = (Stopwatch::start(), process_seconds());
-    let row_residual = engine.as_ref().map(|engine| engine.row_residual());
-    let has_device = engine.as_ref().is_some_and(|engine| engine.has_device());
     let effects = plan.method.effects;
     let integrates = engine
         .as_ref()
         .is_some_and(|engine| engine.integrates_nodes(effects));
     let mut packing = StageTimes::default();
-    let mut summary = Worker::with(engine, has_device, |worker| {
-        let mut pipeline = Pipeline::new(scene, plan, worker, (row_residual, integrates));
+    let mut summary = Worker::with(engine, |worker| {
+        let mut pipeline = Pipeline::new(scene, plan, worker, integrates);
         let mut finished: Vec<Panel> = Vec::new();
         let mut is_open = true;
         while is_open {

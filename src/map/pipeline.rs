@@ -58,19 +58,16 @@ pub struct Pipeline<'a, 'e> {
     cpu: Cpu,
     /// True if the engine integrates the trajectories of nets.
     engine_integrates: bool,
-    /// Maximum residual of the rows of an engine, in whisker lengths; `None` without an engine.
-    row_residual: Option<f64>,
     summary: Summary,
 }
 
 impl<'a, 'e> Pipeline<'a, 'e> {
-    /// Creates the pipeline of a run. With an engine, the residual of its rows is at most `row_residual`, in whisker lengths, and the engine may
-    /// integrate the trajectories of nets.
+    /// Creates the pipeline of a run, whose engine may integrate the trajectories of nets.
     pub fn new(
         scene: &'a Scene,
         plan: &'a Plan,
         worker: Worker<'e>,
-        (row_residual, engine_integrates): (Option<f64>, bool),
+        engine_integrates: bool,
     ) -> Self {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
@@ -78,7 +75,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let of_side = |side: &Side| Arc::new(SideColumns::new(push_angle_deg, *side));
         let has_device = worker.has_thread();
         let mut method = plan.method;
-        if row_residual.is_some() {
+        if worker.row_residual.is_some() {
             // Coarser steps are so few that their number changes along a row: states would not be analytic.
             method.resolution = method.resolution.at_least_fine();
         }
@@ -86,7 +83,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             scene,
             plan,
             method,
-            rows_at_once: match row_residual {
+            rows_at_once: match worker.row_residual {
                 // After a failed audit, the CPU engine solves the batches that follow. So that equal runs write equal bytes, batches must not depend
                 // on the number of threads.
                 Some(_) if !has_device => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
@@ -102,7 +99,6 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             queue: VecDeque::new(),
             worker,
             cpu: Cpu::default(),
-            row_residual,
             has_device,
             engine_integrates,
             summary: Summary::default(),
@@ -162,7 +158,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         }
         summary.trajectories = self.worker.trajectories;
         summary.engine_failure = self.worker.failure;
-        if self.row_residual.is_none() {
+        if self.worker.row_residual.is_none() {
             summary.engine_cells = EngineCells::default();
         }
         summary
@@ -202,7 +198,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let nets = match (self.drafted.take(), self.on_device()) {
             (Some(nets), _) => nets,
             (None, Some(most)) => self.draft_next(most)?,
-            (None, None) => return Some(self.sides_of_next(self.row_residual)?.into()),
+            (None, None) => return Some(self.sides_of_next(self.worker.row_residual)?.into()),
         };
         let begun = Stopwatch::start();
         let (sides, waited) = nets.finish(&mut self.worker);
@@ -214,7 +210,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
     /// Returns the residual of nets, in whisker lengths, if a device integrates their trajectories.
     fn on_device(&self) -> Option<f64> {
         let integrates = self.engine_integrates && self.worker.has_thread();
-        self.row_residual.filter(|_| integrates)
+        self.worker.row_residual.filter(|_| integrates)
     }
 
     /// Begins the nets of the next group, with a residual of at most `most` whisker lengths.
@@ -258,7 +254,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         });
         let mut batch = RowBatch::new(self.method, Arc::clone(&sides), rows);
         batch.channels = self.plan.channels;
-        if let Some(most) = self.row_residual
+        if let Some(most) = self.worker.row_residual
             && self.worker.is_working()
         {
             let times = &mut self.summary.stages;
@@ -290,7 +286,10 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let summary = &mut self.summary;
         let has_failed = self.worker.failure.is_some();
         let counts = &mut summary.engine_cells;
-        let bounds = (self.worker.residual_bound, self.row_residual.unwrap_or(0.0));
+        let bounds = (
+            self.worker.residual_bound,
+            self.worker.row_residual.unwrap_or(0.0),
+        );
         let cells = cells.map(|cells| (cells, bounds));
         let (mut cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;

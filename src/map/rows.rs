@@ -5,7 +5,6 @@ use super::panel::RowMut;
 use super::{Panel, doubt};
 use crate::classify::{Regime, RowBoundary, TIE};
 use crate::engine::{BatchRow, Cells, RowBatch, RowCells, SideColumns, WhiskerSide};
-use glam::DVec2;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -43,7 +42,7 @@ pub fn fill(
                     cells,
                     into,
                     contacts: Vec::new(),
-                    points: Vec::new(),
+                    strained: Vec::new(),
                     doubtful: Vec::new(),
                 };
                 writer.write()
@@ -64,8 +63,8 @@ struct RowWriter<'a, 'c> {
     into: RowMut<'a>,
     /// Columns of the side whose cells are in contact with friction and reached by a push from first touch.
     contacts: Vec<usize>,
-    /// Contact and load `(tau, load)` of the cells with a state, with their columns of the side; empty without the channel of strains.
-    points: Vec<(usize, DVec2)>,
+    /// Columns of the side whose cells have a state; empty without the channel of strains.
+    strained: Vec<usize>,
     /// Columns of the side whose cells may get a regime by continuation.
     doubtful: Vec<usize>,
 }
@@ -102,18 +101,19 @@ impl RowWriter<'_, '_> {
             doubt::solve(side, row, &self.boundary, &doubtful, self.cells);
             for column in doubtful {
                 self.contacts.retain(|other| *other != column);
-                self.points.retain(|(other, _)| *other != column);
+                self.strained.retain(|other| *other != column);
                 self.write_run(column..column + 1);
             }
             self.contacts.sort_unstable();
         }
-        if !self.points.is_empty() {
-            let points = self.points.iter().map(|(_, point)| *point);
-            let strains = side.peak_strains(points);
-            for ((index, _), strain) in self.points.iter().zip(strains) {
-                let column = *index..index + 1;
-                side.columns
-                    .write(self.into.peak_strain, &column, |_| strain);
+        if !self.strained.is_empty() {
+            let points = self
+                .strained
+                .iter()
+                .map(|column| self.cells.points[*column]);
+            for (column, strain) in self.strained.iter().zip(side.peak_strains(points)) {
+                let run = *column..column + 1;
+                side.columns.write(self.into.peak_strain, &run, |_| strain);
             }
         }
         // Without a push from first touch there is no history.
@@ -172,8 +172,7 @@ impl RowWriter<'_, '_> {
                     columns.write(channel, &run, |i| values[i]);
                 }
                 if !into.peak_strain.is_empty() {
-                    let points = run.clone().map(|column| (column, cells.points[column]));
-                    self.points.extend(points);
+                    self.strained.extend(run.clone());
                 }
             }
             None => {
