@@ -115,8 +115,7 @@ fn sheets() {
         for (guess, push) in guesses.iter().zip(&pushes) {
             shots.extend(guess.map(|guess| CellTarget {
                 rod: 0,
-                tau: guess.tau,
-                load: guess.load,
+                guess,
                 pole: place.pole(*push),
             }));
         }

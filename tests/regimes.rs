@@ -10,7 +10,7 @@ use crate::compute;
 use compute::compute_as;
 use whiskmap::Side;
 use whiskmap::accuracy::cheapest;
-use whiskmap::classify::{Regime, RowBoundary, Status, TIE};
+use whiskmap::classify::{Outcome, Regime, RowBoundary, Status, TIE};
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Scene, SweptWhisker, Whisker};
@@ -146,16 +146,16 @@ fn crossing(edge: Edge, push: f64) -> Crossing {
 fn a_row_that_touches_ends_at_its_edge() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
     assert_eq!(
-        row.classify(0.3, Status::Solved),
+        row.classify(0.3, Outcome::Solved),
         (Regime::Contact, Status::Solved)
     );
     assert_eq!(
-        row.classify(0.6, Status::Outside),
+        row.classify(0.6, Outcome::OffSheet),
         (Regime::SlipOff, Status::Outside)
     );
     let row = RowBoundary::new(true, &[crossing(Edge::Tip, 0.5)]);
     assert_eq!(
-        row.classify(0.6, Status::BeyondTip),
+        row.classify(0.6, Outcome::BeyondTip),
         (Regime::PullOff, Status::BeyondTip)
     );
 }
@@ -167,12 +167,12 @@ fn a_row_beyond_reach_is_entered_over_an_edge() {
         &[crossing(Edge::Tip, 0.2), crossing(Edge::Fold, 0.5)],
     );
     assert_eq!(
-        row.classify(0.3, Status::Solved),
+        row.classify(0.3, Outcome::Solved),
         (Regime::Unreachable, Status::Solved)
     );
     for push in [0.1, 0.6] {
         assert_eq!(
-            row.classify(push, Status::Outside),
+            row.classify(push, Outcome::OffSheet),
             (Regime::OutOfReach, Status::Outside)
         );
     }
@@ -181,19 +181,19 @@ fn a_row_beyond_reach_is_entered_over_an_edge() {
 #[test]
 fn contradictions_are_unresolved() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
-    for (push, status) in [
-        (0.6, Status::Solved),
-        (0.3, Status::Outside),
-        (0.0, Status::BeyondFold),
+    for (push, outcome) in [
+        (0.6, Outcome::Solved),
+        (0.3, Outcome::OffSheet),
+        (0.0, Outcome::BeyondFold),
     ] {
         assert_eq!(
-            row.classify(push, status),
+            row.classify(push, outcome),
             (Regime::Unresolved, Status::Disagreement)
         );
     }
     let odd = RowBoundary::new(false, &[crossing(Edge::Fold, 0.5)]);
     assert_eq!(
-        odd.classify(0.3, Status::Solved),
+        odd.classify(0.3, Outcome::Solved),
         (Regime::Unresolved, Status::NoBoundary)
     );
 }
@@ -202,24 +202,27 @@ fn contradictions_are_unresolved() {
 #[test]
 fn cells_beyond_the_known_spans_of_an_incomplete_row_are_unresolved() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5), Crossing::unknown()]);
-    assert_eq!(row.classify(0.3, Status::Solved).0, Regime::Contact);
+    assert_eq!(row.classify(0.3, Outcome::Solved).0, Regime::Contact);
     assert_eq!(row.detachment().map(|span| span.to), Some(0.5));
-    for status in [Status::Outside, Status::BeyondFold, Status::Solved] {
+    for outcome in [Outcome::OffSheet, Outcome::BeyondFold, Outcome::Solved] {
         assert_eq!(
-            row.classify(0.6, status),
+            row.classify(0.6, outcome),
             (Regime::Unresolved, Status::NoBoundary)
         );
     }
     let unknown = RowBoundary::new(false, &[Crossing::unknown()]);
-    assert_eq!(unknown.classify(0.1, Status::Outside).0, Regime::Unresolved);
+    assert_eq!(
+        unknown.classify(0.1, Outcome::OffSheet).0,
+        Regime::Unresolved
+    );
 }
 
 #[test]
 fn both_verdicts_are_correct_on_the_edge() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
     let at = 0.5 + 0.5 * TIE;
-    assert_eq!(row.classify(at, Status::Solved).0, Regime::Contact);
-    assert_eq!(row.classify(at, Status::BeyondFold).0, Regime::SlipOff);
+    assert_eq!(row.classify(at, Outcome::Solved).0, Regime::Contact);
+    assert_eq!(row.classify(at, Outcome::BeyondFold).0, Regime::SlipOff);
 }
 
 /// Rows beyond the reach of the resting whisker that a thick pole enters, with poor guesses near their first states. With coarse steps
@@ -267,18 +270,24 @@ fn one_verdict_holds_from_end_to_end() {
     let pushes = ends.chain([0.3, 0.6, 0.75, 1.0]);
     let mut pushes: Vec<f64> = pushes.filter(|push| *push >= 0.0).collect();
     pushes.sort_by(f64::total_cmp);
+    let outcomes = [
+        Outcome::Solved,
+        Outcome::AtTip,
+        Outcome::BeyondTip,
+        Outcome::BeyondFold,
+        Outcome::OffSheet,
+        Outcome::NotConverged,
+    ];
     for row in &rows {
-        let alike = |status: Status, from: usize, to: usize| {
-            let verdict = |push: &f64| (row.classify(*push, status), row.span(*push));
+        let alike = |outcome: Outcome, from: usize, to: usize| {
+            let verdict = |push: &f64| (row.classify(*push, outcome), row.span(*push));
             pushes[from..=to]
                 .iter()
                 .all(|push| verdict(push) == verdict(&pushes[from]))
         };
         for from in 0..pushes.len() {
             for to in from..pushes.len() {
-                let holds = Status::ALL
-                    .into_iter()
-                    .all(|status| alike(status, from, to));
+                let holds = outcomes.iter().all(|outcome| alike(*outcome, from, to));
                 if row.is_one_verdict(pushes[from], pushes[to]) {
                     assert!(holds, "{row:?}: {} to {}", pushes[from], pushes[to]);
                 }

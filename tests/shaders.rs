@@ -9,24 +9,22 @@ use crate::effect_sets;
 use naga::back::PipelineConstants;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use whiskmap::engine::gpu::{Planes, Precision, shaders};
+use whiskmap::engine::gpu::{Precision, shaders};
+use whiskmap::plan::{Channels, STATE_CHANNELS};
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
 /// Constants of a shader by name.
 type Constants<const N: usize> = [(&'static str, f64); N];
 
-/// The constants of every choice of planes: no channel, each one alone, and all.
+/// The constants of every choice of planes: no channel of a state, each one alone, and all, without and with strains.
 fn choices() -> Vec<Constants<2>> {
-    let each = (0..9).map(|channel| std::array::from_fn(|other| other == channel));
-    let channels = each.chain([[false; 9], [true; 9]]);
-    let planes = channels.flat_map(|channels| {
-        [false, true].map(|has_points| Planes {
-            channels,
-            has_points,
-        })
-    });
-    planes.map(shaders::overrides).collect()
+    let alone = STATE_CHANNELS.map(|channel| Channels::those(|name| name == channel));
+    let none = Channels::those(|_| false);
+    let all = alone.into_iter().chain([none, none.with_states()]);
+    all.flat_map(|channels| [channels, channels.with("peak_strain")])
+        .map(shaders::overrides)
+        .collect()
 }
 
 /// Parses and validates `text`, for every entry point and with the values of its constants put in.

@@ -1,6 +1,6 @@
 //! Distances within which two results count as equal: each case lies at half or at twice the documented distance.
 
-use whiskmap::classify::{Regime, RowBoundary, Status};
+use whiskmap::classify::{Outcome, Regime, RowBoundary};
 use whiskmap::mechanics::rod::{Rod, Side};
 use whiskmap::mechanics::shooting::ShootingMap;
 use whiskmap::mechanics::shooting::batch::{Batch, Method};
@@ -24,9 +24,9 @@ fn slips_off(residual: f64) -> RowBoundary {
 fn an_end_is_a_tie_within_1e_10_radians() {
     let row = slips_off(0.0);
     for (by, is_tie) in [(0.5e-10, true), (2e-10, false)] {
-        let beyond = row.classify(0.5 + by, Status::Solved).0;
+        let beyond = row.classify(0.5 + by, Outcome::Solved).0;
         assert_eq!(beyond == Regime::Contact, is_tie, "{by}");
-        let before = row.classify(0.5 - by, Status::BeyondFold).0;
+        let before = row.classify(0.5 - by, Outcome::BeyondFold).0;
         assert_eq!(before == Regime::SlipOff, is_tie, "{by}");
     }
 }

@@ -1,7 +1,8 @@
 //! The cells of whisker sides as requests to an engine, with the targets of their states.
 
 use super::task::{Task, whisker_sides};
-use crate::engine::{Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
+use crate::classify::Outcome;
+use crate::engine::{Cells, RowBatch, SideColumns, WhiskerSide};
 use crate::plan::{Channel, Channels};
 use crate::scene::Scene;
 use crate::sheet::Sheet;
@@ -32,15 +33,15 @@ impl SideRequest {
             let distances = scene.grid.distance_mm.iter();
             let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
             let sheet = Sheet::new(method, rod, side, &distances);
-            let columns = SideColumns::new(&scene.grid.push_angle_deg, side, 0);
-            let pushes: Vec<f64> = columns.columns.iter().map(|column| column.push).collect();
+            let columns = SideColumns::new(&scene.grid.push_angle_deg, side);
             let rows = sheet.rows.iter();
-            let poles = rows.flat_map(|row| pushes.iter().map(|push| row.pole(*push)));
+            let signed_pushes = || (0..columns.len()).map(|column| columns.signed_push(column));
+            let poles = rows.flat_map(|row| signed_pushes().map(|push| row.pole(push)));
             let targets = poles.map(|pole| task.target(index as u32, pole)).collect();
             let rows = (0..distances.len()).map(|row| (0, row));
             let side = WhiskerSide::new(Arc::new(columns), swept.whisker.units(), sheet);
             let side = with_net(side);
-            let mut batch = RowBatch::new(method, [side].into(), pushes.into(), rows);
+            let mut batch = RowBatch::new(method, [side].into(), rows);
             batch.channels = Channels::STANDARD.with(Channel::PeakStrain.name());
             Self { batch, targets }
         });

@@ -51,8 +51,8 @@ impl Solver {
         let method = Method::new(self.resolution).with_effects(effects);
         let batch = Batch::new(method).on(self.unit);
         let start = |target: &CellTarget| Hit {
-            tau: target.tau,
-            load: target.load,
+            tau: target.guess.tau,
+            load: target.guess.load,
             residual: f64::INFINITY,
             steps: 0,
         };

@@ -4,7 +4,7 @@ use super::solver::{Hit, Solver};
 use crate::plan::Plan;
 use crate::refine::{CellTarget, states};
 use crate::scene::{Scene, SweptWhisker};
-use crate::sheet::Sheet;
+use crate::sheet::{Guess, Sheet};
 use glam::DVec2;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -104,15 +104,11 @@ impl Task {
                     solved.into_iter().map(move |(target, state)| {
                         let rod = index as u32;
                         let target = CellTarget { rod, ..target };
-                        let (tau, load) = (state.tau, state.load);
-                        (
-                            target,
-                            CellTarget {
-                                tau,
-                                load,
-                                ..target
-                            },
-                        )
+                        let guess = Guess {
+                            tau: state.tau,
+                            load: state.load,
+                        };
+                        (target, CellTarget { guess, ..target })
                     })
                 })
                 .unzip();

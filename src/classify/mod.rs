@@ -1,9 +1,11 @@
-//! Regimes and statuses of map cells.
+//! Outcomes, regimes and statuses of map cells.
 //!
-//! [`RowBoundary::classify`] is total: every push angle and every status has a regime, possibly `unresolved`.
+//! [`RowBoundary::classify`] is total: every push angle and every outcome has a regime, possibly `unresolved`.
 
+mod outcome;
 mod row;
 
+pub use outcome::Outcome;
 pub use row::{PushSpan, RowBoundary, TIE};
 
 /// Defines an enum whose variants each have a code, for files, and a name, for files and messages.
@@ -56,7 +58,8 @@ named! {
 }
 
 named! {
-    /// Status of a cell: how it was solved, or why it was not. The discriminants are the codes of the stored map.
+    /// Status of a cell in a map: how it was solved, or why it was not. The discriminants are the codes of the stored map. A status follows from
+    /// the [`Outcome`] of the cell and the boundary of its row, and with friction from the history of the contact.
     pub enum Status {
         /// A state of the cell was found on the stable sheet.
         Solved = 0, "state found";

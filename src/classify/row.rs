@@ -1,6 +1,6 @@
 //! Boundary of one row, and classification of its cells.
 
-use super::{Regime, Status};
+use super::{Outcome, Regime, Status};
 use crate::sheet::{Crossing, Edge};
 
 /// Tie: largest distance of a push angle from a boundary, in radians, at which the angle counts as on it. Both verdicts are correct
@@ -119,14 +119,28 @@ impl RowBoundary {
         others.iter().find(continues)
     }
 
-    /// Returns regime and final status of the cell at `push`, a magnitude in radians, that was solved with `status`. The final status is
-    /// unresolved if cell and boundary contradict each other.
+    /// Returns regime and status of the cell at `push`, a magnitude in radians, with this `outcome`. The cell is unresolved if outcome and
+    /// boundary contradict each other.
     #[must_use]
-    pub fn classify(&self, push: f64, status: Status) -> (Regime, Status) {
+    pub fn classify(&self, push: f64, outcome: Outcome) -> (Regime, Status) {
         if self.spans.is_none() {
             return (Regime::Unresolved, Status::NoBoundary);
         }
-        match (status, self.span(push)) {
+        let span = self.span(push);
+        let status = match outcome {
+            Outcome::Solved => Status::Solved,
+            // At the tip both verdicts are correct; the verdict of the boundary is taken.
+            Outcome::AtTip if span.is_some() => Status::Solved,
+            Outcome::AtTip | Outcome::BeyondTip => Status::BeyondTip,
+            Outcome::BeyondFold => Status::BeyondFold,
+            Outcome::OffSheet => Status::Outside,
+            Outcome::NotConverged
+            | Outcome::NotFinite
+            | Outcome::NearEdge
+            | Outcome::Missed
+            | Outcome::NoRow => Status::NotConverged,
+        };
+        match (status, span) {
             // Without a push the shape at rest decides: the whisker does not reach the pole.
             (Status::Solved | Status::NotConverged, Some(span))
                 if !self.touches && push <= TIE && self.is_on_edge(span, push) =>

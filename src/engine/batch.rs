@@ -15,34 +15,35 @@ pub struct BatchRow {
     pub side: usize,
     /// Index of the row in the side's sheet.
     pub row: usize,
-    /// Cells of the row to solve, `[range]`: growing, disjoint ranges of the side's columns.
-    pub cells: Vec<Range<usize>>,
+    /// Columns of the side whose cells are to be solved, `[range]`: growing, disjoint ranges.
+    pub columns: Vec<Range<usize>>,
     /// Index of the row's first cell among the cells of the batch.
-    pub first: usize,
+    pub first_cell: usize,
 }
 
 impl BatchRow {
-    /// Returns the number of cells of the row in the batch.
+    /// Returns the row's cells among the cells of the batch.
     #[must_use]
-    pub fn count(&self) -> usize {
-        self.cells.iter().map(Range::len).sum()
+    pub fn cells(&self) -> Range<usize> {
+        let count: usize = self.columns.iter().map(Range::len).sum();
+        self.first_cell..self.first_cell + count
     }
 
-    /// Returns the cells of the row to solve, in order.
-    pub fn each(&self) -> impl Iterator<Item = usize> + Clone + '_ {
-        self.cells.iter().flat_map(Range::clone)
+    /// Returns the column of each cell of the row, in order.
+    pub fn each_column(&self) -> impl Iterator<Item = usize> + Clone + '_ {
+        self.columns.iter().flat_map(Range::clone)
     }
 
-    /// Returns the cells of the row to solve whose push angles are before `push`, `[range]`. `magnitudes` are the push angles of the
-    /// side's columns, in radians.
-    pub fn before(
+    /// Returns the columns of the row whose push angles are before `push`, `[range]`. `pushes` are the push angles of the side's columns. All
+    /// are magnitudes in radians.
+    pub fn columns_before(
         &self,
         push: f64,
-        magnitudes: &[f64],
+        pushes: &[f64],
     ) -> impl Iterator<Item = Range<usize>> + use<'_> {
-        let end = magnitudes.partition_point(|magnitude| *magnitude < push);
+        let end = pushes.partition_point(|other| *other < push);
         let before = self
-            .cells
+            .columns
             .iter()
             .map(move |range| range.start..range.end.min(end));
         before.take_while(|range| !range.is_empty())
@@ -58,8 +59,6 @@ pub struct RowBatch {
     pub sides: Arc<[WhiskerSide]>,
     /// Rows of the batch, in the order of their cells: `[row]`.
     pub rows: Vec<BatchRow>,
-    /// Signed push angles of the columns of all sides, in radians: `[column]`.
-    pub pushes: Arc<[f64]>,
     /// Channels that the map has: an engine returns the values of those of a state, and `(tau, load)` for the largest bending strain.
     pub channels: Channels,
     /// Expansions of the rows, `[row]`: `None` for a row without a net. Empty before [`RowBatch::with_expansions`].
@@ -72,51 +71,51 @@ impl RowBatch {
     pub fn new(
         method: Method,
         sides: Arc<[WhiskerSide]>,
-        pushes: Arc<[f64]>,
         rows: impl IntoIterator<Item = (usize, usize)>,
     ) -> Self {
-        let mut first = 0;
-        let rows = rows.into_iter().map(|(side, row)| {
-            let columns = sides[side].columns.len();
-            first += columns;
-            BatchRow {
-                side,
-                row,
-                cells: std::iter::once(0..columns).collect(),
-                first: first - columns,
-            }
-        });
-        let rows = rows.collect();
-        Self {
+        let mut batch = Self {
             method,
             channels: Channels::STANDARD,
             sides,
-            rows,
-            pushes,
+            rows: Vec::new(),
             expansions: Vec::new(),
+        };
+        for (side, row) in rows {
+            let columns = 0..batch.sides[side].columns.len();
+            batch.rows.push(BatchRow {
+                side,
+                row,
+                columns: std::iter::once(columns).collect(),
+                first_cell: batch.cells(),
+            });
         }
+        batch
     }
 
-    /// Returns a batch of some `cells` of each row of this one, without expansions.
+    /// Returns a batch of the cells in some `columns` of each row of this one, without expansions.
     #[must_use]
-    pub fn only(&self, cells: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
-        let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
-        let mut part = Self::new(self.method, sides, pushes, []);
+    pub fn only(&self, columns: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
+        let mut part = Self::new(self.method, Arc::clone(&self.sides), []);
         part.channels = self.channels;
-        for (row, cells) in self.rows.iter().zip(cells) {
+        for (row, columns) in self.rows.iter().zip(columns) {
             part.rows.push(BatchRow {
-                cells,
-                first: part.cells(),
+                columns,
+                first_cell: part.cells(),
                 ..*row
             });
         }
         part
     }
 
-    /// Returns pairs of the index of a cell in this batch and in `part`, a batch of some of its cells.
+    /// Returns pairs of the index of a cell in this batch of whole rows and in `part`, a batch of some of its cells.
     pub fn places_in<'a>(&'a self, part: &'a Self) -> impl Iterator<Item = (usize, usize)> + 'a {
         let rows = self.rows.iter().zip(&part.rows);
-        rows.flat_map(|(whole, part)| part.each().map(|cell| whole.first + cell).zip(part.first..))
+        rows.flat_map(|(whole, part)| {
+            let columns = part.each_column();
+            columns
+                .map(|column| whole.first_cell + column)
+                .zip(part.first_cell..)
+        })
     }
 
     /// Returns true if an engine can solve some cells of the batch: a row has expansions.
@@ -143,6 +142,6 @@ impl RowBatch {
     /// Returns the number of cells of all rows of the batch.
     #[must_use]
     pub fn cells(&self) -> usize {
-        self.rows.last().map_or(0, |last| last.first + last.count())
+        self.rows.last().map_or(0, |last| last.cells().end)
     }
 }

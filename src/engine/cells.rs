@@ -1,36 +1,9 @@
 //! Cells: the response of an engine, with one column for each number of a cell.
 
 use super::RowBatch;
+use crate::classify::Outcome;
 use crate::plan::STATE_CHANNELS;
 use glam::DVec2;
-use std::ops::Range;
-use std::slice;
-
-/// Outcome of an engine for one cell. A cell without a solution is data, not an error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Outcome {
-    /// The cell is solved, with a bound on the residual.
-    Solved,
-    /// The cell is solved, with the contact at the tip up to the residual.
-    AtTip,
-    /// The cell has no solution: the contact lies beyond the tip.
-    BeyondTip,
-    /// The cell has no solution: the push angle lies beyond the fold.
-    BeyondFold,
-    /// The cell has no solution: the sheet has no guess there.
-    OffSheet,
-    /// The engine failed on the cell: it found neither a solution nor a proof that there is none.
-    NotConverged,
-    /// The cell is not certified: a number is not finite, or nothing was written.
-    NotFinite,
-    /// The cell is not certified: it lies next to the tip.
-    NearEdge,
-    /// The cell is not certified: the bound on the residual is too large.
-    Missed,
-    /// The cell is not computed: its row has no expansions, or ends before it.
-    NoRow,
-}
 
 /// Result of an engine for one cell of [`Cells`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,53 +33,10 @@ impl Cell {
             point: DVec2::NAN,
         }
     }
-
-    /// Returns this cell as a run of one cell.
-    #[must_use]
-    pub fn run(&self) -> CellRun<'_> {
-        CellRun {
-            outcome: self.outcome,
-            steps: slice::from_ref(&self.steps),
-            residual: slice::from_ref(&self.residual),
-            values: self.values.each_ref().map(slice::from_ref),
-            points: slice::from_ref(&self.point),
-        }
-    }
 }
 
-/// Run of cells: adjacent cells of [`Cells`] with one outcome.
-#[derive(Clone, Copy, Debug)]
-pub struct CellRun<'a> {
-    /// Outcome of every cell of the run.
-    pub outcome: Outcome,
-    /// Number of Newton steps that the engine took for each cell of the run: `[cell]`.
-    pub steps: &'a [u32],
-    /// Bounds on the distance of the pole from its target, in whisker lengths, for each cell of the run: `[cell]`; NaN without a state.
-    pub residual: &'a [f32],
-    /// Channel values of the run in map units: `[channel][cell]`, in the order of [`STATE_CHANNELS`]. They are unspecified without a
-    /// solution, and empty where the batch does not request the channel.
-    pub values: [&'a [f32]; STATE_CHANNELS.len()],
-    /// Contacts and signed loads `(tau, load)` of the run: `[cell]`; unspecified without a solution, empty if the batch requests none.
-    pub points: &'a [DVec2],
-}
-
-impl CellRun<'_> {
-    /// Returns the cell of the run at `index`.
-    #[must_use]
-    pub fn get(&self, index: usize) -> Cell {
-        let value = |column: &[f32]| column.get(index).copied().unwrap_or(f32::NAN);
-        Cell {
-            outcome: self.outcome,
-            steps: self.steps[index],
-            residual: self.residual[index],
-            values: self.values.map(value),
-            point: self.points.get(index).copied().unwrap_or(DVec2::NAN),
-        }
-    }
-}
-
-/// Writable part of [`Cells`].
-pub(super) struct CellsMut<'a> {
+/// Cells of one row of a [`RowBatch`], as writable columns of [`Cells`].
+pub(crate) struct RowCells<'a> {
     pub outcome: &'a mut [Outcome],
     pub steps: &'a mut [u32],
     pub residual: &'a mut [f32],
@@ -114,8 +44,8 @@ pub(super) struct CellsMut<'a> {
     pub points: &'a mut [DVec2],
 }
 
-impl CellsMut<'_> {
-    /// Replaces the cell at `index` of this part.
+impl RowCells<'_> {
+    /// Replaces the cell at `index` of the row.
     pub fn set(&mut self, index: usize, cell: &Cell) {
         self.outcome[index] = cell.outcome;
         self.steps[index] = cell.steps;
@@ -192,8 +122,8 @@ impl Cells {
         }
     }
 
-    fn all_mut(&mut self) -> CellsMut<'_> {
-        CellsMut {
+    fn all_mut(&mut self) -> RowCells<'_> {
+        RowCells {
             outcome: &mut self.outcome,
             steps: &mut self.steps,
             residual: &mut self.residual,
@@ -203,10 +133,10 @@ impl Cells {
     }
 
     /// Returns the cells of each row of `batch`, which can be written in parallel.
-    pub(super) fn rows_mut(&mut self, batch: &RowBatch) -> Vec<CellsMut<'_>> {
+    pub(crate) fn rows_mut(&mut self, batch: &RowBatch) -> Vec<RowCells<'_>> {
         let mut rest = self.all_mut();
         let rows = batch.rows.iter();
-        rows.map(|row| rest.split_off(row.count())).collect()
+        rows.map(|row| rest.split_off(row.cells().len())).collect()
     }
 
     /// Returns the number of cells.
@@ -229,23 +159,17 @@ impl Cells {
         all == [batch.cells(); 3] && wanted == lengths(batch)
     }
 
-    /// Returns the cells with the indices `range` as one run. All of them must have the outcome of the first.
-    #[must_use]
-    pub fn run(&self, range: Range<usize>) -> CellRun<'_> {
-        let values = self.values.each_ref();
-        CellRun {
-            outcome: self.outcome[range.start],
-            steps: &self.steps[range.clone()],
-            residual: &self.residual[range.clone()],
-            values: values.map(|column| column.get(range.clone()).unwrap_or_default()),
-            points: self.points.get(range.clone()).unwrap_or_default(),
-        }
-    }
-
-    /// Returns the cell at `index`.
+    /// Returns the cell at `index`; NaN in columns that the batch does not request.
     #[must_use]
     pub fn get(&self, index: usize) -> Cell {
-        self.run(index..index + 1).get(0)
+        let value = |column: &Vec<f32>| column.get(index).copied().unwrap_or(f32::NAN);
+        Cell {
+            outcome: self.outcome[index],
+            steps: self.steps[index],
+            residual: self.residual[index],
+            values: self.values.each_ref().map(value),
+            point: self.points.get(index).copied().unwrap_or(DVec2::NAN),
+        }
     }
 
     /// Replaces the cell at `index`.

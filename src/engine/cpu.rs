@@ -1,7 +1,8 @@
 //! The CPU engine: guesses from the net, refined by Newton's method in `f64` on the threads of the current pool.
 
-use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
-use crate::refine::{CellTarget, RefineOutcome, Refined, TOLERANCE, refine_into};
+use super::{BatchRow, Cell, Cells, Engine, EngineDescription, EngineError, RowBatch};
+use crate::classify::Outcome;
+use crate::refine::{CellTarget, Refined, TOLERANCE, refine_into};
 use crate::stopwatch::Stopwatch;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -53,9 +54,9 @@ impl Cpu {
             .into_par_iter()
             .for_each(|(row, targets, refined, mut into)| {
                 let mut refined = refined.iter();
-                for ((index, cell), target) in row.each().enumerate().zip(targets) {
+                for ((index, column), target) in row.each_column().enumerate().zip(targets) {
                     let found = target.and_then(|_| refined.next());
-                    into.set(index, &solved(batch, row, cell, found));
+                    into.set(index, &solved(batch, row, column, found));
                 }
             });
         self.refinement += begun.elapsed();
@@ -67,23 +68,22 @@ impl Cpu {
 fn targets(batch: &RowBatch, row: &BatchRow) -> Vec<Option<CellTarget>> {
     let side = &batch.sides[row.side];
     let at_touch = side.sheet.rows[row.row].pole(0.0);
-    let magnitudes = row.each().map(|cell| side.columns.magnitudes[cell]);
-    let magnitudes: Vec<f64> = magnitudes.collect();
-    let guesses = side.sheet.guesses(row.row, &magnitudes);
-    let targets = guesses.into_iter().zip(row.each()).map(|(guess, cell)| {
+    let pushes = row.each_column().map(|column| side.columns.pushes[column]);
+    let guesses = side.sheet.guesses(row.row, &pushes.collect::<Vec<_>>());
+    let guesses = guesses.into_iter().zip(row.each_column());
+    let targets = guesses.map(|(guess, column)| {
         guess.map(|guess| CellTarget {
             // Sides of a group are few.
             rod: row.side as u32,
-            tau: guess.tau,
-            load: guess.load,
-            pole: side.columns.columns[cell].turn.rotate(at_touch),
+            guess,
+            pole: side.columns.turns[column].rotate(at_touch),
         })
     });
     targets.collect()
 }
 
-/// The cell of `row` in the column `cell`, as it was refined; off the sheet if it was not.
-fn solved(batch: &RowBatch, row: &BatchRow, cell: usize, refined: Option<&Refined>) -> Cell {
+/// The cell of `row` in this `column`, as it was refined; off the sheet if it was not.
+fn solved(batch: &RowBatch, row: &BatchRow, column: usize, refined: Option<&Refined>) -> Cell {
     let Some(Refined {
         state,
         outcome,
@@ -92,19 +92,20 @@ fn solved(batch: &RowBatch, row: &BatchRow, cell: usize, refined: Option<&Refine
     else {
         return Cell::new(Outcome::OffSheet, 0);
     };
-    let outcome = match outcome {
-        RefineOutcome::Solved => {
-            let side = &batch.sides[row.side];
-            let push = side.columns.columns[cell].push;
-            return side.solved(row.row, push, state, *steps, batch.channels.has_state());
-        }
-        RefineOutcome::BeyondTip => Outcome::BeyondTip,
-        RefineOutcome::BeyondFold => Outcome::BeyondFold,
-        RefineOutcome::NotConverged => Outcome::NotConverged,
-    };
+    if outcome.is_solved() {
+        let side = &batch.sides[row.side];
+        let signed_push = side.columns.signed_push(column);
+        return side.solved(
+            row.row,
+            signed_push,
+            state,
+            *steps,
+            batch.channels.has_state(),
+        );
+    }
     Cell {
         residual: state.residual as f32,
-        ..Cell::new(outcome, *steps)
+        ..Cell::new(*outcome, *steps)
     }
 }
 

@@ -1,7 +1,9 @@
 //! Engines solve the cells of row batches under one contract: by trajectories on the CPU, or from expansions of rows on the CPU or the GPU.
 //!
 //! An [`Engine`] takes a [`RowBatch`] and returns [`Cells`]: for each cell channel values in map units, a bound on the residual, and an
-//! [`Outcome`]. Cells that an engine cannot certify fall back to the CPU engine, which also audits a sample of all others.
+//! [`Outcome`](crate::classify::Outcome). Cells that an engine cannot certify fall back to the CPU engine, which also audits a sample of all others.
+//!
+//! A `push` is the magnitude of a push angle, in radians. A `signed_push` is positive on CB and negative on CF.
 
 mod batch;
 mod cells;
@@ -17,8 +19,9 @@ mod thread;
 mod worker;
 
 pub use batch::{BatchRow, RowBatch};
-pub use cells::{Cell, CellRun, Cells, Outcome};
-pub use columns::{Column, SideColumns};
+pub(crate) use cells::RowCells;
+pub use cells::{Cell, Cells};
+pub use columns::SideColumns;
 pub use cpu::Cpu;
 pub use nodes::Nodes;
 pub use row::RowExpansion;

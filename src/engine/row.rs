@@ -1,6 +1,7 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row's part of the load.
 
-use super::{BatchRow, Outcome, Values, WhiskerSide};
+use super::{BatchRow, Values, WhiskerSide};
+use crate::classify::Outcome;
 use crate::plan::{Channels, STATE_CHANNELS};
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
 use crate::sheet::{Crossing, Edge, PUSH_MARGIN, Sheet};
@@ -24,9 +25,6 @@ pub fn functions(channels: Channels) -> [bool; FUNCTIONS] {
 /// in map units.
 pub type RowNumbers = [f64; FUNCTIONS];
 
-/// Weights that convert errors of [`RowNumbers`] to whisker lengths, `[function]`.
-pub type Weights = [f64; FUNCTIONS];
-
 /// Weighted coefficient below which an expansion ends: below the rounding of the states.
 const ROUNDING: f64 = 1e-15;
 
@@ -49,8 +47,8 @@ fn value_weights(side: &WhiskerSide, end: &Crossing) -> Values {
     sizes.map(|size| VALUE_WEIGHT / size)
 }
 
-/// Returns the weights of the numbers of a `row` of `side`.
-fn weights(side: &WhiskerSide, row: usize) -> Weights {
+/// Returns the weights that convert errors of the numbers of a `row` of `side` to whisker lengths, `[function]`.
+fn weights(side: &WhiskerSide, row: usize) -> RowNumbers {
     let distance = side.sheet.rows[row].pole_distance;
     let end = &side.sheet.crossings[row][0];
     let mut weights = [distance; FUNCTIONS];
@@ -107,7 +105,7 @@ pub struct RowExpansion {
     /// Bound on the residual of a state of the row, in whisker lengths.
     pub residual: f64,
     /// Magnitude of the push angle at the row's end, which is computed apart, in radians.
-    pub end: f64,
+    pub end_push: f64,
 }
 
 /// Largest slope of the push angle at a fold, over its value there: where the expansions end a thousandth of the row before the fold, the
@@ -134,7 +132,7 @@ impl RowExpansion {
     fn new(
         mut functions: Chebyshev<FUNCTIONS>,
         end: f64,
-        weights: &Weights,
+        weights: &RowNumbers,
         residual: f64,
         sheet: &Sheet,
         row: usize,
@@ -160,21 +158,16 @@ impl RowExpansion {
         (off <= residual && is_at_edge).then_some(Self {
             inverse,
             residual,
-            end: crossing.push,
+            end_push: crossing.push,
         })
     }
 
-    /// Writes the outcomes of the cells of `row` that have no state, beyond its end. `magnitudes` are the push angles of the side's columns, in
-    /// radians.
-    pub(super) fn write_beyond(
-        &self,
-        row: &BatchRow,
-        magnitudes: &[f64],
-        outcomes: &mut [Outcome],
-    ) {
-        let last = self.end + PUSH_MARGIN;
-        let near = row.before(last.next_up(), magnitudes);
-        let near: usize = near.map(|cells| cells.len()).sum();
+    /// Writes the outcomes of the cells of `row` that have no state, beyond its end. `pushes` are the push angles of the side's columns:
+    /// magnitudes in radians.
+    pub(super) fn write_beyond(&self, row: &BatchRow, pushes: &[f64], outcomes: &mut [Outcome]) {
+        let last = self.end_push + PUSH_MARGIN;
+        let near = row.columns_before(last.next_up(), pushes);
+        let near: usize = near.map(|columns| columns.len()).sum();
         outcomes[near..].fill(Outcome::OffSheet);
     }
 }
@@ -195,7 +188,7 @@ mod tests {
         let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
         let swept = scene.first_whisker();
         let pushes: Vec<f64> = (1..60).map(f64::from).collect();
-        let columns = Arc::new(SideColumns::new(&pushes, Side::Cb, 0));
+        let columns = Arc::new(SideColumns::new(&pushes, Side::Cb));
         let (rod, units) = (swept.rod(columns.side), swept.whisker.units());
         let distances: Vec<f64> = (0..200).map(|i| 0.4 + 0.003 * f64::from(i)).collect();
         let sheet = Sheet::new(Method::fine(), &rod, columns.side, &distances);

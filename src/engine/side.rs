@@ -1,6 +1,7 @@
 //! Whisker sides: one side of one whisker, and the channel values of its states in map units.
 
-use super::{Cell, Outcome, SideColumns};
+use super::{Cell, SideColumns};
+use crate::classify::Outcome;
 use crate::friction::FrictionState;
 use crate::plan::STATE_CHANNELS;
 use crate::refine::ContactState;
@@ -60,19 +61,19 @@ impl WhiskerSide {
     /// Computes the net of this whisker side, as [`Self::with_net`] adds it.
     #[must_use]
     pub fn net(&self, most: f64) -> Option<ValueNet> {
-        ValueNet::new(&self.sheet, |row| self.cells(row), most)
+        ValueNet::new(&self.sheet, |row| self.cells_before_end(row), most)
     }
 
     /// Begins the net of this whisker side, as [`Self::net`] computes it, for trajectories that are integrated elsewhere.
     pub(crate) fn draft(&self, most: f64) -> Option<ValueDraft> {
-        ValueDraft::new(&self.sheet, |row| self.cells(row), most)
+        ValueDraft::new(&self.sheet, |row| self.cells_before_end(row), most)
     }
 
     /// Number of cells of `row` before its end.
-    fn cells(&self, row: usize) -> usize {
+    fn cells_before_end(&self, row: usize) -> usize {
         let end = self.sheet.crossings[row].first();
         let end = end.map_or(0.0, |end| end.push);
-        self.columns.magnitudes.partition_point(|push| *push < end)
+        self.columns.pushes.partition_point(|push| *push < end)
     }
 
     /// Returns the converter of the side's states to map units.
@@ -87,21 +88,26 @@ impl WhiskerSide {
         self.sheet.rod.friction != 0.0
     }
 
-    /// Returns the channel values `[channel]` of a state of `row` at the signed `push`, in radians.
+    /// Returns the channel values `[channel]` of a state of `row` at `signed_push`, in radians.
     #[must_use]
-    pub fn values(&self, row: usize, tau: f64, full: &FullState, push: f64) -> Values {
+    pub fn values(&self, row: usize, tau: f64, full: &FullState, signed_push: f64) -> Values {
         let touch = self.sheet.rows[row].touch;
-        self.reader.read(tau, full, touch, push).channels()
+        self.reader.read(tau, full, touch, signed_push).channels()
     }
 
-    /// Returns the channel values `[channel]` of a state with friction of `row` at the signed `push`, in radians.
+    /// Returns the channel values `[channel]` of a state with friction of `row` at `signed_push`, in radians.
     #[must_use]
-    pub fn values_with_friction(&self, row: usize, push: f64, state: &FrictionState) -> Values {
+    pub fn values_with_friction(
+        &self,
+        row: usize,
+        signed_push: f64,
+        state: &FrictionState,
+    ) -> Values {
         let rod = state.rod(&self.sheet.rod);
         let reader = self.reader.with_contact(&rod);
         let touch = self.sheet.rows[row].touch;
         reader
-            .read(state.at.point.x, &state.variation.full, touch, push)
+            .read(state.at.point.x, &state.variation.full, touch, signed_push)
             .channels()
     }
 
@@ -154,12 +160,12 @@ impl WhiskerSide {
         ]
     }
 
-    /// Returns the cell of `row` with a solution `state` at the signed `push`, in radians; NaN values unless `has_values`.
+    /// Returns the cell of `row` with a solution `state` at `signed_push`, in radians; NaN values unless `has_values`.
     #[must_use]
     pub fn solved(
         &self,
         row: usize,
-        push: f64,
+        signed_push: f64,
         state: &ContactState,
         steps: u32,
         has_values: bool,
@@ -169,7 +175,7 @@ impl WhiskerSide {
             false => Outcome::Solved,
         };
         let unsolved = Cell::new(outcome, steps);
-        let values = has_values.then(|| self.values(row, state.tau, &state.full, push));
+        let values = has_values.then(|| self.values(row, state.tau, &state.full, signed_push));
         Cell {
             residual: state.residual as f32,
             values: values.map_or(unsolved.values, |all| all.map(|value| value as f32)),

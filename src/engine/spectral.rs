@@ -1,8 +1,9 @@
 //! The spectral engine: cells from the nets of whisker sides ([`ValueNet`](crate::sheet::net::ValueNet)), without trajectories of their own.
 
-use super::cells::CellsMut;
+use super::cells::RowCells;
 use super::row::{FUNCTIONS, RowExpansion, functions};
-use super::{BatchRow, Cells, Engine, EngineDescription, EngineError, Outcome, RowBatch};
+use super::{BatchRow, Cells, Engine, EngineDescription, EngineError, RowBatch};
+use crate::classify::Outcome;
 use crate::sheet::net::NET_RESIDUAL;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -56,32 +57,32 @@ impl Spectral {
 }
 
 /// Writes the cells of `row` before its end, and those without a state.
-fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, into: CellsMut) {
+fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, into: RowCells) {
     let side = &batch.sides[row.side];
     let sheet = &side.sheet;
     let distance = sheet.rows[row.row].pole_distance;
-    let magnitudes = &side.columns.magnitudes;
-    let before = row.before(expansion.end, magnitudes);
-    let pushes: Vec<f64> = before
-        .flat_map(|cells| &magnitudes[cells])
+    let pushes = &side.columns.pushes;
+    let before = row.columns_before(expansion.end_push, pushes);
+    let targets: Vec<f64> = before
+        .flat_map(|columns| &pushes[columns])
         .copied()
         .collect();
-    let CellsMut {
+    let RowCells {
         outcome,
         residual,
         mut values,
         points,
         ..
     } = into;
-    expansion.write_beyond(row, magnitudes, outcome);
+    expansion.write_beyond(row, pushes, outcome);
     let wanted = functions(batch.channels);
     expansion.inverse.solve(
-        &pushes,
+        &targets,
         &wanted,
         |from, count, block: &InverseBlock<FUNCTIONS>| {
             let [found, tau, load, channels @ ..] = &block.values;
             for lane in 0..count {
-                let miss = (found[lane] - pushes[from + lane]).abs() * distance;
+                let miss = (found[lane] - targets[from + lane]).abs() * distance;
                 let bound = expansion.residual + miss;
                 // NaN is not below any bound.
                 let is_inside =
@@ -101,10 +102,10 @@ fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, 
                     .zip(values)
                     .for_each(|(number, value)| *number = *value as f32);
             }
-            let targets = points.get_mut(here).into_iter().flatten();
-            targets
+            let points = points.get_mut(here).into_iter().flatten();
+            points
                 .zip(tau.iter().zip(load))
-                .for_each(|(target, (tau, load))| *target = DVec2::new(*tau, *load));
+                .for_each(|(point, (tau, load))| *point = DVec2::new(*tau, *load));
         },
     );
 }

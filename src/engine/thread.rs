@@ -15,37 +15,17 @@ pub enum Request {
     Nodes(Arc<Nodes>),
 }
 
-/// Response to a request.
-pub struct Response<R> {
-    pub result: Result<R, EngineError>,
-    /// Busy time since the previous response.
-    pub busy: Duration,
-}
+/// Response to a request: the result, and the busy time since the previous response. After a failure, there is none.
+pub type Response<R> = Result<(R, Duration), EngineError>;
 
-/// Senders of responses: cells in the order of their batches, and states of nodes.
-pub struct Responses {
-    pub cells: Sender<Response<Cells>>,
-    pub states: Sender<Response<Vec<PlainState>>>,
-}
-
-impl Responses {
-    /// Sends a failure, whatever the caller waits for.
-    fn fail(&self, failure: EngineError, busy: Duration) {
-        let cells = Response {
-            result: Err(failure.clone()),
-            busy,
-        };
-        let states = Response {
-            result: Err(failure),
-            busy: Duration::ZERO,
-        };
-        // A caller that no longer receives has ended.
-        let _ = (self.cells.send(cells), self.states.send(states));
-    }
-}
-
-/// Serves requests by `engine` until they end or responses are no longer received. Unless the engine fails, no batch stays submitted.
-pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &Responses) {
+/// Serves requests by `engine` until they end or responses are no longer received: `cells` in the order of their batches, and `states` of nodes.
+/// Unless the engine fails, no batch stays submitted.
+pub fn serve(
+    engine: &mut dyn Engine,
+    requested: &Receiver<Request>,
+    cells: &Sender<Response<Cells>>,
+    states: &Sender<Response<Vec<PlainState>>>,
+) {
     let (mut submitted, mut is_received) = (0, true);
     let mut since = Instant::now();
     loop {
@@ -67,19 +47,23 @@ pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &R
                 Err(failure) => Err(failure),
             },
             Some(Request::Nodes(nodes)) => {
-                let states = engine.shoot_nodes(&nodes);
-                states.map(|states| send(&respond.states, states, &mut since))
+                let found = engine.shoot_nodes(&nodes);
+                found.map(|found| send(states, found, &mut since))
             }
             None if submitted == 0 => return,
             None => {
                 submitted -= 1;
-                let cells = engine.collect();
-                cells.map(|cells| send(&respond.cells, cells, &mut since))
+                let solved = engine.collect();
+                solved.map(|solved| send(cells, solved, &mut since))
             }
         };
         match sent {
             Ok(sent) => is_received &= sent,
-            Err(failure) => return respond.fail(failure, since.elapsed()),
+            Err(failure) => {
+                // Whatever the caller waits for. A caller that no longer receives has ended.
+                let _ = (cells.send(Err(failure.clone())), states.send(Err(failure)));
+                return;
+            }
         }
     }
 }
@@ -88,8 +72,7 @@ pub fn serve(engine: &mut dyn Engine, requested: &Receiver<Request>, respond: &R
 fn send<R>(to: &Sender<Response<R>>, result: R, since: &mut Instant) -> bool {
     let now = Instant::now();
     let busy = now - std::mem::replace(since, now);
-    let result = Ok(result);
-    to.send(Response { result, busy }).is_ok()
+    to.send(Ok((result, busy))).is_ok()
 }
 
 #[cfg(test)]
@@ -114,6 +97,10 @@ mod tests {
 
         fn residual_bound(&self) -> f64 {
             1.0
+        }
+
+        fn has_device(&self) -> bool {
+            true
         }
 
         fn submit(&mut self, _: Arc<RowBatch>) -> Result<(), EngineError> {
@@ -141,7 +128,7 @@ mod tests {
     }
 
     fn nothing() -> Arc<RowBatch> {
-        Arc::new(RowBatch::new(Method::fine(), [].into(), [].into(), []))
+        Arc::new(RowBatch::new(Method::fine(), [].into(), []))
     }
 
     /// Returns how many of `count` batches stay submitted, how many are collected, and the number of responses.
@@ -154,7 +141,7 @@ mod tests {
         drop(requests);
         let responses = is_received.then_some(responses);
         let (states, _) = channel();
-        serve(&mut engine, &requested, &Responses { cells, states });
+        serve(&mut engine, &requested, &cells, &states);
         let received = responses.map_or(0, |responses| responses.try_iter().count());
         (engine.submitted, engine.collected, received)
     }
@@ -172,14 +159,13 @@ mod tests {
     #[test]
     fn a_panic_of_an_engine_is_a_failure() {
         let mut engine = counting(1, true);
-        let (collected, is_working, failure) =
-            Worker::with(Some(&mut engine), true, |mut worker| {
-                let collected = [(); 3].map(|()| {
-                    worker.submit(nothing());
-                    worker.collect().is_some()
-                });
-                (collected, worker.is_working(), worker.failure)
+        let (collected, is_working, failure) = Worker::with(Some(&mut engine), |mut worker| {
+            let collected = [(); 3].map(|()| {
+                worker.submit(nothing());
+                worker.collect().is_some()
             });
+            (collected, worker.is_working(), worker.failure)
+        });
         assert_eq!((collected, is_working), ([true, false, false], false));
         let failure = failure.map(|failure| failure.to_string());
         let wanted = "GPU: the engine's thread has panicked";

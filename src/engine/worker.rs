@@ -3,7 +3,7 @@
 //!
 //! After its first failure an engine gets no further batch.
 
-use super::thread::{Request, Response, Responses, serve};
+use super::thread::{Request, Response, serve};
 use super::{Cells, Engine, EngineError, Nodes, RowBatch};
 use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
@@ -35,6 +35,8 @@ pub struct Worker<'e> {
     pub trajectories: u64,
     /// Maximum residual bound of a cell that the engine solves, in whisker lengths; 0 without an engine.
     pub residual_bound: f64,
+    /// Maximum residual of the rows that the engine evaluates, in whisker lengths; `None` without an engine.
+    pub row_residual: Option<f64>,
     /// Failure for which the engine is disabled; `None` if it has not failed.
     pub failure: Option<EngineError>,
     /// Wall time in which the engine worked on batches, summed over all responses.
@@ -42,19 +44,16 @@ pub struct Worker<'e> {
 }
 
 impl<'e> Worker<'e> {
-    /// Calls `work` with a worker for `engine`, whose thread ends before this returns. Without `has_thread`, the engine works where it is
+    /// Calls `work` with a worker for `engine`. An engine with a device has a thread, which ends before this returns; others work where they are
     /// called.
-    pub fn with<R>(
-        engine: Option<&'e mut (dyn Engine + 'e)>,
-        has_thread: bool,
-        work: impl FnOnce(Self) -> R,
-    ) -> R {
-        let residual_bound = engine
-            .as_ref()
-            .map_or(0.0, |engine| engine.residual_bound());
+    pub fn with<R>(engine: Option<&'e mut (dyn Engine + 'e)>, work: impl FnOnce(Self) -> R) -> R {
+        let known = engine.as_ref();
+        let residual_bound = known.map_or(0.0, |engine| engine.residual_bound());
+        let row_residual = known.map(|engine| engine.row_residual());
         let worker = |connection| Self {
             connection,
             residual_bound,
+            row_residual,
             trajectories: 0,
             submitted: VecDeque::new(),
             failure: None,
@@ -63,17 +62,14 @@ impl<'e> Worker<'e> {
         let Some(engine) = engine else {
             return work(worker(None));
         };
-        if !has_thread {
+        if !engine.has_device() {
             return work(worker(Some(Connection::Call(engine))));
         }
         thread::scope(|scope| {
             let (requests, requested) = channel();
             let ((to_cells, cells), (to_states, states)) = (channel(), channel());
-            let respond = Responses {
-                cells: to_cells,
-                states: to_states,
-            };
-            let thread = scope.spawn(move || serve(engine, &requested, &respond));
+            let serve = move || serve(engine, &requested, &to_cells, &to_states);
+            let thread = scope.spawn(serve);
             let done = work(worker(Some(Connection::Thread {
                 requests,
                 cells,
@@ -118,10 +114,8 @@ impl<'e> Worker<'e> {
             Connection::Call(engine) => {
                 let begun = Stopwatch::start();
                 let taken = engine.submit(Arc::clone(&batch));
-                Some(Response {
-                    result: taken.and_then(|()| engine.collect()),
-                    busy: begun.elapsed(),
-                })
+                let cells = taken.and_then(|()| engine.collect());
+                Some(cells.map(|cells| (cells, begun.elapsed())))
             }
         };
         let cells = self.result(response)?;
@@ -163,12 +157,16 @@ impl<'e> Worker<'e> {
     /// Returns the result of a response; without one, the engine's thread has ended. After a failure, the engine is disabled.
     fn result<R>(&mut self, response: Option<Response<R>>) -> Option<R> {
         let ended = || EngineError::Device("the engine's thread has panicked".to_owned());
-        let Some(Response { result, busy }) = response else {
-            self.disable(ended());
-            return None;
-        };
-        self.busy += busy;
-        result.map_err(|failure| self.disable(failure)).ok()
+        match response.unwrap_or_else(|| Err(ended())) {
+            Ok((result, busy)) => {
+                self.busy += busy;
+                Some(result)
+            }
+            Err(failure) => {
+                self.disable(failure);
+                None
+            }
+        }
     }
 
     /// Disables the engine after `differing` of `cells` audited cells failed.

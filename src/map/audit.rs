@@ -1,7 +1,8 @@
 //! Audit of an engine: a sample of its cells, solved or without a state, is compared with the CPU engine.
 
 use super::summary::Audit;
-use crate::engine::{BatchRow, Cell, Cells, Outcome, RowBatch, Values, WhiskerSide};
+use crate::classify::Outcome;
+use crate::engine::{BatchRow, Cell, Cells, RowBatch, Values, WhiskerSide};
 use crate::random::hash;
 use crate::sheet::Sheet;
 use std::ops::Range;
@@ -15,7 +16,7 @@ const AT_LEAST: u64 = 64;
 /// Maximum difference of a value, as a part of the largest along the row or of a radian.
 const TOLERANCE: f64 = 3e-6;
 
-/// Audited cells of a row: the same in every run, one of each `one_in`.
+/// Sample of audited cells of a row: the same in every run, one of each `one_in`.
 pub struct AuditSample {
     seed: u64,
     one_in: u64,
@@ -42,14 +43,14 @@ impl AuditSample {
         }
     }
 
-    /// Returns the columns of the audited cells among `cells`.
-    pub fn of(&self, cells: Range<usize>) -> impl Iterator<Item = usize> + use<> {
+    /// Returns the columns of the audited cells among `columns`.
+    pub fn of(&self, columns: Range<usize>) -> impl Iterator<Item = usize> + use<> {
         let Self { seed, one_in } = *self;
-        let all = cells.start as u64..cells.end as u64;
+        let all = columns.start as u64..columns.end as u64;
         let parts = all.start / one_in..all.end.div_ceil(one_in);
         let chosen = parts.map(move |part| part * one_in + hash(seed ^ hash(part)) % one_in);
-        let chosen = chosen.filter(move |cell| all.contains(cell));
-        chosen.map(|cell| cell as usize)
+        let chosen = chosen.filter(move |column| all.contains(column));
+        chosen.map(|column| column as usize)
     }
 }
 
@@ -72,17 +73,21 @@ pub fn compare(
 ) -> Audit {
     let mut audit = Audit::default();
     let rows = batch.rows.iter().zip(&rest.rows);
-    let rows = rows.flat_map(|(row, part)| part.each().map(move |cell| (row, cell)));
-    for ((row, cell), (index, from)) in rows.zip(batch.places_in(rest)) {
+    let rows = rows.flat_map(|(row, part)| part.each_column().map(move |column| (row, column)));
+    for ((row, column), (index, from)) in rows.zip(batch.places_in(rest)) {
         let holds = match (cells.outcome[index], found.outcome[from]) {
-            (Outcome::BeyondTip | Outcome::OffSheet, ours) => {
-                !matches!(ours, Outcome::Solved | Outcome::AtTip)
-            }
+            (Outcome::BeyondTip | Outcome::OffSheet, ours) => !ours.is_solved(),
             (Outcome::Solved, ours) if ours != Outcome::OffSheet => {
                 let theirs = cells.get(index);
                 // The residual is rounded to `f32`, and so is its bound.
                 theirs.residual <= residual_bound as f32
-                    && holds(batch, (row, cell), row_residual, &theirs, &found.get(from))
+                    && holds(
+                        batch,
+                        (row, column),
+                        row_residual,
+                        &theirs,
+                        &found.get(from),
+                    )
             }
             _ => continue,
         };
@@ -96,14 +101,14 @@ pub fn compare(
 /// allowed for: next to the tip of a cone the contact angle changes up to 200 times as much as the push.
 fn holds(
     batch: &RowBatch,
-    (row, cell): (&BatchRow, usize),
+    (row, column): (&BatchRow, usize),
     row_residual: f64,
     theirs: &Cell,
     ours: &Cell,
 ) -> bool {
     match ours.outcome {
         Outcome::NotConverged => return true,
-        Outcome::Solved | Outcome::AtTip => {}
+        solved if solved.is_solved() => {}
         _ => return false,
     }
     let wanted = batch.channels.states();
@@ -111,7 +116,7 @@ fn holds(
         return true;
     }
     let side = &batch.sides[row.side];
-    let push = side.columns.columns[cell].push.abs();
+    let push = side.columns.pushes[column];
     let ours = ours.values.map(f64::from);
     let Some(end) = side.sheet.crossings[row.row].first() else {
         return false;

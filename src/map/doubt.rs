@@ -4,8 +4,8 @@
 //! line of constant load, as near the tip of a perfect cone. The other is where it turns back, as with friction. Continuation needs no
 //! guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
-use crate::classify::{RowBoundary, TIE};
-use crate::engine::{Cell, Outcome, WhiskerSide};
+use crate::classify::{Outcome, RowBoundary, TIE};
+use crate::engine::{RowCells, WhiskerSide};
 use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{CurveNode, Edge, LevelCurve, NODE_MISS, ON_CURVE, Stretch, continuations};
 
@@ -13,14 +13,14 @@ use crate::sheet::{CurveNode, Edge, LevelCurve, NODE_MISS, ON_CURVE, Stretch, co
 /// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
 const SAME_END: f64 = 1e-5;
 
-/// Solves `cells` of `row`, pairs of index and cell, once more by continuation, and returns them. Cells that no continuation reaches stay as they
-/// are.
+/// Solves the cells in some `columns` of `row` once more by continuation. Cells that no continuation reaches stay as they are.
 pub fn solve(
     side: &WhiskerSide,
     row: usize,
     boundary: &RowBoundary,
-    mut cells: Vec<(usize, Cell)>,
-) -> Vec<(usize, Cell)> {
+    columns: &[usize],
+    cells: &mut RowCells,
+) {
     let sheet = &side.sheet;
     let level = sheet.level(row);
     let sign = sheet.side.sign();
@@ -43,56 +43,56 @@ pub fn solve(
         (apart < SAME_END && piece.end == Some(span.edge)).then_some(piece.nodes)
     });
     let pieces: Vec<Option<Vec<CurveNode>>> = pieces.collect();
-    for (index, cell) in &mut cells {
-        let push = side.columns.columns[*index].push;
-        let before = *cell;
-        let solved = |state: &ContactState| side.solved(row, push, state, before.steps, true);
-        let magnitude = sign * push;
+    for &column in columns {
+        let (push, signed_push) = (
+            side.columns.pushes[column],
+            side.columns.signed_push(column),
+        );
+        let steps = cells.steps[column];
+        let solved = |state: &ContactState| side.solved(row, signed_push, state, steps, true);
         let mut spans = boundary.spans().iter().zip(&pieces);
-        let found = match spans.find(|(span, _)| span.contains(magnitude)) {
+        match spans.find(|(span, _)| span.contains(push)) {
             Some((span, Some(nodes))) => {
                 let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].push);
-                if magnitude > last {
-                    Some(Cell {
-                        outcome: beyond(span.edge),
-                        ..before
-                    })
+                if push > last {
+                    cells.outcome[column] = beyond(span.edge);
                 } else {
-                    let node = level.state_at_push(nodes, sign * magnitude.max(first));
-                    let state = node.map(|node| state(&level, &node, push));
-                    let state = state.filter(|state| state.residual <= TOLERANCE);
-                    state.map(|state| solved(&state))
+                    let node = level.state_at_push(nodes, sign * push.max(first));
+                    let state = node.map(|node| state(&level, &node, signed_push));
+                    if let Some(state) = state.filter(|state| state.residual <= TOLERANCE) {
+                        cells.set(column, &solved(&state));
+                    }
                 }
             }
             // Every piece of the level curve has been followed from end to end, and none has this push angle.
             None if pieces.iter().all(Option::is_some) => {
                 let end = boundary.detachment();
-                let outcome = end.map_or(Outcome::OffSheet, |span| beyond(span.edge));
-                Some(Cell { outcome, ..before })
+                cells.outcome[column] = end.map_or(Outcome::OffSheet, |span| beyond(span.edge));
             }
-            _ => None,
-        };
-        let found = found.unwrap_or(before);
-        let is_solved = matches!(found.outcome, Outcome::Solved | Outcome::AtTip);
-        let is_touch = push.abs() <= TIE && boundary.detachment().is_some();
-        let touch = (!is_solved && is_touch).then(|| first_touch(&level, push));
-        *cell = touch.flatten().map_or(found, |state| solved(&state));
+            _ => {}
+        }
+        if !cells.outcome[column].is_solved()
+            && push <= TIE
+            && boundary.detachment().is_some()
+            && let Some(state) = first_touch(&level, signed_push)
+        {
+            cells.set(column, &solved(&state));
+        }
     }
-    cells
 }
 
 /// First touch is known from the shape at rest; its residual is the error of the integration, largest at the tip of a cone. A Newton
 /// step from there mostly leaves a smaller one.
-fn first_touch(level: &LevelCurve, push: f64) -> Option<ContactState> {
+fn first_touch(level: &LevelCurve, signed_push: f64) -> Option<ContactState> {
     let touch = level.touch();
     let map = &touch.full.map;
-    let step = map.solve(map.residual(level.row.pole(push)));
+    let step = map.solve(map.residual(level.row.pole(signed_push)));
     let stepped = level.correct(&[touch.point + step], ON_CURVE).pop()?;
     let stepped = stepped.map(|(point, full)| level.node(point, &full, touch.push, touch.angle));
     [Some(touch), stepped]
         .into_iter()
         .flatten()
-        .map(|node| state(level, &node, push))
+        .map(|node| state(level, &node, signed_push))
         .filter(|state| state.residual.is_finite())
         .min_by(|a, b| a.residual.total_cmp(&b.residual))
 }
@@ -104,11 +104,11 @@ const fn beyond(edge: Edge) -> Outcome {
     }
 }
 
-fn state(level: &LevelCurve, node: &CurveNode, push: f64) -> ContactState {
+fn state(level: &LevelCurve, node: &CurveNode, signed_push: f64) -> ContactState {
     ContactState {
         tau: node.point.x,
         load: node.point.y,
         full: node.full,
-        residual: node.full.map.pole.distance(level.row.pole(push)),
+        residual: node.full.map.pole.distance(level.row.pole(signed_push)),
     }
 }

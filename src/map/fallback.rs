@@ -2,7 +2,8 @@
 
 use super::audit::{self, AuditSample};
 use super::summary::{Audit, EngineCells};
-use crate::engine::{Cells, Cpu, Outcome, RowBatch};
+use crate::classify::Outcome;
+use crate::engine::{Cells, Cpu, RowBatch};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -67,16 +68,16 @@ const fn is_final(outcome: Outcome) -> bool {
 fn rest(batch: &RowBatch, cells: &Cells) -> RowBatch {
     let rows = batch.rows.par_iter().map(|row| {
         let side = &batch.sides[row.side];
-        let outcomes = &cells.outcome[row.first..row.first + row.count()];
+        let outcomes = &cells.outcome[row.cells()];
         let sample = AuditSample::new(&side.sheet, row.row, side.columns.len());
         let mut wanted: Vec<Range<usize>> = Vec::new();
         let mut from = 0;
         for run in outcomes.chunk_by(|a, b| is_final(*a) == is_final(*b)) {
-            let cells = from..from + run.len();
-            from = cells.end;
+            let columns = from..from + run.len();
+            from = columns.end;
             match is_final(run[0]) {
-                true => wanted.extend(sample.of(cells).map(|cell| cell..cell + 1)),
-                false => wanted.push(cells),
+                true => wanted.extend(sample.of(columns).map(|column| column..column + 1)),
+                false => wanted.push(columns),
             }
         }
         wanted

@@ -13,9 +13,9 @@ pub struct FrictionRow {
     /// Index of the row in the sheet.
     pub row: usize,
     /// Push angle at which a push from first touch detaches, a magnitude in radians.
-    pub end: f64,
-    /// Cells in contact that a push from first touch reaches, `[cell]`: index of the column on the side, and magnitude of the push in radians.
-    pub contacts: Vec<(usize, f64)>,
+    pub end_push: f64,
+    /// Columns of the side whose cells are in contact and reached by a push from first touch: `[cell]`.
+    pub contacts: Vec<usize>,
 }
 
 /// Cell whose contact does not slide toward the tip, so that its friction differs.
@@ -51,7 +51,7 @@ pub fn replace(
         let ends = rows.iter().zip(histories).filter(|(row, history)| {
             let sliding = history
                 .as_ref()
-                .and_then(|history| history.sliding_at_end(row.end));
+                .and_then(|history| history.sliding_at_end(row.end_push));
             sliding.is_some_and(|sliding| sliding != Sliding::Tip)
         });
         let ends: Vec<usize> = ends.map(|(row, _)| row.row - first_row).collect();
@@ -62,9 +62,8 @@ pub fn replace(
             write(cell, panel);
         }
         for row in endless {
-            let columns = side.columns.columns.iter();
-            for cell in columns.map(|column| row * width + column.index) {
-                mark_end(cell, panel);
+            for column in side.columns.in_map(&(0..side.columns.len())) {
+                mark_end(row * width + column, panel);
             }
         }
     }
@@ -77,24 +76,24 @@ fn cells(
     histories: &[Option<ContactHistory>],
     [width, first_row]: [usize; 2],
 ) -> Vec<FrictionCell> {
-    let columns = &side.columns.columns;
+    let columns = &side.columns;
     let mut unsolved = Vec::new();
     let mut queries = Vec::new();
     let mut wanted = Vec::new();
     for (row, history) in rows.iter().zip(histories) {
-        for (index, push) in &row.contacts {
-            let column = &columns[*index];
-            let cell = (row.row - first_row) * width + column.index;
-            let phase = history.as_ref().map(|history| history.phase(*push));
+        for &column in &row.contacts {
+            let push = columns.pushes[column];
+            let cell = (row.row - first_row) * width + columns.in_map(&(column..column + 1)).start;
+            let phase = history.as_ref().map(|history| history.phase(push));
             let sliding = phase.map(ContactPhase::sliding);
             if let (Some(history), Some(phase)) = (history, phase)
-                && *push > 0.0
+                && push > 0.0
             {
                 if sliding != Some(Sliding::Tip) {
-                    wanted.push((row.row, column.push, cell));
+                    wanted.push((row.row, columns.signed_push(column), cell));
                     queries.push(ContactQuery {
                         history,
-                        push: *push,
+                        push,
                         phase,
                     });
                 }
@@ -109,8 +108,9 @@ fn cells(
         }
     }
     let solved = wanted.into_iter().zip(states(&queries));
-    let solved = solved.map(|((row, push, cell), state)| {
-        let state = state.map(|state| (state, side.values_with_friction(row, push, &state)));
+    let solved = solved.map(|((row, signed_push, cell), state)| {
+        let values = |state| (state, side.values_with_friction(row, signed_push, &state));
+        let state = state.map(values);
         FrictionCell {
             cell,
             sliding: state.as_ref().map(|(state, _)| state.sliding),

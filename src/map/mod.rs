@@ -9,8 +9,8 @@ mod panel;
 mod pipeline;
 mod rows;
 mod sides;
-mod stages;
 mod summary;
+mod times;
 
 use crate::engine::{Engine, EngineDescription, Worker};
 use crate::plan::Plan;
@@ -19,10 +19,10 @@ use crate::scene::Scene;
 use crate::stopwatch::Stopwatch;
 pub use panel::Panel;
 use pipeline::Pipeline;
-pub use stages::{Stage, thread_seconds};
-use stages::{StageTimes, process_seconds};
 use std::ops::ControlFlow;
 pub use summary::{Audit, EngineCells, Summary};
+pub use times::{Stage, thread_seconds};
+use times::{StageTimes, process_seconds};
 
 /// Computes the panels of `scene` according to `plan`, on the threads of the current pool; call it within
 /// `rayon::ThreadPool::install`, or every stage of every row batch wakes the pool up.
@@ -44,15 +44,13 @@ pub fn run<E: Send>(
 ) -> Result<Summary, E> {
     let description = EngineDescription::of(engine.as_deref());
     let (start, cpu_start) = (Stopwatch::start(), process_seconds());
-    let row_residual = engine.as_ref().map(|engine| engine.row_residual());
-    let has_device = engine.as_ref().is_some_and(|engine| engine.has_device());
     let effects = plan.method.effects;
     let integrates = engine
         .as_ref()
         .is_some_and(|engine| engine.integrates_nodes(effects));
     let mut packing = StageTimes::default();
-    let mut summary = Worker::with(engine, has_device, |worker| {
-        let mut pipeline = Pipeline::new(scene, plan, worker, (row_residual, integrates));
+    let mut summary = Worker::with(engine, |worker| {
+        let mut pipeline = Pipeline::new(scene, plan, worker, integrates);
         let mut finished: Vec<Panel> = Vec::new();
         let mut is_open = true;
         while is_open {

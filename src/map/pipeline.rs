@@ -8,17 +8,18 @@ use super::fallback::complete;
 use super::nets::PendingNets;
 use super::panel::Panel;
 use super::rows;
-use super::sides::{side_columns, whisker_sides};
-use super::stages::Stage;
+use super::sides::whisker_sides;
 use super::summary::{EngineCells, Summary};
+use super::times::Stage;
 use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
-use crate::scene::Scene;
+use crate::scene::{Scene, SweptWhisker};
 use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
 use std::iter;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
+use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::batch::Method;
 
 /// Cells per thread in a batch for the CPU alone: nearly all blocks of the refinement are full, and little memory is new.
@@ -39,70 +40,42 @@ pub struct Pipeline<'a, 'e> {
     rows_at_once: usize,
     /// Panels whose memory is used again for the next panels: `[panel]`.
     pub spare: Vec<Panel>,
+    /// Columns of the map on each side: `[side]`.
     columns: Vec<Arc<SideColumns>>,
-    /// Signed push angles of the columns of all sides, in radians.
-    pushes: Arc<[f64]>,
     /// The whiskers of each group of panels whose batches are still to be made.
     groups: Box<dyn Iterator<Item = Range<usize>> + 'a>,
-    /// The next group, whose nets a device is working on.
-    drafted: Option<Drafted>,
-    /// Whisker of each panel that is still to be finished. Bands of a panel have the same whisker.
-    whiskers: Box<dyn Iterator<Item = usize> + 'a>,
-    /// True if a whisker has a yield strain.
-    has_yield_strain: bool,
-    /// The group of the last batch, and the number of its rows in batches: band by band, and in a band side by side.
-    begun: Option<(Group, usize)>,
-    /// The batches made and not completed.
-    queue: VecDeque<Queued>,
+    /// Nets of the next group, on which a device is working.
+    drafted: Option<PendingNets>,
+    /// The whiskers of each group of panels that are still to be finished. Bands of a panel have the same whisker.
+    unfinished: Box<dyn Iterator<Item = Range<usize>> + 'a>,
+    /// The sides of the group of the last batch, and the number of its rows in batches: band by band, and in a band side by side.
+    begun: Option<(Arc<[WhiskerSide]>, usize)>,
+    /// The batches made and not completed, each with whether it is the last one of its band.
+    queue: VecDeque<(Arc<RowBatch>, bool)>,
     worker: Worker<'e>,
     /// True if the engine has a thread of its own, beside the stages.
     has_device: bool,
     cpu: Cpu,
     /// True if the engine integrates the trajectories of nets.
     engine_integrates: bool,
-    /// Maximum residual of the rows of an engine, in whisker lengths; `None` without an engine.
-    row_residual: Option<f64>,
     summary: Summary,
 }
 
-/// Group of panels.
-struct Group {
-    /// Sides of the whiskers of the group.
-    sides: Arc<[WhiskerSide]>,
-    /// Places in the group of rows of a table that have no whisker.
-    without_whisker: Arc<[usize]>,
-}
-
-/// Group whose nets are in the making.
-struct Drafted {
-    nets: PendingNets,
-    without_whisker: Arc<[usize]>,
-}
-
-/// Batch of a group.
-struct Queued {
-    /// Batch that was made; `None` for a group without a whisker.
-    batch: Option<Arc<RowBatch>>,
-    /// Places in the group of rows without a whisker, if the batch is the last one of its band.
-    completes: Option<Arc<[usize]>>,
-}
-
 impl<'a, 'e> Pipeline<'a, 'e> {
-    /// Creates the pipeline of a run. With an engine, the residual of its rows is at most `row_residual`, in whisker lengths, and the engine may
-    /// integrate the trajectories of nets.
+    /// Creates the pipeline of a run, whose engine may integrate the trajectories of nets.
     pub fn new(
         scene: &'a Scene,
         plan: &'a Plan,
         worker: Worker<'e>,
-        (row_residual, engine_integrates): (Option<f64>, bool),
+        engine_integrates: bool,
     ) -> Self {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
         let cells = (CELLS_PER_THREAD * rayon::current_num_threads()).min(CELLS_IN_FLIGHT);
-        let (columns, pushes) = side_columns(push_angle_deg, &plan.sides);
+        let of_side = |side: &Side| Arc::new(SideColumns::new(push_angle_deg, *side));
         let has_device = worker.has_thread();
         let mut method = plan.method;
-        if row_residual.is_some() {
+        if worker.row_residual.is_some() {
             // Coarser steps are so few that their number changes along a row: states would not be analytic.
             method.resolution = method.resolution.at_least_fine();
         }
@@ -110,7 +83,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             scene,
             plan,
             method,
-            rows_at_once: match row_residual {
+            rows_at_once: match worker.row_residual {
                 // After a failed audit, the CPU engine solves the batches that follow. So that equal runs write equal bytes, batches must not depend
                 // on the number of threads.
                 Some(_) if !has_device => plan.rows_at_once.min(rows(EXPANDED_CELLS)),
@@ -118,17 +91,14 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 None => rows(cells),
             },
             spare: Vec::new(),
-            columns,
-            pushes,
+            columns: plan.sides.iter().map(of_side).collect(),
             groups: Box::new(plan.groups()),
-            has_yield_strain: scene.has_yield_strain(),
-            whiskers: Box::new(iter::repeat_with(|| plan.groups()).flatten().flatten()),
+            unfinished: Box::new(iter::repeat_with(|| plan.groups()).flatten()),
             drafted: None,
             begun: None,
             queue: VecDeque::new(),
             worker,
             cpu: Cpu::default(),
-            row_residual,
             has_device,
             engine_integrates,
             summary: Summary::default(),
@@ -140,29 +110,38 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         &mut self,
         on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
     ) -> Option<Vec<Panel>> {
-        let mut panels = Vec::new();
-        while let Some((cells, is_last)) = self.advance(&mut panels) {
-            self.summary.is_cancelled |= on_progress(cells).is_break();
-            if is_last || self.summary.is_cancelled {
-                break;
+        let (scene, channels) = (self.scene, self.plan.channels);
+        let (mut panels, mut whiskers) = (Vec::new(), Vec::new());
+        let mut is_complete = false;
+        while !is_complete {
+            let (mut cells, is_last) = self.advance(&mut panels)?;
+            if is_last {
+                let group = self.unfinished.next().unwrap_or_default();
+                whiskers = group.map(|index| scene.whisker(index)).collect();
+                let size = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
+                for (place, _) in whiskers
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, found)| found.is_err())
+                {
+                    panels.insert(place, Panel::without_whisker(size, channels));
+                    cells += size;
+                }
             }
-        }
-        if self.summary.is_cancelled || panels.is_empty() {
-            return None;
+            self.summary.is_cancelled |= on_progress(cells).is_break();
+            if self.summary.is_cancelled {
+                return None;
+            }
+            is_complete = is_last;
         }
         let mut times = self.summary.stages;
-        let (scene, summary) = (self.scene, &mut self.summary);
-        let whiskers = self.whiskers.by_ref();
-        let has_yield_strain = self.has_yield_strain;
-        let count = || {
-            for (panel, whisker) in panels.iter().zip(whiskers) {
-                let found = has_yield_strain
-                    .then(|| scene.whisker(whisker).ok())
-                    .flatten();
-                summary.count(panel, found.and_then(|swept| swept.whisker.yield_strain));
+        times.time(Stage::Classification, || {
+            for (panel, found) in panels.iter().zip(&whiskers) {
+                let swept = found.as_ref().ok();
+                let yield_strain = swept.and_then(|swept| swept.whisker.yield_strain);
+                self.summary.count(panel, yield_strain);
             }
-        };
-        times.time(Stage::Classification, count);
+        });
         self.summary.stages = times;
         Some(panels)
     }
@@ -179,25 +158,23 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         }
         summary.trajectories = self.worker.trajectories;
         summary.engine_failure = self.worker.failure;
-        if self.row_residual.is_none() {
+        if self.worker.row_residual.is_none() {
             summary.engine_cells = EngineCells::default();
         }
         summary
     }
 
-    /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether the `panels` are
-    /// complete; `None` without a further batch.
+    /// Submits the next batches, and completes the first of the queue. Returns the number of its cells, and whether it is the last one of the
+    /// `panels`; `None` without a further batch.
     fn advance(&mut self, panels: &mut Vec<Panel>) -> Option<(usize, bool)> {
         let ahead = if self.worker.has_thread() { AHEAD } else { 0 };
         while self.queue.len() <= ahead
-            && let Some(queued) = self.next_batch()
+            && let Some((batch, is_last)) = self.next_batch()
         {
-            if let Some(batch) = &queued.batch
-                && batch.is_for_engine()
-            {
-                self.worker.submit(Arc::clone(batch));
+            if batch.is_for_engine() {
+                self.worker.submit(Arc::clone(&batch));
             }
-            self.queue.push_back(queued);
+            self.queue.push_back((batch, is_last));
         }
         // While the device works on these batches, the threads begin the nets of the next group.
         if self.drafted.is_none()
@@ -205,101 +182,66 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         {
             self.drafted = self.draft_next(most);
         }
-        let Queued { batch, completes } = self.queue.pop_front()?;
-        let mut done = 0;
-        if let Some(batch) = batch {
-            let begun = Stopwatch::start();
-            let is_submitted = batch.is_for_engine();
-            let cells = is_submitted.then(|| self.worker.collect()).flatten();
-            if self.has_device {
-                self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
-            }
-            self.complete(&batch, cells, panels);
-            done += batch.cells();
+        let (batch, is_last) = self.queue.pop_front()?;
+        let begun = Stopwatch::start();
+        let is_submitted = batch.is_for_engine();
+        let cells = is_submitted.then(|| self.worker.collect()).flatten();
+        if self.has_device {
+            self.summary.waiting_seconds += begun.elapsed().as_secs_f64();
         }
-        let (grid, channels) = (&self.scene.grid, self.plan.channels);
-        let cells = grid.push_angle_deg.len() * grid.distance_mm.len();
-        for place in completes.as_deref().into_iter().flatten() {
-            panels.insert(*place, Panel::without_whisker(cells, channels));
-            done += cells;
-        }
-        Some((done, completes.is_some()))
+        self.complete(&batch, cells, panels);
+        Some((batch.cells(), is_last))
     }
 
-    /// Returns the next group.
-    fn next_group(&mut self) -> Option<Group> {
-        let drafted = match (self.drafted.take(), self.on_device()) {
-            (Some(drafted), _) => drafted,
+    /// Returns the sides of the next group, whisker by whisker; none of rows of a table that have no whisker.
+    fn next_group(&mut self) -> Option<Arc<[WhiskerSide]>> {
+        let nets = match (self.drafted.take(), self.on_device()) {
+            (Some(nets), _) => nets,
             (None, Some(most)) => self.draft_next(most)?,
-            (None, None) => {
-                let (sides, without_whisker) = self.sides_of_next(self.row_residual)?;
-                return Some(Group {
-                    sides: sides.into(),
-                    without_whisker,
-                });
-            }
+            (None, None) => return Some(self.sides_of_next(self.worker.row_residual)?.into()),
         };
         let begun = Stopwatch::start();
-        let (sides, waited) = drafted.nets.finish(&mut self.worker);
+        let (sides, waited) = nets.finish(&mut self.worker);
         self.summary.waiting_seconds += waited.as_secs_f64();
         self.summary.stages.0[Stage::Sheets as usize] += begun.elapsed() - waited;
-        Some(Group {
-            sides,
-            without_whisker: drafted.without_whisker,
-        })
+        Some(sides)
     }
 
     /// Returns the residual of nets, in whisker lengths, if a device integrates their trajectories.
     fn on_device(&self) -> Option<f64> {
         let integrates = self.engine_integrates && self.worker.has_thread();
-        self.row_residual.filter(|_| integrates)
+        self.worker.row_residual.filter(|_| integrates)
     }
 
     /// Begins the nets of the next group, with a residual of at most `most` whisker lengths.
-    fn draft_next(&mut self, most: f64) -> Option<Drafted> {
-        let (sides, without_whisker) = self.sides_of_next(None)?;
+    fn draft_next(&mut self, most: f64) -> Option<PendingNets> {
+        let sides = self.sides_of_next(None)?;
         let (method, worker) = (self.method, &mut self.worker);
         let nets = || PendingNets::new(sides, method, most, worker);
-        Some(Drafted {
-            nets: self.summary.stages.time(Stage::Sheets, nets),
-            without_whisker,
-        })
+        Some(self.summary.stages.time(Stage::Sheets, nets))
     }
 
-    /// Computes the sides of the next group, with nets of this residual, and returns them with the places of rows without a whisker.
-    fn sides_of_next(
-        &mut self,
-        row_residual: Option<f64>,
-    ) -> Option<(Vec<WhiskerSide>, Arc<[usize]>)> {
+    /// Computes the sides of the next group, with nets of this residual.
+    fn sides_of_next(&mut self, row_residual: Option<f64>) -> Option<Vec<WhiskerSide>> {
         let whiskers = self.groups.next()?;
-        let (mut found, mut without_whisker) = (Vec::new(), Vec::new());
-        for (place, index) in whiskers.enumerate() {
-            match self.scene.whisker(index) {
-                Ok(whisker) => found.push(whisker),
-                Err(_) => without_whisker.push(place),
-            }
-        }
+        let found = whiskers.filter_map(|index| self.scene.whisker(index).ok());
+        let found: Vec<SweptWhisker> = found.collect();
         let row_residual = row_residual.filter(|_| self.worker.is_working());
         let of_plan = (self.plan, self.method, row_residual);
         let sides = || whisker_sides(self.scene, of_plan, &self.columns, &found);
-        let sides = self.summary.stages.time(Stage::Sheets, sides);
-        Some((sides, without_whisker.into()))
+        Some(self.summary.stages.time(Stage::Sheets, sides))
     }
 
-    /// Makes the next batch, with expansions of its rows if there is an engine.
-    fn next_batch(&mut self) -> Option<Queued> {
-        let (group, from) = match self.begun.take() {
+    /// Makes the next batch, with expansions of its rows if there is an engine. Returns it, and whether it is the last one of its band. The batch
+    /// of a group without a whisker is empty.
+    fn next_batch(&mut self) -> Option<(Arc<RowBatch>, bool)> {
+        let (sides, from) = match self.begun.take() {
             Some(begun) => begun,
             None => (self.next_group()?, 0),
         };
-        let sides = &group.sides;
         if sides.is_empty() {
-            return Some(Queued {
-                batch: None,
-                completes: Some(group.without_whisker),
-            });
+            return Some((Arc::new(RowBatch::new(self.method, sides, [])), true));
         }
-        let method = self.method;
         let height = self.scene.grid.distance_mm.len();
         let all = sides.len() * height;
         // The rows of a band follow one another on each side.
@@ -310,18 +252,16 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             let i = i - band.start * sides.len();
             (i / band.len(), band.start + i % band.len())
         });
-        let mut batch = RowBatch::new(method, Arc::clone(sides), Arc::clone(&self.pushes), rows);
+        let mut batch = RowBatch::new(self.method, Arc::clone(&sides), rows);
         batch.channels = self.plan.channels;
-        if let Some(most) = self.row_residual
+        if let Some(most) = self.worker.row_residual
             && self.worker.is_working()
         {
             let times = &mut self.summary.stages;
             batch = times.time(Stage::Rows, || batch.with_expansions(most));
         }
-        let completes = (to == end).then(|| Arc::clone(&group.without_whisker));
-        self.begun = (to < all).then_some((group, to));
-        let batch = Some(Arc::new(batch));
-        Some(Queued { batch, completes })
+        self.begun = (to < all).then_some((sides, to));
+        Some((Arc::new(batch), to == end))
     }
 
     /// The rows of the band that has `row`.
@@ -334,7 +274,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
     /// Completes the `cells` of an engine and writes them into `panels`, which are taken from the spare ones or made if there are none.
     fn complete(&mut self, batch: &RowBatch, cells: Option<Cells>, panels: &mut Vec<Panel>) {
         let (width, sides) = (self.scene.grid.push_angle_deg.len(), self.columns.len());
-        let band = self.band(batch.rows[0].row);
+        let band = self.band(batch.rows.first().map_or(0, |row| row.row));
         if panels.is_empty() {
             let (cells, channels) = (width * band.len(), self.plan.channels);
             let spare = std::mem::take(&mut self.spare)
@@ -346,11 +286,14 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let summary = &mut self.summary;
         let has_failed = self.worker.failure.is_some();
         let counts = &mut summary.engine_cells;
-        let bounds = (self.worker.residual_bound, self.row_residual.unwrap_or(0.0));
+        let bounds = (
+            self.worker.residual_bound,
+            self.worker.row_residual.unwrap_or(0.0),
+        );
         let cells = cells.map(|cells| (cells, bounds));
-        let (cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
+        let (mut cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;
-        let fill = || rows::fill(batch, &cells, sides, [width, band.start], panels);
+        let fill = || rows::fill(batch, &mut cells, sides, [width, band.start], panels);
         summary.stages.time(Stage::Classification, fill);
         if audit.differing > 0 {
             self.worker.fail_audit(audit.differing, audit.cells);

@@ -3,43 +3,49 @@
 use super::friction::{self, FrictionRow};
 use super::panel::RowMut;
 use super::{Panel, doubt};
-use crate::classify::{Regime, RowBoundary, Status, TIE};
-use crate::engine::{Cell, CellRun, Cells, Outcome, RowBatch, SideColumns, WhiskerSide};
-use glam::DVec2;
+use crate::classify::{Regime, RowBoundary, TIE};
+use crate::engine::{BatchRow, Cells, RowBatch, RowCells, SideColumns, WhiskerSide};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Classifies the `cells` of a batch of whole rows and writes them into `panels`, which are `width` cells wide and begin with the row
-/// `first_row` of their whiskers; each panel has `sides_per_panel` sides.
+/// `first_row` of their whiskers; each panel has `sides_per_panel` sides. Cells at first touch and in doubt are replaced.
 pub fn fill(
     batch: &RowBatch,
-    cells: &Cells,
+    cells: &mut Cells,
     sides_per_panel: usize,
     [width, first_row]: [usize; 2],
     panels: &mut [Panel],
 ) {
-    let panels = panels.par_iter_mut().enumerate();
-    panels.for_each(|(index, panel)| {
+    let mut rows: Vec<(&BatchRow, RowCells)> =
+        batch.rows.iter().zip(cells.rows_mut(batch)).collect();
+    let panel_of = |row: &BatchRow| row.side / sides_per_panel;
+    let first_panel = batch.rows.first().map_or(0, panel_of);
+    let by_panel: Vec<_> = rows
+        .chunk_by_mut(|(a, _), (b, _)| panel_of(a) == panel_of(b))
+        .collect();
+    let panels = panels[first_panel..].par_iter_mut().zip(by_panel);
+    panels.for_each(|(panel, rows)| {
         // The columns of two sides may be in one row of a panel.
-        for side in index * sides_per_panel..(index + 1) * sides_per_panel {
-            let [from, to] =
-                [side, side + 1].map(|side| batch.rows.partition_point(|row| row.side < side));
-            let rows = &batch.rows[from..to];
-            let Some(first) = rows.first() else { continue };
+        for rows in rows.chunk_by_mut(|(a, _), (b, _)| a.side == b.side) {
+            let first = rows[0].0;
             let from = first.row - first_row;
             let into = panel.rows_mut(width, from..from + rows.len());
-            let side = &batch.sides[side];
-            let found = into.into_par_iter().zip(rows).map(|(into, row)| {
+            let side = &batch.sides[first.side];
+            let rows = into.into_par_iter().zip(rows);
+            let found = rows.map(|(into, (row, cells))| {
                 let crossings = &side.sheet.crossings[row.row];
                 let writer = RowWriter {
                     side,
                     row: row.row,
                     boundary: RowBoundary::new(side.sheet.touches(row.row), crossings),
+                    cells,
                     into,
                     contacts: Vec::new(),
-                    points: Vec::new(),
+                    strained: Vec::new(),
                     doubtful: Vec::new(),
                 };
-                writer.write(cells, row.first)
+                writer.write()
             });
             let found: Vec<FrictionRow> = found.flatten_iter().collect();
             friction::replace(side, &found, [width, first_row], panel);
@@ -47,102 +53,88 @@ pub fn fill(
     });
 }
 
-/// The status of an outcome before it is compared with the boundary; `is_on_span` if the boundary has a state there.
-const fn status(outcome: Outcome, is_on_span: bool) -> Status {
-    match outcome {
-        Outcome::Solved => Status::Solved,
-        // At the tip both verdicts are right; the verdict of the boundary is taken.
-        Outcome::AtTip if is_on_span => Status::Solved,
-        Outcome::AtTip | Outcome::BeyondTip => Status::BeyondTip,
-        Outcome::BeyondFold => Status::BeyondFold,
-        Outcome::OffSheet => Status::Outside,
-        Outcome::NotConverged
-        | Outcome::NotFinite
-        | Outcome::NearEdge
-        | Outcome::Missed
-        | Outcome::NoRow => Status::NotConverged,
-    }
-}
-
 /// Writes one row of one whisker side.
-struct RowWriter<'a> {
+struct RowWriter<'a, 'c> {
     side: &'a WhiskerSide,
     row: usize,
     boundary: RowBoundary,
+    /// Cells of the row: `[column]`, of the side.
+    cells: &'a mut RowCells<'c>,
     into: RowMut<'a>,
-    /// Cells in contact with friction that a push from first touch reaches: column of the side, and magnitude of the push in radians.
-    contacts: Vec<(usize, f64)>,
-    /// Contact and load `(tau, load)` of the cells with a state, with their columns of the side; empty without the channel of strains.
-    points: Vec<(usize, DVec2)>,
-    /// Cells whose regime may be found by continuation, with their columns of the side.
-    doubtful: Vec<(usize, Cell)>,
+    /// Columns of the side whose cells are in contact with friction and reached by a push from first touch.
+    contacts: Vec<usize>,
+    /// Columns of the side whose cells have a state; empty without the channel of strains.
+    strained: Vec<usize>,
+    /// Columns of the side whose cells may get a regime by continuation.
+    doubtful: Vec<usize>,
 }
 
-impl RowWriter<'_> {
-    /// Writes the row whose cells begin at `first`; cells in doubt are solved once more. Returns the cells in contact if there is friction.
-    fn write(mut self, cells: &Cells, first: usize) -> Option<FrictionRow> {
+impl RowWriter<'_, '_> {
+    /// Writes the row; cells in doubt are solved once more. Returns the cells in contact if there is friction.
+    fn write(mut self) -> Option<FrictionRow> {
         let (side, row) = (self.side, self.row);
-        let columns = &side.columns.columns;
+        let pushes = &side.columns.pushes;
         let is_reached = side.sheet.rows[row].is_reached();
-        let touches = columns
+        let touches = pushes
             .iter()
-            .take_while(|column| column.push == 0.0 && is_reached)
+            .take_while(|push| **push == 0.0 && is_reached)
             .count();
-        for index in 0..touches {
-            let touch = side.first_touch(row, cells.steps[first + index]);
-            self.write_run(index, touch.run());
+        for column in 0..touches {
+            let touch = side.first_touch(row, self.cells.steps[column]);
+            self.cells.set(column, &touch);
+            self.write_run(column..column + 1);
         }
-        let outcomes = &cells.outcome[first + touches..first + columns.len()];
         let mut from = touches;
-        for run in outcomes.chunk_by(PartialEq::eq) {
-            let to = from + run.len();
-            let [least, largest] = [from, to - 1].map(|index| columns[index].push.abs());
-            let length = match self.boundary.is_one_verdict(least, largest) {
-                true => run.len(),
-                false => 1,
-            };
-            for index in (from..to).step_by(length) {
-                self.write_run(index, cells.run(first + index..first + index + length));
+        while from < pushes.len() {
+            let outcomes = &self.cells.outcome[from..];
+            let equal = outcomes.iter().take_while(|other| **other == outcomes[0]);
+            let to = from + equal.count();
+            if self.boundary.is_one_verdict(pushes[from], pushes[to - 1]) {
+                self.write_run(from..to);
+            } else {
+                (from..to).for_each(|column| self.write_run(column..column + 1));
             }
             from = to;
         }
         let doubtful = std::mem::take(&mut self.doubtful);
         if !doubtful.is_empty() {
-            for (index, cell) in doubt::solve(side, row, &self.boundary, doubtful) {
-                self.contacts.retain(|(other, _)| *other != index);
-                self.points.retain(|(other, _)| *other != index);
-                self.write_run(index, cell.run());
+            doubt::solve(side, row, &self.boundary, &doubtful, self.cells);
+            for column in doubtful {
+                self.contacts.retain(|other| *other != column);
+                self.strained.retain(|other| *other != column);
+                self.write_run(column..column + 1);
             }
-            self.contacts.sort_unstable_by_key(|(index, _)| *index);
+            self.contacts.sort_unstable();
         }
-        if !self.points.is_empty() {
-            let points = self.points.iter().map(|(_, point)| *point);
-            let strains = side.peak_strains(points);
-            for ((index, _), strain) in self.points.iter().zip(strains) {
-                self.into.peak_strain[columns[*index].index] = strain;
+        if !self.strained.is_empty() {
+            let points = self
+                .strained
+                .iter()
+                .map(|column| self.cells.points[*column]);
+            for (column, strain) in self.strained.iter().zip(side.peak_strains(points)) {
+                let run = *column..column + 1;
+                side.columns.write(self.into.peak_strain, &run, |_| strain);
             }
         }
         // Without a push from first touch there is no history.
-        let end = self.boundary.detachment().map(|span| span.to);
-        let end = end.filter(|end| side.has_friction() && *end > TIE)?;
+        let end_push = self.boundary.detachment().map(|span| span.to);
+        let end_push = end_push.filter(|end| side.has_friction() && *end > TIE)?;
         Some(FrictionRow {
             row,
-            end,
+            end_push,
             contacts: self.contacts,
         })
     }
 
-    /// Writes a run of cells with one verdict. Its first cell is in the column `from` of the side. Keeps the cells in doubt and, with friction,
-    /// the cells in contact.
-    fn write_run(&mut self, from: usize, cells: CellRun) {
-        let columns: &SideColumns = &self.side.columns;
-        let run = from..from + cells.steps.len();
-        let ours = &columns.columns[run.clone()];
-        let push = ours[0].push.abs();
+    /// Writes a run of cells with one outcome and one verdict, given by the columns of the side. Keeps the cells in doubt and, with friction, the
+    /// cells in contact.
+    fn write_run(&mut self, run: Range<usize>) {
+        let (columns, cells): (&SideColumns, &RowCells) = (&self.side.columns, self.cells);
+        let pushes = &columns.pushes[run.clone()];
+        let push = pushes[0];
         let span = self.boundary.span(push);
-        let status = status(cells.outcome, span.is_some());
-        let (regime, status) = self.boundary.classify(push, status);
-        let (place, into) = (columns.span(&run), &mut self.into);
+        let (regime, status) = self.boundary.classify(push, cells.outcome[run.start]);
+        let (place, into) = (columns.in_map(&run), &mut self.into);
         let clear = |row: &mut [f32]| {
             if let Some(values) = row.get_mut(place.clone()) {
                 values.fill(f32::NAN);
@@ -150,16 +142,20 @@ impl RowWriter<'_> {
         };
         into.regime[place.clone()].fill(regime.code());
         into.status[place.clone()].fill(status.code());
-        columns.write(into.newton_steps, &run, |i| cells.steps[i]);
+        let steps = &cells.steps[run.clone()];
+        columns.write(into.newton_steps, &run, |i| steps[i]);
         let is_unresolved = regime == Regime::Unresolved;
         let span = span.filter(|_| matches!(regime, Regime::Contact | Regime::Unreachable));
         match span.is_some() || is_unresolved {
-            true => columns.write(into.residual, &run, |i| cells.residual[i]),
+            true => {
+                let residuals = &cells.residual[run.clone()];
+                columns.write(into.residual, &run, |i| residuals[i]);
+            }
             false => clear(into.residual),
         }
         match span {
             Some(span) => {
-                let margin = |i: usize| span.margin_deg(ours[i].push.abs());
+                let margin = |i: usize| span.margin_deg(pushes[i]);
                 columns.write(into.margin_deg, &run, margin);
                 let derivatives = self.side.push_derivatives.get(self.row);
                 for (parameter, by) in derivatives.into_iter().flatten() {
@@ -171,13 +167,12 @@ impl RowWriter<'_> {
                     };
                     columns.write(into.push_derivatives[*parameter as usize], &run, |_| by);
                 }
-                for (channel, values) in into.state.iter_mut().zip(cells.values) {
+                for (channel, values) in into.state.iter_mut().zip(&cells.values) {
+                    let values = values.get(run.clone()).unwrap_or_default();
                     columns.write(channel, &run, |i| values[i]);
                 }
                 if !into.peak_strain.is_empty() {
-                    let points = run.clone().zip(cells.points);
-                    self.points
-                        .extend(points.map(|(index, point)| (index, *point)));
+                    self.strained.extend(run.clone());
                 }
             }
             None => {
@@ -190,14 +185,10 @@ impl RowWriter<'_> {
         // A run of several cells does not begin at first touch.
         let is_touch = push <= TIE && self.boundary.detachment().is_some();
         if is_unresolved || is_touch && regime != Regime::Contact {
-            let cells = run.clone().map(|index| (index, cells.get(index - from)));
-            self.doubtful.extend(cells);
+            self.doubtful.extend(run.clone());
         }
         if self.side.has_friction() && regime == Regime::Contact {
-            let contacts = run
-                .zip(ours)
-                .map(|(index, column)| (index, column.push.abs()));
-            self.contacts.extend(contacts);
+            self.contacts.extend(run);
         }
     }
 }
@@ -206,6 +197,7 @@ impl RowWriter<'_> {
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+    use crate::classify::Outcome;
     use crate::engine::Cpu;
     use crate::plan::Channels;
     use crate::scene::Scene;
@@ -220,30 +212,24 @@ mod tests {
         let scene = Scene::parse(include_str!("../../scenes/cone.toml"), "cone.toml").unwrap();
         let (method, swept) = (Method::fine(), scene.first_whisker());
         let push_angle_deg: Vec<f64> = (1..60).map(f64::from).collect();
-        let columns = SideColumns::new(&push_angle_deg, Side::Cb, 0);
-        let pushes: Arc<[f64]> = columns.magnitudes.clone().into();
+        let columns = SideColumns::new(&push_angle_deg, Side::Cb);
         let sheet = Sheet::new(method, &swept.rod(Side::Cb), Side::Cb, &[0.7]);
         let side = WhiskerSide::new(Arc::new(columns), swept.whisker.units(), sheet);
-        let batch = RowBatch::new(method, [side].into(), pushes, [(0, 0)]);
-        let regimes = |cells: &Cells| {
+        let batch = RowBatch::new(method, [side].into(), [(0, 0)]);
+        let regimes = |cells: &mut Cells| {
             let mut panel = Panel::unwritten(cells.len(), Channels::STANDARD);
-            fill(
-                &batch,
-                cells,
-                1,
-                [cells.len(), 0],
-                std::slice::from_mut(&mut panel),
-            );
+            let size = [cells.len(), 0];
+            fill(&batch, cells, 1, size, std::slice::from_mut(&mut panel));
             panel.regime
         };
         let mut cells = Cpu::default().solve(&batch);
-        let sound = regimes(&cells);
+        let sound = regimes(&mut cells);
         let [first, last] = [sound[0], sound[sound.len() - 1]];
         assert_eq!(
             [first, last],
             [Regime::Contact, Regime::SlipOff].map(Regime::code)
         );
         cells.outcome.fill(Outcome::Solved);
-        assert_eq!(regimes(&cells), sound);
+        assert_eq!(regimes(&mut cells), sound);
     }
 }

@@ -7,22 +7,9 @@ use crate::sensitivity::of_rows;
 use crate::sheet::Sheet;
 use rayon::prelude::*;
 use std::sync::Arc;
-use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::batch::Method;
 
-/// Returns the columns of each of `sides`, `[side]`, and the signed push angles of all of them, in radians.
-pub fn side_columns(push_angle_deg: &[f64], sides: &[Side]) -> (Vec<Arc<SideColumns>>, Arc<[f64]>) {
-    let mut pushes: Vec<f64> = Vec::new();
-    let columns = sides.iter().map(|side| {
-        // A row has fewer columns than `u32` can count.
-        let side = SideColumns::new(push_angle_deg, *side, pushes.len() as u32);
-        pushes.extend(side.columns.iter().map(|column| column.push));
-        Arc::new(side)
-    });
-    (columns.collect(), pushes.into())
-}
-
-/// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the channels of the plan. If an engine evaluates
+/// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the derivatives of the plan. If an engine evaluates
 /// rows, each side gets a net whose rows have at most `row_residual`, in whisker lengths.
 pub fn whisker_sides(
     scene: &Scene,

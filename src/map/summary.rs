@@ -1,9 +1,9 @@
 //! Counts and times of a run.
 
-use super::stages::StageTimes;
+use super::times::StageTimes;
 use super::{Panel, Stage};
-use crate::classify::{Regime, Status};
-use crate::engine::{EngineDescription, EngineError, Outcome};
+use crate::classify::{Outcome, Regime, Status};
+use crate::engine::{EngineDescription, EngineError};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -128,7 +128,7 @@ const COUNT: usize = CHANNELS.len() + Parameter::ALL.len();
 /// assert!("force".parse::<Channels>().is_err());
 /// # Ok::<(), String>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Channels([bool; COUNT]);
 
 impl Channels {

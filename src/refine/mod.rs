@@ -6,9 +6,9 @@
 mod near_fold;
 mod newton;
 
+use crate::classify::Outcome;
 use crate::sheet::{Guess, Sheet};
 use glam::DVec2;
-use near_fold::FoldVerdict;
 use newton::newton;
 use rayon::prelude::*;
 use whiskmap_mechanics::shooting::FullState;
@@ -31,23 +31,10 @@ const STEPS_NEAR_FOLD: u32 = 30;
 pub struct CellTarget {
     /// Index of the target's rod and sheet among those of the call.
     pub rod: u32,
-    /// Guess for the cell's contact coordinate `tau`, dimensionless.
-    pub tau: f64,
-    /// Guess for the cell's signed load `f/rho^2`, dimensionless.
-    pub load: f64,
+    /// Start of Newton's method for the cell.
+    pub guess: Guess,
     /// Target centre of the pole for the cell in the frame of the base, in whisker lengths.
     pub pole: DVec2,
-}
-
-impl CellTarget {
-    /// Returns the start of Newton's method for the cell.
-    #[must_use]
-    pub const fn guess(&self) -> Guess {
-        Guess {
-            tau: self.tau,
-            load: self.load,
-        }
-    }
 }
 
 /// Refined cell: its last state and the outcome.
@@ -58,7 +45,7 @@ pub struct Refined {
     /// Number of Newton steps taken for the cell.
     pub steps: u32,
     /// Outcome of the refinement of the cell.
-    pub outcome: RefineOutcome,
+    pub outcome: Outcome,
 }
 
 impl Default for Refined {
@@ -72,7 +59,7 @@ impl Default for Refined {
                 residual: f64::INFINITY,
             },
             steps: 0,
-            outcome: RefineOutcome::NotConverged,
+            outcome: Outcome::NotConverged,
         }
     }
 }
@@ -96,19 +83,6 @@ impl ContactState {
     pub fn is_at_tip(&self, sheet: &Sheet) -> bool {
         sheet.is_at_tip(self.tau, self.residual)
     }
-}
-
-/// Outcome of the refinement of a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RefineOutcome {
-    /// The refinement found a stable state.
-    Solved,
-    /// The refinement found a stable state of a longer whisker: the contact lies beyond the tip.
-    BeyondTip,
-    /// The cell has no state: the target direction lies beyond the fold.
-    BeyondFold,
-    /// The refinement found neither a state nor a proof that there is none.
-    NotConverged,
 }
 
 /// Refines the guesses of `targets` by `method`, each on the sheet `sheets[target.rod]`. Returns one refined cell for each target,
@@ -135,19 +109,20 @@ pub fn refine_into(
 }
 
 fn refine_chunk(method: Method, sheets: &[&Sheet], targets: &[CellTarget], cells: &mut [Refined]) {
-    let starts = targets.iter().map(|at| DVec2::new(at.tau, at.load));
+    let starts = targets
+        .iter()
+        .map(|at| DVec2::new(at.guess.tau, at.guess.load));
     let all: Vec<(usize, DVec2)> = starts.enumerate().collect();
     newton(method, sheets, targets, &all, STEPS, cells);
-    let failed = (0..cells.len()).filter(|&i| cells[i].outcome == RefineOutcome::NotConverged);
+    let failed = (0..cells.len()).filter(|&i| cells[i].outcome == Outcome::NotConverged);
     let failed: Vec<usize> = failed.collect();
     let failed_targets: Vec<CellTarget> = failed.iter().map(|&i| targets[i]).collect();
-    let verdicts = near_fold::decide(method, sheets, &failed_targets);
+    let starts = near_fold::starts(method, sheets, &failed_targets);
     let mut again = Vec::new();
-    for (&i, verdict) in failed.iter().zip(verdicts) {
-        match verdict {
-            FoldVerdict::Beyond => cells[i].outcome = RefineOutcome::BeyondFold,
-            FoldVerdict::Start(start) => again.push((i, start)),
-            FoldVerdict::Unknown => {}
+    for (&i, start) in failed.iter().zip(starts) {
+        match start {
+            Ok(start) => again.push((i, start)),
+            Err(outcome) => cells[i].outcome = outcome,
         }
     }
     let steps_before: Vec<u32> = again.iter().map(|(i, _)| cells[*i].steps).collect();
@@ -157,39 +132,31 @@ fn refine_chunk(method: Method, sheets: &[&Sheet], targets: &[CellTarget], cells
     }
 }
 
-/// Returns the targets of the cells of `sheet` at those of the signed push angles, in degrees, that are on its side, `[target]`. They are
-/// sorted by row, then by magnitude of the push angle; `rod` is the index of the sheet's rod.
+/// Returns the stable states of `sheet` with their targets, `[state]`, for those of the signed push angles, in degrees, that are on its side. They
+/// are sorted by row, then by magnitude of the push angle.
 #[must_use]
-pub fn cell_targets(sheet: &Sheet, rod: u32, pushes_deg: &[f64]) -> Vec<CellTarget> {
+pub fn states(
+    method: Method,
+    sheet: &Sheet,
+    signed_pushes_deg: &[f64],
+) -> Vec<(CellTarget, ContactState)> {
     let sign = sheet.side.sign();
-    let pushes = pushes_deg.iter().map(|push| push * sign);
+    let pushes = signed_pushes_deg.iter().map(|push| push * sign);
     let mut pushes: Vec<f64> = pushes.filter(|p| *p >= 0.0).map(f64::to_radians).collect();
     pushes.sort_by(f64::total_cmp);
     let mut targets = Vec::new();
     for (row, place) in sheet.rows.iter().enumerate() {
         let guesses = sheet.guesses(row, &pushes);
-        for (guess, push) in guesses.iter().zip(&pushes) {
+        for (guess, push) in guesses.into_iter().zip(&pushes) {
             targets.extend(guess.map(|guess| CellTarget {
-                rod,
-                tau: guess.tau,
-                load: guess.load,
+                rod: 0,
+                guess,
                 pole: place.pole(sign * push),
             }));
         }
     }
-    targets
-}
-
-/// Returns the stable states of `sheet` with their targets, `[state]`, for those of the signed push angles, in degrees, that are on its side.
-#[must_use]
-pub fn states(
-    method: Method,
-    sheet: &Sheet,
-    pushes_deg: &[f64],
-) -> Vec<(CellTarget, ContactState)> {
-    let targets = cell_targets(sheet, 0, pushes_deg);
     let cells = refine(method, &[sheet], &targets);
     let solved = targets.into_iter().zip(cells);
-    let solved = solved.filter(|(_, cell)| cell.outcome == RefineOutcome::Solved);
+    let solved = solved.filter(|(_, cell)| cell.outcome.is_solved());
     solved.map(|(target, cell)| (target, cell.state)).collect()
 }

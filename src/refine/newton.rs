@@ -1,6 +1,7 @@
 //! Newton's method for many cells at once, and its stopping criteria.
 
-use super::{CellTarget, ContactState, GOAL, RefineOutcome, Refined, TOLERANCE};
+use super::{CellTarget, ContactState, GOAL, Refined, TOLERANCE};
+use crate::classify::Outcome;
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::sheet::{Guess, Sheet};
 use glam::DVec2;
@@ -106,8 +107,8 @@ pub fn newton(
             state,
             steps: iterate.steps,
             outcome: match iterate.outcome {
-                NewtonOutcome::Converged => verdict(problem.sheet, targets[*i].guess(), &state),
-                _ => RefineOutcome::NotConverged,
+                NewtonOutcome::Converged => verdict(problem.sheet, targets[*i].guess, &state),
+                _ => Outcome::NotConverged,
             },
         };
     }
@@ -156,14 +157,16 @@ fn is_near(guess: Guess, state: &ContactState, s: f64) -> bool {
 
 /// Returns the outcome of a converged state of a cell. The state counts only on the sheet, and only near its guess where the sheet is
 /// followed by continuation.
-pub fn verdict(sheet: &Sheet, guess: Guess, state: &ContactState) -> RefineOutcome {
+pub fn verdict(sheet: &Sheet, guess: Guess, state: &ContactState) -> Outcome {
     let s = arclength(&sheet.rod, state.tau);
     let is_elsewhere = sheet.is_continued() && !is_near(guess, state, s);
     if is_elsewhere || !sheet.is_stable(state.tau, state.load, &state.full.map) {
-        RefineOutcome::NotConverged
-    } else if state.tau > sheet.tip[0] && !state.is_at_tip(sheet) {
-        RefineOutcome::BeyondTip
+        Outcome::NotConverged
+    } else if state.is_at_tip(sheet) {
+        Outcome::AtTip
+    } else if state.tau > sheet.tip[0] {
+        Outcome::BeyondTip
     } else {
-        RefineOutcome::Solved
+        Outcome::Solved
     }
 }

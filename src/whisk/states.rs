@@ -2,7 +2,7 @@
 
 use super::WhiskEventKind;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
-use crate::refine::{CellTarget, RefineOutcome, refine};
+use crate::refine::{CellTarget, refine};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
 use crate::trace::{DetachmentKind, RowEnd, StableBranch, snaps_deg};
@@ -213,8 +213,7 @@ impl SideStates {
                 places.push(*i);
                 targets.push(CellTarget {
                     rod: 0,
-                    tau: guess.tau,
-                    load: guess.load,
+                    guess,
                     pole: self.sheet.rows[row].pole(sign * of(*i).1),
                 });
             }
@@ -222,7 +221,7 @@ impl SideStates {
         let mut states = vec![None; contacts.len()];
         let found = refine(Method::new(Resolution::FINE), &[&self.sheet], &targets);
         for (i, cell) in places.into_iter().zip(found) {
-            if cell.outcome == RefineOutcome::Solved {
+            if cell.outcome.is_solved() {
                 let (state, (row, push)) = (cell.state, of(i));
                 let touch = self.sheet.rows[row].touch;
                 let reading = self.reader.read(state.tau, &state.full, touch, sign * push);

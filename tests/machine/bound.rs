@@ -4,7 +4,7 @@ use crate::cells::{RandomRows, places, solve};
 use crate::compute::{open, open_with};
 use crate::kinds::rows_of_every_kind;
 use crate::random_rods::USUAL;
-use whiskmap::engine::Outcome;
+use whiskmap::classify::Outcome;
 use whiskmap::engine::gpu::{Gpu, Precision, shaders};
 use whiskmap::mechanics::shooting::ShootingMap;
 use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition};

@@ -4,8 +4,9 @@ use crate::cells::{RandomRows, places, solve};
 use crate::compute::open;
 use crate::random_rods::USUAL;
 use std::sync::Arc;
+use whiskmap::classify::Outcome;
 use whiskmap::engine::gpu::{Precision, adapters, preferred};
-use whiskmap::engine::{Cells, Cpu, Engine, Outcome, RowExpansion};
+use whiskmap::engine::{Cells, Cpu, Engine, RowExpansion};
 use whiskmap::mechanics::shooting::ShootingMap;
 use whiskmap::mechanics::shooting::batch::{Batch, InitialCondition};
 use whiskmap::plan::{Channels, STATE_CHANNELS};
@@ -213,7 +214,7 @@ fn a_nan_hurts_only_the_cells_of_its_row(precision: Precision) {
         spoil(spoilt.expansions[number].as_mut().unwrap());
         let cells = bits(&solve(&mut gpu, &spoilt));
         let row = &batch.rows[number];
-        let cells_of_row = row.first..row.first + row.count();
+        let cells_of_row = row.cells();
         for (index, (cell, sound)) in cells.iter().zip(&sound).enumerate() {
             match cells_of_row.contains(&index) {
                 true => assert!(cell.1.is_none(), "{what}"),

@@ -6,8 +6,9 @@ use crate::kinds::rows_of_every_kind;
 use crate::random_rods::Random;
 use crate::shipped;
 use std::sync::Arc;
+use whiskmap::classify::Outcome;
 use whiskmap::classify::Status;
-use whiskmap::engine::{Cpu, Outcome, SideColumns, Spectral, WhiskerSide};
+use whiskmap::engine::{Cpu, SideColumns, Spectral, WhiskerSide};
 use whiskmap::map::{EngineCells, Panel};
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::mechanics::shooting::ShootingMap;
@@ -68,8 +69,7 @@ fn states_and_values_are_within_their_bounds() {
                 }
             }
             solved += found.len();
-            let is_solved =
-                |outcome: &&Outcome| matches!(outcome, Outcome::Solved | Outcome::AtTip);
+            let is_solved = |outcome: &&Outcome| outcome.is_solved();
             all += wanted.outcome.iter().filter(is_solved).count();
         }
         // Measured 0.68: sheets that are followed by continuation have no net, and most of the random spirals and traced shapes are.
@@ -102,7 +102,7 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
         for side in Side::BOTH {
             let rest = Rest::new(&swept.rod(side));
             let reach = rest.at_arclength(1.0).0.length();
-            let columns = Arc::new(SideColumns::new(&grid.push_angle_deg, side, 0));
+            let columns = Arc::new(SideColumns::new(&grid.push_angle_deg, side));
             let sheet = Sheet::new(plan.method, &swept.rod(side), side, &distances);
             let side = WhiskerSide::new(columns, swept.whisker.units(), sheet);
             for (row, distance) in distances.iter().enumerate() {

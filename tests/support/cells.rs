@@ -32,7 +32,6 @@ pub struct RandomRows {
     /// Rows of each whisker.
     rows: usize,
     sides: Arc<[WhiskerSide]>,
-    pushes: Arc<[f64]>,
 }
 
 impl RandomRows {
@@ -59,12 +58,7 @@ impl RandomRows {
         let magnitudes: Vec<f64> = magnitudes.collect();
         let backward = magnitudes.iter().rev().map(|push| -push);
         let push_angle_deg: Vec<f64> = backward.chain(magnitudes.iter().copied()).collect();
-        let mut pushes = Vec::new();
-        let columns = Side::BOTH.map(|side| {
-            let columns = SideColumns::new(&push_angle_deg, side, pushes.len() as u32);
-            pushes.extend(columns.columns.iter().map(|column| column.push));
-            Arc::new(columns)
-        });
+        let columns = Side::BOTH.map(|side| Arc::new(SideColumns::new(&push_angle_deg, side)));
         let sides = whiskers.par_iter().map(|(rod, distances)| {
             let is_ours = |columns: &&Arc<SideColumns>| columns.side.sign() == rod.pole.signum();
             let columns = columns.iter().find(is_ours).unwrap();
@@ -76,7 +70,6 @@ impl RandomRows {
             method,
             rows,
             sides: sides.collect::<Vec<_>>().into(),
-            pushes: pushes.into(),
         }
     }
 
@@ -88,8 +81,7 @@ impl RandomRows {
     /// Some of the rows, with expansions for `engine`, values and points.
     pub fn part(&self, engine: &dyn Engine, rows: Range<usize>) -> RowBatch {
         let rows = rows.map(|i| (i / self.rows, i % self.rows));
-        let (sides, pushes) = (Arc::clone(&self.sides), Arc::clone(&self.pushes));
-        let mut batch = RowBatch::new(self.method, sides, pushes, rows);
+        let mut batch = RowBatch::new(self.method, Arc::clone(&self.sides), rows);
         batch.channels = Channels::STANDARD.with("peak_strain");
         batch.with_expansions(engine.row_residual())
     }
@@ -106,11 +98,11 @@ pub fn solve(engine: &mut dyn Engine, batch: &RowBatch) -> Cells {
     engine.collect().unwrap()
 }
 
-/// For each cell of a batch of whole rows: its side, its row, and its push angle in radians.
+/// For each cell of a batch of whole rows: its side, its row, and its signed push angle in radians.
 pub fn places(batch: &RowBatch) -> Vec<(usize, usize, f64)> {
     let places = batch.rows.iter().flat_map(|row| {
-        let columns = batch.sides[row.side].columns.columns.iter();
-        columns.map(|column| (row.side, row.row, column.push))
+        let columns = &batch.sides[row.side].columns;
+        (0..columns.len()).map(|column| (row.side, row.row, columns.signed_push(column)))
     });
     places.collect()
 }

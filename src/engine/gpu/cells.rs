@@ -1,9 +1,10 @@
 //! Cells as the shaders write them: one plane for each number of a cell.
 
-use super::packing::CellsOfRow;
-use crate::engine::{Cells, Outcome, RowBatch};
-use crate::plan::STATE_CHANNELS;
+use crate::classify::Outcome;
+use crate::engine::{Cells, RowBatch};
+use crate::plan::Channels;
 use glam::DVec2;
+use std::ops::Range;
 
 /// Outcomes by the negative number that the shaders write in place of a residual. A kernel that writes nothing leaves zeros, which are no
 /// solution.
@@ -12,34 +13,16 @@ pub const OUTCOMES: [(&str, f32, Outcome); 2] = [
     ("MISSED", -2.0, Outcome::Missed),
 ];
 
-/// Planes that a batch asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Planes {
-    /// Channels with a plane, in the order of [`STATE_CHANNELS`]: `[channel]`.
-    pub channels: [bool; STATE_CHANNELS.len()],
-    /// True for contact and load.
-    pub has_points: bool,
+/// Returns the number of planes of a map with these `channels`: residuals, values of channels of a state, and for strains contact and load as two
+/// numbers each.
+fn planes(channels: Channels) -> usize {
+    let states = channels.states().into_iter().filter(|is_wanted| *is_wanted);
+    1 + states.count() + if channels.has_strain() { 4 } else { 0 }
 }
 
-impl Planes {
-    /// Returns the planes that `batch` asks for.
-    pub fn of(batch: &RowBatch) -> Self {
-        Self {
-            channels: batch.channels.states(),
-            has_points: batch.channels.has_strain(),
-        }
-    }
-
-    /// Returns the number of planes: residuals, channel values, and contact and load as two numbers each.
-    pub fn count(self) -> usize {
-        let channels = self.channels.iter().filter(|is_wanted| **is_wanted);
-        1 + channels.count() + if self.has_points { 4 } else { 0 }
-    }
-
-    /// Returns the bytes of a cell in all planes.
-    pub fn cell_bytes(self) -> usize {
-        self.count() * size_of::<f32>()
-    }
+/// Returns the bytes of a cell in all planes of a map with these `channels`.
+pub fn cell_bytes(channels: Channels) -> usize {
+    planes(channels) * size_of::<f32>()
 }
 
 /// The outcome of a cell with this `residual`; a cell with a number that is not finite is no solution.
@@ -54,12 +37,10 @@ fn outcome(residual: f32, is_finite: bool) -> Outcome {
 }
 
 /// Writes the cells of some `runs` of `batch`, whose planes are in `bytes`, into `cells`.
-pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[CellsOfRow], cells: &mut Cells) {
-    let planes = Planes::of(batch);
-    let size = bytes.len() / planes.count();
+pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[Range<usize>], cells: &mut Cells) {
+    let size = bytes.len() / planes(batch.channels);
     let mut from = 0;
-    for run in runs {
-        let place = run.cells.clone();
+    for place in runs {
         let to = from + place.len() * size_of::<f32>();
         let mut parts = bytes
             .chunks_exact(size.max(1))
@@ -90,7 +71,7 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[CellsOfRow], cells: &m
                 is_finite &= point.is_finite();
             }
         }
-        for index in place {
+        for index in place.clone() {
             let residual = cells.residual[index];
             let values = cells.values.iter().filter_map(|column| column.get(index));
             let is_finite = is_finite

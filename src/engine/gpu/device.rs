@@ -154,33 +154,6 @@ impl Device {
         Ok(kept.insert(buffer))
     }
 
-    /// Returns `kept` with at least `size` bytes each: the buffer of `what` that a shader writes, and the buffer in which the CPU reads it.
-    pub fn results<'a>(
-        &self,
-        what: &'static str,
-        kept: [&'a mut Option<wgpu::Buffer>; 2],
-        size: u64,
-    ) -> Result<[&'a wgpu::Buffer; 2], EngineError> {
-        let [written, readback] = kept;
-        let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
-        let written = self.grown(what, written, size, usage)?;
-        let usage = Usage::MAP_READ | Usage::COPY_DST;
-        Ok([written, self.grown("readback", readback, size, usage)?])
-    }
-
-    /// Uploads `bytes` of `what` to `kept`, which is replaced if it is too small.
-    pub fn upload<'a>(
-        &self,
-        what: &'static str,
-        kept: &'a mut Option<wgpu::Buffer>,
-        bytes: &[u8],
-    ) -> Result<&'a wgpu::Buffer, EngineError> {
-        let usage = Usage::STORAGE | Usage::COPY_DST;
-        let buffer = self.grown(what, kept, bytes.len() as u64, usage)?;
-        self.queue.write_buffer(buffer, 0, bytes);
-        Ok(buffer)
-    }
-
     /// Compiles the entry point `entry` of `shader` with the values of its `constants`.
     pub fn pipeline(
         &self,

@@ -1,12 +1,13 @@
-//! Flights: submissions on the device, in buffers that are used again.
+//! Flights: submissions of cells on the device.
 
 use super::EngineError;
-use super::cells::{Planes, read_cells};
+use super::cells::{cell_bytes, read_cells};
 use super::device::Device;
-use super::dispatch::{Dispatch, binding};
-use super::packing::{CellsOfRow, Packed};
+use super::packing::Packed;
 use super::pending::PendingBatch;
-use super::stamps::Stamps;
+use super::submission::Buffers;
+use crate::plan::Channels;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// Wall times of the stages of submissions, each summed over all submissions.
@@ -22,24 +23,15 @@ pub struct Times {
     pub readback: Duration,
 }
 
-/// Buffers of a submission on the device, which grow when they must.
-#[derive(Debug, Default)]
-pub struct Buffers {
-    stamps: Option<Stamps>,
-    heads: Option<wgpu::Buffer>,
-    rows: Option<wgpu::Buffer>,
-    terms: Option<wgpu::Buffer>,
-    cells: Option<wgpu::Buffer>,
-    readback: Option<wgpu::Buffer>,
-}
-
 /// Flight: cells that were submitted to the device and whose results are not read yet, with their buffers.
 #[derive(Debug)]
 pub struct Flight {
     /// Number of cells of the flight.
     pub cells: usize,
-    /// Places of the flight in the cells of the batch: `[run]`.
-    runs: Vec<CellsOfRow>,
+    /// True if the flight has the last cells of its batch.
+    pub is_last: bool,
+    /// Runs of the flight's cells as ranges of the cells of the batch: `[run]`.
+    runs: Vec<Range<usize>>,
     /// Time at which the flight was submitted.
     pub submitted: Instant,
     index: wgpu::SubmissionIndex,
@@ -47,49 +39,28 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// Submits the packed `rows` of a batch with these `planes`, in the `buffers` of a finished flight, and returns the flight. There is a cell at
-    /// least. If `is_timed`, the device's clock times it.
+    /// Submits the packed rows of a batch with these `channels`, in the `buffers` of a finished flight, and returns the flight. There is a cell
+    /// at least.
     pub fn submit(
         device: &Device,
         pipeline: &wgpu::ComputePipeline,
-        pushes: &wgpu::Buffer,
-        is_timed: bool,
+        packed: Packed,
+        channels: Channels,
         mut buffers: Buffers,
-        (packed, planes): (Packed, Planes),
+        is_last: bool,
     ) -> Result<Self, EngineError> {
-        if is_timed && buffers.stamps.is_none() {
-            buffers.stamps = Stamps::new(device)?;
-        }
-        let bytes = (packed.cells * planes.cell_bytes()) as u64;
-        let results = [&mut buffers.cells, &mut buffers.readback];
-        let [cells, readback] = device.results("cells", results, bytes)?;
-        let heads = bytemuck::cast_slice(&packed.heads);
-        let heads_size = heads.len() as u64;
-        let heads = device.upload("runs", &mut buffers.heads, heads)?;
-        let rows = device.upload("rows", &mut buffers.rows, &packed.rows)?;
-        let terms = device.upload("coefficients", &mut buffers.terms, &packed.terms)?;
-        // The shader counts runs and cells by the sizes of their buffers.
-        let entries = [
-            binding(0, heads, Some(heads_size)),
-            binding(1, rows, None),
-            binding(2, terms, None),
-            binding(3, pushes, None),
-            binding(4, cells, Some(bytes)),
+        let inputs: [&[u8]; 4] = [
+            bytemuck::cast_slice(&packed.heads),
+            &packed.rows,
+            &packed.terms,
+            &packed.pushes,
         ];
-        let dispatch = Dispatch {
-            label: "cells",
-            pipeline,
-            entries: &entries,
-            // The pace keeps their groups below what `u32` can count.
-            invocations: packed.cells,
-            results: [cells, readback],
-            size: bytes,
-            stamps: buffers.stamps.as_ref(),
-        };
         let submitted = Instant::now();
-        let index = dispatch.submit(device)?;
+        let sizes = [packed.cells, cell_bytes(channels)];
+        let index = buffers.submit(device, pipeline, &inputs, "cells", sizes)?;
         Ok(Self {
             cells: packed.cells,
+            is_last,
             runs: packed.runs,
             submitted,
             index,
@@ -108,17 +79,12 @@ impl Flight {
         device.wait(self.index)?;
         let arrived = Instant::now();
         times.waiting += arrived - begun;
-        if let Some(readback) = &self.buffers.readback {
-            let size = (self.cells * Planes::of(&pending.batch).cell_bytes()) as u64;
-            Device::read(readback, size, |bytes| {
-                read_cells(bytes, &pending.batch, &self.runs, &mut pending.cells);
-            })?;
-        }
+        self.buffers.read(|bytes| {
+            read_cells(bytes, &pending.batch, &self.runs, &mut pending.cells);
+        })?;
         pending.in_flight -= 1;
         times.readback += arrived.elapsed();
-        if let Some(stamps) = &self.buffers.stamps {
-            times.dispatch += stamps.read(device)?;
-        }
+        times.dispatch += self.buffers.run_time(device)?;
         Ok(self.buffers)
     }
 }

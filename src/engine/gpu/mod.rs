@@ -1,7 +1,7 @@
 //! The GPU engine: WGSL compute shaders through wgpu. One solves cells from the expansions of rows, one per invocation; another integrates
 //! trajectories ([`Gpu::shoot`]).
 //!
-//! The shaders are in `f32` or `f64` by a type alias ([`shaders`]). Each choice of planes has a pipeline of its own, made from `override`
+//! The shaders are in `f32` or `f64` by a type alias ([`shaders`]). Each selection of channels has a pipeline, made from `override`
 //! constants. Work is sent in submissions short enough for driver watchdogs, at most two in flight. A device that
 //! fails is an error.
 //!
@@ -10,7 +10,6 @@
 mod adapters;
 mod cells;
 mod device;
-mod dispatch;
 mod flight;
 mod guard;
 mod missing;
@@ -21,19 +20,20 @@ mod precision;
 pub mod shaders;
 mod shoot;
 mod stamps;
+mod submission;
 
 pub use super::Precision;
 pub use adapters::{AdapterReport, adapters, named, preferred};
-pub use cells::Planes;
 pub use flight::Times;
 pub use guard::DRIVER_CALL;
 pub use missing::missing;
-use shoot::ShootBuffers;
 pub use shoot::shoots;
 
 use super::{Cells, Engine, EngineDescription, EngineError, Nodes, RowBatch};
+use crate::plan::Channels;
+use cells::cell_bytes;
 use device::Device;
-use flight::{Buffers, Flight};
+use flight::Flight;
 use pace::Pace;
 use packing::{Packed, WORKGROUP};
 use pending::PendingBatch;
@@ -41,6 +41,7 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
+use submission::Buffers;
 use whiskmap_mechanics::rod::Effects;
 use whiskmap_mechanics::shooting::PlainState;
 
@@ -55,18 +56,17 @@ pub struct Gpu {
     /// Wall times of the stages of all submissions of the engine.
     pub times: Times,
     device: Device,
-    pushes: Option<wgpu::Buffer>,
     /// Buffers that no flight uses.
     buffers: Vec<Buffers>,
-    /// For each choice of planes, the compiled shader and its pace.
-    pipelines: HashMap<Planes, (wgpu::ComputePipeline, Pace)>,
+    /// For each selection of channels, the compiled shader of cells and its pace.
+    pipelines: HashMap<Channels, (wgpu::ComputePipeline, Pace)>,
     /// For each set of effects, the compiled shader of trajectories.
     shooters: HashMap<Effects, wgpu::ComputePipeline>,
-    shoot_buffers: ShootBuffers,
+    shoot_buffers: Buffers,
     /// The batches submitted and not collected.
     pending: VecDeque<PendingBatch>,
-    /// The submissions in flight, in order, each with whether it has the last cells of its batch.
-    flights: VecDeque<(Flight, bool)>,
+    /// The flights, in order.
+    flights: VecDeque<Flight>,
     /// Earliest time at which the device may have become idle.
     idle_since: Instant,
     /// The first failure, which all later calls return.
@@ -89,11 +89,10 @@ impl Gpu {
             is_timed: false,
             times: Times::default(),
             device: Device::open(index, precision)?,
-            pushes: None,
             buffers: Vec::new(),
             pipelines: HashMap::new(),
             shooters: HashMap::new(),
-            shoot_buffers: ShootBuffers::default(),
+            shoot_buffers: Buffers::default(),
             pending: VecDeque::new(),
             flights: VecDeque::new(),
             idle_since: Instant::now(),
@@ -126,16 +125,14 @@ impl Gpu {
         {
             let begun = Instant::now();
             let batch = Arc::clone(&pending.batch);
-            let pushes = packing::pushes(precision, &batch.pushes);
-            let pushes = device.upload("push angles", &mut self.pushes, &pushes)?;
-            let planes = Planes::of(&batch);
-            let (pipeline, pace) = match self.pipelines.entry(planes) {
+            let channels = batch.channels;
+            let (pipeline, pace) = match self.pipelines.entry(channels) {
                 Entry::Occupied(known) => known.into_mut(),
                 Entry::Vacant(new) => {
-                    let constants = shaders::overrides(planes);
+                    let constants = shaders::overrides(channels);
                     let pipeline = device.pipeline("solve_cells", &self.shader, &constants)?;
                     let groups = device.handle.limits().max_compute_workgroups_per_dimension;
-                    let bytes = planes.cell_bytes();
+                    let bytes = cell_bytes(channels);
                     let pace = Pace::new(device.most_bytes(), bytes, groups, WORKGROUP);
                     new.insert((pipeline, pace))
                 }
@@ -144,11 +141,14 @@ impl Gpu {
             if packed.cells == 0 {
                 continue;
             }
-            let buffers = self.buffers.pop().unwrap_or_default();
-            let part = (packed, planes);
-            let flight = Flight::submit(device, pipeline, pushes, self.is_timed, buffers, part)?;
+            let mut buffers = self.buffers.pop().unwrap_or_default();
+            if self.is_timed {
+                buffers = buffers.timed(device)?;
+            }
+            let is_last = !pending.is_waiting();
+            let flight = Flight::submit(device, pipeline, packed, channels, buffers, is_last)?;
             pending.in_flight += 1;
-            self.flights.push_back((flight, !pending.is_waiting()));
+            self.flights.push_back(flight);
             self.times.upload += begun.elapsed();
         }
         Ok(())
@@ -157,15 +157,16 @@ impl Gpu {
     /// Waits for the oldest submission.
     fn receive(&mut self) -> Result<(), EngineError> {
         let pending = self.pending.iter_mut().find(|batch| batch.in_flight > 0);
-        let (Some(pending), Some((flight, is_last))) = (pending, self.flights.pop_front()) else {
+        let (Some(pending), Some(flight)) = (pending, self.flights.pop_front()) else {
             let lost = "a batch has no submission in flight";
             return Err(EngineError::Device(lost.to_owned()));
         };
-        let (count, started) = (flight.cells, flight.submitted.max(self.idle_since));
+        let (count, is_last) = (flight.cells, flight.is_last);
+        let started = flight.submitted.max(self.idle_since);
         let buffers = flight.finish(&self.device, pending, &mut self.times)?;
         self.buffers.push(buffers);
         self.idle_since = Instant::now();
-        if let Some((_, pace)) = self.pipelines.get_mut(&Planes::of(&pending.batch)) {
+        if let Some((_, pace)) = self.pipelines.get_mut(&pending.batch.channels) {
             pace.learn(count, is_last, self.idle_since - started);
         }
         Ok(())

@@ -1,6 +1,7 @@
 //! Pending batches: a batch on the device is sent in parts, whose cells return in the same order.
 
-use crate::engine::{BatchRow, Cells, Outcome, RowBatch};
+use crate::classify::Outcome;
+use crate::engine::{BatchRow, Cells, RowBatch};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -21,8 +22,8 @@ impl PendingBatch {
         let mut cells = Cells::new(&batch, Outcome::NoRow);
         for (row, expansion) in batch.rows.iter().zip(&batch.expansions) {
             if let Some(expansion) = expansion {
-                let outcomes = &mut cells.outcome[row.first..row.first + row.count()];
-                expansion.write_beyond(row, &batch.sides[row.side].columns.magnitudes, outcomes);
+                let outcomes = &mut cells.outcome[row.cells()];
+                expansion.write_beyond(row, &batch.sides[row.side].columns.pushes, outcomes);
             }
         }
         Self {
@@ -47,7 +48,7 @@ impl PendingBatch {
     pub fn next(&mut self, cells: usize) -> Range<usize> {
         let first = self.sent;
         let rows = &self.batch.rows[first..];
-        let fits = |row: &&BatchRow| row.first + row.count() - rows[0].first <= cells;
+        let fits = |row: &&BatchRow| row.cells().end - rows[0].first_cell <= cells;
         self.sent += rows.iter().take_while(fits).count().max(1);
         first..self.sent
     }

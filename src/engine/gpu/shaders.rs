@@ -1,10 +1,10 @@
 //! Text of the shaders, after constants that Rust writes.
 
 use super::Precision;
-use super::cells::{OUTCOMES, Planes};
+use super::cells::OUTCOMES;
 use super::packing::WORKGROUP;
 use crate::engine::row::FUNCTIONS;
-use crate::plan::STATE_CHANNELS;
+use crate::plan::{Channels, STATE_CHANNELS};
 use whiskmap_mechanics::numerics::inverse::TOGETHER;
 use whiskmap_mechanics::rod::{CURVATURE_TERMS, Effects};
 use whiskmap_mechanics::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
@@ -93,12 +93,12 @@ pub fn cells(precision: Precision) -> String {
     constants(precision) + include_str!("../../../shaders/cells.wgsl")
 }
 
-/// Returns the values of the `override` constants of [`cells`], by name. Each channel that is wanted is a bit.
+/// Returns the values of the `override` constants of [`cells`] for a map with these `channels`, by name. Each channel of a state is a bit.
 #[must_use]
-pub fn overrides(planes: Planes) -> [(&'static str, f64); 2] {
+pub fn overrides(channels: Channels) -> [(&'static str, f64); 2] {
     let bit = |(channel, is_wanted)| u32::from(is_wanted) << channel;
-    let channels: u32 = planes.channels.into_iter().enumerate().map(bit).sum();
-    let values = [channels.into(), u8::from(planes.has_points).into()];
+    let states: u32 = channels.states().into_iter().enumerate().map(bit).sum();
+    let values = [states.into(), u8::from(channels.has_strain()).into()];
     [0, 1].map(|i| (OVERRIDES[i].0, values[i]))
 }
 

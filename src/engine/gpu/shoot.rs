@@ -1,7 +1,5 @@
 //! Trajectories on the device: any list of rods, contacts and loads, thousands at once.
 
-use super::device::Device;
-use super::dispatch::{Dispatch, binding};
 use super::packing::Scalar;
 use super::{EngineError, Gpu, Precision, shaders};
 use bytemuck::{Pod, Zeroable};
@@ -209,7 +207,7 @@ impl Gpu {
             contacts.iter().map(|contact| contact.map(T::of)).collect();
         let mut forces: Vec<T> = Vec::with_capacity(count);
         forces.extend(shots().map(|(_, force)| T::of(force)));
-        let inputs: [&[u8]; INPUTS] = [
+        let inputs: [&[u8]; 5] = [
             bytemuck::cast_slice(&rods),
             bytemuck::cast_slice(&heads),
             bytemuck::cast_slice(&rounded),
@@ -223,8 +221,10 @@ impl Gpu {
                 states[index] = state(conditions[index].rod, force, found.map(Into::into));
             }
         };
-        let buffers = &mut self.shoot_buffers;
-        buffers.run(&self.device, pipeline, inputs, (count, size), read)
+        let (device, buffers) = (&self.device, &mut self.shoot_buffers);
+        let index = buffers.submit(device, pipeline, &inputs, "states", [count, size])?;
+        device.wait(index)?;
+        buffers.read(read)
     }
 }
 
@@ -263,51 +263,6 @@ fn submissions(fans: &[Fan]) -> Vec<Range<usize>> {
         parts.push(from..fans.len());
     }
     parts
-}
-
-/// Number of input buffers of the shader.
-const INPUTS: usize = 5;
-
-/// Buffers of trajectories on the device, which grow when they must.
-#[derive(Debug, Default)]
-pub struct ShootBuffers {
-    inputs: [Option<wgpu::Buffer>; INPUTS],
-    states: Option<wgpu::Buffer>,
-    readback: Option<wgpu::Buffer>,
-}
-
-impl ShootBuffers {
-    /// Runs `pipeline` on `count` invocations with these `inputs`. Calls `read` with the bytes that it writes, `each` for every invocation.
-    fn run(
-        &mut self,
-        device: &Device,
-        pipeline: &wgpu::ComputePipeline,
-        inputs: [&[u8]; INPUTS],
-        (count, each): (usize, usize),
-        read: impl FnOnce(&[u8]),
-    ) -> Result<(), EngineError> {
-        let size = (count * each) as u64;
-        let results = [&mut self.states, &mut self.readback];
-        let [states, readback] = device.results("states", results, size)?;
-        let mut entries = vec![binding(INPUTS as u32, states, Some(size))];
-        for (index, (kept, bytes)) in (0..).zip(self.inputs.iter_mut().zip(inputs)) {
-            let buffer = device.upload("trajectories", kept, bytes)?;
-            entries.push(binding(index, buffer, Some(bytes.len() as u64)));
-        }
-        let dispatch = Dispatch {
-            label: "shoot",
-            pipeline,
-            entries: &entries,
-            // A submission has fewer trajectories than `u32` can count.
-            invocations: count,
-            results: [states, readback],
-            size,
-            stamps: None,
-        };
-        let index = dispatch.submit(device)?;
-        device.wait(index)?;
-        Device::read(readback, size, read)
-    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Stages of a run and their wall seconds.
+//! Times of a run: wall seconds of its stages, and CPU seconds.
 
 use crate::stopwatch::Stopwatch;
 use std::time::Duration;
