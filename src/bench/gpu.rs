@@ -69,7 +69,7 @@ pub fn measure(
 /// Solves `batch`, the cells of a request without the expansions of their rows. Returns the cells and the milliseconds of the stages.
 fn solve(gpu: &mut Gpu, batch: &RowBatch) -> Result<(Cells, [f64; 4]), EngineError> {
     let begun = Instant::now();
-    let batch = batch.clone().with_expansions(gpu.row_residual());
+    let batch = batch.clone().with_nets(gpu.row_residual());
     let rows = begun.elapsed();
     gpu.submit(Arc::new(batch))?;
     let cells = gpu.collect()?;

@@ -106,7 +106,7 @@ fn row(
     let solver = Spectral::new(bound);
     let Ok((seconds, cells)) = timed(runs, || {
         let cells = requests.iter().map(|request| {
-            let batch = request.batch.clone().with_expansions(bound);
+            let batch = request.batch.clone().with_nets(bound);
             solver.solve(&batch)
         });
         Ok::<_, Infallible>(cells.collect::<Vec<_>>())

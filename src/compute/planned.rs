@@ -3,7 +3,7 @@
 
 use super::{Error, accuracy};
 use crate::accuracy::{Accuracy, BOUNDED, bound_deg};
-use crate::engine::{Engine, Spectral};
+use crate::engine::{Engine, KnownRow, Spectral};
 use crate::plan::{Channels, Plan};
 use crate::refine::{GOAL, TOLERANCE};
 use crate::scene::Scene;
@@ -58,9 +58,13 @@ impl<'a> PlannedMap<'a> {
         })
     }
 
-    /// Returns the spectral engine whose residuals keep push angles within [`Self::left_deg`].
+    /// Returns the spectral engine whose residuals keep push angles within [`Self::left_deg`]. Boundaries do not depend on an engine, so a map
+    /// without numbers of states needs no small residuals.
     #[must_use]
     pub fn spectral(&self) -> Spectral {
+        if !self.plan.channels.needs_states() {
+            return Spectral::new(KnownRow::RESIDUAL);
+        }
         let bound = self
             .left_deg
             .map(|left| (left / bound_deg(self.scene, 1.0)).min(LARGEST_BOUND));
@@ -82,9 +86,17 @@ impl<'a> PlannedMap<'a> {
     /// otherwise `None`.
     #[must_use]
     pub fn excess_deg(&self, residual_bound: f64) -> Option<f64> {
-        let bound = bound_deg(self.scene, residual_bound);
+        let bound = self.of_residual(residual_bound);
         let left = self.left_deg?;
         (bound > left * (1.0 + ROUNDING)).then_some(bound)
+    }
+
+    /// Returns the bound on push-angle errors in degrees by residuals of at most `bound` whisker lengths: 0 without numbers of states.
+    fn of_residual(&self, bound: f64) -> f64 {
+        match self.plan.channels.needs_states() {
+            true => bound_deg(self.scene, bound),
+            false => 0.0,
+        }
     }
 
     /// Returns the attribute `tolerances` of the map: residuals of the CPU or the engine, and with a tolerance the estimated push-angle error.
@@ -96,7 +108,7 @@ impl<'a> PlannedMap<'a> {
             "residual_accepted_whisker_lengths": TOLERANCE.max(of_engine),
         });
         if let Some(accuracy) = &self.accuracy {
-            let error_deg = accuracy.error_deg + bound_deg(self.scene, of_engine);
+            let error_deg = accuracy.error_deg + self.of_residual(of_engine);
             tolerances["push_angle_error_estimated_deg"] = error_deg.into();
             tolerances["bounded"] = BOUNDED.into();
         }

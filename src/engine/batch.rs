@@ -1,6 +1,6 @@
 //! Row batches: the cells of some rows, as a request to an engine.
 
-use super::{RowExpansion, WhiskerSide};
+use super::{KnownRow, RowExpansion, WhiskerSide};
 use crate::plan::Channels;
 use crate::sheet::Sheet;
 use rayon::prelude::*;
@@ -34,6 +34,13 @@ impl BatchRow {
         self.columns.iter().flat_map(Range::clone)
     }
 
+    /// Returns the number of the row's cells whose push angles are before `push`; arguments as for [`Self::columns_before`].
+    #[must_use]
+    pub fn cells_before(&self, push: f64, pushes: &[f64]) -> usize {
+        let before = self.columns_before(push, pushes);
+        before.map(|columns| columns.len()).sum()
+    }
+
     /// Returns the columns of the row whose push angles are before `push`, `[range]`. `pushes` are the push angles of the side's columns. All
     /// are magnitudes in radians.
     pub fn columns_before(
@@ -50,6 +57,13 @@ impl BatchRow {
     }
 }
 
+/// Returns true if an engine whose rows have a residual of at most `most` whisker lengths needs nets with the values of states for a map with these
+/// `channels`.
+#[must_use]
+pub fn needs_values(channels: Channels, most: f64) -> bool {
+    channels.needs_states() || most < KnownRow::RESIDUAL
+}
+
 /// Row batch: cells of some rows, for an [`Engine`](super::Engine).
 #[derive(Clone, Debug)]
 pub struct RowBatch {
@@ -61,8 +75,11 @@ pub struct RowBatch {
     pub rows: Vec<BatchRow>,
     /// Channels that the map has: an engine returns the values of those of a state, and `(tau, load)` for the largest bending strain.
     pub channels: Channels,
-    /// Expansions of the rows, `[row]`: `None` for a row without a net. Empty before [`RowBatch::with_expansions`].
+    /// Expansions of the rows, `[row]`: `None` for a row without a net. Empty before [`RowBatch::with_nets`], and for rows without numbers of
+    /// states.
     pub expansions: Vec<Option<RowExpansion>>,
+    /// Rows without numbers of states, `[row]`: `None` for a row that is not known.
+    pub known: Vec<Option<KnownRow>>,
 }
 
 impl RowBatch {
@@ -79,6 +96,7 @@ impl RowBatch {
             sides,
             rows: Vec::new(),
             expansions: Vec::new(),
+            known: Vec::new(),
         };
         for (side, row) in rows {
             let columns = 0..batch.sides[side].columns.len();
@@ -118,18 +136,24 @@ impl RowBatch {
         })
     }
 
-    /// Returns true if an engine can solve some cells of the batch: a row has expansions.
+    /// Returns true if an engine can solve some cells of the batch: a row has expansions, or is known.
     #[must_use]
     pub fn is_for_engine(&self) -> bool {
-        self.expansions.iter().any(Option::is_some)
+        self.expansions.iter().any(Option::is_some) || self.known.iter().any(Option::is_some)
     }
 
-    /// Returns the batch with the expansions of all rows that nets of the sides have, with a residual of at most `most` whisker lengths.
+    /// Returns the batch with what the nets of its sides know of all rows, with a residual of at most `most` whisker lengths: expansions, or
+    /// known rows where they are [`enough`](needs_values).
     #[must_use]
-    pub fn with_expansions(mut self, most: f64) -> Self {
+    pub fn with_nets(mut self, most: f64) -> Self {
         let rows = self.rows.par_iter();
-        let expansions = rows.map(|row| RowExpansion::of(&self.sides[row.side], row.row, most));
-        self.expansions = expansions.collect();
+        if needs_values(self.channels, most) {
+            let expansions = rows.map(|row| RowExpansion::of(&self.sides[row.side], row.row, most));
+            self.expansions = expansions.collect();
+        } else {
+            let known = rows.map(|row| KnownRow::of(&self.sides[row.side], row.row));
+            self.known = known.collect();
+        }
         self
     }
 

@@ -18,13 +18,13 @@ mod spectral;
 mod thread;
 mod worker;
 
-pub use batch::{BatchRow, RowBatch};
+pub use batch::{BatchRow, RowBatch, needs_values};
 pub(crate) use cells::RowCells;
 pub use cells::{Cell, Cells};
 pub use columns::SideColumns;
 pub use cpu::Cpu;
 pub use nodes::Nodes;
-pub use row::RowExpansion;
+pub use row::{KnownRow, RowExpansion};
 pub use side::{Values, WhiskerSide};
 pub use spectral::Spectral;
 pub use worker::Worker;

@@ -1,6 +1,6 @@
 //! Expansions of one row: push angle, contact, load and channel values as functions of the row's part of the load.
 
-use super::{BatchRow, Values, WhiskerSide};
+use super::{BatchRow, RowCells, Values, WhiskerSide};
 use crate::classify::Outcome;
 use crate::plan::{Channels, STATE_CHANNELS};
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
@@ -165,10 +165,41 @@ impl RowExpansion {
     /// Writes the outcomes of the cells of `row` that have no state, beyond its end. `pushes` are the push angles of the side's columns:
     /// magnitudes in radians.
     pub(super) fn write_beyond(&self, row: &BatchRow, pushes: &[f64], outcomes: &mut [Outcome]) {
-        let last = self.end_push + PUSH_MARGIN;
-        let near = row.columns_before(last.next_up(), pushes);
-        let near: usize = near.map(|columns| columns.len()).sum();
+        let near = row.cells_before((self.end_push + PUSH_MARGIN).next_up(), pushes);
         outcomes[near..].fill(Outcome::OffSheet);
+    }
+}
+
+/// Row of a map without numbers of states: each push angle from first touch to its end has a state, and none beyond.
+#[derive(Clone, Copy, Debug)]
+pub struct KnownRow {
+    /// Bound on the residual of a state of the row, in whisker lengths.
+    residual: f64,
+    /// Magnitude of the push angle at the row's end, in radians.
+    end_push: f64,
+}
+
+impl KnownRow {
+    /// Largest residual of the states of a row, in whisker lengths: they only show that there are states.
+    pub const RESIDUAL: f64 = 1e-4;
+
+    /// Returns a `row` of `side` by its net for guesses; `None` if a state may have a residual of more than [`Self::RESIDUAL`].
+    #[must_use]
+    pub fn of(side: &WhiskerSide, row: usize) -> Option<Self> {
+        let end_push = side.sheet.simple_end(row)?.push;
+        let residual = side.sheet.guess_residual(row)?;
+        (residual <= Self::RESIDUAL).then_some(Self { residual, end_push })
+    }
+
+    /// Writes outcomes and residuals of the cells of `row`, except those next to the end. `pushes` are the push angles of the side's columns:
+    /// magnitudes in radians.
+    pub(super) fn write(&self, row: &BatchRow, pushes: &[f64], into: RowCells) {
+        let near = row.cells_before(self.end_push - PUSH_MARGIN, pushes);
+        let beyond = row.cells_before((self.end_push + PUSH_MARGIN).next_up(), pushes);
+        into.outcome[..near].fill(Outcome::Solved);
+        into.outcome[near..beyond].fill(Outcome::NearEdge);
+        into.outcome[beyond..].fill(Outcome::OffSheet);
+        into.residual[..near].fill(self.residual as f32);
     }
 }
 

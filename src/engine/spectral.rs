@@ -45,13 +45,19 @@ impl Spectral {
     #[must_use]
     pub fn solve(&self, batch: &RowBatch) -> Cells {
         let mut cells = Cells::new(batch, Outcome::NoRow);
-        let rows = batch.rows.iter().zip(&batch.expansions);
-        let rows: Vec<_> = rows.zip(cells.rows_mut(batch)).collect();
-        rows.into_par_iter().for_each(|((row, expansion), into)| {
-            if let Some(expansion) = expansion {
-                write(batch, row, expansion, self.most, into);
-            }
-        });
+        let rows: Vec<_> = batch.rows.iter().zip(cells.rows_mut(batch)).collect();
+        rows.into_par_iter()
+            .enumerate()
+            .for_each(|(index, (row, into))| {
+                let of_row = (batch.expansions.get(index), batch.known.get(index));
+                match of_row {
+                    (Some(Some(expansion)), _) => write(batch, row, expansion, self.most, into),
+                    (_, Some(Some(known))) => {
+                        known.write(row, &batch.sides[row.side].columns.pushes, into);
+                    }
+                    _ => {}
+                }
+            });
         cells
     }
 }

@@ -11,7 +11,7 @@ use super::rows;
 use super::sides::whisker_sides;
 use super::summary::{EngineCells, Summary};
 use super::times::Stage;
-use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker};
+use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker, needs_values};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, SweptWhisker};
 use crate::stopwatch::Stopwatch;
@@ -75,7 +75,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let of_side = |side: &Side| Arc::new(SideColumns::new(push_angle_deg, *side));
         let has_device = worker.has_thread();
         let mut method = plan.method;
-        if worker.row_residual.is_some() {
+        let has_values = |most| needs_values(plan.channels, most);
+        if worker.row_residual.is_some_and(has_values) {
             // Coarser steps are so few that their number changes along a row: states would not be analytic.
             method.resolution = method.resolution.at_least_fine();
         }
@@ -210,7 +211,9 @@ impl<'a, 'e> Pipeline<'a, 'e> {
     /// Returns the residual of nets, in whisker lengths, if a device integrates their trajectories.
     fn on_device(&self) -> Option<f64> {
         let integrates = self.engine_integrates && self.worker.has_thread();
-        self.worker.row_residual.filter(|_| integrates)
+        let channels = self.plan.channels;
+        let needed = |most: &f64| integrates && needs_values(channels, *most);
+        self.worker.row_residual.filter(needed)
     }
 
     /// Begins the nets of the next group, with a residual of at most `most` whisker lengths.
@@ -226,7 +229,9 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let whiskers = self.groups.next()?;
         let found = whiskers.filter_map(|index| self.scene.whisker(index).ok());
         let found: Vec<SweptWhisker> = found.collect();
-        let row_residual = row_residual.filter(|_| self.worker.is_working());
+        let channels = self.plan.channels;
+        let row_residual =
+            row_residual.filter(|most| self.worker.is_working() && needs_values(channels, *most));
         let of_plan = (self.plan, self.method, row_residual);
         let sides = || whisker_sides(self.scene, of_plan, &self.columns, &found);
         Some(self.summary.stages.time(Stage::Sheets, sides))
@@ -258,7 +263,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             && self.worker.is_working()
         {
             let times = &mut self.summary.stages;
-            batch = times.time(Stage::Rows, || batch.with_expansions(most));
+            batch = times.time(Stage::Rows, || batch.with_nets(most));
         }
         self.begun = (to < all).then_some((sides, to));
         Some((Arc::new(batch), to == end))

@@ -60,7 +60,7 @@ impl Channel {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Self::Residual => "residual",
+            Self::Residual => RESIDUAL,
             Self::Margin => "margin_deg",
             Self::PeakStrain => PEAK_STRAIN,
             state => STATE_CHANNELS[state as usize],
@@ -98,9 +98,12 @@ pub(crate) const CHANNELS: [ChannelLine; 15] = [
     ("energy_nj", Some("nJ"), "energy of bending", "bending energy (nJ)"),
     ("margin_deg", Some("degree"), "push angle left until detachment", "push angle left until detachment (deg)"),
     ("newton_steps", None, "Newton steps", "Newton steps"),
-    ("residual", Some("1"), "distance from pole over whisker length", "residual (whisker lengths)"),
+    (RESIDUAL, Some("1"), "distance from pole over whisker length", "residual (whisker lengths)"),
     (PEAK_STRAIN, Some("1"), "largest bending strain at the surface", "largest bending strain"),
 ];
+
+/// Name of the channel of residuals.
+const RESIDUAL: &str = "residual";
 
 /// Name of the channel of the largest bending strain, which takes a trajectory more for each cell.
 const PEAK_STRAIN: &str = "peak_strain";
@@ -204,6 +207,13 @@ impl Channels {
     #[must_use]
     pub fn with_states(self) -> Self {
         Self::those(|name| STATE_CHANNELS.contains(&name) || self.contains(name))
+    }
+
+    /// Returns true if the selection has a number of states: a channel of a state, its residual, or the largest bending strain. Without one, a cell
+    /// only needs to be known to have a state.
+    #[must_use]
+    pub fn needs_states(&self) -> bool {
+        self.has_state() || self.has_strain() || self.contains(RESIDUAL)
     }
 
     /// Returns true if the selection has a channel of a state.

@@ -216,7 +216,8 @@ impl Plan {
                 .count()
         };
         let most = self.sides.iter().map(columns).max().unwrap_or(0);
-        let count = ExpansionCount::new(scene.grid.distance_mm.len(), most);
+        let needs_states = self.channels.needs_states();
+        let count = ExpansionCount::new(scene.grid.distance_mm.len(), most, needs_states);
         (!self.method.effects.profile).then_some(count)
     }
 

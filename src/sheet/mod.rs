@@ -253,6 +253,15 @@ impl Sheet {
         self.net.as_ref()?.row(self, row)
     }
 
+    /// Returns a bound in whisker lengths on the residual of states of `row` by the net for guesses, from first touch to its only other end. `None`
+    /// if the row has other ends, or is not in the net.
+    #[must_use]
+    pub fn guess_residual(&self, row: usize) -> Option<f64> {
+        let end = self.simple_end(row)?;
+        let panels = self.samples.as_ref()?.panels.as_ref()?;
+        panels.of(row)?.residual(self.case(), &self.rows[row], end)
+    }
+
     /// Returns the ends of the stable pieces of `row`, `[piece]`; without the first one, a piece begins at first touch.
     fn pieces(&self, row: usize) -> impl Iterator<Item = [Option<&Crossing>; 2]> {
         let touch = self.touches(row).then_some(None);

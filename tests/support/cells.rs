@@ -83,7 +83,7 @@ impl RandomRows {
         let rows = rows.map(|i| (i / self.rows, i % self.rows));
         let mut batch = RowBatch::new(self.method, Arc::clone(&self.sides), rows);
         batch.channels = Channels::STANDARD.with("peak_strain");
-        batch.with_expansions(engine.row_residual())
+        batch.with_nets(engine.row_residual())
     }
 
     /// All rows.

@@ -60,7 +60,11 @@ pub const PUSH_MARGIN: f64 = 1e-4;
 
 /// Panel for guesses.
 #[derive(Clone, Debug)]
-pub struct GuessPanel(NetPanel<3>);
+pub struct GuessPanel {
+    panel: NetPanel<3>,
+    /// Error of `ln D` and `phi` by the coefficients left out.
+    error: f64,
+}
 
 impl Panels<GuessPanel> {
     /// Returns the panels of `rows` between `contacts`, with this `error` of `ln D` and `phi`.
@@ -104,9 +108,10 @@ impl GuessPanel {
         let panel = NetPanel::new(range, along, size, tensor, size.loads);
         let tails = panel.tails(&WEIGHTS);
         // NaN is not below any bound.
-        let has_converged = larger(tails[0].last, tails[1].last) <= largest;
+        let error = larger(tails[0].last, tails[1].last);
+        let has_converged = error <= largest;
         if has_converged {
-            Ok(Self(panel))
+            Ok(Self { panel, error })
         } else {
             Err(size.enough(tails, MARGIN * largest))
         }
@@ -131,29 +136,13 @@ impl GuessPanel {
         if from == to {
             return;
         }
-        let part = |end: Option<&Crossing>| end.map_or(0.0, |end| self.0.part(case.rod, end));
-        let Some(line) = self.0.line(row, ends.map(part)) else {
+        let Some((functions, end)) = self.functions(case, row, ends) else {
             return;
         };
-        let sign = case.side.sign();
-        // The first state is next to the first end.
-        let near = row.touch + sign * known[0];
-        let turned = row.touch + nearest_turn(near, line.points[0].values[1][0]) - near;
-        let points = line.points.iter().flat_map(|block| {
-            (0..block.count).map(|lane| {
-                let [ln_tau, ln_q] = block.along.map(|coordinate| coordinate[lane]);
-                (block.values[1][lane], ln_tau, ln_q)
-            })
-        });
-        let states = points.zip(&line.parts).map(|((phi, ln_tau, ln_q), part)| {
-            let load = sign * part * libm::exp(ln_q - 2.0 * ln_tau);
-            [sign * (phi - turned), libm::exp(ln_tau), load]
-        });
-        let functions: Chebyshev<3> = Chebyshev::through(&states.collect::<Vec<_>>());
-        let [[first, ..], [last, ..]] = [functions.at(0.0), functions.at(line.end)];
+        let [[first, ..], [last, ..]] = [functions.at(0.0), functions.at(end)];
         let off = (first - known[0]).abs().max((last - known[1]).abs());
         let fits = off <= PUSH_MARGIN;
-        let Some(inverse) = fits.then(|| Inverse::new(functions, line.end)).flatten() else {
+        let Some(inverse) = fits.then(|| Inverse::new(functions, end)).flatten() else {
             return;
         };
         let targets: Vec<f64> = pushes[from..to]
@@ -168,12 +157,50 @@ impl GuessPanel {
         });
     }
 
+    /// Returns magnitude of the push angle since first touch in radians, `tau`, and signed load along `row` from one of its `ends` to the other, with
+    /// the argument of the other one. `None` if the row is not in the panel.
+    fn functions(
+        &self,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+    ) -> Option<(Chebyshev<3>, f64)> {
+        let part = |end: Option<&Crossing>| end.map_or(0.0, |end| self.panel.part(case.rod, end));
+        let line = self.panel.line(row, ends.map(part))?;
+        let sign = case.side.sign();
+        // The first state is next to the first end.
+        let near = row.touch + sign * ends[0].map_or(0.0, |end| end.push);
+        let turned = row.touch + nearest_turn(near, line.points[0].values[1][0]) - near;
+        let points = line.points.iter().flat_map(|block| {
+            (0..block.count).map(|lane| {
+                let [ln_tau, ln_q] = block.along.map(|coordinate| coordinate[lane]);
+                (block.values[1][lane], ln_tau, ln_q)
+            })
+        });
+        let states = points.zip(&line.parts).map(|((phi, ln_tau, ln_q), part)| {
+            let load = sign * part * libm::exp(ln_q - 2.0 * ln_tau);
+            [sign * (phi - turned), libm::exp(ln_tau), load]
+        });
+        let functions = Chebyshev::through(&states.collect::<Vec<_>>());
+        Some((functions, line.end))
+    }
+
+    /// Returns a bound in whisker lengths on the residual of states of the panel along `row`, from first touch to its `end`. It contains the
+    /// difference from the end, which is computed apart. `None` if the row is not in the panel, or if its push angle does not grow throughout.
+    pub fn residual(&self, case: SheetCase, row: &Row, end: &Crossing) -> Option<f64> {
+        let (functions, last) = self.functions(case, row, [None, Some(end)])?;
+        let off = |at: f64, push: f64| (functions.at(at)[0] - push).abs();
+        let off = larger(off(0.0, 0.0), off(last, end.push));
+        let error = larger(self.error, off) * row.pole_distance;
+        Inverse::new(functions, last).map(|_| MARGIN * error)
+    }
+
     /// Returns true if the panel shows that the first folds of `contacts` are all folds up to them: at no other place does the determinant
     /// vanish, at the contact nodes or between them.
     pub fn shows_folds(&self, rod: &Rod, contacts: &ContactNodes) -> bool {
-        let [in_contact, in_load] = self.0.tensor.tails().map(|[last, _]| last[DETERMINANT]);
+        let [in_contact, in_load] = self.panel.tensor.tails().map(|[last, _]| last[DETERMINANT]);
         let error = MARGIN * larger(in_contact, in_load);
-        let determinant = self.0.tensor.transposed(DETERMINANT);
+        let determinant = self.panel.tensor.transposed(DETERMINANT);
         SAMPLES.iter().any(|(over, smallest)| {
             let clearances = self.clearances(&determinant, *over, rod, contacts);
             clearances.is_some_and(|[least, largest]| least > smallest * largest + error)
@@ -191,7 +218,7 @@ impl GuessPanel {
     ) -> Option<[f64; 2]> {
         let [in_p, in_u] = determinant.counts();
         // Between the Chebyshev points are the contact nodes, where folds are exact.
-        let [from, to] = self.0.contacts;
+        let [from, to] = self.panel.contacts;
         let folds = contacts.folds.iter();
         let at_folds = folds.map(|fold| (u_of(rod, fold.tau) - from) / (to - from));
         let inside = at_folds.filter(|place| (0.0..=1.0).contains(place));
@@ -233,8 +260,8 @@ impl GuessPanel {
 
     /// Returns two places in the range of loads of the contact at `place`: the end of the surely stable loads, and the first fold of `contacts`.
     fn loads_at(&self, rod: &Rod, contacts: &ContactNodes, place: f64) -> [f64; 2] {
-        let [from, to] = self.0.contacts;
-        let [ln_tau, ln_q] = self.0.along.at(place);
+        let [from, to] = self.panel.contacts;
+        let [ln_tau, ln_q] = self.panel.along.at(place);
         let tau = libm::exp(ln_tau);
         let surely_stable = surely_stable(rod) * (tau / arclength(rod, tau)).powi(2);
         let fold = contacts.fold_ln_q(from + place * (to - from));
@@ -385,7 +412,7 @@ mod tests {
             let in_y = |terms: &Vec<[f64; 1]>| Chebyshev {
                 coefficients: terms.clone(),
             };
-            let determinant = panel.0.tensor.transposed(DETERMINANT);
+            let determinant = panel.panel.tensor.transposed(DETERMINANT);
             let terms = determinant.coefficients.iter();
             let terms = terms.map(|terms| in_y(terms).at(x)).collect();
             in_y(&terms).at(y)[0]
@@ -397,7 +424,7 @@ mod tests {
                 Chebyshev::through(&values.collect::<Vec<_>>())
             });
             let mut panel = panel.clone();
-            panel.0.tensor = ChebyshevTensor::through(&rows.collect::<Vec<_>>());
+            panel.panel.tensor = ChebyshevTensor::through(&rows.collect::<Vec<_>>());
             panel.shows_folds(&rod, &contacts)
         };
         assert!(changed(&value));
