@@ -4,7 +4,7 @@ use super::{BatchRow, RowCells, Values, WhiskerSide};
 use crate::classify::Outcome;
 use crate::plan::{Channels, STATE_CHANNELS};
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
-use crate::sheet::{Crossing, Edge, PUSH_MARGIN, Sheet};
+use crate::sheet::{Crossing, Edge, GuessRow, PUSH_MARGIN, Sheet};
 use whiskmap_mechanics::numerics::expansion::Chebyshev;
 use whiskmap_mechanics::numerics::inverse::Inverse;
 use whiskmap_mechanics::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep};
@@ -171,10 +171,10 @@ impl RowExpansion {
 }
 
 /// Row of a map without numbers of states: each push angle from first touch to its end has a state, and none beyond.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct KnownRow {
-    /// Bound on the residual of a state of the row, in whisker lengths.
-    residual: f64,
+    /// States of the row by the net for guesses.
+    pub states: GuessRow,
     /// Magnitude of the push angle at the row's end, in radians.
     end_push: f64,
 }
@@ -187,8 +187,8 @@ impl KnownRow {
     #[must_use]
     pub fn of(side: &WhiskerSide, row: usize) -> Option<Self> {
         let end_push = side.sheet.simple_end(row)?.push;
-        let residual = side.sheet.guess_residual(row)?;
-        (residual <= Self::RESIDUAL).then_some(Self { residual, end_push })
+        let states = side.sheet.guess_row(row)?;
+        (states.residual <= Self::RESIDUAL).then_some(Self { states, end_push })
     }
 
     /// Writes outcomes and residuals of the cells of `row`, except those next to the end. `pushes` are the push angles of the side's columns:
@@ -199,7 +199,7 @@ impl KnownRow {
         into.outcome[..near].fill(Outcome::Solved);
         into.outcome[near..beyond].fill(Outcome::NearEdge);
         into.outcome[beyond..].fill(Outcome::OffSheet);
-        into.residual[..near].fill(self.residual as f32);
+        into.residual[..near].fill(self.states.residual as f32);
     }
 }
 

@@ -24,7 +24,7 @@ pub(crate) use edges::edge_newton::{EdgeProblem, edge_newton};
 pub use fold::FoldPoint;
 pub(crate) use fold::coordinate::{tau_of, u_of};
 pub(crate) use fold::{directions, first_folds};
-pub use net::{NetRow, PUSH_MARGIN};
+pub use net::{GuessRow, NetRow, PUSH_MARGIN};
 pub use row::{Crossing, Edge, Row};
 pub use span::Guess;
 pub(crate) use span::RowSpan;
@@ -253,13 +253,14 @@ impl Sheet {
         self.net.as_ref()?.row(self, row)
     }
 
-    /// Returns a bound in whisker lengths on the residual of states of `row` by the net for guesses, from first touch to its only other end. `None`
-    /// if the row has other ends, or is not in the net.
+    /// Returns the states of a `row` by the net for guesses, from first touch to its only other end. `None` if the row has other ends, or is not in
+    /// the net.
     #[must_use]
-    pub fn guess_residual(&self, row: usize) -> Option<f64> {
+    pub fn guess_row(&self, row: usize) -> Option<GuessRow> {
         let end = self.simple_end(row)?;
         let panels = self.samples.as_ref()?.panels.as_ref()?;
-        panels.of(row)?.residual(self.case(), &self.rows[row], end)
+        let ends = [None, Some(end)];
+        panels.of(row)?.row(self.case(), &self.rows[row], ends)
     }
 
     /// Returns the ends of the stable pieces of `row`, `[piece]`; without the first one, a piece begins at first touch.
@@ -289,7 +290,13 @@ impl Sheet {
             .and_then(|samples| samples.panels.as_ref()?.of(row))
         {
             for ends in self.pieces(row) {
-                panel.write_guesses(self.case(), &self.rows[row], ends, pushes, &mut guesses);
+                let [from, to] = ends.map(|end| end.map_or(0.0, |end| end.push));
+                let is_near = |push: &f64| from - PUSH_MARGIN <= *push && *push <= to + PUSH_MARGIN;
+                let needed = pushes.iter().any(is_near);
+                let piece = || panel.row(self.case(), &self.rows[row], ends);
+                if let Some(piece) = needed.then(piece).flatten() {
+                    piece.write_guesses(pushes, &mut guesses);
+                }
             }
         }
         guesses

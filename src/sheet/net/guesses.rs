@@ -66,6 +66,37 @@ pub struct GuessPanel {
     error: f64,
 }
 
+/// States of a row between two of its ends, by a panel for guesses.
+#[derive(Clone, Debug)]
+pub struct GuessRow {
+    /// Magnitude of the push angle since first touch in radians, `tau`, and signed load.
+    inverse: Inverse<3>,
+    /// Push angle of the first state by the panel, in radians.
+    first: f64,
+    /// Push angles of the ends, in radians.
+    ends: [f64; 2],
+    /// Bound on the residual of the states, in whisker lengths: by the coefficients left out, and by the differences from the ends.
+    pub residual: f64,
+}
+
+impl GuessRow {
+    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near the row between its ends.
+    pub fn write_guesses(&self, pushes: &[f64], guesses: &mut [Option<Guess>]) {
+        let from = pushes.partition_point(|push| *push < self.ends[0] - PUSH_MARGIN);
+        let to = pushes.partition_point(|push| *push <= self.ends[1] + PUSH_MARGIN);
+        let targets = pushes[from..to].iter().map(|push| push.max(self.first));
+        let targets: Vec<f64> = targets.collect();
+        let wanted = [true; 3];
+        self.inverse
+            .solve(&targets, &wanted, |index, count, block| {
+                for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
+                    let [_, tau, load] = block.values.map(|values| values[lane]);
+                    guess.get_or_insert(Guess { tau, load });
+                }
+            });
+    }
+}
+
 impl Panels<GuessPanel> {
     /// Returns the panels of `rows` between `contacts`, with this `error` of `ln D` and `phi`.
     pub fn for_guesses(case: SheetCase, contacts: &ContactNodes, rows: &[Row], error: f64) -> Self {
@@ -117,59 +148,21 @@ impl GuessPanel {
         }
     }
 
-    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near `row` between its `ends`.
-    /// Without its first end, the row begins at first touch.
+    /// Returns the states along `row` from one of its `ends` to the other; without its first end, the row begins at first touch.
     ///
-    /// Writes none if the row is not in the panel, if its push angle does not grow throughout, or if it contradicts the ends, which are computed
-    /// apart.
-    pub fn write_guesses(
+    /// `None` if the row is not in the panel, if its push angle does not grow throughout, or if it contradicts the ends, which are computed apart.
+    pub fn row(
         &self,
         case: SheetCase,
         row: &Row,
         ends: [Option<&Crossing>; 2],
-        pushes: &[f64],
-        guesses: &mut [Option<Guess>],
-    ) {
-        let known = ends.map(|end| end.map_or(0.0, |end| end.push));
-        let from = pushes.partition_point(|push| *push < known[0] - PUSH_MARGIN);
-        let to = pushes.partition_point(|push| *push <= known[1] + PUSH_MARGIN);
-        if from == to {
-            return;
-        }
-        let Some((functions, end)) = self.functions(case, row, ends) else {
-            return;
-        };
-        let [[first, ..], [last, ..]] = [functions.at(0.0), functions.at(end)];
-        let off = (first - known[0]).abs().max((last - known[1]).abs());
-        let fits = off <= PUSH_MARGIN;
-        let Some(inverse) = fits.then(|| Inverse::new(functions, end)).flatten() else {
-            return;
-        };
-        let targets: Vec<f64> = pushes[from..to]
-            .iter()
-            .map(|push| push.max(first))
-            .collect();
-        inverse.solve(&targets, &[true; 3], |index, count, block| {
-            for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
-                let [_, tau, load] = block.values.map(|values| values[lane]);
-                guess.get_or_insert(Guess { tau, load });
-            }
-        });
-    }
-
-    /// Returns magnitude of the push angle since first touch in radians, `tau`, and signed load along `row` from one of its `ends` to the other, with
-    /// the argument of the other one. `None` if the row is not in the panel.
-    fn functions(
-        &self,
-        case: SheetCase,
-        row: &Row,
-        ends: [Option<&Crossing>; 2],
-    ) -> Option<(Chebyshev<3>, f64)> {
+    ) -> Option<GuessRow> {
         let part = |end: Option<&Crossing>| end.map_or(0.0, |end| self.panel.part(case.rod, end));
         let line = self.panel.line(row, ends.map(part))?;
+        let ends = ends.map(|end| end.map_or(0.0, |end| end.push));
         let sign = case.side.sign();
         // The first state is next to the first end.
-        let near = row.touch + sign * ends[0].map_or(0.0, |end| end.push);
+        let near = row.touch + sign * ends[0];
         let turned = row.touch + nearest_turn(near, line.points[0].values[1][0]) - near;
         let points = line.points.iter().flat_map(|block| {
             (0..block.count).map(|lane| {
@@ -181,18 +174,16 @@ impl GuessPanel {
             let load = sign * part * libm::exp(ln_q - 2.0 * ln_tau);
             [sign * (phi - turned), libm::exp(ln_tau), load]
         });
-        let functions = Chebyshev::through(&states.collect::<Vec<_>>());
-        Some((functions, line.end))
-    }
-
-    /// Returns a bound in whisker lengths on the residual of states of the panel along `row`, from first touch to its `end`. It contains the
-    /// difference from the end, which is computed apart. `None` if the row is not in the panel, or if its push angle does not grow throughout.
-    pub fn residual(&self, case: SheetCase, row: &Row, end: &Crossing) -> Option<f64> {
-        let (functions, last) = self.functions(case, row, [None, Some(end)])?;
-        let off = |at: f64, push: f64| (functions.at(at)[0] - push).abs();
-        let off = larger(off(0.0, 0.0), off(last, end.push));
-        let error = larger(self.error, off) * row.pole_distance;
-        Inverse::new(functions, last).map(|_| MARGIN * error)
+        let functions: Chebyshev<3> = Chebyshev::through(&states.collect::<Vec<_>>());
+        let [[first, ..], [last, ..]] = [functions.at(0.0), functions.at(line.end)];
+        let off = larger((first - ends[0]).abs(), (last - ends[1]).abs());
+        let inverse = |functions| Inverse::new(functions, line.end);
+        Some(GuessRow {
+            inverse: (off <= PUSH_MARGIN).then(|| inverse(functions)).flatten()?,
+            first,
+            ends,
+            residual: MARGIN * larger(self.error, off) * row.pole_distance,
+        })
     }
 
     /// Returns true if the panel shows that the first folds of `contacts` are all folds up to them: at no other place does the determinant
