@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use whiskmap::Side;
 use whiskmap::classify::Regime;
-use whiskmap::engine::Spectral;
+use whiskmap::engine::{KnownRow, Spectral};
 use whiskmap::map::{self, Channels, Panel, STATE_CHANNELS};
 use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::plan::Plan;
@@ -286,4 +286,34 @@ fn options_select_the_engine() {
     assert_eq!(wanted.summary.engine_cells.solved, 0);
     assert!(map.summary.engine_cells.solved * 10 > map.summary.refined * 8);
     assert!(map.panels[0].regimes().eq(wanted.panels[0].regimes()));
+}
+
+/// A map without numbers of states has the regimes and margins of the CPU engine. Few of its cells are solved: rows of the net for guesses show
+/// that there are states.
+#[test]
+fn regimes_alone_need_no_states() {
+    let mut options = Options::default();
+    options.channels = Some("regime,margin_deg".parse().unwrap());
+    let (mut known, mut all) = (0, 0);
+    for scene in shipped::scenes() {
+        let scene = scene.thinned(64, 2);
+        let map = |engine| {
+            let mut options = options.clone();
+            options.engine = engine;
+            whiskmap::map(&scene, options).unwrap()
+        };
+        let [wanted, found] = [MapEngine::Cpu, MapEngine::Spectral].map(map);
+        for (wanted, found) in wanted.panels.iter().zip(&found.panels) {
+            assert_eq!(wanted.regime, found.regime, "{}", scene.title);
+            let bits = |panel: &Panel| panel.margin_deg.iter().map(|x| x.to_bits()).collect();
+            let [wanted, found]: [Vec<u32>; 2] = [bits(wanted), bits(found)];
+            assert_eq!(wanted, found, "{}", scene.title);
+        }
+        let summary = &found.summary;
+        assert_eq!(summary.audit.differing, 0, "{}", scene.title);
+        assert!(summary.worst_residual <= KnownRow::RESIDUAL);
+        known += summary.engine_cells.solved;
+        all += wanted.summary.refined;
+    }
+    assert!(known * 10 > all * 8, "{known} of {all}");
 }

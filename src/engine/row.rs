@@ -318,4 +318,25 @@ mod tests {
             }
         }
     }
+
+    /// A row is known at either edge. It is not if its end, which is computed apart, is elsewhere.
+    #[test]
+    fn rows_that_contradict_their_end_are_not_known() {
+        let mut side = cone();
+        for edge in [Edge::Fold, Edge::Tip] {
+            let mut rows = 0..side.sheet.rows.len();
+            let row = rows
+                .find(|row| side.sheet.crossings[*row][0].edge == edge)
+                .unwrap();
+            let end = side.sheet.crossings[row][0].push;
+            let distance = side.sheet.rows[row].pole_distance;
+            let mut is_known = |off: f64| {
+                side.sheet.crossings[row][0].push = end + off / distance;
+                KnownRow::of(&side, row).is_some()
+            };
+            let found = [-1e-4, -4e-5, -1e-5, 0.0, 1e-5, 4e-5, 1e-4].map(&mut is_known);
+            assert_eq!(found, [false, false, true, true, true, false, false]);
+            assert!(is_known(0.0));
+        }
+    }
 }

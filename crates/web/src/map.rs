@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::json;
 use whiskmap::engine::{Engine, EngineDescription, Spectral};
 use whiskmap::scene::{AxisValues, Scene};
-use whiskmap::{Channel, MapEngine, Options};
+use whiskmap::{Channel, Channels, MapEngine, Options};
 
 /// Task: compute the map of one whisker.
 #[derive(Deserialize)]
@@ -37,6 +37,9 @@ impl MapTask {
         let mut options = Options::default();
         options.engine = MapEngine::Spectral;
         options.tolerance_deg = self.tolerance_deg;
+        let wanted = self.channel.as_deref();
+        let is_wanted = |name: &str| ["regime", "status"].contains(&name) || Some(name) == wanted;
+        options.channels = Some(Channels::those(is_wanted));
         let map = whiskmap::map(&scene, options).map_err(|why| why.to_string())?;
         let panel = &map.panels[0];
         let channels = Channel::ALL.into_iter();

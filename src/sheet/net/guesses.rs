@@ -383,6 +383,37 @@ mod tests {
         }
     }
 
+    /// A spoiled direction is in the bound of a row, or leaves the panel without the row.
+    #[test]
+    fn a_spoiled_panel_contradicts_the_ends_of_its_rows() {
+        let rod = cone(Side::Cb);
+        let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &[0.3, 0.5, 0.7]);
+        let samples = sheet.samples.as_ref().unwrap();
+        let panel = samples.panels.as_ref().unwrap().of(1).unwrap();
+        let residual = |by: f64| {
+            let mut tensor = panel.panel.tensor.clone();
+            tensor.coefficients[0][0][1] += by;
+            let NetPanel {
+                contacts,
+                along,
+                size,
+                ..
+            } = panel.panel.clone();
+            let panel = GuessPanel {
+                panel: NetPanel::new(contacts, along, size, tensor, size.loads),
+                error: panel.error,
+            };
+            let ends = [None, sheet.simple_end(1)];
+            panel
+                .row(sheet.case(), &sheet.rows[1], ends)
+                .map(|row| row.residual)
+        };
+        let bound = |by: f64| MARGIN * by * sheet.rows[1].pole_distance;
+        assert!(residual(0.0).unwrap() < bound(1e-5));
+        assert!(residual(5e-5).unwrap() > bound(4e-5));
+        assert_eq!(residual(2e-4), None);
+    }
+
     /// A pair of folds between the nodes is found, however near to each other. A first fold that differs from the first fold of the contact nodes
     /// is refused.
     #[test]
