@@ -3,12 +3,12 @@
 use super::arguments::{column_help, span};
 use super::data::ColumnArgs;
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
 use clap::{Args, ValueEnum};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{
     self, BaseAxis, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until,
@@ -69,10 +69,7 @@ enum AxisName {
 }
 
 pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
-    if [&args.whisker.scene, &args.frames] == [Path::new(STDOUT); 2] {
-        let why = "--frames -: standard input is the scene, and can be read once; name a file";
-        return Err(Failure::Input(why.to_owned()));
-    }
+    files.inputs("--frames", [&args.frames])?;
     let (scene, whisker) = args.whisker.without_friction(files, "force")?;
     let method = match args.model {
         true => ForceMethod::Model,
@@ -82,7 +79,6 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         .columns
         .table(&args.frames, &CurvatureFrames::COLUMNS)?;
     let read = CurvatureFrames::of(&table, whisker.length_mm, method)?;
-    files.input(&args.frames);
     if let Some(note) = &read.note {
         message(&format!("note: {note}"));
     }

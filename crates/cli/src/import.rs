@@ -2,12 +2,12 @@
 
 use super::arguments::{column_help, duration, length, whole};
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
 use super::outputs::{OutputTable, write_table};
 use clap::{ArgAction, Args, ValueEnum};
 use serde::Serialize;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use whiskmap::input::Quantity;
 use whiskmap::terminal::StandardOutput;
@@ -203,14 +203,7 @@ impl ImportArgs {
 }
 
 pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
-    let stdin = args.files.iter().filter(|file| *file == Path::new(STDOUT));
-    if stdin.count() > 1 {
-        let why = "FILE -: standard input can be read once; name files";
-        return Err(Failure::Input(why.to_owned()));
-    }
-    for file in &args.files {
-        files.input(file);
-    }
+    files.inputs("FILE", &args.files)?;
     let output = files.output("--output", &args.output)?;
     let tracking = Tracking::read(&args.files, &args.options(), &AtomicBool::new(false))?;
     let shape = args.shape.map(|frame| tracking.shape(frame)).transpose()?;

@@ -63,9 +63,9 @@ pub struct WhiskArgs {
 
 pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let distance = args.pole.distance;
-    args.course.check_stdin(&args.pole.whisker.scene)?;
+    args.course.declare(files)?;
     let (scene, whisker) = pole::read(files, &args.pole.whisker, "whisk", &[distance])?;
-    let course = args.course.course(files)?;
+    let course = args.course.course()?;
     let mut outputs = args.outputs.open(files)?;
     let events = args
         .outputs

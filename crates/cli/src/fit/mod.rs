@@ -74,9 +74,9 @@ fn loss() -> impl TypedValueParser<Value = FitLoss> {
 }
 
 pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
-    data::check_stdin(&args.whisker.scene, &args.data)?;
+    files.inputs("--data", [&args.data])?;
     let scene = args.whisker.selected(files)?;
-    let points = data::read(files, &args.data, &args.columns)?;
+    let points = data::read(&args.data, &args.columns)?;
     // Points that name their whiskers belong to several whiskers of a table.
     let (scene, points) = match points.whiskers.is_empty() || scene.whisker_count() == 1 {
         true => {
