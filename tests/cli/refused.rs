@@ -240,7 +240,7 @@ pub const READ_TWICE: &str =
 fn standard_input_is_one_input() {
     let place = Place::with(SCENE);
     for (command, option) in [
-        ("bench - --peers -", "SCENE"),
+        ("bench - --peers - --plot p.svg", "SCENE"),
         ("curve - --data -", "SCENE"),
         ("explore - --data -", "SCENE"),
         ("fit - --data - --free taper", "SCENE"),
