@@ -47,7 +47,7 @@ fn pages() -> Vec<(PathBuf, String)> {
     paths.map(read).collect()
 }
 
-/// Returns the calls of `whiskmap` in the shell blocks of a page, without comments and redirection.
+/// Returns the calls of `whiskmap` in the shell blocks of a page, without comments, redirection and pipes.
 fn calls(page: &str) -> Vec<Vec<String>> {
     let blocks = page.split("```sh\n").skip(1);
     let lines = blocks.flat_map(|block| block.split("```").next().unwrap_or_default().lines());
@@ -55,6 +55,7 @@ fn calls(page: &str) -> Vec<Vec<String>> {
     let words = |call: &str| {
         let call = call.split(" #").next().unwrap_or_default();
         let call = call.split(" > ").next().unwrap_or_default();
+        let call = call.split(" | ").next().unwrap_or_default();
         call.split_whitespace().map(str::to_owned).collect()
     };
     calls.map(words).collect()
@@ -87,6 +88,38 @@ fn every_command_of_the_pages_runs() {
         }
     }
     assert!(ran > 20, "only {ran} commands found");
+}
+
+/// Rounding of another arithmetic class may change the last digits of a number.
+#[test]
+fn the_table_of_the_readme_is_what_curve_prints() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
+    let table = readme.split("```text\nside,").nth(1).expect("a table");
+    let table = table.split("```").next().unwrap_or_default();
+    let run = Command::new(env!("CARGO_BIN_EXE_whiskmap"))
+        .args(["curve", "scenes/cone.toml", "--distance", "15.66"])
+        .current_dir(root())
+        .output()
+        .expect("a run");
+    let printed = String::from_utf8(run.stdout).expect("text");
+    let table = format!("side,{table}");
+    let [shown, printed] = [&table, &printed].map(|text| {
+        let rows = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        rows.collect::<Vec<_>>()
+    });
+    assert_eq!(shown.len(), printed.len());
+    for (i, column) in shown[0].iter().enumerate() {
+        let place = printed[0].iter().position(|name| name == column);
+        let place = place.expect("a column of the program");
+        for (row, full) in shown.iter().zip(&printed) {
+            let [one, other] = [row[i], full[place]];
+            let is_same = match (one.parse::<f64>(), other.parse::<f64>()) {
+                (Ok(one), Ok(other)) => (one - other).abs() <= 1e-9 * other.abs(),
+                _ => one == other,
+            };
+            assert!(is_same, "{column}: {one}, not {other}");
+        }
+    }
 }
 
 #[test]

@@ -5,7 +5,6 @@ use pyo3::prelude::*;
 use whiskmap::Side;
 use whiskmap::input::{ColumnName, CsvError, CsvTable, did_you_mean};
 use whiskmap::scene::Parameter;
-use whiskmap::whisk::CourseStart;
 use whiskmap::{Channels, MapEngine, Options, Precision};
 
 /// Returns the side with this name, in capitals or not.
@@ -17,13 +16,22 @@ pub fn side(name: &str) -> PyResult<Side> {
     }
 }
 
-/// Returns the start of a course with this name.
-pub fn start(name: &str) -> PyResult<CourseStart> {
-    match name {
-        "free" => Ok(CourseStart::Free),
-        "contact" => Ok(CourseStart::Contact),
-        _ => Err(refused("start", name, "must be 'free' or 'contact'")),
-    }
+/// Returns the one of `values` whose name is `given`, the value of `argument`.
+pub fn named<T: Copy, const N: usize>(
+    argument: &str,
+    given: &str,
+    values: [T; N],
+    name: fn(T) -> &'static str,
+) -> PyResult<T> {
+    let value = values.into_iter().find(|value| name(*value) == given);
+    value.ok_or_else(|| {
+        let names = values.map(|value| format!("'{}'", name(value)));
+        refused(
+            argument,
+            given,
+            &format!("must be one of {}", names.join(", ")),
+        )
+    })
 }
 
 /// Returns the CSV table in `text`, which messages call `origin`, with expected names of columns in place of the names in the file. Each of

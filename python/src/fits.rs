@@ -61,11 +61,7 @@ pub fn fit<'py>(
     if points.whiskers.is_empty() {
         single(&scene.0)?;
     }
-    let mut losses = FitLoss::ALL.into_iter();
-    let loss = losses.find(|known| known.name() == loss).ok_or_else(|| {
-        let known = FitLoss::ALL.map(FitLoss::name).join(", ");
-        arguments::refused("loss", loss, &format!("must be one of {known}"))
-    })?;
+    let loss = arguments::named("loss", loss, FitLoss::ALL, FitLoss::name)?;
     let free: PyResult<Vec<Parameter>> = free
         .iter()
         .map(|name| arguments::parameter("free", name))

@@ -19,7 +19,9 @@ use whiskmap::scene::Scene;
 use whiskmap::texture::{
     AsperityStay, TextureError, TextureEvent, TextureSample, TipBin, texture_until,
 };
-use whiskmap::whisk::{AngleCourse, WhiskError, WhiskEvent, WhiskOptions, WhiskSample, whisk_with};
+use whiskmap::whisk::{
+    AngleCourse, CourseStart, WhiskError, WhiskEvent, WhiskOptions, WhiskSample, whisk_with,
+};
 use whiskmap::yields::StrainMark;
 
 /// Columns of samples and events, lost and dissipated energy in nJ, angle of the first touch on CF in degrees, and warnings.
@@ -55,7 +57,9 @@ pub fn whisk<'py>(
     let scene = at_pole(py, scene, distance_mm)?;
     let (time_s, angle_deg) = times_and_angles;
     let course = course(&time_s, &angle_deg)?;
-    let start = start.map(arguments::start).transpose()?;
+    let start =
+        start.map(|name| arguments::named("start", name, CourseStart::ALL, CourseStart::name));
+    let start = start.transpose()?;
     let job = |cancel: &Arc<AtomicBool>| {
         let mut options = WhiskOptions::default();
         (options.start, options.cancel) = (start, Some(Arc::clone(cancel)));
@@ -183,17 +187,7 @@ pub fn force<'py>(
     let options = ForceOptions {
         baseline,
         deviations: deviations.unwrap_or_default(),
-        axis: match axis {
-            "tangent" => BaseAxis::Tangent,
-            "follicle" => BaseAxis::Follicle,
-            _ => {
-                return Err(arguments::refused(
-                    "axis",
-                    axis,
-                    "must be 'tangent' or 'follicle'",
-                ));
-            }
-        },
+        axis: arguments::named("axis", axis, BaseAxis::ALL, BaseAxis::name)?,
         ..ForceOptions::new(method)
     };
     let job = |cancel: &Arc<AtomicBool>| {

@@ -1,5 +1,6 @@
 //! Files of whisker trackers, as columns.
 
+use crate::arguments;
 use crate::columns::{Column, Table};
 use crate::motion::refused;
 use crate::threads;
@@ -43,14 +44,10 @@ enum Pole {
 impl Options {
     fn checked(self) -> PyResult<TrackingOptions> {
         let mut options = TrackingOptions::new(self.mm_per_pixel, self.fps);
-        let format = |name: String| {
-            let mut all = TrackingFormat::ALL.into_iter();
-            all.find(|known| known.name() == name).ok_or_else(|| {
-                let names = TrackingFormat::ALL.map(TrackingFormat::name).join("', '");
-                refused(&format!("format = '{name}': must be one of '{names}'"))
-            })
-        };
-        options.format = self.format.map(format).transpose()?;
+        let format = self.format.as_deref().map(|name| {
+            arguments::named("format", name, TrackingFormat::ALL, TrackingFormat::name)
+        });
+        options.format = format.transpose()?;
         options.whisker = self.whisker;
         options.points = self.points;
         options.likelihood = self.likelihood;
@@ -59,15 +56,10 @@ impl Options {
         options.fit_to_mm = self.fit_to_mm;
         options.degree = self.degree;
         options.mirror = self.mirror;
-        options.face_axis = match self.face_axis.as_deref() {
-            None => None,
-            Some("x") => Some(FaceAxis::X),
-            Some("y") => Some(FaceAxis::Y),
-            Some(other) => {
-                let why = format!("face_axis = '{other}': must be 'x' or 'y'");
-                return Err(refused(&why));
-            }
-        };
+        let face_axis = self.face_axis.as_deref();
+        let face_axis = face_axis
+            .map(|name| arguments::named("face_axis", name, FaceAxis::ALL, FaceAxis::name));
+        options.face_axis = face_axis.transpose()?;
         options.pole = self.pole.map(|pole| match pole {
             Pole::Part(name) => ImagePole::Part(name),
             Pole::At(at) => ImagePole::At(at),

@@ -140,7 +140,7 @@ def test_a_start_that_is_impossible_is_refused(cone):
         wm.whisk(cone, 15.66, [0, 1], [20, 0], start="contact")
     with pytest.raises(ValueError, match="choose the start `contact`"):
         wm.whisk(cone, 15.66, [0, 1], [1, 0])
-    with pytest.raises(ValueError, match="start = 'touch': must be 'free' or 'contact'"):
+    with pytest.raises(ValueError, match="start = 'touch': must be one of 'free', 'contact'"):
         wm.whisk(cone, 15.66, [0, 1], [0, 1], start="touch")
 
 
@@ -212,5 +212,5 @@ def test_forces_of_a_follicle_refer_to_its_axis_or_to_the_base(cone, tmp_path):
     for axis, forces in found.items():
         same(forces, table("force", path, "--frames", FRAMES, "--model", "--axis", axis))
     assert found["follicle"].force_un.max() > 1 and not found["follicle"].equals(found["tangent"])
-    with pytest.raises(ValueError, match="axis = 'base': must be 'tangent' or 'follicle'"):
+    with pytest.raises(ValueError, match="axis = 'base': must be one of 'tangent', 'follicle'"):
         wm.force(scene, FRAMES, model=True, axis="base")

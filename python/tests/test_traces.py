@@ -103,7 +103,7 @@ def test_robust_fits_are_those_of_scipy(cone):
         np.testing.assert_allclose(fit.estimates.value, found.x, rtol=2e-6)
         assert fit.chi_square == pytest.approx(2 * found.cost, rel=1e-9)
         assert (fit.pulls.weight < 1.01).all() and set(fit.pulls.parameter.values) <= set(names)
-    with pytest.raises(ValueError, match="loss = 'cauchy': must be one of squares, soft-l1, huber"):
+    with pytest.raises(ValueError, match="loss = 'cauchy': must be one of 'squares', 'soft-l1', 'huber'"):
         wm.fit(cone, frame, names, loss="cauchy")
 
 

@@ -98,7 +98,7 @@ def test_bad_values_are_refused(tmp_path):
     for options, kind, why in [
         ({"mm_per_pixel": 0}, ValueError, "mm_per_pixel = 0: must be a number between 1e-9 and 1e9"),
         ({"format": "csv"}, ValueError, "format = 'csv': must be one of 'deeplabcut', 'whisk', 'xy'"),
-        ({"face_axis": "z"}, ValueError, "face_axis = 'z': must be 'x' or 'y'"),
+        ({"face_axis": "z"}, ValueError, "face_axis = 'z': must be one of 'x', 'y'"),
         ({"pole": [1]}, ValueError, "pole: must be x and y in pixels, has 1 numbers"),
         ({"points": "base"}, TypeError, "points = 'base': must be a list of names"),
         ({"whisker": 1.5}, TypeError, "whisker = 1.5: must be a whole number"),

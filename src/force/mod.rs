@@ -140,6 +140,20 @@ pub enum BaseAxis {
     Follicle,
 }
 
+impl BaseAxis {
+    /// Both axes.
+    pub const ALL: [Self; 2] = [Self::Tangent, Self::Follicle];
+
+    /// Returns the name of the axis: tangent or follicle.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tangent => "tangent",
+            Self::Follicle => "follicle",
+        }
+    }
+}
+
 /// Method, baseline and standard deviations with which forces follow from frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceOptions {

@@ -50,10 +50,7 @@ impl<'a> Curves<'a> {
         let mut is_unlike = false;
         let (curves, needs) = if frames.iter().any(|frame| frame.bend.is_some()) {
             let axis = options.face_axis.unwrap_or_else(|| face_axis(frames));
-            let name = match axis {
-                FaceAxis::X => "x",
-                FaceAxis::Y => "y",
-            };
+            let name = axis.name();
             let found = if options.face_axis.is_some() {
                 ""
             } else {
@@ -69,9 +66,8 @@ impl<'a> Curves<'a> {
             )
         } else {
             if let Some(axis) = options.face_axis {
-                let axis = if axis == FaceAxis::X { "x" } else { "y" };
                 let must = "must be left out: only measurements of whisk have angles".to_owned();
-                return Err(super::refused("face_axis", axis, must));
+                return Err(super::refused("face_axis", axis.name(), must));
             }
             match rods::curves(frames, options, cancel, remarks) {
                 Ok(rods) => (rods, smooth_points(MORE_POINTS + 1)),

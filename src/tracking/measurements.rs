@@ -7,6 +7,7 @@
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
 use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
 use crate::input::{CsvError, CsvTable};
+use crate::scene::digits;
 use std::collections::BTreeMap;
 
 /// Required columns: one of each group.
@@ -110,53 +111,44 @@ pub(super) fn read(
 
 /// Refuses options of formats with points.
 fn refuse_points(options: &TrackingOptions) -> Result<(), TrackingError> {
-    let must = |why: &str| format!("must be left out with measurements of whisk: {why}");
-    if let Some(mm) = options.curvature_at_mm {
-        return Err(refused(
-            "curvature_at_mm",
-            &mm.to_string(),
-            must("their curvature is the mean of the whisker"),
-        ));
-    }
-    if let Some(mm) = options.fit_to_mm {
-        return Err(refused(
-            "fit_to_mm",
-            &mm.to_string(),
-            must("they have no points"),
-        ));
-    }
-    if let Some(degree) = options.degree {
-        return Err(refused(
+    let TrackingOptions {
+        curvature_at_mm,
+        fit_to_mm,
+        degree,
+        taper,
+        follicle_px,
+        points,
+        pole,
+        ..
+    } = options;
+    let of_curvature = "their curvature is the mean of the whisker";
+    let without_points = "they have no points";
+    let follicle = follicle_px.map(|[x, y]| format!("{x},{y}"));
+    let given = [
+        ("curvature_at_mm", curvature_at_mm.map(digits), of_curvature),
+        ("fit_to_mm", fit_to_mm.map(digits), without_points),
+        (
             "degree",
-            &degree.to_string(),
-            must("they have no points"),
-        ));
+            degree.as_ref().map(usize::to_string),
+            without_points,
+        ),
+        ("taper", taper.map(digits), without_points),
+        ("follicle_px", follicle, "they name the follicle"),
+        ("points", points.first().cloned(), "they have no body parts"),
+    ];
+    for (option, value, why) in given {
+        if let Some(value) = value {
+            let must = format!("must be left out with measurements of whisk: {why}");
+            return Err(refused(option, &value, must));
+        }
     }
-    if let Some(taper) = options.taper {
-        return Err(refused(
-            "taper",
-            &taper.to_string(),
-            must("they have no points"),
-        ));
+    match pole {
+        Some(ImagePole::Part(name)) => {
+            let must = "must be X,Y in pixels: measurements of whisk have no body parts".to_owned();
+            Err(refused("pole", name, must))
+        }
+        _ => Ok(()),
     }
-    if let Some([x, y]) = options.follicle_px {
-        return Err(refused(
-            "follicle_px",
-            &format!("{x},{y}"),
-            must("they name the follicle"),
-        ));
-    }
-    if let [first, ..] = &options.points[..] {
-        return Err(refused("points", first, must("they have no body parts")));
-    }
-    if let Some(ImagePole::Part(name)) = &options.pole {
-        return Err(refused(
-            "pole",
-            name,
-            "must be X,Y in pixels: measurements of whisk have no body parts".to_owned(),
-        ));
-    }
-    Ok(())
 }
 
 fn whole_number(cell: &str) -> Option<i64> {

@@ -62,6 +62,20 @@ pub enum FaceAxis {
     Y,
 }
 
+impl FaceAxis {
+    /// Both axes.
+    pub const ALL: [Self; 2] = [Self::X, Self::Y];
+
+    /// Returns the name of the axis: x or y.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+        }
+    }
+}
+
 /// Pole in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ImagePole {

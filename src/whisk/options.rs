@@ -12,6 +12,20 @@ pub enum CourseStart {
     Contact,
 }
 
+impl CourseStart {
+    /// Both states.
+    pub const ALL: [Self; 2] = [Self::Free, Self::Contact];
+
+    /// Returns the name of the state: free or contact.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Contact => "contact",
+        }
+    }
+}
+
 /// Start of a course, point of its curvature, gaps that it bridges, and cancellation.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]

@@ -1,5 +1,6 @@
 //! `render`, `extract` and `compare` of scenes, whose maps are computed when they are read.
 
+use super::refused::READ_TWICE;
 use super::store::assert_same;
 use super::{Place, Run, SCENE, names};
 
@@ -165,8 +166,7 @@ fn a_scene_comes_from_standard_input() {
         "--engine=cpu",
     ];
     assert_eq!(piped(&place, &compared, &sweep()).code, Some(0));
-    piped(&place, &["compare", "-", "-"], &sweep())
-        .assert_refused(&["- and -: standard input is one scene, and can be read once"]);
+    piped(&place, &["compare", "-", "-"], &sweep()).assert_refused(&[READ_TWICE]);
     piped(&place, &["extract", "-", "-o", "part.csv"], "title = 1")
         .assert_refused(&["<stdin>", "title"]);
 }

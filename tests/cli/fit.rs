@@ -269,10 +269,6 @@ fn wrong_input_is_refused_before_any_file_is_made() {
     place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,15,18\n");
     let few = "2 free parameters need as many points: points.csv has 1 that detach";
     refused(&["--free", "taper,pole_radius_mm"], &[few]);
-    for command in [&["fit", "--free", "taper"][..], &["curve"]] {
-        let run = place.run(&[command, &["-", "--data", "-"]].concat());
-        run.assert_refused(&["--data -: standard input is the scene, and can be read once"]);
-    }
     place
         .run(&[
             "fit",

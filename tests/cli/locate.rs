@@ -246,8 +246,6 @@ fn bad_readings_are_refused() {
         place.write("r.csv", text);
         locate(&["--readings", "r.csv"]).assert_refused(&[said]);
     }
-    let both = place.run(&["locate", "-", "--readings", "-"]);
-    both.assert_refused(&["--readings -: standard input is the scene"]);
     let rough = Place::with(&SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
     let rough = rough.run(&[
         "locate",

@@ -231,3 +231,27 @@ fn arguments_out_of_range() {
         assert!(!place.path("outputs").join(file).exists());
     }
 }
+
+/// Message about the second input that is standard input.
+pub const READ_TWICE: &str =
+    "-: standard input is another input, and can be read once; name a file";
+
+#[test]
+fn standard_input_is_one_input() {
+    let place = Place::with(SCENE);
+    for (command, option) in [
+        ("bench - --peers - --plot p.svg", "SCENE"),
+        ("curve - --data -", "SCENE"),
+        ("explore - --data -", "SCENE"),
+        ("fit - --data - --free taper", "SCENE"),
+        ("force - --frames -", "SCENE"),
+        ("locate - --readings -", "SCENE"),
+        ("texture - --angles -", "SCENE"),
+        ("whisk - --angles - --distance 9", "SCENE"),
+        ("import - - --mm-per-pixel 1 --fps 1", "FILE"),
+    ] {
+        let command: Vec<&str> = command.split(' ').collect();
+        let why = format!("error: {option} {READ_TWICE}");
+        place.run(&command).assert_refused(&[&why]);
+    }
+}

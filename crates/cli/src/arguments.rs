@@ -59,16 +59,35 @@ pub fn parameter() -> impl TypedValueParser<Value = Parameter> {
     })
 }
 
+/// Returns a parser of the names of `values`, each with its text in `help`.
+pub fn named<T, const N: usize>(
+    values: [T; N],
+    name: fn(T) -> &'static str,
+    help: [&'static str; N],
+) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let names = values.map(name);
+    let shown = std::array::from_fn::<_, N, _>(|i| PossibleValue::new(names[i]).help(help[i]));
+    PossibleValuesParser::new(shown).try_map(move |given| {
+        let mut all = values.into_iter();
+        let value = all.find(|value| name(*value) == given);
+        value.ok_or_else(|| format!("must be one of {}", names.join(", ")))
+    })
+}
+
 /// Returns a parser of the side of the whisker that the pole is on.
 pub fn side() -> impl TypedValueParser<Value = Side> {
-    let cb = "Concave backward: the pole is on the convex side";
-    let cf = "Concave forward: the pole is on the concave side";
-    let names = [("cb", cb), ("cf", cf)];
-    let values = names.map(|(name, help)| PossibleValue::new(name).help(help));
-    PossibleValuesParser::new(values).map(|name| match name.as_str() {
-        "cb" => Side::Cb,
-        _ => Side::Cf,
-    })
+    let help = [
+        "Concave backward: the pole is on the convex side",
+        "Concave forward: the pole is on the concave side",
+    ];
+    let name = |side| match side {
+        Side::Cb => "cb",
+        Side::Cf => "cf",
+    };
+    named([Side::Cb, Side::Cf], name, help)
 }
 
 /// Returns `examples`, followed by the columns and meanings of each titled table.

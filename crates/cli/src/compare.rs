@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use whiskmap::compare::{MapComparison, QuantityComparison, Within, compare};
 use whiskmap::plan::{Channels, Digits};
+use whiskmap::scene::Scene;
 use whiskmap::store::{MapSource, StoreError};
 use whiskmap::terminal::StandardOutput;
 
@@ -79,12 +80,7 @@ fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure
         solver,
         ..
     } = args;
-    if [first, second].map(|path| path.as_path()) == [Path::new(STDOUT); 2] {
-        let why = "- and -: standard input is one scene, and can be read once; name a file";
-        return Err(Failure::Input(why.to_owned()));
-    }
-    let of_scene = |files: &mut Files, path: &Path, other: Option<&MapSource>| {
-        let scene = files.scene(path)?;
+    let of_scene = |scene: Scene, other: Option<&MapSource>| {
         let known = channel_names(&scene);
         let channels = other.map_or(Channels::STANDARD, |other| {
             let others = other.channels();
@@ -102,18 +98,19 @@ fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure
         ],
         [false, true] => {
             let stored_map = stored(files, first, &unused)?;
-            let scene_map = of_scene(files, second, Some(&stored_map))?;
+            let scene_map = of_scene(files.scene(second)?, Some(&stored_map))?;
             [stored_map, scene_map]
         }
         [true, false] => {
             let stored_map = stored(files, second, &unused)?;
-            let scene_map = of_scene(files, first, Some(&stored_map))?;
+            let scene_map = of_scene(files.scene(first)?, Some(&stored_map))?;
             [scene_map, stored_map]
         }
-        [true, true] => [
-            of_scene(files, first, None)?,
-            of_scene(files, second, None)?,
-        ],
+        [true, true] => {
+            let scenes = [files.scene(first)?, files.scene(second)?];
+            let [first_map, second_map] = scenes.map(|scene| of_scene(scene, None));
+            [first_map?, second_map?]
+        }
     })
 }
 

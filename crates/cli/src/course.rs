@@ -54,18 +54,13 @@ fn sine(text: &str) -> Result<Sine, String> {
 }
 
 impl CourseArgs {
-    /// Returns an error if the course and the `scene` are both standard input.
-    pub fn check_stdin(&self, scene: &Path) -> Result<(), Failure> {
-        let stdin = Path::new(STDOUT);
-        if self.angles.as_deref() == Some(stdin) && scene == stdin {
-            let why = "--angles -: standard input is the scene, and can be read once; name a file";
-            return Err(Failure::Input(why.to_owned()));
-        }
-        Ok(())
+    /// Declares the file of the course, if there is one.
+    pub fn declare(&self, files: &mut Files) -> Result<(), Failure> {
+        files.inputs("--angles", &self.angles)
     }
 
     /// Returns the course of the base's angle: a sine, or the samples of the CSV file that the options name.
-    pub fn course(&self, files: &mut Files) -> Result<AngleCourse, Failure> {
+    pub fn course(&self) -> Result<AngleCourse, Failure> {
         if let (None, Some([amplitude, frequency, seconds])) = (&self.angles, self.sine) {
             let sine = AngleCourse::sine(amplitude, frequency, seconds, self.rate);
             return sine.map_err(|why| Failure::Input(format!("{}: {why}", self.source())));
@@ -73,7 +68,6 @@ impl CourseArgs {
         let path = self.angles.as_deref().unwrap_or(Path::new(STDOUT));
         let table = self.columns.table(path, &AngleCourse::COLUMNS)?;
         let course = AngleCourse::of(&table)?;
-        files.input(path);
         if let Some(note) = &course.note {
             message(&format!("note: {note}"));
         }

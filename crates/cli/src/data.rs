@@ -1,7 +1,6 @@
 //! Tables that commands read: own names of columns, measured detachments, and messages about them.
 
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
 use clap::Args;
 use std::path::Path;
 use whiskmap::input::{ColumnName, CsvTable};
@@ -28,25 +27,11 @@ impl ColumnArgs {
     }
 }
 
-/// Returns an error if both the scene and the points are standard input.
-pub fn check_stdin(scene: &Path, data: &Path) -> Result<(), Failure> {
-    if [scene, data] == [Path::new(STDOUT); 2] {
-        let why = "--data -: standard input is the scene, and can be read once; name a file";
-        return Err(Failure::Input(why.to_owned()));
-    }
-    Ok(())
-}
-
 /// Reads measured points from the input `path`, whose `columns` may have other names. Prints unused columns, the number of points with a
 /// missing value, and the number of points whose angle has the sign of the other side.
-pub fn read(
-    files: &mut Files,
-    path: &Path,
-    columns: &ColumnArgs,
-) -> Result<MeasuredPoints, Failure> {
+pub fn read(path: &Path, columns: &ColumnArgs) -> Result<MeasuredPoints, Failure> {
     let table = columns.table(path, &MeasuredPoints::COLUMNS)?;
     let points = MeasuredPoints::of(&table)?;
-    files.input(path);
     if let Some(note) = &points.note {
         message(&format!("note: {note}"));
     }

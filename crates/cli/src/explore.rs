@@ -51,19 +51,19 @@ pub struct ExploreArgs {
 }
 
 pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
+    files.inputs("--data", &args.data)?;
     let path = args.file.as_path();
     let is_map = path.is_dir() || path.extension().is_some_and(|ending| ending == "exr");
     let scene = match is_map {
         true => {
-            files.input(path);
+            files.inputs("FILE", [path])?;
             MapSource::open(path)?.scene()??
         }
         false => files.scene(path)?,
     };
     let points = args.data.as_deref().map(|data| {
-        data::check_stdin(path, data)?;
         let whisker = scene.first_whisker();
-        let points = data::read(files, data, &args.columns)?.at(&whisker.place)?;
+        let points = data::read(data, &args.columns)?.at(&whisker.place)?;
         points.check_reach(&whisker.whisker, &whisker.pole)?;
         Ok::<_, Failure>(json!({ "name": points.origin, "csv": csv(&points) }))
     });

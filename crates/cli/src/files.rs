@@ -16,6 +16,8 @@ pub const STDOUT: &str = "-";
 #[derive(Debug)]
 pub struct Files {
     temporary: TemporaryFiles,
+    /// True if an input is standard input.
+    reads_stdin: bool,
     /// Path of each input for messages, and the open file or folder.
     inputs: Vec<(PathBuf, Handle)>,
     /// Option and path of each output for messages, and the absolute path behind all links.
@@ -27,6 +29,7 @@ impl Files {
     pub const fn new(temporary: TemporaryFiles) -> Self {
         Self {
             temporary,
+            reads_stdin: false,
             inputs: Vec::new(),
             outputs: Vec::new(),
         }
@@ -37,18 +40,39 @@ impl Files {
         &self.temporary
     }
 
-    /// Reads a scene, as [`read_scene`] does, and declares its files.
+    /// Declares and reads a scene, as [`read_scene`] does, and declares its files.
     pub fn scene(&mut self, path: &Path) -> Result<Scene, Failure> {
+        self.inputs("SCENE", [path])?;
         let scene = read_scene(path)?;
-        self.input(path);
         for file in scene.csv_files() {
-            self.input(file);
+            self.declare(file);
         }
         Ok(scene)
     }
 
-    /// Declares an input: a file, a store, or standard input.
-    pub fn input(&mut self, path: &Path) {
+    /// Declares the inputs of the command-line option `option`, before any input is read: files, stores, or standard input.
+    ///
+    /// # Errors
+    /// If standard input is an input twice.
+    pub fn inputs(
+        &mut self,
+        option: &str,
+        paths: impl IntoIterator<Item = impl AsRef<Path>>,
+    ) -> Result<(), Failure> {
+        for path in paths {
+            let path = path.as_ref();
+            let is_stdin = path == Path::new(STDOUT);
+            if is_stdin && self.reads_stdin {
+                let why = "standard input is another input, and can be read once; name a file";
+                return Err(Failure::Input(format!("{option} -: {why}")));
+            }
+            self.reads_stdin |= is_stdin;
+            self.declare(path);
+        }
+        Ok(())
+    }
+
+    fn declare(&mut self, path: &Path) {
         let input = stored(path, Handle::stdin);
         self.inputs
             .extend(input.map(|input| (path.to_owned(), input)));

@@ -1,14 +1,14 @@
 //! Command `whiskmap force`.
 
-use super::arguments::{column_help, span};
+use super::arguments::{column_help, named, span};
 use super::data::ColumnArgs;
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
-use clap::{Args, ValueEnum};
-use std::path::{Path, PathBuf};
+use clap::Args;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use whiskmap::force::{
     self, BaseAxis, CurvatureFrames, ForceMethod, ForceOptions, FrameForce, forces_until,
@@ -34,6 +34,11 @@ at this distance of the contact from the base.
 With --baseline or a column contact, the change of curvature is that from the mean of the frames without contact, and their scatter \
 gives a standard deviation of each force. The scene's [uncertainty] may give curvature_sd_per_mm, contact_sd_mm and angle_sd_deg.";
 
+const AXIS_HELP: [&str; 2] = [
+    "Tangent of the bent whisker at its base",
+    "Axis of the follicle, which a push turns",
+];
+
 #[derive(Debug, Args)]
 #[command(
     after_help = EXAMPLES,
@@ -51,8 +56,8 @@ pub struct ForceArgs {
     #[arg(long)]
     model: bool,
     /// First axis of the frame of the base, in FILE and in the table
-    #[arg(long, value_enum, default_value = "tangent")]
-    axis: AxisName,
+    #[arg(long, default_value = "tangent", value_parser = named(BaseAxis::ALL, BaseAxis::name, AXIS_HELP))]
+    axis: BaseAxis,
     /// Subtract the mean change of curvature in the frames of this time, which must be without contact
     #[arg(long, value_name = "FROM..TO", allow_hyphen_values = true, value_parser = span)]
     baseline: Option<[f64; 2]>,
@@ -60,19 +65,8 @@ pub struct ForceArgs {
     outputs: OutputArgs,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum AxisName {
-    /// Tangent of the bent whisker at its base
-    Tangent,
-    /// Axis of the follicle, which a push turns
-    Follicle,
-}
-
 pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
-    if [&args.whisker.scene, &args.frames] == [Path::new(STDOUT); 2] {
-        let why = "--frames -: standard input is the scene, and can be read once; name a file";
-        return Err(Failure::Input(why.to_owned()));
-    }
+    files.inputs("--frames", [&args.frames])?;
     let (scene, whisker) = args.whisker.without_friction(files, "force")?;
     let method = match args.model {
         true => ForceMethod::Model,
@@ -82,7 +76,6 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         .columns
         .table(&args.frames, &CurvatureFrames::COLUMNS)?;
     let read = CurvatureFrames::of(&table, whisker.length_mm, method)?;
-    files.input(&args.frames);
     if let Some(note) = &read.note {
         message(&format!("note: {note}"));
     }
@@ -98,10 +91,7 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
             .as_ref()
             .map(|deviations| deviations.frames)
             .unwrap_or_default(),
-        axis: match args.axis {
-            AxisName::Tangent => BaseAxis::Tangent,
-            AxisName::Follicle => BaseAxis::Follicle,
-        },
+        axis: args.axis,
         ..ForceOptions::new(method)
     };
     let frames = &read.frames;

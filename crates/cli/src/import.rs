@@ -1,13 +1,13 @@
 //! Command `whiskmap import`.
 
-use super::arguments::{column_help, duration, length, whole};
+use super::arguments::{column_help, duration, length, named, whole};
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
 use super::outputs::{OutputTable, write_table};
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{ArgAction, Args};
 use serde::Serialize;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use whiskmap::input::Quantity;
 use whiskmap::terminal::StandardOutput;
@@ -28,6 +28,17 @@ frame,x,y. Positions are in pixels, and the y axis of the image points downward.
 The base is the end of the whisker that moves less, or the one nearer to --follicle. The image is mirrored if the whisker turns clockwise \
 from base to tip. Lost frames are rows with a reason.";
 
+const FORMAT_HELP: [&str; 3] = [
+    "CSV file with the rows scorer, bodyparts and coords",
+    "Measurements of Janelia's whisk as CSV",
+    "Points without a header: x,y or frame,x,y",
+];
+
+const FACE_AXIS_HELP: [&str; 2] = [
+    "The face is at the top or at the bottom of the image",
+    "The face is at the left or at the right of the image",
+];
+
 #[derive(Debug, Args)]
 #[command(
     after_help = EXAMPLES,
@@ -45,8 +56,8 @@ pub struct ImportArgs {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
     /// Format of the files [default: recognised by the first line]
-    #[arg(long, value_enum)]
-    format: Option<Format>,
+    #[arg(long, value_parser = named(TrackingFormat::ALL, TrackingFormat::name, FORMAT_HELP))]
+    format: Option<TrackingFormat>,
     /// Scale of the image: size of a pixel, in mm or with a unit
     #[arg(long, value_name = "MM", value_parser = length)]
     mm_per_pixel: f64,
@@ -84,8 +95,8 @@ pub struct ImportArgs {
     #[arg(long, value_name = "YES/NO", action = ArgAction::Set, value_parser = yes_or_no)]
     mirror: Option<bool>,
     /// Axis of the image from which the angles of whisk are measured [default: found by the ends of the segments]
-    #[arg(long, value_enum)]
-    face_axis: Option<Axis>,
+    #[arg(long, value_parser = named(FaceAxis::ALL, FaceAxis::name, FACE_AXIS_HELP))]
+    face_axis: Option<FaceAxis>,
     /// Centre of the pole: X,Y in pixels, or a body part of DeepLabCut
     #[arg(long, value_name = "X,Y/NAME", allow_hyphen_values = true, requires = "contact_within", value_parser = pole)]
     pole: Option<ImagePole>,
@@ -98,24 +109,6 @@ pub struct ImportArgs {
     /// Time of the frame in which the angle of the base is 0, in s or with a unit [default: first touch on CB]
     #[arg(long, value_name = "TIME", value_parser = time)]
     zero: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// CSV file with the rows scorer, bodyparts and coords
-    Deeplabcut,
-    /// Measurements of Janelia's whisk as CSV
-    Whisk,
-    /// Points without a header: x,y or frame,x,y
-    Xy,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Axis {
-    /// The face is at the top or at the bottom of the image
-    X,
-    /// The face is at the left or at the right of the image
-    Y,
 }
 
 fn number(text: &str) -> Result<f64, String> {
@@ -177,11 +170,7 @@ impl From<TrackingError> for Failure {
 impl ImportArgs {
     fn options(&self) -> TrackingOptions {
         let mut options = TrackingOptions::new(self.mm_per_pixel, self.fps.unwrap_or(1.0));
-        options.format = self.format.map(|format| match format {
-            Format::Deeplabcut => TrackingFormat::DeepLabCut,
-            Format::Whisk => TrackingFormat::Whisk,
-            Format::Xy => TrackingFormat::Xy,
-        });
+        options.format = self.format;
         options.whisker = self.whisker;
         options.points.clone_from(&self.points);
         options.likelihood = self.likelihood;
@@ -190,10 +179,7 @@ impl ImportArgs {
         options.fit_to_mm = self.fit_to;
         options.degree = self.degree.map(|degree| degree as usize);
         options.mirror = self.mirror;
-        options.face_axis = self.face_axis.map(|axis| match axis {
-            Axis::X => FaceAxis::X,
-            Axis::Y => FaceAxis::Y,
-        });
+        options.face_axis = self.face_axis;
         options.pole.clone_from(&self.pole);
         options.contact_within_mm = self.contact_within;
         options.taper = self.taper;
@@ -203,14 +189,7 @@ impl ImportArgs {
 }
 
 pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
-    let stdin = args.files.iter().filter(|file| *file == Path::new(STDOUT));
-    if stdin.count() > 1 {
-        let why = "FILE -: standard input can be read once; name files";
-        return Err(Failure::Input(why.to_owned()));
-    }
-    for file in &args.files {
-        files.input(file);
-    }
+    files.inputs("FILE", &args.files)?;
     let output = files.output("--output", &args.output)?;
     let tracking = Tracking::read(&args.files, &args.options(), &AtomicBool::new(false))?;
     let shape = args.shape.map(|frame| tracking.shape(frame)).transpose()?;

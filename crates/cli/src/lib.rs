@@ -31,6 +31,7 @@ mod map;
 mod map_format;
 mod marks;
 mod outputs;
+mod overview;
 mod plan;
 mod pole;
 mod progress;
@@ -66,42 +67,17 @@ use whiskmap::store::TemporaryFiles;
 
 /// Compute where a whisker pushed against a pole stays in contact, slips off or is pulled off
 #[derive(Debug, Parser)]
-#[command(name = "whiskmap", version, bin_name = "whiskmap", arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(
+    name = "whiskmap",
+    version,
+    bin_name = "whiskmap",
+    arg_required_else_help = true
+)]
+#[command(help_template = overview::template(), after_help = overview::EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
 }
-
-const EXAMPLES: &str = "\
-Examples:
-  whiskmap map scenes/cone.toml                      # outputs/cone.exr and outputs/cone.png
-  whiskmap explore scenes/cone.toml                  # one page with the solver inside
-  whiskmap plan scenes/cone.toml                     # cost of a map: memory, seconds, bytes
-  whiskmap render outputs/cone.exr --channel force_un
-  whiskmap map scenes/morphology.toml --format zarr --shard 0/8
-  whiskmap submit scenes/morphology.toml --shards 8 > sweep.sbatch
-  whiskmap status outputs/morphology.zarr            # finished and missing blocks
-  whiskmap extract outputs/morphology.zarr --at taper=0.5 -o slice.csv
-  whiskmap compare outputs/cone.exr gpu/cone.exr --within 1e-5
-  whiskmap curve scenes/cone.toml --plot curve.png
-  whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
-  whiskmap curve scenes/uncertain.toml --samples 500 --plot bands.png
-  whiskmap fit scenes/cone.toml --data scenes/cone_points.csv --free tip_radius_um
-  whiskmap branch scenes/cone.toml --distance 15.66  # stable and unstable states
-  whiskmap shape scenes/cone.toml --distance 15.66 --push-angle 10
-  whiskmap sensitivity scenes/cone.toml --distance 15.66
-  whiskmap whisk scenes/cone.toml --distance 15.66 --sine 40deg,10,0.2
-  whiskmap texture scenes/texture_cone.toml --plot texture.png
-  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --fps 500
-  whiskmap force scenes/cone.toml --frames scenes/frames.csv
-  whiskmap locate scenes/cone.toml --base-moment 60nNm --base-force-y 6uN
-  whiskmap design scenes/robot.toml --distance 60 --slip-off 30deg --for taper
-  whiskmap reproduce                                 # figures 1 to 7 of the paper
-  whiskmap verify
-  whiskmap bench scenes/cone.toml
-  whiskmap devices
-  whiskmap completions bash
-  whiskmap man curve | man -l -";
 
 #[derive(Debug, Subcommand)]
 #[command(defer = true)]
@@ -132,17 +108,17 @@ enum Command {
     Shape(shape::ShapeArgs),
     /// Differentiate the push angle at detachment by every number of a scene
     Sensitivity(sensitivity::SensitivityArgs),
-    /// Compute the course of a whisker that whisks against one pole: touches, forces and detachments over time
+    /// Compute touches, forces and detachments of a whisker that whisks against a pole
     Whisk(whisk::WhiskArgs),
-    /// Compute the course of a whisker behind a rough surface: stuck and slipping phases, and dwell times
+    /// Compute stuck and slipping phases of a whisker behind a rough surface
     Texture(texture::TextureArgs),
-    /// Convert the file of a whisker tracker: frames for `whisk` and `force`, shapes, detachments
+    /// Convert the files of a whisker tracker to frames, shapes or detachments
     Import(import::ImportArgs),
     /// Compute contact forces from the change of curvature in the frames of a film
     Force(force::ForceArgs),
     /// Find the contacts that belong to moment and force at the base
     Locate(locate::LocateArgs),
-    /// Find the values of a parameter with which a push reaches an angle at detachment, or a largest load
+    /// Find the values of a parameter that give an angle at detachment, or a largest load
     Design(design::DesignArgs),
     /// Draw the theory of the paper's Figs. 1 to 7, with a table for each panel
     Reproduce(reproduce::ReproduceArgs),

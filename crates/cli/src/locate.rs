@@ -3,12 +3,12 @@
 use super::arguments::column_help;
 use super::data::ColumnArgs;
 use super::failure::{Failure, message};
-use super::files::{Files, STDOUT};
+use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
 use super::pole::WhiskerArgs;
 use clap::{ArgGroup, Args};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use whiskmap::input::Quantity;
 use whiskmap::locate::{
     self, BaseReading, BaseReadings, LocatedState, Locator, MOST_ANGLE, MOST_LOAD,
@@ -123,7 +123,7 @@ fn force_sd(text: &str) -> Result<f64, String> {
 
 impl LocateArgs {
     /// Returns the readings of the file, or the one of the options.
-    fn readings(&self, files: &mut Files) -> Result<Vec<BaseReading>, Failure> {
+    fn readings(&self) -> Result<Vec<BaseReading>, Failure> {
         let Some(path) = &self.readings else {
             let reading = BaseReading {
                 moment_nnm: self.base_moment,
@@ -135,7 +135,6 @@ impl LocateArgs {
         };
         let table = self.columns.table(path, &BaseReadings::COLUMNS)?;
         let read = BaseReadings::of(&table)?;
-        files.input(path);
         if let Some(note) = &read.note {
             message(&format!("note: {note}"));
         }
@@ -168,12 +167,7 @@ impl LocateArgs {
 
 pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
     args.check_numbers()?;
-    if args.readings.as_deref() == Some(Path::new(STDOUT))
-        && args.whisker.scene == Path::new(STDOUT)
-    {
-        let why = "--readings -: standard input is the scene, and can be read once; name a file";
-        return Err(Failure::Input(why.to_owned()));
-    }
+    files.inputs("--readings", &args.readings)?;
     let (scene, whisker) = args.whisker.without_friction(files, "locate")?;
     if args.map {
         let mut outputs = args.outputs.open(files)?;
@@ -189,7 +183,7 @@ pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
         let picture = |size| Ok(shared_states(&scene.title, grid, &map, is_straight, size)?);
         return outputs.finish_picture(picture, []);
     }
-    let readings = args.readings(files)?;
+    let readings = args.readings()?;
     let mut outputs = args.outputs.open(files)?;
     let deviations = args.moment_sd.zip(args.force_sd);
     let deviations = deviations.map(|(moment_nnm, force_un)| SensorDeviations {

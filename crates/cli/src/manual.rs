@@ -92,8 +92,9 @@ mod tests {
     }
 
     #[test]
-    fn the_page_has_a_section_with_all_options_of_each_command() {
+    fn the_page_has_a_row_and_a_section_with_all_options_of_each_command() {
         let program = definitions();
+        let (start, _) = PAGE.split_once("\n## ").unwrap_or_default();
         let mut missing = Vec::new();
         for command in program.get_subcommands() {
             let name = command.get_name();
@@ -103,6 +104,8 @@ mod tests {
                 heading.split(", ").any(|word| word == name)
             });
             let section = section.unwrap_or_else(|| panic!("no section for {name}"));
+            let row = format!("\n| `{name}` | ");
+            assert!(start.contains(&row), "no row of {name} in the first table");
             let mentioned = mentioned(section);
             let unnamed = defined(command)
                 .into_iter()

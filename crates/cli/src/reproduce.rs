@@ -69,7 +69,8 @@ fn points(
     let Some((path, columns)) = table else {
         return Ok(Vec::new());
     };
-    let points = data::read(files, path, columns)?;
+    files.inputs(option, [path])?;
+    let points = data::read(path, columns)?;
     if !points.whiskers.is_empty() {
         let path = path.display();
         let must = "has a column whisker; the points of a figure belong to one whisker";

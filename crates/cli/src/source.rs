@@ -22,9 +22,8 @@ pub fn stored(files: &mut Files, path: &Path, solver: &SolverArgs) -> Result<Map
         );
         return Err(Failure::Input(why));
     }
-    let map = MapSource::open(path)?;
-    files.input(path);
-    Ok(map)
+    files.inputs("MAP", [path])?;
+    Ok(MapSource::open(path)?)
 }
 
 /// Returns the names of all channels that a map of `scene` can have, derivatives last, `[channel]`.

@@ -60,7 +60,7 @@ pub struct TextureArgs {
 }
 
 pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
-    args.course.check_stdin(&args.whisker.scene)?;
+    args.course.declare(files)?;
     let scene = args.whisker.read(files, "texture")?;
     let surface = scene.surface.ok_or_else(|| {
         let path = args.whisker.scene.display();
@@ -75,7 +75,7 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
             "contact.friction = {friction}: must be 0, because asperities have no friction in this model"
         )));
     }
-    let course = args.course.course(files)?;
+    let course = args.course.course()?;
     let mut outputs = args.outputs.open(files)?;
     let mut table =
         |option, path: &Option<PathBuf>| args.outputs.table(files, option, path.as_deref());

@@ -1,13 +1,13 @@
 //! Command `whiskmap whisk`.
 
-use super::arguments::{column_help, duration};
+use super::arguments::{column_help, duration, named};
 use super::course::CourseArgs;
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::{OutputArgs, write_table};
 use super::pole::{self, PoleArgs, refuse, title};
-use clap::{ArgGroup, Args, ValueEnum};
+use clap::{ArgGroup, Args};
 use std::path::PathBuf;
 use whiskmap::render::courses;
 use whiskmap::scene::{digits, rounded};
@@ -29,13 +29,10 @@ is contact. A first angle beyond first touch needs --start: the whisker may be f
 An angle of --angles may be missing: an empty cell, or NaN. Its sample has no state. After such a gap the course is undecided until \
 only one state is possible, unless --bridge continues it.";
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum StartChoice {
-    /// The whisker is free. At an angle beyond first touch, it has passed the pole
-    Free,
-    /// The pole bends the whisker, as after a push from first touch to the first angle: on CB if that side holds it, otherwise on CF
-    Contact,
-}
+const START_HELP: [&str; 2] = [
+    "The whisker is free. At an angle beyond first touch, it has passed the pole",
+    "The pole bends the whisker, as after a push from first touch to the first angle: on CB if that side holds it, otherwise on CF",
+];
 
 #[derive(Debug, Args)]
 #[command(
@@ -49,8 +46,8 @@ pub struct WhiskArgs {
     #[command(flatten)]
     course: CourseArgs,
     /// State of the whisker at the first angle
-    #[arg(long, value_name = "STATE")]
-    start: Option<StartChoice>,
+    #[arg(long, value_name = "STATE", value_parser = named(CourseStart::ALL, CourseStart::name, START_HELP))]
+    start: Option<CourseStart>,
     /// Continue the course along a straight line across gaps of missing angles, if the angles around a gap are at most TIME apart
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with = "sine")]
     bridge: Option<f64>,
@@ -63,18 +60,15 @@ pub struct WhiskArgs {
 
 pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let distance = args.pole.distance;
-    args.course.check_stdin(&args.pole.whisker.scene)?;
+    args.course.declare(files)?;
     let (scene, whisker) = pole::read(files, &args.pole.whisker, "whisk", &[distance])?;
-    let course = args.course.course(files)?;
+    let course = args.course.course()?;
     let mut outputs = args.outputs.open(files)?;
     let events = args
         .outputs
         .table(files, "--events", args.events.as_deref())?;
     let mut options = WhiskOptions::default();
-    options.start = args.start.map(|start| match start {
-        StartChoice::Free => CourseStart::Free,
-        StartChoice::Contact => CourseStart::Contact,
-    });
+    options.start = args.start;
     options.curvature_at_mm = args.course.curvature_at;
     options.bridge_s = args.bridge.unwrap_or_default();
     let found = whisk::whisk_with(&whisker, &scene.pole, distance, &course, &options);

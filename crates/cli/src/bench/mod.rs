@@ -54,10 +54,9 @@ pub struct BenchArgs {
 }
 
 pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
+    files.inputs("--peers", &args.peers)?;
     let scene = files.scene(&args.scene)?;
-    let peers = args.peers.as_deref();
-    peers.inspect(|path| files.input(path));
-    let peers = peers.map(Peers::read).transpose()?;
+    let peers = args.peers.as_deref().map(Peers::read).transpose()?;
     let json = args.json.as_deref();
     let output = json.map(|path| files.output("--json", path)).transpose()?;
     let picture = args.picture.open(files)?;

@@ -4,7 +4,7 @@ mod plot;
 mod points;
 
 use super::arguments::{column_help, length};
-use super::data::{self, ColumnArgs};
+use super::data::ColumnArgs;
 use super::derivatives::{DerivativeArgs, DerivativeColumns};
 use super::failure::{Failure, check_resolved};
 use super::files::Files;
@@ -124,9 +124,7 @@ pub struct CurveArgs {
 }
 
 pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
-    if let Some(data) = &args.data {
-        data::check_stdin(&args.scene, data)?;
-    }
+    files.inputs("--data", &args.data)?;
     let mut scene = args.selection.of_scene(&files.scene(&args.scene)?)?;
     check_strict(args.strict, &scene)?;
     if !args.distance.is_empty() {

@@ -27,7 +27,7 @@ pub fn compare(
         pole,
         place,
     } = scene.first_whisker();
-    let points = data::read(files, path, &args.columns)?.at(&place)?;
+    let points = data::read(path, &args.columns)?.at(&place)?;
     points.check_reach(&whisker, &pole)?;
     let measured_mm = points.points.iter().map(|point| point.distance_mm);
     let distances = covering(&scene.grid.distance_mm, measured_mm);

@@ -2,14 +2,13 @@
 
 mod table;
 
-use super::arguments::parameter;
+use super::arguments::{named, parameter};
 use super::data::{self, ColumnArgs};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::write;
 use super::pole::{WhiskerArgs, check_single};
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -19,6 +18,12 @@ use whiskmap::fit::{Fit, FitError, FitLoss, fit_until};
 use whiskmap::scene::Parameter;
 use whiskmap::store::Output;
 use whiskmap::terminal::StandardOutput;
+
+const LOSS_HELP: [&str; 3] = [
+    "The square: an outlier pulls with all of its distance",
+    "Smooth, and linear far away",
+    "The square up to one standard deviation, then a line",
+];
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -54,7 +59,7 @@ pub struct FitArgs {
     #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = parameter())]
     free: Vec<Parameter>,
     /// Loss of residuals in standard deviations: soft-l1 and huber grow linearly beyond one, so that outliers pull less
-    #[arg(long, value_name = "LOSS", default_value = "squares", value_parser = loss())]
+    #[arg(long, value_name = "LOSS", default_value = "squares", value_parser = named(FitLoss::ALL, FitLoss::name, LOSS_HELP))]
     loss: FitLoss,
     /// Write the scene with the fitted values to FITTED.toml; - is standard output
     #[arg(short, long, value_name = "FITTED.toml")]
@@ -64,19 +69,10 @@ pub struct FitArgs {
     json: Option<PathBuf>,
 }
 
-/// Returns a parser of the names of losses.
-fn loss() -> impl TypedValueParser<Value = FitLoss> {
-    let names = PossibleValuesParser::new(FitLoss::ALL.map(FitLoss::name));
-    names.map(|name| {
-        let mut all = FitLoss::ALL.into_iter();
-        all.find(|loss| loss.name() == name).unwrap_or_default()
-    })
-}
-
 pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
-    data::check_stdin(&args.whisker.scene, &args.data)?;
+    files.inputs("--data", [&args.data])?;
     let scene = args.whisker.selected(files)?;
-    let points = data::read(files, &args.data, &args.columns)?;
+    let points = data::read(&args.data, &args.columns)?;
     // Points that name their whiskers belong to several whiskers of a table.
     let (scene, points) = match points.whiskers.is_empty() || scene.whisker_count() == 1 {
         true => {
