@@ -120,13 +120,11 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                 let group = self.unfinished.next().unwrap_or_default();
                 whiskers = group.map(|index| scene.whisker(index)).collect();
                 let size = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
-                for (place, _) in whiskers
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, found)| found.is_err())
-                {
-                    panels.insert(place, Panel::without_whisker(size, channels));
-                    cells += size;
+                for (place, found) in whiskers.iter().enumerate() {
+                    if found.is_err() {
+                        panels.insert(place, Panel::without_whisker(size, channels));
+                        cells += size;
+                    }
                 }
             }
             self.summary.is_cancelled |= on_progress(cells).is_break();

@@ -22,7 +22,7 @@ pub struct Buffers {
 }
 
 impl Buffers {
-    /// Lets the device's clock time the submissions, if it has a clock.
+    /// Adds time stamps, if the device has a clock.
     pub fn timed(mut self, device: &Device) -> Result<Self, EngineError> {
         if self.stamps.is_none() {
             self.stamps = Stamps::new(device)?;
@@ -30,8 +30,9 @@ impl Buffers {
         Ok(self)
     }
 
-    /// Submits a run of `pipeline` with these `inputs`, in the order of their bindings; the binding after them is the buffer that the shader
-    /// writes. Each of the `invocations` writes `each` bytes of `what`, and their groups are fewer than `u32` can count.
+    /// Submits a run of `pipeline` with these `inputs`, in the order of their bindings; the next binding is the buffer that the shader writes.
+    /// Each of the `invocations` writes `each` bytes of `what`. Their groups are fewer than `u32` can count. The results are mapped for
+    /// [`Buffers::read`].
     pub fn submit(
         &mut self,
         device: &Device,
