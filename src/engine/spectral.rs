@@ -48,10 +48,12 @@ impl Spectral {
         let rows: Vec<_> = batch.rows.iter().zip(cells.rows_mut(batch)).collect();
         rows.into_par_iter()
             .enumerate()
-            .for_each(|(index, (row, into))| {
+            .for_each(|(index, (row, mut into))| {
                 let of_row = (batch.expansions.get(index), batch.known.get(index));
                 match of_row {
-                    (Some(Some(expansion)), _) => write(batch, row, expansion, self.most, into),
+                    (Some(Some(expansion)), _) => {
+                        write(batch, row, expansion, self.most, &mut into)
+                    }
                     (_, Some(Some(known))) => {
                         known.write(row, &batch.sides[row.side].columns.pushes, into);
                     }
@@ -63,7 +65,13 @@ impl Spectral {
 }
 
 /// Writes the cells of `row` before its end, and those without a state.
-fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, into: RowCells) {
+pub(super) fn write(
+    batch: &RowBatch,
+    row: &BatchRow,
+    expansion: &RowExpansion,
+    most: f64,
+    into: &mut RowCells,
+) {
     let side = &batch.sides[row.side];
     let sheet = &side.sheet;
     let distance = sheet.rows[row.row].pole_distance;
@@ -76,7 +84,7 @@ fn write(batch: &RowBatch, row: &BatchRow, expansion: &RowExpansion, most: f64, 
     let RowCells {
         outcome,
         residual,
-        mut values,
+        values,
         points,
         ..
     } = into;

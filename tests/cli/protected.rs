@@ -124,15 +124,31 @@ fn redirected_standard_output_is_no_other_output() {
         assert_eq!(map.stdout(stdout).status().unwrap().code(), Some(0));
         assert!(place.bytes(name) == expected, "{name}");
     }
+}
 
-    // The shell appends to the scene.
-    let stdout = fs::File::options()
-        .append(true)
-        .open(place.path("scene.toml"));
-    let mut appended = place.plain_command(&["curve", "scene.toml"]);
-    Run::of(&appended.stdout(stdout.unwrap()).output().unwrap())
-        .assert_refused(&["--csv -: is the input scene.toml"]);
-    assert_eq!(place.bytes("scene.toml"), SCENE.as_bytes());
+/// The shell appends tables and summaries to an input.
+#[test]
+fn standard_output_is_no_input() {
+    let place = Place::with(SCENE);
+    place.map(&["scene.toml", "-o."]);
+    let before = place.all();
+    for (input, arguments) in [
+        ("scene.toml", &["curve", "scene.toml"][..]),
+        ("scene.toml", &["plan", "scene.toml"]),
+        ("scene.toml", &["plan", "-"]),
+        ("scene.toml", &["map", "scene.toml", "-o."]),
+        ("scene.exr", &["compare", "scene.exr", "scene.toml"]),
+        ("scene.exr", &["extract", "scene.exr", "-o=x.csv"]),
+    ] {
+        let stdin = fs::File::open(place.path(input)).unwrap();
+        let stdout = fs::File::options().append(true).open(place.path(input));
+        let mut appended = place.plain_command(arguments);
+        let appended = appended.stdin(stdin).stdout(stdout.unwrap());
+        let name = if arguments[1] == "-" { "-" } else { input };
+        let said = format!("standard output: is the input {name}; name another file");
+        Run::of(&appended.output().unwrap()).assert_refused(&[&said]);
+        assert!(place.all() == before, "{arguments:?}");
+    }
 }
 
 #[test]

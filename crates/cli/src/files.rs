@@ -45,7 +45,7 @@ impl Files {
         self.inputs("SCENE", [path])?;
         let scene = read_scene(path)?;
         for file in scene.csv_files() {
-            self.declare(file);
+            self.declare(file)?;
         }
         Ok(scene)
     }
@@ -53,7 +53,7 @@ impl Files {
     /// Declares the inputs of the command-line option `option`, before any input is read: files, stores, or standard input.
     ///
     /// # Errors
-    /// If standard input is an input twice.
+    /// If standard input is an input twice, or standard output is redirected to an input.
     pub fn inputs(
         &mut self,
         option: &str,
@@ -67,15 +67,22 @@ impl Files {
                 return Err(Failure::Input(format!("{option} -: {why}")));
             }
             self.reads_stdin |= is_stdin;
-            self.declare(path);
+            self.declare(path)?;
         }
         Ok(())
     }
 
-    fn declare(&mut self, path: &Path) {
+    /// Declares an input, unless standard output, to which every command writes a summary, is redirected to it.
+    fn declare(&mut self, path: &Path) -> Result<(), Failure> {
         let input = stored(path, Handle::stdin);
+        if input.is_some() && input == stored(Path::new(STDOUT), Handle::stdout) {
+            let input = path.display();
+            let why = format!("standard output: is the input {input}; name another file");
+            return Err(Failure::Input(why));
+        }
         self.inputs
             .extend(input.map(|input| (path.to_owned(), input)));
+        Ok(())
     }
 
     /// Opens the output file of the command-line option `option`. A file to which standard output is redirected is standard output.

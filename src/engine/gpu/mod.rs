@@ -213,7 +213,8 @@ impl Engine for Gpu {
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {
         self.working(|gpu| {
-            gpu.pending.push_back(PendingBatch::new(batch));
+            gpu.pending
+                .push_back(PendingBatch::new(batch, gpu.precision));
             gpu.send()
         })
     }

@@ -67,13 +67,13 @@ impl Packed {
     /// Packs some `rows` of a batch for shaders of this precision.
     pub fn new(precision: Precision, batch: &RowBatch, rows: Range<usize>) -> Self {
         match precision {
-            Precision::F32 => packed::<f32>(batch, rows),
-            Precision::F64 => packed::<f64>(batch, rows),
+            Precision::F32 => packed::<f32>(batch, rows, precision.near_touch()),
+            Precision::F64 => packed::<f64>(batch, rows, precision.near_touch()),
         }
     }
 }
 
-fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
+fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>, near_touch: f64) -> Packed {
     let mut packed = Packed::default();
     let groups: Vec<usize> = groups(&functions(batch.channels)).collect();
     let width = TOGETHER * groups.len();
@@ -120,7 +120,14 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
         };
         let mut from = row.first_cell;
         let before = row.columns_before(expansion.end_push, &columns.pushes);
+        let near = near_touch * expansion.end_push;
+        let first_column = columns.pushes.partition_point(|push| *push < near);
         for (range, columns) in row.columns.iter().zip(before) {
+            let columns = columns.start.max(first_column)..columns.end;
+            if columns.is_empty() {
+                from += range.len();
+                continue;
+            }
             // A submission has fewer cells and coefficients, and a row fewer columns, than `u32` can count.
             packed.heads.push([
                 packed.cells as u32,
@@ -129,7 +136,8 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>) -> Packed {
                 (terms.len() / width - first) as u32,
             ]);
             packed.rows.extend_from_slice(bytemuck::bytes_of(&numbers));
-            packed.runs.push(from..from + columns.len());
+            let start = from + columns.start - range.start;
+            packed.runs.push(start..start + columns.len());
             packed.cells += columns.len();
             from += range.len();
         }

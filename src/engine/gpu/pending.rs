@@ -1,7 +1,7 @@
 //! Pending batches: a batch on the device is sent in parts, whose cells return in the same order.
 
 use crate::classify::Outcome;
-use crate::engine::{BatchRow, Cells, RowBatch};
+use crate::engine::{BatchRow, Cells, Precision, RowBatch, spectral};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -18,13 +18,27 @@ pub struct PendingBatch {
 }
 
 impl PendingBatch {
-    pub fn new(batch: Arc<RowBatch>) -> Self {
+    /// Creates the pending batch, with the cells that need no device: those beyond the ends of rows, and those [near touch](Precision::near_touch).
+    pub fn new(batch: Arc<RowBatch>, precision: Precision) -> Self {
         let mut cells = Cells::new(&batch, Outcome::NoRow);
-        for (row, expansion) in batch.rows.iter().zip(&batch.expansions) {
-            if let Some(expansion) = expansion {
-                let outcomes = &mut cells.outcome[row.cells()];
-                expansion.write_beyond(row, &batch.sides[row.side].columns.pushes, outcomes);
+        let rows = batch.rows.iter().zip(&batch.expansions);
+        for ((row, expansion), mut into) in rows.zip(cells.rows_mut(&batch)) {
+            let Some(expansion) = expansion else {
+                continue;
+            };
+            let pushes = &batch.sides[row.side].columns.pushes;
+            let near = precision.near_touch() * expansion.end_push;
+            let near_row = BatchRow {
+                columns: row.columns_before(near, pushes).collect(),
+                ..*row
+            };
+            let count = near_row.cells().len();
+            if count > 0 {
+                let goal = precision.goal();
+                spectral::write(&batch, &near_row, expansion, goal, &mut into);
+                into.outcome[count..].fill(Outcome::NoRow);
             }
+            expansion.write_beyond(row, pushes, into.outcome);
         }
         Self {
             cells,

@@ -22,6 +22,16 @@ impl Precision {
         }
     }
 
+    /// Returns the part of the push angle at a row's end up to which the host evaluates cells. Shaders compute differences from the end. In `f32` these
+    /// have errors of up to 7e-7 of the values there, and values near first touch are small.
+    #[must_use]
+    pub const fn near_touch(self) -> f64 {
+        match self {
+            Self::F32 => 1.0 / 16.0,
+            Self::F64 => 0.0,
+        }
+    }
+
     /// Returns the limits of the shaders' certificate as pairs of the name in WGSL and the value.
     ///
     /// `ROUNDING` bounds what rounding adds to the residual, in whisker lengths: measured at most 3.4e-7 in `f32` on whiskers of every kind
