@@ -56,6 +56,32 @@ fn cylinder() -> Sheet {
     Sheet::new(Method::fine(), &Rod::default(), Side::Cb, &[0.5])
 }
 
+/// A straight whisker that reaches the pole just with its tip is pulled off by any push, with friction, too: the tip moves away from a point under
+/// each load. Its row is a point, at which a state exists.
+#[test]
+fn a_row_at_the_reach_of_a_straight_whisker_ends_at_first_touch() {
+    for taper in [0.0, 0.3, 0.8, 0.95] {
+        for friction in [0.0, 0.02, 0.05, 0.1, 0.2, 0.5] {
+            for distances in [&[1.0][..], &[0.5, 1.0]] {
+                let rod = Rod {
+                    taper,
+                    friction,
+                    ..Rod::default()
+                };
+                let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, distances);
+                let row = distances.len() - 1;
+                let crossings = &sheet.crossings[row];
+                let what = format!("{taper} {friction} {distances:?}");
+                assert_eq!(crossings[..], [Crossing::at_touch(&rod)], "{what}");
+                let boundary = RowBoundary::new(true, crossings);
+                let [at, beyond] = [(0.0, Outcome::Solved), (0.1, Outcome::OffSheet)]
+                    .map(|(push, outcome)| boundary.classify(push, outcome).0);
+                assert_eq!([at, beyond], [Regime::Contact, Regime::PullOff], "{what}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_contact_is_at_the_tip_within_1e_12_of_it() {
     let sheet = cylinder();

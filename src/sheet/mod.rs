@@ -115,8 +115,10 @@ impl Sheet {
             let is_pair = usize::from(touches) + crossings.len() == 2;
             let is_simple = crossings.is_empty() && !touches
                 || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
+            // Where the tip moves away from the pole under a load, the level curve is this point alone, which no continuation can follow.
+            let is_point = row.is_at_reach() && matches!(crossings, [end] if end.is_at_touch());
             let is_inside = row.pole_distance <= rod.pole.abs();
-            !(is_certified && is_simple) || is_inside
+            !(is_certified && is_simple || is_point) || is_inside
         };
         let follow = |(rows, crossings): (&[Row], &mut [Vec<Crossing>])| {
             let continued: Vec<usize> = (0..rows.len())

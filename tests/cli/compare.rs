@@ -237,11 +237,7 @@ fn marks_are_ignored_and_shapes_and_tables_compared() {
     let whisker = |lines: &str| SCENE.replacen("[whisker]\n", &format!("[whisker]\n{lines}"), 1);
     let profile = |middle: f64| {
         let radii = format!("[whisker.profile]\nrows = [[0, 30], [10, {middle}], [20, 1.5]]\n");
-        let removed = [
-            "length_mm = 20\n",
-            "base_radius_um = 30.0\n",
-            "tip_radius_um = 1.5\n",
-        ];
+        let removed = ["base_radius_um = 30.0\n", "tip_radius_um = 1.5\n"];
         let lines = removed
             .iter()
             .fold(SCENE.to_owned(), |scene, line| scene.replace(line, ""));

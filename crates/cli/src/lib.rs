@@ -207,10 +207,10 @@ fn thread_count(option: Option<u32>) -> Result<usize, Failure> {
 fn run(command: &Command, files: &mut Files) -> Result<(), Failure> {
     match command {
         Command::Map(args) => map::run(args, files),
-        Command::Plan(args) => plan::run(args),
+        Command::Plan(args) => plan::run(args, files),
         Command::Extract(args) => extract::run(args, files),
         Command::Status(args) => status::run(args, files.temporary()),
-        Command::Submit(args) => submit::run(args),
+        Command::Submit(args) => submit::run(args, files),
         Command::Compare(args) => compare::run(args, files),
         Command::Explore(args) => explore::run(args, files),
         Command::Render(args) => render::run(args, files),

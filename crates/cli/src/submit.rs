@@ -2,11 +2,10 @@
 
 use super::arguments::{THREADS, whole};
 use super::failure::{Failure, message};
-use super::files::check_folder;
+use super::files::{Files, check_folder};
 use super::map::MapArgs;
 use super::map_format::MapFormat;
 use super::plan::{PlanEstimate, memory};
-use super::scene::read_scene;
 use super::sharded::shares;
 use super::slurm;
 use clap::{Args, Parser};
@@ -63,12 +62,12 @@ fn word(text: &str) -> Result<String, String> {
     }
 }
 
-pub fn run(args: &SubmitArgs) -> Result<(), Failure> {
+pub fn run(args: &SubmitArgs, files: &mut Files) -> Result<(), Failure> {
     if args.scene == Path::new("-") {
         let why = "scene -: must be a file, because every task reads it";
         return Err(Failure::Input(why.to_owned()));
     }
-    let scene = read_scene(&args.scene)?;
+    let scene = files.scene(&args.scene)?;
     let shares = shares(&scene, args.shards as usize)?;
     let store = args.output.join(format!("{}.zarr", scene.name));
     check_folder("--output", &args.output)?;

@@ -6,9 +6,9 @@ use super::arguments::whole;
 use super::engine::EngineArgs;
 use super::estimate::{FileCost, MapCost, estimate, file_costs};
 use super::failure::Failure;
+use super::files::Files;
 use super::map::MapArgs;
 use super::map_format::MapFormat;
-use super::scene::read_scene;
 use super::sharded::shares;
 use clap::Args;
 use print::{print, print_shards};
@@ -91,8 +91,8 @@ impl PlanEstimate {
     }
 }
 
-pub fn run(args: &PlanArgs) -> Result<(), Failure> {
-    let scene = read_scene(&args.map.scene)?;
+pub fn run(args: &PlanArgs, files: &mut Files) -> Result<(), Failure> {
+    let scene = files.scene(&args.map.scene)?;
     let shard = args.map.run.shard;
     let count = args.shards.map(|count| count as usize);
     let count = count.or(shard.map(|shard| shard.count));
