@@ -62,6 +62,10 @@ impl SampledTipEdge {
     }
 }
 
+/// Slope of the distance at first touch, in parts of the slope at the next place, that is rounding: the distance at such an extremum is equal to that
+/// at first touch but for 1e-18.
+const FLAT_TOUCH: f64 = 1e-9;
+
 /// Last Newton step toward an extremum, relative to the width of its bracket. The remaining error is its square.
 const LAST_STEP_TO_EXTREMUM: f64 = 1e-7;
 
@@ -80,11 +84,14 @@ pub(super) struct DistanceExtremum {
 
 impl DistanceExtremum {
     /// Returns the extremum between loads in parts of `corner`, with the derivatives of `(ln D, phi)` by the load, as the secant predicts
-    /// it; `None` if `dlnD/dload` keeps its sign. A slope of exactly 0, as of a straight whisker at first touch, is at a sample already.
+    /// it; `None` if `dlnD/dload` keeps its sign. A slope of 0 at first touch, as of a straight whisker, is at a sample already, also where friction
+    /// leaves its rounding.
     fn between(after: usize, corner: f64, ends: [(f64, DVec2); 2]) -> Option<Self> {
         let [(from, slope), (to, slope_there)] = ends;
         let by_part = (slope_there - slope) / (to - from);
-        (slope.x * slope_there.x < 0.0).then(|| Self {
+        let is_at_touch = from == 0.0 && slope.x.abs() <= FLAT_TOUCH * slope_there.x.abs();
+        let changes = slope.x * slope_there.x < 0.0 && !is_at_touch;
+        changes.then(|| Self {
             after,
             part: from - slope.x / by_part.x,
             parts: Bracket::new([from, to], [slope.x, slope_there.x]),
