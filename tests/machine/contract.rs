@@ -1,6 +1,6 @@
 //! The contract that every engine passes.
 
-use crate::cells::{RandomRows, places, solve};
+use crate::cells::{RandomRows, near_touch, places, solve};
 use crate::compute::open;
 use crate::random_rods::USUAL;
 use std::sync::Arc;
@@ -214,9 +214,15 @@ fn a_nan_hurts_only_the_cells_of_its_row(precision: Precision) {
         spoil(spoilt.expansions[number].as_mut().unwrap());
         let cells = bits(&solve(&mut gpu, &spoilt));
         let row = &batch.rows[number];
-        let cells_of_row = row.cells();
+        let mut on_device = row.cells();
+        let on_host = on_device.start..on_device.start + near_touch(&batch, number, precision);
+        on_device.start = on_host.end;
         for (index, (cell, sound)) in cells.iter().zip(&sound).enumerate() {
-            match cells_of_row.contains(&index) {
+            // The host evaluates only rows of finite numbers.
+            if on_host.contains(&index) {
+                continue;
+            }
+            match on_device.contains(&index) {
                 true => assert!(cell.1.is_none(), "{what}"),
                 false => assert_eq!(cell, sound, "{what}"),
             }

@@ -6,7 +6,7 @@ use crate::random_rods::{Random, rod};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-use whiskmap::engine::{Cells, Engine, RowBatch, SideColumns, Spectral, WhiskerSide};
+use whiskmap::engine::{Cells, Engine, Precision, RowBatch, SideColumns, Spectral, WhiskerSide};
 use whiskmap::mechanics::rod::{Effects, Rod, Side, Units};
 use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::plan::Channels;
@@ -90,6 +90,16 @@ impl RandomRows {
     pub fn batch(&self, engine: &dyn Engine) -> RowBatch {
         self.part(engine, 0..self.len())
     }
+}
+
+/// Number of cells of the row with this index that the host evaluates, beside a device of this precision.
+pub fn near_touch(batch: &RowBatch, index: usize, precision: Precision) -> usize {
+    let Some(expansion) = &batch.expansions[index] else {
+        return 0;
+    };
+    let row = &batch.rows[index];
+    let near = precision.near_touch() * expansion.end_push;
+    row.cells_before(near, &batch.sides[row.side].columns.pushes)
 }
 
 /// The response of `engine` to one batch.

@@ -52,7 +52,11 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted(precision: Precision) {
     works(&sound, SOLVED).unwrap();
     let sound = sound.engine_cells;
     assert_eq!(sound.not_finite, 0);
-    let asked = sound.solved + sound.fallback();
+    // The host evaluates cells near touch.
+    let (idle, refined) = compute(&scene, Some(&mut spoilt(precision, "")));
+    let on_host = idle.engine_cells.solved;
+    assert_eq!(on_host > 0, precision == Precision::F32);
+    let asked = sound.solved + sound.fallback() - on_host;
     for (none, part) in [
         ("wrong.numbers[8] = nan;", 1.0),
         ("wrong.residual = infinite;", 1.0),
@@ -71,7 +75,7 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted(precision: Precision) {
         assert_eq!(all_cells(&cells), all_cells(&sound));
         assert_same(&cpu, &panels);
         if part == 1.0 {
-            assert_same_states(&cpu, &panels);
+            assert_same_states(&refined, &panels);
         }
     }
 }
@@ -87,19 +91,22 @@ fn a_kernel_that_does_nothing_is_noticed() {
         let mut gpu = spoilt(Precision::F32, writes);
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         let EngineCells {
+            solved,
             not_finite,
             without_row,
             ..
         } = summary.engine_cells;
         let only = EngineCells {
+            solved,
             not_finite,
             without_row,
             ..EngineCells::default()
         };
-        assert!(not_finite > 1000);
+        // The host evaluates cells near touch.
+        assert!(not_finite > 1000 && solved * 8 < not_finite);
         assert_eq!(summary.engine_cells, only);
         assert!(works(&summary, SOLVED).is_err());
-        assert_same_states(&cpu, &panels);
+        assert_same(&cpu, &panels);
     }
 }
 
