@@ -312,6 +312,7 @@ fn regimes_alone_need_no_states() {
         let summary = &found.summary;
         assert_eq!(summary.audit.differing, 0, "{}", scene.title);
         assert!(summary.worst_residual <= KnownRow::RESIDUAL);
+        assert!(summary.engine_cells.solved > 0, "{}", scene.title);
         known += summary.engine_cells.solved;
         all += wanted.summary.refined;
     }

@@ -204,8 +204,8 @@ impl Plan {
         Side::BOTH.into_iter().filter(is_wanted).collect()
     }
 
-    /// Returns the count of cells and of expansions for the whisker side with the most push angles; `None` with measured radii, which have no
-    /// expansions.
+    /// Returns the count of cells and of expansions for the whisker side with the most push angles; `None` for states of whiskers with measured
+    /// radii, which have no expansions.
     #[must_use]
     pub fn expansions(&self, scene: &Scene) -> Option<ExpansionCount> {
         let pushes = &scene.grid.push_angle_deg;
@@ -218,7 +218,7 @@ impl Plan {
         let most = self.sides.iter().map(columns).max().unwrap_or(0);
         let needs_states = self.channels.needs_states();
         let count = ExpansionCount::new(scene.grid.distance_mm.len(), most, needs_states);
-        (!self.method.effects.profile).then_some(count)
+        (!self.method.effects.profile || !needs_states).then_some(count)
     }
 
     /// Returns the groups of whiskers that are computed together, in order.

@@ -143,6 +143,10 @@ fn measured_radii_warn_that_every_cell_falls_back() {
     let warning = "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell";
     assert!(run.err.starts_with(warning), "{run:?}");
     assert_eq!(run.count("solved by the engine spectral f64"), 0);
+    // Regimes need no expansions.
+    let run = place.run(&["map", "measured.toml", "--no-png", "--channels=regime"]);
+    assert!(run.err.starts_with("engine: spectral f64 on "), "{run:?}");
+    assert!(run.count("solved by the engine spectral f64") > 0);
 }
 
 /// Shards and a resumed run write the bytes of a single run; a store keeps its engine.

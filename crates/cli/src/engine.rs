@@ -61,7 +61,8 @@ impl EngineArgs {
         if self.may_use_gpu() {
             return self.open_gpu_or_auto(map);
         }
-        if self.choice() == EngineChoice::Spectral && map.plan.method.effects.profile {
+        let has_expansions = !map.plan.method.effects.profile || !map.plan.channels.needs_states();
+        if self.choice() == EngineChoice::Spectral && !has_expansions {
             message(
                 "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell",
             );
