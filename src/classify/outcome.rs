@@ -21,7 +21,7 @@ pub enum Outcome {
     NotConverged,
     /// The cell is not certified: a number is not finite, or nothing was written.
     NotFinite,
-    /// The cell is not certified: it lies next to the tip.
+    /// The cell is not certified: it lies next to the tip, or to the end of a known row.
     NearEdge,
     /// The cell is not certified: the bound on the residual is too large.
     Missed,

@@ -175,8 +175,6 @@ impl RowExpansion {
 pub struct KnownRow {
     /// States of the row by the net for guesses.
     pub states: GuessRow,
-    /// Magnitude of the push angle at the row's end, in radians.
-    end_push: f64,
 }
 
 impl KnownRow {
@@ -186,16 +184,16 @@ impl KnownRow {
     /// Returns a `row` of `side` by its net for guesses; `None` if a state may have a residual of more than [`Self::RESIDUAL`].
     #[must_use]
     pub fn of(side: &WhiskerSide, row: usize) -> Option<Self> {
-        let end_push = side.sheet.simple_end(row)?.push;
         let states = side.sheet.guess_row(row)?;
-        (states.residual <= Self::RESIDUAL).then_some(Self { states, end_push })
+        (states.residual <= Self::RESIDUAL).then_some(Self { states })
     }
 
     /// Writes outcomes and residuals of the cells of `row`, except those next to the end. `pushes` are the push angles of the side's columns:
     /// magnitudes in radians.
     pub(super) fn write(&self, row: &BatchRow, pushes: &[f64], into: RowCells) {
-        let near = row.cells_before(self.end_push - PUSH_MARGIN, pushes);
-        let beyond = row.cells_before((self.end_push + PUSH_MARGIN).next_up(), pushes);
+        let [_, end] = self.states.ends;
+        let near = row.cells_before(end - PUSH_MARGIN, pushes);
+        let beyond = row.cells_before((end + PUSH_MARGIN).next_up(), pushes);
         into.outcome[..near].fill(Outcome::Solved);
         into.outcome[near..beyond].fill(Outcome::NearEdge);
         into.outcome[beyond..].fill(Outcome::OffSheet);

@@ -41,7 +41,7 @@ impl Spectral {
         }
     }
 
-    /// Solves the cells of `batch` whose rows have expansions.
+    /// Solves the cells of `batch` whose rows have expansions, or are known.
     #[must_use]
     pub fn solve(&self, batch: &RowBatch) -> Cells {
         let mut cells = Cells::new(batch, Outcome::NoRow);

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct EngineCells {
     /// Number of cells that the engine solved.
     pub solved: u64,
-    /// Number of cells that fell back to the CPU because they lie next to the tip.
+    /// Number of cells that fell back to the CPU because they lie next to the tip, or to the end of a known row.
     pub near_edge: u64,
     /// Number of cells that fell back to the CPU because the bound on the residual was too large.
     pub missed: u64,

@@ -73,8 +73,8 @@ pub struct GuessRow {
     inverse: Inverse<3>,
     /// Push angle of the first state by the panel, in radians.
     first: f64,
-    /// Push angles of the ends, in radians.
-    ends: [f64; 2],
+    /// Magnitudes of the push angles at the ends, which are computed apart, in radians.
+    pub ends: [f64; 2],
     /// Bound on the residual of the states, in whisker lengths: by the coefficients left out, and by the differences from the ends.
     pub residual: f64,
 }
