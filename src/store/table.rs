@@ -1,7 +1,9 @@
 //! Tables as CSV: a header, then a line per row. Numbers have the fewest digits that parse to the same value.
 
 use super::Output;
+use memchr::memmem;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -15,7 +17,7 @@ impl TableFile {
     pub fn new(output: Output) -> Self {
         Self(csv::Writer::from_writer(FiniteCells {
             output,
-            cell: Vec::new(),
+            begun: Vec::new(),
         }))
     }
 
@@ -49,36 +51,45 @@ impl TableFile {
 #[derive(Debug)]
 struct FiniteCells {
     output: Output,
-    /// Cell whose end is not yet written to this.
-    cell: Vec<u8>,
+    /// Begin of the cell whose end is not yet written to this.
+    begun: Vec<u8>,
 }
 
 impl Write for FiniteCells {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let mut complete = Vec::with_capacity(self.cell.len() + bytes.len());
-        for part in bytes.split_inclusive(|byte| b",\n".contains(byte)) {
-            self.cell.extend_from_slice(part);
-            let Some((end @ (b',' | b'\n'), text)) = self.cell.split_last() else {
-                continue;
-            };
-            if matches!(text, b"NaN" | b"inf" | b"-inf") {
-                debug_assert!(
-                    false,
-                    "a row must have `None` for a number that does not exist"
-                );
-                complete.push(*end);
-            } else {
-                complete.extend_from_slice(&self.cell);
-            }
-            self.cell.clear();
+        let last = bytes.iter().rposition(ends_cell);
+        let (ended, begun) = bytes.split_at(last.map_or(0, |last| last + 1));
+        if !ended.is_empty() {
+            self.begun.extend_from_slice(ended);
+            self.output.write_all(&finite(&self.begun))?;
+            self.begun.clear();
         }
-        self.output.write_all(&complete)?;
+        self.begun.extend_from_slice(begun);
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
         self.output.flush()
     }
+}
+
+/// Returns true for a byte after the text of a cell.
+fn ends_cell(byte: &u8) -> bool {
+    b",\n".contains(byte)
+}
+
+/// Returns whole `cells` without the text of numbers that are not finite.
+fn finite(cells: &[u8]) -> Cow<'_, [u8]> {
+    if memmem::find(cells, b"NaN").is_none() && memmem::find(cells, b"inf").is_none() {
+        return Cow::Borrowed(cells);
+    }
+    let each = cells.split_inclusive(ends_cell).map(|cell| {
+        let (text, end) = cell.split_at(cell.len() - 1);
+        let is_finite = !matches!(text, b"NaN" | b"inf" | b"-inf");
+        debug_assert!(is_finite, "a row must have `None` for a number that does not exist");
+        if is_finite { cell } else { end }
+    });
+    Cow::Owned(each.collect::<Vec<_>>().concat())
 }
 
 /// The I/O error in an error of `csv`, which hides its kind.
