@@ -68,12 +68,31 @@ fn add(
     names: BTreeMap<u32, &'static str>,
     codes: &[u32],
 ) -> Result<(), u32> {
-    if let Some(unknown) = codes.iter().find(|code| !names.contains_key(code)) {
-        return Err(*unknown);
+    let mut known = 0;
+    for (code, name) in &names {
+        let count = codes.iter().filter(|other| *other == code).count();
+        *cells.entry((*name).to_owned()).or_default() += count as u64;
+        known += count;
     }
-    for (code, name) in names {
-        let count = codes.iter().filter(|other| **other == code).count();
-        *cells.entry(name.to_owned()).or_default() += count as u64;
+    let unknown = || codes.iter().find(|code| !names.contains_key(code));
+    match (known < codes.len()).then(unknown).flatten() {
+        Some(unknown) => Err(*unknown),
+        None => Ok(()),
     }
-    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_counted_by_name_and_a_code_without_a_name_is_an_error() {
+        let [free, contact] = [Regime::ALL[0], Regime::ALL[1]];
+        let mut cells = BTreeMap::new();
+        let codes = [contact.code(), free.code(), contact.code()];
+        assert_eq!(add(&mut cells, regimes(), &codes), Ok(()));
+        let counted = [free, contact].map(|regime| cells[regime.name()]);
+        assert_eq!(counted, [1, 2]);
+        assert_eq!(add(&mut cells, regimes(), &[free.code(), 99]), Err(99));
+    }
 }
