@@ -7,7 +7,7 @@
 use super::Sliding;
 use super::limit::SlidingLimit;
 use super::newton::with_friction;
-use crate::sheet::{Continuation, LevelCurve};
+use crate::sheet::{LevelCurve, Path};
 use std::collections::BTreeSet;
 
 /// Sliding history of the contact of one row, along a push from first touch.
@@ -68,11 +68,11 @@ impl ContactHistory {
         Self::of_tips(levels, SlidingLimit::of(levels))
     }
 
-    /// Computes the sliding history of the row of a `level` that has been followed from first touch; `None` where a continuation fails.
+    /// Computes the sliding history along a `path` from first touch; `None` where a continuation fails.
     #[must_use]
-    pub fn along(level: &LevelCurve, followed: &Continuation) -> Option<Self> {
-        let tip = SlidingLimit::along(level, followed);
-        Self::of_tips(std::slice::from_ref(level), vec![tip]).pop()?
+    pub fn along(path: &Path) -> Option<Self> {
+        let tip = SlidingLimit::along(path);
+        Self::of_tips(std::slice::from_ref(&path.level), vec![tip]).pop()?
     }
 
     /// Computes the sliding histories of rows with these tip limits, `[row]`.

@@ -5,7 +5,7 @@
 
 use super::segment::{LimitPlace, LimitSegment, SlidingKnot};
 use super::state::FrictionPoint;
-use crate::sheet::{Continuation, CurveNode, LevelCurve, NODE_MISS, Stretch, continuations};
+use crate::sheet::{CurveNode, LevelCurve, NODE_MISS, Path, Stretch, continuations};
 use glam::DVec2;
 use whiskmap_mechanics::shooting::FirstVariation;
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
@@ -44,27 +44,24 @@ impl SlidingLimit {
     pub fn of(levels: &[LevelCurve]) -> Vec<Option<Self>> {
         let starts = levels.iter().map(|level| Some((level, level.touch())));
         let continued = continuations(&starts.collect::<Vec<_>>(), Stretch::Stable, NODE_MISS);
-        let parts = levels
-            .iter()
-            .zip(&continued)
-            .map(|(level, continuation)| Some(LimitPart::stable(level, continuation.as_ref()?)));
+        let parts = continued.iter();
+        let parts = parts.map(|path| path.as_ref().map(LimitPart::stable));
         through(&parts.collect::<Vec<_>>())
     }
 
-    /// Creates the sliding limit of a `level` that has been followed from first touch.
-    pub fn along(level: &LevelCurve, followed: &Continuation) -> Option<Self> {
-        through(&[Some(LimitPart::stable(level, followed))]).pop()?
+    /// Creates the sliding limit along a `path` from first touch.
+    pub fn along(path: &Path) -> Option<Self> {
+        through(&[Some(LimitPart::stable(path))]).pop()?
     }
 
     /// Computes the sliding limit of `level`, and the limit of its unstable states up to the fold if there is one; `None` if the
     /// continuation fails.
     pub fn with_unstable(level: &LevelCurve) -> Option<(Self, Option<Self>)> {
         let start = Some((level, level.touch()));
-        let continued = continuations(&[start], Stretch::PastFold, NODE_MISS).pop()??;
-        let stable = LimitPart::stable(level, &continued);
-        let Continuation { nodes, fold, .. } = &continued;
-        let unstable = fold.map(|fold| LimitPart {
-            nodes: nodes[fold..].iter().rev().copied().collect(),
+        let path = continuations(&[start], Stretch::PastFold, NODE_MISS).pop()??;
+        let stable = LimitPart::stable(&path);
+        let unstable = path.unstable().map(|nodes| LimitPart {
+            nodes: nodes.iter().rev().copied().collect(),
             is_stable: false,
             ..stable.clone()
         });
@@ -144,13 +141,12 @@ struct LimitPart<'a> {
 }
 
 impl<'a> LimitPart<'a> {
-    /// Returns the stable states of a `level` that has been followed from first touch.
-    fn stable(level: &'a LevelCurve, followed: &Continuation) -> Self {
-        let Continuation { nodes, fold, .. } = followed;
+    /// Returns the stable states of a `path` from first touch.
+    fn stable(path: &'a Path) -> Self {
         Self {
-            level,
-            nodes: nodes[..fold.map_or(nodes.len(), |fold| fold + 1)].to_vec(),
-            has_fold: fold.is_some(),
+            level: &path.level,
+            nodes: path.stable().to_vec(),
+            has_fold: path.fold.is_some(),
             is_stable: true,
         }
     }

@@ -19,7 +19,7 @@ mod span;
 
 pub(crate) use case::SheetCase;
 pub use continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
-pub use continuation::{Continuation, NODE_MISS, continuations};
+pub use continuation::{NODE_MISS, Path, continuations};
 pub(crate) use edges::edge_newton::{EdgeProblem, edge_newton};
 pub use fold::FoldPoint;
 pub(crate) use fold::coordinate::{tau_of, u_of};

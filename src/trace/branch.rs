@@ -2,12 +2,11 @@
 
 use super::columns::{StateRow, row};
 use super::curve::snaps_deg;
-use super::resample::{interpolate, targets};
+use super::resample::targets;
 use super::{BranchMark, FINER, NoState, StateAtPush};
 use crate::friction::{ContactHistory, Sliding};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Continuation, CurveNode, Edge, LevelCurve, ON_CURVE, Row, Sheet, Stretch};
-use glam::DVec2;
+use crate::sheet::{CurveNode, Edge, LevelCurve, Path, Row, Sheet, Stretch};
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{Rest, Side, Units};
@@ -21,9 +20,8 @@ const POINTS_AT_ONCE: usize = 1 << 10;
 /// out, and the last point then has no mark.
 #[derive(Clone, Debug)]
 pub struct Branch {
-    pub(super) level: LevelCurve,
+    pub(super) path: Path,
     pub(super) units: Units,
-    pub(super) continuation: Continuation,
     /// Sliding history of the contact; `None` without friction, and if it is not found.
     pub(super) history: Option<ContactHistory>,
     distance_mm: f64,
@@ -87,24 +85,21 @@ impl Branch {
             return Err(NoState::OutOfReach { reach_mm });
         }
         let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
-        let followed = level.continuation(level.touch(), stretch);
+        let path = level.continuation(level.touch(), stretch);
         // From first touch at the tip there may be no state to continue to.
         let none = match row.is_at_reach() {
             true => NoState::PulledOff { at_deg: 0.0 },
             false => NoState::Failed { push_deg: 0.0 },
         };
-        let continuation = followed.ok_or(none)?;
-        if continuation.fold.is_none() && continuation.end.is_none() {
+        let path = path.ok_or(none)?;
+        if path.fold.is_none() && path.end.is_none() {
             return Err(NoState::BeyondTurns);
         }
         let has_friction = rod.friction != 0.0;
         Ok(Self {
-            history: has_friction
-                .then(|| ContactHistory::along(&level, &continuation))
-                .flatten(),
-            continuation,
+            history: has_friction.then(|| ContactHistory::along(&path)).flatten(),
+            path,
             units: whisker.units(),
-            level,
             distance_mm,
         })
     }
@@ -112,14 +107,14 @@ impl Branch {
     /// Returns the row of the branch: distance and direction of the pole.
     #[must_use]
     pub fn row(&self) -> &Row {
-        &self.level.row
+        &self.path.level.row
     }
 
     /// Returns the signed push angle at which the stable states end, at the fold or at the tip, in degrees.
     #[must_use]
     pub fn stable_end_deg(&self) -> f64 {
-        let Continuation { nodes, fold, .. } = &self.continuation;
-        nodes[fold.unwrap_or(nodes.len() - 1)].push.to_degrees()
+        let stable = self.path.stable();
+        stable[stable.len() - 1].push.to_degrees()
     }
 
     /// Returns `count` points of the branch, at least 3, among them the fold. The points are evenly spaced on each side of the fold.
@@ -154,15 +149,15 @@ impl Branch {
             true => Err(self.failed()),
             false => Ok(()),
         };
-        let Continuation { nodes, fold, end } = &self.continuation;
-        let lengths = self.lengths();
+        let Path {
+            nodes, fold, end, ..
+        } = &self.path;
+        let lengths = self.path.lengths();
         let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
-        let guess = |target: &f64| interpolate(nodes, &lengths, *target);
-        let (near, starts): (Vec<usize>, Vec<DVec2>) = targets.iter().map(guess).unzip();
-        let mut corrected = Vec::with_capacity(starts.len());
-        for starts in starts.chunks(POINTS_AT_ONCE) {
+        let mut between = Vec::with_capacity(targets.len());
+        for targets in targets.chunks(POINTS_AT_ONCE) {
             go_on()?;
-            corrected.extend(self.level.correct(starts, ON_CURVE));
+            between.extend(self.path.at_lengths(&lengths, targets));
         }
         let (last, last_node) = (targets.len() - 1, nodes.len() - 1);
         let end_mark = end.map(|end| match (fold, end) {
@@ -171,8 +166,8 @@ impl Branch {
             (None, _) => BranchMark::PullOff,
         });
         let mut marked = Vec::with_capacity(targets.len());
-        for (i, (near, corrected)) in near.iter().zip(corrected).enumerate() {
-            // The ends and the fold are more accurate than corrected points.
+        for (i, between) in between.into_iter().enumerate() {
+            // The ends and the fold are more accurate than states between nodes.
             let exact = match i {
                 0 => Some((nodes[0], Some(BranchMark::FirstTouch))),
                 _ if i == last => Some((nodes[last_node], end_mark)),
@@ -181,13 +176,8 @@ impl Branch {
                 }
                 _ => None,
             };
-            marked.push(if let Some(exact) = exact {
-                exact
-            } else {
-                let (point, full) = corrected.ok_or_else(|| self.failed())?;
-                let CurveNode { push, angle, .. } = nodes[*near];
-                (self.level.node(point, &full, push, angle), None)
-            });
+            let found = exact.or(between.map(|node| (node, None)));
+            marked.push(found.ok_or_else(|| self.failed())?);
         }
         let stable = fold_at.map_or(marked.len(), |fold| fold + 1);
         let nodes: Vec<CurveNode> = marked.iter().map(|(node, _)| *node).collect();
@@ -223,7 +213,7 @@ impl Branch {
     fn snaps_deg(&self) -> Option<f64> {
         let LevelCurve {
             method, rod, side, ..
-        } = &self.level;
+        } = &self.path.level;
         let distance = self.distance_mm / self.units.length_mm;
         snaps_deg(&Sheet::of_ends(*method, rod, *side, &[distance]), 0)
     }
@@ -238,20 +228,9 @@ impl Branch {
 
     /// Returns the error of a failed continuation or corrector.
     pub(super) fn failed(&self) -> NoState {
-        let nodes = &self.continuation.nodes;
+        let nodes = &self.path.nodes;
         let push_deg = nodes[nodes.len() - 1].push.to_degrees();
         NoState::Failed { push_deg }
-    }
-
-    /// Length of the branch from first touch to each node, in the measure of [`LevelCurve::length`].
-    pub(super) fn lengths(&self) -> Vec<f64> {
-        let mut length = 0.0;
-        let steps = self.continuation.nodes.windows(2);
-        let rest = steps.map(|pair| {
-            length += self.level.length(&pair[0], &pair[1]);
-            length
-        });
-        std::iter::once(0.0).chain(rest).collect()
     }
 
     /// Returns the largest bending strains of `states`, `[state]`.
@@ -265,12 +244,12 @@ impl Branch {
                 tau: state.tau,
                 load: state.load,
             });
-        Batch::new(self.level.method).shoot(&conditions.collect::<Vec<_>>())
+        Batch::new(self.path.level.method).shoot(&conditions.collect::<Vec<_>>())
     }
 
     /// Returns `state` with its largest bending strain as a point without a mark.
     pub(super) fn point(&self, state: &StateAtPush, peak: PeakStrain) -> BranchPoint {
-        let LevelCurve { side, row, .. } = &self.level;
+        let LevelCurve { side, row, .. } = &self.path.level;
         let rod = &self.rod(state.ratio);
         BranchPoint {
             distance_mm: self.distance_mm,

@@ -1,9 +1,7 @@
 //! Largest loads during a push.
 
-use super::resample::interpolate;
-use super::{Branch, StableBranch, StateAtPush};
-use crate::sheet::{CurveNode, ON_CURVE};
-use glam::DVec2;
+use super::{StableBranch, StateAtPush};
+use crate::sheet::CurveNode;
 
 /// Largest relative excess of a maximum over the value at the end with which the end counts as the maximum.
 const AT_END: f64 = 1e-9;
@@ -44,12 +42,8 @@ impl StableBranch {
     /// maximum, and ever closer states between them find it. A larger maximum between two other nodes can be missed.
     #[must_use]
     pub fn peak(&self, load: PushLoad) -> PushPeak {
-        let Branch {
-            continuation,
-            level,
-            ..
-        } = &self.0;
-        let nodes = &continuation.nodes;
+        let path = &self.0.path;
+        let nodes = &path.nodes;
         let sizes = self.sizes(nodes, load);
         let Some(best) = best(&sizes) else {
             return PushPeak {
@@ -58,23 +52,16 @@ impl StableBranch {
             };
         };
         let (last, mut found) = (sizes[sizes.len() - 1], (sizes[best], nodes[best]));
-        let lengths = self.0.lengths();
+        let lengths = path.lengths();
         let mut ends =
             [best.saturating_sub(1), (best + 1).min(sizes.len() - 1)].map(|end| lengths[end]);
         for _ in 0..ROUNDS {
             let step = (ends[1] - ends[0]) / (BETWEEN + 1) as f64;
             let targets = (1..=BETWEEN).map(|i| step.mul_add(i as f64, ends[0]));
-            let between: Vec<(f64, (usize, DVec2))> = targets
-                .map(|length| (length, interpolate(nodes, &lengths, length)))
-                .collect();
-            let starts: Vec<DVec2> = between.iter().map(|(_, (_, start))| *start).collect();
-            let corrected = level.correct(&starts, ON_CURVE);
-            let states = between.iter().zip(corrected);
-            let states = states.filter_map(|((length, (near, _)), corrected)| {
-                let (point, full) = corrected?;
-                let CurveNode { push, angle, .. } = nodes[*near];
-                Some((*length, level.node(point, &full, push, angle)))
-            });
+            let targets: Vec<f64> = targets.collect();
+            let between = path.at_lengths(&lengths, &targets);
+            let states = targets.into_iter().zip(between);
+            let states = states.filter_map(|(length, state)| Some((length, state?)));
             let (places, states): (Vec<f64>, Vec<CurveNode>) = states.unzip();
             let sizes = self.sizes(&states, load);
             let Some(best) = self::best(&sizes) else {
@@ -97,7 +84,7 @@ impl StableBranch {
     /// Returns the largest size of `load` at the nodes of the continuation, some percent below the size of [`Self::peak`]; NaN if no state is known.
     #[must_use]
     pub fn rough_peak(&self, load: PushLoad) -> f64 {
-        let sizes = self.sizes(&self.0.continuation.nodes, load);
+        let sizes = self.sizes(&self.0.path.nodes, load);
         best(&sizes).map_or(f64::NAN, |best| sizes[best])
     }
 

@@ -1,9 +1,5 @@
 //! Resampling of a branch at uniform distances along it.
 
-use crate::sheet::CurveNode;
-use glam::DVec2;
-use whiskmap_mechanics::numerics::newton_form::{Polynomial, stencil, through_nodes};
-
 /// Returns positions of `count` points along a curve, `[point]`, and the index of the fold among them, `None` without one. `lengths` and the
 /// positions are lengths along the curve, as in [`LevelCurve::length`](crate::sheet::LevelCurve::length). The parts before and after the fold each
 /// get intervals in proportion to their length.
@@ -23,21 +19,4 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
         .chain(uniform(fold, total, intervals - before))
         .chain([total]);
     (targets.collect(), Some(before))
-}
-
-/// Maximum number of nodes of an interpolation.
-const NODES: usize = 6;
-
-/// Interpolates the curve at the length `target` along it; `lengths` are the lengths at the nodes. Returns the index of the last node up to
-/// `target`, and `(tau, load)`.
-pub fn interpolate(nodes: &[CurveNode], lengths: &[f64], target: f64) -> (usize, DVec2) {
-    let near = lengths
-        .partition_point(|length| *length <= target)
-        .saturating_sub(1);
-    let around = lengths.iter().zip(nodes);
-    let around = around.skip(stencil(near, NODES, nodes.len()));
-    let point = |(length, node): (&f64, &CurveNode)| (*length, node.point.to_array());
-    let polynomials: [Polynomial<NODES>; 2] = through_nodes(around.map(point));
-    let point = polynomials.map(|polynomial| polynomial.at(target).0);
-    (near, point.into())
 }

@@ -110,7 +110,7 @@ impl WhiskerShape {
     /// Computes the shape of the resting whisker at first touch: `count` points `[x, y]` in mm, in the axes of [`WhiskerShape`].
     #[must_use]
     pub fn at_rest(branch: &Branch, count: usize) -> Vec<[f64; 2]> {
-        let rest = Rest::new(&branch.level.rod);
+        let rest = Rest::new(&branch.path.level.rod);
         uniform(count)
             .map(|s| (rest.at_arclength(s).0 * branch.units.length_mm).to_array())
             .collect()

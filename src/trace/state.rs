@@ -2,7 +2,7 @@
 
 use super::{Branch, BranchPoint, NoState};
 use crate::friction::{ContactPhase, ContactQuery, FrictionState, Sliding, states};
-use crate::sheet::{Continuation, CurveNode};
+use crate::sheet::{CurveNode, LevelCurve};
 use std::borrow::Cow;
 use whiskmap_mechanics::rod::Rod;
 use whiskmap_mechanics::shooting::{FullState, Reader, Reading};
@@ -49,7 +49,12 @@ impl Branch {
     #[must_use]
     pub fn read(&self, state: &StateAtPush) -> Reading {
         let reader = Reader::new(self.units, &self.rod(state.ratio));
-        reader.read(state.tau, &state.full, self.level.row.touch, state.push)
+        reader.read(
+            state.tau,
+            &state.full,
+            self.path.level.row.touch,
+            state.push,
+        )
     }
 
     /// Returns `state` as a point of the branch without a mark.
@@ -63,16 +68,12 @@ impl Branch {
     /// # Errors
     /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.
     pub fn state(&self, push: f64, stable: bool) -> Result<StateAtPush, NoState> {
-        let Continuation { nodes, fold, end } = &self.continuation;
-        let part = match (fold, stable) {
-            (Some(fold), true) => &nodes[..=*fold],
-            (Some(fold), false) => &nodes[*fold..],
-            (None, true) => &nodes[..],
-            (None, false) => {
-                return Err(NoState::NoFold {
-                    at_deg: nodes[nodes.len() - 1].push.to_degrees(),
-                });
-            }
+        let (path, level) = (&self.path, &self.path.level);
+        let part = match stable {
+            true => path.stable(),
+            false => path.unstable().ok_or_else(|| NoState::NoFold {
+                at_deg: self.stable_end_deg(),
+            })?,
         };
         let (first, last) = (&part[0], &part[part.len() - 1]);
         // A push angle that was printed in degrees may lie a few roundings beyond the end.
@@ -83,20 +84,19 @@ impl Branch {
         } else {
             push
         };
-        let Some(node) = self.level.state_at_push(part, push) else {
+        let Some(node) = level.state_at_push(part, push) else {
             let at_deg = last.push.to_degrees();
             let within = (first.push - push) * (last.push - push) <= 0.0;
-            let sign = self.level.side.sign();
-            return Err(match (stable, fold, end) {
+            return Err(match (stable, path.fold) {
                 _ if within => self.failed(),
-                (true, ..) if sign * push < 0.0 => NoState::LostTouch {
+                (true, _) if level.side.sign() * push < 0.0 => NoState::LostTouch {
                     stays_deg: ends.map(f64::to_degrees),
                 },
-                (false, ..) => NoState::NotUnstable {
+                (false, _) => NoState::NotUnstable {
                     ends_deg: [first.push.to_degrees(), at_deg],
                 },
-                (true, Some(_), _) => NoState::SlippedOff { at_deg },
-                (true, None, _) => NoState::PulledOff { at_deg },
+                (true, Some(_)) => NoState::SlippedOff { at_deg },
+                (true, None) => NoState::PulledOff { at_deg },
             });
         };
         let node = CurveNode { push, ..node };
@@ -118,8 +118,8 @@ impl Branch {
     /// Returns the stable state of a push at the push angle of each of the `nodes`, as [`Branch::pushed`] does: `[node]`. With friction, an entry is the
     /// reason why the course of the contact, or the state, is not found.
     pub(super) fn each_pushed(&self, nodes: &[CurveNode]) -> Vec<Result<StateAtPush, NoState>> {
-        let sign = self.level.side.sign();
-        let friction = self.level.rod.friction;
+        let LevelCurve { side, rod, .. } = &self.path.level;
+        let (sign, friction) = (side.sign(), rod.friction);
         let unmoved = |node, sliding| StateAtPush::of(node, true, friction, sliding);
         if friction == 0.0 {
             return nodes.iter().map(|node| Ok(unmoved(node, None))).collect();
@@ -161,7 +161,7 @@ impl Branch {
 
     /// Returns the unstable states `nodes`, `[node]`. They have the friction of a contact that slides toward the tip, as the last stable states do.
     pub(super) fn beyond_fold(&self, nodes: &[CurveNode]) -> Vec<StateAtPush> {
-        let friction = self.level.rod.friction;
+        let friction = self.path.level.rod.friction;
         let sliding = (friction != 0.0).then_some(Sliding::Tip);
         let states = nodes.iter();
         states
@@ -171,7 +171,7 @@ impl Branch {
 
     /// Returns the rod of the branch with the force ratio `ratio` as its friction.
     pub(super) fn rod(&self, ratio: f64) -> Cow<'_, Rod> {
-        let rod = &self.level.rod;
+        let rod = &self.path.level.rod;
         if ratio == rod.friction {
             return Cow::Borrowed(rod);
         }

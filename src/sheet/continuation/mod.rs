@@ -3,47 +3,26 @@
 mod corrector;
 pub mod level_curve;
 mod meeting;
+mod path;
 pub mod pieces;
 mod states;
 mod stepper;
+
+pub use path::Path;
 
 use crate::newton::BatchNewton;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 use crate::sheet::continuation::meeting::{Meeting, meet};
 use crate::sheet::continuation::stepper::Stepper;
-use crate::sheet::row::{Edge, STEEP};
 use glam::DVec2;
 
 /// Largest miss in `ln D` of a node between the ends of a continuation. Such nodes only guide it and approximate states.
 pub const NODE_MISS: f64 = 1e-8;
 
-/// Part of a level curve that a continuation has followed.
-#[derive(Clone, Debug)]
-pub struct Continuation {
-    /// Nodes of the continuation, from its start to its end, `[node]`.
-    pub nodes: Vec<CurveNode>,
-    /// Index of the continuation's node at the fold; `None` if the tip comes first.
-    pub fold: Option<usize>,
-    /// Edge of the sheet at the last node. `None` means that the push angle exceeds nine turns before the curve meets an edge.
-    pub end: Option<Edge>,
-}
-
-impl Continuation {
-    /// Returns true if the push angle changes so fast along an edge at the first fold or the end that these need more steps.
-    fn is_steep(&self) -> bool {
-        let last = self.end.zip(self.nodes.last());
-        let fold = self.fold.map(|fold| (Edge::Fold, &self.nodes[fold]));
-        let slopes = fold.into_iter().chain(last);
-        slopes
-            .into_iter()
-            .any(|(edge, node)| edge.slope(&node.full.map).abs() > STEEP)
-    }
-}
-
 impl LevelCurve {
     /// Follows a `stretch` of the level curve from `start`, for at most nine turns of the base. Returns `None` if the continuation fails.
     #[must_use]
-    pub fn continuation(&self, start: CurveNode, stretch: Stretch) -> Option<Continuation> {
+    pub fn continuation(&self, start: CurveNode, stretch: Stretch) -> Option<Path> {
         within_turns(&[Some((self, start))], stretch, ON_CURVE).pop()?
     }
 }
@@ -57,18 +36,14 @@ pub type CurveStart<'a> = Option<(&'a LevelCurve, CurveNode)>;
 /// Nodes between the ends may miss their curve by `miss` in `ln D`. Results do not depend on the other curves. Where an end is steep, the
 /// curve is followed again with twice the steps.
 #[must_use]
-pub fn continuations(
-    starts: &[CurveStart],
-    stretch: Stretch,
-    miss: f64,
-) -> Vec<Option<Continuation>> {
+pub fn continuations(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Path>> {
     let followed = within_turns(starts, stretch, miss).into_iter();
     let ended = followed.map(|found| found.filter(|found| found.end.is_some()));
     ended.collect()
 }
 
 /// Follows level curves as [`continuations`] does, also curves that reach no edge within nine turns.
-fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Continuation>> {
+fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Path>> {
     let mut ended = follow_with_retry(starts, stretch, miss);
     let pairs = starts.iter().zip(&ended);
     let finer = pairs.map(|(start, found)| {
@@ -80,7 +55,12 @@ fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Optio
     let finer_starts = pairs.map(|(level, start)| Some((level.as_ref()?, (*start)?.1)));
     let finer_starts: Vec<CurveStart> = finer_starts.collect();
     let again = follow_with_retry(&finer_starts, stretch, miss);
-    for (ended, again) in ended.iter_mut().zip(again) {
+    for ((ended, again), start) in ended.iter_mut().zip(again).zip(starts) {
+        // States between nodes take the steps of all other states.
+        let again = again.zip(*start).map(|(path, (level, _))| Path {
+            level: level.clone(),
+            ..path
+        });
         *ended = again.or(ended.take());
     }
     ended
@@ -88,19 +68,11 @@ fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Optio
 
 /// Follows all curves. Curves that reach no edge are followed once more with nodes to rounding: where curves meet, nodes with an error of `miss`
 /// can lead to another curve.
-fn follow_with_retry(
-    starts: &[CurveStart],
-    stretch: Stretch,
-    miss: f64,
-) -> Vec<Option<Continuation>> {
+fn follow_with_retry(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Path>> {
     let mut ended = follow(starts, stretch, miss);
     if miss > ON_CURVE {
         let pairs = starts.iter().zip(&ended);
-        let has_end = |found: &Option<Continuation>| {
-            found
-                .as_ref()
-                .is_some_and(|continuation| continuation.end.is_some())
-        };
+        let has_end = |found: &Option<Path>| found.as_ref().is_some_and(|path| path.end.is_some());
         let failed = pairs.map(|(start, found)| start.filter(|_| !has_end(found)));
         let again = follow(&failed.collect::<Vec<_>>(), stretch, ON_CURVE);
         for (ended, again) in ended.iter_mut().zip(again) {
@@ -116,7 +88,7 @@ fn jams(node: &CurveNode) -> bool {
     node.is_first_touch() && node.full.map.det() < 0.0
 }
 
-fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Continuation>> {
+fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Path>> {
     let mut ended = vec![None; starts.len()];
     let Some((first, _)) = starts.iter().flatten().next() else {
         return ended;
@@ -133,7 +105,7 @@ fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Cont
         newton.solve(&mut open, predicted);
         for stepper in &mut open {
             if stepper.candidate.is_none() && stepper.is_beyond_turns() {
-                ended[stepper.index] = Some(stepper.continuation(None));
+                ended[stepper.index] = Some(stepper.path(None));
             }
         }
         let at_edges = std::mem::take(&mut open).into_iter();
@@ -152,14 +124,14 @@ fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Cont
                     stepper.advance()
                 }
                 Meeting::Edge(edge, _) => {
-                    ended[stepper.index] = Some(stepper.continuation(Some(edge)));
+                    ended[stepper.index] = Some(stepper.path(Some(edge)));
                     false
                 }
             };
             if may_go_on {
                 open.push(stepper);
             } else if stepper.is_beyond_turns() {
-                ended[stepper.index] = Some(stepper.continuation(None));
+                ended[stepper.index] = Some(stepper.path(None));
             }
         }
     }

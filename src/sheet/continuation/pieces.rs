@@ -4,7 +4,7 @@
 use crate::sheet::case::SheetCase;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, Stretch};
 use crate::sheet::continuation::stepper::MOST_PUSH;
-use crate::sheet::continuation::{Continuation, NODE_MISS, continuations};
+use crate::sheet::continuation::{NODE_MISS, Path, continuations};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::{Crossing, Edge};
 use crate::sheet::span::{RowSpan, SpanNode};
@@ -253,14 +253,15 @@ fn ends_of_pieces(
     let starts = levels.iter().zip(starts);
     let starts = starts.map(|(level, start)| Some((level, (*start)?)));
     let continued = continuations(&starts.collect::<Vec<_>>(), stretch, NODE_MISS);
-    let ends = levels.iter().zip(continued);
-    ends.map(|(level, piece)| end_of_piece(level, piece?))
+    continued
+        .into_iter()
+        .map(|path| end_of_piece(path?))
         .collect()
 }
 
-/// Returns the crossing at which `piece` ends, and its nodes.
-fn end_of_piece(level: &LevelCurve, piece: Continuation) -> Option<PieceEnd> {
-    let (edge, end) = (piece.end?, piece.nodes.last()?);
+/// Returns the crossing at which a piece ends, and its nodes.
+fn end_of_piece(path: Path) -> Option<PieceEnd> {
+    let (edge, end, level) = (path.end?, path.nodes.last()?, &path.level);
     let distance = end.full.map.pole.length();
     let crossing = Crossing {
         edge,
@@ -270,7 +271,7 @@ fn end_of_piece(level: &LevelCurve, piece: Continuation) -> Option<PieceEnd> {
         residual: libm::log(level.row.pole_distance / distance).abs(),
         slope: edge.slope(&end.full.map),
     };
-    Some((crossing, piece.nodes))
+    Some((crossing, path.nodes))
 }
 
 fn same(one: &Crossing, other: &Crossing) -> bool {

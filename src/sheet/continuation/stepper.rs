@@ -1,7 +1,7 @@
 //! The stepper of a continuation: predictor and corrector, from node to node.
 
 use crate::newton::{NewtonProblem, NewtonStep};
-use crate::sheet::continuation::Continuation;
+use crate::sheet::continuation::Path;
 use crate::sheet::continuation::corrector::{CORRECTOR_TRAJECTORIES, Corrector};
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 use crate::sheet::continuation::meeting::{Chord, MOST_TURN};
@@ -119,9 +119,10 @@ impl<'a> Stepper<'a> {
             .is_some_and(|last| last.push.abs() > MOST_PUSH)
     }
 
-    /// Returns the continuation up to the last node, which lies at the edge `end`, and leaves the stepper without nodes.
-    pub fn continuation(&mut self, end: Option<Edge>) -> Continuation {
-        Continuation {
+    /// Returns the path up to the last node, which lies at the edge `end`, and leaves the stepper without nodes.
+    pub fn path(&mut self, end: Option<Edge>) -> Path {
+        Path {
+            level: self.level.clone(),
             nodes: std::mem::take(&mut self.nodes),
             fold: self.fold,
             end,
