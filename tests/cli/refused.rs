@@ -101,6 +101,18 @@ fn a_folder_that_takes_no_files() {
     let place = Place::with(SCENE);
     let run = place.run(&["map", "scene.toml", "--engine", "cpu", "-o", "/proc"]);
     run.assert_refused(&["--output /proc: ", "give a folder that can be written"]);
+    let store = [
+        "extract",
+        "scene.toml",
+        "--engine",
+        "cpu",
+        "-o",
+        "/proc/slice.zarr",
+    ];
+    place.run(&store).assert_refused(&[
+        "--output /proc/slice.zarr: ",
+        "in a folder that can be written",
+    ]);
 }
 
 /// An administrator may write to any folder, so the test then runs the program as another user.

@@ -82,12 +82,13 @@ fn adapters_are_taken_by_number_and_name() {
         Run::of(&command.env("WGPU_ADAPTER_NAME", name).output().unwrap())
     };
     taken(named(&map, part));
+    taken(named(&map, ""));
     // What is asked for comes before the variable.
     taken(named(&[&map[..], &["--adapter", "0"]].concat(), "abacus"));
     let auto = ["map", "scene.toml", "--no-png"];
     let allowed = format!("0 ({adapter})");
     for engine in [&map[..], &auto] {
-        for adapter in ["99", "abacus"] {
+        for adapter in ["99", "abacus", ""] {
             let run = place.run(&[engine, &["--adapter", adapter]].concat());
             let what = format!("--adapter {adapter}: no such GPU adapter");
             run.assert_refused(&[&what, &allowed]);

@@ -9,7 +9,14 @@ const ADAPTER_VARIABLE: &str = "WGPU_ADAPTER_NAME";
 
 /// Returns true if an option or the environment names an adapter.
 pub fn is_named(wanted: Option<&str>) -> bool {
-    wanted.is_some() || env::var_os(ADAPTER_VARIABLE).is_some()
+    wanted.is_some() || variable().is_some()
+}
+
+/// Returns the value of the environment variable; `None` if it is not set, or empty.
+fn variable() -> Option<String> {
+    env::var(ADAPTER_VARIABLE)
+        .ok()
+        .filter(|name| !name.is_empty())
 }
 
 /// Returns the index of the `wanted` adapter, else of the one named by `WGPU_ADAPTER_NAME`, else of the preferred one; `None`
@@ -22,7 +29,7 @@ pub fn chosen(
     wanted: Option<&str>,
     precision: Precision,
 ) -> Result<Option<usize>, Failure> {
-    let (what, found) = match (wanted, env::var(ADAPTER_VARIABLE)) {
+    let (what, found) = match (wanted, variable()) {
         (Some(wanted), _) => {
             let found = match wanted.parse::<usize>() {
                 Ok(number) => (number < reports.len()).then_some(number),
@@ -30,11 +37,11 @@ pub fn chosen(
             };
             (format!("--adapter {wanted}"), found)
         }
-        (None, Ok(name)) => (
+        (None, Some(name)) => (
             format!("{ADAPTER_VARIABLE}={name}"),
             named(reports, &name, precision),
         ),
-        (None, Err(_)) => {
+        (None, None) => {
             let preferred = |precision| preferred(reports, precision);
             return Ok(preferred(precision).or_else(|| preferred(Precision::F32)));
         }

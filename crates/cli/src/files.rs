@@ -7,7 +7,7 @@ use std::fs::Metadata;
 use std::io;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::Scene;
-use whiskmap::store::{Output, TemporaryFiles, resolved};
+use whiskmap::store::{Output, TemporaryFiles, TemporaryFolder, resolved};
 
 /// Path that stands for standard input or output.
 pub const STDOUT: &str = "-";
@@ -121,6 +121,16 @@ impl Files {
         check_folder(option, path)?;
         let target = resolved(path).map_err(impossible(option, path, FOLDER_ADVICE))?;
         self.claim(option, path, &target)
+    }
+
+    /// Creates a temporary folder for the new store of `option`.
+    pub fn new_store(&self, option: &str, path: &Path) -> Result<TemporaryFolder, Failure> {
+        let made = TemporaryFolder::create(path, &self.temporary);
+        made.map_err(impossible(
+            option,
+            path,
+            "give a name in a folder that can be written",
+        ))
     }
 
     /// Creates the folder of `option`, and checks that files can be created in it.

@@ -82,7 +82,7 @@ pub fn preferred(reports: &[AdapterReport], precision: Precision) -> Option<usiz
 }
 
 /// Returns the index of the adapter with `part` in its name or at this PCI address, ignoring case: the first of the best kind, with this precision
-/// if there is one. `None` without one.
+/// if there is one. `None` without one, and for an empty `part`.
 #[must_use]
 pub fn named(reports: &[AdapterReport], part: &str, precision: Precision) -> Option<usize> {
     let part = part.to_lowercase();
@@ -92,7 +92,8 @@ pub fn named(reports: &[AdapterReport], part: &str, precision: Precision) -> Opt
             device_pci_bus_id,
             ..
         } = &report.info;
-        name.to_lowercase().contains(&part) || device_pci_bus_id.to_lowercase() == part
+        let is_part = name.to_lowercase().contains(&part);
+        !part.is_empty() && (is_part || device_pci_bus_id.to_lowercase() == part)
     };
     best(reports, |report| {
         is_named(report) && report.computes_in(precision)

@@ -137,8 +137,8 @@ fn store(
     }
     // A new store appears when it is complete; an existing one is rewritten block by block.
     let temporary = files.temporary();
-    let folder = (!ZarrStore::is_at(path)).then(|| TemporaryFolder::create(path, temporary));
-    let folder = folder.transpose().map_err(unwritten(path))?;
+    let folder = (!ZarrStore::is_at(path)).then(|| files.new_store("--output", path));
+    let folder = folder.transpose()?;
     let place = folder.as_ref().map_or(path, TemporaryFolder::path);
     let store = ZarrStore::join(place, &scene, &about, true)?;
     store.begin(temporary)?;
