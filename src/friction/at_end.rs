@@ -50,8 +50,8 @@ pub fn surely_slides_to_end(
                 before = Some(node);
                 SlidingKnot::new(&level, node, &state)
             });
-            let (knots, has_fold) = (knots.collect(), end.edge == Edge::Fold);
-            is_farthest_at_end(&SlidingLimit::through(level, true, knots, has_fold))
+            let (knots, folds) = (knots.collect(), [false, end.edge == Edge::Fold]);
+            is_farthest_at_end(&SlidingLimit::through(level, true, knots, folds))
         });
     surely.collect()
 }

@@ -1,50 +1,99 @@
-//! Division of the segments of a limit at exact states, where an error of the slid distance would change the state of a contact that sticks.
+//! Exact segments of a limit, where an error of the slid distance would change the state of a contact that sticks.
 
 use super::limit::SlidingLimit;
 use super::segment::{LimitSegment, SlidingKnot};
 use super::states::at_limits;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Largest error of the slid distance in the middle of an exact segment, in whisker lengths.
+const LIMIT_ERROR: f64 = 1e-10;
+
+/// Number of times that a segment may be halved. The error of a smooth cubic falls to 1/16 each time.
+const HALVINGS: u32 = 10;
+
+/// Limit whose segments are made exact.
+struct OpenLimit {
+    limit: SlidingLimit,
+    /// True for each segment whose error is not yet known to be small, `[segment]`.
+    is_open: Vec<bool>,
+}
+
+impl OpenLimit {
+    /// Returns the push angles in the middle of open segments, in radians.
+    fn middles(&self) -> impl Iterator<Item = f64> {
+        let segments = self.limit.segments.iter().zip(&self.is_open);
+        let open = segments.filter(|(_, is_open)| **is_open);
+        open.map(|(segment, _)| segment.inner(MIDDLE).push)
+    }
+
+    /// Halves the open segments whose polynomials miss the states in their `middles`, and closes the others. A segment without a state in its
+    /// middle, as at a corner of fold and tip, stays as it is.
+    fn halve(&mut self, mut middles: impl Iterator<Item = Option<SlidingKnot>>) {
+        let (mut segments, mut is_open) = (Vec::new(), Vec::new());
+        for (segment, was_open) in self.limit.segments.drain(..).zip(&self.is_open) {
+            let middle = was_open.then(|| middles.next().flatten()).flatten();
+            let miss = |knot: &SlidingKnot| (knot.slid - segment.slid.at(MIDDLE).0).abs();
+            match middle.filter(|knot| miss(knot) > LIMIT_ERROR) {
+                Some(knot) => {
+                    let knots = [segment.from, knot, segment.to];
+                    segments.extend(LimitSegment::between(&knots, segment.folds));
+                    is_open.extend([true; 2]);
+                }
+                None => {
+                    segments.push(segment);
+                    is_open.push(false);
+                }
+            }
+        }
+        (self.limit.segments, self.is_open) = (segments, is_open);
+    }
+}
+
+/// Variable of a segment in its middle.
+const MIDDLE: f64 = 0.5;
 
 impl SlidingLimit {
-    /// Divides segments of `limits`, given by index, at exact states, `[limit]`. A segment without such states, as at a corner of fold and
-    /// tip, stays whole.
-    pub fn divided(limits: &[(&Self, Vec<usize>)]) -> Vec<Self> {
-        let of_limit = |(limit, segments): &(&Self, Vec<usize>)| {
-            let pushes = segments.iter().map(|segment| limit.divisions(*segment));
-            pushes.collect()
+    /// Makes segments of `limits`, given by index, exact: their knots are exact states, and their error is small, `[limit]`. The limit's states at
+    /// its ends stay, because they are singular or exact.
+    pub fn exact(limits: &[(&Self, Vec<usize>)]) -> Vec<Self> {
+        let inner = |(limit, segments): &(&Self, Vec<usize>)| {
+            let ends = segments.iter().flat_map(|index| [*index, index + 1]);
+            let inner = ends.filter(|knot| (1..limit.segments.len()).contains(knot));
+            inner.collect::<BTreeSet<usize>>()
         };
-        let pushes: Vec<Vec<Vec<f64>>> = limits.iter().map(of_limit).collect();
-        let pairs = limits
-            .iter()
-            .zip(&pushes)
-            .flat_map(|((limit, _), of_limit)| {
-                let pushes = of_limit.iter().flatten();
-                pushes.map(move |push| (*limit, *push))
-            });
+        let inner: Vec<BTreeSet<usize>> = limits.iter().map(inner).collect();
+        let pairs = limits.iter().zip(&inner).flat_map(|((limit, _), inner)| {
+            inner
+                .iter()
+                .map(move |knot| (*limit, limit.segments[*knot].from.push))
+        });
         let mut found = knots_at(&pairs.collect::<Vec<_>>()).into_iter();
-        let divided = limits
-            .iter()
-            .zip(&pushes)
-            .map(|((limit, segments), of_limit)| {
-                let knots = segments.iter().zip(of_limit).map(|(segment, pushes)| {
-                    let inner: Vec<Option<SlidingKnot>> =
-                        found.by_ref().take(pushes.len()).collect();
-                    (*segment, limit.with_ends(*segment, inner))
-                });
-                let knots: Vec<(usize, Option<Vec<SlidingKnot>>)> = knots.collect();
-                let mut knots = knots.into_iter().peekable();
-                let mut joined = Vec::new();
-                for (index, segment) in limit.segments.iter().enumerate() {
-                    match knots.next_if(|(at, _)| *at == index) {
-                        Some((_, Some(knots))) => joined.extend(LimitSegment::between(&knots)),
-                        _ => joined.push(segment.clone()),
-                    }
-                }
-                Self {
-                    segments: joined,
-                    ..(*limit).clone()
-                }
-            });
-        divided.collect()
+        let begun = limits.iter().zip(&inner).map(|((limit, segments), inner)| {
+            let found = inner.iter().zip(found.by_ref());
+            let found = found.filter_map(|(index, knot)| Some((*index, knot?)));
+            let knots: BTreeMap<usize, SlidingKnot> = found.collect();
+            let mut limit = (*limit).clone();
+            let mut is_open = vec![false; limit.segments.len()];
+            for &index in segments {
+                let segment = &mut limit.segments[index];
+                let from = knots.get(&index).copied().unwrap_or(segment.from);
+                let to = knots.get(&(index + 1)).copied().unwrap_or(segment.to);
+                *segment = LimitSegment::new(from, to, segment.folds);
+                is_open[index] = true;
+            }
+            OpenLimit { limit, is_open }
+        });
+        let mut open: Vec<OpenLimit> = begun.collect();
+        for _ in 0..HALVINGS {
+            let pairs = open
+                .iter()
+                .flat_map(|open| open.middles().map(|push| (&open.limit, push)));
+            let mut middles = knots_at(&pairs.collect::<Vec<_>>()).into_iter();
+            for open in &mut open {
+                open.halve(middles.by_ref());
+            }
+        }
+        open.into_iter().map(|open| open.limit).collect()
     }
 
     /// Divides the segments of `limits` in which the limit reverses at the reversal, `[limit]`. A segment without the state there stays whole.
@@ -92,8 +141,8 @@ impl SlidingLimit {
                 match turns.next_if(|((at, _), _)| *at == index) {
                     Some((_, Some(knot))) => {
                         let knot = knot.at_reversal();
-                        segments.push(LimitSegment::new(segment.from, knot));
-                        segments.push(LimitSegment::new(knot, segment.to));
+                        segments.push(LimitSegment::new(segment.from, knot, segment.folds));
+                        segments.push(LimitSegment::new(knot, segment.to, segment.folds));
                     }
                     _ => segments.push(segment.clone()),
                 }
@@ -104,29 +153,6 @@ impl SlidingLimit {
             }
         });
         polished.collect()
-    }
-
-    /// Returns the push angles at which a segment is divided, in radians, with its ends. The limit's states at touch and fold are left out,
-    /// because they are singular or exact.
-    fn divisions(&self, index: usize) -> Vec<f64> {
-        let first = u32::from(index == 0);
-        let last = DIVISIONS - u32::from(index + 1 == self.segments.len());
-        let parts = (first..=last).map(|i| f64::from(i) / f64::from(DIVISIONS));
-        let segment = &self.segments[index];
-        parts.map(|part| segment.inner(part).push).collect()
-    }
-
-    /// Returns the knots of a divided segment: those at its divisions, and the limit's at touch and fold. `None` if one is not found.
-    fn with_ends(
-        &self,
-        index: usize,
-        divisions: Vec<Option<SlidingKnot>>,
-    ) -> Option<Vec<SlidingKnot>> {
-        let LimitSegment { from, to, .. } = &self.segments[index];
-        let touch = (index == 0).then_some(Some(*from));
-        let end = (index + 1 == self.segments.len()).then_some(Some(*to));
-        let knots = touch.into_iter().chain(divisions).chain(end);
-        knots.collect()
     }
 
     /// Returns the indices of all segments.
@@ -157,9 +183,6 @@ impl SlidingLimit {
         self.segments().into_iter().filter(is_near).collect()
     }
 }
-
-/// Number of parts of a divided segment. The error of the cubic falls to 1/4096: from 1e-7, the largest seen, to 3e-11.
-const DIVISIONS: u32 = 8;
 
 /// Exact knots of limits at push angles, magnitudes in radians, `[pair]`; `None` where the state is not found.
 fn knots_at(pairs: &[(&SlidingLimit, f64)]) -> Vec<Option<SlidingKnot>> {

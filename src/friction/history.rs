@@ -101,14 +101,14 @@ impl ContactHistory {
             Some([tip, (base, history.met(base, Sliding::Base))])
         });
         let limits: Vec<(&SlidingLimit, Vec<usize>)> = limits.flatten().collect();
-        let divided = SlidingLimit::divided(&limits);
-        let mut divided = SlidingLimit::polished(&divided).into_iter();
+        let exact = SlidingLimit::exact(&limits);
+        let mut exact = SlidingLimit::polished(&exact).into_iter();
         let refined = histories.iter().map(|history| {
             let history = history.as_ref()?;
             if history.base.is_none() {
                 return Some(history.clone());
             }
-            let (tip, base) = (divided.next()?, divided.next()?);
+            let (tip, base) = (exact.next()?, exact.next()?);
             Some(Self::new(tip, Some(base)))
         });
         refined.collect()
@@ -135,10 +135,10 @@ impl ContactHistory {
             .into_iter()
             .flatten();
         let whole: Vec<_> = limits.map(|limit| (limit, limit.segments())).collect();
-        let divided = SlidingLimit::divided(&whole);
-        let mut divided = SlidingLimit::polished(&divided).into_iter();
-        let (tip, base) = (divided.next()?, divided.next()?);
-        Some((Self::new(tip, Some(base)), divided.next()))
+        let exact = SlidingLimit::exact(&whole);
+        let mut exact = SlidingLimit::polished(&exact).into_iter();
+        let (tip, base) = (exact.next()?, exact.next()?);
+        Some((Self::new(tip, Some(base)), exact.next()))
     }
 
     fn new(tip: SlidingLimit, base: Option<SlidingLimit>) -> Self {

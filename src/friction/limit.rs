@@ -3,9 +3,9 @@
 //! A row whose parameter `w` turns back has no row span (`src/sheet/span.rs`), so the variable is the push angle, which grows along
 //! every stable row.
 
-use super::segment::{LimitPlace, LimitSegment, SlidingKnot};
+use super::segment::{LimitFolds, LimitPlace, LimitSegment, SlidingKnot};
 use super::state::FrictionPoint;
-use crate::sheet::{CurveNode, LevelCurve, NODE_MISS, Path, Stretch, continuations};
+use crate::sheet::{CurveNode, Edge, LevelCurve, NODE_MISS, Path, Stretch, continuations};
 use glam::DVec2;
 use whiskmap_mechanics::shooting::FirstVariation;
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
@@ -22,20 +22,25 @@ pub struct SlidingLimit {
 }
 
 impl SlidingLimit {
-    /// Creates the limit of `level` through `knots`. The last one is a fold if `has_fold` is true.
+    /// Creates the limit of `level` through `knots`, of which the first and the last one may be folds.
     pub fn through(
         level: LevelCurve,
         is_stable: bool,
         mut knots: Vec<SlidingKnot>,
-        has_fold: bool,
+        [begins, ends]: [bool; 2],
     ) -> Self {
-        if let Some(last) = knots.last_mut().filter(|_| has_fold) {
-            *last = last.at_fold();
-        }
+        let at_fold = |knot: &mut SlidingKnot| {
+            *knot = knot.at_fold();
+            knot.push
+        };
+        let folds = LimitFolds {
+            begin: knots.first_mut().filter(|_| begins).map(at_fold),
+            end: knots.last_mut().filter(|_| ends).map(at_fold),
+        };
         Self {
             level,
             is_stable,
-            segments: LimitSegment::between(&knots),
+            segments: LimitSegment::between(&knots, folds),
         }
     }
 
@@ -62,6 +67,7 @@ impl SlidingLimit {
         let stable = LimitPart::stable(&path);
         let unstable = path.unstable().map(|nodes| LimitPart {
             nodes: nodes.iter().rev().copied().collect(),
+            folds: [path.end == Some(Edge::Fold), true],
             is_stable: false,
             ..stable.clone()
         });
@@ -135,8 +141,8 @@ impl SlidingLimit {
 struct LimitPart<'a> {
     level: &'a LevelCurve,
     nodes: Vec<CurveNode>,
-    /// True if the last node is a fold.
-    has_fold: bool,
+    /// True for the first and the last node if it is a fold.
+    folds: [bool; 2],
     is_stable: bool,
 }
 
@@ -146,7 +152,7 @@ impl<'a> LimitPart<'a> {
         Self {
             level: &path.level,
             nodes: path.stable().to_vec(),
-            has_fold: path.fold.is_some(),
+            folds: [false, path.fold.is_some()],
             is_stable: true,
         }
     }
@@ -156,7 +162,7 @@ impl<'a> LimitPart<'a> {
         let pairs = self.nodes.iter().zip(variations);
         let knots = pairs.map(|(node, variation)| SlidingKnot::new(self.level, *node, &variation));
         let (level, knots) = (self.level.clone(), knots.collect());
-        SlidingLimit::through(level, self.is_stable, knots, self.has_fold)
+        SlidingLimit::through(level, self.is_stable, knots, self.folds)
     }
 }
 

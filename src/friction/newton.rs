@@ -27,6 +27,10 @@ const RATIO_STEP: f64 = 1e-4;
 /// Last Newton step of the force ratio of a contact that sticks. Forces change by less than it, relative to their size.
 const LAST_RATIO_STEP: f64 = 1e-9;
 
+/// Error of the slid distance of a contact that sticks, in whisker lengths, up to which steps of the force ratio that no longer shrink are due to
+/// rounding.
+const AT_SLID: f64 = 1e-13;
+
 /// Distance of the pole from its target, in whisker lengths, at which a state is accepted without another step. It is the size of
 /// rounding errors, because the force ratio of a contact that sticks there multiplies an error of the slid distance by 1e6 and more.
 const AT_POLE: f64 = 1e-16;
@@ -225,8 +229,8 @@ impl FrictionTarget<'_> {
             _ => map.solve(miss).extend(0.0),
         };
         let ratio_step = step.z.abs();
-        let is_precise =
-            is_at_pole && (ratio_step <= LAST_RATIO_STEP || ratio_step > 0.5 * iterate.ratio_step);
+        let is_rounding = missed.abs() <= AT_SLID && ratio_step > 0.5 * iterate.ratio_step;
+        let is_precise = is_at_pole && (ratio_step <= LAST_RATIO_STEP || is_rounding);
         let is_stuck = residual <= TOLERANCE && residual > 0.5 * iterate.before;
         if (residual <= AT_POLE || is_stuck) && (jacobian.is_none() || is_precise) {
             return self.accept(iterate, (level, here), jacobian, residual);

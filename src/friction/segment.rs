@@ -2,6 +2,7 @@
 
 use super::sliding::{ContactRate, slid};
 use crate::sheet::{CurveNode, LevelCurve};
+use std::array;
 use whiskmap_mechanics::numerics::newton_form::{Polynomial, through_runs};
 use whiskmap_mechanics::shooting::FirstVariation;
 
@@ -74,14 +75,71 @@ pub struct LimitPlace {
     pub push_by_x: f64,
 }
 
-/// Polynomials of the contact between two knots. Their variable `x` grows from 0 to 1. It is the fraction of the interval. If the
-/// second knot is a fold, it is 1 minus the square root of the fraction that is left.
+/// Folds at which a limit begins and ends, by their push angles, magnitudes in radians; `None` for another end. Next to a fold, the contact is
+/// a smooth function of the square root of the push that is left to the fold, not of the push.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LimitFolds {
+    pub begin: Option<f64>,
+    pub end: Option<f64>,
+}
+
+impl LimitFolds {
+    /// Returns the length from one push to another in the variable in which the contact is smooth up to both ends of the limit.
+    fn length(self, [from, to]: [f64; 2]) -> f64 {
+        let change = to - from;
+        let [[after, before], [after_to, before_to]] = [from, to].map(|push| self.roots(push));
+        match (self.begin, self.end) {
+            _ if change == 0.0 => 0.0,
+            (None, None) => change,
+            (None, Some(_)) => change / (before + before_to),
+            (Some(_), None) => change / (after + after_to),
+            // The variable is the angle whose tangent is the quotient of the roots.
+            (Some(_), Some(_)) => libm::asin(change / (after_to * before + after * before_to)),
+        }
+    }
+
+    /// Returns the push at this `length` after the push `from`, in radians.
+    fn push(self, from: f64, length: f64) -> f64 {
+        let [after, before] = self.roots(from);
+        let change = match (self.begin, self.end) {
+            (None, None) => length,
+            (None, Some(_)) => length * (2.0 * before - length),
+            (Some(_), None) => length * (2.0 * after + length),
+            (Some(begin), Some(end)) => {
+                let angle = libm::atan2(after, before);
+                (end - begin) * libm::sin(2.0 * angle + length) * libm::sin(length)
+            }
+        };
+        from + change
+    }
+
+    /// Returns the derivative of the push by the length.
+    fn slope(self, push: f64) -> f64 {
+        let [after, before] = self.roots(push);
+        match (self.begin, self.end) {
+            (None, None) => 1.0,
+            (None, Some(_)) => 2.0 * before,
+            (Some(_), None) => 2.0 * after,
+            (Some(_), Some(_)) => 2.0 * after * before,
+        }
+    }
+
+    /// Returns the square roots of the distances of `push` from the folds; 0 without a fold.
+    fn roots(self, push: f64) -> [f64; 2] {
+        let distances = [
+            self.begin.map(|begin| push - begin),
+            self.end.map(|end| end - push),
+        ];
+        distances.map(|distance| distance.unwrap_or_default().max(0.0).sqrt())
+    }
+}
+
+/// Polynomials of the contact between two knots. Their variable `x` grows from 0 to 1, in proportion to the length of [`LimitFolds`].
 #[derive(Clone, Debug)]
 pub struct LimitSegment {
     pub from: SlidingKnot,
     pub to: SlidingKnot,
-    /// True if the second knot is a fold.
-    is_to_fold: bool,
+    pub folds: LimitFolds,
     /// Slid distance, with a value and a slope at each knot.
     pub slid: Polynomial<4>,
     /// Contact coordinate, load and tangent angle.
@@ -89,34 +147,38 @@ pub struct LimitSegment {
 }
 
 impl LimitSegment {
-    /// Returns the segments between neighbouring `knots`, `[segment]`.
-    pub fn between(knots: &[SlidingKnot]) -> Vec<Self> {
+    /// Returns the segments between neighbouring `knots` of a limit with these `folds`, `[segment]`.
+    pub fn between(knots: &[SlidingKnot], folds: LimitFolds) -> Vec<Self> {
         let pairs = knots.windows(2);
-        pairs.map(|pair| Self::new(pair[0], pair[1])).collect()
+        pairs
+            .map(|pair| Self::new(pair[0], pair[1], folds))
+            .collect()
     }
 
-    /// Cubic Hermite polynomials or, next to a fold, the parabolas that have the slopes of the first knot. The first knot is no fold.
-    pub fn new(from: SlidingKnot, to: SlidingKnot) -> Self {
+    /// Cubic Hermite polynomials or, where a knot is a fold, the parabolas that have the slopes of the other knot.
+    pub fn new(from: SlidingKnot, to: SlidingKnot, folds: LimitFolds) -> Self {
         let values = [from, to].map(|knot| knot.values());
-        let length = to.push - from.push;
-        let slopes =
-            [from, to].map(|knot| knot.slopes().map(|slopes| slopes.map(|by| by * length)));
-        let is_to_fold = slopes[1].is_none();
-        let begin = slopes[0].unwrap_or_default();
-        let slopes = match slopes[1] {
-            Some(end) => [begin, end],
-            // At the first knot, the fraction changes twice as fast as `x`. The slopes of a parabola have the secant as their mean.
-            None => [
-                begin.map(|begin| 2.0 * begin),
-                std::array::from_fn(|i| 2.0 * (values[1][i] - values[0][i] - begin[i])),
-            ],
+        let secant: [f64; 4] = array::from_fn(|i| values[1][i] - values[0][i]);
+        let length = folds.length([from.push, to.push]);
+        let known = [from, to].map(|knot| {
+            let by_x = folds.slope(knot.push) * length;
+            knot.slopes().map(|slopes| slopes.map(|by| by * by_x))
+        });
+        // The slopes of a parabola have the secant as their mean. Between two folds, it is a line.
+        let other = |known: Option<[f64; 4]>| match known {
+            Some(slopes) => array::from_fn(|i| 2.0 * secant[i] - slopes[i]),
+            None => secant,
         };
+        let slopes = [
+            known[0].unwrap_or_else(|| other(known[1])),
+            known[1].unwrap_or_else(|| other(known[0])),
+        ];
         let differences = through_runs(&values, &slopes)[0];
         let polynomial = |i: usize| Polynomial::on_even_nodes(2, differences.map(|term| term[i]));
         Self {
             from,
             to,
-            is_to_fold,
+            folds,
             slid: polynomial(0),
             near: [1, 2, 3].map(polynomial),
         }
@@ -137,25 +199,19 @@ impl LimitSegment {
 
     /// Variable `x` at the push angle `push`, in radians.
     pub fn part(&self, push: f64) -> f64 {
-        let fraction = (push - self.from.push) / (self.to.push - self.from.push);
-        if self.is_to_fold {
-            1.0 - (1.0 - fraction).max(0.0).sqrt()
-        } else {
-            fraction
-        }
+        let length = |push| self.folds.length([self.from.push, push]);
+        length(push) / length(self.to.push)
     }
 
     /// Place at the variable `x`.
     pub fn inner(&self, x: f64) -> LimitPlace {
-        let length = self.to.push - self.from.push;
-        let (fraction, by_x) = if self.is_to_fold {
-            (x * (2.0 - x), 2.0 - 2.0 * x)
-        } else {
-            (x, 1.0)
-        };
+        let [from, to] = [self.from.push, self.to.push];
+        let length = self.folds.length([from, to]);
+        // Rounding may lead beyond a short segment.
+        let push = self.folds.push(from, x * length).max(from).min(to);
         LimitPlace {
-            push: fraction.mul_add(length, self.from.push),
-            push_by_x: by_x * length,
+            push,
+            push_by_x: self.folds.slope(push) * length,
         }
     }
 
@@ -225,7 +281,7 @@ mod tests {
         let slid = |x: f64| (x - 1.0) * (x - 1.0) * (x + 2.0);
         let segment = |from: f64, to: f64| {
             let [from, to] = [from, to].map(|x| knot(x, slid(x), 3.0 * x * x - 3.0));
-            LimitSegment::new(from, to)
+            LimitSegment::new(from, to, LimitFolds::default())
         };
         let found = at(&segment(-2.0, 2.0), 0.3);
         assert!((found - slid(0.3)).abs() < 1e-14);
@@ -247,7 +303,12 @@ mod tests {
             (1.0 - 1.6 * root) / (2.0 * root)
         };
         let fold = knot(2.0, 1.0, f64::INFINITY);
-        let segment = |from: f64| LimitSegment::new(knot(from, slid(from), slope(from)), fold);
+        let folds = LimitFolds {
+            begin: None,
+            end: Some(2.0),
+        };
+        let segment =
+            |from: f64| LimitSegment::new(knot(from, slid(from), slope(from)), fold, folds);
         for push in [1.1, 1.5, 1.99, 2.0] {
             let found = at(&segment(1.0), push);
             assert!((found - slid(push)).abs() < 1e-14, "{push}");

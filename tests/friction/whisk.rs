@@ -47,14 +47,21 @@ fn work(found: &Whisk) -> f64 {
 fn the_work_of_the_base_is_dissipated() {
     const COUNT: u32 = 20_000;
     let mut snaps = 0;
-    for (a_per_mm, radius_mm, friction, turns) in [
-        (0.02, 0.25, 0.3, &[-0.5, 12.0, 4.0, 14.0, -0.5][..]),
-        (0.02, 0.0, 0.9, &[-0.5, 9.0, -0.5]),
-        (0.02, 0.25, 0.3, &[3.0, -20.0, -8.0, -24.0, 3.0]),
-        (0.04, 1.0, 0.1, &[-0.5, 8.0, -0.5]),
-        (0.02, 0.25, 0.3, &[-0.5, 17.0, -0.5]),
+    for (distance, [a_per_mm, radius_mm, friction], turns) in [
+        (
+            DISTANCE,
+            [0.02, 0.25, 0.3],
+            &[-0.5, 12.0, 4.0, 14.0, -0.5][..],
+        ),
+        (DISTANCE, [0.02, 0.0, 0.9], &[-0.5, 9.0, -0.5]),
+        (DISTANCE, [0.02, 0.25, 0.3], &[3.0, -20.0, -8.0, -24.0, 3.0]),
+        (DISTANCE, [0.04, 1.0, 0.1], &[-0.5, 8.0, -0.5]),
+        (DISTANCE, [0.02, 0.25, 0.3], &[-0.5, 17.0, -0.5]),
+        // The contact meets the base limit next to its fold.
+        (7.75, [0.02, 0.0, 0.3], &[3.0, -56.54, 3.0]),
     ] {
         let scene = cone(a_per_mm, radius_mm, friction);
+        let through = |scene: &Scene, angles: &[f64]| through_at(scene, distance, angles);
         let mut angles = to_and_fro(turns, COUNT);
         let snap = |found: &Whisk| {
             let mut snaps = found.events.iter();
@@ -80,7 +87,7 @@ fn the_work_of_the_base_is_dissipated() {
         // Measured: 2.4e-8.
         assert!(
             (work / taken - 1.0).abs() < 1e-6 && taken > 0.0,
-            "{a_per_mm} {radius_mm} {friction} {turns:?}: {work} {taken} {:e}",
+            "{distance} {a_per_mm} {radius_mm} {friction} {turns:?}: {work} {taken} {:e}",
             work / taken - 1.0
         );
     }
@@ -144,6 +151,24 @@ fn turning_points_that_stick_have_states() {
         (at_zero / before - 1.0).abs() < 1e-9 && at_zero > 100.0,
         "{before} {at_zero}"
     );
+}
+
+/// A contact that sticks at a point stays where it is, however many samples there are. Newton's method stalls at other states of this cylinder.
+#[test]
+fn a_contact_that_sticks_stays() {
+    let mut scene = cone(0.0, 0.0, 0.2);
+    let whisker = &mut scene.whisker;
+    (whisker.base_radius_um, whisker.tip_radius_um) = (100.0, 100.0);
+    let found = through_at(&scene, 10.4, &to_and_fro(&[-0.5, 112.517, 0.0], 600));
+    let mut sticking = 0;
+    for pair in found.samples.windows(2) {
+        if [0, 1].map(|i| pair[i].sliding) == [Some(Sliding::Sticks); 2] {
+            let [before, after] = [0, 1].map(|i| pair[i].arc_length_mm.unwrap());
+            assert!((before - after).abs() < 1e-9, "{before} {after}");
+            sticking += 1;
+        }
+    }
+    assert!(sticking > 100, "{sticking}");
 }
 
 /// A first push has the states of the branch, on both sides.
