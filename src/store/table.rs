@@ -86,7 +86,10 @@ fn finite(cells: &[u8]) -> Cow<'_, [u8]> {
     let each = cells.split_inclusive(ends_cell).map(|cell| {
         let (text, end) = cell.split_at(cell.len() - 1);
         let is_finite = !matches!(text, b"NaN" | b"inf" | b"-inf");
-        debug_assert!(is_finite, "a row must have `None` for a number that does not exist");
+        debug_assert!(
+            is_finite,
+            "a row must have `None` for a number that does not exist"
+        );
         if is_finite { cell } else { end }
     });
     Cow::Owned(each.collect::<Vec<_>>().concat())
