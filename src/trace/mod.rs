@@ -22,8 +22,8 @@ pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;
 pub use state::StateAtPush;
 
-pub use columns::{ContactColumns, ContactRow};
-pub(crate) use columns::{StateRow, column, row};
+pub use columns::{ContactColumns, StateRow};
+pub(crate) use columns::{column, row};
 
 use crate::scene::{RefusedWhisker, SweepPlace, SweptWhisker};
 use rayon::prelude::*;
