@@ -13,6 +13,7 @@ mod options;
 pub(crate) mod phase;
 mod readings;
 mod rows;
+mod shapes;
 pub(crate) mod states;
 mod turns;
 
@@ -22,6 +23,7 @@ pub use options::{CourseStart, WhiskOptions};
 use readings::CurvaturePoint;
 pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
+pub use shapes::CourseShapes;
 
 use crate::scene::{Pole, Whisker, digits};
 use crate::sheet::Row;
