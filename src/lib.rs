@@ -91,6 +91,7 @@ mod newton;
 )]
 pub mod paper;
 pub mod plan;
+mod quantile;
 pub mod refine;
 pub mod sheet;
 mod stopwatch;

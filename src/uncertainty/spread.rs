@@ -1,6 +1,7 @@
 //! Spread of many ends of pushes: percentiles, mean and standard deviation.
 
 use super::PushEnd;
+use crate::quantile::quantile;
 use crate::trace::{DetachmentKind, row};
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
@@ -195,33 +196,9 @@ fn statistics(mut values: Vec<f64>) -> [Option<f64>; 7] {
     [p5, p25, p50, p75, p95, mean, variance.map(f64::sqrt)]
 }
 
-/// Quantile by linear interpolation between neighbours of the `sorted` values: the first value is the quantile of 0, the last
-/// value the quantile of 1 (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
-fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
-    let last = sorted.len().checked_sub(1)?;
-    let place = part * last as f64;
-    let below = (place as usize).min(last);
-    let above = sorted[(below + 1).min(last)];
-    Some(sorted[below] + (place - below as f64) * (above - sorted[below]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The values that `numpy.quantile` gives.
-    #[test]
-    fn quantiles_are_linear_between_neighbours() {
-        let values = [1.0, 2.0, 4.0, 8.0, 16.0];
-        let parts = [0.05, 0.25, 0.5, 0.75, 0.95];
-        let expected = [1.2, 2.0, 4.0, 8.0, 14.4].map(Some);
-        for (part, expected) in parts.into_iter().zip(expected) {
-            let both = quantile(&values, part).zip(expected);
-            assert!(both.is_some_and(|(a, b)| (a - b).abs() < 1e-14));
-        }
-        assert_eq!(quantile(&[3.0], 0.95), Some(3.0));
-        assert_eq!(quantile(&[], 0.5), None);
-    }
 
     #[test]
     fn ends_without_detachment_are_counted_and_left_out() {

@@ -92,7 +92,7 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     )
     .map_err(|why| match why {
         TextureError::Unresolved { .. } => Failure::Texture(why),
-        TextureError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
+        TextureError::CurvatureAt(why) => Failure::Input(format!("--curvature-at: {why}")),
         TextureError::Blocked { .. } | TextureError::Surface(_) => {
             Failure::Input(format!("{}: {why}", args.whisker.scene.display()))
         }

@@ -75,7 +75,7 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let found = found.map_err(|why| match why {
         WhiskError::Pole(why) => refuse(distance, why),
         WhiskError::Unresolved(_) => Failure::Course(why),
-        WhiskError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
+        WhiskError::CurvatureAt(why) => Failure::Input(format!("--curvature-at: {why}")),
         why => Failure::Input(format!("{}: {why}", args.course.source())),
     })?;
     let marks = StrainMark::of_rows(&whisker, &scene.pole, &found.samples);
