@@ -84,6 +84,8 @@ pub enum NoForce {
     OutOfReach,
     /// No stable state of the model has this contact distance and this curvature.
     NoState,
+    /// The computation was cancelled before the frame.
+    Cancelled,
 }
 
 row! {
@@ -232,7 +234,7 @@ pub fn forces(
 
 /// Computes the forces as [`forces`] does, with a baseline and standard deviations. The deviations are of first order in the deviations of
 /// the frames, which are independent; loads of frames without contact are exactly 0. If `cancel` is true, the function soon returns, and the
-/// remaining frames have no force.
+/// remaining frames have the reason [`NoForce::Cancelled`].
 #[must_use]
 pub fn forces_until(
     whisker: &Whisker,
@@ -261,7 +263,7 @@ pub fn forces_until(
         };
         match &model {
             Some(_) if cancel.load(Ordering::Relaxed) => {
-                bending.none(frame.time_s, NoForce::NoState)
+                bending.none(frame.time_s, NoForce::Cancelled)
             }
             Some(model) => model.force(&bending, frame, contact, &deviations),
             None => bending.force(frame, contact, &deviations),
