@@ -83,6 +83,7 @@ pub mod friction;
 pub mod input;
 mod least_squares;
 pub mod map;
+mod names;
 mod newton;
 #[cfg(feature = "render")]
 #[allow(

@@ -31,6 +31,7 @@ pub use worker::Worker;
 
 use std::fmt;
 use std::sync::Arc;
+use whiskmap_mechanics::numerics::Unit;
 use whiskmap_mechanics::rod::Effects;
 use whiskmap_mechanics::shooting::PlainState;
 
@@ -63,6 +64,14 @@ pub struct EngineDescription {
 }
 
 impl EngineDescription {
+    /// Describes an engine of this name on the CPU.
+    fn on_cpu(engine: &str) -> Self {
+        Self {
+            engine: engine.to_owned(),
+            adapter: Unit::detect().to_string(),
+        }
+    }
+
     /// Describes `engine`, or the CPU engine without one.
     #[must_use]
     pub fn of(engine: Option<&dyn Engine>) -> Self {

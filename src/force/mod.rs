@@ -13,6 +13,7 @@ mod state_curve;
 pub use baseline::CurvatureBaseline;
 pub use frames::CurvatureFrames;
 
+use crate::names::names;
 use crate::scene::{FrameDeviations, Pole, Whisker, digits, rounded};
 use crate::trace::row;
 use bending::Bending;
@@ -142,19 +143,7 @@ pub enum BaseAxis {
     Follicle,
 }
 
-impl BaseAxis {
-    /// Both axes.
-    pub const ALL: [Self; 2] = [Self::Tangent, Self::Follicle];
-
-    /// Returns the name of the axis: tangent or follicle.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Tangent => "tangent",
-            Self::Follicle => "follicle",
-        }
-    }
-}
+names!(BaseAxis { Tangent = "tangent", Follicle = "follicle" });
 
 /// Method, baseline and standard deviations with which forces follow from frames.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,6 @@
 //! Options of a course: its start, the point of its curvature, gaps that it bridges, and cancellation.
 
+use crate::names::names;
 use crate::scene::Whisker;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,19 +14,7 @@ pub enum CourseStart {
     Contact,
 }
 
-impl CourseStart {
-    /// Both states.
-    pub const ALL: [Self; 2] = [Self::Free, Self::Contact];
-
-    /// Returns the name of the state: free or contact.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Free => "free",
-            Self::Contact => "contact",
-        }
-    }
-}
+names!(CourseStart { Free = "free", Contact = "contact" });
 
 /// Start of a course, point of its curvature, gaps that it bridges, and cancellation.
 #[derive(Clone, Debug, Default)]
