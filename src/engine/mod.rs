@@ -29,6 +29,7 @@ pub use side::{Values, WhiskerSide};
 pub use spectral::Spectral;
 pub use worker::Worker;
 
+use crate::names::names;
 use std::fmt;
 use std::sync::Arc;
 use whiskmap_mechanics::numerics::Unit;
@@ -45,12 +46,11 @@ pub enum Precision {
     F64,
 }
 
+names!(Precision { F32 = "f32", F64 = "f64" });
+
 impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        })
+        f.write_str(self.name())
     }
 }
 
