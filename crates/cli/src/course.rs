@@ -7,7 +7,7 @@ use super::files::{Files, STDOUT};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::digits;
-use whiskmap::whisk::AngleCourse;
+use whiskmap::whisk::{AngleCourse, WhiskEventKind};
 
 #[derive(Debug, Args)]
 pub struct CourseArgs {
@@ -82,4 +82,11 @@ impl CourseArgs {
             _ => String::new(),
         }
     }
+}
+
+/// Returns the number of touches, releases, slip-offs, pull-offs and snaps among `events`, in this order.
+pub fn counts(events: impl Iterator<Item = WhiskEventKind> + Clone) -> [usize; 5] {
+    use WhiskEventKind::{PullOff, Release, SlipOff, Snap, Touch};
+    let count = |kind| events.clone().filter(|event| *event == kind).count();
+    [Touch, Release, SlipOff, PullOff, Snap].map(count)
 }

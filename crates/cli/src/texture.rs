@@ -1,7 +1,7 @@
 //! Command `whiskmap texture`.
 
 use super::arguments::column_help;
-use super::course::CourseArgs;
+use super::course::{CourseArgs, counts};
 use super::failure::{Failure, message};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
@@ -16,7 +16,6 @@ use whiskmap::texture::{
     AsperityStay, Texture, TextureError, TextureEvent, TexturePhase, TextureSample, TipBin,
     texture_until,
 };
-use whiskmap::whisk::WhiskEventKind;
 use whiskmap::yields::StrainMark;
 
 const EXAMPLES: &str = "\
@@ -114,17 +113,8 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
 
 /// Prints the number of events, the energy that detachments lose, and the part of the samples in each phase.
 fn summarise(texture: &Texture) {
-    let count = |kind| {
-        let events = texture.events.iter();
-        events.filter(|event| event.event == kind).count()
-    };
-    let [touches, releases, slips, pulls] = [
-        WhiskEventKind::Touch,
-        WhiskEventKind::Release,
-        WhiskEventKind::SlipOff,
-        WhiskEventKind::PullOff,
-    ]
-    .map(count);
+    let events = texture.events.iter().map(|event| event.event);
+    let [touches, releases, slips, pulls, _] = counts(events);
     let lost = match texture.lost_nj() {
         lost if lost.is_nan() => "an energy that is not known".to_owned(),
         lost => format!("{} nJ", digits(rounded(lost, 6))),
