@@ -2,7 +2,7 @@
 
 use super::arguments::{angle, length};
 use super::data::ColumnArgs;
-use super::failure::{Failure, message};
+use super::failure::{Failure, notes};
 use super::files::{Files, STDOUT};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -68,9 +68,7 @@ impl CourseArgs {
         let path = self.angles.as_deref().unwrap_or(Path::new(STDOUT));
         let table = self.columns.table(path, &AngleCourse::COLUMNS)?;
         let course = AngleCourse::of(&table)?;
-        if let Some(note) = &course.note {
-            message(&format!("note: {note}"));
-        }
+        notes(&course.note);
         Ok(course)
     }
 

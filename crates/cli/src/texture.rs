@@ -2,7 +2,7 @@
 
 use super::arguments::column_help;
 use super::course::{CourseArgs, counts};
-use super::failure::{Failure, message};
+use super::failure::{Failure, message, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::{OutputArgs, write_table};
@@ -138,7 +138,5 @@ fn summarise(texture: &Texture) {
     message(&format!(
         "of {all} samples, {stuck} are stuck, {slipping} slipping, {free} free"
     ));
-    if let Some(warning) = texture.warning() {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(texture.warning());
 }

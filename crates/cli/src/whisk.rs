@@ -2,7 +2,7 @@
 
 use super::arguments::{column_help, duration, named};
 use super::course::{CourseArgs, counts};
-use super::failure::{Failure, message};
+use super::failure::{Failure, message, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::{OutputArgs, write_table};
@@ -100,7 +100,5 @@ fn summarise(whisk: &Whisk) {
     if taken != 0.0 {
         message(&format!("snaps {snaps}; friction dissipates {dissipated}"));
     }
-    for warning in whisk.warnings() {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(whisk.warnings());
 }
