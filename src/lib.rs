@@ -83,6 +83,7 @@ pub mod friction;
 pub mod input;
 mod least_squares;
 pub mod map;
+mod names;
 mod newton;
 #[cfg(feature = "render")]
 #[allow(
@@ -91,6 +92,7 @@ mod newton;
 )]
 pub mod paper;
 pub mod plan;
+mod quantile;
 pub mod refine;
 pub mod sheet;
 mod stopwatch;

@@ -406,6 +406,18 @@ fn forces_of(scene: &Scene, frames: &[CurvatureFrame], options: &ForceOptions) -
     forces_until(&scene.whisker, &scene.pole, frames, options, &cancel)
 }
 
+/// Frames that a cancelled computation leaves out have that reason.
+#[test]
+fn frames_of_a_cancelled_computation_say_so() {
+    let scene = shipped::scene("cone");
+    let (frame, _) = frame(&scene, 15.66, 5.0, 0.1);
+    let options = ForceOptions::new(ForceMethod::Model);
+    let cancel = AtomicBool::new(true);
+    let found = forces_until(&scene.whisker, &scene.pole, &[frame], &options, &cancel);
+    assert_eq!(found[0].reason, Some(NoForce::Cancelled));
+    assert_eq!(found[0].force_un, None);
+}
+
 /// A constant error of the curvature is that of the frames without contact, too. Their scatter is the standard deviation of each curvature.
 #[test]
 fn a_baseline_takes_away_an_offset() {

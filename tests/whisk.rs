@@ -5,7 +5,7 @@ use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::trace::{Branch, DetachmentKind, ShapePoint, WhiskerPart, WhiskerShape, curve};
 use whiskmap::whisk::{
-    AngleCourse, CourseError, CourseStart, Undecided, Whisk, WhiskError, WhiskEvent,
+    AngleCourse, CourseError, CourseShapes, CourseStart, Undecided, Whisk, WhiskError, WhiskEvent,
     WhiskEventKind, WhiskOptions, WhiskRegime, whisk, whisk_with,
 };
 
@@ -456,4 +456,38 @@ fn contacts_and_curvatures_are_those_of_shapes() {
         let said = format!("curvature_at_mm = {at_mm}: must be between 0 and 20");
         assert!(why.to_string().starts_with(&said), "{why}");
     }
+}
+
+/// Shapes of a course stand at the pole: a bent whisker has its contact at the sample's, and a free one is turned with the base.
+#[test]
+fn shapes_of_a_course_stand_at_the_pole() {
+    const POINTS: usize = 40;
+    let angles = [-20.0, -5.0, 3.0, 9.0, 15.0, 20.0, 5.0, -3.0, -12.0, -20.0];
+    let scene = scene("cone");
+    let found = through(&scene, DISTANCE, &angles).unwrap();
+    let shapes = CourseShapes::new(&scene.whisker, &scene.pole, DISTANCE, &found).unwrap();
+    let mut compared = [0; 3];
+    for sample in &found.samples {
+        let even = shapes.points(sample, POINTS, false).unwrap();
+        let all = shapes.points(sample, POINTS, true).unwrap();
+        assert_eq!(even.len(), POINTS);
+        let Some(side) = sample.side else {
+            assert_eq!(even, all);
+            let direction = even[1][1].atan2(even[1][0]).to_degrees();
+            // Along the first point, the resting whisker bends by 0.6 degrees.
+            assert!((direction + sample.angle_deg.unwrap()).abs() < 1.0);
+            compared[2] += 1;
+            continue;
+        };
+        let contact = [sample.contact_x_mm, sample.contact_y_mm].map(Option::unwrap);
+        let apart = |at: [f64; 2]| (at[0] - contact[0]).hypot(at[1] - contact[1]);
+        let nearest = all
+            .iter()
+            .map(|at| apart(*at))
+            .fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-8, "{nearest} {sample:?}");
+        assert!((apart(shapes.pole_mm) - scene.pole.radius_mm).abs() < 1e-8);
+        compared[usize::from(side == Side::Cf)] += 1;
+    }
+    assert!(compared.into_iter().all(|count| count > 1), "{compared:?}");
 }

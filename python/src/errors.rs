@@ -67,7 +67,7 @@ pub fn of_plan(why: &PlanError) -> PyErr {
 /// Returns the exception of a state that does not exist.
 pub fn of_state(why: NoState) -> PyErr {
     match why {
-        NoState::Failed { .. } => PyRuntimeError::new_err(why.to_string()),
+        NoState::Failed { .. } | NoState::Cancelled => PyRuntimeError::new_err(why.to_string()),
         _ => StateError::new_err(why.to_string()),
     }
 }

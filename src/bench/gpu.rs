@@ -2,10 +2,11 @@
 
 use super::request::{Points, SideRequest, loads};
 use super::task::Task;
-use super::timing::{median, timed};
+use super::timing::timed;
 use super::{BenchEngine, Measurement, Report, Rung};
 use crate::engine::gpu::{Gpu, Precision, adapters};
 use crate::engine::{Cells, Engine as _, EngineError, RowBatch, on_gpu};
+use crate::quantile::median;
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -2,7 +2,8 @@
 
 use super::BenchEngine;
 use super::task::Errors;
-use super::timing::{Timing, median};
+use super::timing::Timing;
+use crate::quantile::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;

@@ -1,5 +1,6 @@
 //! Timings: wall times of repeated runs.
 
+use crate::quantile::median;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -48,11 +49,4 @@ pub fn timed<T, E>(runs: usize, mut work: impl FnMut() -> Result<T, E>) -> Resul
         seconds.push(start.elapsed().as_secs_f64());
     }
     Ok((Timing::of(seconds.into_iter()), result))
-}
-
-/// Returns the median; of an even number of values, the larger one of the two in the middle.
-pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.into_iter().collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or_default()
 }

@@ -3,12 +3,13 @@
 use super::gpu::{Candidate, candidates};
 use super::measurement::medians;
 use super::spectral::SPECTRAL;
-use super::timing::{Timing, median};
+use super::timing::Timing;
 use super::{Report, StageTimes, named, pool};
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Spectral, on_gpu};
 use crate::map::{self, Panel, Stage};
 use crate::plan::Plan;
+use crate::quantile::median;
 use crate::scene::Scene;
 use crate::store::MapWriter;
 use serde::Serialize;

@@ -19,20 +19,13 @@ macro_rules! named {
         #[non_exhaustive]
         pub enum $kind { $($(#[$inner])* $variant = $code,)* }
 
-        impl $kind {
-            /// All regimes or statuses, in the order of their codes.
-            pub const ALL: [Self; [$($code),*].len()] = [$(Self::$variant),*];
+        $crate::names::names!($kind { $($variant = $name),* });
 
+        impl $kind {
             /// Returns the code of the regime or status in files.
             #[must_use]
             pub const fn code(self) -> u32 {
                 self as u32
-            }
-
-            /// Returns the name of the regime or status in files and messages.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),* }
             }
         }
     };

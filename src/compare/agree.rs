@@ -1,7 +1,7 @@
 //! Check that two maps have the same scene and grid.
 
 use crate::scene::{Coordinate, Grid, Parameter, Scene, SceneError, TableWhisker, Whisker, digits};
-use crate::store::MapSource;
+use crate::store::{MapSource, coordinates};
 
 /// Difference between two maps that cannot be compared cell by cell.
 #[derive(Debug, thiserror::Error)]
@@ -61,41 +61,24 @@ pub(super) fn check(maps: [&MapSource; 2]) -> Result<(), super::CompareError> {
 }
 
 fn check_grids(grids: [&Grid; 2]) -> Result<(), Mismatch> {
-    let [first, second] = grids.map(axes);
-    let names = |axes: &[(&'static str, Vec<Coordinate>)]| {
-        let sweep = axes[..axes.len() - 2].iter().map(|(name, _)| *name);
-        let names = sweep.collect::<Vec<_>>().join(", ");
-        if names.is_empty() {
-            "none".to_owned()
-        } else {
-            names
-        }
-    };
-    let [first_names, second_names] = [names(&first), names(&second)];
+    let [first_names, second_names] = grids.map(|grid| match grid.sweep_names() {
+        names if names.is_empty() => "none".to_owned(),
+        names => names,
+    });
     if first_names != second_names {
         return Err(Mismatch::Axes(first_names, second_names));
     }
-    let differing = first.iter().zip(&second).find(|(one, other)| one != other);
-    differing.map_or(Ok(()), |((axis, one), (_, other))| {
-        let [first, second] = described(one, other);
+    let [first, second] = grids.map(coordinates);
+    let mut axes = first.iter().zip(&second);
+    let differing = axes.find(|(one, other)| one.values != other.values);
+    differing.map_or(Ok(()), |(one, other)| {
+        let [first, second] = described(&one.values, &other.values);
         Err(Mismatch::Axis {
-            axis,
+            axis: one.name,
             first,
             second,
         })
     })
-}
-
-/// Returns names and values of all axes: the sweep axes, distance and push angle.
-fn axes(grid: &Grid) -> Vec<(&'static str, Vec<Coordinate>)> {
-    let sweep = grid.sweep.iter();
-    let sweep = sweep.map(|axis| (axis.variable.name(), axis.coordinates().collect()));
-    let numbers = |values: &[f64]| values.iter().copied().map(Coordinate::Number).collect();
-    let inside = [
-        ("distance_mm", numbers(&grid.distance_mm)),
-        ("push_angle_deg", numbers(&grid.push_angle_deg)),
-    ];
-    sweep.chain(inside).collect()
 }
 
 /// Returns texts about two lists of values: number and ends, or the first values that differ.
@@ -104,17 +87,13 @@ fn described(one: &[Coordinate], other: &[Coordinate]) -> [String; 2] {
         let ends = [values.first().cloned(), values.last().cloned()];
         (values.len(), ends)
     };
-    let text = |value: &Coordinate| match value {
-        Coordinate::Number(number) => digits(*number),
-        Coordinate::Name(name) => name.clone(),
-    };
     let place = one.iter().zip(other).position(|(one, other)| one != other);
     match place {
         Some(place) if ends(one) == ends(other) => {
-            [one, other].map(|values| format!("value {} is {}", place + 1, text(&values[place])))
+            [one, other].map(|values| format!("value {} is {}", place + 1, values[place]))
         }
         _ => [one, other].map(|values| {
-            let [first, last] = [&values[0], &values[values.len() - 1]].map(text);
+            let [first, last] = [&values[0], &values[values.len() - 1]];
             format!("{} values from {first} to {last}", values.len())
         }),
     }

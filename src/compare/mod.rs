@@ -99,7 +99,7 @@ pub fn compare(maps: [&MapSource; 2]) -> Result<MapComparison, CompareError> {
         only_in: [lacks(&first, &second), lacks(&second, &first)],
     };
     let grid = maps[0].grid();
-    comparison.cells = (cells_of_panel(grid) * grid.whisker_count()) as u64;
+    comparison.cells = (grid.panel_cells() * grid.whisker_count()) as u64;
     let (mut codes, mut quantities) = (Vec::new(), Vec::new());
     let rounding = [maps[0].digits()?, maps[1].digits()?];
     for name in first.into_iter().filter(|name| second.contains(name)) {
@@ -125,10 +125,6 @@ pub fn compare(maps: [&MapSource; 2]) -> Result<MapComparison, CompareError> {
     Ok(comparison)
 }
 
-fn cells_of_panel(grid: &Grid) -> usize {
-    grid.distance_mm.len() * grid.push_angle_deg.len()
-}
-
 /// Passes index and values of each cell of a channel of consecutive `whiskers`, in order, to `add`.
 fn each_cell(
     maps: [&MapSource; 2],
@@ -136,7 +132,7 @@ fn each_cell(
     whiskers: &Range<usize>,
     mut add: impl FnMut(usize, [f64; 2]),
 ) -> Result<(), StoreError> {
-    let first = whiskers.start * cells_of_panel(maps[0].grid());
+    let first = whiskers.start * maps[0].grid().panel_cells();
     let read = |map: &MapSource| map.read_panels(channel, whiskers.clone());
     let (one, other) = rayon::join(|| read(maps[0]), || read(maps[1]));
     let (one, other) = (one?, other?);

@@ -8,7 +8,6 @@ use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
-use whiskmap_mechanics::numerics::Unit;
 
 /// The CPU engine. It works where it is called: [`Engine::submit`] keeps a batch, [`Engine::collect`] solves it.
 #[derive(Debug, Default)]
@@ -120,10 +119,7 @@ fn solved(batch: &RowBatch, row: &BatchRow, column: usize, refined: Option<&Refi
 
 impl Engine for Cpu {
     fn describe(&self) -> EngineDescription {
-        EngineDescription {
-            engine: "cpu f64".to_owned(),
-            adapter: Unit::detect().to_string(),
-        }
+        EngineDescription::on_cpu("cpu f64")
     }
 
     fn residual_bound(&self) -> f64 {

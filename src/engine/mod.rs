@@ -29,8 +29,10 @@ pub use side::{Values, WhiskerSide};
 pub use spectral::Spectral;
 pub use worker::Worker;
 
+use crate::names::names;
 use std::fmt;
 use std::sync::Arc;
+use whiskmap_mechanics::numerics::Unit;
 use whiskmap_mechanics::rod::Effects;
 use whiskmap_mechanics::shooting::PlainState;
 
@@ -44,12 +46,11 @@ pub enum Precision {
     F64,
 }
 
+names!(Precision { F32 = "f32", F64 = "f64" });
+
 impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        })
+        f.write_str(self.name())
     }
 }
 
@@ -63,6 +64,14 @@ pub struct EngineDescription {
 }
 
 impl EngineDescription {
+    /// Describes an engine of this name on the CPU.
+    fn on_cpu(engine: &str) -> Self {
+        Self {
+            engine: engine.to_owned(),
+            adapter: Unit::detect().to_string(),
+        }
+    }
+
     /// Describes `engine`, or the CPU engine without one.
     #[must_use]
     pub fn of(engine: Option<&dyn Engine>) -> Self {

@@ -9,7 +9,6 @@ use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
-use whiskmap_mechanics::numerics::Unit;
 use whiskmap_mechanics::numerics::inverse::InverseBlock;
 
 /// Distance beyond the ends of a row, in parts of the argument at its end, that rounding explains.
@@ -126,10 +125,7 @@ pub(super) fn write(
 
 impl Engine for Spectral {
     fn describe(&self) -> EngineDescription {
-        EngineDescription {
-            engine: "spectral f64".to_owned(),
-            adapter: Unit::detect().to_string(),
-        }
+        EngineDescription::on_cpu("spectral f64")
     }
 
     fn residual_bound(&self) -> f64 {

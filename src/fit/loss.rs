@@ -1,5 +1,7 @@
 //! Losses of residuals: the squares, and two that grow slower than squares beyond one standard deviation.
 
+use crate::names::names;
+
 /// Loss of a residual `r` in standard deviations of its point, as in scipy's `least_squares` with `f_scale` 1. A fit minimises the sum of the
 /// losses.
 ///
@@ -24,20 +26,9 @@ pub enum FitLoss {
     Huber,
 }
 
+names!(FitLoss { Squares = "squares", SoftL1 = "soft-l1", Huber = "huber" });
+
 impl FitLoss {
-    /// All losses.
-    pub const ALL: [Self; 3] = [Self::Squares, Self::SoftL1, Self::Huber];
-
-    /// Returns the name of the loss: squares, soft-l1 or huber.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Squares => "squares",
-            Self::SoftL1 => "soft-l1",
-            Self::Huber => "huber",
-        }
-    }
-
     /// Returns the loss of a residual of `r` standard deviations.
     #[must_use]
     pub fn of(self, r: f64) -> f64 {

@@ -4,6 +4,7 @@ use super::covariance::Covariance;
 use super::{Estimate, Fit, FitLoss};
 use crate::least_squares::dot;
 use crate::measured::MeasuredPoints;
+use crate::quantile::median;
 use crate::scene::{Parameter, digits, rounded};
 
 /// Residual of an outlier, in standard deviations.
@@ -79,12 +80,7 @@ pub(super) fn outliers(fit: &Fit, points: &MeasuredPoints) -> Vec<String> {
     let residuals: Vec<(usize, f64, Option<f64>)> = rows
         .filter_map(|row| Some((row.line, row.residual_deg?, row.sd_deg)))
         .collect();
-    let mut sizes: Vec<f64> = residuals
-        .iter()
-        .map(|(_, residual, _)| residual.abs())
-        .collect();
-    sizes.sort_by(f64::total_cmp);
-    let median = sizes.get(sizes.len() / 2).copied().unwrap_or_default();
+    let median = median(residuals.iter().map(|(_, residual, _)| residual.abs()));
     let outlier = |&(line, residual, sd): &(usize, f64, Option<f64>)| {
         let deviations = (residual / sd.unwrap_or(OF_MEDIAN * median)).abs();
         let weight = fit.loss.weight(residual / sd.unwrap_or(1.0));

@@ -13,6 +13,7 @@ mod state_curve;
 pub use baseline::CurvatureBaseline;
 pub use frames::CurvatureFrames;
 
+use crate::names::names;
 use crate::scene::{FrameDeviations, Pole, Whisker, digits, rounded};
 use crate::trace::row;
 use bending::Bending;
@@ -84,6 +85,8 @@ pub enum NoForce {
     OutOfReach,
     /// No stable state of the model has this contact distance and this curvature.
     NoState,
+    /// The computation was cancelled before the frame.
+    Cancelled,
 }
 
 row! {
@@ -140,19 +143,7 @@ pub enum BaseAxis {
     Follicle,
 }
 
-impl BaseAxis {
-    /// Both axes.
-    pub const ALL: [Self; 2] = [Self::Tangent, Self::Follicle];
-
-    /// Returns the name of the axis: tangent or follicle.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Tangent => "tangent",
-            Self::Follicle => "follicle",
-        }
-    }
-}
+names!(BaseAxis { Tangent = "tangent", Follicle = "follicle" });
 
 /// Method, baseline and standard deviations with which forces follow from frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -232,7 +223,7 @@ pub fn forces(
 
 /// Computes the forces as [`forces`] does, with a baseline and standard deviations. The deviations are of first order in the deviations of
 /// the frames, which are independent; loads of frames without contact are exactly 0. If `cancel` is true, the function soon returns, and the
-/// remaining frames have no force.
+/// remaining frames have the reason [`NoForce::Cancelled`].
 #[must_use]
 pub fn forces_until(
     whisker: &Whisker,
@@ -261,7 +252,7 @@ pub fn forces_until(
         };
         match &model {
             Some(_) if cancel.load(Ordering::Relaxed) => {
-                bending.none(frame.time_s, NoForce::NoState)
+                bending.none(frame.time_s, NoForce::Cancelled)
             }
             Some(model) => model.force(&bending, frame, contact, &deviations),
             None => bending.force(frame, contact, &deviations),

@@ -65,14 +65,14 @@ impl CourseLimits {
 
     /// Begins a course at first touch.
     #[must_use]
-    pub fn begin(&self) -> ContactCourse<'_> {
+    pub fn begin(&self) -> FrictionCourse<'_> {
         let end = SlidingEnd {
             limit: Sliding::Tip,
             push: 0.0,
         };
         let tip = self.history.limit(Sliding::Tip);
         let slid = tip.and_then(|tip| tip.slid(0.0)).unwrap_or(f64::NAN);
-        ContactCourse {
+        FrictionCourse {
             limits: self,
             knot: HistoryKnot {
                 push: 0.0,
@@ -118,7 +118,7 @@ pub struct Snap {
 
 /// Course of a contact from first touch to a push angle.
 #[derive(Clone, Debug)]
-pub struct ContactCourse<'a> {
+pub struct FrictionCourse<'a> {
     limits: &'a CourseLimits,
     knot: HistoryKnot,
     /// Phase of the contact at the last push.
@@ -133,7 +133,7 @@ pub struct ContactCourse<'a> {
     pub lost_at: Option<f64>,
 }
 
-impl ContactCourse<'_> {
+impl FrictionCourse<'_> {
     /// Moves the push to `push`, a magnitude in radians, at which it may turn back.
     pub fn to(&mut self, push: f64) {
         let push = self.limits.history.up_to_end(push);

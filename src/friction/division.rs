@@ -163,22 +163,22 @@ impl SlidingLimit {
     /// Returns the indices of the segments with a reversal, and of their neighbours.
     pub fn around_reversals(&self) -> Vec<usize> {
         let reverses = |segment: &LimitSegment| segment.reversals().iter().any(Option::is_some);
-        let reversing: Vec<bool> = self.segments.iter().map(reverses).collect();
-        let is_near = |i: &usize| {
-            let [from, to] = [i.saturating_sub(1), (i + 2).min(reversing.len())];
-            reversing[from..to].contains(&true)
-        };
-        self.segments().into_iter().filter(is_near).collect()
+        self.around(reverses)
     }
 
     /// Returns the indices of the segments between two push angles, in radians, and of their neighbours.
     pub fn between(&self, from: f64, to: f64) -> Vec<usize> {
         let is_between =
             |segment: &LimitSegment| segment.to.push >= from && segment.from.push <= to;
-        let inside: Vec<bool> = self.segments.iter().map(is_between).collect();
+        self.around(is_between)
+    }
+
+    /// Returns the indices of the segments that are `wanted`, and of their neighbours.
+    fn around(&self, wanted: impl Fn(&LimitSegment) -> bool) -> Vec<usize> {
+        let wanted: Vec<bool> = self.segments.iter().map(wanted).collect();
         let is_near = |i: &usize| {
-            let [from, to] = [i.saturating_sub(1), (i + 2).min(inside.len())];
-            inside[from..to].contains(&true)
+            let [from, to] = [i.saturating_sub(1), (i + 2).min(wanted.len())];
+            wanted[from..to].contains(&true)
         };
         self.segments().into_iter().filter(is_near).collect()
     }

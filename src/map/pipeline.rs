@@ -119,7 +119,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             if is_last {
                 let group = self.unfinished.next().unwrap_or_default();
                 whiskers = group.map(|index| scene.whisker(index)).collect();
-                let size = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
+                let size = scene.grid.panel_cells();
                 for (place, found) in whiskers.iter().enumerate() {
                     if found.is_err() {
                         panels.insert(place, Panel::without_whisker(size, channels));

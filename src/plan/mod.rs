@@ -221,6 +221,13 @@ impl Plan {
         (!self.method.effects.profile || !needs_states).then_some(count)
     }
 
+    /// Returns the number of cells of the panels of the parts that the run computes.
+    #[must_use]
+    pub fn cells_of_parts(&self) -> usize {
+        let whiskers: usize = self.parts.iter().map(ExactSizeIterator::len).sum();
+        self.cells / self.whiskers * whiskers
+    }
+
     /// Returns the groups of whiskers that are computed together, in order.
     pub fn groups(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         self.parts.iter().flat_map(|part| {

@@ -58,7 +58,7 @@ pub fn map(map: &MapSlice, options: &MapOptions<'_>) -> Result<Picture, RenderEr
     };
     heat_map.picture(options.size, |index| {
         if without_whisker.contains(&index) {
-            let count = grid.distance_mm.len() * grid.push_angle_deg.len();
+            let count = grid.panel_cells();
             return Ok(PanelCells {
                 values: vec![f64::from(NOT_COMPUTED); count],
                 hatched: vec![true; count],

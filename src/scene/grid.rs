@@ -201,6 +201,12 @@ impl Grid {
         }
     }
 
+    /// Returns the number of cells of one whisker's panel: distances times push angles.
+    #[must_use]
+    pub const fn panel_cells(&self) -> usize {
+        self.distance_mm.len() * self.push_angle_deg.len()
+    }
+
     /// Returns the number of whiskers of the sweep.
     #[must_use]
     pub fn whisker_count(&self) -> usize {

@@ -2,6 +2,7 @@
 
 use super::error::SceneFault;
 use crate::least_squares::smallest_degree;
+use crate::quantile::median;
 
 /// Key of the smoothing of measured radii in a scene file.
 pub(super) const SMOOTH_KEY: &str = "whisker.profile.smooth";
@@ -156,13 +157,6 @@ impl SmoothRadii {
     }
 }
 
-/// Median of sizes; `None` without any.
-fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut sizes: Vec<f64> = numbers.map(f64::abs).collect();
-    sizes.sort_by(f64::total_cmp);
-    sizes.get(sizes.len() / 2).copied()
-}
-
 /// Returns the standard deviation of the radii of `rows` that their neighbours do not explain; `None` for fewer than 12 rows.
 ///
 /// Each second difference, of a radius from the line through its neighbours, is divided by its standard deviation for errors of size 1. The
@@ -180,8 +174,9 @@ pub(super) fn scatter(rows: &[[f64; 2]]) -> Option<f64> {
         bend * (1.5 / (1.0 + part * part + (1.0 - part) * (1.0 - part))).sqrt()
     });
     let bends: Vec<f64> = bends.collect();
-    let second = median(bends.iter().copied())? / 1.5_f64.sqrt();
+    let second = median(bends.iter().map(|bend| bend.abs())) / 1.5_f64.sqrt();
     // (-1/2, 1, -1/2) less the same one row later is (-1/2, 3/2, -3/2, 1/2): the sum of the squares is 5.
-    let third = median(bends.windows(2).map(|pair| pair[1] - pair[0]))? / 5_f64.sqrt();
+    let changes = bends.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let third = median(changes) / 5_f64.sqrt();
     Some(SD_OF_MEDIAN * second.min(third))
 }

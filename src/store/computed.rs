@@ -3,14 +3,13 @@
 //! Invariant: the values of a whisker do not depend on the whiskers that are read with it. Unless the engine fails, they equal the values
 //! in a map of the whole scene by this engine.
 
-use super::layout::{SAMPLE_BYTES, sample_type};
+use super::layout::SAMPLE_BYTES;
 use super::{ChannelValues, StoreError};
 use crate::classify::{Regime, Status};
 use crate::engine::{Engine, EngineDescription};
 use crate::map::{self, Panel};
 use crate::plan::Plan;
 use crate::scene::Scene;
-use exr::meta::attribute::SampleType;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::convert::Infallible;
@@ -141,7 +140,7 @@ impl ComputedMap {
             return Err(StoreError::NoSuchPanel { index, panels });
         }
         let grid = &self.scene.grid;
-        let size = grid.distance_mm.len() * grid.push_angle_deg.len() * SAMPLE_BYTES;
+        let size = grid.panel_cells() * SAMPLE_BYTES;
         let mut bytes = vec![0; whiskers.len() * size];
         let mut put = |places: &[usize], samples: &[u8]| {
             for place in places {
@@ -200,10 +199,7 @@ impl ComputedMap {
         if summary.is_cancelled {
             return Err(StoreError::Cancelled);
         }
-        Ok(match sample_type(name) {
-            SampleType::U32 => ChannelValues::U32(bytemuck::pod_collect_to_vec(&bytes)),
-            _ => ChannelValues::F32(bytemuck::pod_collect_to_vec(&bytes)),
-        })
+        Ok(ChannelValues::of_bytes(name, &bytes))
     }
 }
 

@@ -28,6 +28,14 @@ pub enum ChannelValues {
 }
 
 impl ChannelValues {
+    /// Returns the values of the channel `name` whose samples these `bytes` are.
+    pub(super) fn of_bytes(name: &str, bytes: &[u8]) -> Self {
+        match layout::sample_type(name) {
+            SampleType::U32 => Self::U32(bytemuck::pod_collect_to_vec(bytes)),
+            _ => Self::F32(bytemuck::pod_collect_to_vec(bytes)),
+        }
+    }
+
     /// Returns the channel's value of the cell with this index; a code or a count as a whole number.
     #[must_use]
     pub fn value(&self, cell: usize) -> f64 {
@@ -196,10 +204,7 @@ impl StoredMap {
                     })?;
             }
         }
-        Ok(match layout::sample_type(name) {
-            SampleType::U32 => ChannelValues::U32(bytemuck::pod_collect_to_vec(&bytes)),
-            _ => ChannelValues::F32(bytemuck::pod_collect_to_vec(&bytes)),
-        })
+        Ok(ChannelValues::of_bytes(name, &bytes))
     }
 
     /// Part of a channel, and its index in the part.

@@ -23,7 +23,7 @@ pub use stays::{AsperityStay, TipBin, histogram};
 use crate::scene::{SceneError, Surface, Whisker};
 use crate::whisk::phase::{Obstacles, Phase};
 use crate::whisk::states::{BothSides, RowPush};
-use crate::whisk::{AngleCourse, STATES_AT_ONCE, WhiskEventKind};
+use crate::whisk::{AngleCourse, CurvatureAtError, STATES_AT_ONCE, WhiskEventKind};
 use asperities::Asperities;
 use rayon::prelude::*;
 use sample::{Held, SurfaceCrossing};
@@ -92,15 +92,8 @@ pub enum TextureError {
         side: Side,
     },
     /// The curvature should be taken at a place that the whisker does not have.
-    #[error(
-        "curvature_at_mm = {at_mm}: must be between 0 and {length_mm}, the whisker's length in mm"
-    )]
-    CurvatureAt {
-        /// Arclength of the place, in mm.
-        at_mm: f64,
-        /// Length of the whisker, in mm.
-        length_mm: f64,
-    },
+    #[error(transparent)]
+    CurvatureAt(#[from] CurvatureAtError),
     /// The course was cancelled.
     #[error("cancelled")]
     Cancelled,
@@ -146,12 +139,7 @@ pub fn texture_until(
     cancel: &AtomicBool,
 ) -> Result<Texture, TextureError> {
     surface.check(whisker)?;
-    let length_mm = whisker.length_mm;
-    if let Some(at_mm) = curvature_at_mm
-        && !(0.0..=length_mm).contains(&at_mm)
-    {
-        return Err(TextureError::CurvatureAt { at_mm, length_mm });
-    }
+    CurvatureAtError::check(whisker, curvature_at_mm)?;
     let angles = course.angles_deg();
     if let Some(index) = angles
         .iter()

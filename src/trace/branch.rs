@@ -126,7 +126,7 @@ impl Branch {
         self.points_until(count, &AtomicBool::new(false))
     }
 
-    /// Returns points of the branch as [`Branch::points`] does. If `cancel` is true, the function soon returns an error.
+    /// Returns points of the branch as [`Branch::points`] does. If `cancel` is true, the function soon returns [`NoState::Cancelled`].
     ///
     /// # Errors
     /// Fails as [`Branch::points`] does, and if it is cancelled.
@@ -146,7 +146,7 @@ impl Branch {
         cancel: &AtomicBool,
     ) -> Result<Vec<(StateAtPush, BranchPoint)>, NoState> {
         let go_on = || match cancel.load(Ordering::Relaxed) {
-            true => Err(self.failed()),
+            true => Err(NoState::Cancelled),
             false => Ok(()),
         };
         let Path {

@@ -19,7 +19,7 @@ macro_rules! column {
 /// Defines a struct whose fields are the columns of a table. Their doc comments are the descriptions in
 /// [`COLUMNS`](crate::trace::Detachment::COLUMNS); a field without one has the shared description of all tables.
 ///
-/// A row `of a state` is a [`StateRow`] and a [`ContactRow`]: fields marked `= place` and `= load` have the values of a [`Reading`].
+/// A row `of a state` is a [`StateRow`]: fields marked `= place` and `= load` have the values of a [`Reading`].
 macro_rules! row {
     ($(#[$outer:meta])* pub struct $name:ident {
         $($(#[doc = $text:literal])* pub $column:ident: $kind:ty,)*
@@ -55,9 +55,7 @@ macro_rules! row {
                 $($($crate::trace::row!(@zero $part self.$column);)?)*
                 self
             }
-        }
 
-        impl $crate::trace::ContactRow for $name {
             fn contact(&self) -> $crate::trace::ContactColumns {
                 let mut contact = $crate::trace::ContactColumns::default();
                 $($crate::trace::row!(@contact contact.$column = self);)*
@@ -80,12 +78,17 @@ macro_rules! row {
 pub(crate) use {column, row};
 
 /// Row with columns of a state, by the names of the fields of [`Reading`].
-pub(crate) trait StateRow {
+pub trait StateRow {
     /// Returns the row with the values of `state`; unchanged without one.
+    #[must_use]
     fn with_state(self, state: Option<&Reading>) -> Self;
 
     /// Returns the row with all loads 0, as a free whisker has them.
+    #[must_use]
     fn unloaded(self) -> Self;
+
+    /// Returns the columns of the contact.
+    fn contact(&self) -> ContactColumns;
 }
 
 /// Columns of a row that give the contact of its state, and the force there. Columns that the table does not have are `None`.
@@ -101,12 +104,6 @@ pub struct ContactColumns {
     pub force_un: Option<f64>,
     /// Force that the pole puts on the base, along its tangent and to the left of it, `[x, y]` in uN.
     pub base_force_un: [Option<f64>; 2],
-}
-
-/// Row of a table whose columns give the contact of a state, and the force there.
-pub trait ContactRow {
-    /// Returns the columns of the contact.
-    fn contact(&self) -> ContactColumns;
 }
 
 #[cfg(test)]

@@ -22,8 +22,8 @@ pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;
 pub use state::StateAtPush;
 
-pub use columns::{ContactColumns, ContactRow};
-pub(crate) use columns::{StateRow, column, row};
+pub use columns::{ContactColumns, StateRow};
+pub(crate) use columns::{column, row};
 
 use crate::scene::{RefusedWhisker, SweepPlace, SweptWhisker};
 use rayon::prelude::*;
@@ -81,7 +81,7 @@ pub fn sides<R: Send>(
     sides.into_par_iter().flat_map_iter(placed).collect()
 }
 
-/// Reason why a branch or a state does not exist.
+/// Reason why a branch or a state does not exist, or was not computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoState {
     /// The resting whisker does not reach the pole.
@@ -139,4 +139,7 @@ pub enum NoState {
         /// Signed push angle of the last node of the continuation, in degrees.
         push_deg: f64,
     },
+    /// The computation was cancelled.
+    #[error("cancelled")]
+    Cancelled,
 }

@@ -102,8 +102,8 @@ fn sum(coefficients: &[f64; CURVATURE_TERMS], terms: &[f64; CURVATURE_TERMS]) ->
     coefficients.iter().zip(terms).map(|(a, b)| a * b).sum()
 }
 
-/// Unit vector of an angle, from the same functions on every machine.
-fn unit(angle: f64) -> DVec2 {
+/// Returns the unit vector of an angle in radians, from the same functions on every machine.
+pub fn unit(angle: f64) -> DVec2 {
     let (sin, cos) = libm::sincos(angle);
     DVec2::new(cos, sin)
 }

@@ -9,6 +9,7 @@ mod curve;
 mod curve_fit;
 
 use crate::least_squares::smallest_degree;
+pub(crate) use curve::unit;
 pub use curve_fit::MOST_DEGREE;
 use curve_fit::{CurveFit, EXACT, TracedPoints};
 use glam::DVec2;

@@ -8,6 +8,7 @@
 //! the normal of the contact. There is no friction, and the radius of the pole does not enter.
 
 use crate::least_squares::{BoundedProblem, norm, search};
+use crate::traced::unit;
 use glam::DVec2;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -98,12 +99,6 @@ struct BentPoints {
     points: Vec<BentPoint>,
     /// Contact, and the derivatives of its tangent's angle by arclength and force.
     contact: Option<(BentPoint, [f64; 2])>,
-}
-
-/// Unit vector of an angle, from the same functions on every machine.
-fn unit(angle: f64) -> DVec2 {
-    let (sin, cos) = libm::sincos(angle);
-    DVec2::new(cos, sin)
 }
 
 impl BentPose {

@@ -3,8 +3,9 @@
 use super::frame_curve::FrameCurve;
 use super::options::{FaceAxis, TrackingError, TrackingOptions};
 use super::rods::{self, NoRods};
-use super::sample::{evenly, median};
+use super::sample::evenly;
 use super::{CurvedFrame, ImageFrame, MORE_POINTS, NoFrame, Remarks};
+use crate::quantile::median;
 use crate::scene::{digits, rounded};
 use crate::traced::{MOST_DEGREE, TracedShape, common_degree};
 use glam::DVec2;

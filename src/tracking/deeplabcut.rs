@@ -2,7 +2,7 @@
 
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused, unknown};
 use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
-use crate::input::{CsvError, CsvLine, CsvLines, each_once, shortened};
+use crate::input::{CsvError, CsvLine, CsvLines, CsvTable, each_once, shortened};
 
 /// Names of the rows of the header.
 const HEADER: [&str; 3] = ["scorer", "bodyparts", "coords"];
@@ -17,25 +17,7 @@ pub(super) fn read(
         let must = "must be left out: points names the body parts of the whisker".to_owned();
         return Err(refused("whisker", &whisker.to_string(), must));
     }
-    for (name, line) in HEADER.iter().zip(&lines.lines) {
-        let found = line.cells.get(0).unwrap_or_default();
-        if found != *name {
-            let hint = if found == "individuals" {
-                "; export the file of one individual"
-            } else {
-                ""
-            };
-            let what = format!(
-                "begins with {}: must begin with {name}{hint}",
-                shortened(found)
-            );
-            return Err(CsvError::at(origin, line.number, what).into());
-        }
-    }
-    if lines.lines.len() <= HEADER.len() {
-        let what = "has no frames: must have at least one row below scorer, bodyparts and coords";
-        return Err(CsvError::whole(origin, what).into());
-    }
+    check_header(&lines, origin)?;
     let header: Vec<CsvLine> = lines.lines.drain(..HEADER.len()).collect();
     let names = header[1].cells.iter().skip(1);
     let columns: Vec<String> = names
@@ -71,38 +53,88 @@ pub(super) fn read(
     if let Some(name) = along.iter().find(|name| !parts.contains(name)) {
         return Err(unknown("points", name, &parts));
     }
-    let places = |part: &str| -> Result<Vec<Option<[f64; 2]>>, CsvError> {
-        let column = |coord: &str, must: &str, is_allowed: fn(f64) -> bool| {
-            table.measurements(&format!("{part} {coord}"), must, is_allowed)
-        };
-        let must = "a number between -1e6 and 1e6";
-        let [x, y] = ["x", "y"].map(|coord| {
-            column(coord, must, |coordinate| coordinate.abs() <= 1e6)?.ok_or_else(|| {
-                let what = format!("has no column {coord} of {part}: must have x and y");
-                CsvError::at(origin, header[2].number, what)
-            })
-        });
-        let likelihoods = column("likelihood", "a number between 0 and 1", |likelihood| {
-            (0.0..=1.0).contains(&likelihood)
-        })?;
-        let is_known = |i: usize| {
-            likelihoods
-                .as_ref()
-                .is_none_or(|likelihoods| likelihoods[i] >= options.likelihood)
-        };
-        let pairs = x?.into_iter().zip(y?).enumerate();
-        let place = |(i, (x, y)): (usize, (f64, f64))| {
-            Some([x, y]).filter(|_| !x.is_nan() && !y.is_nan() && is_known(i))
-        };
-        Ok(pairs.map(place).collect())
-    };
-    let whiskers = along.iter().map(|part| places(part));
-    let whiskers = whiskers.collect::<Result<Vec<_>, _>>()?;
-    let poles = pole.map(places).transpose()?;
+    let positions = |part: &str| positions(&table, part, header[2].number, options.likelihood);
+    let along = along.into_iter().map(|part| Ok((part, positions(part)?)));
+    let along = along.collect::<Result<Vec<PartPositions>, CsvError>>()?;
+    let pole = pole.map(|part| Ok::<PartPositions, CsvError>((part, positions(part)?)));
+    let pole = pole.transpose()?;
     let fixed = match options.pole {
         Some(ImagePole::At(at)) => Some(at),
         _ => None,
     };
+    Ok(ImageFrames {
+        frames: frames(&table, &along, pole.as_ref(), fixed)?,
+        remarks: remarks(origin, &parts, &along, pole.as_ref(), options.likelihood),
+        order: match options.points.is_empty() {
+            true => PointOrder::Named(along.iter().map(|(part, _)| (*part).to_owned()).collect()),
+            false => PointOrder::FromBase,
+        },
+    })
+}
+
+/// Checks that the rows of the header have their names, and that frames follow.
+fn check_header(lines: &CsvLines, origin: &str) -> Result<(), CsvError> {
+    for (name, line) in HEADER.iter().zip(&lines.lines) {
+        let found = line.cells.get(0).unwrap_or_default();
+        if found != *name {
+            let hint = match found {
+                "individuals" => "; export the file of one individual",
+                _ => "",
+            };
+            let found = shortened(found);
+            let what = format!("begins with {found}: must begin with {name}{hint}");
+            return Err(CsvError::at(origin, line.number, what));
+        }
+    }
+    if lines.lines.len() <= HEADER.len() {
+        let what = "has no frames: must have at least one row below scorer, bodyparts and coords";
+        return Err(CsvError::whole(origin, what));
+    }
+    Ok(())
+}
+
+/// Name of a body part, and its positions in pixels, `[frame][x, y]`; `None` where it is lost.
+type PartPositions<'a> = (&'a str, Vec<Option<[f64; 2]>>);
+
+/// Returns the positions of a body part, whose coordinates are named in this line. Positions below the likelihood are lost.
+fn positions(
+    table: &CsvTable,
+    part: &str,
+    line: usize,
+    likelihood: f64,
+) -> Result<Vec<Option<[f64; 2]>>, CsvError> {
+    let column = |coord: &str, must: &str, is_allowed: fn(f64) -> bool| {
+        table.measurements(&format!("{part} {coord}"), must, is_allowed)
+    };
+    let must = "a number between -1e6 and 1e6";
+    let [x, y] = ["x", "y"].map(|coord| {
+        column(coord, must, |coordinate| coordinate.abs() <= 1e6)?.ok_or_else(|| {
+            let what = format!("has no column {coord} of {part}: must have x and y");
+            CsvError::at(&table.origin, line, what)
+        })
+    });
+    let likelihoods = column("likelihood", "a number between 0 and 1", |likelihood| {
+        (0.0..=1.0).contains(&likelihood)
+    })?;
+    let is_known = |i: usize| {
+        likelihoods
+            .as_ref()
+            .is_none_or(|likelihoods| likelihoods[i] >= likelihood)
+    };
+    let pairs = x?.into_iter().zip(y?).enumerate();
+    let position = |(i, (x, y)): (usize, (f64, f64))| {
+        Some([x, y]).filter(|_| !x.is_nan() && !y.is_nan() && is_known(i))
+    };
+    Ok(pairs.map(position).collect())
+}
+
+/// Returns the frames of the table, with points `along` the whisker, and with a `pole` that moves or is `fixed`.
+fn frames(
+    table: &CsvTable,
+    along: &[PartPositions],
+    pole: Option<&PartPositions>,
+    fixed: Option<[f64; 2]>,
+) -> Result<Vec<ImageFrame>, CsvError> {
     // Labelled images have the names of files instead of numbers.
     let numbers = table
         .values("frame", "", |cell| Some(cell.parse::<u64>().ok()))?
@@ -116,51 +148,52 @@ pub(super) fn read(
                 "frame {number}: must be more than {} of the line before",
                 before.number
             );
-            return Err(CsvError::at(origin, line, what).into());
+            return Err(CsvError::at(&table.origin, line, what));
         }
         frames.push(ImageFrame {
             number,
-            points_px: whiskers.iter().map(|positions| positions[i]).collect(),
+            points_px: along.iter().map(|(_, positions)| positions[i]).collect(),
             bend: None,
-            pole_px: poles.as_ref().map_or(fixed, |poles| poles[i]),
+            pole_px: pole.map_or(fixed, |(_, positions)| positions[i]),
         });
     }
-    let is_used = |name: &&str| along.contains(name) || Some(*name) == pole;
+    Ok(frames)
+}
+
+/// Returns a note of the body `parts` that are not used, and a warning for each used one that is lost in all frames.
+fn remarks(
+    origin: &str,
+    parts: &[&str],
+    along: &[PartPositions],
+    pole: Option<&PartPositions>,
+    likelihood: f64,
+) -> Remarks {
+    let used = || along.iter().chain(pole);
     let unused: Vec<&str> = parts
         .iter()
         .copied()
-        .filter(|name| !is_used(name))
+        .filter(|part| used().all(|(name, _)| name != part))
         .collect();
     let unused = (!unused.is_empty()).then(|| {
+        let names = unused.join(", ");
         format!(
             "{origin}: body parts that are not used: {}",
-            shortened(&unused.join(", "))
+            shortened(&names)
         )
     });
-    let along = along.iter().zip(&whiskers);
-    let all = along.clone().chain(pole.iter().zip(&poles));
-    let lost = all.filter(|(_, positions)| positions.iter().all(Option::is_none));
+    let lost = used().filter(|(_, positions)| positions.iter().all(Option::is_none));
     let lost = lost.map(|(name, _)| {
-        let what = if Some(*name) == pole {
-            "contacts are not known"
-        } else {
-            "the whisker is traced without it"
+        let what = match pole {
+            Some((pole, _)) if name == pole => "contacts are not known",
+            _ => "the whisker is traced without it",
         };
+        let name = shortened(name);
         format!(
-            "body part {}: lost in all frames, at a likelihood of at least {}: {what}",
-            shortened(name),
-            options.likelihood
+            "body part {name}: lost in all frames, at a likelihood of at least {likelihood}: {what}"
         )
     });
-    Ok(ImageFrames {
-        frames,
-        order: match options.points.is_empty() {
-            true => PointOrder::Named(along.map(|(part, _)| (*part).to_owned()).collect()),
-            false => PointOrder::FromBase,
-        },
-        remarks: Remarks {
-            notes: unused.into_iter().collect(),
-            warnings: lost.collect(),
-        },
-    })
+    Remarks {
+        notes: unused.into_iter().collect(),
+        warnings: lost.collect(),
+    }
 }

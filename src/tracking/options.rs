@@ -1,6 +1,7 @@
 //! Formats and options of trackers, and their errors.
 
 use crate::input::{CsvError, did_you_mean, is_missing};
+use crate::names::names;
 use crate::scene::digits;
 use crate::traced::MOST_DEGREE;
 
@@ -15,20 +16,9 @@ pub enum TrackingFormat {
     Xy,
 }
 
+names!(TrackingFormat { DeepLabCut = "deeplabcut", Whisk = "whisk", Xy = "xy" });
+
 impl TrackingFormat {
-    /// All formats.
-    pub const ALL: [Self; 3] = [Self::DeepLabCut, Self::Whisk, Self::Xy];
-
-    /// Returns the name of the format.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::DeepLabCut => "deeplabcut",
-            Self::Whisk => "whisk",
-            Self::Xy => "xy",
-        }
-    }
-
     /// Finds the format of a text by its first line.
     pub(super) fn of((text, origin): &(String, String)) -> Result<Self, CsvError> {
         let is_content = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
@@ -62,19 +52,7 @@ pub enum FaceAxis {
     Y,
 }
 
-impl FaceAxis {
-    /// Both axes.
-    pub const ALL: [Self; 2] = [Self::X, Self::Y];
-
-    /// Returns the name of the axis: x or y.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Y => "y",
-        }
-    }
-}
+names!(FaceAxis { X = "x", Y = "y" });
 
 /// Pole in the image.
 #[derive(Clone, Debug, PartialEq)]

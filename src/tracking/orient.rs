@@ -1,8 +1,8 @@
 //! Order of points along the whisker, and the end at its base.
 
 use super::options::{TrackingError, TrackingOptions, refused};
-use super::sample::median;
 use super::{ImageFrame, ImageFrames, PointOrder};
+use crate::quantile::median;
 
 /// Ratio of the scatters of both ends from which on the steadier one is the base. The tip of a whisker of 20 mm whose base turns by 1 degree
 /// moves by 0.35 mm.

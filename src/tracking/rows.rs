@@ -3,8 +3,8 @@
 use super::frame_curve::{FrameCurve, NearestPlace};
 use super::options::{TrackingError, TrackingOptions, refused};
 use super::rods::BESIDE;
-use super::sample::median;
 use super::{CurvedFrame, Remarks};
+use crate::quantile::median;
 use crate::scene::{digits, rounded};
 use crate::trace::row;
 use rayon::prelude::*;

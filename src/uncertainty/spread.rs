@@ -1,13 +1,52 @@
 //! Spread of many ends of pushes: percentiles, mean and standard deviation.
 
 use super::PushEnd;
+use crate::quantile::quantile;
 use crate::trace::{DetachmentKind, row};
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
 
-row! {
+/// Defines a [`row!`] with statistics of samples. For each quantity, `[p5, p25, p50, p75, p95, mean, sd]` names the columns of its statistics,
+/// and a text completes their descriptions.
+macro_rules! spread {
+    ($(#[$outer:meta])* pub struct $name:ident {
+        $(
+            $($(#[doc = $text:literal])* pub $column:ident: $kind:ty,)*
+            [$p5:ident, $p25:ident, $p50:ident, $p75:ident, $p95:ident, $mean:ident, $sd:ident] of $what:literal,
+        )*
+    }) => {
+        row! {
+            $(#[$outer])* pub struct $name {
+                $(
+                    $($(#[doc = $text])* pub $column: $kind,)*
+                    #[doc = " 5th percentile of the "] #[doc = $what] pub $p5: Option<f64>,
+                    #[doc = " 25th percentile of the "] #[doc = $what] pub $p25: Option<f64>,
+                    #[doc = " Median of the "] #[doc = $what] pub $p50: Option<f64>,
+                    #[doc = " 75th percentile of the "] #[doc = $what] pub $p75: Option<f64>,
+                    #[doc = " 95th percentile of the "] #[doc = $what] pub $p95: Option<f64>,
+                    #[doc = " Mean of the "] #[doc = $what] pub $mean: Option<f64>,
+                    #[doc = " Standard deviation of the "] #[doc = $what] pub $sd: Option<f64>,
+                )*
+            }
+        }
+
+        impl $name {
+            /// Returns the row with the statistics of `samples`, which have a value of each quantity, in order.
+            fn of_samples(mut self, samples: impl IntoIterator<Item = [f64; 3]>) -> Self {
+                let mut values: [Vec<f64>; 3] = Default::default();
+                for sample in samples {
+                    values.iter_mut().zip(sample).for_each(|(all, value)| all.push(value));
+                }
+                [$([self.$p5, self.$p25, self.$p50, self.$p75, self.$p95, self.$mean, self.$sd]),*] = values.map(statistics);
+                self
+            }
+        }
+    };
+}
+
+spread! {
     /// Spread of the ends of pushes at one distance. Percentiles are those of the detachments, of either kind.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
     pub struct EndSpread {
         pub side: Side,
         pub distance_mm: f64,
@@ -23,54 +62,17 @@ row! {
         pub out_of_reach: u64,
         /// Number of samples whose end was not found.
         pub unresolved: u64,
-        /// 5th percentile of the push angles at detachment, in degrees.
-        pub p5_deg: Option<f64>,
-        /// 25th percentile of the push angles at detachment, in degrees.
-        pub p25_deg: Option<f64>,
-        /// Median of the push angles at detachment, in degrees.
-        pub p50_deg: Option<f64>,
-        /// 75th percentile of the push angles at detachment, in degrees.
-        pub p75_deg: Option<f64>,
-        /// 95th percentile of the push angles at detachment, in degrees.
-        pub p95_deg: Option<f64>,
-        /// Mean push angle at detachment, in degrees.
-        pub mean_deg: Option<f64>,
-        /// Standard deviation of push angles at detachment, from samples, in degrees.
-        pub sd_deg: Option<f64>,
+        [p5_deg, p25_deg, p50_deg, p75_deg, p95_deg, mean_deg, sd_deg] of "push angles at detachment, in degrees.",
         /// Standard deviation of the push angle to first order, in degrees.
         pub sd_first_order_deg: Option<f64>,
         /// Force of the scene's detachment, in uN.
         pub force_un: Option<f64>,
-        /// 5th percentile of the forces at detachment, in uN.
-        pub force_p5_un: Option<f64>,
-        /// 25th percentile of the forces at detachment, in uN.
-        pub force_p25_un: Option<f64>,
-        /// Median of the forces at detachment, in uN.
-        pub force_p50_un: Option<f64>,
-        /// 75th percentile of the forces at detachment, in uN.
-        pub force_p75_un: Option<f64>,
-        /// 95th percentile of the forces at detachment, in uN.
-        pub force_p95_un: Option<f64>,
-        /// Mean force at detachment, in uN.
-        pub force_mean_un: Option<f64>,
-        /// Standard deviation of forces at detachment, from samples, in uN.
-        pub force_sd_un: Option<f64>,
+        [force_p5_un, force_p25_un, force_p50_un, force_p75_un, force_p95_un, force_mean_un, force_sd_un]
+            of "forces at detachment, in uN.",
         /// Moment at the base of the scene's detachment, in nN m.
         pub base_moment_nnm: Option<f64>,
-        /// 5th percentile of the moments at detachment, in nN m.
-        pub base_moment_p5_nnm: Option<f64>,
-        /// 25th percentile of the moments at detachment, in nN m.
-        pub base_moment_p25_nnm: Option<f64>,
-        /// Median of the moments at detachment, in nN m.
-        pub base_moment_p50_nnm: Option<f64>,
-        /// 75th percentile of the moments at detachment, in nN m.
-        pub base_moment_p75_nnm: Option<f64>,
-        /// 95th percentile of the moments at detachment, in nN m.
-        pub base_moment_p95_nnm: Option<f64>,
-        /// Mean moment at detachment, in nN m.
-        pub base_moment_mean_nnm: Option<f64>,
-        /// Standard deviation of moments at detachment, from samples, in nN m.
-        pub base_moment_sd_nnm: Option<f64>,
+        [base_moment_p5_nnm, base_moment_p25_nnm, base_moment_p50_nnm, base_moment_p75_nnm, base_moment_p95_nnm,
+            base_moment_mean_nnm, base_moment_sd_nnm] of "moments at detachment, in nN m.",
     }
 }
 
@@ -91,59 +93,25 @@ row! {
     }
 }
 
-row! {
+spread! {
     /// Spread of the largest loads of pushes at one distance, from first touch to the detachment. Percentiles are those of the samples that
     /// detach.
-    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
     pub struct LargestSpread {
         /// Largest contact force of the scene's push, in uN.
         pub max_contact_force_un: Option<f64>,
-        /// 5th percentile of the largest contact forces of pushes, in uN.
-        pub max_contact_force_p5_un: Option<f64>,
-        /// 25th percentile of the largest contact forces of pushes, in uN.
-        pub max_contact_force_p25_un: Option<f64>,
-        /// Median of the largest contact forces of pushes, in uN.
-        pub max_contact_force_p50_un: Option<f64>,
-        /// 75th percentile of the largest contact forces of pushes, in uN.
-        pub max_contact_force_p75_un: Option<f64>,
-        /// 95th percentile of the largest contact forces of pushes, in uN.
-        pub max_contact_force_p95_un: Option<f64>,
-        /// Mean of the largest contact forces of pushes, in uN.
-        pub max_contact_force_mean_un: Option<f64>,
-        /// Standard deviation of the largest contact forces of pushes, in uN.
-        pub max_contact_force_sd_un: Option<f64>,
+        [max_contact_force_p5_un, max_contact_force_p25_un, max_contact_force_p50_un, max_contact_force_p75_un,
+            max_contact_force_p95_un, max_contact_force_mean_un, max_contact_force_sd_un]
+            of "largest contact forces of pushes, in uN.",
         /// Largest moment at the base of the scene's push, in nN m.
         pub max_base_moment_nnm: Option<f64>,
-        /// 5th percentile of the largest moments at the base of pushes, in nN m.
-        pub max_base_moment_p5_nnm: Option<f64>,
-        /// 25th percentile of the largest moments at the base of pushes, in nN m.
-        pub max_base_moment_p25_nnm: Option<f64>,
-        /// Median of the largest moments at the base of pushes, in nN m.
-        pub max_base_moment_p50_nnm: Option<f64>,
-        /// 75th percentile of the largest moments at the base of pushes, in nN m.
-        pub max_base_moment_p75_nnm: Option<f64>,
-        /// 95th percentile of the largest moments at the base of pushes, in nN m.
-        pub max_base_moment_p95_nnm: Option<f64>,
-        /// Mean of the largest moments at the base of pushes, in nN m.
-        pub max_base_moment_mean_nnm: Option<f64>,
-        /// Standard deviation of the largest moments at the base, in nN m.
-        pub max_base_moment_sd_nnm: Option<f64>,
+        [max_base_moment_p5_nnm, max_base_moment_p25_nnm, max_base_moment_p50_nnm, max_base_moment_p75_nnm,
+            max_base_moment_p95_nnm, max_base_moment_mean_nnm, max_base_moment_sd_nnm]
+            of "largest moments at the base, in nN m.",
         /// Largest bending strain of the scene's push, dimensionless.
         pub max_strain: Option<f64>,
-        /// 5th percentile of the largest strains of pushes, dimensionless.
-        pub max_strain_p5: Option<f64>,
-        /// 25th percentile of the largest strains of pushes, dimensionless.
-        pub max_strain_p25: Option<f64>,
-        /// Median of the largest strains of pushes, dimensionless.
-        pub max_strain_p50: Option<f64>,
-        /// 75th percentile of the largest strains of pushes, dimensionless.
-        pub max_strain_p75: Option<f64>,
-        /// 95th percentile of the largest strains of pushes, dimensionless.
-        pub max_strain_p95: Option<f64>,
-        /// Mean of the largest strains of pushes, dimensionless.
-        pub max_strain_mean: Option<f64>,
-        /// Standard deviation of the largest strains of pushes, dimensionless.
-        pub max_strain_sd: Option<f64>,
+        [max_strain_p5, max_strain_p25, max_strain_p50, max_strain_p75, max_strain_p95, max_strain_mean, max_strain_sd]
+            of "largest strains of pushes, dimensionless.",
     }
 }
 
@@ -154,40 +122,13 @@ impl LargestSpread {
         scene_loads: Option<[f64; 3]>,
         samples: impl Iterator<Item = [f64; 3]>,
     ) -> Self {
-        let mut values: [Vec<f64>; 3] = Default::default();
-        for sample in samples {
-            values
-                .iter_mut()
-                .zip(sample)
-                .for_each(|(all, load)| all.push(load));
-        }
-        let [forces, moments, strains] = values.map(Statistics::new);
         Self {
             max_contact_force_un: scene_loads.map(|loads| loads[0]),
-            max_contact_force_p5_un: forces.percentiles[0],
-            max_contact_force_p25_un: forces.percentiles[1],
-            max_contact_force_p50_un: forces.percentiles[2],
-            max_contact_force_p75_un: forces.percentiles[3],
-            max_contact_force_p95_un: forces.percentiles[4],
-            max_contact_force_mean_un: forces.mean,
-            max_contact_force_sd_un: forces.deviation,
             max_base_moment_nnm: scene_loads.map(|loads| loads[1]),
-            max_base_moment_p5_nnm: moments.percentiles[0],
-            max_base_moment_p25_nnm: moments.percentiles[1],
-            max_base_moment_p50_nnm: moments.percentiles[2],
-            max_base_moment_p75_nnm: moments.percentiles[3],
-            max_base_moment_p95_nnm: moments.percentiles[4],
-            max_base_moment_mean_nnm: moments.mean,
-            max_base_moment_sd_nnm: moments.deviation,
             max_strain: scene_loads.map(|loads| loads[2]),
-            max_strain_p5: strains.percentiles[0],
-            max_strain_p25: strains.percentiles[1],
-            max_strain_p50: strains.percentiles[2],
-            max_strain_p75: strains.percentiles[3],
-            max_strain_p95: strains.percentiles[4],
-            max_strain_mean: strains.mean,
-            max_strain_sd: strains.deviation,
+            ..Self::default()
         }
+        .of_samples(samples)
     }
 }
 
@@ -214,105 +155,50 @@ impl EndSpread {
     ) -> Self {
         // In the order of the kinds.
         let mut counts = [0; 4];
-        let mut values: [Vec<f64>; 3] = Default::default();
-        for PushEnd { kind, loads } in ends {
-            counts[kind as usize] += 1;
-            for (all, value) in values.iter_mut().zip(loads.into_iter().flatten()) {
-                all.push(value);
-            }
-        }
-        let [pushes, forces, moments] = values.map(Statistics::new);
-        let [slip_off, pull_off, out_of_reach, unresolved] = counts;
+        let samples = ends.filter_map(|end| {
+            counts[end.kind as usize] += 1;
+            end.loads
+        });
         let loads = scene_end.loads;
-        Self {
+        let spread = Self {
             side,
             distance_mm,
             kind: scene_end.kind,
             push_angle_deg: loads.map(|[push, ..]| push),
+            sd_first_order_deg,
+            force_un: loads.map(|[_, force, _]| force),
+            base_moment_nnm: loads.map(|[.., moment]| moment),
+            ..Self::default()
+        }
+        .of_samples(samples);
+        let [slip_off, pull_off, out_of_reach, unresolved] = counts;
+        Self {
             slip_off,
             pull_off,
             out_of_reach,
             unresolved,
-            p5_deg: pushes.percentiles[0],
-            p25_deg: pushes.percentiles[1],
-            p50_deg: pushes.percentiles[2],
-            p75_deg: pushes.percentiles[3],
-            p95_deg: pushes.percentiles[4],
-            mean_deg: pushes.mean,
-            sd_deg: pushes.deviation,
-            sd_first_order_deg,
-            force_un: loads.map(|[_, force, _]| force),
-            force_p5_un: forces.percentiles[0],
-            force_p25_un: forces.percentiles[1],
-            force_p50_un: forces.percentiles[2],
-            force_p75_un: forces.percentiles[3],
-            force_p95_un: forces.percentiles[4],
-            force_mean_un: forces.mean,
-            force_sd_un: forces.deviation,
-            base_moment_nnm: loads.map(|[.., moment]| moment),
-            base_moment_p5_nnm: moments.percentiles[0],
-            base_moment_p25_nnm: moments.percentiles[1],
-            base_moment_p50_nnm: moments.percentiles[2],
-            base_moment_p75_nnm: moments.percentiles[3],
-            base_moment_p95_nnm: moments.percentiles[4],
-            base_moment_mean_nnm: moments.mean,
-            base_moment_sd_nnm: moments.deviation,
+            ..spread
         }
     }
 }
 
-/// Percentiles, mean and standard deviation of the samples that detach; `None` without enough of these.
-struct Statistics {
-    /// The percentiles 5, 25, 50, 75 and 95.
-    percentiles: [Option<f64>; 5],
-    mean: Option<f64>,
-    deviation: Option<f64>,
-}
-
-impl Statistics {
-    fn new(mut values: Vec<f64>) -> Self {
-        values.sort_by(f64::total_cmp);
-        let count = values.len() as f64;
-        let mean = (count > 0.0).then(|| values.iter().sum::<f64>() / count);
-        let squares = mean.filter(|_| count > 1.0).map(|mean| {
-            let squares = values.iter().map(|value| (value - mean).powi(2));
-            squares.sum::<f64>()
-        });
-        Self {
-            percentiles: [0.05, 0.25, 0.5, 0.75, 0.95].map(|part| quantile(&values, part)),
-            mean,
-            deviation: squares.map(|squares| (squares / (count - 1.0)).sqrt()),
-        }
-    }
-}
-
-/// Quantile by linear interpolation between neighbours of the `sorted` values: the first value is the quantile of 0, the last
-/// value the quantile of 1 (definition 7 of Hyndman and Fan, Am. Stat. 50, 361, 1996).
-fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
-    let last = sorted.len().checked_sub(1)?;
-    let place = part * last as f64;
-    let below = (place as usize).min(last);
-    let above = sorted[(below + 1).min(last)];
-    Some(sorted[below] + (place - below as f64) * (above - sorted[below]))
+/// Percentiles 5, 25, 50, 75 and 95, mean and standard deviation of values; `None` without enough of these.
+fn statistics(mut values: Vec<f64>) -> [Option<f64>; 7] {
+    values.sort_by(f64::total_cmp);
+    let count = values.len() as f64;
+    let mean = (count > 0.0).then(|| values.iter().sum::<f64>() / count);
+    let variance = mean.filter(|_| count > 1.0).map(|mean| {
+        let squares = values.iter().map(|value| (value - mean).powi(2));
+        squares.sum::<f64>() / (count - 1.0)
+    });
+    let [p5, p25, p50, p75, p95] =
+        [0.05, 0.25, 0.5, 0.75, 0.95].map(|part| quantile(&values, part));
+    [p5, p25, p50, p75, p95, mean, variance.map(f64::sqrt)]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The values that `numpy.quantile` gives.
-    #[test]
-    fn quantiles_are_linear_between_neighbours() {
-        let values = [1.0, 2.0, 4.0, 8.0, 16.0];
-        let parts = [0.05, 0.25, 0.5, 0.75, 0.95];
-        let expected = [1.2, 2.0, 4.0, 8.0, 14.4].map(Some);
-        for (part, expected) in parts.into_iter().zip(expected) {
-            let both = quantile(&values, part).zip(expected);
-            assert!(both.is_some_and(|(a, b)| (a - b).abs() < 1e-14));
-        }
-        assert_eq!(quantile(&[3.0], 0.95), Some(3.0));
-        assert_eq!(quantile(&[], 0.5), None);
-    }
 
     #[test]
     fn ends_without_detachment_are_counted_and_left_out() {

@@ -2,9 +2,9 @@
 //!
 //! Events belong to the course, not to its samples: a contact is moved to events and turning points alone, and read at samples.
 
-use super::contact::{ContactChange, CourseContacts};
+use super::contact::ContactTracker;
 use super::phase::{Obstacles, Passage, Phase};
-use super::states::{BothSides, CourseContact};
+use super::states::{BothSides, PushedContact};
 use super::turns::Turns;
 use super::{Undecided, WhiskEventKind};
 use whiskmap_mechanics::rod::Side;
@@ -15,7 +15,7 @@ pub struct LegSample {
     /// Phase of the course at the sample: free, in contact or undecided.
     pub phase: Phase,
     /// Contact of the whisker at the sample; `None` without one.
-    pub contact: Option<CourseContact>,
+    pub contact: Option<PushedContact>,
     /// Energy that friction has dissipated since the start of the course, in `E I_base/L_w`.
     pub dissipated: f64,
 }
@@ -30,7 +30,7 @@ pub struct LegEvent {
     /// Kind of the event; `None` for a detachment whose kind is the kind of the end of the push.
     pub kind: Option<WhiskEventKind>,
     /// Contact that begins, ends or changes; its push is NaN if the course is undecided from here on.
-    pub contact: CourseContact,
+    pub contact: PushedContact,
 }
 
 /// Course in progress: legs between samples, with the samples and events so far.
@@ -39,7 +39,7 @@ pub struct Legs<'a> {
     phase: Phase,
     /// Phases in which the course can be after a gap; none while its phase is known.
     possible: Vec<Phase>,
-    contacts: CourseContacts<'a>,
+    contacts: ContactTracker<'a>,
     /// Change of the angle on the last leg on which the base moved, in radians; 0 before it.
     heading: f64,
     /// Samples of the course so far, `[sample]`.
@@ -74,7 +74,7 @@ impl<'a> Legs<'a> {
             turns,
             phase,
             possible: Vec::new(),
-            contacts: CourseContacts::new(sides),
+            contacts: ContactTracker::new(sides),
             heading: 0.0,
             samples: Vec::new(),
             events: Vec::new(),
@@ -176,7 +176,7 @@ impl<'a> Legs<'a> {
             return;
         }
         let mut kind = event;
-        let mut contact = CourseContact {
+        let mut contact = PushedContact {
             side,
             push,
             phase: None,
@@ -186,7 +186,7 @@ impl<'a> Legs<'a> {
             Some(WhiskEventKind::Undecided) => {}
             _ => {
                 let (reached, changes) = self.contacts.to(side, push);
-                self.change(leg, side, obstacle, changes);
+                self.change(leg, obstacle, changes);
                 if self.contacts.is_lost {
                     return;
                 }
@@ -200,25 +200,21 @@ impl<'a> Legs<'a> {
         self.add(leg, angle, kind, contact);
     }
 
-    /// Adds the `changes` of the contact on `side` of an obstacle.
-    fn change(&mut self, leg: &Leg, side: Side, obstacle: i32, changes: Vec<ContactChange>) {
-        for ContactChange { push, before } in changes {
+    /// Adds the `changes` of the contact with an obstacle.
+    fn change(&mut self, leg: &Leg, obstacle: i32, changes: Vec<PushedContact>) {
+        for contact in changes {
+            let PushedContact { side, push, phase } = contact;
             let angle = self.turns.touch(side, obstacle) + side.sign() * push;
-            let kind = match before {
+            let kind = match phase {
                 Some(_) => WhiskEventKind::Snap,
                 None => WhiskEventKind::Undecided,
-            };
-            let contact = CourseContact {
-                side,
-                push,
-                phase: before,
             };
             self.add(leg, angle, Some(kind), contact);
         }
     }
 
     /// Adds an event.
-    fn add(&mut self, leg: &Leg, angle: f64, kind: Option<WhiskEventKind>, contact: CourseContact) {
+    fn add(&mut self, leg: &Leg, angle: f64, kind: Option<WhiskEventKind>, contact: PushedContact) {
         let push = match kind {
             Some(WhiskEventKind::Undecided) => f64::NAN,
             _ => contact.push,
@@ -227,7 +223,7 @@ impl<'a> Legs<'a> {
             time_s: leg.time(angle),
             angle,
             kind,
-            contact: CourseContact { push, ..contact },
+            contact: PushedContact { push, ..contact },
         });
     }
 
@@ -248,7 +244,7 @@ impl<'a> Legs<'a> {
         }
         if let Some((side, obstacle, push)) = self.contact(leg.angles[1]) {
             let (contact, dissipated, changes) = self.contacts.at(side, push);
-            self.change(&leg, side, obstacle, changes);
+            self.change(&leg, obstacle, changes);
             sample.contact = Some(contact);
             sample.dissipated = dissipated;
         }

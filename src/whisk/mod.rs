@@ -13,15 +13,17 @@ mod options;
 pub(crate) mod phase;
 mod readings;
 mod rows;
+mod shapes;
 pub(crate) mod states;
 mod turns;
 
 pub use course::{AngleCourse, CourseError};
 pub use gaps::CourseGap;
-pub use options::{CourseStart, WhiskOptions};
+pub use options::{CourseStart, CurvatureAtError, WhiskOptions};
 use readings::CurvaturePoint;
 pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
+pub use shapes::CourseShapes;
 
 use crate::scene::{Pole, Whisker, digits};
 use crate::sheet::Row;
@@ -149,15 +151,8 @@ pub enum WhiskError {
         cf_end_deg: Option<f64>,
     },
     /// The curvature should be taken at a place that the whisker does not have.
-    #[error(
-        "curvature_at_mm = {at_mm}: must be between 0 and {length_mm}, the whisker's length in mm"
-    )]
-    CurvatureAt {
-        /// Arclength of the place, in mm.
-        at_mm: f64,
-        /// Length of the whisker, in mm.
-        length_mm: f64,
-    },
+    #[error(transparent)]
+    CurvatureAt(#[from] CurvatureAtError),
     /// The end of the push was not found on this side.
     #[error("the detachment on {0:?} was not found")]
     Unresolved(Side),
@@ -202,12 +197,7 @@ pub fn whisk_with(
     course: &AngleCourse,
     options: &WhiskOptions,
 ) -> Result<Whisk, WhiskError> {
-    let length_mm = whisker.length_mm;
-    if let Some(at_mm) = options.curvature_at_mm
-        && !(0.0..=length_mm).contains(&at_mm)
-    {
-        return Err(WhiskError::CurvatureAt { at_mm, length_mm });
-    }
+    CurvatureAtError::check(whisker, options.curvature_at_mm)?;
     let front = Front::new(whisker, pole, distance_mm)?;
     let gaps = course.gaps(options.bridge_s);
     let legs = front.follow(course, &gaps, options)?;

@@ -1,5 +1,7 @@
 //! Options of a course: its start, the point of its curvature, gaps that it bridges, and cancellation.
 
+use crate::names::names;
+use crate::scene::Whisker;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,19 +14,7 @@ pub enum CourseStart {
     Contact,
 }
 
-impl CourseStart {
-    /// Both states.
-    pub const ALL: [Self; 2] = [Self::Free, Self::Contact];
-
-    /// Returns the name of the state: free or contact.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Free => "free",
-            Self::Contact => "contact",
-        }
-    }
-}
+names!(CourseStart { Free = "free", Contact = "contact" });
 
 /// Start of a course, point of its curvature, gaps that it bridges, and cancellation.
 #[derive(Clone, Debug, Default)]
@@ -46,5 +36,24 @@ impl WhiskOptions {
     pub(super) fn is_cancelled(&self) -> bool {
         let cancel = self.cancel.as_ref();
         cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
+    }
+}
+
+/// Error of a curvature that should be taken at a place that the whisker does not have.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("curvature_at_mm = {at_mm}: must be between 0 and {length_mm}, the whisker's length in mm")]
+pub struct CurvatureAtError {
+    /// Arclength of the place, in mm.
+    pub at_mm: f64,
+    /// Length of the whisker, in mm.
+    pub length_mm: f64,
+}
+
+impl CurvatureAtError {
+    /// Checks the arclength of a curvature, in mm, if there is one.
+    pub(crate) fn check(whisker: &Whisker, at_mm: Option<f64>) -> Result<(), Self> {
+        let length_mm = whisker.length_mm;
+        let outside = at_mm.filter(|at_mm| !(0.0..=length_mm).contains(at_mm));
+        outside.map_or(Ok(()), |at_mm| Err(Self { at_mm, length_mm }))
     }
 }

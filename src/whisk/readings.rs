@@ -3,7 +3,7 @@
 use super::legs::{LegEvent, LegSample};
 use super::phase::Phase;
 use super::rows::{Undecided, WhiskEvent, WhiskRegime, WhiskSample};
-use super::states::{BothSides, CourseContact, CourseState, SideStates};
+use super::states::{BothSides, CourseState, PushedContact, SideStates};
 use crate::friction::{ContactPhase, held, states};
 use crate::trace::StateRow;
 use glam::DVec2;
@@ -59,7 +59,7 @@ impl BothSides {
         point: Option<CurvaturePoint>,
         unit_nj: f64,
     ) -> Vec<WhiskSample> {
-        let contacts: Vec<Option<CourseContact>> =
+        let contacts: Vec<Option<PushedContact>> =
             samples.iter().map(|sample| sample.contact).collect();
         let readings = self.at(&contacts, states);
         let samples = samples.par_iter().zip(readings);
@@ -87,7 +87,7 @@ impl BothSides {
         // A snap begins at a limit, where rounding may hide that the contact still sticks.
         let readings = self.at(&contacts.collect::<Vec<_>>(), held);
         let events = events.iter().zip(readings).map(|(event, reading)| {
-            let CourseContact { side, push, .. } = event.contact;
+            let PushedContact { side, push, .. } = event.contact;
             let push = Some(push).filter(|push| !push.is_nan());
             let event = WhiskEvent {
                 time_s: event.time_s,

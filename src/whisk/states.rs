@@ -14,7 +14,7 @@ use whiskmap_mechanics::shooting::{Reader, Reading, Resolution};
 
 /// Contact of the whisker at one time: side, push and, with friction, the phase of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CourseContact {
+pub struct PushedContact {
     /// Side of the whisker that the pole is on.
     pub side: Side,
     /// Push since the touch, in radians, as a magnitude.
@@ -142,13 +142,13 @@ impl SideStates {
 
     /// Returns the states of `contacts` in the first row, `[contact]`; `None` where no state is found. States with friction are solved by
     /// `solve`.
-    fn at(&self, contacts: &[CourseContact], solve: SolveContacts) -> Vec<Option<CourseState>> {
+    fn at(&self, contacts: &[PushedContact], solve: SolveContacts) -> Vec<Option<CourseState>> {
         let Some(limits) = self.limits(0) else {
             let pushes: Vec<RowPush> = contacts.iter().map(|contact| (0, contact.push)).collect();
             return self.without_friction(&pushes);
         };
         // A contact that sticks when the push is back at 0 is not at first touch: the whisker is still bent.
-        let is_inside = |contact: &CourseContact| {
+        let is_inside = |contact: &PushedContact| {
             let is_stuck = matches!(contact.phase, Some(ContactPhase::Sticks(_)));
             (contact.push > 0.0 || is_stuck && contact.push == 0.0) && contact.push < self.end(0)
         };
@@ -281,7 +281,7 @@ impl BothSides {
     /// `solve`.
     pub fn at(
         &self,
-        contacts: &[Option<CourseContact>],
+        contacts: &[Option<PushedContact>],
         solve: SolveContacts,
     ) -> Vec<Option<CourseState>> {
         let contacts = contacts

@@ -4,7 +4,7 @@
 
 use crate::design::DesignVaried;
 use crate::scene::{Pole, Scene, Whisker};
-use crate::trace::{ContactColumns, ContactRow, Corner, Detachment, PushLoad, StableBranch, row};
+use crate::trace::{ContactColumns, Corner, Detachment, PushLoad, StableBranch, StateRow, row};
 use glam::DVec2;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -61,94 +61,58 @@ impl YieldMark {
     }
 }
 
-/// Contact of a state with the force of the pole, as tables have them.
-struct ContactLoad {
-    side: Side,
-    arc_length_mm: f64,
-    /// Force that the pole puts on the base, along its tangent and to the left of it, in uN.
-    base_force_un: DVec2,
-    /// Angle of the tangent at the contact, from the base's tangent, in degrees. It does not count without friction.
-    contact_angle_deg: f64,
-}
-
-/// Contact of a row's state.
-enum RowContact {
-    /// The row has no state.
-    Unknown,
-    /// The whisker is at rest.
-    Free,
-    /// The pole bends the whisker.
-    Loaded(ContactLoad),
-}
-
-impl RowContact {
-    /// Creates the contact of a row with these columns. A row without a side and with a force of 0 has a free whisker. A table without the
-    /// angle of the contact has no friction.
-    fn new(columns: ContactColumns) -> Self {
-        if (columns.side, columns.force_un) == (None, Some(0.0)) {
-            return Self::Free;
-        }
-        let [x, y] = columns.base_force_un;
-        let load = || {
-            Some(ContactLoad {
-                side: columns.side?,
-                arc_length_mm: columns.arc_length_mm?,
-                base_force_un: DVec2::new(x?, y?),
-                contact_angle_deg: columns.contact_angle_deg.unwrap_or_default(),
-            })
-        };
-        load().map_or(Self::Unknown, Self::Loaded)
-    }
-}
-
-impl ContactLoad {
-    /// Returns the rod of the state, with its force ratio as friction, and contact and load `(tau, load)`.
-    fn condition(&self, whisker: &Whisker, pole: &Pole) -> (Rod, DVec2) {
-        let rod = whisker.rod(pole, self.side);
-        let units = whisker.units();
-        let tangent = DVec2::from_angle(self.contact_angle_deg.to_radians());
-        let [along, normal] = [tangent, tangent.perp()].map(|axis| axis.dot(self.base_force_un));
-        let friction = match rod.friction == 0.0 || normal == 0.0 {
-            true => 0.0,
-            false => along / normal,
-        };
-        let tau = rod.tau(self.arc_length_mm / units.length_mm);
-        let force = self.side.sign() * self.base_force_un.length() / units.force_un;
-        let load = force / rod.radius(tau).powi(2);
-        (Rod { friction, ..rod }, DVec2::new(tau, load))
-    }
+/// Returns the rod of the state with this `contact`, with its force ratio as friction, and contact and load `(tau, load)`; `None` without a
+/// pole that bends the whisker. A table without the angle of the contact has no friction.
+fn condition(whisker: &Whisker, pole: &Pole, contact: &ContactColumns) -> Option<(Rod, DVec2)> {
+    let (side, arc_length_mm) = contact.side.zip(contact.arc_length_mm)?;
+    let [x, y] = contact.base_force_un;
+    let force_un = DVec2::new(x?, y?);
+    let rod = whisker.rod(pole, side);
+    let units = whisker.units();
+    let tangent = DVec2::from_angle(contact.contact_angle_deg.unwrap_or_default().to_radians());
+    let [along, normal] = [tangent, tangent.perp()].map(|axis| axis.dot(force_un));
+    let friction = match rod.friction == 0.0 || normal == 0.0 {
+        true => 0.0,
+        false => along / normal,
+    };
+    let tau = rod.tau(arc_length_mm / units.length_mm);
+    let force = side.sign() * force_un.length() / units.force_un;
+    let load = force / rod.radius(tau).powi(2);
+    Some((Rod { friction, ..rod }, DVec2::new(tau, load)))
 }
 
 impl StrainMark {
-    /// Computes the largest strains of `rows`, and marks them: `[row]`, empty cells without a state. `None` without a yield strain.
+    /// Computes the largest strains of `rows`, and marks them: `[row]`, empty cells without a state. A row without a side and with a force of 0
+    /// has a free whisker. `None` without a yield strain.
     #[must_use]
-    pub fn of_rows(whisker: &Whisker, pole: &Pole, rows: &[impl ContactRow]) -> Option<Vec<Self>> {
+    pub fn of_rows(whisker: &Whisker, pole: &Pole, rows: &[impl StateRow]) -> Option<Vec<Self>> {
         whisker.yield_strain?;
-        let contacts = rows.iter().map(|row| RowContact::new(row.contact()));
-        let contacts: Vec<RowContact> = contacts.collect();
-        let loaded = contacts.iter().filter_map(|contact| match contact {
-            RowContact::Loaded(load) => Some(load.condition(whisker, pole)),
-            RowContact::Free | RowContact::Unknown => None,
-        });
-        let loaded: Vec<(Rod, DVec2)> = loaded.collect();
-        let conditions = loaded.iter().map(|(rod, point)| InitialCondition {
-            rod,
-            tau: point.x,
-            load: point.y,
-        });
+        let contacts: Vec<ContactColumns> = rows.iter().map(StateRow::contact).collect();
+        let loaded = contacts
+            .iter()
+            .map(|contact| condition(whisker, pole, contact));
+        let loaded: Vec<Option<(Rod, DVec2)>> = loaded.collect();
+        let conditions = loaded
+            .iter()
+            .flatten()
+            .map(|(rod, point)| InitialCondition {
+                rod,
+                tau: point.x,
+                load: point.y,
+            });
         let conditions: Vec<InitialCondition> = conditions.collect();
         let peaks: Vec<PeakStrain> = Batch::new(Method::fine().doubled()).shoot(&conditions);
         let mut peaks = peaks.into_iter();
         let unit = whisker.units().strain;
-        let marks = contacts.iter().map(|contact| {
-            let strain = match contact {
-                RowContact::Unknown => None,
-                RowContact::Free => Some(0.0),
-                RowContact::Loaded(_) => peaks.next().map(|peak| peak.strain * unit),
+        let marks = contacts.iter().zip(&loaded).map(|(contact, loaded)| {
+            let is_free = (contact.side, contact.force_un) == (None, Some(0.0));
+            let peak_strain = match loaded {
+                Some(_) => peaks.next().map(|peak| peak.strain * unit),
+                None => is_free.then_some(0.0),
             };
             Self {
-                peak_strain: strain,
-                yields: strain.and_then(|strain| whisker.yields(strain)),
+                peak_strain,
+                yields: peak_strain.and_then(|strain| whisker.yields(strain)),
             }
         });
         Some(marks.collect())

@@ -1,6 +1,7 @@
 //! Properties of every branch.
 
 use super::{EVERY_BRANCH, POLE, branches_at_9_mm, whisker};
+use std::sync::atomic::AtomicBool;
 use whiskmap::Side;
 use whiskmap::scene::Pole;
 use whiskmap::trace::{Branch, BranchMark, BranchPoint, DetachmentKind, NoState, StableBranch};
@@ -155,6 +156,15 @@ fn states_reproduce_points() {
             );
         }
     });
+}
+
+#[test]
+fn a_cancelled_branch_says_so() {
+    let whisker = whisker(2.5, 0.01);
+    let branch = Branch::new(&whisker, &POLE, Side::Cb, 9.0).unwrap();
+    let points = branch.points_until(50, &AtomicBool::new(true));
+    assert_eq!(points, Err(NoState::Cancelled));
+    assert_eq!(NoState::Cancelled.to_string(), "cancelled");
 }
 
 #[test]

@@ -2,12 +2,12 @@
 
 use super::arguments::{angle, length};
 use super::data::ColumnArgs;
-use super::failure::{Failure, message};
+use super::failure::{Failure, notes};
 use super::files::{Files, STDOUT};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use whiskmap::scene::digits;
-use whiskmap::whisk::AngleCourse;
+use whiskmap::whisk::{AngleCourse, WhiskEventKind};
 
 #[derive(Debug, Args)]
 pub struct CourseArgs {
@@ -68,9 +68,7 @@ impl CourseArgs {
         let path = self.angles.as_deref().unwrap_or(Path::new(STDOUT));
         let table = self.columns.table(path, &AngleCourse::COLUMNS)?;
         let course = AngleCourse::of(&table)?;
-        if let Some(note) = &course.note {
-            message(&format!("note: {note}"));
-        }
+        notes(&course.note);
         Ok(course)
     }
 
@@ -82,4 +80,11 @@ impl CourseArgs {
             _ => String::new(),
         }
     }
+}
+
+/// Returns the number of touches, releases, slip-offs, pull-offs and snaps among `events`, in this order.
+pub fn counts(events: impl Iterator<Item = WhiskEventKind> + Clone) -> [usize; 5] {
+    use WhiskEventKind::{PullOff, Release, SlipOff, Snap, Touch};
+    let count = |kind| events.clone().filter(|event| *event == kind).count();
+    [Touch, Release, SlipOff, PullOff, Snap].map(count)
 }

@@ -1,6 +1,6 @@
 //! Tables that commands read: own names of columns, measured detachments, and messages about them.
 
-use super::failure::{Failure, message};
+use super::failure::{Failure, notes, warnings};
 use clap::Args;
 use std::path::Path;
 use whiskmap::input::{ColumnName, CsvTable};
@@ -32,20 +32,14 @@ impl ColumnArgs {
 pub fn read(path: &Path, columns: &ColumnArgs) -> Result<MeasuredPoints, Failure> {
     let table = columns.table(path, &MeasuredPoints::COLUMNS)?;
     let points = MeasuredPoints::of(&table)?;
-    if let Some(note) = &points.note {
-        message(&format!("note: {note}"));
-    }
-    for warning in [points.missing(), points.crossed()].into_iter().flatten() {
-        message(&format!("warning: {warning}"));
-    }
+    notes(&points.note);
+    warnings([points.missing(), points.crossed()].into_iter().flatten());
     Ok(points)
 }
 
 /// Prints the measured points that are left out because their side never detaches by theory.
 pub fn name_left_out(points: &MeasuredPoints, comparison: &Comparison) {
-    for warning in points.left_out(comparison) {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(points.left_out(comparison));
 }
 
 /// Number of significant digits of statistics in text. JSON has all digits.

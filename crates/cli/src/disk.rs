@@ -15,17 +15,12 @@ const VALUE_BYTES: u64 = 4;
 
 /// Returns an error if the disk of `folder` has too little space for `cells` of a map. Their size is estimated from a packed
 /// sample, which is only computed if the unpacked cells would not fit.
-pub fn check(
-    folder: &Path,
-    format: MapFormat,
-    scene: &Scene,
-    plan: &Plan,
-    cells: usize,
-) -> Result<(), Failure> {
+pub fn check(folder: &Path, format: MapFormat, scene: &Scene, plan: &Plan) -> Result<(), Failure> {
     // Without a number of the system, nothing is checked.
     let Ok(free) = fs4::available_space(folder) else {
         return Ok(());
     };
+    let cells = plan.cells_of_parts();
     let channels = plan.channels.names().count() as u64;
     if cells as u64 * channels * VALUE_BYTES <= free {
         return Ok(());

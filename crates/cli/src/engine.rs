@@ -1,6 +1,7 @@
 //! Selection of the engine of a map by options.
 
 use super::adapter::{chosen, is_named};
+use super::arguments::named;
 use super::estimate::{compare, estimate};
 use super::failure::{Failure, message};
 use clap::{Args, ValueEnum};
@@ -21,13 +22,10 @@ enum EngineChoice {
     Gpu,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum PrecisionChoice {
-    /// Single precision, which every adapter supports
-    F32,
-    /// Double precision, on Vulkan adapters with shaderFloat64
-    F64,
-}
+const PRECISION_HELP: [&str; 2] = [
+    "Single precision, which every adapter supports",
+    "Double precision, on Vulkan adapters with shaderFloat64",
+];
 
 #[derive(Clone, Debug, Default, Args)]
 pub struct EngineArgs {
@@ -35,8 +33,8 @@ pub struct EngineArgs {
     #[arg(long, value_enum)]
     engine: Option<EngineChoice>,
     /// Floating-point type of the shaders [default: f32]
-    #[arg(long, value_enum)]
-    precision: Option<PrecisionChoice>,
+    #[arg(long, value_parser = named(Precision::ALL, Precision::name, PRECISION_HELP))]
+    precision: Option<Precision>,
     /// GPU adapter, by its number or a part of its name in `whiskmap devices` [default: the one marked there]
     #[arg(long, value_name = "N|NAME")]
     adapter: Option<String>,
@@ -130,10 +128,10 @@ impl EngineArgs {
     /// Returns an error if the options contradict each other.
     fn check(&self) -> Result<(), Failure> {
         let why = match (self.choice(), self.precision, &self.adapter) {
-            (EngineChoice::Cpu | EngineChoice::Spectral, Some(PrecisionChoice::F32), _) => {
+            (EngineChoice::Cpu | EngineChoice::Spectral, Some(Precision::F32), _) => {
                 "--precision f32: the CPU computes in f64; allowed with --engine gpu".to_owned()
             }
-            (EngineChoice::Auto, Some(PrecisionChoice::F32), _) => {
+            (EngineChoice::Auto, Some(Precision::F32), _) => {
                 "--precision f32: --engine auto may select the CPU, which computes in f64; allowed with --engine gpu"
                     .to_owned()
             }
@@ -184,10 +182,7 @@ impl EngineArgs {
     }
 
     fn precision(&self) -> Precision {
-        match self.precision {
-            None | Some(PrecisionChoice::F32) => Precision::F32,
-            Some(PrecisionChoice::F64) => Precision::F64,
-        }
+        self.precision.unwrap_or(Precision::F32)
     }
 
     /// Returns index and description of the adapter of a GPU engine, if there is one.

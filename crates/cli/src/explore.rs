@@ -73,7 +73,7 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
     });
     let output = match &args.output {
         Some(output) => output.clone(),
-        None => default_output(files, &scene.name)?,
+        None => files.unnamed(&format!("{}.html", scene.name))?,
     };
     let output = files.output("--output", &output)?;
     let Some(path) = write(output, page(&start.to_string()).as_bytes())? else {
@@ -90,13 +90,6 @@ pub fn run(args: &ExploreArgs, files: &mut Files) -> Result<(), Failure> {
 fn name_of(file: &Path) -> String {
     let name = file.file_name().unwrap_or(file.as_os_str());
     name.to_string_lossy().into_owned()
-}
-
-/// Returns the path of the page of a scene without `--output`, and creates its folder.
-fn default_output(files: &Files, name: &str) -> Result<PathBuf, Failure> {
-    let folder = Path::new("outputs");
-    files.folder("--output", folder)?;
-    Ok(folder.join(format!("{name}.html")))
 }
 
 /// Measured points as CSV, in the format of `--data`.

@@ -3,6 +3,7 @@
 use super::Arguments;
 use clap::Parser;
 use std::ffi::OsString;
+use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use whiskmap::bench::PeersError;
@@ -165,6 +166,20 @@ fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
 /// Prints a line on standard error, with its control characters escaped, and ignores a closed one.
 pub fn message(line: &str) {
     let _ = writeln!(io::stderr(), "{}", escaped(line));
+}
+
+/// Prints a line on standard error for each of the `warnings`.
+pub fn warnings(warnings: impl IntoIterator<Item = impl Display>) {
+    for warning in warnings {
+        message(&format!("warning: {warning}"));
+    }
+}
+
+/// Prints a line on standard error for each of the `notes`.
+pub fn notes(notes: impl IntoIterator<Item = impl Display>) {
+    for note in notes {
+        message(&format!("note: {note}"));
+    }
 }
 
 /// Prints an error of clap about `arguments`. clap quotes arguments as they are, so this function parses them again with control characters

@@ -140,6 +140,13 @@ impl Files {
         made.map_err(impossible(option, path, FOLDER_ADVICE))
     }
 
+    /// Creates the folder `outputs`, and returns the path of the file of this `name` in it, for an output without a path.
+    pub fn unnamed(&self, name: &str) -> Result<PathBuf, Failure> {
+        let folder = Path::new("outputs");
+        self.folder("--output", folder)?;
+        Ok(folder.join(name))
+    }
+
     /// Adds an output, unless its `target` or one of the folders that hold it is an input, or another output has the target.
     fn claim(&mut self, option: &str, path: &Path, target: &Path) -> Result<(), Failure> {
         let output = format!("{option} {}", path.display());

@@ -2,7 +2,7 @@
 
 use super::arguments::{column_help, named, span};
 use super::data::ColumnArgs;
-use super::failure::{Failure, message};
+use super::failure::{Failure, message, notes, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
@@ -76,9 +76,7 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         .columns
         .table(&args.frames, &CurvatureFrames::COLUMNS)?;
     let read = CurvatureFrames::of(&table, whisker.length_mm, method)?;
-    if let Some(note) = &read.note {
-        message(&format!("note: {note}"));
-    }
+    notes(&read.note);
     let baseline = read.baseline(&whisker, args.baseline)?;
     if let Some(baseline) = &baseline {
         message(&baseline.note());
@@ -102,9 +100,7 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         &options,
         &AtomicBool::new(false),
     );
-    for warning in force::warnings(&whisker, &found) {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(force::warnings(&whisker, &found));
     let marks = match method {
         ForceMethod::Model => StrainMark::of_rows(&whisker, &scene.pole, &found),
         ForceMethod::Lever => None,

@@ -1,7 +1,7 @@
 //! Command `whiskmap import`.
 
 use super::arguments::{column_help, duration, length, named, whole};
-use super::failure::{Failure, message};
+use super::failure::{Failure, message, notes, warnings};
 use super::files::Files;
 use super::outputs::{OutputTable, write_table};
 use clap::{ArgAction, Args};
@@ -193,12 +193,8 @@ pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
     let output = files.output("--output", &args.output)?;
     let tracking = Tracking::read(&args.files, &args.options(), &AtomicBool::new(false))?;
     let shape = args.shape.map(|frame| tracking.shape(frame)).transpose()?;
-    for note in &tracking.notes {
-        message(&format!("note: {note}"));
-    }
-    for warning in &tracking.warnings {
-        message(&format!("warning: {warning}"));
-    }
+    notes(&tracking.notes);
+    warnings(&tracking.warnings);
     match shape {
         Some(points) => write(OutputTable::new(output), points),
         None if args.detachments => {

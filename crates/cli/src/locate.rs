@@ -2,7 +2,7 @@
 
 use super::arguments::column_help;
 use super::data::ColumnArgs;
-use super::failure::{Failure, message};
+use super::failure::{Failure, notes, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::OutputArgs;
@@ -135,9 +135,7 @@ impl LocateArgs {
         };
         let table = self.columns.table(path, &BaseReadings::COLUMNS)?;
         let read = BaseReadings::of(&table)?;
-        if let Some(note) = &read.note {
-            message(&format!("note: {note}"));
-        }
+        notes(&read.note);
         Ok(read.readings)
     }
 
@@ -192,9 +190,7 @@ pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
     });
     let locator = Locator::new(&whisker, &scene.pole);
     let located = locator.locate(&readings, deviations);
-    if let Some(warning) = locate::warning(&located) {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(locate::warning(&located));
     let marks = StrainMark::of_rows(&whisker, &scene.pole, &located);
     outputs.rows(marked(&located, marks))?;
     outputs.finish(scene.title.clone(), || contacts(&locator, &located))

@@ -96,7 +96,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
         files.file("--output", picture)?;
     }
     if !args.run.force {
-        disk::check(&args.output, MapFormat::Exr, &scene, &plan, plan.cells)?;
+        disk::check(&args.output, MapFormat::Exr, &scene, &plan)?;
     }
     let (name, adapter) = (&solver.engine, &solver.adapter);
     message(&format!("engine: {name} on {adapter} ({why})"));
@@ -104,7 +104,7 @@ pub fn run(args: &MapArgs, files: &mut Files) -> Result<(), Failure> {
     let start = Instant::now();
     let mut writer = MapWriter::create(output, &about)?;
     let keep = |panels: &mut Vec<_>| writer.write_panels(panels);
-    let summary = compute(&scene, &plan, &mut engine, plan.cells, keep)?;
+    let summary = compute(&scene, &plan, &mut engine, keep)?;
     let map = writer.finish(summary.engine_cells, summary.audit)?;
     let mut written = vec![file];
     if let Some(path) = picture {

@@ -186,10 +186,8 @@ fn target(
 
 /// Returns the path of the map beside which a picture without a name is written; of a scene, the path that `map` gives its map.
 fn beside(args: &RenderArgs, map: &MapSlice, files: &Files) -> Result<PathBuf, Failure> {
-    let MapSource::Computed(map) = map.source() else {
-        return Ok(args.file.clone());
-    };
-    let folder = Path::new("outputs");
-    files.folder("--output", folder)?;
-    Ok(folder.join(format!("{}.exr", map.scene.name)))
+    match map.source() {
+        MapSource::Computed(map) => files.unnamed(&format!("{}.exr", map.scene.name)),
+        _ => Ok(args.file.clone()),
+    }
 }

@@ -1,6 +1,6 @@
 //! Reading of scenes, with their notes and warnings.
 
-use super::failure::{Failure, message};
+use super::failure::{Failure, message, notes, warnings};
 use std::path::Path;
 use whiskmap::scene::{Scene, digits, rounded};
 use whiskmap::traced::TracedShape;
@@ -11,9 +11,7 @@ const MOST_REFUSED: usize = 10;
 /// Reads a scene; prints notes about unused columns and warnings about values that look like another unit.
 pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
     let scene = Scene::read(path)?;
-    for note in scene.notes() {
-        message(&format!("note: {note}"));
-    }
+    notes(scene.notes());
     if let Some(traced) = scene.traced() {
         let length_mm = scene.whisker.length_mm;
         message(&format!(
@@ -29,12 +27,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
             digits(rounded(smooth.rms_um, 3))
         ));
     }
-    if let Some(rows) = without_whisker(&scene) {
-        message(&format!("warning: {rows}"));
-    }
-    for warning in scene.warnings() {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(without_whisker(&scene));
+    warnings(scene.warnings());
     Ok(scene)
 }
 

@@ -16,10 +16,12 @@ use std::str::FromStr;
 use std::thread::{self, ScopedJoinHandle};
 use std::time::Instant;
 use whiskmap::engine::Engine;
-use whiskmap::map::Panel;
+use whiskmap::map::{Panel, Summary};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
-use whiskmap::store::{BlockState, CheckDepth, MapDescription, PackedPanel, StoreError, ZarrStore};
+use whiskmap::store::{
+    BlockState, CheckDepth, MapDescription, PackedPanel, StoreError, TemporaryFiles, ZarrStore,
+};
 
 /// Shard of a store: the blocks of one of `count` processes, every `count`-th block.
 #[derive(Clone, Copy, Debug)]
@@ -123,16 +125,9 @@ pub fn fill(
         blocks = unfinished(&store, blocks)?;
     }
     plan.parts = blocks.iter().map(|block| store.whiskers(*block)).collect();
-    let cells_of_panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
-    let whiskers: usize = plan.parts.iter().map(ExactSizeIterator::len).sum();
     if !args.force {
-        disk::check(
-            path.parent().unwrap_or(path),
-            MapFormat::Zarr,
-            scene,
-            &plan,
-            cells_of_panel * whiskers,
-        )?;
+        let folder = path.parent().unwrap_or(path);
+        disk::check(folder, MapFormat::Zarr, scene, &plan)?;
     }
     for file in store.begin(temporary)? {
         message(&format!(
@@ -147,14 +142,26 @@ pub fn fill(
         blocks.len(),
         store.block_count()
     ));
+    let summary = write_blocks(path, &store, scene, &plan, &blocks, engine, temporary)?;
+    store.sync()?;
+    report(scene, &summary, start, &[path.to_owned()])
+}
 
-    let mut due = blocks
-        .iter()
-        .map(|block| (*block, store.whiskers(*block).len()));
+/// Computes the panels of `blocks` of the store, and writes each block as soon as its last panel is finished.
+fn write_blocks(
+    path: &Path,
+    store: &ZarrStore,
+    scene: &Scene,
+    plan: &Plan,
+    blocks: &[usize],
+    engine: &mut Option<Box<dyn Engine>>,
+    temporary: &TemporaryFiles,
+) -> Result<Summary, Failure> {
+    let cells_of_panel = plan.cells / plan.whiskers;
+    let mut due = blocks.iter().zip(&plan.parts);
     let mut next = due.next();
     let mut packed: Vec<PackedPanel> = Vec::new();
-    let store = &store;
-    let summary = thread::scope(|scope| {
+    thread::scope(|scope| {
         let mut writing = None;
         let keep = |panels: &mut Vec<Panel>| {
             let bands = panels.par_iter().map(|panel| store.pack(panel));
@@ -170,9 +177,9 @@ pub fn fill(
             let is_whole = packed
                 .last()
                 .is_some_and(|last| last.cells() == cells_of_panel);
-            if let Some((block, whiskers)) = next
+            if let Some((&block, whiskers)) = next
                 && is_whole
-                && packed.len() == whiskers
+                && packed.len() == whiskers.len()
             {
                 // The disk takes longer than the next panels, so it has a thread of its own.
                 let panels = mem::take(&mut packed);
@@ -185,12 +192,10 @@ pub fn fill(
             }
             Ok(())
         };
-        let summary = compute(scene, &plan, engine, cells_of_panel * whiskers, keep)?;
+        let summary = compute(scene, plan, engine, keep)?;
         written(writing)?;
-        Ok::<_, Failure>(summary)
-    })?;
-    store.sync()?;
-    report(scene, &summary, start, &[path.to_owned()])
+        Ok(summary)
+    })
 }
 
 /// Waits until a thread has written its block.

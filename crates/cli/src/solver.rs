@@ -53,17 +53,16 @@ impl SolverArgs {
     }
 }
 
-/// Computes `cells` of `plan` by an open engine, or by the CPU engine without one, with a progress bar, and passes panels to `keep`. Warns if the
+/// Computes the parts of `plan` by an open engine, or by the CPU engine without one, with a progress bar, and passes panels to `keep`. Warns if the
 /// engine fails.
 pub fn compute(
     scene: &Scene,
     plan: &Plan,
     engine: &mut Option<Box<dyn Engine>>,
-    cells: usize,
     mut keep: impl FnMut(&mut Vec<Panel>) -> Result<(), StoreError> + Send,
 ) -> Result<Summary, Failure> {
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
-    let bar = Progress::over(cells, "cells");
+    let bar = Progress::over(plan.cells_of_parts(), "cells");
     let mut on_progress = |cells| {
         bar.inc(cells);
         ControlFlow::Continue(())

@@ -1,6 +1,6 @@
 //! Maps that commands read: stored maps, and maps of scenes, which are computed when they are read.
 
-use super::failure::{Failure, message};
+use super::failure::{Failure, message, warnings};
 use super::files::{Files, STDOUT};
 use super::solver::SolverArgs;
 use std::path::Path;
@@ -58,7 +58,5 @@ pub fn computed(
 
 /// Prints warnings about the cells of `map` that were computed.
 pub fn warn(map: &MapSource) {
-    for warning in map.take_warnings() {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(map.take_warnings());
 }

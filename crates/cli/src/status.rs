@@ -122,7 +122,7 @@ pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure>
 
 fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {
     let grid = &store.scene.grid;
-    let cells = grid.push_angle_deg.len() * grid.distance_mm.len() * grid.whisker_count();
+    let cells = grid.panel_cells() * grid.whisker_count();
     let mut out = StandardOutput::open();
     writeln!(out, "{}", store.scene.title)?;
     writeln!(out, "{:>12}  of {} blocks", found.done, store.block_count())?;

@@ -1,8 +1,8 @@
 //! Command `whiskmap texture`.
 
 use super::arguments::column_help;
-use super::course::CourseArgs;
-use super::failure::{Failure, message};
+use super::course::{CourseArgs, counts};
+use super::failure::{Failure, message, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::{OutputArgs, write_table};
@@ -16,7 +16,6 @@ use whiskmap::texture::{
     AsperityStay, Texture, TextureError, TextureEvent, TexturePhase, TextureSample, TipBin,
     texture_until,
 };
-use whiskmap::whisk::WhiskEventKind;
 use whiskmap::yields::StrainMark;
 
 const EXAMPLES: &str = "\
@@ -92,7 +91,7 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     )
     .map_err(|why| match why {
         TextureError::Unresolved { .. } => Failure::Texture(why),
-        TextureError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
+        TextureError::CurvatureAt(why) => Failure::Input(format!("--curvature-at: {why}")),
         TextureError::Blocked { .. } | TextureError::Surface(_) => {
             Failure::Input(format!("{}: {why}", args.whisker.scene.display()))
         }
@@ -114,17 +113,8 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
 
 /// Prints the number of events, the energy that detachments lose, and the part of the samples in each phase.
 fn summarise(texture: &Texture) {
-    let count = |kind| {
-        let events = texture.events.iter();
-        events.filter(|event| event.event == kind).count()
-    };
-    let [touches, releases, slips, pulls] = [
-        WhiskEventKind::Touch,
-        WhiskEventKind::Release,
-        WhiskEventKind::SlipOff,
-        WhiskEventKind::PullOff,
-    ]
-    .map(count);
+    let events = texture.events.iter().map(|event| event.event);
+    let [touches, releases, slips, pulls, _] = counts(events);
     let lost = match texture.lost_nj() {
         lost if lost.is_nan() => "an energy that is not known".to_owned(),
         lost => format!("{} nJ", digits(rounded(lost, 6))),
@@ -148,7 +138,5 @@ fn summarise(texture: &Texture) {
     message(&format!(
         "of {all} samples, {stuck} are stuck, {slipping} slipping, {free} free"
     ));
-    if let Some(warning) = texture.warning() {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(texture.warning());
 }

@@ -1,8 +1,8 @@
 //! Command `whiskmap whisk`.
 
 use super::arguments::{column_help, duration, named};
-use super::course::CourseArgs;
-use super::failure::{Failure, message};
+use super::course::{CourseArgs, counts};
+use super::failure::{Failure, message, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
 use super::outputs::{OutputArgs, write_table};
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use whiskmap::render::courses;
 use whiskmap::scene::{digits, rounded};
 use whiskmap::whisk::{
-    self, CourseStart, Whisk, WhiskError, WhiskEvent, WhiskEventKind, WhiskOptions, WhiskSample,
+    self, CourseStart, Whisk, WhiskError, WhiskEvent, WhiskOptions, WhiskSample,
 };
 use whiskmap::yields::StrainMark;
 
@@ -75,7 +75,7 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let found = found.map_err(|why| match why {
         WhiskError::Pole(why) => refuse(distance, why),
         WhiskError::Unresolved(_) => Failure::Course(why),
-        WhiskError::CurvatureAt { .. } => Failure::Input(format!("--curvature-at: {why}")),
+        WhiskError::CurvatureAt(why) => Failure::Input(format!("--curvature-at: {why}")),
         why => Failure::Input(format!("{}: {why}", args.course.source())),
     })?;
     let marks = StrainMark::of_rows(&whisker, &scene.pole, &found.samples);
@@ -87,21 +87,8 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
 
 /// Prints the number of events of each kind, the energies that detachments lose and that friction dissipates, and warnings.
 fn summarise(whisk: &Whisk) {
-    let count = |kind| {
-        whisk
-            .events
-            .iter()
-            .filter(|event| event.event == kind)
-            .count()
-    };
-    let [touches, releases, slips, pulls, snaps] = [
-        WhiskEventKind::Touch,
-        WhiskEventKind::Release,
-        WhiskEventKind::SlipOff,
-        WhiskEventKind::PullOff,
-        WhiskEventKind::Snap,
-    ]
-    .map(&count);
+    let events = whisk.events.iter().map(|event| event.event);
+    let [touches, releases, slips, pulls, snaps] = counts(events);
     let [lost, taken] = [whisk.lost_nj(), whisk.dissipated_nj()];
     let [lost, dissipated] = [lost, taken].map(|energy| match energy.is_nan() {
         true => "an unknown energy".to_owned(),
@@ -113,7 +100,5 @@ fn summarise(whisk: &Whisk) {
     if taken != 0.0 {
         message(&format!("snaps {snaps}; friction dissipates {dissipated}"));
     }
-    for warning in whisk.warnings() {
-        message(&format!("warning: {warning}"));
-    }
+    warnings(whisk.warnings());
 }

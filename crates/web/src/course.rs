@@ -3,11 +3,8 @@
 use crate::response::Response;
 use serde::Deserialize;
 use serde_json::json;
-use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::Scene;
-use whiskmap::sheet::Row;
-use whiskmap::trace::{Branch, ShapePoint, WhiskerPart, WhiskerShape};
-use whiskmap::whisk::{AngleCourse, WhiskSample, whisk};
+use whiskmap::whisk::{AngleCourse, CourseShapes, whisk};
 
 /// Number of points of a whisker's shape.
 const POINTS: usize = 48;
@@ -39,47 +36,23 @@ impl WhiskTask {
         let (whisker, pole) = (&scene.whisker, &scene.pole);
         let found = whisk(whisker, pole, self.distance_mm, &course);
         let found = found.map_err(|why| why.to_string())?;
-        let rests = [Side::Cb, Side::Cf].map(|side| Rest::new(&whisker.rod(pole, side)));
-        let row = Row::new(&rests[0], self.distance_mm / whisker.length_mm);
-        let cf_mm = rests[1].distance_of_pole(row.pole_distance) * whisker.length_mm;
-        let branch = |side, distance_mm| Branch::new(whisker, pole, side, distance_mm);
-        let cb = branch(Side::Cb, self.distance_mm).map_err(|why| why.to_string())?;
-        let cf = branch(Side::Cf, cf_mm).ok();
-        let at_rest = WhiskerShape::at_rest(&cb, POINTS);
-        let shape = |sample: &WhiskSample| {
-            let Some((side, push_deg)) = sample.side.zip(sample.push_angle_deg) else {
-                return Some(turned(&at_rest, -sample.angle_deg?));
-            };
-            let (branch, turn_deg) = match side {
-                Side::Cb => (&cb, 0.0),
-                Side::Cf => (cf.as_ref()?, -found.cf_touch_deg),
-            };
-            let state = branch.state(push_deg.to_radians(), true).ok()?;
-            let points = WhiskerShape::new(branch, &state, POINTS).points;
-            // The contact lies between the evenly spaced points, or on one of them.
-            let is_extra =
-                |point: &ShapePoint| points.len() > POINTS && point.part == WhiskerPart::Contact;
-            let even = points.iter().filter(|point| !is_extra(point));
-            let even: Vec<[f64; 2]> = even.map(|point| [point.x_mm, point.y_mm]).collect();
-            Some(turned(&even, turn_deg))
-        };
-        let shapes = found.samples.iter().flat_map(|sample| {
-            let known = sample.reason.is_none().then(|| shape(sample));
-            known
-                .flatten()
-                .unwrap_or_else(|| vec![[f64::NAN; 2]; POINTS])
+        let shapes = CourseShapes::new(whisker, pole, self.distance_mm, &found);
+        let shapes = shapes.map_err(|why| why.to_string())?;
+        let points = found.samples.iter().flat_map(|sample| {
+            let is_known = sample.reason.is_none();
+            let points = is_known.then(|| shapes.points(sample, POINTS, false).ok());
+            let unknown = || vec![[f64::NAN; 2]; POINTS];
+            points.flatten().unwrap_or_else(unknown)
         });
-        let (sin, cos) = libm::sincos(row.touch);
-        let pole_mm = [cos, sin].map(|component| component * row.pole_distance * whisker.length_mm);
         Ok(Response {
-            numbers: shapes
+            numbers: points
                 .flatten()
                 .map(|coordinate| coordinate as f32)
                 .collect(),
             text: json!({
                 "distance_mm": self.distance_mm,
                 "points": POINTS,
-                "pole_mm": pole_mm,
+                "pole_mm": shapes.pole_mm,
                 "pole_radius_mm": pole.radius_mm,
                 "samples": found.samples,
                 "events": found.events,
@@ -87,11 +60,4 @@ impl WhiskTask {
             }),
         })
     }
-}
-
-/// Points turned about the base by `deg` degrees to the left.
-fn turned(points: &[[f64; 2]], deg: f64) -> Vec<[f64; 2]> {
-    let (sin, cos) = libm::sincos(deg.to_radians());
-    let turn = |[x, y]: &[f64; 2]| [x * cos - y * sin, x * sin + y * cos];
-    points.iter().map(turn).collect()
 }

@@ -54,7 +54,7 @@ fn frame(motion: &Motion, i: usize, sample: &WhiskSample) -> Result<CurvatureFra
         at_mm: None,
         contact: None,
     };
-    let shape = motion.bent(sample, POINTS)?;
+    let shape = motion.shapes.bent(sample, POINTS)?;
     let Some((shape, push)) = shape.zip(sample.push_angle_deg) else {
         return Ok(frame);
     };

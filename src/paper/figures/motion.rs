@@ -4,22 +4,17 @@ use super::{Figure, FigureError, FigurePanel, figure};
 use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_RIGHT, POLE};
 use crate::render::{Disc, Ink, Line, Plot, STUCK, Stroke};
 use crate::scene::Whisker;
-use crate::trace::{Branch, WhiskerShape};
-use crate::whisk::{AngleCourse, Whisk, WhiskEventKind, WhiskRegime, WhiskSample, whisk};
-use glam::DVec2;
+use crate::whisk::{AngleCourse, CourseShapes, Whisk, WhiskEventKind, WhiskRegime, whisk};
 use serde::Serialize;
 use std::f64::consts::TAU;
-use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Points along a whisker.
 const POINTS: usize = 60;
 
-/// Course of a whisker against the paper's pole, with the branches on which its states lie.
+/// Course of a whisker against the paper's pole, with its shapes.
 pub struct Motion {
     pub whisk: Whisk,
-    cb: Branch,
-    cf: Branch,
-    length_mm: f64,
+    pub shapes: CourseShapes,
 }
 
 /// Point of a shape in a frame, a row of a table.
@@ -52,56 +47,8 @@ impl Motion {
         course: &AngleCourse,
     ) -> Result<Self, FigureError> {
         let whisk = whisk(whisker, &POLE, distance_mm, course)?;
-        let cb = Branch::new(whisker, &POLE, Side::Cb, distance_mm)?;
-        let rest = Rest::new(&whisker.rod(&POLE, Side::Cf));
-        let distance = rest.distance_of_pole(cb.row().pole_distance);
-        let cf = Branch::new(whisker, &POLE, Side::Cf, distance * whisker.length_mm)?;
-        Ok(Self {
-            whisk,
-            cb,
-            cf,
-            length_mm: whisker.length_mm,
-        })
-    }
-
-    /// Returns the shape of the bent whisker in a sample, in the axes of first touch on its side; `None` without contact.
-    pub fn bent(
-        &self,
-        sample: &WhiskSample,
-        count: usize,
-    ) -> Result<Option<WhiskerShape>, FigureError> {
-        let Some((side, push)) = sample.side.zip(sample.push_angle_deg) else {
-            return Ok(None);
-        };
-        let branch = match side {
-            Side::Cb => &self.cb,
-            Side::Cf => &self.cf,
-        };
-        let state = branch.state(push.to_radians(), true)?;
-        Ok(Some(WhiskerShape::new(branch, &state, count)))
-    }
-
-    /// Returns the points `[x, y]` of the whisker in a sample, in mm in the axes of first touch on CB, where the pole stands still.
-    fn points(&self, sample: &WhiskSample) -> Result<Vec<[f64; 2]>, FigureError> {
-        let (points, turn) = match (self.bent(sample, POINTS)?, sample.side) {
-            (Some(shape), Some(side)) => {
-                let points = shape.points.iter().map(|point| [point.x_mm, point.y_mm]);
-                let turn = match side {
-                    Side::Cb => 0.0,
-                    Side::Cf => -self.whisk.cf_touch_deg,
-                };
-                (points.collect(), turn)
-            }
-            _ => {
-                let angle_deg = sample.angle_deg.unwrap_or(f64::NAN);
-                (WhiskerShape::at_rest(&self.cb, POINTS), -angle_deg)
-            }
-        };
-        let turn = DVec2::from_angle(turn.to_radians());
-        let turned = points
-            .into_iter()
-            .map(|at| turn.rotate(DVec2::from(at)).to_array());
-        Ok(turned.collect())
+        let shapes = CourseShapes::new(whisker, &POLE, distance_mm, &whisk)?;
+        Ok(Self { whisk, shapes })
     }
 
     /// Draws every `every`th frame in grey, the last one before the detachment in red, and the one after it in black.
@@ -126,7 +73,7 @@ impl Motion {
                 _ => None,
             };
             let Some((ink, name)) = look else { continue };
-            let points = self.points(sample)?;
+            let points = self.shapes.points(sample, POINTS, true)?;
             rows.extend(points.iter().map(|[x_mm, y_mm]| FramePoint {
                 time_s: sample.time_s,
                 angle_deg: sample.angle_deg,
@@ -138,14 +85,13 @@ impl Motion {
         }
         // Grey lines first, so that the others lie over them.
         lines.sort_by_key(|line| line.ink != Ink::Grey);
-        let pole = self.cb.row().pole(0.0) * self.length_mm;
         let plot = Plot {
             title: title.to_owned(),
             x_label: "x (mm)".to_owned(),
             y_label: "y (mm)".to_owned(),
             lines,
             discs: vec![Disc {
-                centre: pole.to_array(),
+                centre: self.shapes.pole_mm,
                 radius: POLE.radius_mm,
                 dark: true,
             }],

@@ -25,9 +25,9 @@ use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{Plot, bands, yielding_ends};
 use whiskmap::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
-use whiskmap::sensitivity::{DetachmentDerivatives, NoDerivative, detachments_at};
+use whiskmap::sensitivity::{DetachmentDerivatives, NoDerivative, Variable, detachments_at};
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
-use whiskmap::uncertainty::{EndSpread, LargestSpread, PointSpread};
+use whiskmap::uncertainty::{Draws, EndSpread, LargestSpread, PointSpread};
 use whiskmap::yields::{PushMark, YieldMark};
 
 const EXAMPLES: &str = "\
@@ -135,62 +135,91 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         scene = scene.to_builder().distance_mm(distances).build()?;
     }
     let variables = args.derivatives.variables(&scene, &[])?;
-    let whiskers = scene.whisker_count();
-    if args.outputs.picture.plot.is_some() && whiskers > MOST_WHISKERS {
-        let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
-        let (keys, values): (Vec<_>, Vec<_>) = axes
-            .map(|axis| {
-                let value = axis.variable.coordinate(axis.values[axis.values.len() / 2]);
-                let at = format!("--at {}={value}", axis.variable.name());
-                (axis.variable.key(), at)
-            })
-            .unzip();
-        return Err(Failure::Input(format!(
-            "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows at most {MOST_WHISKERS}: choose some, such as by {}",
-            keys.join(", "),
-            values.join(" ")
-        )));
+    if args.outputs.picture.plot.is_some() {
+        check_whiskers_of_plot(&scene)?;
     }
     if let Some(path) = &args.data {
         return points::compare(args, &scene, path, files);
     }
     let draws = args.sampling.draw(&scene)?;
-    let mut outputs = args.outputs.open(files)?;
+    let outputs = args.outputs.open(files)?;
     let accuracy = args.tolerance.find(&scene, &Side::BOTH)?;
     args.tolerance.report(accuracy);
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
-    if let Some(draws) = draws {
-        let rows = uncertainty::spread(&draws, resolution);
-        match args.sampling.largest {
-            true => {
-                let largest = uncertainty::largest(&draws).into_iter();
-                let mark =
-                    |spread: &LargestSpread| YieldMark::new(&scene.whisker, spread.max_strain);
-                let largest = largest.map(|spread| (mark(&spread), spread));
-                let rows = rows.iter().zip(largest);
-                outputs.rows(rows.map(|(row, (mark, spread))| Marked((row, spread), mark)))?;
-            }
-            false => outputs.rows(&rows)?,
+    match draws {
+        Some(draws) => samples(args, &scene, &draws, resolution, outputs),
+        None if args.corner => corners(&scene, outputs),
+        None => detachments(args, &scene, &variables, resolution, outputs),
+    }
+}
+
+/// Refuses a scene with more whiskers than a plot shows.
+fn check_whiskers_of_plot(scene: &Scene) -> Result<(), Failure> {
+    let whiskers = scene.whisker_count();
+    if whiskers <= MOST_WHISKERS {
+        return Ok(());
+    }
+    let axes = scene.grid.sweep.iter().filter(|axis| axis.values.len() > 1);
+    let (keys, values): (Vec<_>, Vec<_>) = axes
+        .map(|axis| {
+            let value = axis.variable.coordinate(axis.values[axis.values.len() / 2]);
+            let at = format!("--at {}={value}", axis.variable.name());
+            (axis.variable.key(), at)
+        })
+        .unzip();
+    Err(Failure::Input(format!(
+        "--plot: the scene sweeps {whiskers} whiskers over {}; a plot shows at most {MOST_WHISKERS}: choose some, such as by {}",
+        keys.join(", "),
+        values.join(" ")
+    )))
+}
+
+/// Writes the spread of the ends of pushes of the random whiskers `draws`, with --largest also that of their largest loads.
+fn samples(
+    args: &CurveArgs,
+    scene: &Scene,
+    draws: &Draws,
+    resolution: Resolution,
+    mut outputs: OpenOutputs,
+) -> Result<(), Failure> {
+    let rows = uncertainty::spread(draws, resolution);
+    match args.sampling.largest {
+        true => {
+            let largest = uncertainty::largest(draws).into_iter();
+            let rows = rows.iter().zip(largest).map(|(row, largest)| {
+                let mark = YieldMark::new(&scene.whisker, largest.max_strain);
+                Marked((row, largest), mark)
+            });
+            outputs.rows(rows)?;
         }
-        outputs.finish(scene.title.clone(), || Plot {
-            bands: bands(&rows, args.x.percentiles()),
-            ..scene_curves(&scene, resolution, args.x.axis())
-        })?;
-        return uncertainty::check(&rows, &draws);
+        false => outputs.rows(&rows)?,
     }
-    if args.corner {
-        return corners(&scene, outputs);
-    }
+    outputs.finish(scene.title.clone(), || Plot {
+        bands: bands(&rows, args.x.percentiles()),
+        ..scene_curves(scene, resolution, args.x.axis())
+    })?;
+    uncertainty::check(&rows, draws)
+}
+
+/// Writes the ends of the pushes of each whisker, with their derivatives by `variables`.
+fn detachments(
+    args: &CurveArgs,
+    scene: &Scene,
+    variables: &[Variable],
+    resolution: Resolution,
+    mut outputs: OpenOutputs,
+) -> Result<(), Failure> {
     let unmarked = scene.has_yield_strain().then(PushMark::default);
     let (mut unresolved, mut all) = (0, 0);
     let mut yielding = Vec::new();
     let distances = &scene.grid.distance_mm;
-    let bar = Progress::over(whiskers * Side::BOTH.len() * distances.len(), "ends");
+    let ends = scene.whisker_count() * Side::BOTH.len() * distances.len();
+    let bar = Progress::over(ends, "ends");
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         let row = |DetachmentDerivatives { end, by }, mark: Option<PushMark>| {
             let columns = DerivativeColumns {
-                variables: &variables,
+                variables,
                 by,
                 first: 0,
             };
@@ -206,7 +235,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
                     .collect();
             };
             let (whisker, pole) = (&swept.whisker, &swept.pole);
-            let ends = detachments_at(resolution, whisker, pole, side, distances, &variables);
+            let ends = detachments_at(resolution, whisker, pole, side, distances, variables);
             let marks = PushMark::of_ends(
                 whisker,
                 pole,
@@ -218,7 +247,7 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
                 .collect()
         };
         let rows: Vec<(SweepPlace, MarkedEnd)> = trace::sides(&group, ends);
-        write(&scene, &mut outputs, &rows)?;
+        write(scene, &mut outputs, &rows)?;
         let ends = rows.iter().map(|(_, Marked((end, _), mark))| (end, *mark));
         yielding.extend(yielding_ends(ends, [args.x.axis(), UPWARD]));
         let kinds = rows.iter().map(|(_, Marked((end, _), _))| end.kind);
@@ -227,8 +256,8 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         all += rows.len() as u64;
     }
     bar.finish();
-    outputs.finish(plot_title(&scene), || {
-        let mut plot = scene_curves(&scene, resolution, args.x.axis());
+    outputs.finish(plot_title(scene), || {
+        let mut plot = scene_curves(scene, resolution, args.x.axis());
         plot.lines.extend(yielding);
         plot
     })?;

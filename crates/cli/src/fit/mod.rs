@@ -4,7 +4,7 @@ mod table;
 
 use super::arguments::{named, parameter};
 use super::data::{self, ColumnArgs};
-use super::failure::{Failure, message};
+use super::failure::{Failure, notes, warnings};
 use super::files::{Files, STDOUT};
 use super::outputs::write;
 use super::pole::{WhiskerArgs, check_single};
@@ -97,12 +97,8 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
             | FitError::Held { .. } => Failure::Input(format!("--free {why}")),
             _ => why.into(),
         })?;
-    if let Some(note) = found.moved_start(&scene, &points) {
-        message(&format!("note: {note}"));
-    }
-    for warning in found.warnings(&points) {
-        message(&format!("warning: {warning}"));
-    }
+    notes(found.moved_start(&scene, &points));
+    warnings(found.warnings(&points));
     let toml_output = toml_output.filter(|_| found.not_a_fit.is_none());
     let json = json_output.map(|output| (output, format!("{:#}\n", document(&found))));
     let estimates = found.estimates.iter();

@@ -113,7 +113,7 @@ pub fn print_shards(
     mut first: usize,
 ) -> std::io::Result<()> {
     let mut out = StandardOutput::open();
-    let panel = scene.grid.push_angle_deg.len() * scene.grid.distance_mm.len();
+    let panel = scene.grid.panel_cells();
     let mut line = |name: &str, share: ShardShare| {
         let [seconds, bytes] = estimate.share(share.whiskers);
         writeln!(
