@@ -8,8 +8,11 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Largest error of the slid distance in the middle of an exact segment, in whisker lengths.
 const LIMIT_ERROR: f64 = 1e-10;
 
+/// Change of the push, in radians, that counts as rounding. Next to a fold, it changes the slid distance by more than [`LIMIT_ERROR`].
+const PUSH_ROUNDING: f64 = 1e-13;
+
 /// Number of times that a segment may be halved. The error of a smooth cubic falls to 1/16 each time.
-const HALVINGS: u32 = 10;
+const HALVINGS: u32 = 16;
 
 /// Limit whose segments are made exact.
 struct OpenLimit {
@@ -26,22 +29,26 @@ impl OpenLimit {
         open.map(|(segment, _)| segment.inner(MIDDLE).push)
     }
 
-    /// Halves the open segments whose polynomials miss the states in their `middles`, and closes the others. A segment without a state in its
-    /// middle, as at a corner of fold and tip, stays as it is.
+    /// Halves the open segments whose polynomials miss the states in their `middles`, and closes those that do not. A segment without a state
+    /// in its middle stays open.
     fn halve(&mut self, mut middles: impl Iterator<Item = Option<SlidingKnot>>) {
         let (mut segments, mut is_open) = (Vec::new(), Vec::new());
         for (segment, was_open) in self.limit.segments.drain(..).zip(&self.is_open) {
             let middle = was_open.then(|| middles.next().flatten()).flatten();
-            let miss = |knot: &SlidingKnot| (knot.slid - segment.slid.at(MIDDLE).0).abs();
-            match middle.filter(|knot| miss(knot) > LIMIT_ERROR) {
-                Some(knot) => {
+            let is_short = segment.to.push - segment.from.push <= PUSH_ROUNDING;
+            let misses = |knot: SlidingKnot| {
+                let miss = (knot.slid - segment.slid.at(MIDDLE).0).abs();
+                miss > LIMIT_ERROR + PUSH_ROUNDING * knot.slope().abs()
+            };
+            match middle {
+                Some(knot) if misses(knot) => {
                     let knots = [segment.from, knot, segment.to];
                     segments.extend(LimitSegment::between(&knots, segment.folds));
                     is_open.extend([true; 2]);
                 }
-                None => {
+                _ => {
                     segments.push(segment);
-                    is_open.push(false);
+                    is_open.push(*was_open && middle.is_none() && !is_short);
                 }
             }
         }
@@ -54,8 +61,8 @@ const MIDDLE: f64 = 0.5;
 
 impl SlidingLimit {
     /// Makes segments of `limits`, given by index, exact: their knots are exact states, and their error is small, `[limit]`. The limit's states at
-    /// its ends stay, because they are singular or exact.
-    pub fn exact(limits: &[(&Self, Vec<usize>)]) -> Vec<Self> {
+    /// its ends stay, because they are singular or exact. An entry is `None` where a segment is not exact after all halvings.
+    pub fn exact(limits: &[(&Self, Vec<usize>)]) -> Vec<Option<Self>> {
         let inner = |(limit, segments): &(&Self, Vec<usize>)| {
             let ends = segments.iter().flat_map(|index| [*index, index + 1]);
             let inner = ends.filter(|knot| (1..limit.segments.len()).contains(knot));
@@ -93,7 +100,9 @@ impl SlidingLimit {
                 open.halve(middles.by_ref());
             }
         }
-        open.into_iter().map(|open| open.limit).collect()
+        open.into_iter()
+            .map(|open| (!open.is_open.contains(&true)).then_some(open.limit))
+            .collect()
     }
 
     /// Divides the segments of `limits` in which the limit reverses at the reversal, `[limit]`. A segment without the state there stays whole.

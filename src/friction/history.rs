@@ -102,14 +102,19 @@ impl ContactHistory {
         });
         let limits: Vec<(&SlidingLimit, Vec<usize>)> = limits.flatten().collect();
         let exact = SlidingLimit::exact(&limits);
-        let mut exact = SlidingLimit::polished(&exact).into_iter();
+        let known: Vec<SlidingLimit> = exact.iter().flatten().cloned().collect();
+        let mut polished = SlidingLimit::polished(&known).into_iter();
+        let exact = exact
+            .into_iter()
+            .map(|limit| limit.and_then(|_| polished.next()));
+        let mut exact = exact.collect::<Vec<_>>().into_iter();
         let refined = histories.iter().map(|history| {
             let history = history.as_ref()?;
             if history.base.is_none() {
                 return Some(history.clone());
             }
-            let (tip, base) = (exact.next()?, exact.next()?);
-            Some(Self::new(tip, Some(base)))
+            let [tip, base] = [exact.next()?, exact.next()?];
+            Some(Self::new(tip?, Some(base?)))
         });
         refined.collect()
     }
@@ -135,8 +140,8 @@ impl ContactHistory {
             .into_iter()
             .flatten();
         let whole: Vec<_> = limits.map(|limit| (limit, limit.segments())).collect();
-        let exact = SlidingLimit::exact(&whole);
-        let mut exact = SlidingLimit::polished(&exact).into_iter();
+        let exact: Option<Vec<SlidingLimit>> = SlidingLimit::exact(&whole).into_iter().collect();
+        let mut exact = SlidingLimit::polished(&exact?).into_iter();
         let (tip, base) = (exact.next()?, exact.next()?);
         Some((Self::new(tip, Some(base)), exact.next()))
     }

@@ -153,8 +153,8 @@ pub enum WhiskError {
     /// The curvature should be taken at a place that the whisker does not have.
     #[error(transparent)]
     CurvatureAt(#[from] CurvatureAtError),
-    /// The end of the push was not found on this side.
-    #[error("the detachment on {0:?} was not found")]
+    /// The end of the push, or with friction a limit of sliding up to it, was not found on this side.
+    #[error("the states up to the detachment on {0:?} were not found")]
     Unresolved(Side),
     /// The course was cancelled by [`WhiskOptions::cancel`].
     #[error("cancelled")]
