@@ -7,7 +7,7 @@ use whiskmap::design::{
 };
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sensitivity::Variable;
-use whiskmap::trace::{Branch, BranchPoint, Detachment, DetachmentKind, curve};
+use whiskmap::trace::{Branch, BranchPoint, Detachment, DetachmentKind, StableBranch, curve};
 
 fn robot() -> Scene {
     Scene::parse(include_str!("../scenes/robot.toml"), "robot.toml").unwrap()
@@ -238,17 +238,101 @@ fn what_cannot_be_asked_for_is_refused() {
     ));
 }
 
-/// Nothing that detaches depends on Young's modulus.
+/// Nothing that detaches depends on Young's modulus: every value reaches the target, or none does.
 #[test]
-fn a_number_that_does_not_matter_has_no_solution() {
+fn a_number_that_does_not_matter_has_all_values_or_none() {
     let scene = robot();
     let slip_off = end(&scene, 60.0, Side::Cb).push_angle_deg.unwrap();
-    for push in [slip_off, slip_off + 1.0] {
+    for (push, is_reached) in [(slip_off, true), (slip_off + 1.0, false)] {
         let target = target(60.0, Side::Cb, DetachmentKind::SlipOff, push);
         let design = design(&scene, Parameter::YoungsModulusGpa, &target).unwrap();
         assert_eq!(design.values, [0.0; 0]);
+        let all = [design.range];
+        assert_eq!(design.spans, if is_reached { &all[..] } else { &[] });
         let [low, high] = design.reached(DetachmentKind::SlipOff).unwrap();
         assert!(high - low < 1e-9);
+    }
+}
+
+/// A range of values of which each reaches the target, and no value below, is not a list of the search's own values.
+#[test]
+fn values_that_do_not_matter_in_a_range_are_the_range() {
+    let scene = |tip_radius_um: f64, follicle: &str| {
+        let text = format!(
+            "title = 'point pole'
+            [whisker]
+            length_mm = 20
+            base_radius_um = 30
+            tip_radius_um = {tip_radius_um}
+            youngs_modulus_gpa = 3
+            {follicle}
+            [contact]
+            friction = 0.3
+            [grid]
+            push_angle_deg = [10]
+            distance_mm = [10]"
+        );
+        Scene::parse(&text, "point.toml").unwrap()
+    };
+    let clamped = scene(30.0, "");
+    let soft = scene(8.0, "follicle.stiffness_nnm_per_rad = 5000");
+    let cylinder = include_str!("../scenes/cylinder.toml");
+    let cylinder = Scene::parse(cylinder, "cylinder.toml").unwrap();
+    for (scene, distance_mm, side, goal, parameter) in [
+        (
+            &soft,
+            8.0,
+            Side::Cb,
+            DesignGoal::MaxForce,
+            Parameter::FollicleStiffness,
+        ),
+        (
+            &clamped,
+            5.0,
+            Side::Cb,
+            DesignGoal::MaxForce,
+            Parameter::LengthMm,
+        ),
+        (
+            &cylinder,
+            5.0,
+            Side::Cf,
+            DesignGoal::SlipOff,
+            Parameter::LengthMm,
+        ),
+    ] {
+        // The search's own peaks: 2,000 states are not accurate enough.
+        let value_at = |value: f64| {
+            let moved = scene.with(parameter, value).unwrap();
+            let (whisker, pole) = (&moved.whisker, &moved.pole);
+            let branch = StableBranch::new(whisker, pole, side, distance_mm).unwrap();
+            match goal.load() {
+                Some(load) => branch.peak(load).size,
+                None => end(&moved, distance_mm, side).push_angle_deg.unwrap(),
+            }
+        };
+        let own = parameter.value(scene).unwrap();
+        let value = value_at(own);
+        let target = DesignTarget {
+            distance_mm,
+            side,
+            goal,
+            value,
+        };
+        let design = design(scene, parameter, &target).unwrap();
+        let [[least, greatest]] = design.spans[..] else {
+            panic!("{parameter:?} {:?} {:?}", design.spans, design.values);
+        };
+        assert_eq!(design.values, [0.0; 0], "{parameter:?}");
+        assert!(least < own && own < greatest, "{least} {own} {greatest}");
+        for part in [0.0, 0.01, 0.3, 0.7, 1.0] {
+            let inside = least + part * (greatest - least);
+            let off = value_at(inside) / value - 1.0;
+            assert!(off.abs() <= 1.01e-6, "{parameter:?} {inside} {off:e}");
+        }
+        let below = value_at(0.95 * least);
+        let off = below / value - 1.0;
+        assert!(off.abs() > 1e-6, "{parameter:?} {least}: {off:e}");
     }
 }
 

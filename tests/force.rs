@@ -124,7 +124,35 @@ fn forces_of_states_come_back() {
     }
 }
 
-/// What has no force says why.
+/// A bent whisker touches farther from the base along its arc than the resting one. A point between the two contacts has a moment.
+#[test]
+fn points_beyond_the_contact_of_the_resting_whisker_have_a_force() {
+    let mut count = 0;
+    for (name, distance, push) in [
+        ("cylinder", 10.0, -110.0),
+        ("robot", 60.0, -42.0),
+        ("cone", 15.66, -24.0),
+    ] {
+        let scene = shipped::scene(name);
+        let first = distance / scene.whisker.length_mm;
+        for part in (0..40).map(|i| first + 0.01 * f64::from(i)) {
+            let (frame, state) = frame(&scene, distance, push, part);
+            let found = force(&scene, &frame, ForceMethod::Model);
+            let context = format!("{name} {part} {found:?} {state:?}");
+            if frame.at_arc_length_mm >= state.arc_length_mm {
+                // The whisker keeps its rest shape there.
+                assert_eq!(found.force_un, None, "{context}");
+                break;
+            }
+            let force_un = found.force_un.unwrap_or_else(|| panic!("{context}"));
+            let off = force_un / state.force_un - 1.0;
+            assert!(off.abs() < 1e-9, "{off:e} {context}");
+            count += 1;
+        }
+    }
+    assert!(count > 20, "{count}");
+}
+
 /// Pushes in a follicle, in both frames of the base; the first and the last push lie beyond the fold of a clamp.
 #[test]
 fn forces_of_a_follicle_come_back_in_both_frames() {
@@ -257,6 +285,7 @@ fn forces_of_the_model_have_the_strains_of_their_states() {
     }
 }
 
+/// What has no force says why.
 #[test]
 fn frames_without_a_force_have_a_reason() {
     let scene = shipped::scene("cone");

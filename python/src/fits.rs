@@ -243,7 +243,12 @@ pub fn design(
     let job = |cancel: &Arc<AtomicBool>| {
         let found = design_until(&scene.0, varied.clone(), &target, cancel)?;
         let solutions: Vec<Vec<f64>> = found.values.iter().map(|value| vec![*value]).collect();
-        let warnings = yielding(&scene.0, &varied, push, &solutions);
+        let mut warnings = yielding(&scene.0, &varied, push, &solutions);
+        warnings.extend(found.spans.iter().map(|span| {
+            let [from, to] = span.map(|end| digits(rounded(end, 6)));
+            let name = varied.variables[0].variable;
+            format!("the target does not determine {name}: every value between {from} and {to} reaches it")
+        }));
         Ok((found, warnings))
     };
     let found = threads::run(py, None, |_| Ok(()), job)?;

@@ -213,8 +213,8 @@ def design(
     Warns
     -----
     SceneWarning
-        If several targets do not determine the parameters, so that solutions form a line, or the largest strain of a solution exceeds the
-        `yield_strain` of the scene.
+        If several targets do not determine the parameters, so that solutions form a line; if every value in a range reaches the one target,
+        which is then not in `values`; or if the largest strain of a solution exceeds the `yield_strain` of the scene.
     """
     targets = {
         "slip_off_deg": slip_off_deg,

@@ -42,9 +42,11 @@ pub struct DesignEnd {
 /// Solutions of a design, and the ends over the whole range of the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// Solutions of the design, in the unit of the parameter, growing: `[solution]`. Empty if no value reaches the target, or if every
-    /// value reaches the same.
+    /// Solutions of the design outside [`Design::spans`], in the unit of the parameter, growing: `[solution]`.
     pub values: Vec<f64>,
+    /// Ranges over which every value reaches the target, because its quantity does not depend on the parameter there:
+    /// `[span][least, greatest]`, growing, in the unit of the parameter.
+    pub spans: Vec<[f64; 2]>,
     /// Range of the parameter `[least, greatest]` that the scene accepts, in its unit.
     pub range: [f64; 2],
     /// Ends of pushes at values over [`Design::range`], `[value]`, in growing order of the values.
@@ -192,30 +194,32 @@ pub fn design_until(
     };
     let range = ranges[0];
     let ends = search.scan(range);
-    let mut values: Vec<f64> = ends
-        .chunk_by(|a, b| a.kind == b.kind)
-        .filter(|piece| target.accepts(piece[0].kind))
-        .flat_map(|piece| search.solutions(piece))
-        .collect();
+    let pieces = ends.chunk_by(|a, b| a.kind == b.kind);
+    let is_same = |a: f64, b: f64| (b - a).abs() <= EQUAL * a.abs();
+    let mut values: Vec<f64> = Vec::new();
+    let mut spans: Vec<[f64; 2]> = Vec::new();
+    for piece in pieces.filter(|piece| target.accepts(piece[0].kind)) {
+        let level = search.spans(piece, range);
+        values.extend(search.solutions(piece, &level));
+        for span in level {
+            // A load may stay where the kind of detachment changes.
+            match spans.last_mut().filter(|last| is_same(last[1], span[0])) {
+                Some(last) => last[1] = span[1],
+                None => spans.push(span),
+            }
+        }
+    }
     if cancel.load(Ordering::Relaxed) {
         return Err(DesignError::Cancelled);
     }
     values.sort_by(f64::total_cmp);
-    values.dedup_by(|b, a| (*b - *a).abs() <= EQUAL * a.abs());
-    let mut design = Design {
+    values.dedup_by(|b, a| is_same(*a, *b));
+    Ok(Design {
         values,
+        spans,
         range,
         ends,
-    };
-    let kinds = [DetachmentKind::SlipOff, DetachmentKind::PullOff].into_iter();
-    let reached = kinds
-        .filter(|kind| target.accepts(*kind))
-        .filter_map(|kind| design.reached(kind))
-        .reduce(|[low, high], [least, most]| [low.min(least), high.max(most)]);
-    if reached.is_some_and(|[low, high]| high - low <= target.tolerance()) {
-        design.values.clear();
-    }
-    Ok(design)
+    })
 }
 
 /// Computes the ends of pushes at values of the one `varied` number over a part of its range, in its unit, `[value]`, as [`Design::ends`] are.

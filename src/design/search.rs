@@ -2,7 +2,7 @@
 
 use super::samples::{SAMPLES, samples};
 use super::varied::DesignScene;
-use super::{DesignEnd, DesignTarget, turn};
+use super::{DesignEnd, DesignTarget, EQUAL, turn};
 use crate::trace::DetachmentKind;
 use rayon::prelude::*;
 use std::convert::Infallible;
@@ -14,6 +14,10 @@ const CHANGE_WIDTH: f64 = 1e-15;
 
 /// Longest last step of Newton's method, relative to the value: the error is about its square.
 const LAST_STEP: f64 = 1e-8;
+
+/// Least width of a part in which every value is a solution, relative to its values and to the range of the parameter. Samples may be nearer to
+/// each other, so that two of them reach one solution.
+const LEAST_SPAN: f64 = 1e-3;
 
 /// Search of a design: the scene with the one number that varies, and the target.
 pub struct DesignSearch<'a> {
@@ -45,6 +49,10 @@ impl DesignSearch<'_> {
 
     fn miss_at(&self, value: f64) -> f64 {
         self.miss(&self.end(value))
+    }
+
+    fn is_reached(&self, miss: f64) -> bool {
+        miss.abs() <= self.target.tolerance()
     }
 
     /// The miss at a value of the parameter, and the next value by Newton's method: NaN for a bisection, without a derivative.
@@ -95,9 +103,51 @@ impl DesignSearch<'_> {
         [before, after]
     }
 
-    /// Returns the values of the parameter, in its unit, at which a push ends at the target, `[solution]`. They lie within a `piece`
-    /// where every end has the target's kind.
-    pub fn solutions(&self, piece: &[DesignEnd]) -> Vec<f64> {
+    /// Returns the parts of a `piece` of the `range` in which every value of the parameter reaches the target, `[part][least, greatest]`, in its
+    /// unit. In a part, at least two neighbouring ends and the value in the middle between them reach it.
+    pub fn spans(&self, piece: &[DesignEnd], range: [f64; 2]) -> Vec<[f64; 2]> {
+        let is_level = |a: &DesignEnd, b: &DesignEnd| {
+            let ends_reach = self.is_reached(self.miss(a)) && self.is_reached(self.miss(b));
+            ends_reach && self.is_reached(self.miss_at(a.value.midpoint(b.value)))
+        };
+        let mut after = 0;
+        let spans = piece.chunk_by(is_level).filter_map(|level| {
+            let first = after;
+            after += level.len();
+            let [low, high] = [first, after - 1].map(|i| piece[i].value);
+            let width = (range[1] - range[0]).min(low.abs().max(high.abs()));
+            (high - low > LEAST_SPAN * width).then(|| {
+                let before = first.checked_sub(1).map(|i| piece[i].value);
+                let next = piece.get(after).map(|end| end.value);
+                [self.edge(low, before), self.edge(high, next)]
+            })
+        });
+        spans.collect()
+    }
+
+    /// Returns the last value from `inside` toward `outside` that reaches the target.
+    fn edge(&self, inside: f64, outside: Option<f64>) -> f64 {
+        let Some(outside) = outside else {
+            return inside;
+        };
+        let mut bracket = Bracket {
+            below: inside,
+            above: outside,
+        };
+        let width = EQUAL * (outside - inside).abs();
+        let Ok(()) = bracket.halve(width, |value| {
+            Ok::<bool, Infallible>(self.is_reached(self.miss_at(value)))
+        });
+        bracket.below
+    }
+
+    /// Returns the values of the parameter, in its unit, at which a push ends at the target, outside the `spans` where every value does,
+    /// `[solution]`. They lie within a `piece` where every end has the target's kind.
+    pub fn solutions(&self, piece: &[DesignEnd], spans: &[[f64; 2]]) -> Vec<f64> {
+        let is_free = |value: f64| {
+            let mut spans = spans.iter();
+            !spans.any(|[low, high]| (*low..=*high).contains(&value))
+        };
         let mut places: Vec<[f64; 2]> = piece
             .iter()
             .map(|end| [end.value, self.miss(end)])
@@ -118,6 +168,9 @@ impl DesignSearch<'_> {
         for (i, [value, miss]) in places.iter().enumerate() {
             let after = crosses.get(i).is_some_and(|crosses| *crosses);
             let before = i.checked_sub(1).is_some_and(|before| crosses[before]);
+            if !is_free(*value) {
+                continue;
+            }
             if after {
                 let [next, miss_there] = places[i + 1];
                 let bracket = Bracket::new([*value, next], [*miss, miss_there]);
@@ -125,11 +178,11 @@ impl DesignSearch<'_> {
                 let last_step = |value: f64| LAST_STEP * value.abs();
                 let root = bracket.newton(start, last_step, |value| self.newton(value));
                 solutions.push(root.x);
-            } else if !before && miss.abs() <= self.target.tolerance() {
+            } else if !before && self.is_reached(*miss) {
                 solutions.push(*value);
             }
         }
-        solutions.retain(|value| self.miss_at(*value).abs() <= self.target.tolerance());
+        solutions.retain(|value| is_free(*value) && self.is_reached(self.miss_at(*value)));
         solutions
     }
 }

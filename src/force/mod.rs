@@ -79,7 +79,8 @@ impl CurvatureFrame {
 pub enum NoForce {
     /// A number of the frame is missing.
     Missing,
-    /// The measured point is at the contact or beyond it, where there is no moment.
+    /// The measured point is at the contact or beyond it, where there is no moment; with the model, in all stable states with this contact
+    /// distance.
     NoLever,
     /// The contact is farther from the base than the whisker is long.
     OutOfReach,

@@ -69,22 +69,24 @@ impl Model {
         if s > rest.end() {
             return none(NoForce::OutOfReach);
         }
-        if s <= measured.at {
-            return none(NoForce::NoLever);
-        }
         let off = |state: &ModelState| state.contact.distance(measured.contact);
+        let mut no_force = NoForce::NoLever;
         let found = self.sides.iter().flat_map(|(rod, sheet)| {
             let curve = StateCurve {
                 rod,
                 sheet,
                 measured,
             };
-            let states = curve.states(rod.tau(s)).into_iter();
+            let samples = curve.samples(rod.tau(s));
+            if curve.have_lever(&samples) {
+                no_force = NoForce::NoState;
+            }
+            let states = curve.states(&samples).into_iter();
             states.map(move |state| (rod, sheet.side, state))
         });
         let nearest = found.min_by(|(.., one), (.., other)| off(one).total_cmp(&off(other)));
         let Some((rod, side, state)) = nearest else {
-            return none(NoForce::NoState);
+            return none(no_force);
         };
         let ModelState { point, full, .. } = state;
         let reader = Reader::new(self.units, rod);

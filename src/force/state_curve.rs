@@ -85,7 +85,7 @@ pub struct ModelState {
 
 /// State at a value of `w`, with its change of curvature less the measured one.
 #[derive(Clone, Copy)]
-struct CurveSample {
+pub struct CurveSample {
     w: f64,
     state: ModelState,
     miss: f64,
@@ -99,9 +99,8 @@ pub struct StateCurve<'a> {
 }
 
 impl StateCurve<'_> {
-    /// Returns the states on the whisker that have the measured curvature, `[state]`. The resting whisker has the contact `touch`.
-    pub fn states(&self, touch: f64) -> Vec<ModelState> {
-        let samples = self.samples(touch);
+    /// Returns the states on the whisker that have the measured curvature, `[state]`, between `samples` of the curve.
+    pub fn states(&self, samples: &[CurveSample]) -> Vec<ModelState> {
         let pairs = samples.windows(2);
         let crossings = pairs.filter_map(|pair| self.between([pair[0], pair[1]]));
         let triples = samples.windows(3);
@@ -111,12 +110,23 @@ impl StateCurve<'_> {
             let tau = state.point.x;
             tau <= tip || self.sheet.is_at_tip(tau, 1e-12)
         };
-        crossings.chain(turns).filter(is_on_whisker).collect()
+        let found = crossings.chain(turns).filter(is_on_whisker);
+        found.filter(|state| self.has_lever(state)).collect()
     }
 
-    /// Returns samples from `touch` to the last stable state, `[sample]`. A contact beyond the tip may come back: where the whisker ends does
-    /// not matter to a state.
-    fn samples(&self, touch: f64) -> Vec<CurveSample> {
+    /// Returns true if the measured point is before the contact of a state. Beyond the contact there is no moment.
+    fn has_lever(&self, state: &ModelState) -> bool {
+        self.measured.at < arclength(self.rod, state.point.x)
+    }
+
+    /// Returns true if the measured point is before the contact of a sample.
+    pub fn have_lever(&self, samples: &[CurveSample]) -> bool {
+        samples.iter().any(|sample| self.has_lever(&sample.state))
+    }
+
+    /// Returns samples from `touch` to the last stable state, `[sample]`. The resting whisker has the contact `touch`. A contact beyond the
+    /// tip may come back: where the whisker ends does not matter to a state. A contact before the measured point may move beyond it.
+    pub fn samples(&self, touch: f64) -> Vec<CurveSample> {
         let softness = self.rod.softness(touch).max(1.0);
         let step = |w: f64| SAMPLE_STEP * (1.0 / softness + w / DOUBLED_AT);
         let mut part = 1.0;
@@ -157,6 +167,9 @@ impl StateCurve<'_> {
     fn at_extremum(&self, mut around: [CurveSample; 3]) -> Vec<ModelState> {
         let is_below = around.map(|sample| sample.miss < 0.0);
         let [from, middle, to] = around.map(|sample| sample.miss.abs());
+        if !self.has_lever(&around[1].state) {
+            return Vec::new();
+        }
         if is_below != [is_below[1]; 3] || middle > from.min(to) {
             return Vec::new();
         }
@@ -187,8 +200,7 @@ impl StateCurve<'_> {
         is_there.then_some(least.state).into_iter().collect()
     }
 
-    /// Returns the state at `w` with the measured distance of the contact, by Newton's method from the contact `tau`; `None` if it is not found,
-    /// or if the measured point is not before the contact.
+    /// Returns the state at `w` with the measured distance of the contact, by Newton's method from the contact `tau`; `None` if it is not found.
     fn at(&self, w: f64, tau: f64) -> Option<CurveSample> {
         let mut problems = [DistanceProblem {
             rod: self.rod,
@@ -198,9 +210,11 @@ impl StateCurve<'_> {
         let start = problems[0].point(tau);
         let newton = BatchNewton::new(Method::new(FINE), TRAJECTORIES);
         let found = newton.solve(&mut problems, [start]).pop()?;
-        let (point, full, at) = (found.point, found.state, self.measured.at);
-        let is_before = at < arclength(self.rod, point.x);
-        let at = (found.outcome == NewtonOutcome::Converged && is_before).then_some([at])?;
+        if found.outcome != NewtonOutcome::Converged {
+            return None;
+        }
+        let (point, full) = (found.point, found.state);
+        let at = [self.measured.at];
         let [measured] = profile(self.rod, point.x, point.y, FINE, &at)
             .try_into()
             .ok()?;

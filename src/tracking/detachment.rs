@@ -1,7 +1,7 @@
 //! Detachments between frames, for `fit`.
 
-use super::TrackedFrame;
 use super::frame_curve::NearestPlace;
+use super::{Remarks, TrackedFrame};
 use crate::trace::row;
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
@@ -20,25 +20,40 @@ row! {
     }
 }
 
-/// Returns the contacts that end with the pole on the other side of the whisker. A contact counts if the frames before and after it are no gaps.
+/// Returns the contacts that end with the pole on the other side of the whisker. A contact counts if the frames before and after it are known
+/// to be without contact. A note gives the number of the others.
 pub(super) fn detachments(
     rows: &[TrackedFrame],
     places: &[Option<NearestPlace>],
+    remarks: &mut Remarks,
 ) -> Vec<TrackedDetachment> {
+    let known = |(i, row): (usize, &TrackedFrame)| Some((i, row.contact? == 1));
+    let known: Vec<(usize, bool)> = rows.iter().enumerate().filter_map(known).collect();
     let mut found = Vec::new();
     let mut touch: Option<usize> = None;
-    for i in 1..rows.len() {
-        match [rows[i - 1].contact, rows[i].contact] {
-            [Some(0), Some(1)] => touch = Some(i),
-            [Some(1), Some(0)] => found.extend(
-                touch
-                    .take()
-                    .and_then(|touch| detachment(rows, places, touch, i)),
-            ),
-            // A gap before the first touch or after the last one hides when it was.
-            [None, Some(0)] | [Some(0), None] => touch = None,
+    let mut left_out = 0;
+    for pair in known.windows(2) {
+        let [(before, was_in_contact), (after, is_in_contact)] = [pair[0], pair[1]];
+        // A gap before the first touch or after the last one hides when it was.
+        let is_shown = after == before + 1;
+        match (was_in_contact, is_in_contact) {
+            (false, true) => touch = is_shown.then_some(after),
+            (true, false) => match touch.take().filter(|_| is_shown) {
+                Some(touch) => found.extend(detachment(rows, places, touch, after)),
+                None => left_out += 1,
+            },
             _ => {}
         }
+    }
+    left_out += u32::from(
+        known
+            .last()
+            .is_some_and(|(_, is_in_contact)| *is_in_contact),
+    );
+    if left_out > 0 {
+        remarks.notes.push(format!(
+            "contacts that give no detachment, as first touch or end is next to a gap or outside the film: {left_out}"
+        ));
     }
     found
 }

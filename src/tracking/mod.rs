@@ -201,7 +201,7 @@ impl Tracking {
             .map(|frame| (frame.number, frame.points_mm.clone()));
         Ok(Self {
             format,
-            detachments: detachment::detachments(&frames, &contacts),
+            detachments: detachment::detachments(&frames, &contacts, &mut remarks),
             frames,
             notes: remarks.notes,
             warnings: remarks.warnings,

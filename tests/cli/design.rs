@@ -165,6 +165,37 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
     );
 }
 
+/// A target that every value reaches has the range, not a denial, nor a list. A target next to it has a digit that differs.
+#[test]
+fn a_target_that_every_value_reaches_has_a_range() {
+    let place = Place::with(include_str!("../../scenes/cylinder.toml"));
+    let curve = good(&place, &["curve", "scene.toml", "--distance", "5"]).out;
+    let row = curve.lines().find(|line| line.starts_with("cf,")).unwrap();
+    let exact = row.split(',').nth(4).unwrap();
+    let design = |goal: &str, varied: &[&str]| {
+        let words = ["design", "scene.toml", "--distance", "5", goal, "--for"];
+        let run = place.run(&[&words[..], varied].concat());
+        assert_eq!((run.code, &*run.out), (Some(1), ""), "{run:?}");
+        run.err
+    };
+    let slip_off = format!("--slip-off={exact}");
+    let said = design(&slip_off, &["length_mm"]);
+    assert!(
+        said.starts_with("error: the target does not determine length_mm: every value between "),
+        "{said}"
+    );
+    let own = " and 500, such as the scene's own 20, makes the whisker slip off at -109.74";
+    assert!(said.contains(own), "{said}");
+    let said = design(&slip_off, &["base_radius_um", "--keep", "taper"]);
+    assert!(said.contains(", such as the scene's own 30, "), "{said}");
+    let near = format!("{:.9}", exact.parse::<f64>().unwrap() + 1e-8);
+    let said = design(&format!("--slip-off={near}"), &["length_mm"]);
+    let wanted = format!(" slip off at {near} deg: it slips off at ");
+    let reached = said.split_once(&wanted).unwrap_or_else(|| panic!("{said}"));
+    let exact: f64 = exact.parse().unwrap();
+    assert!(reached.1.starts_with(&format!("{exact:.8} deg")), "{said}");
+}
+
 #[test]
 fn what_cannot_be_designed_is_refused() {
     let place = Place::with(SCENE);

@@ -129,10 +129,50 @@ fn detachments_are_those_that_fit_reads() {
     let run = place.run(&far);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert!(
-        run.err
-            .contains("warning: no contact ends with the pole on the other side of the whisker"),
+        run.err.contains(
+            "warning: no contact with a first touch and an end in the film has the pole on the other side"
+        ),
         "{run:?}"
     );
+    assert!(
+        !run.err.contains("contacts that give no detachment"),
+        "{run:?}"
+    );
+}
+
+/// A gap hides when a contact begins or ends, as do the ends of the film. Such contacts are counted.
+#[test]
+fn contacts_without_first_touch_or_end_are_counted() {
+    let whole = include_str!("../../scenes/deeplabcut.csv");
+    let place = film();
+    let words = [
+        &FILM[..],
+        &["--fps", "500", "--detachments", "-o", "points.csv"],
+    ]
+    .concat();
+    // First touch is in frame 12, and the last contact in frame 43.
+    for lost in [
+        &[11, 12][..],
+        &[44, 45],
+        &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11],
+    ] {
+        let is_kept = |line: &&str| {
+            let number = line.split(',').next().unwrap_or_default();
+            number
+                .parse()
+                .map_or(true, |frame: u32| !lost.contains(&frame))
+        };
+        let kept: Vec<&str> = whole.lines().filter(is_kept).collect();
+        place.write("film.csv", &kept.join("\n"));
+        let run = place.run(&words);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        for said in [
+            "note: contacts that give no detachment, as first touch or end is next to a gap or outside the film: 1\n",
+            "warning: no contact with a first touch and an end in the film has the pole on the other side",
+        ] {
+            assert!(run.err.contains(said), "{lost:?} {run:?}");
+        }
+    }
 }
 
 #[test]

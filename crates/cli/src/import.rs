@@ -199,7 +199,9 @@ pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
         Some(points) => write(OutputTable::new(output), points),
         None if args.detachments => {
             if tracking.detachments.is_empty() {
-                message("warning: no contact ends with the pole on the other side of the whisker");
+                message(
+                    "warning: no contact with a first touch and an end in the film has the pole on the other side of the whisker afterwards",
+                );
             }
             write(OutputTable::new(output), tracking.detachments)
         }

@@ -1,6 +1,6 @@
-//! Messages of `whiskmap design`: refusals, targets without a solution, and strains beside the yield strain.
+//! Messages of `whiskmap design`: refusals, targets without a solution or with a range of them, and strains beside the yield strain.
 
-use super::options::AskedTarget;
+use super::options::{ASKED_DIGITS, AskedTarget};
 use super::solutions::SOLUTION_DIGITS;
 use crate::failure::{Failure, message};
 use std::path::Path;
@@ -62,7 +62,13 @@ pub fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> St
     let [from, to] = design.range.map(digits);
     let goal = asked.target.goal;
     let wanted = asked.wanted();
-    let number = |value: f64| asked.text(value, REACHED_DIGITS);
+    let number = |value: f64| {
+        // More digits of a value next to the target, which has them.
+        let is_other =
+            |most: &usize| asked.text(value, *most) != asked.text(asked.target.value, *most);
+        let most = (REACHED_DIGITS..ASKED_DIGITS).find(is_other);
+        asked.text(value, most.unwrap_or(ASKED_DIGITS))
+    };
     let kinds = [
         (DetachmentKind::SlipOff, "slips off"),
         (DetachmentKind::PullOff, "is pulled off"),
@@ -83,6 +89,36 @@ pub fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> St
         ranges => ranges,
     };
     format!("no {name} between {from} and {to} {wanted}: {reached}")
+}
+
+/// Returns the message for a target that every value in a range reaches, with the `scene_value` of the parameter if it is one.
+pub fn undetermined(
+    variable: Variable,
+    scene_value: Option<f64>,
+    asked: &AskedTarget,
+    design: &Design,
+) -> String {
+    let name = variable.name();
+    let number = |value: f64| digits(rounded(value, SOLUTION_DIGITS));
+    let spans = design.spans.iter().map(|[from, to]| {
+        let is_own = |value: &f64| (from..=to).contains(&value);
+        let own = scene_value.filter(is_own).map(number);
+        let own = own.map_or_else(String::new, |own| {
+            format!(", such as the scene's own {own},")
+        });
+        format!("between {} and {}{own}", number(*from), number(*to))
+    });
+    let spans: Vec<String> = spans.collect();
+    let values: Vec<String> = design.values.iter().map(|value| number(*value)).collect();
+    let others = match &values[..] {
+        [] => String::new(),
+        values => format!("; so does {}", values.join(", and ")),
+    };
+    format!(
+        "the target does not determine {name}: every value {} {}{others}",
+        spans.join(" and "),
+        asked.wanted()
+    )
 }
 
 /// Returns the message for targets that have no solution, or a line of solutions.

@@ -10,7 +10,7 @@ use super::files::Files;
 use super::outputs::{PictureFile, PlotArgs, write};
 use super::pole::{self, WhiskerArgs, title};
 use clap::Args;
-use messages::{name_strains, refused, unreached, unreached_together};
+use messages::{name_strains, refused, undetermined, unreached, unreached_together};
 use options::{Distance, GoalArgs, distance, variable};
 use solutions::{SOLUTION_DIGITS, Solutions};
 use std::path::{Path, PathBuf};
@@ -41,7 +41,8 @@ For one push angle, values have 10 significant digits and a relative error of 1e
 root of the rounding error. Other values have 6 digits. The search covers the whole range that the scene accepts, or the limits \
 NAME=FROM..TO, with 128 values; in a wide range, half of them are spaced logarithmically. A pair of solutions between two of these \
 values is found if the target's quantity turns back only once there. Several parameters have about 600 places, from which Newton's method \
-starts. Without any solution the exit code is 1, and standard error gives what is possible. The scene's grid is ignored.")]
+starts. Without any solution the exit code is 1, and standard error gives what is possible; where every value in a range reaches \
+the target, it gives the range. The scene's grid is ignored.")]
 pub struct DesignArgs {
     #[command(flatten)]
     whisker: WhiskerArgs,
@@ -85,9 +86,13 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
             if let Some(picture) = picture {
                 plot(path, &scene, &varied, (&one.target, &found), picture)?;
             }
-            if found.values.is_empty() {
-                let why = unreached(varied.variables[0].variable, one, &found);
+            let variable = varied.variables[0].variable;
+            if !found.spans.is_empty() {
+                let why = undetermined(variable, variable.value(&scene), one, &found);
                 return Err(Failure::NoValue(why));
+            }
+            if found.values.is_empty() {
+                return Err(Failure::NoValue(unreached(variable, one, &found)));
             }
             let values = found.values.iter().map(|value| vec![*value]);
             let digits = one.target.goal.digits();
@@ -129,7 +134,7 @@ fn plot(
     let near = Design {
         range,
         ends: ends.map_err(|why| refused(path, why))?,
-        values: found.values.clone(),
+        ..found.clone()
     };
     let chart = chart(varied.variables[0].variable, target, &near);
     let title = heading(scene, varied, target.distance_mm);

@@ -69,7 +69,7 @@ pub fn variable(text: &str) -> Result<DesignVariable, String> {
 }
 
 /// Significant digits of a target in messages.
-const ASKED_DIGITS: usize = 15;
+pub const ASKED_DIGITS: usize = 15;
 
 #[derive(Debug, Args)]
 #[group(required = true, multiple = true)]
