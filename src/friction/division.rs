@@ -11,8 +11,9 @@ const LIMIT_ERROR: f64 = 1e-10;
 /// Change of the push, in radians, that counts as rounding. Next to a fold, it changes the slid distance by more than [`LIMIT_ERROR`].
 const PUSH_ROUNDING: f64 = 1e-13;
 
-/// Number of times that a segment may be halved. The error of a smooth cubic falls to 1/16 each time.
-const HALVINGS: u32 = 16;
+/// Number of times that a segment may be halved. The error of a smooth cubic falls to 1/16 each time. Where the tip ends a limit just before its
+/// fold, segments there are halved up to their distance from the fold.
+const HALVINGS: u32 = 48;
 
 /// Limit whose segments are made exact.
 struct OpenLimit {
@@ -95,7 +96,11 @@ impl SlidingLimit {
             let pairs = open
                 .iter()
                 .flat_map(|open| open.middles().map(|push| (&open.limit, push)));
-            let mut middles = knots_at(&pairs.collect::<Vec<_>>()).into_iter();
+            let pairs: Vec<(&Self, f64)> = pairs.collect();
+            if pairs.is_empty() {
+                break;
+            }
+            let mut middles = knots_at(&pairs).into_iter();
             for open in &mut open {
                 open.halve(middles.by_ref());
             }

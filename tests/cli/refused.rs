@@ -101,15 +101,19 @@ fn a_folder_that_takes_no_files() {
     let place = Place::with(SCENE);
     let run = place.run(&["map", "scene.toml", "--engine", "cpu", "-o", "/proc"]);
     run.assert_refused(&["--output /proc: ", "give a folder that can be written"]);
-    let store = [
-        "extract",
+    let map = [
+        "map",
         "scene.toml",
         "--engine",
         "cpu",
+        "--no-png",
         "-o",
-        "/proc/slice.zarr",
+        "maps",
     ];
-    place.run(&store).assert_refused(&[
+    assert_eq!(place.run(&map).code, Some(0));
+    let store = "/proc/slice.zarr";
+    let run = place.run(&["extract", "maps/scene.exr", "-o", store]);
+    run.assert_refused(&[
         "--output /proc/slice.zarr: ",
         "in a folder that can be written",
     ]);
