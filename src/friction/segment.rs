@@ -275,6 +275,36 @@ mod tests {
         found.len() == wanted.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12)
     }
 
+    /// Whatever its folds, a segment returns from a push to its variable and back, also next to a fold, and its slope is that of the push.
+    #[test]
+    fn the_variable_of_a_segment_is_that_of_its_folds() {
+        for (begin, end) in [
+            (None, None),
+            (None, Some(2.0)),
+            (Some(1.0), None),
+            (Some(1.0), Some(2.0)),
+        ] {
+            let ends = [1.0, 2.0].map(|push| knot(push, 0.0, 0.0));
+            let segment = LimitSegment::new(ends[0], ends[1], LimitFolds { begin, end });
+            for push in [1.0 + 1e-9, 1.3, 1.5, 1.8, 2.0 - 1e-9] {
+                let x = segment.part(push);
+                let place = segment.inner(x);
+                assert!(
+                    (place.push - push).abs() < 1e-15,
+                    "{begin:?} {end:?} {push}"
+                );
+                let step = 1e-4;
+                if x.min(1.0 - x) < step {
+                    continue;
+                }
+                let [before, after] = [x - step, x + step].map(|x| segment.inner(x).push);
+                let by_x = (after - before) / (2.0 * step);
+                let miss = (by_x - place.push_by_x).abs();
+                assert!(miss < 1e-7, "{begin:?} {end:?} {push}: {miss:e}");
+            }
+        }
+    }
+
     /// `(x - 1)^2 (x + 2)` reverses at 1 and -1.
     #[test]
     fn a_cubic_is_reproduced_and_reverses_where_its_slope_is_zero() {
