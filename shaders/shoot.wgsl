@@ -1,6 +1,6 @@
 // Trajectories from the contact to the base, one per invocation, with the 8th-order formula of Dormand, El-Mikkawy and Prince's Nystrom pair.
-// The twin of `integrator/nystrom8.rs`, `intrinsic.rs`, `parabola.rs` and `material.rs` in `crates/mechanics/src/shooting/`, where the
-// equations are.
+// The twin of `contact.rs`, `resolution.rs`, `integrator/nystrom8.rs`, `intrinsic.rs`, `parabola.rs` and `material.rs` in
+// `crates/mechanics/src/shooting/`, where the equations are.
 
 struct Rod {
     taper: real,
@@ -14,29 +14,20 @@ struct Rod {
     tangent: vec2<real>,
     // gradient of the modulus
     gradient: real,
-    unused: real,
+    // t sqrt(1 + t^2) + asinh(t) for the slope t of a parabola at the base
+    arc_at_base: real,
+    // least number of steps, largest curvature at rest, steps of the longest length over tau, and an unused number
+    steps: vec4<real>,
 }
 
-// Contact of some trajectories: tau, radius and arclength, then the unit tangent of a parabola at rest.
-struct Contact {
-    tau: real,
-    radius: real,
-    arclength: real,
-    unused: real,
-    rest: vec2<real>,
-}
-
-// State at the base: tangent, position, then energy and rotation by bending.
+// State at the base: tangent, position, then energy and force.
 alias State = array<vec2<real>, 3>;
 
 @group(0) @binding(0) var<storage, read> rods: array<Rod>;
-// Rod and number of steps of each contact.
-@group(0) @binding(1) var<storage, read> heads: array<vec2<u32>>;
-@group(0) @binding(2) var<storage, read> contacts: array<Contact>;
-// Contact and force of each trajectory.
-@group(0) @binding(3) var<storage, read> contact_of: array<u32>;
-@group(0) @binding(4) var<storage, read> forces: array<real>;
-@group(0) @binding(5) var<storage, read_write> states: array<State>;
+// Rod, and tau and load, of each trajectory.
+@group(0) @binding(1) var<storage, read> rod_of: array<u32>;
+@group(0) @binding(2) var<storage, read> points: array<vec2<real>>;
+@group(0) @binding(3) var<storage, read_write> states: array<State>;
 
 // (exp(x) - 1)/x for |x| <= 0.4: Taylor polynomial; of degree 12 in f64 and 7 in f32 truncation is below 1e-16 and 2e-9.
 fn expm1_over_small(x: real) -> real {
@@ -47,6 +38,71 @@ fn expm1_over_small(x: real) -> real {
     }
     return 1.0 + x * (1.0 / 2.0 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0 + x * (1.0 / 720.0 + x * (1.0 / 5040.0
         + x * (1.0 / 40320.0 + tail)))))));
+}
+
+// Radius over the base radius, and arclength, at tau. Each halving of the exponent, of at most 25.6, doubles the rounding.
+fn radius_and_arclength(taper: real, tau: real) -> vec2<real> {
+    var part = -taper * tau;
+    var halvings = 0;
+    while part < -0.4 && halvings < 6 {
+        part *= 0.5;
+        halvings++;
+    }
+    var growth = expm1_over_small(part);
+    var radius = 1.0 + part * growth;
+    for (var halving = 0; halving < halvings; halving++) {
+        growth *= 1.0 + 0.5 * part * growth;
+        part += part;
+        radius *= radius;
+    }
+    return vec2<real>(radius, tau * growth);
+}
+
+// t sqrt(1 + t^2) + asinh(t), by halving the argument of asinh three times.
+fn arc(t: real) -> real {
+    let root = sqrt(1.0 + t * t);
+    let first = sqrt(0.5 * (1.0 + root));
+    let second = sqrt(0.5 * (1.0 + first));
+    let third = sqrt(0.5 * (1.0 + second));
+    let w = t / (8.0 * first * second * third * third);
+    return t * root + 8.0 * w * arc_series(w * w);
+}
+
+// Unit tangent of a parabola at rest at the arclength s.
+fn parabola_tangent(rod: Rod, s: real) -> vec2<real> {
+    let z = 2.0 * rod.twice_bend * s + rod.arc_at_base;
+    let square = z * z;
+    let power = 1.0 + square * (0.253 + 0.0437 * sqrt(square) + (1.0 / 256.0) * square);
+    let start = 0.5 * z / sqrt(sqrt(sqrt(power)));
+    let t2 = start * start;
+    let root_square = 1.0 + t2;
+    let d = 0.5 * (z - arc(start)) / sqrt(root_square);
+    let e = d / root_square;
+    let c2 = -0.5 * start;
+    let c3 = 0.5 * t2 - 1.0 / 6.0;
+    let c4 = start * (13.0 / 24.0 - (15.0 / 24.0) * t2);
+    let c5 = t2 * ((105.0 / 120.0) * t2 - 162.0 / 120.0) + 13.0 / 120.0;
+    let c6 = start * (t2 * ((2202.0 / 720.0) - (945.0 / 720.0) * t2) - 493.0 / 720.0);
+    let t = start + d * (1.0 + e * (c2 + e * (c3 + e * (c4 + e * (c5 + e * c6)))));
+    let cos = 1.0 / sqrt(1.0 + t * t);
+    return vec2<real>(cos, t * cos);
+}
+
+// Number of steps from tau and arclength, rounded up to three significant bits.
+fn steps_of(rod: Rod, tau: real, load: real, s: real) -> u32 {
+    var bending = abs(load) * s * s;
+    if GRADIENT {
+        bending /= min(real(1.0), 1.0 + rod.gradient * s);
+    }
+    let root = sqrt(f32(bending));
+    let turn = f32(rod.steps.y * s);
+    let fall = f32(rod.taper * tau);
+    let weight = STEPS_AT_REST + STEPS_BY_ROOT * root + STEPS_BY_COIL * max(root - COILING, 0.0)
+        + STEPS_BY_TURN * turn * min(turn, 2.0) + STEPS_BY_FALL * fall * min(fall, 2.0);
+    let steps = max(f32(rod.steps.x) * weight, f32(rod.steps.z * tau));
+    let whole = min(u32(ceil(clamp(steps, 1.0, MOST_STEPS))), u32(MOST_STEPS));
+    let rest = (1u << (max(firstLeadingBit(whole), 2u) - 2u)) - 1u;
+    return (whole + rest) & ~rest;
 }
 
 // Unit vector rotated by an angle of at most 0.5: relative truncation errors are below 5e-14 in f64 and 2e-8 in f32.
@@ -207,14 +263,22 @@ fn climb(stage: Stage, pose: Pose) -> vec2<real> {
 @compute @workgroup_size(WORKGROUP)
 fn shoot(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let id = invocation.x;
-    if id >= arrayLength(&forces) {
+    if id >= arrayLength(&points) {
         return;
     }
-    let head = heads[contact_of[id]];
-    let rod = rods[head.x];
-    let contact = contacts[contact_of[id]];
-    let force = forces[id];
-    let h = contact.tau / real(head.y);
+    let rod = rods[rod_of[id]];
+    let tau = points[id].x;
+    let load = points[id].y;
+    var radius = real(1.0);
+    var arclength = tau;
+    if TAPER {
+        let both = radius_and_arclength(rod.taper, tau);
+        radius = both.x;
+        arclength = both.y;
+    }
+    let force = load * radius * radius;
+    let steps = steps_of(rod, tau, load, arclength);
+    let h = tau / real(steps);
     let s2 = stage_at(rod, h, NODE_2);
     let s3 = stage_at(rod, h, NODE_3);
     let s4 = stage_at(rod, h, NODE_4);
@@ -223,15 +287,17 @@ fn shoot(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let s7 = stage_at(rod, h, NODE_7);
     let end = stage_at(rod, h, NODE_8);
     var section = Section();
-    section.radius = contact.radius;
-    section.arclength = contact.arclength;
+    section.radius = radius;
+    section.arclength = arclength;
     section.modulus = real(1.0);
     section.tangent = rod.tangent;
-    section.rest = contact.rest;
+    if CURVATURE {
+        section.rest = parabola_tangent(rod, arclength);
+    }
     var x = real(0.0);
     var y = real(0.0);
     var along = real(0.0);
-    for (var step = 0u; step < head.y; step++) {
+    for (var step = 0u; step < steps; step++) {
         if GRADIENT {
             section.modulus = 1.0 + rod.gradient * section.arclength;
         }
@@ -293,5 +359,5 @@ fn shoot(@builtin(global_invocation_id) invocation: vec3<u32>) {
         section.radius *= end.grown;
     }
     let energy = 0.5 * force * (x * section.bent + along);
-    states[id] = State(section.tangent, vec2<real>(x, y), vec2<real>(energy, section.bent));
+    states[id] = State(section.tangent, vec2<real>(x, y), vec2<real>(energy, force));
 }

@@ -44,13 +44,9 @@ impl Device {
                 what: "compute in f64 (no SHADER_F64)".to_owned(),
             });
         }
-        let clock = features & wgpu::Features::TIMESTAMP_QUERY;
-        let required_features = match precision {
-            Precision::F32 => clock,
-            Precision::F64 => clock | wgpu::Features::SHADER_F64,
-        };
+        let useful = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::SHADER_F64;
         let wanted = wgpu::DeviceDescriptor {
-            required_features,
+            required_features: features & useful,
             required_limits: adapter.limits(),
             ..Default::default()
         };
@@ -94,6 +90,12 @@ impl Device {
         let waited = guarded(|| handle.poll(waiting).map_err(|error| error.to_string()));
         self.check()?;
         waited.flatten().map(drop).map_err(EngineError::Device)
+    }
+
+    /// Returns true if shaders of this device may compute in `f64`.
+    pub fn has_f64(&self) -> bool {
+        let features = self.handle.features();
+        features.contains(wgpu::Features::SHADER_F64)
     }
 
     /// Returns the size in bytes of the largest storage buffer of this device.

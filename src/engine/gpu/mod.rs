@@ -60,9 +60,10 @@ pub struct Gpu {
     buffers: Vec<Buffers>,
     /// For each selection of channels, the compiled shader of cells and its pace.
     pipelines: HashMap<Channels, (wgpu::ComputePipeline, Pace)>,
-    /// For each set of effects, the compiled shader of trajectories.
-    shooters: HashMap<Effects, wgpu::ComputePipeline>,
-    shoot_buffers: Buffers,
+    /// For each precision and set of effects, the compiled shader of trajectories and its pace.
+    shooters: HashMap<(Precision, Effects), (wgpu::ComputePipeline, Pace)>,
+    /// Buffers of trajectories that no submission uses.
+    shoot_buffers: Vec<Buffers>,
     /// The batches submitted and not collected.
     pending: VecDeque<PendingBatch>,
     /// The flights, in order.
@@ -92,7 +93,7 @@ impl Gpu {
             buffers: Vec::new(),
             pipelines: HashMap::new(),
             shooters: HashMap::new(),
-            shoot_buffers: Buffers::default(),
+            shoot_buffers: Vec::new(),
             pending: VecDeque::new(),
             flights: VecDeque::new(),
             idle_since: Instant::now(),
@@ -204,11 +205,12 @@ impl Engine for Gpu {
     }
 
     fn integrates_nodes(&self, effects: Effects) -> bool {
-        self.precision == Precision::F64 && shoots(effects).is_ok()
+        self.device.has_f64() && shoots(effects).is_ok()
     }
 
     fn shoot_nodes(&mut self, nodes: &Nodes) -> Result<Vec<PlainState>, EngineError> {
-        self.shoot(nodes.method, &nodes.conditions())
+        // The nets of both precisions need trajectories in `f64`.
+        self.shoot_with(Precision::F64, nodes.method, &nodes.conditions())
     }
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {

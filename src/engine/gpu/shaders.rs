@@ -7,7 +7,8 @@ use crate::engine::row::FUNCTIONS;
 use crate::plan::{Channels, STATE_CHANNELS};
 use whiskmap_mechanics::numerics::inverse::TOGETHER;
 use whiskmap_mechanics::rod::{CURVATURE_TERMS, Effects};
-use whiskmap_mechanics::shooting::{Nystrom8, REST_TANGENT, REST_TERMS};
+use whiskmap_mechanics::shooting::contact::ARC_TERMS;
+use whiskmap_mechanics::shooting::{Nystrom8, REST_TANGENT, REST_TERMS, StepRule};
 
 const _: () = assert!(
     CURVATURE_TERMS == 7 && REST_TERMS == 12,
@@ -87,6 +88,18 @@ fn rest_terms() -> String {
     )
 }
 
+/// A function for the series of `atanh(w)/w` in the square of `w`.
+fn arc_series() -> String {
+    let terms = (0..ARC_TERMS).map(|k| format!("real({:e})", 1.0 / f64::from(2 * k + 1)));
+    let sum = terms
+        .rev()
+        .reduce(|sum, term| format!("({term} + square * {sum})"));
+    format!(
+        "fn arc_series(square: real) -> real {{\nreturn {};\n}}\n",
+        sum.unwrap_or_default()
+    )
+}
+
 /// Returns the text of the engine's shader; its entry point is `solve_cells`.
 #[must_use]
 pub fn cells(precision: Precision) -> String {
@@ -115,7 +128,10 @@ pub fn shoot(precision: Precision) -> String {
     for (name, _) in effects(Effects::default()) {
         text += &format!("override {name}: bool;\n");
     }
-    text + &tableau() + &rest_terms() + include_str!("../../../shaders/shoot.wgsl")
+    for (name, value) in StepRule::WEIGHTS {
+        text += &format!("const {name} = {value:?}f;\n");
+    }
+    text + &tableau() + &rest_terms() + &arc_series() + include_str!("../../../shaders/shoot.wgsl")
 }
 
 /// Returns the values of the `override` constants of [`shoot`], by name.

@@ -78,9 +78,9 @@ pub fn parabola_tangent<T: Real>(bend: T, at_base: T, s: T) -> [T; 2] {
     [cos, t * cos]
 }
 
-/// Number of coefficients of the series of `atanh(w)/w` in `w^2`. Up to `w = 0.47`, an eighth of `asinh(30)`, the remainder is
+/// Number of terms of the series of `atanh(w)/w` in `w^2`, even. Up to `w = 0.47`, an eighth of `asinh(30)`, the remainder is
 /// below 1e-16.
-const SERIES: u32 = 22;
+pub const ARC_TERMS: u32 = 24;
 
 /// Returns `t sqrt(1 + t^2) + asinh(t)`, by halving the argument of `asinh` three times.
 #[inline(always)]
@@ -95,7 +95,7 @@ pub fn arc<T: Real>(t: T) -> T {
     // Even and odd powers of the square: two short chains of multiplications in place of a long one.
     let fourth = square * square;
     let (mut even, mut odd) = (T::of(0.0), T::of(0.0));
-    for k in (0..=SERIES / 2).rev() {
+    for k in (0..ARC_TERMS / 2).rev() {
         even = even.mul_add(fourth, T::of(1.0 / f64::from(4 * k + 1)));
         odd = odd.mul_add(fourth, T::of(1.0 / f64::from(4 * k + 3)));
     }

@@ -36,6 +36,6 @@ pub use map::{
 pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use parabola::{Bent, TANGENT as REST_TANGENT, TERMS as REST_TERMS};
 pub use reading::{Reader, Reading, StateNumbers};
-pub use resolution::{PieceSteps, Resolution};
+pub use resolution::{PieceSteps, Resolution, StepRule};
 pub use rhs::{Carried, NoSensitivity, Planar, RodSystem, Section, Sensitivity, TrajectoryState};
 pub use strain::{PeakStrain, StepNodes, bending_strain};

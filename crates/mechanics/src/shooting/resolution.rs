@@ -91,9 +91,19 @@ impl Resolution {
             let weight = weight(bending, bend * s) + 0.17;
             return self.rounded(CONCENTRATED * weight, 0.0);
         }
-        let fastest = fastest(rod.taper, bend).max(0.5 * change_of_modulus(rod));
+        let fastest = fastest_along(rod);
         let weight = weight(bending, bend * s) + weight_of_taper(rod.taper * tau);
         self.rounded(weight, fastest * tau)
+    }
+
+    /// Returns the numbers of a `rod` without a profile that determine the steps of its trajectories.
+    #[must_use]
+    pub fn rule(&self, rod: &Rod) -> StepRule {
+        StepRule {
+            least: f64::from(self.least),
+            bend: rod.sharpest_bend(),
+            fastest: fastest_along(rod) / self.longest,
+        }
     }
 
     /// Returns the steps along the pieces of the profile of `rod` for a trajectory from `tau` under `load`.
@@ -154,6 +164,31 @@ pub struct PieceSteps {
     reach: u32,
 }
 
+/// Numbers of a rod without a profile that determine, with contact and load, the steps of its trajectories. Shaders count steps by them, as
+/// [`Resolution::steps`] does on the CPU.
+#[derive(Clone, Copy, Debug)]
+pub struct StepRule {
+    /// Least number of steps of the [`Resolution`].
+    pub least: f64,
+    /// Largest curvature at rest, in radians per whisker length.
+    pub bend: f64,
+    /// Number of steps for `tau = 1` that the longest step allows.
+    pub fastest: f64,
+}
+
+impl StepRule {
+    /// Weights of the number of steps, with their names in the shader.
+    pub const WEIGHTS: [(&str, f64); 7] = [
+        ("STEPS_AT_REST", AT_REST),
+        ("STEPS_BY_ROOT", BY_ROOT),
+        ("STEPS_BY_COIL", BY_COIL),
+        ("COILING", COILING),
+        ("STEPS_BY_TURN", BY_TURN),
+        ("STEPS_BY_FALL", BY_FALL),
+        ("MOST_STEPS", MOST),
+    ];
+}
+
 impl PieceSteps {
     /// Returns the number of steps of the piece `k` of `profile`, by its share in the bending, its length, and the change of its radius.
     #[inline(always)]
@@ -172,12 +207,27 @@ fn change_of_modulus(rod: &Rod) -> f64 {
     rod.gradient.abs() / (1.0 + rod.gradient).min(1.0)
 }
 
+/// Weight of a straight cylinder at rest.
+const AT_REST: f64 = 0.28;
+
+/// Weight of the root of the scaled load.
+const BY_ROOT: f64 = 0.195;
+
+/// Weight of the root of the scaled load beyond [`COILING`].
+const BY_COIL: f64 = 0.6;
+
+/// Weight of the product of the angle by which the whisker at rest turns between base and contact, and this angle or 2.
+const BY_TURN: f64 = 0.18;
+
+/// Weight of the product of the fall of the radius, `fall = beta tau`, and this fall or 2.
+const BY_FALL: f64 = 0.17;
+
 /// Weight of the scaled load and of the rest shape, which turns by `bend` radians between base and contact.
 #[inline(always)]
 fn weight(bending: f64, bend: f64) -> f64 {
     let root = bending.sqrt();
-    let coiling = 0.6 * (root - COILING).max(0.0);
-    0.28 + 0.195 * root + coiling + 0.18 * bend * bend.min(2.0)
+    let coiling = BY_COIL * (root - COILING).max(0.0);
+    AT_REST + BY_ROOT * root + coiling + BY_TURN * bend * bend.min(2.0)
 }
 
 /// Root of the scaled load above which a whisker coils up, so that an error is larger relative to the distance between base and
@@ -187,10 +237,15 @@ const COILING: f64 = 4.5;
 /// Weight of the fall of the radius, `fall = beta tau`.
 #[inline(always)]
 fn weight_of_taper(fall: f64) -> f64 {
-    0.17 * fall * fall.min(2.0)
+    BY_FALL * fall * fall.min(2.0)
 }
 
-/// Rate of change along `tau` that limits the length of a step.
+/// Rate of change along `tau` of a rod without a profile that limits the length of a step.
+fn fastest_along(rod: &Rod) -> f64 {
+    fastest(rod.taper, rod.sharpest_bend()).max(0.5 * change_of_modulus(rod))
+}
+
+/// Rate of change along `tau` of a rod with a constant modulus that limits the length of a step.
 #[inline(always)]
 fn fastest(taper: f64, bend: f64) -> f64 {
     taper.max(1.6 * bend)
