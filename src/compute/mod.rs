@@ -64,7 +64,8 @@ pub enum MapEngine {
     Spectral,
     /// The spectral engine, or the CPU engine where its trajectories take less time than expansions. The choice depends on the scene alone.
     Auto,
-    /// The GPU engine: the preferred GPU in this precision; an error without the feature `gpu`.
+    /// The GPU engine: the preferred GPU in this precision; an error without the feature `gpu`. For a map without numbers of states, whose regimes
+    /// follow from the ends of rows, this is [`MapEngine::Auto`].
     Gpu(Precision),
 }
 

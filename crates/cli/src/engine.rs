@@ -154,7 +154,10 @@ impl EngineArgs {
         match (self.choice(), self.refusal(map)) {
             (EngineChoice::Auto, Some(_)) => Ok(without_gpu(map)),
             (EngineChoice::Auto, None) => self.faster(map),
-            (_, Some(why)) => Ok((None, format!("--engine gpu is not possible: {why}"))),
+            (_, Some(why)) => {
+                let (host, _) = without_gpu(map);
+                Ok((host, format!("--engine gpu is not possible: {why}")))
+            }
             (_, None) => {
                 let adapter = self.adapter()?.map(|(index, _)| index);
                 let gpu = self.gpu(adapter).map_err(|error| match error {
@@ -171,6 +174,9 @@ impl EngineArgs {
 
     /// Returns the reason why the CPU solves every cell, on any GPU.
     fn refusal(&self, map: &PlannedMap<'_>) -> Option<String> {
+        if !map.plan.channels.needs_states() {
+            return Some("the map has no numbers of states".to_owned());
+        }
         if let Err(why) = on_gpu(map.plan.method.effects) {
             return Some(why.to_owned());
         }
