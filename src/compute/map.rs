@@ -145,7 +145,9 @@ fn prepared<'a>(scene: &'a Scene, plan: Plan, options: &Options) -> Result<Prepa
         MapEngine::Cpu => None,
         MapEngine::Spectral => Some(Box::new(map.spectral())),
         MapEngine::Gpu(precision) if map.plan.channels.needs_states() => Some(open(precision)?),
-        MapEngine::Auto | MapEngine::Gpu(_) => map.cheaper().map(|spectral| Box::new(spectral) as _),
+        MapEngine::Auto | MapEngine::Gpu(_) => {
+            map.cheaper().map(|spectral| Box::new(spectral) as _)
+        }
     };
     let residual_bound = engine.as_ref().map(|engine| engine.residual_bound());
     let excess = residual_bound.and_then(|bound| map.excess_deg(bound));

@@ -199,7 +199,7 @@ fn a_table_with_measured_radii_keeps_the_device() {
     assert_close(&wanted, &panels, "a table");
 }
 
-/// In `f64`. Nets in `f32` would not be accurate enough, so that the CPU integrates them.
+/// In `f64`, whatever the precision of cells: nets in `f32` would not be accurate enough.
 fn the_device_integrates_the_nets_of_a_sweep() {
     let (_, wanted) = sweep(None);
     let (summary, panels) = sweep(Some(&mut open(Precision::F64)));
@@ -208,5 +208,7 @@ fn the_device_integrates_the_nets_of_a_sweep() {
     assert_eq!(summary.audit.differing, 0);
     assert_close(&wanted, &panels, "f64");
     let (summary, _) = sweep(Some(&mut open(Precision::F32)));
-    assert_eq!(summary.trajectories, 0);
+    assert!(summary.trajectories > 10_000, "{}", summary.trajectories);
+    assert!(summary.engine_cells.solved > 0);
+    assert_eq!(summary.audit.differing, 0);
 }
