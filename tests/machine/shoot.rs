@@ -37,6 +37,17 @@ const fn allowed(precision: Precision) -> f64 {
     }
 }
 
+fn assert_near(found: &[PlainState], wanted: &[PlainState], precision: Precision) {
+    assert_eq!(found.len(), wanted.len());
+    for (found, wanted) in found.iter().zip(wanted) {
+        let apart = apart(found, wanted);
+        assert!(
+            apart.iter().all(|part| *part < allowed(precision)),
+            "{apart:?}"
+        );
+    }
+}
+
 /// Every effect that the shader has, by the method and by the rods alone.
 fn trajectories_are_those_of_the_cpu(precision: Precision) {
     let mut gpu = open(precision);
@@ -46,17 +57,8 @@ fn trajectories_are_those_of_the_cpu(precision: Precision) {
         let found = gpu.shoot(method, &conditions).unwrap();
         let by_rods = gpu.shoot(Method::fine(), &conditions).unwrap();
         let wanted = Batch::new(method).shoot::<PlainState>(&conditions);
-        assert_eq!(found.len(), conditions.len());
-        for (found, wanted) in found
-            .iter()
-            .chain(&by_rods)
-            .zip(wanted.iter().chain(&wanted))
-        {
-            let apart = apart(found, wanted);
-            assert!(
-                apart.iter().all(|part| *part < allowed(precision)),
-                "{effects:?}: {apart:?}"
-            );
+        for found in [&found, &by_rods] {
+            assert_near(found, &wanted, precision);
         }
     }
     assert!(gpu.shoot(Method::fine(), &[]).unwrap().is_empty());
@@ -75,13 +77,7 @@ fn effects_that_a_whisker_lacks_change_rounding_alone(precision: Precision) {
         gpu.shoot(Method::fine().with_effects(effects), &conditions)
             .unwrap()
     });
-    for (one, other) in alone.iter().zip(&with_all) {
-        assert!(
-            apart(one, other)
-                .iter()
-                .all(|part| *part < allowed(precision))
-        );
-    }
+    assert_near(&alone, &with_all, precision);
 }
 
 /// The effects of any rod count, also beside others.
@@ -111,14 +107,7 @@ fn fans_are_those_of_the_cpu(precision: Precision) {
     let fans: Vec<InitialCondition> = fans.collect();
     let found = gpu.shoot(Method::fine(), &fans).unwrap();
     let wanted = Batch::new(Method::fine()).shoot::<PlainState>(&fans);
-    assert_eq!(found.len(), fans.len());
-    for (found, wanted) in found.iter().zip(&wanted) {
-        let apart = apart(found, wanted);
-        assert!(
-            apart.iter().all(|part| *part < allowed(precision)),
-            "{apart:?}"
-        );
-    }
+    assert_near(&found, &wanted, precision);
 }
 
 /// Two kinds of rods take turns, and each kind takes several submissions. A thread of a pool reads their states with the others, this one alone.
@@ -141,12 +130,5 @@ fn states_of_several_submissions_are_in_order(precision: Precision) {
     let alone = gpu.shoot(Method::fine(), &list).unwrap();
     let together = pool.install(|| gpu.shoot(Method::fine(), &list).unwrap());
     assert_eq!(alone, together);
-    assert_eq!(alone.len(), list.len());
-    for (found, wanted) in alone.iter().zip(&wanted) {
-        let apart = apart(found, wanted);
-        assert!(
-            apart.iter().all(|part| *part < allowed(precision)),
-            "{apart:?}"
-        );
-    }
+    assert_near(&alone, &wanted, precision);
 }

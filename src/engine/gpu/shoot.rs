@@ -19,6 +19,9 @@ use whiskmap_mechanics::shooting::contact::arc;
 /// Number of neighbouring trajectories whose states a thread reads at once.
 const READ_AT_ONCE: usize = 4096;
 
+/// Number of steps of a trajectory from which on a submission has fewer trajectories than its pace: usual ones have 4 to 30.
+const MANY_STEPS: usize = 64;
+
 /// Rod in the layout of the shaders.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, packed)]
@@ -203,7 +206,9 @@ impl Gpu {
                 new.insert((pipeline, pace))
             }
         };
-        let of = from..conditions.len().min(from + pace.cells);
+        let most = conditions.len().min(from + pace.cells);
+        let count = fitting(method, &conditions[from..most], MANY_STEPS * pace.cells);
+        let of = from..from + count;
         let conditions = &conditions[of.clone()];
         let (mut rods, mut rod_of) = (Vec::new(), Vec::with_capacity(conditions.len()));
         for of_rod in conditions.chunk_by(is_same_rod) {
@@ -234,6 +239,27 @@ impl Gpu {
 /// Returns true if two trajectories are of one rod.
 fn is_same_rod(a: &InitialCondition, b: &InitialCondition) -> bool {
     std::ptr::eq(a.rod, b.rod)
+}
+
+/// Returns how many of the first `conditions` surely take at most this number of `steps` together: one at least.
+fn fitting(method: Method, conditions: &[InitialCondition], steps: usize) -> usize {
+    let (mut count, mut left) = (0, steps);
+    for of_rod in conditions.chunk_by(is_same_rod) {
+        // The number of steps grows with contact and load.
+        let largest = of_rod
+            .iter()
+            .fold([0.0; 2], |[tau, load]: [f64; 2], other| {
+                [tau.max(other.tau), load.max(other.load.abs())]
+            });
+        let [tau, load] = largest;
+        let each = method.resolution.steps(of_rod[0].rod, tau, load).max(1) as usize;
+        let fits = of_rod.len().min(left / each);
+        (count, left) = (count + fits, left - fits * each);
+        if fits < of_rod.len() {
+            break;
+        }
+    }
+    count.max(1)
 }
 
 /// Returns true on a thread of a pool. Others, such as an engine's thread, work alone.
@@ -278,5 +304,34 @@ fn state_of(rod: &Rod, found: GpuState<f64>) -> PlainState {
         position,
         force,
         energy: (0.5 * force * x).mul_add(turn, energy),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A list with extreme loads is sent in small parts, and never in none.
+    #[test]
+    fn a_submission_has_few_steps() {
+        let rods = [Rod::default(), Rod::default()];
+        let method = Method::fine();
+        let at = |rod: usize, load| InitialCondition {
+            rod: &rods[rod],
+            tau: 0.5,
+            load,
+        };
+        let [few, many] =
+            [1.0, 1e6].map(|load| method.resolution.steps(&rods[0], 0.5, load) as usize);
+        assert!(many > 100 * few);
+        let mild = [at(0, 1.0), at(0, -1.0), at(1, 1.0)];
+        let mixed = [at(0, 1.0), at(0, 1.0), at(1, -1e6), at(1, 1e6)];
+        let counts = |list: &[InitialCondition], steps| fitting(method, list, steps);
+        assert_eq!(counts(&mild, 3 * few), 3);
+        assert_eq!(counts(&mild, 3 * few - 1), 2);
+        assert_eq!(counts(&mild, 0), 1);
+        assert_eq!(counts(&mixed, many), 2);
+        assert_eq!(counts(&mixed, 2 * few + many), 3);
+        assert_eq!(counts(&mixed[2..], many - 1), 1);
     }
 }
