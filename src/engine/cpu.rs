@@ -73,7 +73,8 @@ fn targets(batch: &RowBatch, index: usize, row: &BatchRow) -> Vec<Option<CellTar
     let guesses = match batch.known.get(index) {
         Some(Some(known)) => {
             let mut guesses = vec![None; pushes.len()];
-            known.states.write_guesses(&pushes, &mut guesses);
+            let rod = &side.sheet.rod;
+            known.states.write_guesses(rod, &pushes, &mut guesses);
             guesses
         }
         _ => side.sheet.guesses(row.row, &pushes),

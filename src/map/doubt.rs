@@ -1,8 +1,7 @@
 //! Cells in doubt, solved once more by continuation along the level curve of their row.
 //!
-//! A line of the net has one contact at each load, and its guesses can miss in two places. One is where a level curve runs almost along a
-//! line of constant load, as near the tip of a perfect cone. The other is where it turns back, as with friction. Continuation needs no
-//! guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
+//! A row of the net has one contact at each load, and its guesses can miss where the level curve turns back, as with friction. Continuation needs
+//! no guesses. It costs some hundred trajectories a row, so only rows with a cell in doubt are followed.
 
 use crate::classify::{Outcome, RowBoundary, TIE};
 use crate::engine::{RowCells, WhiskerSide};

@@ -295,9 +295,10 @@ impl Sheet {
                 let [from, to] = ends.map(|end| end.map_or(0.0, |end| end.push));
                 let is_near = |push: &f64| from - PUSH_MARGIN <= *push && *push <= to + PUSH_MARGIN;
                 let needed = pushes.iter().any(is_near);
-                let piece = || panel.row(self.case(), &self.rows[row], ends);
+                let (case, place) = (self.case(), &self.rows[row]);
+                let piece = || panel.row(case, place, ends);
                 if let Some(piece) = needed.then(piece).flatten() {
-                    piece.write_guesses(pushes, &mut guesses);
+                    piece.write_guesses(&self.rod, pushes, &mut guesses);
                 }
             }
         }

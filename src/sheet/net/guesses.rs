@@ -4,7 +4,7 @@
 //! `det J D^2` over its value at a load between first touch and the first fold is a smooth function of contact and load. Divided by the part of
 //! the load that is left to the first fold, it is the clearance, which is positive where there is no other fold.
 
-use super::bound::{MARGIN, larger};
+use super::bound::{MARGIN, larger, largest};
 use super::panel::{NetPanel, TOP, along, contacts_of};
 use super::size::NetSize;
 use super::{Attempt, PanelQueue, PanelRow, Panels};
@@ -17,7 +17,7 @@ use std::f64::consts::FRAC_PI_2;
 use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
 use whiskmap_mechanics::numerics::inverse::Inverse;
 use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
-use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
+use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, illinois, nearest_turn};
 use whiskmap_mechanics::rod::{Rod, arclength};
 use whiskmap_mechanics::shooting::ShootingMap;
 
@@ -58,6 +58,12 @@ const FOLD_OFF: f64 = 1e-2;
 /// cell is followed by continuation.
 pub const PUSH_MARGIN: f64 = 1e-4;
 
+/// Largest error of a row at parts of the load, in parts of its numbers: where it is larger, the row is found at loads.
+const ROW_ERROR: f64 = 1e-5;
+
+/// Difference of the load at the nearest contact that is searched for a row's load from the largest load there, in parts of it.
+const NEAR: f64 = 1e-3;
+
 /// Panel for guesses.
 #[derive(Clone, Debug)]
 pub struct GuessPanel {
@@ -71,26 +77,35 @@ pub struct GuessPanel {
 pub struct GuessRow {
     /// Magnitude of the push angle since first touch in radians, `tau`, and signed load.
     inverse: Inverse<3>,
+    /// True if the row has arclengths in whisker lengths in place of `tau`.
+    is_by_load: bool,
     /// Push angle of the first state by the panel, in radians.
     first: f64,
     /// Magnitudes of the push angles at the ends, which are computed apart, in radians.
     pub ends: [f64; 2],
-    /// Bound on the residual of the states, in whisker lengths: by the coefficients left out, and by the differences from the ends.
+    /// Bound on the residual of the states, in whisker lengths: by the coefficients left out of the panel and of the row, and by the differences
+    /// from the ends.
     pub residual: f64,
 }
 
 impl GuessRow {
-    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near the row between its ends.
-    pub fn write_guesses(&self, pushes: &[f64], guesses: &mut [Option<Guess>]) {
+    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near the row of `rod` between its ends.
+    pub fn write_guesses(&self, rod: &Rod, pushes: &[f64], guesses: &mut [Option<Guess>]) {
         let from = pushes.partition_point(|push| *push < self.ends[0] - PUSH_MARGIN);
         let to = pushes.partition_point(|push| *push <= self.ends[1] + PUSH_MARGIN);
         let targets = pushes[from..to].iter().map(|push| push.max(self.first));
         let targets: Vec<f64> = targets.collect();
         let wanted = [true; 3];
+        let tip = arclength(rod, rod.tau_tip());
         self.inverse
             .solve(&targets, &wanted, |index, count, block| {
                 for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
-                    let [_, tau, load] = block.values.map(|values| values[lane]);
+                    let [_, contact, load] = block.values.map(|values| values[lane]);
+                    let tau = if self.is_by_load {
+                        rod.tau(contact.min(tip))
+                    } else {
+                        contact
+                    };
                     guess.get_or_insert(Guess { tau, load });
                 }
             });
@@ -127,24 +142,24 @@ impl GuessPanel {
     /// Computes the panel of `size` over the `range` of contacts.
     ///
     /// # Errors
-    /// If the panel's error exceeds `largest`: the size whose error is expected to be small enough, or `None` without such a size.
+    /// If the panel's error exceeds `most`: the size whose error is expected to be small enough, or `None` without such a size.
     fn new(
         case: SheetCase,
         range: [f64; 2],
         along: Chebyshev<2>,
         size: NetSize,
-        largest: f64,
+        most: f64,
     ) -> Result<Self, Option<NetSize>> {
         let tensor = tensor(case, size, &along);
         let panel = NetPanel::new(range, along, size, tensor, size.loads);
         let tails = panel.tails(&WEIGHTS);
         // NaN is not below any bound.
         let error = larger(tails[0].last, tails[1].last);
-        let has_converged = error <= largest;
+        let has_converged = error <= most;
         if has_converged {
             Ok(Self { panel, error })
         } else {
-            Err(size.enough(tails, MARGIN * largest))
+            Err(size.enough(tails, MARGIN * most))
         }
     }
 
@@ -157,13 +172,26 @@ impl GuessPanel {
         row: &Row,
         ends: [Option<&Crossing>; 2],
     ) -> Option<GuessRow> {
+        let by_part = self.row_by_part(case, row, ends);
+        let is_accurate = |row: &GuessRow| row.residual <= MARGIN * ROW_ERROR;
+        if by_part.as_ref().is_some_and(is_accurate) {
+            return by_part;
+        }
+        let by_load = self.row_by_load(case, row, ends);
+        let both = [by_part, by_load].into_iter().flatten();
+        both.min_by(|a, b| a.residual.total_cmp(&b.residual))
+    }
+
+    /// Returns the states along `row` at parts of the load, as [`Self::row`] does.
+    fn row_by_part(
+        &self,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+    ) -> Option<GuessRow> {
         let part = |end: Option<&Crossing>| end.map_or(0.0, |end| self.panel.part(case.rod, end));
         let line = self.panel.line(row, ends.map(part))?;
-        let ends = ends.map(|end| end.map_or(0.0, |end| end.push));
         let sign = case.side.sign();
-        // The first state is next to the first end.
-        let near = row.touch + sign * ends[0];
-        let turned = row.touch + nearest_turn(near, line.points[0].values[1][0]) - near;
         let points = line.points.iter().flat_map(|block| {
             (0..block.count).map(|lane| {
                 let [ln_tau, ln_q] = block.along.map(|coordinate| coordinate[lane]);
@@ -172,17 +200,90 @@ impl GuessPanel {
         });
         let states = points.zip(&line.parts).map(|((phi, ln_tau, ln_q), part)| {
             let load = sign * part * libm::exp(ln_q - 2.0 * ln_tau);
-            [sign * (phi - turned), libm::exp(ln_tau), load]
+            [phi, libm::exp(ln_tau), load]
         });
-        let functions: Chebyshev<3> = Chebyshev::through(&states.collect::<Vec<_>>());
-        let [[first, ..], [last, ..]] = [functions.at(0.0), functions.at(line.end)];
+        self.joined(case, row, ends, states.collect(), line.end)
+    }
+
+    /// Returns the states along `row` at loads, with arclengths in place of contacts, as [`Self::row`] does.
+    ///
+    /// Next to the tip of a perfect cone, the contact moves far almost without a change of the load, and the part of the load falls there. But the
+    /// arclength is a smooth function of the load.
+    fn row_by_load(
+        &self,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+    ) -> Option<GuessRow> {
+        let [from, to] = self.panel.contacts;
+        let tip = ((u_of(case.rod, case.rod.tau_tip()) - from) / (to - from)).min(1.0);
+        let level = libm::log(row.pole_distance);
+        let [first, last] = ends.map(|end| end.map_or(0.0, |end| end.load));
+        let loads = chebyshev_points(self.panel.size.loads).iter();
+        let states = loads.map(|point| {
+            let load = first + point * (last - first);
+            let part = |place: f64| {
+                let [ln_tau, ln_q] = self.panel.along.at(place);
+                load.abs() * libm::exp(2.0 * ln_tau - ln_q) / TOP
+            };
+            let miss = |place| {
+                let [ln_distance, ..] = self.panel.tensor.at(place, part(place));
+                ln_distance - level
+            };
+            let over = |place| part(place) - 1.0;
+            // Stable contacts with this load are beyond the one at which it is the largest.
+            let nearest = if over(0.0) > 0.0 {
+                let ends = [0.0, tip].map(|place| [place, over(place)]);
+                illinois(ends, NEAR, |place| Some(over(place)))?.x
+            } else {
+                0.0
+            };
+            let ends = [nearest, tip].map(|place| [place, miss(place)]);
+            let is_between = ends[0][1] < 0.0 && 0.0 < ends[1][1];
+            let place = is_between
+                .then(|| illinois(ends, self.error, |place| Some(miss(place))))??
+                .x;
+            let [_, phi, _] = self.panel.tensor.at(place, part(place));
+            let [ln_tau, _] = self.panel.along.at(place);
+            Some([phi, arclength(case.rod, libm::exp(ln_tau)), load])
+        });
+        let states: Option<Vec<[f64; 3]>> = states.collect();
+        let mut row = self.joined(case, row, ends, states?, 1.0)?;
+        row.is_by_load = true;
+        Some(row)
+    }
+
+    /// Joins the `states` of a row, `[direction of the pole, contact, load]` at Chebyshev points of a parameter, that has its `ends` at 0 and at
+    /// `end`.
+    fn joined(
+        &self,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+        mut states: Vec<[f64; 3]>,
+        end: f64,
+    ) -> Option<GuessRow> {
+        let ends = ends.map(|end| end.map_or(0.0, |end| end.push));
+        let sign = case.side.sign();
+        // The first state is next to the first end.
+        let near = row.touch + sign * ends[0];
+        let turned = row.touch + nearest_turn(near, states[0][0]) - near;
+        for [phi, ..] in &mut states {
+            *phi = sign * (*phi - turned);
+        }
+        let functions: Chebyshev<3> = Chebyshev::through(&states);
+        let [[first, ..], [last, contact, load]] = [functions.at(0.0), functions.at(end)];
         let off = larger((first - ends[0]).abs(), (last - ends[1]).abs());
-        let inverse = |functions| Inverse::new(functions, line.end);
+        let [tail, _] = functions.tails();
+        let left_out = largest(&tail, &[1.0, 1.0 / contact, 1.0 / load.abs()]);
+        let error = larger(larger(self.error, left_out), off);
+        let inverse = |functions| Inverse::new(functions, end);
         Some(GuessRow {
             inverse: (off <= PUSH_MARGIN).then(|| inverse(functions)).flatten()?,
+            is_by_load: false,
             first,
             ends,
-            residual: MARGIN * larger(self.error, off) * row.pole_distance,
+            residual: MARGIN * error * row.pole_distance,
         })
     }
 
@@ -318,40 +419,48 @@ mod tests {
         }
     }
 
-    /// Along rows that end at either edge, and between two ends of rows out of reach, the pole of a guess is where it is wanted.
+    /// Along rows that end at either edge, and between two ends of rows out of reach, the pole of a guess is where it is wanted: also where a
+    /// contact moves from the tip of a perfect cone without a change of the load.
     #[test]
     fn guesses_are_next_to_states() {
-        let (mut ends, mut detached) = ([0; 2], 0);
-        for side in Side::BOTH {
-            let rod = cone(side);
-            let distances: Vec<f64> = (0..184).map(|i| 0.1 + 0.005 * f64::from(i)).collect();
-            let sheet = Sheet::new(Method::fine(), &rod, side, &distances);
-            for (row, place) in sheet.rows.iter().enumerate() {
-                for [first, last] in sheet.pieces(row) {
-                    let end = last.filter(|end| !end.is_at_touch()).unwrap();
-                    let from = first.map_or(0.0, |first| first.push);
-                    ends[usize::from(end.edge == Edge::Tip)] += 1;
-                    detached += usize::from(first.is_some());
-                    let part = |i| f64::from(i) / 40.0;
-                    let pushes = (0..=40).map(|i| from + part(i) * (end.push - from));
-                    let pushes: Vec<f64> = pushes.collect();
-                    let guesses = sheet.guesses(row, &pushes);
-                    let points = guesses
-                        .iter()
-                        .map(|guess| guess.map(|guess| (guess.tau, guess.load)));
-                    let points: Option<Vec<(f64, f64)>> = points.collect();
-                    let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
-                    for (map, push) in maps.iter().zip(&pushes) {
-                        let off = map.pole.distance(place.pole(side.sign() * push));
-                        assert!(off < 1e-6, "{row} {push}: {off:e}");
+        for taper in [0.95, 1.0] {
+            let (mut ends, mut detached) = ([0; 2], 0);
+            for side in Side::BOTH {
+                let rod = Rod {
+                    taper,
+                    ..cone(side)
+                };
+                let distances: Vec<f64> = (0..184).map(|i| 0.1 + 0.005 * f64::from(i)).collect();
+                let sheet = Sheet::new(Method::fine(), &rod, side, &distances);
+                for (row, place) in sheet.rows.iter().enumerate() {
+                    for [first, last] in sheet.pieces(row) {
+                        let end = last.filter(|end| !end.is_at_touch()).unwrap();
+                        let from = first.map_or(0.0, |first| first.push);
+                        ends[usize::from(end.edge == Edge::Tip)] += 1;
+                        detached += usize::from(first.is_some());
+                        let part = |i| f64::from(i) / 40.0;
+                        let pushes = (0..=40).map(|i| from + part(i) * (end.push - from));
+                        let pushes: Vec<f64> = pushes.collect();
+                        let guesses = sheet.guesses(row, &pushes);
+                        let points = guesses
+                            .iter()
+                            .map(|guess| guess.map(|guess| (guess.tau, guess.load)));
+                        let points: Option<Vec<(f64, f64)>> = points.collect();
+                        let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
+                        let states = sheet.guess_row(row);
+                        let most = states.map_or(f64::INFINITY, |states| states.residual);
+                        for (map, push) in maps.iter().zip(&pushes) {
+                            let off = map.pole.distance(place.pole(side.sign() * push));
+                            assert!(off < most.min(1e-6), "{taper} {row} {push}: {off:e}");
+                        }
+                        let beyond = [end.push + 2.0 * PUSH_MARGIN];
+                        assert_eq!(sheet.guesses(row, &beyond), [None]);
                     }
-                    let beyond = [end.push + 2.0 * PUSH_MARGIN];
-                    assert_eq!(sheet.guesses(row, &beyond), [None]);
                 }
             }
+            let is_each = ends.iter().all(|count| *count > 0) && detached > 2;
+            assert!(is_each, "{taper} {ends:?} {detached}");
         }
-        let is_each = ends.iter().all(|count| *count > 2) && detached > 2;
-        assert!(is_each, "{ends:?} {detached}");
     }
 
     /// Ends need no accurate panel: they are the same without guesses.

@@ -5,7 +5,7 @@
 //!
 //! [`chebyshev_points`]: crate::numerics::expansion::chebyshev_points
 
-use crate::numerics::expansion::{Chebyshev, MOST_POINTS};
+use crate::numerics::expansion::{self, Chebyshev, MOST_POINTS};
 use crate::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep, pack};
 
 /// Expansion of `D` functions of `(x, y)` on `[0, 1]^2`.
@@ -82,6 +82,14 @@ impl<const D: usize> ChebyshevTensor<D> {
         let lengths = self.coefficients.iter().map(Vec::len);
         let in_x = lengths.clone().rposition(|length| length > 0);
         [in_x.map_or(0, |last| last + 1), lengths.max().unwrap_or(0)]
+    }
+
+    /// Returns the values `[function]` of the expansion at `(x, y)` in `[0, 1]^2`.
+    #[must_use]
+    pub fn at(&self, x: f64, y: f64) -> [f64; D] {
+        let in_y = self.coefficients.iter();
+        let in_x: Vec<[f64; D]> = in_y.map(|terms| expansion::values(terms, 0, y)).collect();
+        expansion::values(&in_x, 0, x)
     }
 
     /// Returns the expansion of one `function` with `x` and `y` exchanged.
