@@ -79,7 +79,7 @@ pub struct RowBatch {
     /// states.
     pub expansions: Vec<Option<RowExpansion>>,
     /// Rows without numbers of states, `[row]`: `None` for a row that is not known.
-    pub known: Arc<[Option<KnownRow>]>,
+    pub known: Vec<Option<KnownRow>>,
 }
 
 impl RowBatch {
@@ -96,7 +96,7 @@ impl RowBatch {
             sides,
             rows: Vec::new(),
             expansions: Vec::new(),
-            known: Arc::default(),
+            known: Vec::new(),
         };
         for (side, row) in rows {
             let columns = 0..batch.sides[side].columns.len();
@@ -110,12 +110,11 @@ impl RowBatch {
         batch
     }
 
-    /// Returns a batch of the cells in some `columns` of each row of this one, without expansions. Known rows stay known.
+    /// Returns a batch of the cells in some `columns` of each row of this one, without expansions and known rows.
     #[must_use]
     pub fn only(&self, columns: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
         let mut part = Self::new(self.method, Arc::clone(&self.sides), []);
         part.channels = self.channels;
-        part.known = Arc::clone(&self.known);
         for (row, columns) in self.rows.iter().zip(columns) {
             part.rows.push(BatchRow {
                 columns,

@@ -27,8 +27,7 @@ impl Cpu {
     /// Solves the cells of `batch` on the CPU.
     pub fn solve(&mut self, batch: &RowBatch) -> Cells {
         let begun = Stopwatch::start();
-        let rows = batch.rows.par_iter().enumerate();
-        let targets = rows.map(|(index, row)| targets(batch, index, row));
+        let targets = batch.rows.par_iter().map(|row| targets(batch, row));
         let targets: Vec<Vec<Option<CellTarget>>> = targets.collect();
         self.guesses += begun.elapsed();
         let begun = Stopwatch::start();
@@ -64,21 +63,13 @@ impl Cpu {
     }
 }
 
-/// The target of each cell of `row`, which has this `index`; none where the sheet has no guess.
-fn targets(batch: &RowBatch, index: usize, row: &BatchRow) -> Vec<Option<CellTarget>> {
+/// The target of each cell of `row`; none where the sheet has no guess.
+fn targets(batch: &RowBatch, row: &BatchRow) -> Vec<Option<CellTarget>> {
     let side = &batch.sides[row.side];
     let at_touch = side.sheet.rows[row.row].pole(0.0);
     let pushes = row.each_column().map(|column| side.columns.pushes[column]);
     let pushes: Vec<f64> = pushes.collect();
-    let guesses = match batch.known.get(index) {
-        Some(Some(known)) => {
-            let mut guesses = vec![None; pushes.len()];
-            let rod = &side.sheet.rod;
-            known.states.write_guesses(rod, &pushes, &mut guesses);
-            guesses
-        }
-        _ => side.sheet.guesses(row.row, &pushes),
-    };
+    let guesses = side.sheet.guesses(row.row, &pushes);
     let guesses = guesses.into_iter().zip(row.each_column());
     let targets = guesses.map(|(guess, column)| {
         guess.map(|guess| CellTarget {

@@ -4,7 +4,7 @@ use super::{BatchRow, RowCells, Values, WhiskerSide};
 use crate::classify::Outcome;
 use crate::plan::{Channels, STATE_CHANNELS};
 use crate::sheet::net::{MARGIN, NetBlock, NetRow, VALUE_WEIGHT, larger, largest};
-use crate::sheet::{Crossing, Edge, GuessRow, PUSH_MARGIN, Sheet};
+use crate::sheet::{Crossing, Edge, PUSH_MARGIN, Sheet};
 use whiskmap_mechanics::numerics::expansion::Chebyshev;
 use whiskmap_mechanics::numerics::inverse::Inverse;
 use whiskmap_mechanics::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep};
@@ -171,10 +171,12 @@ impl RowExpansion {
 }
 
 /// Row of a map without numbers of states: each push angle from first touch to its end has a state, and none beyond.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct KnownRow {
-    /// States of the row by the net for guesses.
-    pub states: GuessRow,
+    /// Magnitude of the push angle at the row's end, in radians.
+    end_push: f64,
+    /// Bound on the residual of the states of the row, in whisker lengths.
+    residual: f64,
 }
 
 impl KnownRow {
@@ -184,20 +186,25 @@ impl KnownRow {
     /// Returns a `row` of `side` by its net for guesses; `None` if a state may have a residual of more than [`Self::RESIDUAL`].
     #[must_use]
     pub fn of(side: &WhiskerSide, row: usize) -> Option<Self> {
-        let states = side.sheet.guess_row(row)?;
-        (states.residual <= Self::RESIDUAL).then_some(Self { states })
+        let sheet = &side.sheet;
+        let (end, residual) = (sheet.simple_end(row)?, sheet.known_residual(row)?);
+        let known = Self {
+            end_push: end.push,
+            residual,
+        };
+        // NaN is not below any bound.
+        (residual <= Self::RESIDUAL).then_some(known)
     }
 
     /// Writes outcomes and residuals of the cells of `row`, except those next to the end. `pushes` are the push angles of the side's columns:
     /// magnitudes in radians.
     pub(super) fn write(&self, row: &BatchRow, pushes: &[f64], into: RowCells) {
-        let [_, end] = self.states.ends;
-        let near = row.cells_before(end - PUSH_MARGIN, pushes);
-        let beyond = row.cells_before((end + PUSH_MARGIN).next_up(), pushes);
+        let near = row.cells_before(self.end_push - PUSH_MARGIN, pushes);
+        let beyond = row.cells_before((self.end_push + PUSH_MARGIN).next_up(), pushes);
         into.outcome[..near].fill(Outcome::Solved);
         into.outcome[near..beyond].fill(Outcome::NearEdge);
         into.outcome[beyond..].fill(Outcome::OffSheet);
-        into.residual[..near].fill(self.states.residual as f32);
+        into.residual[..near].fill(self.residual as f32);
     }
 }
 

@@ -11,7 +11,7 @@ use std::ops::Range;
 const ONE_IN: u64 = 256;
 
 /// Approximate minimum number of audited cells of a whisker side.
-const AT_LEAST: u64 = 64;
+const AT_LEAST: u64 = 16;
 
 /// Maximum difference of a value, as a part of the largest along the row or of a radian.
 const TOLERANCE: f64 = 3e-6;

@@ -24,7 +24,7 @@ pub(crate) use edges::edge_newton::{EdgeProblem, edge_newton};
 pub use fold::FoldPoint;
 pub(crate) use fold::coordinate::{tau_of, u_of};
 pub(crate) use fold::{directions, first_folds};
-pub use net::{GuessRow, NetRow, PUSH_MARGIN};
+pub use net::{NetRow, PUSH_MARGIN};
 pub use row::{Crossing, Edge, Row};
 pub use span::Guess;
 pub(crate) use span::RowSpan;
@@ -255,14 +255,16 @@ impl Sheet {
         self.net.as_ref()?.row(self, row)
     }
 
-    /// Returns the states of a `row` by the net for guesses, from first touch to its only other end. `None` if the row has other ends, or is not in
-    /// the net.
+    /// Returns a bound on the residual of all states of a `row` by the net for guesses, from first touch to its only other end, in whisker lengths.
+    /// `None` if the row has other ends, or if the sheet is not certified.
+    ///
+    /// On a certified sheet no state between first touch and the fold is singular. So the level curve of such a row is one line from first touch
+    /// to its end, and its push angle grows throughout: each push angle between has one state.
     #[must_use]
-    pub fn guess_row(&self, row: usize) -> Option<GuessRow> {
+    pub fn known_residual(&self, row: usize) -> Option<f64> {
         let end = self.simple_end(row)?;
         let panels = self.samples.as_ref()?.panels.as_ref()?;
-        let ends = [None, Some(end)];
-        panels.of(row)?.row(self.case(), &self.rows[row], ends)
+        Some(panels.of(row)?.residual(self.case(), &self.rows[row], end))
     }
 
     /// Returns the ends of the stable pieces of `row`, `[piece]`; without the first one, a piece begins at first touch.

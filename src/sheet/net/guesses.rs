@@ -82,10 +82,10 @@ pub struct GuessRow {
     /// Push angle of the first state by the panel, in radians.
     first: f64,
     /// Magnitudes of the push angles at the ends, which are computed apart, in radians.
-    pub ends: [f64; 2],
+    ends: [f64; 2],
     /// Bound on the residual of the states, in whisker lengths: by the coefficients left out of the panel and of the row, and by the differences
     /// from the ends.
-    pub residual: f64,
+    residual: f64,
 }
 
 impl GuessRow {
@@ -215,8 +215,7 @@ impl GuessPanel {
         row: &Row,
         ends: [Option<&Crossing>; 2],
     ) -> Option<GuessRow> {
-        let [from, to] = self.panel.contacts;
-        let tip = ((u_of(case.rod, case.rod.tau_tip()) - from) / (to - from)).min(1.0);
+        let tip = self.panel.place(case.rod, case.rod.tau_tip()).min(1.0);
         let level = libm::log(row.pole_distance);
         let [first, last] = ends.map(|end| end.map_or(0.0, |end| end.load));
         let loads = chebyshev_points(self.panel.size.loads).iter();
@@ -227,7 +226,7 @@ impl GuessPanel {
                 load.abs() * libm::exp(2.0 * ln_tau - ln_q) / TOP
             };
             let miss = |place| {
-                let [ln_distance, ..] = self.panel.tensor.at(place, part(place));
+                let [ln_distance] = self.panel.tensor.at(place, part(place));
                 ln_distance - level
             };
             let over = |place| part(place) - 1.0;
@@ -243,7 +242,7 @@ impl GuessPanel {
             let place = is_between
                 .then(|| illinois(ends, self.error, |place| Some(miss(place))))??
                 .x;
-            let [_, phi, _] = self.panel.tensor.at(place, part(place));
+            let [_, phi] = self.panel.tensor.at(place, part(place));
             let [ln_tau, _] = self.panel.along.at(place);
             Some([phi, arclength(case.rod, libm::exp(ln_tau)), load])
         });
@@ -285,6 +284,27 @@ impl GuessPanel {
             ends,
             residual: MARGIN * error * row.pole_distance,
         })
+    }
+
+    /// Returns a bound on the residual of all states along `row` from first touch to its only other `end`, in whisker lengths: by the coefficients left
+    /// out of the panel, and by its differences from both ends, which are computed apart. NaN if the row is not in the panel.
+    pub fn residual(&self, case: SheetCase, row: &Row, end: &Crossing) -> f64 {
+        let sign = case.side.sign();
+        let of = |tau: f64, part: f64| {
+            let place = self.panel.place(case.rod, tau);
+            let is_inside = (0.0..=1.0).contains(&place) && (0.0..=TOP).contains(&part);
+            let state = || self.panel.tensor.at(place, part / TOP);
+            let [ln_distance, phi] = is_inside.then(state).unwrap_or([f64::NAN; 2]);
+            let off = (ln_distance - libm::log(row.pole_distance)).abs();
+            (off, phi)
+        };
+        let (off_at_touch, first) = of(row.first_touch(case.rod).x, 0.0);
+        let (off_at_end, last) = of(end.tau, self.panel.part(case.rod, end));
+        let touch = nearest_turn(row.touch, first);
+        let turned = [(first, 0.0), (last, end.push)];
+        let turned = turned.map(|(phi, push)| (sign * (phi - touch) - push).abs());
+        let errors = [off_at_touch, off_at_end, turned[0], turned[1]];
+        MARGIN * errors.into_iter().fold(self.error, larger) * row.pole_distance
     }
 
     /// Returns true if the panel shows that the first folds of `contacts` are all folds up to them: at no other place does the determinant
@@ -447,8 +467,10 @@ mod tests {
                             .map(|guess| guess.map(|guess| (guess.tau, guess.load)));
                         let points: Option<Vec<(f64, f64)>> = points.collect();
                         let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
-                        let states = sheet.guess_row(row);
-                        let most = states.map_or(f64::INFINITY, |states| states.residual);
+                        let panel = sheet.samples.as_ref().unwrap().panels.as_ref();
+                        let states = panel.unwrap().of(row).unwrap();
+                        let states = states.row(sheet.case(), place, [first, last]);
+                        let most = states.unwrap().residual;
                         for (map, push) in maps.iter().zip(&pushes) {
                             let off = map.pole.distance(place.pole(side.sign() * push));
                             assert!(off < most.min(1e-6), "{taper} {row} {push}: {off:e}");

@@ -111,10 +111,15 @@ impl<const F: usize> NetPanel<F> {
         })
     }
 
+    /// Returns the place of the contact at `tau` of `rod` in the range of contacts: in `[0, 1]` inside the panel.
+    pub fn place(&self, rod: &Rod, tau: f64) -> f64 {
+        let [from, to] = self.contacts;
+        (u_of(rod, tau) - from) / (to - from)
+    }
+
     /// Returns the part `p` of the load at `crossing`, a point of the edge of a sheet of `rod`; NaN outside the panel.
     pub fn part(&self, rod: &Rod, crossing: &Crossing) -> f64 {
-        let [from, to] = self.contacts;
-        let place = (u_of(rod, crossing.tau) - from) / (to - from);
+        let place = self.place(rod, crossing.tau);
         if !(0.0..=1.0).contains(&place) {
             return f64::NAN;
         }

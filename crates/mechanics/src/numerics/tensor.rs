@@ -84,11 +84,11 @@ impl<const D: usize> ChebyshevTensor<D> {
         [in_x.map_or(0, |last| last + 1), lengths.max().unwrap_or(0)]
     }
 
-    /// Returns the values `[function]` of the expansion at `(x, y)` in `[0, 1]^2`.
+    /// Returns the values of the first `N` functions of the expansion at `(x, y)` in `[0, 1]^2`.
     #[must_use]
-    pub fn at(&self, x: f64, y: f64) -> [f64; D] {
+    pub fn at<const N: usize>(&self, x: f64, y: f64) -> [f64; N] {
         let in_y = self.coefficients.iter();
-        let in_x: Vec<[f64; D]> = in_y.map(|terms| expansion::values(terms, 0, y)).collect();
+        let in_x: Vec<[f64; N]> = in_y.map(|terms| expansion::values(terms, 0, y)).collect();
         expansion::values(&in_x, 0, x)
     }
 
