@@ -99,6 +99,17 @@ fn check_round_trips(name: &str, whisker: &Whisker, pole: &Pole, states: &[Branc
     }
 }
 
+/// A push against a thick pole moves contacts nearer to the base than the pole's radius.
+#[test]
+fn contacts_nearer_than_the_radius_of_the_pole_come_back() {
+    let whisker = Whisker::cone(20.0, [13.396, 0.2679], 2.602);
+    let pole = Pole::smooth(1.6);
+    let states = states(&whisker, &pole, &[0.09, 0.0982, 0.11], &[0.3, 0.6, 0.9]);
+    let is_near = |state: &&BranchPoint| state.arc_length_mm < pole.radius_mm;
+    assert!(states.iter().filter(is_near).count() > 8, "{states:?}");
+    check_round_trips("thick pole", &whisker, &pole, &states);
+}
+
 #[test]
 fn states_of_random_whiskers_come_back() {
     let mut random = Random::new(20);

@@ -352,7 +352,8 @@ fn a_course_continues_across_a_bridged_gap() {
 #[test]
 fn a_course_is_undecided_after_a_gap_until_one_phase_is_left() {
     let nan = f64::NAN;
-    let angles = [nan, -10.0, 5.0, nan, 10.0, 20.0, 5.0, -5.0, nan];
+    // At the first angle, no side holds the whisker.
+    let angles = [nan, -30.0, 5.0, nan, 10.0, 20.0, 5.0, -5.0, nan];
     for friction in [0.0, 0.3] {
         let scene = scene("cone").with(Parameter::Friction, friction).unwrap();
         let found = with_gaps(&scene, &angles, 0.0);
@@ -377,6 +378,58 @@ fn a_course_is_undecided_after_a_gap_until_one_phase_is_left() {
         // What friction has dissipated in the gap is not known.
         let known = found.samples[7].dissipated_nj;
         assert_eq!(known.is_none(), friction > 0.0, "{known:?}");
+    }
+}
+
+/// A course that begins with a gap begins in no known phase, unless a start is given; a bridge does not help.
+#[test]
+fn a_course_that_begins_with_a_gap_is_undecided_without_a_start() {
+    let nan = f64::NAN;
+    let angles = [nan, -5.0, -22.0, -30.0, -22.0, nan];
+    let (missing, after) = (Some(Undecided::Missing), Some(Undecided::AfterGap));
+    let scene = scene("cone");
+    let found = with_gaps(&scene, &angles, 100.0);
+    assert_eq!(
+        reasons(&found),
+        [missing, after, after, None, None, missing]
+    );
+    let warnings = found.warnings();
+    let ends_with = "is possible; choose the start `contact` or `free`";
+    assert!(warnings[0].ends_with(ends_with), "{warnings:?}");
+    let times = (0..angles.len()).map(|i| i as f64).collect();
+    let course = AngleCourse::new(times, angles.to_vec()).unwrap();
+    let (free, contact) = (WhiskRegime::Free, WhiskRegime::Contact);
+    for (start, first) in [(CourseStart::Free, free), (CourseStart::Contact, contact)] {
+        let mut options = WhiskOptions::default();
+        options.start = Some(start);
+        let found = whisk_with(&scene.whisker, &scene.pole, DISTANCE, &course, &options).unwrap();
+        assert_eq!(reasons(&found), [missing, None, None, None, None, missing]);
+        let regimes = [1, 2, 3, 4].map(|i| found.samples[i].regime);
+        assert_eq!(regimes, [first, first, free, free]);
+        let warnings = found.warnings();
+        let what = "missing angles: 2, gaps: 2, the first at 0 s";
+        assert_eq!(warnings[0], what, "{warnings:?}");
+    }
+}
+
+/// Samples a few roundings before the end of a push have a state: the ends of the push and of the branch are computed apart.
+#[test]
+fn samples_next_to_an_end_have_states() {
+    let text = "title = \"end\"\n[whisker]\nlength_mm = 3.535\nyoungs_modulus_gpa = 0.534\nbase_radius_um = 13.936\ntip_radius_um = 0.6968\n\
+                [whisker.curvature]\nparabola_per_mm = 0.218935\n[whisker.projection]\narc_stretch = 1.0525\n\
+                [grid]\npush_angle_deg = [-60, 60]\ndistance_mm = [1.0178]\n";
+    let scene = Scene::parse(text, "next to an end").unwrap();
+    let distance = scene.grid.distance_mm[0];
+    // From either side of the pole, the whisker touches it and is pushed beyond its end.
+    for from in [-90.0, 90.0] {
+        let whole = through(&scene, distance, &[from, -from]).unwrap();
+        let end = whole.events[1].angle_deg;
+        let before = (0..25)
+            .rev()
+            .map(|i| end * (1.0 - f64::from(i) * f64::EPSILON));
+        let angles: Vec<f64> = std::iter::once(from).chain(before).collect();
+        let found = through(&scene, distance, &angles).unwrap();
+        assert_eq!(reasons(&found), vec![None; angles.len()], "{end}");
     }
 }
 

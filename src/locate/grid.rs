@@ -16,7 +16,8 @@ use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
 use whiskmap_mechanics::shooting::batch::{Batch, Method};
 use whiskmap_mechanics::shooting::{FirstVariation, Reader, ShootingMap};
 
-/// Arclength of the contact nearest to the base, in whisker lengths, as for the poles of a scene.
+/// Largest arclength of the contact nearest to the base, in whisker lengths. A push against a thick pole moves contacts nearer to the base than the
+/// pole's radius.
 const NEAREST: f64 = 1e-3;
 
 /// Spacing of the contacts in `u`.
@@ -87,8 +88,8 @@ fn parts() -> Vec<f64> {
 }
 
 impl SheetGrid {
-    /// Computes the grid of `rod` with the pole on `side`, from one contact beyond the tip inward to the pole's radius or a thousandth of
-    /// the length from the base, or the first contact without a fold.
+    /// Computes the grid of `rod` with the pole on `side`, from one contact beyond the tip inward to a thousandth of the length from the base, or the
+    /// first contact without a fold.
     pub fn new(method: Method, rod: Rod, side: Side, units: Units) -> Self {
         let case = SheetCase {
             method,
@@ -96,9 +97,9 @@ impl SheetGrid {
             side,
         };
         let tip = rod.tau_tip();
-        let nearest = u_of(&rod, rod.tau(rod.pole.abs().max(NEAREST)));
-        let range = u_of(&rod, tip) - nearest;
-        let count = (range / CONTACT_STEP).ceil() as usize + 1;
+        let range = u_of(&rod, tip) - u_of(&rod, rod.tau(NEAREST));
+        // The first contact is beyond the tip.
+        let count = (range / CONTACT_STEP).ceil() as usize + 2;
         let inward: Vec<f64> = (0..count)
             .scan(tip, |tau, i| {
                 if i != 1 {

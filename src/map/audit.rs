@@ -172,11 +172,11 @@ mod tests {
     }
 
     #[test]
-    fn one_cell_in_256_is_audited_and_at_least_64() {
+    fn one_cell_in_256_is_audited_and_at_least_16() {
         let rod = Rod::default();
         let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &[0.5]);
         let audited = |columns| AuditSample::new(&sheet, 0, columns).of(0..columns).count();
-        assert_eq!([10, 64, 4096, 1 << 16].map(audited), [10, 64, 64, 256]);
+        assert_eq!([10, 16, 4096, 1 << 16].map(audited), [10, 16, 16, 256]);
     }
 
     /// Rows shorter than a part have equally many cells in all.

@@ -42,7 +42,8 @@ pub fn replace(
 ) {
     let has_strain = !panel.peak_strain.is_empty();
     let found = rows.par_chunks(rows_per_batch(rows.len())).map(|rows| {
-        let levels: Vec<LevelCurve> = rows.iter().map(|row| side.sheet.level(row.row)).collect();
+        let levels = rows.iter().map(|row| side.sheet.fine_level(row.row));
+        let levels: Vec<LevelCurve> = levels.collect();
         let histories = ContactHistory::of(&levels);
         let mut cells = cells(side, rows, &histories, [width, first_row]);
         if has_strain {

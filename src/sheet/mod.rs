@@ -192,6 +192,14 @@ impl Sheet {
         LevelCurve::new(self.method, &self.rod, self.side, &self.rows[row])
     }
 
+    /// Returns the level curve of the row with index `row` at the fine resolution, for contact histories: at a coarser one, limits of sliding
+    /// of nearly the same load cannot be told apart.
+    #[must_use]
+    pub fn fine_level(&self, row: usize) -> LevelCurve {
+        let case = self.case().finely();
+        LevelCurve::new(case.method, case.rod, case.side, &self.rows[row])
+    }
+
     /// Returns true if the resting whisker reaches the pole of `row`.
     #[must_use]
     pub fn touches(&self, row: usize) -> bool {

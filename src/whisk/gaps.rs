@@ -74,18 +74,30 @@ impl AngleCourse {
     }
 }
 
-/// Returns one line for the gaps that are bridged, and one for those that are not; none without gaps.
-pub(super) fn warnings(gaps: &[CourseGap]) -> impl Iterator<Item = String> {
-    [true, false].into_iter().filter_map(|is_bridged| {
+/// Returns one line for the gaps that are bridged, and one for those that are not; none without gaps. `samples` are those of the course.
+pub(super) fn warnings(
+    gaps: &[CourseGap],
+    samples: &[WhiskSample],
+) -> impl Iterator<Item = String> {
+    let is_undecided = |gap: &CourseGap| {
+        let after = gap.end.and_then(|end| samples.get(end));
+        after.is_some_and(|sample| sample.reason == Some(Undecided::AfterGap))
+    };
+    [true, false].into_iter().filter_map(move |is_bridged| {
         let selected = gaps.iter().filter(|gap| gap.is_bridged == is_bridged);
         let (count, first) = (selected.clone().count(), selected.clone().next()?);
         let missing: usize = selected.clone().map(|gap| gap.count).sum();
-        let longest = selected.filter_map(|gap| gap.length_s).fold(0.0, f64::max);
-        let [at, longest] = [first.time_s, longest].map(|number| digits(rounded(number, 6)));
-        let what = format!("missing angles: {missing}, gaps: {count}, the first at {at} s");
-        Some(match is_bridged {
-            true => format!("{what}: the course continues along straight lines across them, the longest of {longest} s"),
-            false => format!("{what}: after them the course is undecided until only one state is possible; a bridge continues it, which for the longest must have {longest} s"),
+        let lengths = selected.filter_map(|gap| gap.length_s);
+        let longest = lengths.reduce(f64::max);
+        let [at, longest] = [Some(first.time_s), longest]
+            .map(|number| number.map(|number| digits(rounded(number, 6))));
+        let what = format!("missing angles: {missing}, gaps: {count}, the first at {} s", at?);
+        let undecided = "after them the course is undecided until only one state is possible";
+        Some(match longest {
+            Some(longest) if is_bridged => format!("{what}: the course continues along straight lines across them, the longest of {longest} s"),
+            Some(longest) => format!("{what}: {undecided}; a bridge continues it, which for the longest must have {longest} s"),
+            None if is_undecided(first) => format!("{what}: {undecided}; choose the start `contact` or `free`"),
+            None => what,
         })
     })
 }

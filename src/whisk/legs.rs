@@ -68,11 +68,11 @@ impl Leg {
 }
 
 impl<'a> Legs<'a> {
-    /// Creates the course in progress that begins in `phase`, with the states on both `sides`.
-    pub const fn new(turns: &'a Turns, phase: Phase, sides: &'a BothSides) -> Self {
+    /// Creates the course in progress before its first sample, with the states on both `sides`.
+    pub const fn new(turns: &'a Turns, sides: &'a BothSides) -> Self {
         Self {
             turns,
-            phase,
+            phase: Phase::Free { after: 0 },
             possible: Vec::new(),
             contacts: ContactTracker::new(sides),
             heading: 0.0,
@@ -81,9 +81,10 @@ impl<'a> Legs<'a> {
         }
     }
 
-    /// Adds the first sample of the course, at the `angle` of the base, in radians, and the time in s. A contact has moved there from
+    /// Adds the first sample of the course, in `phase` at the `angle` of the base, in radians, and the time in s. A contact has moved there from
     /// first touch.
-    pub fn first(&mut self, angle: f64, time_s: f64) {
+    pub fn first(&mut self, phase: Phase, angle: f64, time_s: f64) {
+        self.phase = phase;
         if let Phase::Contact { side, obstacle } = self.phase {
             let push = self.turns.push(side, obstacle, angle).max(0.0);
             self.contacts.touch(side, push);
@@ -94,7 +95,7 @@ impl<'a> Legs<'a> {
         });
     }
 
-    /// Continues the course after a gap, at the `angle` of the base, in radians, and the time in s: from here on all phases are followed in
+    /// Continues the course after a gap, or begins it there, at the `angle` of the base, in radians, and the time in s: from here on all phases are followed in
     /// which the whisker can be.
     pub fn resume(&mut self, angle: f64, time_s: f64) {
         self.possible = self.turns.possible(angle);

@@ -82,7 +82,7 @@ impl Whisk {
                 "{undecided} of {all} samples are undecided, for the reasons in the table{begin}"
             )
         });
-        let gaps = gaps::warnings(&self.gaps);
+        let gaps = gaps::warnings(&self.gaps, &self.samples);
         start.into_iter().chain(gaps).chain(without).collect()
     }
 
@@ -210,13 +210,13 @@ pub fn whisk_with(
     samples.extend(gaps.iter().flat_map(|gap| gap.samples(&course.times_s)));
     samples.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
     let first = course.angles_deg[known[0]];
+    let is_assumed = options.start.is_none() && !begins_in_gap(&known, options);
     Ok(Whisk {
         samples,
         events,
         gaps,
         cf_touch_deg: front.turns.cf_touch.to_degrees(),
-        assumed_free_deg: (options.start.is_none() && first.to_radians() > ROUNDING)
-            .then_some(first),
+        assumed_free_deg: (is_assumed && first.to_radians() > ROUNDING).then_some(first),
     })
 }
 
@@ -274,9 +274,12 @@ impl<'a> Front<'a> {
     ) -> Result<Legs<'_>, WhiskError> {
         let known = course.known();
         let first = course.angles_deg[known[0]];
-        let phase = begin(&self.turns, first, options.start)?;
-        let mut legs = Legs::new(&self.turns, phase, &self.sides);
-        legs.first(first.to_radians(), course.times_s[known[0]]);
+        let (angle, time_s) = (first.to_radians(), course.times_s[known[0]]);
+        let mut legs = Legs::new(&self.turns, &self.sides);
+        match begins_in_gap(&known, options) {
+            true => legs.resume(angle, time_s),
+            false => legs.first(begin(&self.turns, first, options.start)?, angle, time_s),
+        }
         let is_open = |end: usize| {
             gaps.iter()
                 .any(|gap| !gap.is_bridged && gap.end == Some(end))
@@ -328,6 +331,11 @@ impl<'a> Front<'a> {
 
 /// Number of states that are computed between two looks at the flag that cancels.
 pub(crate) const STATES_AT_ONCE: usize = 1 << 10;
+
+/// Returns true if the phase at the first of the `known` angles is unknown: angles before it are missing, and no start is given.
+fn begins_in_gap(known: &[usize], options: &WhiskOptions) -> bool {
+    known[0] > 0 && options.start.is_none()
+}
 
 /// Returns the phase in which a course begins at the angle `first_deg`, in degrees.
 fn begin(turns: &Turns, first_deg: f64, start: Option<CourseStart>) -> Result<Phase, WhiskError> {

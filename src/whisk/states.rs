@@ -1,6 +1,7 @@
 //! States of a course on one side of its obstacles, in batches.
 
 use super::WhiskEventKind;
+use crate::classify::TIE;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, refine};
 use crate::scene::{Pole, Whisker};
@@ -247,11 +248,14 @@ impl SideStates {
                     Some((last_row, branch)) if last_row == row => branch,
                     _ => StableBranch::new(&self.whisker, &self.pole, side, distance).ok(),
                 };
-                *state = branch.as_ref().and_then(|branch| {
+                let followed = branch.as_ref().and_then(|branch| {
                     let state = branch.state(side.sign() * push).ok()?;
                     let reading = branch.read(&state);
                     Some(CourseState::smooth(reading, state.tau, state.load))
                 });
+                // The end of the branch and that of the push are computed apart.
+                let is_end = push >= self.end(row) - TIE;
+                *state = followed.or_else(|| is_end.then(|| self.at_end(row)));
                 last = Some((row, branch));
             }
         }

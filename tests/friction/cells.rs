@@ -9,7 +9,9 @@ use whiskmap::classify::{Regime, Status};
 use whiskmap::engine::Spectral;
 use whiskmap::friction::Sliding;
 use whiskmap::map::{Panel, Summary};
+use whiskmap::scene::Scene;
 use whiskmap::trace::{Branch, WhiskerShape};
+use whiskmap::{Error, Options, for_each_panel};
 
 fn map(friction: f64) -> (Summary, Panel) {
     let (summary, mut panels) = compute(&cone(0.02, 0.25, friction), None);
@@ -18,6 +20,32 @@ fn map(friction: f64) -> (Summary, Panel) {
 
 /// The map with friction 0.3, which two tests read.
 static ROUGH: LazyLock<(Summary, Panel)> = LazyLock::new(|| map(0.3));
+
+/// A tolerance of angles costs no states: histories of contacts are followed at the fine resolution. Here, rows are at the tip of a perfect cone.
+#[test]
+fn a_tolerance_leaves_no_contact_without_a_state() {
+    let text = "title = \"tip\"\n[whisker]\nlength_mm = 20.0\nyoungs_modulus_gpa = 1.098\nbase_radius_um = 15.697\ntip_radius_um = 0.0\n\
+                [whisker.curvature]\nparabola_per_mm = 0.000658\nvertex_mm = -3.023\n[pole]\nradius_mm = 0.25\n\
+                [contact]\nfriction = 0.2\n[grid]\ndistance_mm = [6.7296, 17.7612]\n\
+                push_angle_deg = { from = -20, to = 40, count = 97 }\n";
+    let scene = Scene::parse(text, "tip of a cone").unwrap();
+    for tolerance_deg in [Some(1e-3), Some(1e-6), None] {
+        let mut options = Options::default();
+        options.tolerance_deg = tolerance_deg;
+        let (mut contacts, mut without) = (0, 0);
+        for_each_panel(&scene, options, |_, panel| {
+            let of = |codes: &[u32], code| codes.iter().filter(|found| **found == code).count();
+            contacts += of(&panel.regime, Regime::Contact.code());
+            without += of(&panel.status, Status::NoState.code());
+            Ok::<(), Error>(())
+        })
+        .unwrap();
+        assert!(
+            contacts > 20 && without == 0,
+            "{tolerance_deg:?}: {without} of {contacts}"
+        );
+    }
+}
 
 /// Cells of maps have the states of the branch in all channels, by every engine on the CPU.
 #[test]

@@ -70,6 +70,10 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
         ),
         (summary.toward_base, "slide toward the base"),
         (summary.sticking, "stick where their last sliding ended"),
+        (
+            summary.without_course,
+            "in contact without a state, as friction's course is not known",
+        ),
         (summary.yielding, "beyond the yield strain"),
     ] {
         if count > 0 {
