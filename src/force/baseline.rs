@@ -53,7 +53,7 @@ impl CurvatureBaseline {
 
 impl CurvatureFrames {
     /// Returns the baseline of `whisker`: of the frames from `span_s[0]` to `span_s[1]`, in s, or without a span of all frames that the column
-    /// `contact` gives as free. `None` without both. A frame for which this column has no value does not count.
+    /// `contact` gives as free. `None` without a span and such a frame. A frame for which this column has no value does not count.
     ///
     /// # Errors
     /// If a frame of the span is in contact, or fewer than 2 frames have a curvature.
@@ -62,7 +62,9 @@ impl CurvatureFrames {
         whisker: &Whisker,
         span_s: Option<[f64; 2]>,
     ) -> Result<Option<CurvatureBaseline>, CsvError> {
-        if span_s.is_none() && !self.have_contacts {
+        let is_free = |frame: &&CurvatureFrame| frame.contact.is_none();
+        let are_free_known = self.have_contacts && self.frames.iter().any(|frame| is_free(&frame));
+        if span_s.is_none() && !are_free_known {
             return Ok(None);
         }
         let is_inside = |frame: &CurvatureFrame| {
@@ -83,7 +85,7 @@ impl CurvatureFrames {
             );
             return Err(CsvError::at(&self.origin, frame.line, what));
         }
-        let free = in_span.filter(|frame| frame.contact.is_none());
+        let free = in_span.filter(is_free);
         let baseline = CurvatureBaseline::new(whisker, free).map_err(|count| {
             let what = format!(
                 "has {count} frames without contact and with a curvature{place}: a baseline must have at least 2"

@@ -210,6 +210,12 @@ fn a_baseline_is_reported_and_used() {
         place.write("f.csv", &format!("{HEADER},contact\n{text}\n"));
         force(&place, options).assert_refused(&[said]);
     }
+    // A film of contacts alone has no baseline, as if it had no column.
+    let contacts = format!("{HEADER},contact\n{},1\n", rows[3]);
+    place.write("f.csv", &contacts);
+    let alone = force(&place, &[]);
+    assert_eq!((alone.code, &*alone.err), (Some(0), ""), "{alone:?}");
+    assert_eq!(alone.out.lines().last(), plain.out.lines().last());
 }
 
 /// A frame that the tracker has lost does not count in a baseline; a frame in contact whose position is missing is refused.
