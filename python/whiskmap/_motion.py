@@ -104,7 +104,7 @@ def whisk(
         between samples. NaN where it is missing: that sample has no state. After such a gap the course is undecided until only one state
         is possible.
     start : {"contact", "free"}, optional
-        State at the first angle. In "contact", the base has pushed the whisker there from first touch: on CB if that side holds it, otherwise
+        State at the first angle that is not missing. In "contact", the base has pushed the whisker there from first touch: on CB if that side holds it, otherwise
         on CF. A "free" whisker beyond first touch has passed the pole; that is assumed, with a warning, if left out.
     bridge_s : float
         Longest gap, in s, across which the course continues along a straight line: the time between the angles before and after missing

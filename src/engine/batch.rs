@@ -110,7 +110,7 @@ impl RowBatch {
         batch
     }
 
-    /// Returns a batch of the cells in some `columns` of each row of this one, without expansions and known rows.
+    /// Returns a batch of the cells in some `columns` of each row of this one, without expansions or known rows.
     #[must_use]
     pub fn only(&self, columns: impl IntoIterator<Item = Vec<Range<usize>>>) -> Self {
         let mut part = Self::new(self.method, Arc::clone(&self.sides), []);

@@ -180,10 +180,11 @@ pub struct KnownRow {
 }
 
 impl KnownRow {
-    /// Largest residual of the states of a row, in whisker lengths: they only show that there are states.
+    /// Largest residual of the states of a row, in whisker lengths. The states only show that there are any.
     pub const RESIDUAL: f64 = 1e-4;
 
-    /// Returns a `row` of `side` by its net for guesses; `None` if a state may have a residual of more than [`Self::RESIDUAL`].
+    /// Returns the known row with the index `row` of `side`; `None` if it has other ends, or if the net for guesses allows a residual of more than
+    /// [`Self::RESIDUAL`].
     #[must_use]
     pub fn of(side: &WhiskerSide, row: usize) -> Option<Self> {
         let sheet = &side.sheet;

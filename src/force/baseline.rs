@@ -53,7 +53,7 @@ impl CurvatureBaseline {
 
 impl CurvatureFrames {
     /// Returns the baseline of `whisker`: of the frames from `span_s[0]` to `span_s[1]`, in s, or without a span of all frames that the column
-    /// `contact` gives as free. `None` without a span and such a frame. A frame for which this column has no value does not count.
+    /// `contact` gives as free. `None` without a span, if no frame is free. A frame for which this column has no value does not count.
     ///
     /// # Errors
     /// If a frame of the span is in contact, or fewer than 2 frames have a curvature.
@@ -63,8 +63,8 @@ impl CurvatureFrames {
         span_s: Option<[f64; 2]>,
     ) -> Result<Option<CurvatureBaseline>, CsvError> {
         let is_free = |frame: &&CurvatureFrame| frame.contact.is_none();
-        let are_free_known = self.have_contacts && self.frames.iter().any(|frame| is_free(&frame));
-        if span_s.is_none() && !are_free_known {
+        let has_free_frames = self.have_contacts && self.frames.iter().any(|frame| is_free(&frame));
+        if span_s.is_none() && !has_free_frames {
             return Ok(None);
         }
         let is_inside = |frame: &CurvatureFrame| {

@@ -16,7 +16,7 @@ use whiskmap_mechanics::rod::{Rest, Rod, Side, Units};
 use whiskmap_mechanics::shooting::batch::{Batch, Method};
 use whiskmap_mechanics::shooting::{FirstVariation, Reader, ShootingMap};
 
-/// Largest arclength of the contact nearest to the base, in whisker lengths. A push against a thick pole moves contacts nearer to the base than the
+/// Arclength to which the grid extends toward the base, in whisker lengths. A push against a thick pole moves contacts nearer to the base than the
 /// pole's radius.
 const NEAREST: f64 = 1e-3;
 

@@ -137,8 +137,8 @@ pub fn warning(located: &[LocatedState]) -> Option<String> {
 }
 
 impl Locator {
-    /// Creates the locator of `whisker` at `pole`, whose friction is left out. Contacts are searched from the pole's radius, or a
-    /// thousandth of the length, to the tip.
+    /// Creates the locator of `whisker` at `pole`, whose friction is left out. Contacts are searched from a thousandth of the
+    /// length to the tip.
     #[must_use]
     pub fn new(whisker: &Whisker, pole: &Pole) -> Self {
         let method = Method::new(Resolution::FINE);

@@ -94,8 +94,8 @@ pub struct Summary {
     pub toward_base: u64,
     /// Number of cells with a state whose contact sticks.
     pub sticking: u64,
-    /// Number of cells in contact without a state, as the course of the contact with friction is not known.
-    pub without_course: u64,
+    /// Number of cells in contact whose state with friction was not found.
+    pub without_state: u64,
     /// Number of cells beyond the yield strain; 0 if the largest strains are not computed, or the scene has no yield strain.
     pub yielding: u64,
     /// Engine of the run, and its hardware.
@@ -151,7 +151,7 @@ impl Summary {
             self.without_whisker += part.without_whisker;
             self.toward_base += part.toward_base;
             self.sticking += part.sticking;
-            self.without_course += part.without_course;
+            self.without_state += part.without_state;
         }
     }
 
@@ -171,7 +171,7 @@ impl Summary {
         self.without_whisker = of(statuses, Status::NoWhisker.code());
         self.toward_base = of(statuses, Status::TowardBase.code());
         self.sticking = of(statuses, Status::Sticking.code());
-        self.without_course = of(statuses, Status::NoState.code());
+        self.without_state = of(statuses, Status::NoState.code());
         self.steps = steps.iter().copied().map(u64::from).sum();
     }
 

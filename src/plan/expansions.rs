@@ -7,7 +7,7 @@ const CELLS_PER_STATE: usize = 1;
 /// Cells whose refinement takes as long as the expansions of one row. Measured on the same whiskers: 3.2 us.
 const CELLS_PER_ROW: usize = 6;
 
-/// Cells whose refinement takes as long as the line of one row in the net for guesses, which every sheet has.
+/// Cells whose refinement takes as long as the comparison of one known row with the net for guesses, which every sheet has.
 const CELLS_PER_LINE: usize = 3;
 
 /// Numbers of contacts, and of loads at each, of most nets: `[contacts, loads]`.

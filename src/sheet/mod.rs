@@ -192,8 +192,8 @@ impl Sheet {
         LevelCurve::new(self.method, &self.rod, self.side, &self.rows[row])
     }
 
-    /// Returns the level curve of the row with index `row` at the fine resolution, for contact histories: at a coarser one, limits of sliding
-    /// of nearly the same load cannot be told apart.
+    /// Returns the level curve of the row with index `row` at the fine resolution, for contact histories: coarse trajectories do not separate limits of
+    /// sliding with nearly equal loads.
     #[must_use]
     pub fn fine_level(&self, row: usize) -> LevelCurve {
         let case = self.case().finely();
@@ -266,8 +266,7 @@ impl Sheet {
     /// Returns a bound on the residual of all states of a `row` by the net for guesses, from first touch to its only other end, in whisker lengths.
     /// `None` if the row has other ends, or if the sheet is not certified.
     ///
-    /// On a certified sheet no state between first touch and the fold is singular. So the level curve of such a row is one line from first touch
-    /// to its end, and its push angle grows throughout: each push angle between has one state.
+    /// Each push angle between both ends has a state: see `docs/numerics.md`, "Spectral engine".
     #[must_use]
     pub fn known_residual(&self, row: usize) -> Option<f64> {
         let end = self.simple_end(row)?;

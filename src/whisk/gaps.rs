@@ -74,7 +74,8 @@ impl AngleCourse {
     }
 }
 
-/// Returns one line for the gaps that are bridged, and one for those that are not; none without gaps. `samples` are those of the course.
+/// Returns one line for the gaps that are bridged, and one for those that are not; none without gaps. `samples` are of the whole
+/// course.
 pub(super) fn warnings(
     gaps: &[CourseGap],
     samples: &[WhiskSample],
@@ -87,17 +88,22 @@ pub(super) fn warnings(
         let selected = gaps.iter().filter(|gap| gap.is_bridged == is_bridged);
         let (count, first) = (selected.clone().count(), selected.clone().next()?);
         let missing: usize = selected.clone().map(|gap| gap.count).sum();
-        let lengths = selected.filter_map(|gap| gap.length_s);
-        let longest = lengths.reduce(f64::max);
-        let [at, longest] = [Some(first.time_s), longest]
-            .map(|number| number.map(|number| digits(rounded(number, 6))));
-        let what = format!("missing angles: {missing}, gaps: {count}, the first at {} s", at?);
-        let undecided = "after them the course is undecided until only one state is possible";
-        Some(match longest {
-            Some(longest) if is_bridged => format!("{what}: the course continues along straight lines across them, the longest of {longest} s"),
-            Some(longest) => format!("{what}: {undecided}; a bridge continues it, which for the longest must have {longest} s"),
-            None if is_undecided(first) => format!("{what}: {undecided}; choose the start `contact` or `free`"),
-            None => what,
+        let longest = selected.filter_map(|gap| gap.length_s).reduce(f64::max);
+        let seconds = |number: f64| digits(rounded(number, 6));
+        let what = format!("missing angles: {missing}, gaps: {count}, the first at {} s", seconds(first.time_s));
+        let longest = longest.map(seconds);
+        if is_bridged {
+            let longest = longest?;
+            return Some(format!("{what}: the course continues along straight lines across them, the longest of {longest} s"));
+        }
+        let bridge = longest.map(|longest| format!("a bridge continues it, which for the longest must have {longest} s"));
+        // A bridge serves no gap at the beginning, and a start no other gap.
+        let needs_start = first.begin == 0 && is_undecided(first);
+        let start = needs_start.then(|| "choose the start `contact` or `free`".to_owned());
+        let advice: Vec<String> = start.into_iter().chain(bridge).collect();
+        Some(match &advice[..] {
+            [] => what,
+            advice => format!("{what}: after them the course is undecided until only one state is possible; {}", advice.join("; ")),
         })
     })
 }

@@ -95,8 +95,8 @@ impl<'a> Legs<'a> {
         });
     }
 
-    /// Continues the course after a gap, or begins it there, at the `angle` of the base, in radians, and the time in s: from here on all phases are followed in
-    /// which the whisker can be.
+    /// Continues the course after a gap, or begins it there, at the `angle` of the base, in radians, and the time in s. From here on, all phases
+    /// are followed in which the whisker can be.
     pub fn resume(&mut self, angle: f64, time_s: f64) {
         self.possible = self.turns.possible(angle);
         self.contacts.forget();

@@ -46,7 +46,8 @@ pub struct Whisk {
     pub gaps: Vec<CourseGap>,
     /// Angle of the base at first touch on CF, in degrees. It differs from 0 with the radius of the pole.
     pub cf_touch_deg: f64,
-    /// First angle of the base, in degrees, if it lies beyond first touch and no start was given: the whisker is then assumed to be free.
+    /// First angle of the base, in degrees, if it lies beyond first touch, and neither a start nor a gap comes before it: the whisker is then
+    /// assumed to be free.
     /// `None` without this assumption.
     pub assumed_free_deg: Option<f64>,
 }

@@ -20,7 +20,7 @@ names!(CourseStart { Free = "free", Contact = "contact" });
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct WhiskOptions {
-    /// State in which the course begins. `None` assumes a free whisker.
+    /// State in which the course begins, at its first known angle. `None` assumes a free whisker, unless angles before are missing.
     pub start: Option<CourseStart>,
     /// Arclength from the base, in mm, at which samples have the curvature; `None` for samples without it.
     pub curvature_at_mm: Option<f64>,

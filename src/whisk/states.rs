@@ -253,7 +253,7 @@ impl SideStates {
                     let reading = branch.read(&state);
                     Some(CourseState::smooth(reading, state.tau, state.load))
                 });
-                // The end of the branch and that of the push are computed apart.
+                // The ends of the branch and of the push are computed apart.
                 let is_end = push >= self.end(row) - TIE;
                 *state = followed.or_else(|| is_end.then(|| self.at_end(row)));
                 last = Some((row, branch));

@@ -182,9 +182,9 @@ fn a_baseline_is_reported_and_used() {
     assert_eq!(reasons, ["", "", "", "", "missing", "missing"]);
     for (text, options, said) in [
         (
-            "0,0.01,2,1,1,1,1",
+            "0,0.01,2,,,,0",
             &[][..],
-            "f.csv: has 0 frames without contact",
+            "f.csv: has 1 frames without contact",
         ),
         (
             "0,0.01,2,1,1,1,0.5",

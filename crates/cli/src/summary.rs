@@ -71,8 +71,8 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
         (summary.toward_base, "slide toward the base"),
         (summary.sticking, "stick where their last sliding ended"),
         (
-            summary.without_course,
-            "in contact without a state, as friction's course is not known",
+            summary.without_state,
+            "in contact, whose state with friction was not found",
         ),
         (summary.yielding, "beyond the yield strain"),
     ] {

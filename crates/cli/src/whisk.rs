@@ -27,7 +27,7 @@ out. Between samples the angle changes along straight lines, on which events are
 is contact. A first angle beyond first touch needs --start: the whisker may be free past the pole, or in contact.
 
 An angle of --angles may be missing: an empty cell, or NaN. Its sample has no state. After such a gap the course is undecided until \
-only one state is possible, unless --bridge continues it.";
+only one state is possible, unless --bridge continues it. After a gap at the beginning, --start decides.";
 
 const START_HELP: [&str; 2] = [
     "The whisker is free. At an angle beyond first touch, it has passed the pole",

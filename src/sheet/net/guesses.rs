@@ -58,11 +58,12 @@ const FOLD_OFF: f64 = 1e-2;
 /// cell is followed by continuation.
 pub const PUSH_MARGIN: f64 = 1e-4;
 
-/// Largest error of a row at parts of the load, in parts of its numbers: where it is larger, the row is found at loads.
+/// Largest error of a row as polynomials of the part of the load, in whisker lengths. Rows with a larger error become polynomials of the load, which
+/// are found in 0.1 ms. Newton's method needs a second trajectory from guesses with this error.
 const ROW_ERROR: f64 = 1e-5;
 
-/// Difference of the load at the nearest contact that is searched for a row's load from the largest load there, in parts of it.
-const NEAR: f64 = 1e-3;
+/// Relative tolerance of the load at the nearest contact of a search for a row's states by their loads.
+const LOAD_TOLERANCE: f64 = 1e-3;
 
 /// Panel for guesses.
 #[derive(Clone, Debug)]
@@ -83,8 +84,8 @@ pub struct GuessRow {
     first: f64,
     /// Magnitudes of the push angles at the ends, which are computed apart, in radians.
     ends: [f64; 2],
-    /// Bound on the residual of the states, in whisker lengths: by the coefficients left out of the panel and of the row, and by the differences
-    /// from the ends.
+    /// Expected residual of the states, in whisker lengths: by the coefficients left out of the panel and of the row, and by the differences from
+    /// the ends.
     residual: f64,
 }
 
@@ -230,18 +231,27 @@ impl GuessPanel {
                 ln_distance - level
             };
             let over = |place| part(place) - 1.0;
-            // Stable contacts with this load are beyond the one at which it is the largest.
+            if over(tip) >= 0.0 {
+                return None;
+            }
+            // At a contact nearer to the base, this load exceeds the largest load of the panel.
             let nearest = if over(0.0) > 0.0 {
-                let ends = [0.0, tip].map(|place| [place, over(place)]);
-                illinois(ends, NEAR, |place| Some(over(place)))?.x
+                let bracket = [0.0, tip].map(|place| [place, over(place)]);
+                illinois(bracket, LOAD_TOLERANCE, |place| Some(over(place)))?.x
             } else {
                 0.0
             };
-            let ends = [nearest, tip].map(|place| [place, miss(place)]);
-            let is_between = ends[0][1] < 0.0 && 0.0 < ends[1][1];
-            let place = is_between
-                .then(|| illinois(ends, self.error, |place| Some(miss(place))))??
-                .x;
+            let bracket = [nearest, tip].map(|place| [place, miss(place)]);
+            // Next to the tip, the error of the panel decides on which side of it a state is.
+            let place = if bracket[1][1] <= 0.0 {
+                tip
+            } else {
+                illinois(bracket, self.error, |place| Some(miss(place)))?.x
+            };
+            let is_found = part(place) <= 1.0 && miss(place).abs() <= MARGIN * self.error;
+            if !is_found {
+                return None;
+            }
             let [_, phi] = self.panel.tensor.at(place, part(place));
             let [ln_tau, _] = self.panel.along.at(place);
             Some([phi, arclength(case.rod, libm::exp(ln_tau)), load])
@@ -252,8 +262,8 @@ impl GuessPanel {
         Some(row)
     }
 
-    /// Joins the `states` of a row, `[direction of the pole, contact, load]` at Chebyshev points of a parameter, that has its `ends` at 0 and at
-    /// `end`.
+    /// Joins the `states` of a row, `[direction of the pole, contact, load]` at Chebyshev points of a parameter. The parameter is 0 at the first of the
+    /// `ends` and `end` at the other.
     fn joined(
         &self,
         case: SheetCase,
@@ -286,11 +296,11 @@ impl GuessPanel {
         })
     }
 
-    /// Returns a bound on the residual of all states along `row` from first touch to its only other `end`, in whisker lengths: by the coefficients left
-    /// out of the panel, and by its differences from both ends, which are computed apart. NaN if the row is not in the panel.
+    /// Returns a bound on the residual of all states along `row` from first touch to its only other `end`, in whisker lengths. It has the coefficients
+    /// left out of the panel, and the misses of the panel at both ends, which are computed apart. NaN if the row is not in the panel.
     pub fn residual(&self, case: SheetCase, row: &Row, end: &Crossing) -> f64 {
         let sign = case.side.sign();
-        let of = |tau: f64, part: f64| {
+        let miss_and_direction = |tau: f64, part: f64| {
             let place = self.panel.place(case.rod, tau);
             let is_inside = (0.0..=1.0).contains(&place) && (0.0..=TOP).contains(&part);
             let state = || self.panel.tensor.at(place, part / TOP);
@@ -298,8 +308,8 @@ impl GuessPanel {
             let off = (ln_distance - libm::log(row.pole_distance)).abs();
             (off, phi)
         };
-        let (off_at_touch, first) = of(row.first_touch(case.rod).x, 0.0);
-        let (off_at_end, last) = of(end.tau, self.panel.part(case.rod, end));
+        let (off_at_touch, first) = miss_and_direction(row.first_touch(case.rod).x, 0.0);
+        let (off_at_end, last) = miss_and_direction(end.tau, self.panel.part(case.rod, end));
         let touch = nearest_turn(row.touch, first);
         let turned = [(first, 0.0), (last, end.push)];
         let turned = turned.map(|(phi, push)| (sign * (phi - touch) - push).abs());
@@ -521,24 +531,40 @@ mod tests {
         let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &[0.3, 0.5, 0.7]);
         let samples = sheet.samples.as_ref().unwrap();
         let panel = samples.panels.as_ref().unwrap().of(1).unwrap();
-        let residual = |by: f64| {
+        let spoiled = |function: usize, by: f64| {
             let mut tensor = panel.panel.tensor.clone();
-            tensor.coefficients[0][0][1] += by;
+            tensor.coefficients[0][0][function] += by;
             let NetPanel {
                 contacts,
                 along,
                 size,
                 ..
             } = panel.panel.clone();
-            let panel = GuessPanel {
+            GuessPanel {
                 panel: NetPanel::new(contacts, along, size, tensor, size.loads),
                 error: panel.error,
-            };
-            let ends = [None, sheet.simple_end(1)];
-            panel
-                .row(sheet.case(), &sheet.rows[1], ends)
-                .map(|row| row.residual)
+            }
         };
+        let residual = |by: f64| {
+            let ends = [None, sheet.simple_end(1)];
+            let row = spoiled(1, by).row(sheet.case(), &sheet.rows[1], ends);
+            row.map(|row| row.residual)
+        };
+        // Without states of the row, too: whichever of its functions, the distance or the direction, is spoiled.
+        let end = sheet.simple_end(1).unwrap();
+        for function in [0, 1] {
+            let residual = |by: f64| {
+                let panel = spoiled(function, by);
+                panel.residual(sheet.case(), &sheet.rows[1], end)
+            };
+            let [sound, wrong] = [0.0, 5e-5].map(residual);
+            assert!(
+                sound < MARGIN * 1e-6 && wrong > MARGIN * 4e-5 * 0.5,
+                "{sound} {wrong}"
+            );
+        }
+        let outside = Row::new(&Rest::new(&rod), 0.05);
+        assert!(panel.residual(sheet.case(), &outside, end).is_nan());
         let bound = |by: f64| MARGIN * by * sheet.rows[1].pole_distance;
         assert!(residual(0.0).unwrap() < bound(1e-5));
         assert!(residual(5e-5).unwrap() > bound(4e-5));
