@@ -31,7 +31,7 @@ pub(crate) use span::RowSpan;
 
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
-use net::{FOLD_ERRORS, GUESS_ERRORS, ValueNet};
+use net::{FOLD_ERRORS, GUESS_ERRORS, GuessRow, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
 use std::sync::Arc;
@@ -305,7 +305,7 @@ impl Sheet {
                 let is_near = |push: &f64| from - PUSH_MARGIN <= *push && *push <= to + PUSH_MARGIN;
                 let needed = pushes.iter().any(is_near);
                 let (case, place) = (self.case(), &self.rows[row]);
-                let piece = || panel.row(case, place, ends);
+                let piece = || GuessRow::new(panel, case, place, ends);
                 if let Some(piece) = needed.then(piece).flatten() {
                     piece.write_guesses(&self.rod, pushes, &mut guesses);
                 }

@@ -4,7 +4,7 @@
 //! `det J D^2` over its value at a load between first touch and the first fold is a smooth function of contact and load. Divided by the part of
 //! the load that is left to the first fold, it is the clearance, which is positive where there is no other fold.
 
-use super::bound::{MARGIN, larger, largest};
+use super::bound::{MARGIN, larger};
 use super::panel::{NetPanel, TOP, along, contacts_of};
 use super::size::NetSize;
 use super::{Attempt, PanelQueue, PanelRow, Panels};
@@ -12,12 +12,11 @@ use crate::sheet::case::SheetCase;
 use crate::sheet::fold::contact_nodes::ContactNodes;
 use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::fold::{directions, surely_stable};
-use crate::sheet::{Crossing, Guess, Row};
+use crate::sheet::{Crossing, Row};
 use std::f64::consts::FRAC_PI_2;
 use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
-use whiskmap_mechanics::numerics::inverse::Inverse;
 use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
-use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, illinois, nearest_turn};
+use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
 use whiskmap_mechanics::rod::{Rod, arclength};
 use whiskmap_mechanics::shooting::ShootingMap;
 
@@ -54,63 +53,12 @@ const SAMPLES: [(usize, f64); 2] = [(3, 0.143), (6, 0.035)];
 /// Largest difference between the load of a fold by the panel and by the contact nodes, relative to the load.
 const FOLD_OFF: f64 = 1e-2;
 
-/// Push angle beyond the ends of a row, in radians, up to which cells get guesses. It is many times the error of a guess; a row with a missed
-/// cell is followed by continuation.
-pub const PUSH_MARGIN: f64 = 1e-4;
-
-/// Largest error of a row as polynomials of the part of the load, in whisker lengths. Rows with a larger error become polynomials of the load, which
-/// are found in 0.1 ms. Newton's method needs a second trajectory from guesses with this error.
-const ROW_ERROR: f64 = 1e-5;
-
-/// Relative tolerance of the load at the nearest contact of a search for a row's states by their loads.
-const LOAD_TOLERANCE: f64 = 1e-3;
-
 /// Panel for guesses.
 #[derive(Clone, Debug)]
 pub struct GuessPanel {
-    panel: NetPanel<3>,
+    pub(super) panel: NetPanel<3>,
     /// Error of `ln D` and `phi` by the coefficients left out.
-    error: f64,
-}
-
-/// States of a row between two of its ends, by a panel for guesses.
-#[derive(Clone, Debug)]
-pub struct GuessRow {
-    /// Magnitude of the push angle since first touch in radians, `tau`, and signed load.
-    inverse: Inverse<3>,
-    /// True if the row has arclengths in whisker lengths in place of `tau`.
-    is_by_load: bool,
-    /// Push angle of the first state by the panel, in radians.
-    first: f64,
-    /// Magnitudes of the push angles at the ends, which are computed apart, in radians.
-    ends: [f64; 2],
-    /// Expected residual of the states, in whisker lengths: by the coefficients left out of the panel and of the row, and by the differences from
-    /// the ends.
-    residual: f64,
-}
-
-impl GuessRow {
-    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near the row of `rod` between its ends.
-    pub fn write_guesses(&self, rod: &Rod, pushes: &[f64], guesses: &mut [Option<Guess>]) {
-        let from = pushes.partition_point(|push| *push < self.ends[0] - PUSH_MARGIN);
-        let to = pushes.partition_point(|push| *push <= self.ends[1] + PUSH_MARGIN);
-        let targets = pushes[from..to].iter().map(|push| push.max(self.first));
-        let targets: Vec<f64> = targets.collect();
-        let wanted = [true; 3];
-        let tip = arclength(rod, rod.tau_tip());
-        self.inverse
-            .solve(&targets, &wanted, |index, count, block| {
-                for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
-                    let [_, contact, load] = block.values.map(|values| values[lane]);
-                    let tau = if self.is_by_load {
-                        rod.tau(contact.min(tip))
-                    } else {
-                        contact
-                    };
-                    guess.get_or_insert(Guess { tau, load });
-                }
-            });
-    }
+    pub(super) error: f64,
 }
 
 impl Panels<GuessPanel> {
@@ -162,138 +110,6 @@ impl GuessPanel {
         } else {
             Err(size.enough(tails, MARGIN * most))
         }
-    }
-
-    /// Returns the states along `row` from one of its `ends` to the other; without its first end, the row begins at first touch.
-    ///
-    /// `None` if the row is not in the panel, if its push angle does not grow throughout, or if it contradicts the ends, which are computed apart.
-    pub fn row(
-        &self,
-        case: SheetCase,
-        row: &Row,
-        ends: [Option<&Crossing>; 2],
-    ) -> Option<GuessRow> {
-        let by_part = self.row_by_part(case, row, ends);
-        let is_accurate = |row: &GuessRow| row.residual <= MARGIN * ROW_ERROR;
-        if by_part.as_ref().is_some_and(is_accurate) {
-            return by_part;
-        }
-        let by_load = self.row_by_load(case, row, ends);
-        let both = [by_part, by_load].into_iter().flatten();
-        both.min_by(|a, b| a.residual.total_cmp(&b.residual))
-    }
-
-    /// Returns the states along `row` at parts of the load, as [`Self::row`] does.
-    fn row_by_part(
-        &self,
-        case: SheetCase,
-        row: &Row,
-        ends: [Option<&Crossing>; 2],
-    ) -> Option<GuessRow> {
-        let part = |end: Option<&Crossing>| end.map_or(0.0, |end| self.panel.part(case.rod, end));
-        let line = self.panel.line(row, ends.map(part))?;
-        let sign = case.side.sign();
-        let points = line.points.iter().flat_map(|block| {
-            (0..block.count).map(|lane| {
-                let [ln_tau, ln_q] = block.along.map(|coordinate| coordinate[lane]);
-                (block.values[1][lane], ln_tau, ln_q)
-            })
-        });
-        let states = points.zip(&line.parts).map(|((phi, ln_tau, ln_q), part)| {
-            let load = sign * part * libm::exp(ln_q - 2.0 * ln_tau);
-            [phi, libm::exp(ln_tau), load]
-        });
-        self.joined(case, row, ends, states.collect(), line.end)
-    }
-
-    /// Returns the states along `row` at loads, with arclengths in place of contacts, as [`Self::row`] does.
-    ///
-    /// Next to the tip of a perfect cone, the contact moves far almost without a change of the load, and the part of the load falls there. But the
-    /// arclength is a smooth function of the load.
-    fn row_by_load(
-        &self,
-        case: SheetCase,
-        row: &Row,
-        ends: [Option<&Crossing>; 2],
-    ) -> Option<GuessRow> {
-        let tip = self.panel.place(case.rod, case.rod.tau_tip()).min(1.0);
-        let level = libm::log(row.pole_distance);
-        let [first, last] = ends.map(|end| end.map_or(0.0, |end| end.load));
-        let loads = chebyshev_points(self.panel.size.loads).iter();
-        let states = loads.map(|point| {
-            let load = first + point * (last - first);
-            let part = |place: f64| {
-                let [ln_tau, ln_q] = self.panel.along.at(place);
-                load.abs() * libm::exp(2.0 * ln_tau - ln_q) / TOP
-            };
-            let miss = |place| {
-                let [ln_distance] = self.panel.tensor.at(place, part(place));
-                ln_distance - level
-            };
-            let over = |place| part(place) - 1.0;
-            if over(tip) >= 0.0 {
-                return None;
-            }
-            // At a contact nearer to the base, this load exceeds the largest load of the panel.
-            let nearest = if over(0.0) > 0.0 {
-                let bracket = [0.0, tip].map(|place| [place, over(place)]);
-                illinois(bracket, LOAD_TOLERANCE, |place| Some(over(place)))?.x
-            } else {
-                0.0
-            };
-            let bracket = [nearest, tip].map(|place| [place, miss(place)]);
-            // Next to the tip, the error of the panel decides on which side of it a state is.
-            let place = if bracket[1][1] <= 0.0 {
-                tip
-            } else {
-                illinois(bracket, self.error, |place| Some(miss(place)))?.x
-            };
-            let is_found = part(place) <= 1.0 && miss(place).abs() <= MARGIN * self.error;
-            if !is_found {
-                return None;
-            }
-            let [_, phi] = self.panel.tensor.at(place, part(place));
-            let [ln_tau, _] = self.panel.along.at(place);
-            Some([phi, arclength(case.rod, libm::exp(ln_tau)), load])
-        });
-        let states: Option<Vec<[f64; 3]>> = states.collect();
-        let mut row = self.joined(case, row, ends, states?, 1.0)?;
-        row.is_by_load = true;
-        Some(row)
-    }
-
-    /// Joins the `states` of a row, `[direction of the pole, contact, load]` at Chebyshev points of a parameter. The parameter is 0 at the first of the
-    /// `ends` and `end` at the other.
-    fn joined(
-        &self,
-        case: SheetCase,
-        row: &Row,
-        ends: [Option<&Crossing>; 2],
-        mut states: Vec<[f64; 3]>,
-        end: f64,
-    ) -> Option<GuessRow> {
-        let ends = ends.map(|end| end.map_or(0.0, |end| end.push));
-        let sign = case.side.sign();
-        // The first state is next to the first end.
-        let near = row.touch + sign * ends[0];
-        let turned = row.touch + nearest_turn(near, states[0][0]) - near;
-        for [phi, ..] in &mut states {
-            *phi = sign * (*phi - turned);
-        }
-        let functions: Chebyshev<3> = Chebyshev::through(&states);
-        let [[first, ..], [last, contact, load]] = [functions.at(0.0), functions.at(end)];
-        let off = larger((first - ends[0]).abs(), (last - ends[1]).abs());
-        let [tail, _] = functions.tails();
-        let left_out = largest(&tail, &[1.0, 1.0 / contact, 1.0 / load.abs()]);
-        let error = larger(larger(self.error, left_out), off);
-        let inverse = |functions| Inverse::new(functions, end);
-        Some(GuessRow {
-            inverse: (off <= PUSH_MARGIN).then(|| inverse(functions)).flatten()?,
-            is_by_load: false,
-            first,
-            ends,
-            residual: MARGIN * error * row.pole_distance,
-        })
     }
 
     /// Returns a bound on the residual of all states along `row` from first touch to its only other `end`, in whisker lengths. It has the coefficients
@@ -435,8 +251,9 @@ fn tensor(case: SheetCase, size: NetSize, along: &Chebyshev<2>) -> ChebyshevTens
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+    use crate::sheet::Sheet;
     use crate::sheet::fold::contact_nodes::SPACING;
-    use crate::sheet::{Edge, Sheet};
+    use crate::sheet::net::guess_row::GuessRow;
     use whiskmap_mechanics::rod::{Rest, Side};
     use whiskmap_mechanics::shooting::batch::Method;
 
@@ -446,52 +263,6 @@ mod tests {
             bend: 0.4,
             pole: 0.0125 * side.sign(),
             ..Rod::default()
-        }
-    }
-
-    /// Along rows that end at either edge, and between two ends of rows out of reach, the pole of a guess is where it is wanted: also where a
-    /// contact moves from the tip of a perfect cone without a change of the load.
-    #[test]
-    fn guesses_are_next_to_states() {
-        for taper in [0.95, 1.0] {
-            let (mut ends, mut detached) = ([0; 2], 0);
-            for side in Side::BOTH {
-                let rod = Rod {
-                    taper,
-                    ..cone(side)
-                };
-                let distances: Vec<f64> = (0..184).map(|i| 0.1 + 0.005 * f64::from(i)).collect();
-                let sheet = Sheet::new(Method::fine(), &rod, side, &distances);
-                for (row, place) in sheet.rows.iter().enumerate() {
-                    for [first, last] in sheet.pieces(row) {
-                        let end = last.filter(|end| !end.is_at_touch()).unwrap();
-                        let from = first.map_or(0.0, |first| first.push);
-                        ends[usize::from(end.edge == Edge::Tip)] += 1;
-                        detached += usize::from(first.is_some());
-                        let part = |i| f64::from(i) / 40.0;
-                        let pushes = (0..=40).map(|i| from + part(i) * (end.push - from));
-                        let pushes: Vec<f64> = pushes.collect();
-                        let guesses = sheet.guesses(row, &pushes);
-                        let points = guesses
-                            .iter()
-                            .map(|guess| guess.map(|guess| (guess.tau, guess.load)));
-                        let points: Option<Vec<(f64, f64)>> = points.collect();
-                        let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
-                        let panel = sheet.samples.as_ref().unwrap().panels.as_ref();
-                        let states = panel.unwrap().of(row).unwrap();
-                        let states = states.row(sheet.case(), place, [first, last]);
-                        let most = states.unwrap().residual;
-                        for (map, push) in maps.iter().zip(&pushes) {
-                            let off = map.pole.distance(place.pole(side.sign() * push));
-                            assert!(off < most.min(1e-6), "{taper} {row} {push}: {off:e}");
-                        }
-                        let beyond = [end.push + 2.0 * PUSH_MARGIN];
-                        assert_eq!(sheet.guesses(row, &beyond), [None]);
-                    }
-                }
-            }
-            let is_each = ends.iter().all(|count| *count > 0) && detached > 2;
-            assert!(is_each, "{taper} {ends:?} {detached}");
         }
     }
 
@@ -506,22 +277,6 @@ mod tests {
             sheet.crossings
         });
         assert_eq!(with, without);
-    }
-
-    /// A pole out of reach leaves the rows within reach their panel, also where the rod is continued to no radius or no modulus.
-    #[test]
-    fn rows_out_of_reach_need_no_panel() {
-        for (taper, gradient) in [(0.95, 0.0), (1.0, 0.0), (0.3, -0.9)] {
-            let rod = Rod {
-                taper,
-                gradient,
-                ..cone(Side::Cb)
-            };
-            let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &[0.5, 1.2, 5.0, 10.0]);
-            assert!(!sheet.is_continued(), "{taper} {gradient}");
-            let found = |row| sheet.guesses(row, &[0.1])[0].is_some();
-            assert_eq!([0, 1, 2, 3].map(found), [true, false, false, false]);
-        }
     }
 
     /// A spoiled direction is in the bound of a row, or leaves the panel without the row.
@@ -547,7 +302,7 @@ mod tests {
         };
         let residual = |by: f64| {
             let ends = [None, sheet.simple_end(1)];
-            let row = spoiled(1, by).row(sheet.case(), &sheet.rows[1], ends);
+            let row = GuessRow::new(&spoiled(1, by), sheet.case(), &sheet.rows[1], ends);
             row.map(|row| row.residual)
         };
         // Without states of the row, too: whichever of its functions, the distance or the direction, is spoiled.

@@ -6,12 +6,13 @@
 //! rows that end at the fold and rows that end at the tip alike. Nothing is solved: no trajectory belongs to a row.
 //!
 //! A panel is one tensor over the contacts of neighbouring rows. Guesses come from panels with the place of the pole and the Jacobian
-//! (`guesses.rs`), which also show all folds. The values of cells come from panels of an engine's accuracy (`values.rs`). Their certificate
+//! (`guesses.rs`, `guess_row.rs`), which also show all folds. The values of cells come from panels of an engine's accuracy (`values.rs`). Their certificate
 //! has three parts: the decay of the last coefficients in both coordinates, trajectories at places of their rows between the nodes, and the end
 //! of every row, which is computed apart ([`Crossing`](crate::sheet::Crossing)).
 
 mod bound;
 mod certificate;
+mod guess_row;
 mod guesses;
 mod panel;
 mod row;
@@ -26,7 +27,8 @@ pub use values::ValueNet;
 use crate::sheet::Row;
 use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::row::REACH_SLACK;
-pub use guesses::PUSH_MARGIN;
+pub(super) use guess_row::GuessRow;
+pub use guess_row::PUSH_MARGIN;
 pub(super) use guesses::{FOLD_ERRORS, GUESS_ERRORS, GuessPanel};
 use size::NetSize;
 use std::ops::Range;

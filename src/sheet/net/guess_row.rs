@@ -1,0 +1,277 @@
+//! Rows of a panel for guesses: the states of one row as polynomials of its part of the load, or of the load itself.
+
+use super::bound::{MARGIN, larger, largest};
+use super::guesses::GuessPanel;
+use super::panel::TOP;
+use crate::sheet::case::SheetCase;
+use crate::sheet::{Crossing, Guess, Row};
+use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
+use whiskmap_mechanics::numerics::inverse::Inverse;
+use whiskmap_mechanics::numerics::{illinois, nearest_turn};
+use whiskmap_mechanics::rod::{Rod, arclength};
+
+/// Push angle beyond the ends of a row, in radians, up to which cells get guesses. It is many times the error of a guess; a row with a missed
+/// cell is followed by continuation.
+pub const PUSH_MARGIN: f64 = 1e-4;
+
+/// Largest error of a row as polynomials of the part of the load, in whisker lengths. Rows with a larger error become polynomials of the load, which
+/// are found in 0.1 ms. Newton's method needs a second trajectory from guesses with this error.
+const ROW_ERROR: f64 = 1e-5;
+
+/// Relative tolerance of the load at the nearest contact of a search for a row's states by their loads.
+const LOAD_TOLERANCE: f64 = 1e-3;
+
+/// States of a row between two of its ends, by a panel for guesses.
+#[derive(Clone, Debug)]
+pub struct GuessRow {
+    /// Magnitude of the push angle since first touch in radians, `tau`, and signed load.
+    inverse: Inverse<3>,
+    /// True if the row has arclengths in whisker lengths in place of `tau`.
+    is_by_load: bool,
+    /// Push angle of the first state by the panel, in radians.
+    first: f64,
+    /// Magnitudes of the push angles at the ends, which are computed apart, in radians.
+    ends: [f64; 2],
+    /// Expected residual of the states, in whisker lengths: by the coefficients left out of the panel and of the row, and by the differences from
+    /// the ends.
+    pub(super) residual: f64,
+}
+
+impl GuessRow {
+    /// Returns the states along `row` by a panel for `guesses`, from one of its `ends` to the other. Without its first end, the row begins at first
+    /// touch.
+    ///
+    /// `None` if the row is not in the panel, if its push angle does not grow throughout, or if it contradicts the ends, which are computed apart.
+    pub fn new(
+        guesses: &GuessPanel,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+    ) -> Option<Self> {
+        let by_part = Self::by_part(guesses, case, row, ends);
+        let is_accurate = |row: &Self| row.residual <= MARGIN * ROW_ERROR;
+        if by_part.as_ref().is_some_and(is_accurate) {
+            return by_part;
+        }
+        let by_load = Self::by_load(guesses, case, row, ends);
+        let both = [by_part, by_load].into_iter().flatten();
+        both.min_by(|a, b| a.residual.total_cmp(&b.residual))
+    }
+
+    /// Returns the states along `row` at parts of the load, as [`Self::new`] does.
+    fn by_part(
+        guesses: &GuessPanel,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+    ) -> Option<Self> {
+        let part =
+            |end: Option<&Crossing>| end.map_or(0.0, |end| guesses.panel.part(case.rod, end));
+        let line = guesses.panel.line(row, ends.map(part))?;
+        let sign = case.side.sign();
+        let points = line.points.iter().flat_map(|block| {
+            (0..block.count).map(|lane| {
+                let [ln_tau, ln_q] = block.along.map(|coordinate| coordinate[lane]);
+                (block.values[1][lane], ln_tau, ln_q)
+            })
+        });
+        let states = points.zip(&line.parts).map(|((phi, ln_tau, ln_q), part)| {
+            let load = sign * part * libm::exp(ln_q - 2.0 * ln_tau);
+            [phi, libm::exp(ln_tau), load]
+        });
+        Self::joined(guesses, case, row, ends, states.collect(), line.end)
+    }
+
+    /// Returns the states along `row` at loads, with arclengths in place of contacts, as [`Self::new`] does.
+    ///
+    /// Next to the tip of a perfect cone, the contact moves far almost without a change of the load, and the part of the load falls there. But the
+    /// arclength is a smooth function of the load.
+    fn by_load(
+        guesses: &GuessPanel,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+    ) -> Option<Self> {
+        let tip = guesses.panel.place(case.rod, case.rod.tau_tip()).min(1.0);
+        let level = libm::log(row.pole_distance);
+        let [first, last] = ends.map(|end| end.map_or(0.0, |end| end.load));
+        let loads = chebyshev_points(guesses.panel.size.loads).iter();
+        let states = loads.map(|point| {
+            let load = first + point * (last - first);
+            let part = |place: f64| {
+                let [ln_tau, ln_q] = guesses.panel.along.at(place);
+                load.abs() * libm::exp(2.0 * ln_tau - ln_q) / TOP
+            };
+            let miss = |place| {
+                let [ln_distance] = guesses.panel.tensor.at(place, part(place));
+                ln_distance - level
+            };
+            let over = |place| part(place) - 1.0;
+            if over(tip) >= 0.0 {
+                return None;
+            }
+            // At a contact nearer to the base, this load exceeds the largest load of the panel.
+            let nearest = if over(0.0) > 0.0 {
+                let bracket = [0.0, tip].map(|place| [place, over(place)]);
+                illinois(bracket, LOAD_TOLERANCE, |place| Some(over(place)))?.x
+            } else {
+                0.0
+            };
+            let bracket = [nearest, tip].map(|place| [place, miss(place)]);
+            // Next to the tip, the error of the panel decides on which side of it a state is.
+            let place = if bracket[1][1] <= 0.0 {
+                tip
+            } else {
+                illinois(bracket, guesses.error, |place| Some(miss(place)))?.x
+            };
+            let is_found = part(place) <= 1.0 && miss(place).abs() <= MARGIN * guesses.error;
+            if !is_found {
+                return None;
+            }
+            let [_, phi] = guesses.panel.tensor.at(place, part(place));
+            let [ln_tau, _] = guesses.panel.along.at(place);
+            Some([phi, arclength(case.rod, libm::exp(ln_tau)), load])
+        });
+        let states: Option<Vec<[f64; 3]>> = states.collect();
+        let mut row = Self::joined(guesses, case, row, ends, states?, 1.0)?;
+        row.is_by_load = true;
+        Some(row)
+    }
+
+    /// Joins the `states` of a row, `[direction of the pole, contact, load]` at Chebyshev points of a parameter. The parameter is 0 at the first of the
+    /// `ends` and `end` at the other.
+    fn joined(
+        guesses: &GuessPanel,
+        case: SheetCase,
+        row: &Row,
+        ends: [Option<&Crossing>; 2],
+        mut states: Vec<[f64; 3]>,
+        end: f64,
+    ) -> Option<Self> {
+        let ends = ends.map(|end| end.map_or(0.0, |end| end.push));
+        let sign = case.side.sign();
+        // The first state is next to the first end.
+        let near = row.touch + sign * ends[0];
+        let turned = row.touch + nearest_turn(near, states[0][0]) - near;
+        for [phi, ..] in &mut states {
+            *phi = sign * (*phi - turned);
+        }
+        let functions: Chebyshev<3> = Chebyshev::through(&states);
+        let [[first, ..], [last, contact, load]] = [functions.at(0.0), functions.at(end)];
+        let off = larger((first - ends[0]).abs(), (last - ends[1]).abs());
+        let [tail, _] = functions.tails();
+        let left_out = largest(&tail, &[1.0, 1.0 / contact, 1.0 / load.abs()]);
+        let error = larger(larger(guesses.error, left_out), off);
+        let inverse = |functions| Inverse::new(functions, end);
+        Some(Self {
+            inverse: (off <= PUSH_MARGIN).then(|| inverse(functions)).flatten()?,
+            is_by_load: false,
+            first,
+            ends,
+            residual: MARGIN * error * row.pole_distance,
+        })
+    }
+
+    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near the row of `rod` between its ends.
+    pub fn write_guesses(&self, rod: &Rod, pushes: &[f64], guesses: &mut [Option<Guess>]) {
+        let from = pushes.partition_point(|push| *push < self.ends[0] - PUSH_MARGIN);
+        let to = pushes.partition_point(|push| *push <= self.ends[1] + PUSH_MARGIN);
+        let targets = pushes[from..to].iter().map(|push| push.max(self.first));
+        let targets: Vec<f64> = targets.collect();
+        let wanted = [true; 3];
+        let tip = arclength(rod, rod.tau_tip());
+        self.inverse
+            .solve(&targets, &wanted, |index, count, block| {
+                for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
+                    let [_, contact, load] = block.values.map(|values| values[lane]);
+                    let tau = if self.is_by_load {
+                        rod.tau(contact.min(tip))
+                    } else {
+                        contact
+                    };
+                    guess.get_or_insert(Guess { tau, load });
+                }
+            });
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use crate::sheet::{Edge, Sheet};
+    use whiskmap_mechanics::rod::Side;
+    use whiskmap_mechanics::shooting::ShootingMap;
+    use whiskmap_mechanics::shooting::batch::Method;
+
+    fn cone(side: Side) -> Rod {
+        Rod {
+            taper: 0.95,
+            bend: 0.4,
+            pole: 0.0125 * side.sign(),
+            ..Rod::default()
+        }
+    }
+
+    /// Along rows that end at either edge, and between two ends of rows out of reach, the pole of a guess is where it is wanted: also where a
+    /// contact moves from the tip of a perfect cone without a change of the load.
+    #[test]
+    fn guesses_are_next_to_states() {
+        for taper in [0.95, 1.0] {
+            let (mut ends, mut detached) = ([0; 2], 0);
+            for side in Side::BOTH {
+                let rod = Rod {
+                    taper,
+                    ..cone(side)
+                };
+                let distances: Vec<f64> = (0..184).map(|i| 0.1 + 0.005 * f64::from(i)).collect();
+                let sheet = Sheet::new(Method::fine(), &rod, side, &distances);
+                for (row, place) in sheet.rows.iter().enumerate() {
+                    for [first, last] in sheet.pieces(row) {
+                        let end = last.filter(|end| !end.is_at_touch()).unwrap();
+                        let from = first.map_or(0.0, |first| first.push);
+                        ends[usize::from(end.edge == Edge::Tip)] += 1;
+                        detached += usize::from(first.is_some());
+                        let part = |i| f64::from(i) / 40.0;
+                        let pushes = (0..=40).map(|i| from + part(i) * (end.push - from));
+                        let pushes: Vec<f64> = pushes.collect();
+                        let guesses = sheet.guesses(row, &pushes);
+                        let points = guesses
+                            .iter()
+                            .map(|guess| guess.map(|guess| (guess.tau, guess.load)));
+                        let points: Option<Vec<(f64, f64)>> = points.collect();
+                        let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
+                        let panel = sheet.samples.as_ref().unwrap().panels.as_ref();
+                        let states = panel.unwrap().of(row).unwrap();
+                        let states = GuessRow::new(states, sheet.case(), place, [first, last]);
+                        let most = states.unwrap().residual;
+                        for (map, push) in maps.iter().zip(&pushes) {
+                            let off = map.pole.distance(place.pole(side.sign() * push));
+                            assert!(off < most.min(1e-6), "{taper} {row} {push}: {off:e}");
+                        }
+                        let beyond = [end.push + 2.0 * PUSH_MARGIN];
+                        assert_eq!(sheet.guesses(row, &beyond), [None]);
+                    }
+                }
+            }
+            let is_each = ends.iter().all(|count| *count > 0) && detached > 2;
+            assert!(is_each, "{taper} {ends:?} {detached}");
+        }
+    }
+
+    /// A pole out of reach leaves the rows within reach their panel, also where the rod is continued to no radius or no modulus.
+    #[test]
+    fn rows_out_of_reach_need_no_panel() {
+        for (taper, gradient) in [(0.95, 0.0), (1.0, 0.0), (0.3, -0.9)] {
+            let rod = Rod {
+                taper,
+                gradient,
+                ..cone(Side::Cb)
+            };
+            let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &[0.5, 1.2, 5.0, 10.0]);
+            assert!(!sheet.is_continued(), "{taper} {gradient}");
+            let found = |row| sheet.guesses(row, &[0.1])[0].is_some();
+            assert_eq!([0, 1, 2, 3].map(found), [true, false, false, false]);
+        }
+    }
+}
