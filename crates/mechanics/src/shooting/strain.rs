@@ -4,7 +4,7 @@
 //! curvatures. Steps are of 8th order, so that the polynomial is as accurate as they are with half their length.
 
 use super::{Planar, Section, StepObserver};
-use crate::numerics::{Bracket, LaneNumbers, Lanes};
+use crate::numerics::{LaneNumbers, Lanes, illinois};
 use crate::rod::{Rest, Rod, arclength};
 use glam::DVec2;
 
@@ -27,9 +27,12 @@ pub struct StepNodes<T>(Vec<NodeNumbers<T>>);
 
 impl<T> Default for StepNodes<T> {
     fn default() -> Self {
-        Self(Vec::new())
+        Self(Vec::with_capacity(STEPS))
     }
 }
+
+/// Number of steps for which there is room without another allocation.
+const STEPS: usize = 64;
 
 impl<T: Lanes> StepObserver<T> for StepNodes<T> {
     #[inline(always)]
@@ -57,6 +60,9 @@ struct StrainNode {
     lever: f64,
     tangent: DVec2,
 }
+
+/// Slope of the strain at a point that counts as the maximum, in parts of the steeper slope at the ends of its step.
+const FLAT: f64 = 1e-12;
 
 impl PeakStrain {
     /// Finds the largest bending strain of `rod` with the contact at `tau` under `load`, from the `nodes` of its trajectory in the order of the
@@ -100,12 +106,14 @@ impl PeakStrain {
                 rest.curvature(node.arclength) - force * node.lever / rod.stiffness(node.arclength)
             });
             let growth = |s: f64| lever.growth(rod, s);
-            if growth(from.arclength) > 0.0 && growth(to.arclength) < 0.0 {
-                let bracket = Bracket {
-                    below: to.arclength,
-                    above: from.arclength,
+            let ends = [from, to].map(|node| [node.arclength, growth(node.arclength)]);
+            let [[_, rising], [_, falling]] = ends;
+            if rising > 0.0 && falling < 0.0 {
+                let flat = FLAT * rising.max(-falling);
+                let Some(top) = illinois(ends, flat, |s| Some(growth(s))) else {
+                    continue;
                 };
-                let s = bracket.bisect(growth);
+                let s = top.x;
                 let peak = bending_strain(rod, s, lever.at(s)[0]);
                 if peak > best.1 {
                     best = (s, peak);
