@@ -8,6 +8,18 @@ mod row;
 pub use outcome::Outcome;
 pub use row::{PushSpan, RowBoundary, TIE};
 
+use std::collections::BTreeMap;
+
+/// Returns the number of cells of each code of a regime or status among the `codes` of cells. It counts runs, as neighbouring cells mostly have the same code.
+#[must_use]
+pub fn cells_by_code(codes: &[u32]) -> BTreeMap<u32, u64> {
+    let mut cells = BTreeMap::new();
+    for run in codes.chunk_by(|a, b| a == b) {
+        *cells.entry(run[0]).or_default() += run.len() as u64;
+    }
+    cells
+}
+
 /// Defines an enum whose variants each have a code, for files, and a name, for files and messages.
 macro_rules! named {
     ($(#[$outer:meta])* pub enum $kind:ident {

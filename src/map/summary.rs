@@ -2,10 +2,11 @@
 
 use super::times::StageTimes;
 use super::{Panel, Stage};
-use crate::classify::{Outcome, Regime, Status};
+use crate::classify::{Outcome, Regime, Status, cells_by_code};
 use crate::engine::{EngineDescription, EngineError};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Numbers of cells of a run by their outcome in the engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -157,9 +158,9 @@ impl Summary {
 
     /// Counts cells by their codes of regime and status, their residuals and steps.
     fn count_cells(&mut self, regimes: &[u32], statuses: &[u32], residuals: &[f32], steps: &[u32]) {
-        let of =
-            |codes: &[u32], code: u32| codes.iter().filter(|found| **found == code).count() as u64;
-        self.regimes = Regime::ALL.map(|regime| of(regimes, regime.code()));
+        let [regime_counts, status_counts] = [regimes, statuses].map(cells_by_code);
+        let of = |counts: &BTreeMap<u32, u64>, code| counts.get(&code).copied().unwrap_or(0);
+        self.regimes = Regime::ALL.map(|regime| of(&regime_counts, regime.code()));
         let mut worst = 0.0_f32;
         for (residual, regime) in residuals.iter().zip(regimes) {
             let has_state = residual.is_finite() && *regime != Regime::Unresolved.code();
@@ -167,11 +168,11 @@ impl Summary {
             worst = worst.max(if has_state { *residual } else { 0.0 });
         }
         self.worst_residual = worst.into();
-        self.disagreements = of(statuses, Status::Disagreement.code());
-        self.without_whisker = of(statuses, Status::NoWhisker.code());
-        self.toward_base = of(statuses, Status::TowardBase.code());
-        self.sticking = of(statuses, Status::Sticking.code());
-        self.without_state = of(statuses, Status::NoState.code());
+        self.disagreements = of(&status_counts, Status::Disagreement.code());
+        self.without_whisker = of(&status_counts, Status::NoWhisker.code());
+        self.toward_base = of(&status_counts, Status::TowardBase.code());
+        self.sticking = of(&status_counts, Status::Sticking.code());
+        self.without_state = of(&status_counts, Status::NoState.code());
         self.steps = steps.iter().copied().map(u64::from).sum();
     }
 

@@ -1,7 +1,7 @@
 //! Numbers of cells of each regime and status.
 
 use super::StoreError;
-use crate::classify::{Regime, Status};
+use crate::classify::{Regime, Status, cells_by_code};
 use crate::map::{Audit, EngineCells, Panel};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -68,17 +68,14 @@ fn add(
     names: BTreeMap<u32, &'static str>,
     codes: &[u32],
 ) -> Result<(), u32> {
-    let mut known = 0;
-    for (code, name) in &names {
-        let count = codes.iter().filter(|other| *other == code).count();
-        *cells.entry((*name).to_owned()).or_default() += count as u64;
-        known += count;
+    for name in names.values() {
+        cells.entry((*name).to_owned()).or_default();
     }
-    let unknown = || codes.iter().find(|code| !names.contains_key(code));
-    match (known < codes.len()).then(unknown).flatten() {
-        Some(unknown) => Err(*unknown),
-        None => Ok(()),
+    for (code, count) in cells_by_code(codes) {
+        let name = names.get(&code).ok_or(code)?;
+        *cells.entry((*name).to_owned()).or_default() += count;
     }
+    Ok(())
 }
 
 #[cfg(test)]
