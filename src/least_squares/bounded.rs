@@ -1,6 +1,6 @@
 //! Least squares inside limits.
 
-use super::{dot, minimise, norm};
+use super::{Svd, dot, minimise, norm};
 
 /// Residual where a problem has none, so large that no step goes there.
 const REFUSED: f64 = 1e100;
@@ -28,7 +28,7 @@ pub trait BoundedProblem {
 ///
 /// Beyond a limit the residuals are continued as they are at the limit. Limits depend on the other parameters, and one that was
 /// met may be left again: while the sum shrinks, the iteration starts again from where it has ended. Parameters on which no residual
-/// depends stay.
+/// depends stay, and so do parameters together along a direction on which none depends: rounding of the residuals would decide where they end.
 ///
 /// # Errors
 /// The reason why the iteration ends before it converges; `no_jacobian` if a Jacobian is missing.
@@ -65,6 +65,7 @@ pub fn search(
                     column.fill(0.0);
                 }
             }
+            clear_faint_directions(&mut columns);
             Ok(columns)
         };
         let (end, sum) = minimise(residuals, jacobian, best.clone(), tolerance)?;
@@ -90,5 +91,79 @@ fn clear_faint(columns: &mut [Vec<f64>]) {
         if norm(column) <= FAINT * longest {
             column.fill(0.0);
         }
+    }
+}
+
+/// Takes from the columns what they change along directions of parameters so faint that rounding may have made it. Parameters are scaled by the
+/// lengths of their columns.
+fn clear_faint_directions(columns: &mut [Vec<f64>]) {
+    let lengths: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
+    let known: Vec<usize> = (0..columns.len()).filter(|i| lengths[*i] > 0.0).collect();
+    let unit = |i: &usize| {
+        let column = columns[*i].iter();
+        column.map(|entry| entry / lengths[*i]).collect()
+    };
+    let svd = Svd::new(known.iter().map(unit).collect());
+    let largest = svd.largest();
+    let faint = svd.values().filter(|(value, ..)| *value <= FAINT * largest);
+    for (_, direction, image) in faint {
+        for (part, i) in direction.iter().zip(&known) {
+            let pairs = columns[*i].iter_mut().zip(image);
+            pairs.for_each(|(entry, change)| *entry -= part * change * lengths[*i]);
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    /// Two parameters of which the residuals know the sum alone, and another one, with the rounding of trajectories.
+    struct Sum;
+
+    impl BoundedProblem for Sum {
+        fn count(&self) -> usize {
+            8
+        }
+
+        fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
+            let rounding = |i: usize| 1e-13 * libm::sin(1e9 * (x[0] - 2.0 * x[1]) + i as f64);
+            let residual = |i: usize| {
+                let slope = 1.0 + i as f64;
+                slope * (x[0] + x[1] - 4.0) + libm::sin(slope) * (x[2] - 1.0) + rounding(i)
+            };
+            Some((0..self.count()).map(residual).collect())
+        }
+
+        fn jacobian(&self, x: &[f64], _: &[f64]) -> Option<Vec<Vec<f64>>> {
+            let rounding = |i: usize| 1e-12 * libm::cos(1e9 * x[0] + i as f64);
+            let by_sum = |i: usize| 1.0 + i as f64;
+            let other = |i: usize| libm::sin(1.0 + i as f64);
+            let all = 0..self.count();
+            Some(vec![
+                all.clone().map(by_sum).collect(),
+                all.clone().map(|i| by_sum(i) + rounding(i)).collect(),
+                all.map(other).collect(),
+            ])
+        }
+
+        fn ranges(&self, _: &[f64]) -> Vec<[f64; 2]> {
+            vec![[-100.0, 100.0]; 3]
+        }
+    }
+
+    /// Parameters whose sum alone counts move by equal amounts, and rounding does not move them.
+    #[test]
+    fn parameters_stay_along_a_direction_without_change() {
+        let (end, sum) = search(&Sum, &[1.0, 2.0, 0.0], 1e-12, "").unwrap();
+        let off = end
+            .iter()
+            .zip([1.5, 2.5, 1.0])
+            .map(|(x, known)| (x - known).abs());
+        assert!(
+            off.fold(0.0, f64::max) < 1e-9 && sum < 1e-20,
+            "{end:?} {sum:e}"
+        );
     }
 }
