@@ -64,6 +64,9 @@ pub fn needs_values(channels: Channels, most: f64) -> bool {
     channels.needs_states() || most < KnownRow::RESIDUAL
 }
 
+/// Number of rows of a side that are compared with their net at once, on one thread.
+const ROWS_TOGETHER: usize = 64;
+
 /// Row batch: cells of some rows, for an [`Engine`](super::Engine).
 #[derive(Clone, Debug)]
 pub struct RowBatch {
@@ -146,12 +149,18 @@ impl RowBatch {
     /// known rows where they are [`enough`](needs_values).
     #[must_use]
     pub fn with_nets(mut self, most: f64) -> Self {
-        let rows = self.rows.par_iter();
+        let sides = &self.sides;
         if needs_values(self.channels, most) {
-            let expansions = rows.map(|row| RowExpansion::of(&self.sides[row.side], row.row, most));
+            let rows = self.rows.par_iter();
+            let expansions = rows.map(|row| RowExpansion::of(&sides[row.side], row.row, most));
             self.expansions = expansions.collect();
         } else {
-            let known = rows.map(|row| KnownRow::of(&self.sides[row.side], row.row));
+            let by_side = self.rows.par_chunk_by(|a, b| a.side == b.side);
+            let together = by_side.flat_map(|of_side| of_side.par_chunks(ROWS_TOGETHER));
+            let known = together.flat_map_iter(|of_side| {
+                let rows: Vec<usize> = of_side.iter().map(|row| row.row).collect();
+                KnownRow::of(&sides[of_side[0].side], &rows)
+            });
             self.known = known.collect();
         }
         self

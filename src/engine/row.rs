@@ -183,18 +183,20 @@ impl KnownRow {
     /// Largest residual of the states of a row, in whisker lengths. The states only show that there are any.
     pub const RESIDUAL: f64 = 1e-4;
 
-    /// Returns the known row with the index `row` of `side`; `None` if it has other ends, or if the net for guesses allows a residual of more than
-    /// [`Self::RESIDUAL`].
+    /// Returns the known rows among the `rows` of `side`, `[row]`. `None` for a row that has other ends, or for which the net for guesses allows a
+    /// residual of more than [`Self::RESIDUAL`].
     #[must_use]
-    pub fn of(side: &WhiskerSide, row: usize) -> Option<Self> {
-        let sheet = &side.sheet;
-        let (end, residual) = (sheet.simple_end(row)?, sheet.known_residual(row)?);
-        let known = Self {
-            end_push: end.push,
-            residual,
-        };
-        // NaN is not below any bound.
-        (residual <= Self::RESIDUAL).then_some(known)
+    pub fn of(side: &WhiskerSide, rows: &[usize]) -> Vec<Option<Self>> {
+        let known = side.sheet.known_residuals(rows).into_iter();
+        let known = known.map(|known| {
+            let (end, residual) = known?;
+            // NaN is not below any bound.
+            (residual <= Self::RESIDUAL).then_some(Self {
+                end_push: end.push,
+                residual,
+            })
+        });
+        known.collect()
     }
 
     /// Writes outcomes and residuals of the cells of `row`, except those next to the end. `pushes` are the push angles of the side's columns:
@@ -338,7 +340,7 @@ mod tests {
             let distance = side.sheet.rows[row].pole_distance;
             let mut is_known = |off: f64| {
                 side.sheet.crossings[row][0].push = end + off / distance;
-                KnownRow::of(&side, row).is_some()
+                KnownRow::of(&side, &[row])[0].is_some()
             };
             let found = [-1e-4, -4e-5, -1e-5, 0.0, 1e-5, 4e-5, 1e-4].map(&mut is_known);
             assert_eq!(found, [false, false, true, true, true, false, false]);

@@ -8,7 +8,7 @@ use super::fallback::complete;
 use super::nets::PendingNets;
 use super::panel::Panel;
 use super::rows;
-use super::sides::whisker_sides;
+use super::sides::{SideNet, whisker_sides};
 use super::summary::{EngineCells, Summary};
 use super::times::Stage;
 use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker, needs_values};
@@ -197,7 +197,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let nets = match (self.drafted.take(), self.on_device()) {
             (Some(nets), _) => nets,
             (None, Some(most)) => self.draft_next(most)?,
-            (None, None) => return Some(self.sides_of_next(self.worker.row_residual)?.into()),
+            (None, None) => return Some(self.sides_of_next(self.side_net())?.into()),
         };
         let begun = Stopwatch::start();
         let (sides, waited) = nets.finish(&mut self.worker);
@@ -216,21 +216,28 @@ impl<'a, 'e> Pipeline<'a, 'e> {
 
     /// Begins the nets of the next group, with a residual of at most `most` whisker lengths.
     fn draft_next(&mut self, most: f64) -> Option<PendingNets> {
-        let sides = self.sides_of_next(None)?;
+        let sides = self.sides_of_next(SideNet::Guesses)?;
         let (method, worker) = (self.method, &mut self.worker);
         let nets = || PendingNets::new(sides, method, most, worker);
         Some(self.summary.stages.time(Stage::Sheets, nets))
     }
 
-    /// Computes the sides of the next group, with nets of this residual.
-    fn sides_of_next(&mut self, row_residual: Option<f64>) -> Option<Vec<WhiskerSide>> {
+    /// Returns the net that the sides of the next group get, if no device integrates it.
+    fn side_net(&self) -> SideNet {
+        let most = self.worker.row_residual;
+        match most.filter(|_| self.worker.is_working()) {
+            Some(most) if needs_values(self.plan.channels, most) => SideNet::Values(most),
+            Some(_) => SideNet::KnownRows,
+            None => SideNet::Guesses,
+        }
+    }
+
+    /// Computes the sides of the next group with this `net`.
+    fn sides_of_next(&mut self, net: SideNet) -> Option<Vec<WhiskerSide>> {
         let whiskers = self.groups.next()?;
         let found = whiskers.filter_map(|index| self.scene.whisker(index).ok());
         let found: Vec<SweptWhisker> = found.collect();
-        let channels = self.plan.channels;
-        let row_residual =
-            row_residual.filter(|most| self.worker.is_working() && needs_values(channels, *most));
-        let of_plan = (self.plan, self.method, row_residual);
+        let of_plan = (self.plan, self.method, net);
         let sides = || whisker_sides(self.scene, of_plan, &self.columns, &found);
         Some(self.summary.stages.time(Stage::Sheets, sides))
     }

@@ -9,11 +9,21 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use whiskmap_mechanics::shooting::batch::Method;
 
-/// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the derivatives of the plan. If an engine evaluates
-/// rows, each side gets a net whose rows have at most `row_residual`, in whisker lengths.
+/// Net that a side gets with its sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SideNet {
+    /// For guesses of all cells.
+    Guesses,
+    /// For guesses, and with values whose rows have a residual of at most this many whisker lengths.
+    Values(f64),
+    /// For known rows, of which few cells need guesses.
+    KnownRows,
+}
+
+/// Computes every side of some `whiskers` of `scene` with this `net`, whisker by whisker, with the derivatives of the plan.
 pub fn whisker_sides(
     scene: &Scene,
-    (plan, method, row_residual): (&Plan, Method, Option<f64>),
+    (plan, method, net): (&Plan, Method, SideNet),
     columns: &[Arc<SideColumns>],
     whiskers: &[SweptWhisker],
 ) -> Vec<WhiskerSide> {
@@ -25,7 +35,12 @@ pub fn whisker_sides(
         let rod = swept.rod(columns.side);
         let distances = grid.distance_mm.iter();
         let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
-        let sheet = Sheet::new(method, &rod, columns.side, &distances);
+        let sheet = match net {
+            SideNet::KnownRows => Sheet::of_known_rows(method, &rod, columns.side, &distances),
+            SideNet::Guesses | SideNet::Values(_) => {
+                Sheet::new(method, &rod, columns.side, &distances)
+            }
+        };
         let mut side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
         if !derivatives.is_empty() {
             let (resolution, sheet) = (method.resolution, &side.sheet);
@@ -33,9 +48,9 @@ pub fn whisker_sides(
             side.push_derivatives =
                 of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
         }
-        match row_residual {
-            Some(most) => side.with_net(most),
-            None => side,
+        match net {
+            SideNet::Values(most) => side.with_net(most),
+            SideNet::Guesses | SideNet::KnownRows => side,
         }
     });
     sides.collect()

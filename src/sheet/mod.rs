@@ -31,7 +31,7 @@ pub(crate) use span::RowSpan;
 
 use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
-use net::{FOLD_ERRORS, GUESS_ERRORS, GuessRow, ValueNet};
+use net::{FOLD_ERRORS, GUESS_ERRORS, GuessRow, KNOWN_ROW_ERRORS, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
 use std::sync::Arc;
@@ -76,18 +76,24 @@ impl Sheet {
     /// Computes the sheet of `rod` by `method` for rows at `distances` (at first touch, in whisker lengths).
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_errors(GUESS_ERRORS, method, rod, side, distances)
+        Self::with_errors(&GUESS_ERRORS, method, rod, side, distances)
+    }
+
+    /// Computes the sheet as [`Sheet::new`] does, for [known rows](Sheet::known_residuals): guesses are less accurate.
+    #[must_use]
+    pub fn of_known_rows(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
+        Self::with_errors(&KNOWN_ROW_ERRORS, method, rod, side, distances)
     }
 
     /// Computes the sheet as [`Sheet::new`] does, for the crossings of its rows alone: rows may have no [`Sheet::guesses`].
     #[must_use]
     pub fn of_ends(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_errors(FOLD_ERRORS, method, rod, side, distances)
+        Self::with_errors(&FOLD_ERRORS, method, rod, side, distances)
     }
 
-    /// Computes the sheet with panels to the first of two `errors`, or else to the second.
+    /// Computes the sheet with panels to the first of the `errors` with which they show all folds.
     fn with_errors(
-        errors: [f64; 2],
+        errors: &[f64],
         method: Method,
         rod: &Rod,
         side: Side,
@@ -263,15 +269,30 @@ impl Sheet {
         self.net.as_ref()?.row(self, row)
     }
 
-    /// Returns a bound on the residual of all states of a `row` by the net for guesses, from first touch to its only other end, in whisker lengths.
-    /// `None` if the row has other ends, or if the sheet is not certified.
+    /// Returns the end of each of `rows` with a bound on the residual of all its states by the net for guesses, from first touch to this only other
+    /// end, in whisker lengths: `[row]`. `None` if a row has other ends or no panel, or if the sheet is not certified.
     ///
     /// Each push angle between both ends has a state: see `docs/numerics.md`, "Spectral engine".
     #[must_use]
-    pub fn known_residual(&self, row: usize) -> Option<f64> {
-        let end = self.simple_end(row)?;
-        let panels = self.samples.as_ref()?.panels.as_ref()?;
-        Some(panels.of(row)?.residual(self.case(), &self.rows[row], end))
+    pub fn known_residuals(&self, rows: &[usize]) -> Vec<Option<(&Crossing, f64)>> {
+        let mut known = vec![None; rows.len()];
+        let samples = self.samples.as_ref();
+        let Some(panels) = samples.and_then(|samples| samples.panels.as_ref()) else {
+            return known;
+        };
+        for (panel, places) in panels.with_rows(rows) {
+            let ends = places.iter().filter_map(|place| {
+                let row = rows[*place];
+                Some((*place, &self.rows[row], self.simple_end(row)?))
+            });
+            let ends: Vec<(usize, &Row, &Crossing)> = ends.collect();
+            let of_panel: Vec<_> = ends.iter().map(|(_, row, end)| (*row, *end)).collect();
+            let residuals = panel.residuals(self.case(), &of_panel);
+            for ((place, _, end), residual) in ends.into_iter().zip(residuals) {
+                known[place] = Some((end, residual));
+            }
+        }
+        known
     }
 
     /// Returns the ends of the stable pieces of `row`, `[piece]`; without the first one, a piece begins at first touch.

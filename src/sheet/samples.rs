@@ -2,7 +2,7 @@
 
 use crate::sheet::case::SheetCase;
 use crate::sheet::edges::Edges;
-use crate::sheet::fold::contact_nodes::{ContactNodes, NARROW_SPACING, SPACING};
+use crate::sheet::fold::contact_nodes::{ContactNodes, Folds, NARROW_SPACING, SPACING};
 use crate::sheet::net::{GuessPanel, Panels};
 use crate::sheet::row::Row;
 
@@ -21,11 +21,11 @@ pub struct SheetSamples {
 }
 
 impl SheetSamples {
-    /// Samples the sheet of `rows`, the `nearest` of which is nearest to the base, with panels to the first of two `errors`, or to the second if
-    /// those do not show all folds. If the samples are not certified, it samples again at a narrow spacing, with panels by fine trajectories.
+    /// Samples the sheet of `rows`, the `nearest` of which is nearest to the base, with panels to the first of the `errors` with which they show all folds.
+    /// If the samples are not certified, it samples again at a narrow spacing, by fine trajectories, with a march at every contact.
     /// Returns `None` if some contact has no fold, or no stable state at first touch.
-    pub fn new(case: SheetCase, nearest: &Row, rows: &[Row], errors: [f64; 2]) -> Option<Self> {
-        let nodes = |case, spacing| ContactNodes::new(case, nearest, spacing);
+    pub fn new(case: SheetCase, nearest: &Row, rows: &[Row], errors: &[f64]) -> Option<Self> {
+        let nodes = |case, spacing, folds| ContactNodes::new(case, nearest, spacing, folds);
         let sampled = |contacts: ContactNodes, by, folds: Option<ContactNodes>| {
             let edges = Edges::new(case, &contacts);
             let folds = folds.as_ref().unwrap_or(&contacts);
@@ -33,26 +33,29 @@ impl SheetSamples {
             let show_folds = |panels: &Panels<GuessPanel>| {
                 let all = panels.of_all_rows();
                 all.is_some_and(|all| all.iter().all(shows_folds))
+                    && folds.are_first(case, nearest, |tau| panels.cover(case.rod, tau))
             };
             let panels = |error| Panels::for_guesses(by, folds, rows, error);
-            let found = || errors.into_iter().map(panels).find(show_folds);
+            let found = || errors.iter().copied().map(panels).find(show_folds);
             Self {
                 panels: edges.are_certified().then(found).flatten(),
                 contacts,
                 edges,
             }
         };
-        let contacts = nodes(case, SPACING);
-        match contacts.map(|contacts| sampled(contacts, case.coarsely(), None)) {
-            Some(samples) if samples.panels.is_some() => Some(samples),
-            samples => {
-                // Near the tip of a perfect cone, coarse trajectories have other folds: which ones are first is shown by fine ones.
-                let fine = case.finely();
-                let both = nodes(case, NARROW_SPACING).zip(nodes(fine, NARROW_SPACING));
-                let again = both.map(|(contacts, folds)| sampled(contacts, fine, Some(folds)));
-                again.or(samples)
-            }
-        }
+        let coarse = |folds| {
+            let contacts = nodes(case, SPACING, folds)?;
+            Some(sampled(contacts, case.coarsely(), None))
+        };
+        let first = coarse(Folds::Predicted).filter(|samples| samples.panels.is_some());
+        first.or_else(|| {
+            // Near the tip of a perfect cone, coarse trajectories have other folds: which ones are first is shown by fine ones.
+            let fine = case.finely();
+            let contacts = nodes(case, NARROW_SPACING, Folds::Marched);
+            let both = contacts.zip(nodes(fine, NARROW_SPACING, Folds::Marched));
+            let again = both.map(|(contacts, folds)| sampled(contacts, fine, Some(folds)));
+            again.or_else(|| coarse(Folds::Marched))
+        })
     }
 
     /// Returns true if a `load`, positive toward the pole, lies between first touch and the fold of the contact at `tau`.

@@ -86,7 +86,9 @@ fn points_of_one_whisker_are_taken_out() {
         let points = all.at(&swept.place).unwrap();
         assert_eq!((points.whiskers.len(), points.points.len()), (0, 6));
         let beside = points.beside(&swept.whisker, &swept.pole);
-        assert!(beside.rms_deg().unwrap() < 1e-12);
+        // On a sheet with other rows, an end has another rounding: 2e-12 degrees.
+        let rms = beside.rms_deg().unwrap();
+        assert!(rms < 1e-11, "{rms:e}");
     }
     let refused = table.grid.place(3);
     let why = all.at(&refused).unwrap_err().to_string();

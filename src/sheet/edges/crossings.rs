@@ -63,7 +63,7 @@ pub fn crossings(case: SheetCase, edges: &Edges, rows: &[Row]) -> Vec<Vec<Crossi
         for (after, pair) in samples.windows(2).enumerate() {
             let (a, b) = (pair[0], pair[1]);
             for (index, (row, target)) in rows.iter().zip(&targets).enumerate() {
-                let reached = [a, b].map(|sample| sample.ln_distance > *target);
+                let reached = [a.ln_distance > *target, b.ln_distance > *target];
                 // At first touch at the tip, the shape at rest decides. Where the integration puts the tip on the other side of the pole,
                 // the row crosses there to the accuracy of the integration. A whisker that is touched elsewhere can have its tip nearer.
                 let at_touch = edge == Edge::Tip

@@ -113,7 +113,7 @@ mod tests {
     use super::*;
     use crate::newton::LaneSharing;
     use crate::sheet::edges::edge_newton::{EdgeProblem, edge_newton};
-    use crate::sheet::fold::contact_nodes::SPACING;
+    use crate::sheet::fold::contact_nodes::{Folds, SPACING};
     use crate::sheet::row::Edge;
     use crate::sheet::row::Row;
     use glam::DVec2;
@@ -138,7 +138,7 @@ mod tests {
                 rod: &rod,
                 side,
             };
-            let contacts = ContactNodes::new(case, &row, SPACING).unwrap();
+            let contacts = ContactNodes::new(case, &row, SPACING, Folds::Predicted).unwrap();
             let edges = Edges::new(case, &contacts);
             let mut checked = 0;
             for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {

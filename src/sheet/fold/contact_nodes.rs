@@ -6,6 +6,7 @@
 
 use crate::sheet::case::SheetCase;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL, slope_of_u, tau_of, u_of};
+use crate::sheet::fold::predicted::predicted_folds;
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::Row;
 use glam::DVec2;
@@ -27,10 +28,20 @@ const BEYOND_NEAREST: usize = 1;
 /// Largest distance in `u` from the tip to the last node. The smallest `tau` is then below 1e-12 of `tau` at the tip.
 const LONGEST_RANGE: f64 = 68.0;
 
-/// Contact nodes with their first folds, from the base outward.
+/// Ways to find the folds of contact nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Folds {
+    /// Every node marches along the load, so that its fold is the first one, unless a pair of folds lies between two loads.
+    Marched,
+    /// One node in four marches, the tip among them. The folds of the others are near their predictions.
+    Predicted,
+}
+
+/// Contact nodes with their folds, from the base outward.
 #[derive(Clone, Debug)]
 pub struct ContactNodes {
-    /// First fold of each contact node, from the base outward: `[node]`.
+    /// Fold of each contact node, from the base outward: `[node]`. It is the first one if the node has marched. For other nodes, a net shows this, or
+    /// [`ContactNodes::are_first`].
     pub folds: Vec<FoldPoint>,
     /// Index of the contact node at the tip.
     pub tip: usize,
@@ -55,6 +66,9 @@ const SURELY_BELOW: f64 = 0.75;
 /// Bound on the magnitude of `d ln q/d ln tau` of a fold; it is 2 toward a slender tip.
 const STEEPEST: f64 = 4.0;
 
+/// Largest relative difference of the loads of one fold that is found twice.
+const SAME_FOLD: f64 = 1e-6;
+
 /// Returns the derivatives of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, by the index of the contact node.
 fn slopes_at(rod: &Rod, fold: &FoldPoint, spacing: f64) -> [f64; 2] {
     let ln_tau = spacing / slope_of_u(rod, fold.tau);
@@ -77,14 +91,23 @@ fn least_q(values: &[[f64; 2]], slopes: &[[f64; 2]]) -> f64 {
     libm::exp(least.fold(f64::INFINITY, f64::min))
 }
 
+/// Returns the contact nearest to the base at which a whisker can touch the pole of `nearest`, whatever its shape.
+fn nearest_contact(rod: &Rod, nearest: &Row) -> f64 {
+    rod.tau((nearest.pole_distance - rod.pole.abs()).min(1.0))
+}
+
 /// Returns the folds of nodes from the base outward. The first ones are so close to the base that a whisker held there does not reach the
 /// pole of `nearest`, whatever its shape.
-fn folds_down_to(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Vec<FoldPoint>> {
+fn folds_down_to(
+    case: SheetCase,
+    nearest: &Row,
+    spacing: f64,
+    folds: Folds,
+) -> Option<Vec<FoldPoint>> {
     let rod = case.rod;
     let tau_tip = rod.tau_tip();
     let u_tip = u_of(rod, tau_tip);
-    let reach = nearest.pole_distance - rod.pole.abs();
-    let range = (u_tip - u_of(rod, rod.tau(reach.min(1.0)))).min(LONGEST_RANGE);
+    let range = (u_tip - u_of(rod, nearest_contact(rod, nearest))).min(LONGEST_RANGE);
     let count = (range / spacing) as usize + BEYOND_TIP + BEYOND_NEAREST + 2;
     let taus = (0..count).scan(tau_tip, |tau, from_end| {
         let inward = from_end as f64 - BEYOND_TIP as f64;
@@ -94,16 +117,20 @@ fn folds_down_to(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Vec<Fol
         };
         Some(*tau)
     });
-    let folds = first_folds(case, &taus.collect::<Vec<_>>());
+    let taus: Vec<f64> = taus.collect();
+    let folds = match folds {
+        Folds::Marched => first_folds(case, &taus),
+        Folds::Predicted => predicted_folds(case, &taus, BEYOND_TIP),
+    };
     folds.into_iter().rev().collect()
 }
 
 impl ContactNodes {
     /// Computes the contact nodes of `rod` from its tip down to `nearest`, the row nearest to the base, and some beyond both. Returns
     /// `None` where a fold is missing.
-    pub fn new(case: SheetCase, nearest: &Row, spacing: f64) -> Option<Self> {
+    pub fn new(case: SheetCase, nearest: &Row, spacing: f64, folds: Folds) -> Option<Self> {
         let rod = case.rod;
-        let folds = folds_down_to(case, nearest, spacing)?;
+        let folds = folds_down_to(case, nearest, spacing, folds)?;
         let values = folds.iter().map(|f| [f.tau, f.q()].map(libm::log));
         let values: Vec<[f64; 2]> = values.collect();
         let slopes = folds.iter().map(|fold| slopes_at(rod, fold, spacing));
@@ -125,6 +152,30 @@ impl ContactNodes {
             folds,
             slopes,
         })
+    }
+
+    /// Returns true if the folds of all nodes at which a whisker can touch the pole of `nearest` or of a farther row are first ones: those of a march,
+    /// also where the node is not covered by a net that shows it (`is_covered(tau)`).
+    #[must_use]
+    pub fn are_first(
+        &self,
+        case: SheetCase,
+        nearest: &Row,
+        is_covered: impl Fn(f64) -> bool,
+    ) -> bool {
+        let nearest = nearest_contact(case.rod, nearest);
+        let is_open = |fold: &&FoldPoint| {
+            let is_out_of_touch = fold.tau < nearest;
+            !fold.has_marched && !is_out_of_touch && !is_covered(fold.tau)
+        };
+        let open: Vec<&FoldPoint> = self.folds[..=self.tip].iter().filter(is_open).collect();
+        let taus: Vec<f64> = open.iter().map(|fold| fold.tau).collect();
+        let marched = first_folds(case, &taus);
+        let is_same = |(fold, marched): (&FoldPoint, Option<FoldPoint>)| {
+            let off = |marched: FoldPoint| (marched.load / fold.load - 1.0).abs();
+            marched.is_some_and(|marched| off(marched) <= SAME_FOLD)
+        };
+        open.into_iter().zip(marched).all(is_same)
     }
 
     /// Returns true if the load `f/rho^2` is certainly less than the fold load of the contact at `tau`.
@@ -188,12 +239,82 @@ mod tests {
                     side,
                 };
                 let row = Row::new(&Rest::new(&rod), 0.3);
-                let nodes = ContactNodes::new(case, &row, SPACING).unwrap();
+                let nodes = ContactNodes::new(case, &row, SPACING, Folds::Predicted).unwrap();
                 for i in [2, nodes.tip] {
                     check(&nodes, case, i);
                 }
             }
         }
+    }
+
+    /// Folds near their predictions are those of a march, at the nodes of a sheet and at contacts so far apart that most predictions are wrong.
+    #[test]
+    fn predicted_folds_are_first_folds() {
+        let cone = |taper: f64, friction: f64| Rod {
+            taper,
+            bend: 0.4,
+            pole: 0.0125,
+            friction,
+            ..Rod::default()
+        };
+        for rod in [
+            cone(0.95, 0.0),
+            cone(1.0, 0.0),
+            cone(0.6, 0.3),
+            cone(0.0, 0.0),
+        ] {
+            let case = SheetCase {
+                method: Method::fine(),
+                rod: &rod,
+                side: Side::Cb,
+            };
+            let u_tip = u_of(&rod, rod.tau_tip());
+            for spacing in [SPACING, 3.0] {
+                let taus = (0..12).map(|i| tau_of(&rod, u_tip - spacing * f64::from(i), 1.0));
+                let taus: Vec<f64> = taus.collect();
+                let marched = first_folds(case, &taus);
+                let predicted = predicted_folds(case, &taus, 1);
+                for (marched, predicted) in marched.iter().zip(&predicted) {
+                    let (marched, predicted) = (marched.unwrap(), predicted.unwrap());
+                    let off = (predicted.load / marched.load - 1.0).abs();
+                    let turned = (predicted.phi - marched.phi).abs();
+                    assert!(off < 1e-9 && turned < 1e-9, "{spacing}: {off:e} {turned:e}");
+                }
+                let sampled = predicted.iter().flatten().filter(|fold| fold.has_marched);
+                let expected = if spacing == SPACING { 3..4 } else { 4..12 };
+                assert!(
+                    expected.contains(&sampled.count()),
+                    "{} {spacing}",
+                    rod.taper
+                );
+            }
+        }
+    }
+
+    /// A later fold at a node is found where no net covers the node.
+    #[test]
+    fn later_folds_are_not_first() {
+        let rod = Rod {
+            taper: 0.95,
+            bend: 0.4,
+            pole: 0.0125,
+            ..Rod::default()
+        };
+        let case = SheetCase {
+            method: Method::fine(),
+            rod: &rod,
+            side: Side::Cb,
+        };
+        let row = Row::new(&Rest::new(&rod), 0.3);
+        let mut nodes = ContactNodes::new(case, &row, SPACING, Folds::Predicted).unwrap();
+        assert!(nodes.are_first(case, &row, |_| false));
+        let later = (2..nodes.tip)
+            .find(|i| !nodes.folds[*i].has_marched)
+            .unwrap();
+        nodes.folds[later].load *= 1.5;
+        let tau = nodes.folds[later].tau;
+        assert!(!nodes.are_first(case, &row, |_| false));
+        assert!(nodes.are_first(case, &row, |covered| covered == tau));
     }
 
     fn check(nodes: &ContactNodes, case: SheetCase, i: usize) {

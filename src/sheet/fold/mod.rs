@@ -2,6 +2,7 @@
 
 pub mod contact_nodes;
 pub mod coordinate;
+mod predicted;
 
 use crate::newton::{BatchNewton, LaneSharing, NewtonProblem, NewtonStep};
 use crate::sheet::case::SheetCase;
@@ -22,6 +23,8 @@ pub struct FoldPoint {
     pub variation: SecondVariation,
     /// Direction of the pole at the fold point in radians, continuous from first touch.
     pub phi: f64,
+    /// True if the loads up to the fold point were sampled, false if only loads around it were.
+    pub has_marched: bool,
 }
 
 impl FoldPoint {
@@ -39,7 +42,7 @@ impl FoldPoint {
 /// Number of samples of `q = |load| s^2` for each round of the march. Measured radii and a mount multiply `q` by their softness.
 const SAMPLES_PER_ROUND: usize = 11;
 
-/// Spacing of the first samples in `q`. The second fold is farther from the first one than this.
+/// Spacing of the first samples of a march in `q`. The second fold is farther from the first one than this.
 const FIRST_SPACING: f64 = 0.75;
 
 /// Value of `q` at which the march begins. Measured radii, moduli that fall toward the tip and mounts do not enter `q`. Without them the sheet is
@@ -93,7 +96,36 @@ pub fn first_folds(case: SheetCase, taus: &[f64]) -> Vec<Option<FoldPoint>> {
     folds
 }
 
-/// Contact with the loads between which its `det` first falls below zero.
+/// Returns the load of `q = 1` at the contact `tau`.
+pub(super) fn load_scale(SheetCase { rod, side, .. }: SheetCase, tau: f64) -> f64 {
+    side.sign() / (arclength(rod, tau).powi(2) * rod.softness(tau))
+}
+
+/// Returns the bracket of the fold at `tau` between the sample `at`, where the map and the direction of the pole are known, and the next of some
+/// `samples` of `q` with these `dets`.
+fn bracket(
+    case: SheetCase,
+    tau: f64,
+    samples: &[f64],
+    dets: &[f64],
+    (at, map, phi): (usize, ShootingMap, f64),
+) -> FoldBracket {
+    let scale = load_scale(case, tau);
+    let slack = BRACKET_SLACK * (samples[at + 1] - samples[at]);
+    FoldBracket {
+        tau,
+        loads: Bracket {
+            below: (samples[at] - slack) * scale,
+            above: (samples[at + 1] + slack) * scale,
+        },
+        guess: root(samples, dets, at) * scale,
+        before: (samples[at] * scale, map),
+        phi,
+        has_marched: true,
+    }
+}
+
+/// Contact with two loads between which its `det` falls below zero.
 #[derive(Clone, Copy, Debug)]
 struct FoldBracket {
     tau: f64,
@@ -103,6 +135,8 @@ struct FoldBracket {
     /// Load before the fold with its map, and the direction of the pole there in radians, continuous from first touch.
     before: (f64, ShootingMap),
     phi: f64,
+    /// True if the loads up to the bracket were sampled.
+    has_marched: bool,
 }
 
 /// Samples the loads of every contact from `q = begin` outward until `det` changes its sign. An entry is `None` also where the first
@@ -115,13 +149,12 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
         /// Maps at first touch, and at the samples.
         maps: Vec<ShootingMap>,
     }
-    let SheetCase { rod, side, .. } = case;
     let mut found = vec![None; taus.len()];
     let at_touch: Vec<ShootingMap> = case.shoot(taus.iter().map(|tau| (*tau, 0.0)));
     let mut open: Vec<ContactMarch> = (0..taus.len())
         .map(|index| ContactMarch {
             index,
-            scale: side.sign() / (arclength(rod, taus[index]).powi(2) * rod.softness(taus[index])),
+            scale: load_scale(case, taus[index]),
             dets: Vec::new(),
             maps: vec![at_touch[index]],
         })
@@ -151,21 +184,12 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
             let Some((at, _)) = pairs.into_iter().find(changed) else {
                 return true;
             };
-            let slack = BRACKET_SLACK * (samples[at + 1] - samples[at]);
             let loads = std::iter::once(0.0).chain(samples[..=at].iter().map(|q| q * march.scale));
-            found[march.index] = Some(FoldBracket {
-                tau: taus[march.index],
-                loads: Bracket {
-                    below: (samples[at] - slack) * march.scale,
-                    above: (samples[at + 1] + slack) * march.scale,
-                },
-                guess: root(&samples, &march.dets, at) * march.scale,
-                // The first map is that at first touch.
-                before: (samples[at] * march.scale, march.maps[at + 1]),
-                phi: directions(0.0, loads.zip(&march.maps))
-                    .last()
-                    .unwrap_or_default(),
-            });
+            // The first map is that at first touch.
+            let phis = directions(0.0, loads.zip(&march.maps));
+            let before = (at, march.maps[at + 1], phis.last().unwrap_or_default());
+            let tau = taus[march.index];
+            found[march.index] = Some(bracket(case, tau, &samples, &march.dets, before));
             false
         });
         if samples[samples.len() - 1] >= EVEN_UP_TO {
@@ -244,12 +268,12 @@ impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
 }
 
 /// Solves `det(load) = 0` inside the brackets.
-fn polish(case: SheetCase, marched: Vec<Option<FoldBracket>>) -> Vec<Option<FoldPoint>> {
+fn polish(case: SheetCase, brackets: Vec<Option<FoldBracket>>) -> Vec<Option<FoldPoint>> {
     let rod = case.rod;
-    let found: Vec<FoldBracket> = marched.iter().flatten().copied().collect();
-    let problem = |marched: &FoldBracket| FoldProblem {
+    let found: Vec<FoldBracket> = brackets.iter().flatten().copied().collect();
+    let problem = |bracket: &FoldBracket| FoldProblem {
         rod,
-        loads: marched.loads,
+        loads: bracket.loads,
     };
     let newton = BatchNewton {
         // Solved folds stay in the batch: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere. Along a
@@ -263,10 +287,10 @@ fn polish(case: SheetCase, marched: Vec<Option<FoldBracket>>) -> Vec<Option<Fold
     let mut problems: Vec<FoldProblem> = found.iter().map(problem).collect();
     let starts = found.iter().map(|fold| DVec2::new(fold.tau, fold.guess));
     let mut iterates = newton.solve(&mut problems, starts).into_iter();
-    let mut fold = |marched: FoldBracket| {
+    let mut fold = |bracket: FoldBracket| {
         let iterate = iterates.next()?;
         let variation = iterate.state;
-        let (before, map) = marched.before;
+        let (before, map) = bracket.before;
         // A bracket that has not closed, or has closed on something other than a root, is no fold.
         let step = variation.map.det() / variation.det_gradient().y;
         let is_fold = step.abs() <= STEP_LEFT * iterate.point.y.abs();
@@ -275,15 +299,14 @@ fn polish(case: SheetCase, marched: Vec<Option<FoldBracket>>) -> Vec<Option<Fold
             load: iterate.point.y,
             variation,
             phi: directions(
-                marched.phi,
+                bracket.phi,
                 [(before, &map), (iterate.point.y, &variation.map)],
             )
             .last()
             .unwrap_or_default(),
+            has_marched: bracket.has_marched,
         })
     };
-    marched
-        .into_iter()
-        .map(|marched| marched.and_then(&mut fold))
-        .collect()
+    let folds = brackets.into_iter();
+    folds.map(|bracket| bracket.and_then(&mut fold)).collect()
 }

@@ -14,7 +14,7 @@ use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::fold::{directions, surely_stable};
 use crate::sheet::{Crossing, Row};
 use std::f64::consts::FRAC_PI_2;
-use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
+use whiskmap_mechanics::numerics::expansion::{Chebyshev, MOST_POINTS, chebyshev_points};
 use whiskmap_mechanics::numerics::tensor::ChebyshevTensor;
 use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
 use whiskmap_mechanics::rod::{Rod, arclength};
@@ -25,6 +25,9 @@ use whiskmap_mechanics::shooting::ShootingMap;
 /// The steps of coarse trajectories change with the load, which leaves up to 6e-6. With measured radii, states are not analytic where the contact
 /// passes from one radius to the next, and few panels have the smaller error.
 pub const GUESS_ERRORS: [f64; 2] = [3e-7, 1e-5];
+
+/// [`GUESS_ERRORS`] of panels for known rows, of which few cells need guesses. From one guess in three, Newton's method takes a second trajectory.
+pub const KNOWN_ROW_ERRORS: [f64; 1] = [GUESS_ERRORS[1]];
 
 /// [`GUESS_ERRORS`] of panels that only show the folds. At the tip of a perfect cone, and with measured radii, panels need the smaller error. The
 /// first size for 1e-3 has one load less, which is mostly not enough: a second try then takes as long as the first.
@@ -85,6 +88,12 @@ impl Panels<GuessPanel> {
         }
         queue.found
     }
+
+    /// Returns true if the contact at `tau` of `rod` is in a panel.
+    pub fn cover(&self, rod: &Rod, tau: f64) -> bool {
+        let mut panels = self.all().iter();
+        panels.any(|panel| (0.0..=1.0).contains(&panel.panel.place(rod, tau)))
+    }
 }
 
 impl GuessPanel {
@@ -100,7 +109,7 @@ impl GuessPanel {
         most: f64,
     ) -> Result<Self, Option<NetSize>> {
         let tensor = tensor(case, size, &along);
-        let panel = NetPanel::new(range, along, size, tensor, size.loads);
+        let panel = NetPanel::new(range, along, size, tensor, columns(size));
         let tails = panel.tails(&WEIGHTS);
         // NaN is not below any bound.
         let error = larger(tails[0].last, tails[1].last);
@@ -112,25 +121,34 @@ impl GuessPanel {
         }
     }
 
-    /// Returns a bound on the residual of all states along `row` from first touch to its only other `end`, in whisker lengths. It has the coefficients
-    /// left out of the panel, and the misses of the panel at both ends, which are computed apart. NaN if the row is not in the panel.
-    pub fn residual(&self, case: SheetCase, row: &Row, end: &Crossing) -> f64 {
+    /// Returns a bound on the residual of all states along each of some rows from first touch to its only other end, in whisker lengths: `[row]`. It has
+    /// the coefficients left out of the panel, and the misses of the panel at both ends, which are computed apart. NaN if a row is not in the panel.
+    pub fn residuals(&self, case: SheetCase, rows: &[(&Row, &Crossing)]) -> Vec<f64> {
+        let places = rows.iter().flat_map(|(row, end)| {
+            let touch = row.first_touch(case.rod).x;
+            let part = self.panel.part(case.rod, end);
+            [(touch, 0.0), (end.tau, part)].map(|(tau, part)| {
+                let place = [self.panel.place(case.rod, tau), part / TOP];
+                let is_inside = place.iter().all(|place| (0.0..=1.0).contains(place));
+                if is_inside { place } else { [f64::NAN; 2] }
+            })
+        });
+        let states = self.panel.tensor.at(&places.collect::<Vec<_>>());
         let sign = case.side.sign();
-        let miss_and_direction = |tau: f64, part: f64| {
-            let place = self.panel.place(case.rod, tau);
-            let is_inside = (0.0..=1.0).contains(&place) && (0.0..=TOP).contains(&part);
-            let state = || self.panel.tensor.at(place, part / TOP);
-            let [ln_distance, phi] = is_inside.then(state).unwrap_or([f64::NAN; 2]);
-            let off = (ln_distance - libm::log(row.pole_distance)).abs();
-            (off, phi)
+        let residual = |((row, end), states): (&(&Row, &Crossing), &[[f64; 2]])| {
+            let touch = nearest_turn(row.touch, states[0][1]);
+            let level = libm::log(row.pole_distance);
+            let ends = states.iter().zip([0.0, end.push]);
+            let error = ends.fold(self.error, |error, ([ln_distance, phi], push)| {
+                let turned = sign * (phi - touch);
+                larger(
+                    error,
+                    larger((ln_distance - level).abs(), (turned - push).abs()),
+                )
+            });
+            MARGIN * error * row.pole_distance
         };
-        let (off_at_touch, first) = miss_and_direction(row.first_touch(case.rod).x, 0.0);
-        let (off_at_end, last) = miss_and_direction(end.tau, self.panel.part(case.rod, end));
-        let touch = nearest_turn(row.touch, first);
-        let turned = [(first, 0.0), (last, end.push)];
-        let turned = turned.map(|(phi, push)| (sign * (phi - touch) - push).abs());
-        let errors = [off_at_touch, off_at_end, turned[0], turned[1]];
-        MARGIN * errors.into_iter().fold(self.error, larger) * row.pole_distance
+        rows.iter().zip(states.chunks(2)).map(residual).collect()
     }
 
     /// Returns true if the panel shows that the first folds of `contacts` are all folds up to them: at no other place does the determinant
@@ -210,6 +228,12 @@ impl GuessPanel {
     }
 }
 
+/// Returns the number of columns of a row in a panel of `size`: as many as lanes hold anyway. With the loads of the panel alone, 12 for an error of
+/// 1e-5, the last coefficients of every second row exceeded it.
+fn columns(size: NetSize) -> usize {
+    size.loads.next_multiple_of(WIDTH).min(MOST_POINTS)
+}
+
 /// Returns `count` Chebyshev points of the first kind on `[0, 1]`.
 fn points(count: usize) -> impl Iterator<Item = f64> {
     (0..count).map(move |i| {
@@ -252,7 +276,7 @@ fn tensor(case: SheetCase, size: NetSize, along: &Chebyshev<2>) -> ChebyshevTens
 mod tests {
     use super::*;
     use crate::sheet::Sheet;
-    use crate::sheet::fold::contact_nodes::SPACING;
+    use crate::sheet::fold::contact_nodes::{Folds, SPACING};
     use crate::sheet::net::guess_row::GuessRow;
     use whiskmap_mechanics::rod::{Rest, Side};
     use whiskmap_mechanics::shooting::batch::Method;
@@ -296,7 +320,7 @@ mod tests {
                 ..
             } = panel.panel.clone();
             GuessPanel {
-                panel: NetPanel::new(contacts, along, size, tensor, size.loads),
+                panel: NetPanel::new(contacts, along, size, tensor, columns(size)),
                 error: panel.error,
             }
         };
@@ -310,7 +334,7 @@ mod tests {
         for function in [0, 1] {
             let residual = |by: f64| {
                 let panel = spoiled(function, by);
-                panel.residual(sheet.case(), &sheet.rows[1], end)
+                panel.residuals(sheet.case(), &[(&sheet.rows[1], end)])[0]
             };
             let [sound, wrong] = [0.0, 5e-5].map(residual);
             assert!(
@@ -319,7 +343,7 @@ mod tests {
             );
         }
         let outside = Row::new(&Rest::new(&rod), 0.05);
-        assert!(panel.residual(sheet.case(), &outside, end).is_nan());
+        assert!(panel.residuals(sheet.case(), &[(&outside, end)])[0].is_nan());
         let bound = |by: f64| MARGIN * by * sheet.rows[1].pole_distance;
         assert!(residual(0.0).unwrap() < bound(1e-5));
         assert!(residual(5e-5).unwrap() > bound(4e-5));
@@ -338,7 +362,7 @@ mod tests {
         };
         let rest = Rest::new(&rod);
         let rows: Vec<Row> = [0.3, 0.5, 0.7].map(|d| Row::new(&rest, d)).into();
-        let contacts = ContactNodes::new(case, &rows[0], SPACING).unwrap();
+        let contacts = ContactNodes::new(case, &rows[0], SPACING, Folds::Predicted).unwrap();
         let panels = Panels::for_guesses(case, &contacts, &rows, GUESS_ERRORS[0]);
         let panel = &panels.of_all_rows().unwrap()[0];
         assert!(panel.shows_folds(&rod, &contacts));

@@ -29,7 +29,7 @@ use crate::sheet::fold::coordinate::u_of;
 use crate::sheet::row::REACH_SLACK;
 pub(super) use guess_row::GuessRow;
 pub use guess_row::PUSH_MARGIN;
-pub(super) use guesses::{FOLD_ERRORS, GUESS_ERRORS, GuessPanel};
+pub(super) use guesses::{FOLD_ERRORS, GUESS_ERRORS, GuessPanel, KNOWN_ROW_ERRORS};
 use size::NetSize;
 use std::ops::Range;
 use whiskmap_mechanics::rod::Rod;
@@ -229,6 +229,19 @@ impl<P> Panels<P> {
     /// Returns the panel of `row`; `None` if it has none.
     pub(super) fn of(&self, row: usize) -> Option<&P> {
         Some(&self.panels[self.panel_of[row]?])
+    }
+
+    /// Returns each panel with its rows among `rows`, as their places there.
+    pub(super) fn with_rows(&self, rows: &[usize]) -> impl Iterator<Item = (&P, Vec<usize>)> {
+        self.panels.iter().enumerate().map(move |(panel, found)| {
+            let is_of_panel = |place: &usize| self.panel_of[rows[*place]] == Some(panel);
+            (found, (0..rows.len()).filter(is_of_panel).collect())
+        })
+    }
+
+    /// Returns all panels.
+    pub(super) fn all(&self) -> &[P] {
+        &self.panels
     }
 
     /// Returns all panels if every row with contacts has one.

@@ -63,27 +63,6 @@ pub fn chebyshev_points(count: usize) -> &'static [f64] {
     &ChebyshevGrid::of(count).points
 }
 
-/// Values at `x` of up to `N` functions from `first` on of an expansion with these `coefficients`, by Clenshaw's recurrence; 0 beyond the last
-/// function.
-#[inline(always)]
-pub(super) fn values<T: Real, const D: usize, const N: usize>(
-    coefficients: &[[f64; D]],
-    first: usize,
-    x: T,
-) -> [T; N] {
-    let y = T::of(2.0).mul_add(x, T::of(-1.0));
-    let (mut later, mut latest) = ([T::of(0.0); N], [T::of(0.0); N]);
-    for (power, coefficients) in coefficients.iter().enumerate().rev() {
-        let factor = if power == 0 { y } else { y + y };
-        for i in 0..N.min(D - first) {
-            let rest = T::of(coefficients[first + i]) - latest[i];
-            latest[i] = later[i];
-            later[i] = factor.mul_add(latest[i], rest);
-        }
-    }
-    later
-}
-
 /// Expansion of `D` functions on `[0, 1]` in Chebyshev polynomials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chebyshev<const D: usize> {
@@ -157,10 +136,20 @@ impl<const D: usize> Chebyshev<D> {
         (later, Self { coefficients })
     }
 
-    /// Values of up to `N` functions from `first` on at `x`; 0 beyond the last function.
+    /// Values of up to `N` functions from `first` on at `x`, by Clenshaw's recurrence; 0 beyond the last function.
     #[inline(always)]
     pub(super) fn values<T: Real, const N: usize>(&self, first: usize, x: T) -> [T; N] {
-        values(&self.coefficients, first, x)
+        let y = T::of(2.0).mul_add(x, T::of(-1.0));
+        let (mut later, mut latest) = ([T::of(0.0); N], [T::of(0.0); N]);
+        for (power, coefficients) in self.coefficients.iter().enumerate().rev() {
+            let factor = if power == 0 { y } else { y + y };
+            for i in 0..N.min(D - first) {
+                let rest = T::of(coefficients[first + i]) - latest[i];
+                latest[i] = later[i];
+                later[i] = factor.mul_add(latest[i], rest);
+            }
+        }
+        later
     }
 
     /// Returns the Taylor coefficients `[power]` of one function of an expansion around `x`, by Clenshaw's recurrence with truncated

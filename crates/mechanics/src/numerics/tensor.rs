@@ -5,7 +5,7 @@
 //!
 //! [`chebyshev_points`]: crate::numerics::expansion::chebyshev_points
 
-use crate::numerics::expansion::{self, Chebyshev, MOST_POINTS};
+use crate::numerics::expansion::{Chebyshev, MOST_POINTS};
 use crate::numerics::{LaneNumbers, Lanes, SimdTask, Unit, WIDTH, keep, pack};
 
 /// Expansion of `D` functions of `(x, y)` on `[0, 1]^2`.
@@ -84,12 +84,26 @@ impl<const D: usize> ChebyshevTensor<D> {
         [in_x.map_or(0, |last| last + 1), lengths.max().unwrap_or(0)]
     }
 
-    /// Returns the values of the first `N` functions of the expansion at `(x, y)` in `[0, 1]^2`.
+    /// Returns the values of the first `N` functions of the expansion at each of `places`, `(x, y)` in `[0, 1]^2`: `[place][function]`.
     #[must_use]
-    pub fn at<const N: usize>(&self, x: f64, y: f64) -> [f64; N] {
-        let in_y = self.coefficients.iter();
-        let in_x: Vec<[f64; N]> = in_y.map(|terms| expansion::values(terms, 0, y)).collect();
-        expansion::values(&in_x, 0, x)
+    pub fn at<const N: usize>(&self, places: &[[f64; 2]]) -> Vec<[f64; N]> {
+        let unit = Unit::detect();
+        let blocks = places.chunks(WIDTH).flat_map(|places| {
+            let [mut xs, mut ys] = places[0].map(|coordinate| [coordinate; WIDTH]);
+            for ([x, y], (into_x, into_y)) in places.iter().zip(xs.iter_mut().zip(&mut ys)) {
+                (*into_x, *into_y) = (*x, *y);
+            }
+            let terms = unit.run(Contraction {
+                coefficients: &self.coefficients,
+                places: &ys,
+            });
+            let values: [LaneNumbers; N] = unit.run(AtEach {
+                terms: &terms,
+                places: &xs,
+            });
+            (0..places.len()).map(move |lane| values.map(|lanes| lanes[lane]))
+        });
+        blocks.collect()
     }
 
     /// Returns the expansion of one `function` with `x` and `y` exchanged.
@@ -350,6 +364,28 @@ impl<const D: usize> SimdTask for AtPlaces<'_, D> {
                 for (into, value) in found.iter_mut().zip(later) {
                     keep(into, from, value);
                 }
+            }
+        }
+        all
+    }
+}
+
+/// Values of the first `N` functions of columns with these `terms`, each at its own `x` of `places`.
+struct AtEach<'a, const D: usize, const N: usize> {
+    terms: &'a [[LaneNumbers; D]],
+    places: &'a LaneNumbers,
+}
+
+impl<const D: usize, const N: usize> SimdTask for AtEach<'_, D, N> {
+    type Output = [LaneNumbers; N];
+
+    #[inline(always)]
+    fn run<T: Lanes>(self) -> Self::Output {
+        let mut all = [[0.0; WIDTH]; N];
+        for from in (0..WIDTH).step_by(T::LANES) {
+            let found: [T; N] = values(self.terms, 0, from, pack(self.places, from));
+            for (lanes, found) in all.iter_mut().zip(found) {
+                keep(lanes, from, found);
             }
         }
         all
