@@ -259,19 +259,11 @@ fn level_place(from: f64, to: f64, misses: impl Fn(&[f64]) -> Vec<f64>) -> Optio
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+    use crate::sheet::net::cone;
     use crate::sheet::{Edge, Sheet};
     use whiskmap_mechanics::rod::Side;
     use whiskmap_mechanics::shooting::ShootingMap;
     use whiskmap_mechanics::shooting::batch::Method;
-
-    fn cone(side: Side) -> Rod {
-        Rod {
-            taper: 0.95,
-            bend: 0.4,
-            pole: 0.0125 * side.sign(),
-            ..Rod::default()
-        }
-    }
 
     /// Along rows that end at either edge, and between two ends of rows out of reach, the pole of a guess is where it is wanted: also where a
     /// contact moves from the tip of a perfect cone without a change of the load.

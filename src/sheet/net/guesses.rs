@@ -91,7 +91,7 @@ impl Panels<GuessPanel> {
 
     /// Returns true if the contact at `tau` of `rod` is in a panel.
     pub fn cover(&self, rod: &Rod, tau: f64) -> bool {
-        let mut panels = self.all().iter();
+        let mut panels = self.panels.iter();
         panels.any(|panel| (0.0..=1.0).contains(&panel.panel.place(rod, tau)))
     }
 }
@@ -277,18 +277,10 @@ mod tests {
     use super::*;
     use crate::sheet::Sheet;
     use crate::sheet::fold::contact_nodes::{Folds, SPACING};
+    use crate::sheet::net::cone;
     use crate::sheet::net::guess_row::GuessRow;
     use whiskmap_mechanics::rod::{Rest, Side};
     use whiskmap_mechanics::shooting::batch::Method;
-
-    fn cone(side: Side) -> Rod {
-        Rod {
-            taper: 0.95,
-            bend: 0.4,
-            pole: 0.0125 * side.sign(),
-            ..Rod::default()
-        }
-    }
 
     /// Ends need no accurate panel: they are the same without guesses.
     #[test]

@@ -239,13 +239,19 @@ impl<P> Panels<P> {
         })
     }
 
-    /// Returns all panels.
-    pub(super) fn all(&self) -> &[P] {
-        &self.panels
-    }
-
     /// Returns all panels if every row with contacts has one.
     pub(super) fn of_all_rows(&self) -> Option<&[P]> {
         self.are_complete.then_some(&self.panels[..])
+    }
+}
+
+/// Returns the cone of the paper on this side, for tests.
+#[cfg(test)]
+fn cone(side: whiskmap_mechanics::rod::Side) -> Rod {
+    Rod {
+        taper: 0.95,
+        bend: 0.4,
+        pole: 0.0125 * side.sign(),
+        ..Rod::default()
     }
 }
