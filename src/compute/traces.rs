@@ -1,9 +1,10 @@
 //! Detachment curves, branches and shapes, computed in memory.
 
 use super::{Error, Options, accuracy};
-use crate::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
+use crate::scene::{Scene, SweepPlace};
+use crate::sensitivity::detachments_of;
 use crate::trace::{
-    Branch, Detachment, NoState, StableBranch, WhiskerShape, curve_at, sides, whiskers_at_once,
+    Branch, Detachment, NoState, StableBranch, SweptSide, WhiskerShape, sides, whiskers_at_once,
 };
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
@@ -31,20 +32,22 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
     let accuracy = accuracy(scene, options.tolerance_deg, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     let distances = &scene.grid.distance_mm;
-    let of_side = |swept: Result<&SweptWhisker, &RefusedWhisker>, side| {
-        let Ok(swept) = swept else {
-            return Detachment::without_whisker(side, distances);
-        };
-        let parts = distances
-            .chunks(DISTANCES_AT_ONCE)
-            .filter(|_| !options.is_cancelled());
-        parts
-            .flat_map(|part| curve_at(resolution, &swept.whisker, &swept.pole, side, part))
-            .collect()
+    let of_sides = |sides: &[SweptSide]| {
+        let mut ends = vec![Vec::with_capacity(distances.len()); sides.len()];
+        for part in distances.chunks(DISTANCES_AT_ONCE) {
+            if options.is_cancelled() {
+                break;
+            }
+            let found = detachments_of(resolution, sides, part, &[]);
+            for (ends, found) in ends.iter_mut().zip(found) {
+                ends.extend(found.into_iter().map(|found| found.end));
+            }
+        }
+        ends
     };
     let mut ends = Vec::with_capacity(2 * scene.whisker_count() * distances.len());
     for group in scene.whisker_groups(whiskers_at_once(distances.len())) {
-        ends.extend(sides(&group, of_side));
+        ends.extend(sides(&group, distances.len(), of_sides));
         if options.is_cancelled() {
             return Err(Error::Cancelled);
         }

@@ -31,7 +31,9 @@ pub use variable::Variable;
 
 use crate::scene::{Parameter, Pole, Whisker};
 use crate::sheet::{Crossing, Sheet};
-use crate::trace::{self, Branch, BranchPoint, Detachment, FINER, NoState, crossings};
+use crate::trace::{
+    self, Branch, BranchPoint, Detachment, FINER, NoState, Pushed, SweptSide, crossings,
+};
 use differentiated::Differentiated;
 use std::sync::atomic::AtomicBool;
 use whiskmap_mechanics::rod::Side;
@@ -95,38 +97,58 @@ pub fn detachments(
     distances_mm: &[f64],
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
-    let pushed = (whisker, pole, side);
-    of_ends(Resolution::FINE, pushed, distances_mm, false, variables)
+    let pushed = [(whisker, pole, side)];
+    of_ends(Resolution::FINE, &pushed, distances_mm, false, variables).concat()
 }
 
-/// Computes detachments with derivatives as [`detachments`] does, at another resolution and with the largest strain. Without `variables`, they
-/// are the ends of [`trace::curve_at`].
+/// Computes detachments with derivatives as [`detachments`] does, of some sides of whiskers at once, at another resolution and with the largest
+/// strain: `[side][distance]`. Without `variables`, they are the ends of [`trace::curve_at`]. Rows of a table without a whisker have ends
+/// without values.
 #[must_use]
-pub fn detachments_at(
+pub fn detachments_of(
     resolution: Resolution,
-    whisker: &Whisker,
-    pole: &Pole,
-    side: Side,
+    sides: &[SweptSide],
     distances_mm: &[f64],
     variables: &[Variable],
-) -> Vec<DetachmentDerivatives> {
-    let pushed = (whisker, pole, side);
-    of_ends(resolution, pushed, distances_mm, true, variables)
+) -> Vec<Vec<DetachmentDerivatives>> {
+    let pushed = sides.iter().filter_map(|SweptSide { swept, side }| {
+        let swept = swept.ok()?;
+        Some((&swept.whisker, &swept.pole, *side))
+    });
+    let pushed: Vec<Pushed> = pushed.collect();
+    let mut found = of_ends(resolution, &pushed, distances_mm, true, variables).into_iter();
+    let without = |end| DetachmentDerivatives {
+        end,
+        by: vec![Err(NoDerivative::NoDetachment); variables.len()],
+    };
+    let of_side = |SweptSide { swept, side }: &SweptSide| match swept {
+        Ok(_) => found.next().unwrap_or_default(),
+        Err(_) => {
+            let ends = Detachment::without_whisker(*side, distances_mm).into_iter();
+            ends.map(without).collect()
+        }
+    };
+    sides.iter().map(of_side).collect()
 }
 
-/// Computes detachments with their derivatives by `variables`, `[distance]`; with the largest strain if `has_strain` is true.
-fn of_ends(
+/// Computes the detachments of `pushed` whiskers with their derivatives by `variables`, `[pushed][distance]`; with the largest strain if `has_strain`
+/// is true.
+pub(crate) fn of_ends(
     resolution: Resolution,
-    pushed @ (whisker, pole, side): (&Whisker, &Pole, Side),
+    pushed: &[Pushed],
     distances_mm: &[f64],
     has_strain: bool,
     variables: &[Variable],
-) -> Vec<DetachmentDerivatives> {
-    let differentiated = Differentiated::new(resolution, whisker, pole, side, variables);
-    let of_end = |end: Detachment, crossing: Option<Crossing>| DetachmentDerivatives {
-        by: differentiated.at_crossing(crossing.as_ref(), end.distance_mm),
-        end,
-    };
+) -> Vec<Vec<DetachmentDerivatives>> {
+    let differentiated = pushed.iter().map(|(whisker, pole, side)| {
+        Differentiated::new(resolution, whisker, pole, *side, variables)
+    });
+    let differentiated: Vec<Differentiated> = differentiated.collect();
+    let of_end =
+        |index: usize, end: Detachment, crossing: Option<Crossing>| DetachmentDerivatives {
+            by: differentiated[index].at_crossing(crossing.as_ref(), end.distance_mm),
+            end,
+        };
     trace::detachments(resolution, pushed, distances_mm, has_strain, of_end)
 }
 

@@ -5,9 +5,10 @@ use crate::classify::{RowBoundary, TIE};
 use crate::friction::{ContactHistory, Sliding, surely_slides_to_end};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{Crossing, Edge, Sheet};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use whiskmap_mechanics::rod::{Rest, Side};
-use whiskmap_mechanics::shooting::batch::{Batch, Method};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method, OutputSet};
 use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 
 /// Kind of the end of a push from first touch.
@@ -94,7 +95,7 @@ pub fn curve_at(
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
     let pushed = (whisker, pole, side);
-    detachments(resolution, pushed, distances_mm, true, |end, _| end)
+    detachments(resolution, &[pushed], distances_mm, true, |_, end, _| end).concat()
 }
 
 /// Computes the detachment curve as [`curve_at`] does, but leaves out the largest strain, which takes a trajectory more for each end.
@@ -107,68 +108,112 @@ pub fn curve_without_strain(
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
     let pushed = (whisker, pole, side);
-    detachments(resolution, pushed, distances_mm, false, |end, _| end)
+    detachments(resolution, &[pushed], distances_mm, false, |_, end, _| end).concat()
 }
 
-/// Computes what to `keep` of detachments, each with the crossing of the sheet's edge from which it is read, `[distance]`; `None` without an end.
-/// If `has_strain` is true, each has its largest strain, and its sliding direction by the contact's history.
-pub(crate) fn detachments<T>(
+/// Whisker that is pushed against a pole on one side.
+pub(crate) type Pushed<'a> = (&'a Whisker, &'a Pole, Side);
+
+/// Computes what to `keep` of the detachments of each of `pushed`, `[pushed][distance]`: it gets the index of the whisker, the detachment, and
+/// the crossing of the sheet's edge from which it is read; `None` without an end. If `has_strain` is true, each detachment has its largest strain,
+/// and its sliding direction by the contact's history.
+///
+/// The ends of all whiskers share batches. Results do not depend on the other whiskers.
+pub(crate) fn detachments<T: Send>(
     resolution: Resolution,
-    (whisker, pole, side): (&Whisker, &Pole, Side),
+    pushed: &[Pushed],
     distances_mm: &[f64],
     has_strain: bool,
-    keep: impl Fn(Detachment, Option<Crossing>) -> T,
-) -> Vec<T> {
-    let rod = &whisker.rod(pole, side);
+    keep: impl Fn(usize, Detachment, Option<Crossing>) -> T + Sync,
+) -> Vec<Vec<T>> {
     let method = Method::new(resolution);
-    let units = whisker.units();
-    let reader = Reader::new(units, rod);
-    let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
-    // The history of a contact that sticks needs states before the end.
-    let sheet = match has_strain && rod.friction != 0.0 {
-        true => Sheet::new(method, rod, side, &distances),
-        false => Sheet::of_ends(method, rod, side, &distances),
-    };
-    let row_ends = RowEnd::of(method, &sheet);
-    let (peaks, slidings): (Vec<PeakStrain>, _) = match has_strain {
-        true => {
-            let crossings = row_ends.iter().flatten().map(|end| &end.crossing);
-            let points = crossings.map(|crossing| (crossing.tau, crossing.load));
-            let peaks = Batch::new(method.doubled()).shoot_at(rod, points);
-            (peaks, slidings(&sheet, &row_ends))
+    let sheet = |(whisker, pole, side): &Pushed| {
+        let rod = &whisker.rod(pole, *side);
+        let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
+        // The history of a contact that sticks needs states before the end.
+        match has_strain && rod.friction != 0.0 {
+            true => Sheet::new(method, rod, *side, &distances),
+            false => Sheet::of_ends(method, rod, *side, &distances),
         }
-        false => (Vec::new(), vec![None; distances.len()]),
     };
-    let mut peaks = peaks.into_iter();
-    let rows = distances_mm.iter().zip(&sheet.rows).enumerate();
-    let found = rows.zip(row_ends.into_iter().zip(slidings));
-    let detachments = found.map(|((index, (distance_mm, row)), (row_end, sliding))| {
-        let none = Detachment {
-            side,
-            distance_mm: *distance_mm,
-            pole_distance_mm: Some(row.pole_distance * whisker.length_mm),
-            ..Detachment::default()
+    let sheets: Vec<Sheet> = pushed.par_iter().map(sheet).collect();
+    let row_ends = RowEnd::of(method, &sheets);
+    let peaks: Vec<Vec<Option<PeakStrain>>> = match has_strain {
+        true => {
+            let crossing = |end: &Result<RowEnd, _>| end.as_ref().ok().map(|end| end.crossing);
+            let of_sheet = |ends: &Vec<_>| ends.iter().map(crossing).collect();
+            let crossings: Vec<Vec<_>> = row_ends.iter().map(of_sheet).collect();
+            shoot_ends(method.doubled(), &sheets, &crossings)
+        }
+        false => vec![vec![None; distances_mm.len()]; sheets.len()],
+    };
+    let of_sheet = |(index, (row_ends, peaks)): (usize, (Vec<Result<RowEnd, _>>, Vec<_>))| {
+        let ((whisker, _, side), sheet) = (&pushed[index], &sheets[index]);
+        let units = whisker.units();
+        let reader = Reader::new(units, &sheet.rod);
+        let slidings = match has_strain {
+            true => slidings(sheet, &row_ends),
+            false => vec![None; row_ends.len()],
         };
-        let row_end: RowEnd = match row_end {
-            Ok(row_end) => row_end,
-            Err(kind) => return keep(Detachment { kind, ..none }, None),
+        let detachment = |row: usize,
+                          row_end: Result<RowEnd, DetachmentKind>,
+                          peak: Option<PeakStrain>| {
+            let place = &sheet.rows[row];
+            let none = Detachment {
+                side: *side,
+                distance_mm: distances_mm[row],
+                pole_distance_mm: Some(place.pole_distance * whisker.length_mm),
+                ..Detachment::default()
+            };
+            let row_end = match row_end {
+                Ok(row_end) => row_end,
+                Err(kind) => return keep(index, Detachment { kind, ..none }, None),
+            };
+            // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
+            let off = libm::log(place.pole_distance / row_end.state.full.map.pole.length()).abs();
+            let by_state = || Sliding::of(&row_end.state, &sheet.rod, row_end.crossing.tau);
+            let end = Detachment {
+                kind: row_end.kind(),
+                push_angle_deg: Some((side.sign() * row_end.crossing.push).to_degrees()),
+                peak_strain: peak.map(|peak| peak.strain * units.strain),
+                peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
+                residual: Some(row_end.crossing.residual + off),
+                sliding: slidings[row].or_else(by_state),
+                snaps_deg: snaps_deg(sheet, row),
+                ..none.with_state(Some(&row_end.reading(&reader, sheet, row)))
+            };
+            keep(index, end, Some(row_end.crossing))
         };
-        // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
-        let off = libm::log(row.pole_distance / row_end.state.full.map.pole.length()).abs();
-        let peak = peaks.next();
-        let end = Detachment {
-            kind: row_end.kind(),
-            push_angle_deg: Some((side.sign() * row_end.crossing.push).to_degrees()),
-            peak_strain: peak.map(|peak| peak.strain * units.strain),
-            peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
-            residual: Some(row_end.crossing.residual + off),
-            sliding: sliding.or(Sliding::of(&row_end.state, rod, row_end.crossing.tau)),
-            snaps_deg: snaps_deg(&sheet, index),
-            ..none.with_state(Some(&row_end.reading(&reader, &sheet, index)))
-        };
-        keep(end, Some(row_end.crossing))
+        let ends = row_ends.into_iter().zip(peaks).enumerate();
+        ends.map(|(row, (end, peak))| detachment(row, end, peak))
+            .collect()
+    };
+    let ends: Vec<_> = row_ends.into_iter().zip(peaks).collect();
+    ends.into_par_iter().enumerate().map(of_sheet).collect()
+}
+
+/// Integrates the trajectories from the `ends` of pushes in the rows of `sheets` in one batch, `[sheet][row]`; `None` without an end.
+fn shoot_ends<O: OutputSet>(
+    method: Method,
+    sheets: &[Sheet],
+    ends: &[Vec<Option<Crossing>>],
+) -> Vec<Vec<Option<O>>> {
+    let pairs = sheets.iter().zip(ends).flat_map(|(sheet, ends)| {
+        let ends = ends.iter().flatten();
+        ends.map(move |end| (&sheet.rod, end))
     });
-    detachments.collect()
+    let conditions = pairs.map(|(rod, end)| InitialCondition {
+        rod,
+        tau: end.tau,
+        load: end.load,
+    });
+    let conditions: Vec<InitialCondition> = conditions.collect();
+    let mut outputs = Batch::new(method).shoot(&conditions).into_iter();
+    let of_sheet = |ends: &Vec<Option<Crossing>>| {
+        let output = |end: &Option<Crossing>| end.and_then(|_| outputs.next());
+        ends.iter().map(output).collect()
+    };
+    ends.iter().map(of_sheet).collect()
 }
 
 /// End of a push from first touch, with its state.
@@ -181,17 +226,22 @@ pub(crate) struct RowEnd {
 }
 
 impl RowEnd {
-    /// Computes the ends of pushes in the rows of `sheet` with the integration `method`, `[row]`, or the reasons why there are none.
-    pub fn of(method: Method, sheet: &Sheet) -> Vec<Result<Self, DetachmentKind>> {
-        let crossings = crossings(sheet);
-        let points = crossings.iter().flatten().map(|end| (end.tau, end.load));
-        let mut states = Batch::new(method).shoot_at(&sheet.rod, points).into_iter();
-        let end = |crossing: Result<&Crossing, _>| {
-            let (crossing, state) = (*crossing?, states.next());
+    /// Computes the ends of pushes in the rows of `sheets` with the integration `method`, `[sheet][row]`, or the reasons why there are none.
+    pub fn of(method: Method, sheets: &[Sheet]) -> Vec<Vec<Result<Self, DetachmentKind>>> {
+        let crossings: Vec<Vec<Result<&Crossing, _>>> = sheets.iter().map(crossings).collect();
+        let known = |end: &Result<&Crossing, _>| end.ok().copied();
+        let of_sheet = |ends: &Vec<_>| ends.iter().map(known).collect();
+        let ends: Vec<Vec<Option<Crossing>>> = crossings.iter().map(of_sheet).collect();
+        let states = shoot_ends(method, sheets, &ends);
+        let end = |(crossing, state): (Result<&Crossing, _>, Option<FirstVariation>)| {
+            let crossing = *crossing?;
             let state = state.ok_or(DetachmentKind::Unresolved)?;
             Ok(Self { crossing, state })
         };
-        crossings.into_iter().map(end).collect()
+        let pairs = crossings.into_iter().zip(states);
+        pairs
+            .map(|(crossings, states)| crossings.into_iter().zip(states).map(end).collect())
+            .collect()
     }
 
     /// Returns the kind of the end.

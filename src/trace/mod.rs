@@ -16,7 +16,7 @@ mod state;
 pub use branch::{Branch, BranchPoint};
 pub use corner::{Corner, NoCorner, corner};
 pub use curve::{Detachment, DetachmentKind, curve, curve_at, curve_without_strain, reach_mm};
-pub(crate) use curve::{RowEnd, crossings, detachments, snaps_deg};
+pub(crate) use curve::{Pushed, RowEnd, crossings, detachments, snaps_deg};
 pub use peak::{PushLoad, PushPeak};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;
@@ -53,8 +53,11 @@ pub enum BranchMark {
 /// Maximum number of ends of pushes in memory, of about 250 bytes each.
 const ENDS_AT_ONCE: usize = 1 << 19;
 
-/// Maximum number of whiskers whose curves are computed together, enough for several threads.
-const MOST_WHISKERS: usize = 64;
+/// Maximum number of whiskers whose curves are in memory together, enough for many threads.
+const MOST_WHISKERS: usize = 1024;
+
+/// Number of ends of pushes whose trajectories share batches: enough for full lanes.
+const ENDS_OF_BATCH: usize = 256;
 
 /// Returns the number of whiskers to compute together if each has ends at `distances` distances on both sides.
 #[must_use]
@@ -62,23 +65,45 @@ pub fn whiskers_at_once(distances: usize) -> usize {
     (ENDS_AT_ONCE / (2 * distances.max(1))).clamp(1, MOST_WHISKERS)
 }
 
-/// Returns the results of `of_side` for each side of each whisker, in the order of `whiskers`, CF before CB. Rows of a table without a
-/// whisker have results, too.
+/// Returns the number of sides, of `count` in total, whose ends at `distances` distances share batches. Each thread gets a batch.
+#[must_use]
+pub fn sides_at_once(count: usize, distances: usize) -> usize {
+    let of_thread = count.div_ceil(rayon::current_num_threads());
+    (ENDS_OF_BATCH / distances.max(1)).clamp(1, of_thread.max(1))
+}
+
+/// One side of a whisker of a sweep, or of a row of a table without a whisker.
+#[derive(Clone, Copy, Debug)]
+pub struct SweptSide<'a> {
+    /// Whisker, or the row of the table without one.
+    pub swept: Result<&'a SweptWhisker, &'a RefusedWhisker>,
+    /// Whisker side.
+    pub side: Side,
+}
+
+/// Returns the results for each side of each whisker, in the order of `whiskers`, CF before CB. Rows of a table without a whisker have results,
+/// too. `of_sides` computes sides with ends at `distances` distances together, `[side][result]`.
 pub fn sides<R: Send>(
     whiskers: &[Result<SweptWhisker, RefusedWhisker>],
-    of_side: impl Fn(Result<&SweptWhisker, &RefusedWhisker>, Side) -> Vec<R> + Sync,
+    distances: usize,
+    of_sides: impl Fn(&[SweptSide]) -> Vec<Vec<R>> + Sync,
 ) -> Vec<(SweepPlace, R)> {
-    let both = |whisker| Side::BOTH.map(|side| (whisker, side));
-    let sides: Vec<_> = whiskers.iter().flat_map(both).collect();
-    let placed = |(whisker, side): (&Result<SweptWhisker, RefusedWhisker>, Side)| {
-        let whisker = whisker.as_ref();
-        let place = whisker
-            .map_or_else(|refused| &refused.place, |swept| &swept.place)
-            .clone();
-        let rows = of_side(whisker, side).into_iter();
-        rows.map(move |row| (place.clone(), row))
+    let whiskers = whiskers.iter().map(Result::as_ref);
+    let both = |swept| Side::BOTH.map(|side| SweptSide { swept, side });
+    let sides: Vec<SweptSide> = whiskers.flat_map(both).collect();
+    let placed = |sides: &[SweptSide]| {
+        let rows = sides.iter().zip(of_sides(sides)).flat_map(|(side, rows)| {
+            let place = match side.swept {
+                Ok(swept) => &swept.place,
+                Err(refused) => &refused.place,
+            };
+            rows.into_iter().map(|row| (place.clone(), row))
+        });
+        rows.collect::<Vec<_>>()
     };
-    sides.into_par_iter().flat_map_iter(placed).collect()
+    let at_once = sides_at_once(sides.len(), distances);
+    let chunks = sides.par_chunks(at_once);
+    chunks.flat_map_iter(placed).collect()
 }
 
 /// Reason why a branch or a state does not exist, or was not computed.

@@ -3,7 +3,7 @@
 use super::varying::Varying;
 use crate::input::each_once;
 use crate::scene::Scene;
-use crate::sensitivity::{DetachmentDerivatives, Variable, detachments_at};
+use crate::sensitivity::{DetachmentDerivatives, Variable, of_ends};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -25,14 +25,9 @@ pub(super) fn deviations_deg(
         .map(|(variable, _)| *variable)
         .collect();
     let variables = each_once(&all);
-    let ends = detachments_at(
-        resolution,
-        &scene.whisker,
-        &scene.pole,
-        side,
-        &scene.grid.distance_mm,
-        &variables,
-    );
+    let pushed = [(&scene.whisker, &scene.pole, side)];
+    let distances = &scene.grid.distance_mm;
+    let ends = of_ends(resolution, &pushed, distances, false, &variables).concat();
     let deviation = |DetachmentDerivatives { end, by }: DetachmentDerivatives| {
         end.push_angle_deg?;
         let slope_of = |variable: &Variable| {

@@ -11,7 +11,9 @@ pub use spread::{EndSpread, LargestSpread, PointSpread};
 
 use crate::random::RandomStream;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
-use crate::trace::{Detachment, DetachmentKind, PushLoad, StableBranch, detachments};
+use crate::trace::{
+    Detachment, DetachmentKind, PushLoad, Pushed, StableBranch, detachments, sides_at_once,
+};
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
 use whiskmap_mechanics::rod::Side;
@@ -124,22 +126,20 @@ impl Draws {
         tick: &(dyn Fn() + Sync),
     ) -> Vec<EndSpread> {
         let distances = &self.scene.grid.distance_mm;
-        let curve = |whisker: &Whisker, pole: &Pole| {
-            let pushed = (whisker, pole, side);
-            detachments(resolution, pushed, distances, false, |end, _| {
-                PushEnd::new(&end)
-            })
+        let curves = |pushed: &[Pushed]| {
+            let keep = |_, end, _| PushEnd::new(&end);
+            detachments(resolution, pushed, distances, false, keep)
         };
-        let ends: Vec<Vec<PushEnd>> = self
-            .drawn
-            .par_iter()
-            .map(|(whisker, pole)| {
-                let ends = curve(whisker, pole);
-                tick();
-                ends
-            })
-            .collect();
-        let scene_ends = curve(&self.scene.whisker, &self.scene.pole);
+        let of_drawn = |drawn: &[(Whisker, Pole)]| {
+            let pushed = drawn.iter().map(|(whisker, pole)| (whisker, pole, side));
+            let ends = curves(&pushed.collect::<Vec<_>>());
+            drawn.iter().for_each(|_| tick());
+            ends
+        };
+        let at_once = sides_at_once(self.drawn.len(), distances.len());
+        let drawn = self.drawn.par_chunks(at_once).flat_map_iter(of_drawn);
+        let ends: Vec<Vec<PushEnd>> = drawn.collect();
+        let scene_ends = curves(&[(&self.scene.whisker, &self.scene.pole, side)]).concat();
         let first_order = first_order::deviations_deg(&self.scene, &self.varying, resolution, side);
         let rows = distances
             .iter()

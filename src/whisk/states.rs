@@ -80,7 +80,8 @@ impl SideStates {
         let method = Method::new(Resolution::FINE);
         let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
         let sheet = Sheet::new(method, &rod, side, &distances);
-        let solved = RowEnd::of(method, &sheet).into_iter().enumerate();
+        let solved = RowEnd::of(method, std::slice::from_ref(&sheet));
+        let solved = solved.into_iter().flatten().enumerate();
         let found = solved.map(|(row, end)| end.map_err(|_| row));
         let ends: Vec<RowEnd> = found.collect::<Result<_, _>>()?;
         let limits_of = |(row, end): (usize, &RowEnd)| {

@@ -18,15 +18,16 @@ use super::tolerance::ToleranceArgs;
 use super::uncertainty::{self, SampleArgs};
 use clap::Args;
 use plot::{CurveColumn, MOST_WHISKERS, UPWARD, plot_title, scene_curves};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
 use whiskmap::Side;
 use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{Plot, bands, yielding_ends};
-use whiskmap::scene::{RefusedWhisker, Scene, SweepPlace, SweptWhisker};
-use whiskmap::sensitivity::{DetachmentDerivatives, NoDerivative, Variable, detachments_at};
-use whiskmap::trace::{self, Corner, Detachment, DetachmentKind};
+use whiskmap::scene::{Scene, SweepPlace, SweptWhisker};
+use whiskmap::sensitivity::{DetachmentDerivatives, Variable, detachments_of};
+use whiskmap::trace::{self, Corner, Detachment, DetachmentKind, SweptSide};
 use whiskmap::uncertainty::{Draws, EndSpread, LargestSpread, PointSpread};
 use whiskmap::yields::{PushMark, YieldMark};
 
@@ -225,28 +226,24 @@ fn detachments(
             };
             Marked((end, columns), mark)
         };
-        let ends = |swept: Result<&SweptWhisker, &RefusedWhisker>, side| {
-            bar.inc(distances.len());
-            let Ok(swept) = swept else {
-                let ends = Detachment::without_whisker(side, distances).into_iter();
-                let by = || vec![Err(NoDerivative::NoDetachment); variables.len()];
-                return ends
-                    .map(|end| row(DetachmentDerivatives { end, by: by() }, unmarked))
-                    .collect();
+        let ends = |sides: &[SweptSide]| {
+            let found = detachments_of(resolution, sides, distances, variables);
+            bar.inc(sides.len() * distances.len());
+            let of_side = |(side, found): (&SweptSide, Vec<DetachmentDerivatives>)| {
+                let marks = side.swept.map_or_else(
+                    |_| vec![None; found.len()],
+                    |SweptWhisker { whisker, pole, .. }| {
+                        let ends = found.iter().map(|derivatives| &derivatives.end);
+                        PushMark::of_ends(whisker, pole, ends)
+                    },
+                );
+                let rows = found.into_iter().zip(marks);
+                rows.map(|(end, mark)| row(end, mark.or(unmarked)))
+                    .collect()
             };
-            let (whisker, pole) = (&swept.whisker, &swept.pole);
-            let ends = detachments_at(resolution, whisker, pole, side, distances, variables);
-            let marks = PushMark::of_ends(
-                whisker,
-                pole,
-                ends.iter().map(|derivatives| &derivatives.end),
-            );
-            ends.into_iter()
-                .zip(marks)
-                .map(|(end, mark)| row(end, mark.or(unmarked)))
-                .collect()
+            sides.iter().zip(found).map(of_side).collect()
         };
-        let rows: Vec<(SweepPlace, MarkedEnd)> = trace::sides(&group, ends);
+        let rows: Vec<(SweepPlace, MarkedEnd)> = trace::sides(&group, distances.len(), ends);
         write(scene, &mut outputs, &rows)?;
         let ends = rows.iter().map(|(_, Marked((end, _), mark))| (end, *mark));
         yielding.extend(yielding_ends(ends, [args.x.axis(), UPWARD]));
@@ -269,18 +266,19 @@ fn corners(scene: &Scene, mut outputs: OpenOutputs) -> Result<(), Failure> {
     let unmarked = scene.has_yield_strain().then(PushMark::default);
     let bar = Progress::over(scene.whisker_count() * Side::BOTH.len(), "corners");
     for group in scene.whisker_groups(trace::whiskers_at_once(1)) {
-        let corner = |swept: Result<&SweptWhisker, &RefusedWhisker>, side| {
+        let corner = |SweptSide { swept, side }: &SweptSide| {
             bar.inc(1);
             vec![match swept {
                 Ok(SweptWhisker { whisker, pole, .. }) => {
-                    let corner = trace::corner(whisker, pole, side);
+                    let corner = trace::corner(whisker, pole, *side);
                     let mark = PushMark::of_corner(whisker, pole, &corner);
                     Marked(corner, mark.or(unmarked))
                 }
-                Err(_) => Marked(Corner::without_whisker(side), unmarked),
+                Err(_) => Marked(Corner::without_whisker(*side), unmarked),
             }]
         };
-        write(scene, &mut outputs, &trace::sides(&group, corner))?;
+        let corners = |sides: &[SweptSide]| sides.par_iter().map(corner).collect();
+        write(scene, &mut outputs, &trace::sides(&group, 1, corners))?;
     }
     bar.finish();
     // Options refuse a plot of corners.
