@@ -7,7 +7,7 @@
 use crate::sheet::case::SheetCase;
 use crate::sheet::fold::coordinate::{Hermite, STENCIL, slope_of_u, tau_of, u_of};
 use crate::sheet::fold::predicted::predicted_folds;
-use crate::sheet::fold::{FoldPoint, first_folds};
+use crate::sheet::fold::{FoldPoint, are_stable_below, first_folds};
 use crate::sheet::row::Row;
 use glam::DVec2;
 use whiskmap_mechanics::numerics::newton_form::{stencil, through_runs};
@@ -65,9 +65,6 @@ const SURELY_BELOW: f64 = 0.75;
 
 /// Bound on the magnitude of `d ln q/d ln tau` of a fold; it is 2 toward a slender tip.
 const STEEPEST: f64 = 4.0;
-
-/// Largest relative difference of the loads of one fold that is found twice.
-const SAME_FOLD: f64 = 1e-6;
 
 /// Returns the derivatives of `ln tau` and `ln(|load| tau^2)` of the folds at `fold`, by the index of the contact node.
 fn slopes_at(rod: &Rod, fold: &FoldPoint, spacing: f64) -> [f64; 2] {
@@ -154,8 +151,8 @@ impl ContactNodes {
         })
     }
 
-    /// Returns true if the folds of all nodes at which a whisker can touch the pole of `nearest` or of a farther row are first ones: those of a march,
-    /// also where the node is not covered by a net that shows it (`is_covered(tau)`).
+    /// Returns true if the folds of all nodes at which a whisker can touch the pole of `nearest` or of a farther row are first ones: nodes that have not
+    /// marched are covered by a net that shows it (`is_covered(tau)`), or are sampled here.
     #[must_use]
     pub fn are_first(
         &self,
@@ -169,13 +166,7 @@ impl ContactNodes {
             !fold.has_marched && !is_out_of_touch && !is_covered(fold.tau)
         };
         let open: Vec<&FoldPoint> = self.folds[..=self.tip].iter().filter(is_open).collect();
-        let taus: Vec<f64> = open.iter().map(|fold| fold.tau).collect();
-        let marched = first_folds(case, &taus);
-        let is_same = |(fold, marched): (&FoldPoint, Option<FoldPoint>)| {
-            let off = |marched: FoldPoint| (marched.load / fold.load - 1.0).abs();
-            marched.is_some_and(|marched| off(marched) <= SAME_FOLD)
-        };
-        open.into_iter().zip(marched).all(is_same)
+        are_stable_below(case, &open)
     }
 
     /// Returns true if the load `f/rho^2` is certainly less than the fold load of the contact at `tau`.

@@ -96,6 +96,21 @@ pub fn first_folds(case: SheetCase, taus: &[f64]) -> Vec<Option<FoldPoint>> {
     folds
 }
 
+/// Returns true if the states of each contact of `folds` at loads below its fold, sampled as by a march, are all stable.
+fn are_stable_below(case: SheetCase, folds: &[&FoldPoint]) -> bool {
+    let begin = surely_stable(case.rod);
+    let below = |fold: &&FoldPoint| {
+        let (tau, scale) = (fold.tau, load_scale(case, fold.tau));
+        // Signs come from the coarse resolution.
+        let end = fold.load / scale - BRACKET_SLACK * FIRST_SPACING;
+        let samples = (0..).map(move |i| FIRST_SPACING.mul_add(f64::from(i), begin));
+        let samples = samples.take_while(move |q| *q < end);
+        samples.map(move |q| (tau, q * scale))
+    };
+    let maps: Vec<ShootingMap> = case.coarsely().shoot(folds.iter().flat_map(below));
+    maps.iter().all(|map| map.det() > 0.0)
+}
+
 /// Returns the load of `q = 1` at the contact `tau`.
 pub(super) fn load_scale(SheetCase { rod, side, .. }: SheetCase, tau: f64) -> f64 {
     side.sign() / (arclength(rod, tau).powi(2) * rod.softness(tau))
