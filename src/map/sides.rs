@@ -4,7 +4,7 @@ use crate::engine::{SideColumns, WhiskerSide};
 use crate::plan::Plan;
 use crate::scene::{Parameter, Scene, SweptWhisker};
 use crate::sensitivity::of_rows;
-use crate::sheet::Sheet;
+use crate::sheet::{Sheet, SheetRequest, SheetUse};
 use rayon::prelude::*;
 use std::sync::Arc;
 use whiskmap_mechanics::shooting::batch::Method;
@@ -31,16 +31,22 @@ pub fn whisker_sides(
     let pairs: Vec<_> = whiskers.iter().flat_map(of_whisker).collect();
     let grid = &scene.grid;
     let derivatives: Vec<Parameter> = plan.channels.derivatives().collect();
-    let sides = pairs.into_par_iter().map(|(swept, columns)| {
-        let rod = swept.rod(columns.side);
+    let serves = match net {
+        SideNet::KnownRows => SheetUse::KnownRows,
+        SideNet::Guesses | SideNet::Values(_) => SheetUse::Guesses,
+    };
+    let request = |(swept, columns): &(&SweptWhisker, &Arc<SideColumns>)| {
         let distances = grid.distance_mm.iter();
-        let distances: Vec<f64> = distances.map(|d| d / swept.whisker.length_mm).collect();
-        let sheet = match net {
-            SideNet::KnownRows => Sheet::of_known_rows(method, &rod, columns.side, &distances),
-            SideNet::Guesses | SideNet::Values(_) => {
-                Sheet::new(method, &rod, columns.side, &distances)
-            }
-        };
+        SheetRequest {
+            rod: swept.rod(columns.side),
+            side: columns.side,
+            distances: distances.map(|d| d / swept.whisker.length_mm).collect(),
+            serves,
+        }
+    };
+    let sheets = Sheet::several(method, pairs.iter().map(request).collect());
+    let sides = pairs.into_par_iter().zip(sheets);
+    let sides = sides.map(|((swept, columns), sheet)| {
         let mut side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
         if !derivatives.is_empty() {
             let (resolution, sheet) = (method.resolution, &side.sheet);

@@ -29,7 +29,7 @@ pub use row::{Crossing, Edge, Row};
 pub use span::Guess;
 pub(crate) use span::RowSpan;
 
-use continuation::pieces::{ContinuedRow, stable_pieces};
+use continuation::pieces::{ContinuedRow, StablePieces, stable_pieces};
 use edges::crossings::crossings;
 use net::{FOLD_ERRORS, GUESS_ERRORS, GuessRow, KNOWN_ROW_ERRORS, ValueNet};
 use rayon::prelude::*;
@@ -72,105 +72,85 @@ pub struct Sheet {
     net: Option<ValueNet>,
 }
 
+/// What the rows of a sheet are for: it decides how accurate the net is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SheetUse {
+    /// Guesses for all push angles.
+    Guesses,
+    /// [Known rows](Sheet::known_residuals): guesses are less accurate.
+    KnownRows,
+    /// Crossings alone: rows may have no guesses.
+    Ends,
+}
+
+impl SheetUse {
+    /// Returns the errors to which panels are computed, the first one with which they show all folds.
+    const fn errors(self) -> &'static [f64] {
+        match self {
+            Self::Guesses => &GUESS_ERRORS,
+            Self::KnownRows => &KNOWN_ROW_ERRORS,
+            Self::Ends => &FOLD_ERRORS,
+        }
+    }
+}
+
+/// Whisker side of which a sheet is computed.
+#[derive(Clone, Debug)]
+pub struct SheetRequest {
+    /// Whisker and pole, in dimensionless form.
+    pub rod: Rod,
+    /// Whisker side.
+    pub side: Side,
+    /// Distances of the rows at first touch, in whisker lengths: `[row]`.
+    pub distances: Vec<f64>,
+    /// What the rows are for.
+    pub serves: SheetUse,
+}
+
+/// Sheet whose samples do not decide about some of its rows.
+struct SheetDraft {
+    sheet: Sheet,
+    /// Indices of these rows.
+    open: Vec<usize>,
+    /// True if there are samples, certified or not.
+    has_samples: bool,
+}
+
 impl Sheet {
-    /// Computes the sheet of `rod` by `method` for rows at `distances` (at first touch, in whisker lengths).
+    /// Computes the sheet of `rod` by `method` for guesses in rows at `distances` (at first touch, in whisker lengths).
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_errors(&GUESS_ERRORS, method, rod, side, distances)
-    }
-
-    /// Computes the sheet as [`Sheet::new`] does, for [known rows](Sheet::known_residuals): guesses are less accurate.
-    #[must_use]
-    pub fn of_known_rows(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_errors(&KNOWN_ROW_ERRORS, method, rod, side, distances)
+        Self::one(method, rod, side, distances, SheetUse::Guesses)
     }
 
     /// Computes the sheet as [`Sheet::new`] does, for the crossings of its rows alone: rows may have no [`Sheet::guesses`].
     #[must_use]
     pub fn of_ends(method: Method, rod: &Rod, side: Side, distances: &[f64]) -> Self {
-        Self::with_errors(&FOLD_ERRORS, method, rod, side, distances)
+        Self::one(method, rod, side, distances, SheetUse::Ends)
     }
 
-    /// Computes the sheet with panels to the first of the `errors` with which they show all folds.
-    fn with_errors(
-        errors: &[f64],
-        method: Method,
-        rod: &Rod,
-        side: Side,
-        distances: &[f64],
-    ) -> Self {
-        let rest = Rest::new(rod);
-        let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
-        let nearest = rows
-            .iter()
-            .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
-        let case = SheetCase { method, rod, side };
-        let samples = nearest.and_then(|nearest| SheetSamples::new(case, nearest, &rows, errors));
-        let is_certified = samples
-            .as_ref()
-            .is_some_and(|samples| samples.panels.is_some());
-        let mut crossings = match &samples {
-            Some(samples) => crossings(case, &samples.edges, &rows),
-            None => vec![Vec::new(); rows.len()],
-        };
-        let fold_grows = samples
-            .as_ref()
-            .is_some_and(|samples| samples.edges.fold_grows);
-        let needs_continuation = |row: &Row, crossings: &[Crossing]| {
-            let touches = row.is_reached();
-            let is_pair = usize::from(touches) + crossings.len() == 2;
-            let is_simple = crossings.is_empty() && !touches
-                || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
-            // Where the tip moves away from the pole under a load, the level curve is this point alone, which no continuation can follow.
-            let is_point = row.is_at_reach() && matches!(crossings, [end] if end.is_at_touch());
-            let is_inside = row.pole_distance <= rod.pole.abs();
-            !(is_certified && is_simple || is_point) || is_inside
-        };
-        let follow = |(rows, crossings): (&[Row], &mut [Vec<Crossing>])| {
-            let continued: Vec<usize> = (0..rows.len())
-                .filter(|i| needs_continuation(&rows[*i], &crossings[*i]))
-                .collect();
-            let levels: Vec<LevelCurve> = continued
-                .iter()
-                .map(|i| LevelCurve::new(method, rod, side, &rows[*i]))
-                .collect();
-            let row = |(i, level): (&usize, _)| ContinuedRow {
-                level,
-                touches: rows[*i].is_reached(),
-                crossings: &crossings[*i],
-            };
-            let found = stable_pieces(&continued.iter().zip(&levels).map(row).collect::<Vec<_>>());
-            let mut guesses = vec![Vec::new(); rows.len()];
-            for (i, found) in continued.into_iter().zip(found) {
-                crossings[i] = found.ends().collect();
-                let is_incomplete = !found.are_complete && !found.pieces.is_empty();
-                if is_incomplete || samples.is_none() && !rows[i].is_reached() {
-                    crossings[i].push(Crossing::unknown());
-                }
-                let spans = found.pieces.iter().filter_map(|piece| piece.span(side));
-                guesses[i] = spans.collect();
-            }
-            guesses
-        };
-        let continued: Vec<Vec<RowSpan>> = rows
-            .par_chunks(rows_per_batch(distances.len()))
-            .zip(crossings.par_chunks_mut(rows_per_batch(distances.len())))
-            .map(follow)
-            .flatten_iter()
-            .collect();
-        let tip = rod.tau_tip();
-        let samples = samples.filter(|_| is_certified);
-        Self {
+    fn one(method: Method, rod: &Rod, side: Side, distances: &[f64], serves: SheetUse) -> Self {
+        let request = SheetRequest {
             rod: rod.clone(),
             side,
-            tip: [tip, rod.radius(tip)],
-            rows,
-            crossings,
-            method,
-            continued,
-            samples: samples.map(Arc::new),
-            net: None,
-        }
+            distances: distances.to_vec(),
+            serves,
+        };
+        let mut drafts = [SheetDraft::new(method, request)];
+        follow(&mut drafts);
+        let [draft] = drafts;
+        draft.sheet
+    }
+
+    /// Computes the sheets of several whisker sides by `method`, `[request]`. Rows of all of them that are followed share batches. A sheet does not
+    /// depend on the others.
+    #[must_use]
+    pub fn several(method: Method, requests: Vec<SheetRequest>) -> Vec<Self> {
+        let drafts = requests.into_par_iter();
+        let drafts = drafts.map(|request| SheetDraft::new(method, request));
+        let mut drafts: Vec<SheetDraft> = drafts.collect();
+        follow(&mut drafts);
+        drafts.into_iter().map(|draft| draft.sheet).collect()
     }
 
     /// Returns the fold with the contact at the tip, where slip-off turns into pull-off. Returns `None` if it is not found.
@@ -342,5 +322,105 @@ impl Sheet {
         let samples = self.samples.as_ref();
         let is_loaded = samples.is_none_or(|samples| samples.is_below_fold(tau, load));
         is_loaded && map.is_stable()
+    }
+}
+
+impl SheetDraft {
+    /// Samples the sheet, and finds where its rows cross the edges.
+    fn new(method: Method, request: SheetRequest) -> Self {
+        let SheetRequest {
+            rod,
+            side,
+            distances,
+            serves,
+        } = request;
+        let rest = Rest::new(&rod);
+        let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
+        let nearest = rows
+            .iter()
+            .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
+        let case = SheetCase {
+            method,
+            rod: &rod,
+            side,
+        };
+        let sample = |nearest| SheetSamples::new(case, nearest, &rows, serves.errors());
+        let samples = nearest.and_then(sample);
+        let is_certified = samples
+            .as_ref()
+            .is_some_and(|samples| samples.panels.is_some());
+        let crossings = match &samples {
+            Some(samples) => crossings(case, &samples.edges, &rows),
+            None => vec![Vec::new(); rows.len()],
+        };
+        let fold_grows = samples
+            .as_ref()
+            .is_some_and(|samples| samples.edges.fold_grows);
+        let is_open = |(row, crossings): (&Row, &[Crossing])| {
+            let touches = row.is_reached();
+            let is_pair = usize::from(touches) + crossings.len() == 2;
+            let is_simple = crossings.is_empty() && !touches
+                || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
+            // Where the tip moves away from the pole under a load, the level curve is this point alone, which no continuation can follow.
+            let is_point = row.is_at_reach() && matches!(crossings, [end] if end.is_at_touch());
+            let is_inside = row.pole_distance <= rod.pole.abs();
+            !(is_certified && is_simple || is_point) || is_inside
+        };
+        let open = (0..rows.len()).filter(|&row| is_open((&rows[row], &crossings[row])));
+        let tip = rod.tau_tip();
+        Self {
+            open: open.collect(),
+            has_samples: samples.is_some(),
+            sheet: Sheet {
+                side,
+                tip: [tip, rod.radius(tip)],
+                continued: vec![Vec::new(); rows.len()],
+                rows,
+                crossings,
+                method,
+                samples: samples.filter(|_| is_certified).map(Arc::new),
+                net: None,
+                rod,
+            },
+        }
+    }
+}
+
+/// Follows the open rows of all `drafts` by continuation, and sets their crossings and spans.
+fn follow(drafts: &mut [SheetDraft]) {
+    let rows = drafts.iter().enumerate().flat_map(|(draft, open)| {
+        let rows = open.open.iter();
+        rows.map(move |row| (draft, *row))
+    });
+    let rows: Vec<(usize, usize)> = rows.collect();
+    let of_batch = |rows: &[(usize, usize)]| {
+        let sheets = rows
+            .iter()
+            .map(|(draft, row)| (&drafts[*draft].sheet, *row));
+        let levels: Vec<LevelCurve> = sheets
+            .clone()
+            .map(|(sheet, row)| sheet.level(row))
+            .collect();
+        let continued = sheets
+            .zip(&levels)
+            .map(|((sheet, row), level)| ContinuedRow {
+                level,
+                touches: sheet.touches(row),
+                crossings: &sheet.crossings[row],
+            });
+        stable_pieces(&continued.collect::<Vec<_>>())
+    };
+    let batches = rows.par_chunks(rows_per_batch(rows.len()));
+    let found: Vec<StablePieces> = batches.flat_map_iter(of_batch).collect();
+    for ((draft, row), found) in rows.into_iter().zip(found) {
+        let SheetDraft {
+            sheet, has_samples, ..
+        } = &mut drafts[draft];
+        let is_incomplete = !found.are_complete && !found.pieces.is_empty();
+        let has_unknown = is_incomplete || !*has_samples && !sheet.touches(row);
+        let unknown = has_unknown.then(Crossing::unknown);
+        sheet.crossings[row] = found.ends().chain(unknown).collect();
+        let pieces = found.pieces.iter();
+        sheet.continued[row] = pieces.filter_map(|piece| piece.span(sheet.side)).collect();
     }
 }

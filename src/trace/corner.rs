@@ -5,7 +5,6 @@ use super::curve::{Detachment, DetachmentKind, curve_without_strain};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
 use serde::Serialize;
-use whiskmap_mechanics::numerics::Bracket;
 use whiskmap_mechanics::rod::{Rest, Side};
 use whiskmap_mechanics::shooting::Resolution;
 use whiskmap_mechanics::shooting::batch::Method;
@@ -53,11 +52,12 @@ impl Corner {
 /// `reason` says why.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
-    let end =
-        |distance: f64| curve_without_strain(Resolution::FINE, whisker, pole, side, &[distance])[0];
-    let found = corner_distance(whisker, pole, side, &end).and_then(|distance| {
-        let push = end(distance).push_angle_deg.ok_or(NoCorner::NotFound)?;
-        Ok((distance, push))
+    let ends = |distances_mm: &[f64]| {
+        curve_without_strain(Resolution::FINE, whisker, pole, side, distances_mm)
+    };
+    let found = corner_distance(whisker, pole, side, &ends).and_then(|distance| {
+        let push = ends(&[distance])[0].push_angle_deg;
+        Ok((distance, push.ok_or(NoCorner::NotFound)?))
     });
     let (distance_mm, push_angle_deg) = found.ok().unzip();
     Corner {
@@ -68,12 +68,12 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     }
 }
 
-/// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by bisection.
+/// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by sections.
 fn corner_distance(
     whisker: &Whisker,
     pole: &Pole,
     side: Side,
-    end: &impl Fn(f64) -> Detachment,
+    ends: &impl Fn(&[f64]) -> Vec<Detachment>,
 ) -> Result<f64, NoCorner> {
     let rod = whisker.rod(pole, side);
     if rod.taper >= 1.0 {
@@ -83,11 +83,12 @@ fn corner_distance(
     let fold = Sheet::fold_at_tip(Method::fine(), &rod, side);
     let pole = fold.ok_or(NoCorner::NotFound)?.variation.map.pole.length();
     let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;
-    let kinds = [-1.0, 1.0].map(|sign| end(at_tip + sign * CORNER_TOLERANCE * length).kind);
+    let beside = [-1.0, 1.0].map(|sign| at_tip + sign * CORNER_TOLERANCE * length);
+    let kinds: Vec<DetachmentKind> = ends(&beside).iter().map(|end| end.kind).collect();
     if kinds == [DetachmentKind::SlipOff, DetachmentKind::PullOff] {
         return Ok(at_tip);
     }
-    switch(end, length, rod.pole.abs())
+    switch(ends, length, rod.pole.abs())
 }
 
 /// Half the width of the interval of distances in which slip-off must turn into pull-off, in whisker lengths.
@@ -96,30 +97,42 @@ const CORNER_TOLERANCE: f64 = 1e-10;
 /// Number of distances at which ends are computed to bracket a corner that is not at the fold with the contact at the tip.
 const CORNER_SAMPLES: u32 = 128;
 
-/// Distance at which slip-off turns into pull-off, in the unit of `length`, by bisection. With friction two branches can exchange their
+/// Number of parts into which each round divides the bracket of a corner: the ends between them fill a block of trajectories.
+const SECTIONS: u32 = 17;
+
+/// Distance at which slip-off turns into pull-off, in the unit of `length`, by ever closer ends. With friction two branches can exchange their
 /// ends there. The search begins at `nearest`, in whisker lengths.
-fn switch(end: &impl Fn(f64) -> Detachment, length: f64, nearest: f64) -> Result<f64, NoCorner> {
+fn switch(
+    ends: &impl Fn(&[f64]) -> Vec<Detachment>,
+    length: f64,
+    nearest: f64,
+) -> Result<f64, NoCorner> {
     let samples: Vec<f64> = (1..=CORNER_SAMPLES)
         .map(|i| nearest + (1.0 - nearest) * f64::from(i) / f64::from(CORNER_SAMPLES))
         .map(|distance| distance * length)
         .collect();
-    let pulled = samples
-        .iter()
-        .position(|d| end(*d).kind == DetachmentKind::PullOff)
-        .ok_or(NoCorner::AlwaysSlipsOff)?;
+    let is_pulled = |end: &Detachment| end.kind == DetachmentKind::PullOff;
+    let pulled = ends(&samples).iter().position(is_pulled);
+    let pulled = pulled.ok_or(NoCorner::AlwaysSlipsOff)?;
     let before = pulled.checked_sub(1).ok_or(NoCorner::AlwaysPullsOff)?;
-    let mut bracket = Bracket {
-        below: samples[before],
-        above: samples[pulled],
-    };
-    bracket.halve(CORNER_TOLERANCE * length, |distance| {
-        match end(distance).kind {
-            DetachmentKind::SlipOff => Ok(true),
-            DetachmentKind::PullOff => Ok(false),
-            DetachmentKind::OutOfReach | DetachmentKind::Unresolved | DetachmentKind::NoWhisker => {
-                Err(NoCorner::NotFound)
+    let (mut below, mut above) = (samples[before], samples[pulled]);
+    while above - below > CORNER_TOLERANCE * length {
+        let step = (above - below) / f64::from(SECTIONS);
+        let between: Vec<f64> = (1..SECTIONS)
+            .map(|i| step.mul_add(f64::from(i), below))
+            .collect();
+        for (distance, end) in between.iter().zip(ends(&between)) {
+            match end.kind {
+                DetachmentKind::SlipOff => below = *distance,
+                DetachmentKind::PullOff => {
+                    above = *distance;
+                    break;
+                }
+                DetachmentKind::OutOfReach
+                | DetachmentKind::Unresolved
+                | DetachmentKind::NoWhisker => return Err(NoCorner::NotFound),
             }
         }
-    })?;
-    Ok(bracket.below)
+    }
+    Ok(below)
 }

@@ -4,7 +4,7 @@ use super::columns::{StateRow, row};
 use crate::classify::{RowBoundary, TIE};
 use crate::friction::{ContactHistory, Sliding, surely_slides_to_end};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Crossing, Edge, Sheet};
+use crate::sheet::{Crossing, Edge, Sheet, SheetRequest, SheetUse};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use whiskmap_mechanics::rod::{Rest, Side};
@@ -127,16 +127,20 @@ pub(crate) fn detachments<T: Send>(
     keep: impl Fn(usize, Detachment, Option<Crossing>) -> T + Sync,
 ) -> Vec<Vec<T>> {
     let method = Method::new(resolution);
-    let sheet = |(whisker, pole, side): &Pushed| {
-        let rod = &whisker.rod(pole, *side);
-        let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
-        // The history of a contact that sticks needs states before the end.
-        match has_strain && rod.friction != 0.0 {
-            true => Sheet::new(method, rod, *side, &distances),
-            false => Sheet::of_ends(method, rod, *side, &distances),
+    let request = |(whisker, pole, side): &Pushed| {
+        let rod = whisker.rod(pole, *side);
+        SheetRequest {
+            // The history of a contact that sticks needs states before the end.
+            serves: match has_strain && rod.friction != 0.0 {
+                true => SheetUse::Guesses,
+                false => SheetUse::Ends,
+            },
+            rod,
+            side: *side,
+            distances: distances_mm.iter().map(|d| d / whisker.length_mm).collect(),
         }
     };
-    let sheets: Vec<Sheet> = pushed.par_iter().map(sheet).collect();
+    let sheets = Sheet::several(method, pushed.iter().map(request).collect());
     let row_ends = RowEnd::of(method, &sheets);
     let peaks: Vec<Vec<Option<PeakStrain>>> = match has_strain {
         true => {
