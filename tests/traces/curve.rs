@@ -1,11 +1,14 @@
 //! Detachment curves and their corners.
 
 use super::{POLE, everything, whisker};
+use crate::shipped::scene;
 use whiskmap::Side;
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::mechanics::shooting::batch::Method;
-use whiskmap::scene::Curvature;
+use whiskmap::scene::{Curvature, Parameter, SweptWhisker, Whisker};
+use whiskmap::sensitivity::{Variable, detachments_of};
 use whiskmap::sheet::Sheet;
-use whiskmap::trace::{Branch, DetachmentKind, NoCorner, corner, curve};
+use whiskmap::trace::{Branch, DetachmentKind, NoCorner, SweptSide, corner, curve};
 
 /// A push ends at the fold 1e-8 mm before the corner, and at the tip 1e-8 mm beyond it.
 #[test]
@@ -138,4 +141,46 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
         }
     }
     assert!(compared > 300 && several > 5, "{compared} {several}");
+}
+
+/// The trajectories of several whiskers share batches, also those of rows that are followed: each whisker has the ends and the derivatives that it has
+/// alone, to the last bit.
+#[test]
+fn ends_do_not_depend_on_the_other_whiskers() {
+    let bent = Whisker {
+        curvature: Some(Curvature {
+            parabola_per_mm: 1.14 / 20.0,
+            vertex_mm: 14.2,
+        }),
+        ..whisker(30.0, 0.0)
+    };
+    let measured = Whisker {
+        profile: Some(vec![[0.0, 1.0], [0.4, 0.4], [0.6, 0.7], [1.0, 0.1]]),
+        ..whisker(3.0, 0.02)
+    };
+    let others = [bent, measured].map(|whisker| (whisker, POLE));
+    let place = scene("cone").first_whisker().place;
+    let swept = everything().step_by(5).chain(others);
+    let swept = swept.map(|(whisker, pole)| SweptWhisker {
+        place: place.clone(),
+        whisker,
+        pole,
+    });
+    let swept: Vec<SweptWhisker> = swept.collect();
+    let both = |swept| Side::BOTH.map(|side| SweptSide { swept, side });
+    let sides: Vec<SweptSide> = swept.iter().map(Ok).flat_map(both).collect();
+    let distances = [4.0, 9.0, 13.0];
+    let variables = [Variable::DistanceMm, Parameter::BaseRadiusUm.into()];
+    let ends = |sides: &[SweptSide]| {
+        detachments_of(Resolution::FINE, sides, &distances, &variables)
+    };
+    for (side, together) in sides.iter().zip(ends(&sides)) {
+        let alone = ends(std::slice::from_ref(side)).concat();
+        assert_eq!(together, alone, "{side:?}");
+    }
+    let is_followed = |side: &&SweptSide| {
+        let rod = side.swept.unwrap().rod(side.side);
+        Sheet::of_ends(Method::fine(), &rod, side.side, &[0.45]).is_continued()
+    };
+    assert!(sides.iter().filter(is_followed).count() > 2);
 }
