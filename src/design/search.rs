@@ -3,13 +3,14 @@
 use super::samples::{SAMPLES, samples};
 use super::varied::DesignScene;
 use super::{DesignEnd, DesignTarget, EQUAL, turn};
-use crate::trace::DetachmentKind;
+use crate::scene::Scene;
+use crate::trace::{DetachmentKind, sides_at_once};
 use rayon::prelude::*;
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::numerics::Bracket;
 
-/// Width of the interval of a change of kind, in parts of the interval between two samples: 50 halvings.
+/// Width of the interval of a change of kind, in parts of the interval between two samples.
 const CHANGE_WIDTH: f64 = 1e-15;
 
 /// Longest last step of Newton's method, relative to the value: the error is about its square.
@@ -27,18 +28,23 @@ pub struct DesignSearch<'a> {
 }
 
 impl DesignSearch<'_> {
-    /// The end at a value of the parameter; `Unresolved` if the scene refuses the value, and after a cancellation.
-    fn end(&self, value: f64) -> DesignEnd {
-        let moved = || self.scene.at(&[value]).ok();
+    /// The ends at values of the parameter, `[value]`; `Unresolved` if the scene refuses a value, and after a cancellation.
+    fn ends(&self, values: &[f64]) -> Vec<DesignEnd> {
         let is_cancelled = self.cancel.load(Ordering::Relaxed);
-        let moved = (!is_cancelled).then(moved).flatten();
-        let reached = moved.map(|scene| self.target.reached(&scene));
-        let (kind, reached) = reached.unwrap_or((DetachmentKind::Unresolved, None));
-        DesignEnd {
-            value,
-            kind,
-            reached,
-        }
+        let moved = |value: &f64| self.scene.at(&[*value]).ok().filter(|_| !is_cancelled);
+        let scenes: Vec<Option<Scene>> = values.iter().map(moved).collect();
+        let accepted: Vec<&Scene> = scenes.iter().flatten().collect();
+        let mut reached = self.target.reached(&accepted).into_iter();
+        let end = |(value, scene): (&f64, &Option<Scene>)| {
+            let found = scene.as_ref().and_then(|_| reached.next());
+            let (kind, reached) = found.unwrap_or((DetachmentKind::Unresolved, None));
+            DesignEnd {
+                value: *value,
+                kind,
+                reached,
+            }
+        };
+        values.iter().zip(&scenes).map(end).collect()
     }
 
     /// Value of an end less the target's value, in the unit of the goal; NaN for an end of another kind.
@@ -48,7 +54,7 @@ impl DesignSearch<'_> {
     }
 
     fn miss_at(&self, value: f64) -> f64 {
-        self.miss(&self.end(value))
+        self.miss(&self.ends(&[value])[0])
     }
 
     fn is_reached(&self, miss: f64) -> bool {
@@ -71,9 +77,10 @@ impl DesignSearch<'_> {
 
     /// Returns ends of pushes at values over the `range` of the parameter, in its unit, and on both sides of each change of kind: `[value]`.
     pub fn scan(&self, range: [f64; 2]) -> Vec<DesignEnd> {
-        let scanned: Vec<DesignEnd> = samples(range, SAMPLES)
-            .into_par_iter()
-            .map(|value| self.end(value))
+        let values = samples(range, SAMPLES);
+        let scanned: Vec<DesignEnd> = values
+            .par_chunks(sides_at_once(values.len(), 1))
+            .flat_map_iter(|values| self.ends(values))
             .collect();
         let mut ends = Vec::with_capacity(scanned.len());
         for (i, end) in scanned.iter().enumerate() {
@@ -94,11 +101,13 @@ impl DesignSearch<'_> {
             above: after.value,
         };
         let width = CHANGE_WIDTH * (after.value - before.value).abs();
-        let Ok(()) = bracket.halve(width, |value| {
-            let middle = self.end(value);
-            let is_before = middle.kind == before.kind;
-            *(if is_before { &mut before } else { &mut after }) = middle;
-            Ok::<bool, Infallible>(is_before)
+        let Ok(()) = bracket.divide(width, |values| {
+            let ends = self.ends(values);
+            let are_before = ends.iter().take_while(|end| end.kind == before.kind);
+            let count = are_before.count();
+            after = ends.get(count).copied().unwrap_or(after);
+            before = ends[..count].last().copied().unwrap_or(before);
+            Ok::<usize, Infallible>(count)
         });
         [before, after]
     }
@@ -135,8 +144,12 @@ impl DesignSearch<'_> {
             above: outside,
         };
         let width = EQUAL * (outside - inside).abs();
-        let Ok(()) = bracket.halve(width, |value| {
-            Ok::<bool, Infallible>(self.is_reached(self.miss_at(value)))
+        let Ok(()) = bracket.divide(width, |values| {
+            let ends = self.ends(values);
+            let reached = ends
+                .iter()
+                .take_while(|end| self.is_reached(self.miss(end)));
+            Ok::<usize, Infallible>(reached.count())
         });
         bracket.below
     }

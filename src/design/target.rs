@@ -3,7 +3,8 @@
 use crate::input::Quantity;
 use crate::scene::Scene;
 use crate::sensitivity::{NoDerivative, Variable, detachments, largest};
-use crate::trace::{Detachment, DetachmentKind, PushLoad, StableBranch, curve_without_strain};
+use crate::trace::{self, Detachment, DetachmentKind, PushLoad, Pushed, StableBranch};
+use rayon::prelude::*;
 use std::cell::OnceCell;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
@@ -150,10 +151,12 @@ impl DesignTarget {
         directions.iter().map(&mut along).collect()
     }
 
-    /// Computes how a push at the only distance of `scene` ends, and the value of the goal's quantity, in its unit. The value is `None`
-    /// without a detachment.
-    pub(super) fn reached(&self, scene: &Scene) -> (DetachmentKind, Option<f64>) {
-        ComputedPush::new(scene, self.side).reached(self.goal, exactly)
+    /// Computes how a push at the only distance of each of `scenes` ends, and the value of the goal's quantity, in its unit: `[scene]`. The
+    /// value is `None` without a detachment.
+    pub(super) fn reached(&self, scenes: &[&Scene]) -> Vec<(DetachmentKind, Option<f64>)> {
+        let pushes = ComputedPush::of(scenes, self.side).into_par_iter();
+        let reached = pushes.map(|push| push.reached(self.goal, exactly));
+        reached.collect()
     }
 }
 
@@ -169,15 +172,23 @@ pub(super) struct ComputedPush<'a> {
 }
 
 impl<'a> ComputedPush<'a> {
-    pub fn new(scene: &'a Scene, side: Side) -> Self {
-        let (whisker, pole) = (&scene.whisker, &scene.pole);
-        let distances = &scene.grid.distance_mm;
-        Self {
+    /// Computes the ends of pushes of `scenes` on one side, `[scene]`.
+    pub fn of(scenes: &[&'a Scene], side: Side) -> Vec<Self> {
+        let pushed = scenes.iter().map(|scene| Pushed {
+            whisker: &scene.whisker,
+            pole: &scene.pole,
+            side,
+            distances_mm: &scene.grid.distance_mm,
+        });
+        let pushed: Vec<Pushed> = pushed.collect();
+        let ends = trace::detachments(Resolution::FINE, &pushed, false, |_, end, _| end);
+        let pushes = scenes.iter().zip(ends).map(|(scene, mut ends)| Self {
             scene,
             side,
-            end: curve_without_strain(Resolution::FINE, whisker, pole, side, distances).pop(),
+            end: ends.pop(),
             branch: OnceCell::new(),
-        }
+        });
+        pushes.collect()
     }
 
     /// Returns how the push ends, and the value of the goal's quantity, in its unit; `None` without a detachment.

@@ -191,7 +191,7 @@ impl TogetherSearch<'_> {
     /// Returns the values of the quantities of the targets, in their units; `None` if the push ends in another way.
     fn reached(&self, x: &[f64], largest: LargestOf) -> Option<Vec<f64>> {
         let scene = self.at(x)?;
-        let push = ComputedPush::new(&scene, self.targets[0].side);
+        let push = ComputedPush::of(&[&scene], self.targets[0].side).pop()?;
         let values = self.targets.iter().map(|target| {
             let (kind, value) = push.reached(target.goal, largest);
             value.filter(|value| target.accepts(kind) && !value.is_nan())

@@ -97,8 +97,13 @@ pub fn detachments(
     distances_mm: &[f64],
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
-    let pushed = [(whisker, pole, side)];
-    of_ends(Resolution::FINE, &pushed, distances_mm, false, variables).concat()
+    let pushed = Pushed {
+        whisker,
+        pole,
+        side,
+        distances_mm,
+    };
+    of_ends(Resolution::FINE, &[pushed], false, variables).concat()
 }
 
 /// Computes detachments with derivatives as [`detachments`] does, of some sides of whiskers at once, at another resolution and with the largest
@@ -113,10 +118,15 @@ pub fn detachments_of(
 ) -> Vec<Vec<DetachmentDerivatives>> {
     let pushed = sides.iter().filter_map(|SweptSide { swept, side }| {
         let swept = swept.ok()?;
-        Some((&swept.whisker, &swept.pole, *side))
+        Some(Pushed {
+            whisker: &swept.whisker,
+            pole: &swept.pole,
+            side: *side,
+            distances_mm,
+        })
     });
     let pushed: Vec<Pushed> = pushed.collect();
-    let mut found = of_ends(resolution, &pushed, distances_mm, true, variables).into_iter();
+    let mut found = of_ends(resolution, &pushed, true, variables).into_iter();
     let without = |end| DetachmentDerivatives {
         end,
         by: vec![Err(NoDerivative::NoDetachment); variables.len()],
@@ -136,12 +146,17 @@ pub fn detachments_of(
 pub(crate) fn of_ends(
     resolution: Resolution,
     pushed: &[Pushed],
-    distances_mm: &[f64],
     has_strain: bool,
     variables: &[Variable],
 ) -> Vec<Vec<DetachmentDerivatives>> {
-    let differentiated = pushed.iter().map(|(whisker, pole, side)| {
-        Differentiated::new(resolution, whisker, pole, *side, variables)
+    let differentiated = pushed.iter().map(|pushed| {
+        let Pushed {
+            whisker,
+            pole,
+            side,
+            ..
+        } = *pushed;
+        Differentiated::new(resolution, whisker, pole, side, variables)
     });
     let differentiated: Vec<Differentiated> = differentiated.collect();
     let of_end =
@@ -149,7 +164,7 @@ pub(crate) fn of_ends(
             by: differentiated[index].at_crossing(crossing.as_ref(), end.distance_mm),
             end,
         };
-    trace::detachments(resolution, pushed, distances_mm, has_strain, of_end)
+    trace::detachments(resolution, pushed, has_strain, of_end)
 }
 
 /// Returns the derivatives of the push angle at the detachments of `sheet`, whose rows have these distances, by each of `parameters`, in

@@ -5,6 +5,7 @@ use super::curve::{Detachment, DetachmentKind, curve_without_strain};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
 use serde::Serialize;
+use whiskmap_mechanics::numerics::Bracket;
 use whiskmap_mechanics::rod::{Rest, Side};
 use whiskmap_mechanics::shooting::Resolution;
 use whiskmap_mechanics::shooting::batch::Method;
@@ -68,7 +69,7 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     }
 }
 
-/// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by sections.
+/// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by division.
 fn corner_distance(
     whisker: &Whisker,
     pole: &Pole,
@@ -97,10 +98,7 @@ const CORNER_TOLERANCE: f64 = 1e-10;
 /// Number of distances at which ends are computed to bracket a corner that is not at the fold with the contact at the tip.
 const CORNER_SAMPLES: u32 = 128;
 
-/// Number of parts into which each round divides the bracket of a corner: the ends between them fill a block of trajectories.
-const SECTIONS: u32 = 17;
-
-/// Distance at which slip-off turns into pull-off, in the unit of `length`, by ever closer ends. With friction two branches can exchange their
+/// Distance at which slip-off turns into pull-off, in the unit of `length`, by division. With friction two branches can exchange their
 /// ends there. The search begins at `nearest`, in whisker lengths.
 fn switch(
     ends: &impl Fn(&[f64]) -> Vec<Detachment>,
@@ -115,24 +113,20 @@ fn switch(
     let pulled = ends(&samples).iter().position(is_pulled);
     let pulled = pulled.ok_or(NoCorner::AlwaysSlipsOff)?;
     let before = pulled.checked_sub(1).ok_or(NoCorner::AlwaysPullsOff)?;
-    let (mut below, mut above) = (samples[before], samples[pulled]);
-    while above - below > CORNER_TOLERANCE * length {
-        let step = (above - below) / f64::from(SECTIONS);
-        let between: Vec<f64> = (1..SECTIONS)
-            .map(|i| step.mul_add(f64::from(i), below))
-            .collect();
-        for (distance, end) in between.iter().zip(ends(&between)) {
-            match end.kind {
-                DetachmentKind::SlipOff => below = *distance,
-                DetachmentKind::PullOff => {
-                    above = *distance;
-                    break;
-                }
-                DetachmentKind::OutOfReach
-                | DetachmentKind::Unresolved
-                | DetachmentKind::NoWhisker => return Err(NoCorner::NotFound),
-            }
+    let mut bracket = Bracket {
+        below: samples[before],
+        above: samples[pulled],
+    };
+    bracket.divide(CORNER_TOLERANCE * length, |distances| {
+        let ends = ends(distances);
+        let slipped = ends
+            .iter()
+            .take_while(|end| end.kind == DetachmentKind::SlipOff);
+        let slipped = slipped.count();
+        match ends.get(slipped) {
+            Some(end) if !is_pulled(end) => Err(NoCorner::NotFound),
+            _ => Ok(slipped),
         }
-    }
-    Ok(below)
+    })?;
+    Ok(bracket.below)
 }

@@ -94,8 +94,13 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let pushed = (whisker, pole, side);
-    detachments(resolution, &[pushed], distances_mm, true, |_, end, _| end).concat()
+    let pushed = Pushed {
+        whisker,
+        pole,
+        side,
+        distances_mm,
+    };
+    detachments(resolution, &[pushed], true, |_, end, _| end).concat()
 }
 
 /// Computes the detachment curve as [`curve_at`] does, but leaves out the largest strain, which takes a trajectory more for each end.
@@ -107,12 +112,24 @@ pub fn curve_without_strain(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let pushed = (whisker, pole, side);
-    detachments(resolution, &[pushed], distances_mm, false, |_, end, _| end).concat()
+    let pushed = Pushed {
+        whisker,
+        pole,
+        side,
+        distances_mm,
+    };
+    detachments(resolution, &[pushed], false, |_, end, _| end).concat()
 }
 
-/// Whisker that is pushed against a pole on one side.
-pub(crate) type Pushed<'a> = (&'a Whisker, &'a Pole, Side);
+/// Whisker that is pushed against a pole on one side, from first touch at some distances.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pushed<'a> {
+    pub whisker: &'a Whisker,
+    pub pole: &'a Pole,
+    pub side: Side,
+    /// Distances of first touch in mm, which must increase.
+    pub distances_mm: &'a [f64],
+}
 
 /// Computes what to `keep` of the detachments of each of `pushed`, `[pushed][distance]`: it gets the index of the whisker, the detachment, and
 /// the crossing of the sheet's edge from which it is read; `None` without an end. If `has_strain` is true, each detachment has its largest strain,
@@ -122,13 +139,14 @@ pub(crate) type Pushed<'a> = (&'a Whisker, &'a Pole, Side);
 pub(crate) fn detachments<T: Send>(
     resolution: Resolution,
     pushed: &[Pushed],
-    distances_mm: &[f64],
     has_strain: bool,
     keep: impl Fn(usize, Detachment, Option<Crossing>) -> T + Sync,
 ) -> Vec<Vec<T>> {
     let method = Method::new(resolution);
-    let request = |(whisker, pole, side): &Pushed| {
-        let rod = whisker.rod(pole, *side);
+    let request = |pushed: &Pushed| {
+        let Pushed { whisker, side, .. } = *pushed;
+        let rod = whisker.rod(pushed.pole, side);
+        let distances = pushed.distances_mm.iter();
         SheetRequest {
             // The history of a contact that sticks needs states before the end.
             serves: match has_strain && rod.friction != 0.0 {
@@ -136,8 +154,8 @@ pub(crate) fn detachments<T: Send>(
                 false => SheetUse::Ends,
             },
             rod,
-            side: *side,
-            distances: distances_mm.iter().map(|d| d / whisker.length_mm).collect(),
+            side,
+            distances: distances.map(|d| d / whisker.length_mm).collect(),
         }
     };
     let sheets = Sheet::several(method, pushed.iter().map(request).collect());
@@ -149,10 +167,16 @@ pub(crate) fn detachments<T: Send>(
             let crossings: Vec<Vec<_>> = row_ends.iter().map(of_sheet).collect();
             shoot_ends(method.doubled(), &sheets, &crossings)
         }
-        false => vec![vec![None; distances_mm.len()]; sheets.len()],
+        false => row_ends.iter().map(|ends| vec![None; ends.len()]).collect(),
     };
     let of_sheet = |(index, (row_ends, peaks)): (usize, (Vec<Result<RowEnd, _>>, Vec<_>))| {
-        let ((whisker, _, side), sheet) = (&pushed[index], &sheets[index]);
+        let Pushed {
+            whisker,
+            side,
+            distances_mm,
+            ..
+        } = pushed[index];
+        let sheet = &sheets[index];
         let units = whisker.units();
         let reader = Reader::new(units, &sheet.rod);
         let slidings = match has_strain {
@@ -164,7 +188,7 @@ pub(crate) fn detachments<T: Send>(
                           peak: Option<PeakStrain>| {
             let place = &sheet.rows[row];
             let none = Detachment {
-                side: *side,
+                side,
                 distance_mm: distances_mm[row],
                 pole_distance_mm: Some(place.pole_distance * whisker.length_mm),
                 ..Detachment::default()

@@ -4,6 +4,7 @@ use super::varying::Varying;
 use crate::input::each_once;
 use crate::scene::Scene;
 use crate::sensitivity::{DetachmentDerivatives, Variable, of_ends};
+use crate::trace::Pushed;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -25,9 +26,13 @@ pub(super) fn deviations_deg(
         .map(|(variable, _)| *variable)
         .collect();
     let variables = each_once(&all);
-    let pushed = [(&scene.whisker, &scene.pole, side)];
-    let distances = &scene.grid.distance_mm;
-    let ends = of_ends(resolution, &pushed, distances, false, &variables).concat();
+    let pushed = Pushed {
+        whisker: &scene.whisker,
+        pole: &scene.pole,
+        side,
+        distances_mm: &scene.grid.distance_mm,
+    };
+    let ends = of_ends(resolution, &[pushed], false, &variables).concat();
     let deviation = |DetachmentDerivatives { end, by }: DetachmentDerivatives| {
         end.push_angle_deg?;
         let slope_of = |variable: &Variable| {

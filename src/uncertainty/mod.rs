@@ -126,20 +126,25 @@ impl Draws {
         tick: &(dyn Fn() + Sync),
     ) -> Vec<EndSpread> {
         let distances = &self.scene.grid.distance_mm;
-        let curves = |pushed: &[Pushed]| {
+        let curves = |whiskers: &[(Whisker, Pole)]| {
+            let pushed = whiskers.iter().map(|(whisker, pole)| Pushed {
+                whisker,
+                pole,
+                side,
+                distances_mm: distances,
+            });
             let keep = |_, end, _| PushEnd::new(&end);
-            detachments(resolution, pushed, distances, false, keep)
+            detachments(resolution, &pushed.collect::<Vec<_>>(), false, keep)
         };
         let of_drawn = |drawn: &[(Whisker, Pole)]| {
-            let pushed = drawn.iter().map(|(whisker, pole)| (whisker, pole, side));
-            let ends = curves(&pushed.collect::<Vec<_>>());
+            let ends = curves(drawn);
             drawn.iter().for_each(|_| tick());
             ends
         };
         let at_once = sides_at_once(self.drawn.len(), distances.len());
         let drawn = self.drawn.par_chunks(at_once).flat_map_iter(of_drawn);
         let ends: Vec<Vec<PushEnd>> = drawn.collect();
-        let scene_ends = curves(&[(&self.scene.whisker, &self.scene.pole, side)]).concat();
+        let scene_ends = curves(&[(self.scene.whisker.clone(), self.scene.pole)]).concat();
         let first_order = first_order::deviations_deg(&self.scene, &self.varying, resolution, side);
         let rows = distances
             .iter()

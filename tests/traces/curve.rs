@@ -171,9 +171,8 @@ fn ends_do_not_depend_on_the_other_whiskers() {
     let sides: Vec<SweptSide> = swept.iter().map(Ok).flat_map(both).collect();
     let distances = [4.0, 9.0, 13.0];
     let variables = [Variable::DistanceMm, Parameter::BaseRadiusUm.into()];
-    let ends = |sides: &[SweptSide]| {
-        detachments_of(Resolution::FINE, sides, &distances, &variables)
-    };
+    let ends =
+        |sides: &[SweptSide]| detachments_of(Resolution::FINE, sides, &distances, &variables);
     for (side, together) in sides.iter().zip(ends(&sides)) {
         let alone = ends(std::slice::from_ref(side)).concat();
         assert_eq!(together, alone, "{side:?}");

@@ -1,9 +1,11 @@
 //! Roots of functions of one variable. A bracket holds two arguments at which the function has opposite signs.
 //!
 //! [`Bracket::newton`] is the root finder: Newton's method, Halley's or any other that proposes a next place, safeguarded by
-//! bisection. [`Bracket::bisect`] needs values alone, [`Bracket::halve`] signs alone. [`illinois`] is regula falsi, for
+//! bisection. [`Bracket::bisect`] needs values alone, [`Bracket::divide`] signs alone. [`illinois`] is regula falsi, for
 //! functions without slopes whose values are expensive. Searches whose values come in batches hold one bracket each and call
 //! [`Bracket::shrink`] or [`Bracket::next`].
+
+use super::WIDTH;
 
 /// Largest number of iterations: more than bisection needs between any two numbers of ordinary size.
 const MOST_ITERATIONS: usize = 200;
@@ -84,25 +86,30 @@ impl Bracket {
         self.newton(self.middle(), |_| 0.0, iterate).x
     }
 
-    /// Halves the bracket in place until its ends are at most `width` apart or neighbouring numbers. `is_below(middle)` returns true if
-    /// the function is negative there: [`Bracket::below`] then moves to the middle, otherwise [`Bracket::above`]. Its first error ends
-    /// the search and is returned. It serves where a function is known by its sign alone.
+    /// Divides the bracket in place until its ends are at most `width` apart or neighbouring numbers. `count_below(points)` returns the number
+    /// of leading points, from [`Bracket::below`] on, at which the function is negative: the bracket moves to the last one of them and the next
+    /// point. Its first error ends the search and is returned. It serves where a function is known by its sign alone, and where a block of values
+    /// takes about as long as one.
     ///
     /// # Errors
     ///
-    /// The error of `is_below`.
-    pub fn halve<E>(
+    /// The error of `count_below`.
+    pub fn divide<E>(
         &mut self,
         width: f64,
-        mut is_below: impl FnMut(f64) -> Result<bool, E>,
+        mut count_below: impl FnMut(&[f64]) -> Result<usize, E>,
     ) -> Result<(), E> {
-        while (self.above - self.below).abs() > width && self.is_inside(self.middle()) {
-            let middle = self.middle();
-            if is_below(middle)? {
-                self.below = middle;
-            } else {
-                self.above = middle;
+        while (self.above - self.below).abs() > width {
+            let step = (self.above - self.below) / (WIDTH + 1) as f64;
+            let points = (1..=WIDTH).map(|i| step.mul_add(i as f64, self.below));
+            let mut points: Vec<f64> = points.filter(|x| self.is_inside(*x)).collect();
+            points.dedup();
+            if points.is_empty() {
+                break;
             }
+            let count = count_below(&points)?;
+            self.below = points[..count].last().copied().unwrap_or(self.below);
+            self.above = points.get(count).copied().unwrap_or(self.above);
         }
         Ok(())
     }
