@@ -2,7 +2,7 @@
 
 use super::{Error, Options, accuracy};
 use crate::scene::{Scene, SweepPlace};
-use crate::sensitivity::detachments_of;
+use crate::sensitivity::detachments_of_sides;
 use crate::trace::{
     Branch, Detachment, NoState, StableBranch, SweptSide, WhiskerShape, sides, whiskers_at_once,
 };
@@ -38,7 +38,7 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
             if options.is_cancelled() {
                 break;
             }
-            let found = detachments_of(resolution, sides, part, &[]);
+            let found = detachments_of_sides(resolution, sides, part, &[]);
             for (ends, found) in ends.iter_mut().zip(found) {
                 ends.extend(found.into_iter().map(|found| found.end));
             }

@@ -3,7 +3,7 @@
 use crate::input::Quantity;
 use crate::scene::Scene;
 use crate::sensitivity::{NoDerivative, Variable, detachments, largest};
-use crate::trace::{self, Detachment, DetachmentKind, PushLoad, Pushed, StableBranch};
+use crate::trace::{self, Detachment, DetachmentKind, EndDetail, PushLoad, Pushed, StableBranch};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 use whiskmap_mechanics::rod::Side;
@@ -181,7 +181,7 @@ impl<'a> ComputedPush<'a> {
             distances_mm: &scene.grid.distance_mm,
         });
         let pushed: Vec<Pushed> = pushed.collect();
-        let ends = trace::detachments(Resolution::FINE, &pushed, false, |_, end, _| end);
+        let ends = trace::detachments(Resolution::FINE, &pushed, EndDetail::State, |_, end, _| end);
         let pushes = scenes.iter().zip(ends).map(|(scene, mut ends)| Self {
             scene,
             side,

@@ -5,7 +5,7 @@ use crate::input::shortened;
 use crate::scene::{Pole, Whisker, digits};
 use crate::sensitivity::{Derivatives, Variable, detachments};
 use crate::trace::row;
-use crate::trace::{Detachment, DetachmentKind, curve_without_strain};
+use crate::trace::{Detachment, DetachmentKind, ends_at};
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
@@ -187,7 +187,7 @@ impl MeasuredPoints {
     /// The predicted detachments on `side`, in growing order of the distances, each distance once.
     fn ends(&self, whisker: &Whisker, pole: &Pole, side: Side) -> Vec<Detachment> {
         let distances = self.distances(side);
-        curve_without_strain(Resolution::FINE, whisker, pole, side, &distances)
+        ends_at(Resolution::FINE, whisker, pole, side, &distances)
     }
 
     /// The distances of the points on `side` in growing order, in mm, each once.

@@ -32,7 +32,7 @@ pub use variable::Variable;
 use crate::scene::{Parameter, Pole, Whisker};
 use crate::sheet::{Crossing, Sheet};
 use crate::trace::{
-    self, Branch, BranchPoint, Detachment, FINER, NoState, Pushed, SweptSide, crossings,
+    self, Branch, BranchPoint, Detachment, EndDetail, FINER, NoState, Pushed, SweptSide, crossings,
 };
 use differentiated::Differentiated;
 use std::sync::atomic::AtomicBool;
@@ -103,14 +103,13 @@ pub fn detachments(
         side,
         distances_mm,
     };
-    of_ends(Resolution::FINE, &[pushed], false, variables).concat()
+    detachments_of(Resolution::FINE, &[pushed], EndDetail::Snaps, variables).concat()
 }
 
-/// Computes detachments with derivatives as [`detachments`] does, of some sides of whiskers at once, at another resolution and with the largest
-/// strain: `[side][distance]`. Without `variables`, they are the ends of [`trace::curve_at`]. Rows of a table without a whisker have ends
-/// without values.
+/// Computes all of the detachments of some sides of a sweep, `[side][distance]`, as [`detachments_of`] does. Rows of a table without a whisker
+/// have ends without values.
 #[must_use]
-pub fn detachments_of(
+pub fn detachments_of_sides(
     resolution: Resolution,
     sides: &[SweptSide],
     distances_mm: &[f64],
@@ -126,7 +125,7 @@ pub fn detachments_of(
         })
     });
     let pushed: Vec<Pushed> = pushed.collect();
-    let mut found = of_ends(resolution, &pushed, true, variables).into_iter();
+    let mut found = detachments_of(resolution, &pushed, EndDetail::All, variables).into_iter();
     let without = |end| DetachmentDerivatives {
         end,
         by: vec![Err(NoDerivative::NoDetachment); variables.len()],
@@ -141,12 +140,13 @@ pub fn detachments_of(
     sides.iter().map(of_side).collect()
 }
 
-/// Computes the detachments of `pushed` whiskers with their derivatives by `variables`, `[pushed][distance]`; with the largest strain if `has_strain`
-/// is true.
-pub(crate) fn of_ends(
+/// Computes the detachments of several `pushed` whiskers, with this `detail` and their derivatives by `variables`: `[pushed][distance]`. Their
+/// trajectories share batches. Results do not depend on the other whiskers.
+#[must_use]
+pub fn detachments_of(
     resolution: Resolution,
     pushed: &[Pushed],
-    has_strain: bool,
+    detail: EndDetail,
     variables: &[Variable],
 ) -> Vec<Vec<DetachmentDerivatives>> {
     let differentiated = pushed.iter().map(|pushed| {
@@ -164,7 +164,7 @@ pub(crate) fn of_ends(
             by: differentiated[index].at_crossing(crossing.as_ref(), end.distance_mm),
             end,
         };
-    trace::detachments(resolution, pushed, has_strain, of_end)
+    trace::detachments(resolution, pushed, detail, of_end)
 }
 
 /// Returns the derivatives of the push angle at the detachments of `sheet`, whose rows have these distances, by each of `parameters`, in

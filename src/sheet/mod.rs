@@ -81,6 +81,8 @@ pub enum SheetUse {
     KnownRows,
     /// Crossings alone: rows may have no guesses.
     Ends,
+    /// Ends of pushes from first touch alone: rows may have no other crossings, and no guesses.
+    FirstEnds,
 }
 
 impl SheetUse {
@@ -89,7 +91,7 @@ impl SheetUse {
         match self {
             Self::Guesses => &GUESS_ERRORS,
             Self::KnownRows => &KNOWN_ROW_ERRORS,
-            Self::Ends => &FOLD_ERRORS,
+            Self::Ends | Self::FirstEnds => &FOLD_ERRORS,
         }
     }
 }
@@ -110,6 +112,7 @@ pub struct SheetRequest {
 /// Sheet whose samples do not decide about some of its rows.
 struct SheetDraft {
     sheet: Sheet,
+    serves: SheetUse,
     /// Indices of these rows.
     open: Vec<usize>,
     /// True if there are samples, certified or not.
@@ -370,6 +373,7 @@ impl SheetDraft {
         let tip = rod.tau_tip();
         Self {
             open: open.collect(),
+            serves,
             has_samples: samples.is_some(),
             sheet: Sheet {
                 side,
@@ -394,20 +398,18 @@ fn follow(drafts: &mut [SheetDraft]) {
     });
     let rows: Vec<(usize, usize)> = rows.collect();
     let of_batch = |rows: &[(usize, usize)]| {
-        let sheets = rows
-            .iter()
-            .map(|(draft, row)| (&drafts[*draft].sheet, *row));
-        let levels: Vec<LevelCurve> = sheets
-            .clone()
-            .map(|(sheet, row)| sheet.level(row))
-            .collect();
-        let continued = sheets
-            .zip(&levels)
-            .map(|((sheet, row), level)| ContinuedRow {
+        let rows = rows.iter().map(|(draft, row)| (&drafts[*draft], *row));
+        let levels = rows.clone().map(|(draft, row)| draft.sheet.level(row));
+        let levels: Vec<LevelCurve> = levels.collect();
+        let continued = rows.zip(&levels).map(|((draft, row), level)| {
+            let SheetDraft { sheet, serves, .. } = draft;
+            ContinuedRow {
                 level,
                 touches: sheet.touches(row),
                 crossings: &sheet.crossings[row],
-            });
+                wants_first_alone: *serves == SheetUse::FirstEnds,
+            }
+        });
         stable_pieces(&continued.collect::<Vec<_>>())
     };
     let batches = rows.par_chunks(rows_per_batch(rows.len()));

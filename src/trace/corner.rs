@@ -1,7 +1,7 @@
 //! Corners of detachment curves, where slip-off turns into pull-off.
 
 use super::columns::row;
-use super::curve::{Detachment, DetachmentKind, curve_without_strain};
+use super::curve::{Detachment, DetachmentKind, ends_at};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
 use serde::Serialize;
@@ -53,9 +53,7 @@ impl Corner {
 /// `reason` says why.
 #[must_use]
 pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
-    let ends = |distances_mm: &[f64]| {
-        curve_without_strain(Resolution::FINE, whisker, pole, side, distances_mm)
-    };
+    let ends = |distances_mm: &[f64]| ends_at(Resolution::FINE, whisker, pole, side, distances_mm);
     let found = corner_distance(whisker, pole, side, &ends).and_then(|distance| {
         let push = ends(&[distance])[0].push_angle_deg;
         Ok((distance, push.ok_or(NoCorner::NotFound)?))

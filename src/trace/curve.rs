@@ -100,12 +100,12 @@ pub fn curve_at(
         side,
         distances_mm,
     };
-    detachments(resolution, &[pushed], true, |_, end, _| end).concat()
+    detachments(resolution, &[pushed], EndDetail::All, |_, end, _| end).concat()
 }
 
-/// Computes the detachment curve as [`curve_at`] does, but leaves out the largest strain, which takes a trajectory more for each end.
+/// Computes the ends of the detachment curve of [`curve_at`] alone, without largest strains and snaps.
 #[must_use]
-pub fn curve_without_strain(
+pub fn ends_at(
     resolution: Resolution,
     whisker: &Whisker,
     pole: &Pole,
@@ -118,28 +118,41 @@ pub fn curve_without_strain(
         side,
         distances_mm,
     };
-    detachments(resolution, &[pushed], false, |_, end, _| end).concat()
+    detachments(resolution, &[pushed], EndDetail::State, |_, end, _| end).concat()
 }
 
 /// Whisker that is pushed against a pole on one side, from first touch at some distances.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pushed<'a> {
+pub struct Pushed<'a> {
+    /// Whisker that is pushed.
     pub whisker: &'a Whisker,
+    /// Pole in front of the whisker.
     pub pole: &'a Pole,
+    /// Side of the whisker that the pole is on.
     pub side: Side,
     /// Distances of first touch in mm, which must increase.
     pub distances_mm: &'a [f64],
 }
 
-/// Computes what to `keep` of the detachments of each of `pushed`, `[pushed][distance]`: it gets the index of the whisker, the detachment, and
-/// the crossing of the sheet's edge from which it is read; `None` without an end. If `has_strain` is true, each detachment has its largest strain,
-/// and its sliding direction by the contact's history.
+/// How much of a detachment is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum EndDetail {
+    /// The end of the push and the state there.
+    State,
+    /// Also the push angle up to which the whisker may snap to other stable states, which follow the end on the level curve.
+    Snaps,
+    /// Also the largest strain, which takes a trajectory more, and with friction the sliding direction by the contact's history.
+    All,
+}
+
+/// Computes what to `keep` of the detachments of each of `pushed`, `[pushed][distance]`, with this `detail`: it gets the index of the whisker,
+/// the detachment, and the crossing of the sheet's edge from which it is read; `None` without an end.
 ///
 /// The ends of all whiskers share batches. Results do not depend on the other whiskers.
 pub(crate) fn detachments<T: Send>(
     resolution: Resolution,
     pushed: &[Pushed],
-    has_strain: bool,
+    detail: EndDetail,
     keep: impl Fn(usize, Detachment, Option<Crossing>) -> T + Sync,
 ) -> Vec<Vec<T>> {
     let method = Method::new(resolution);
@@ -148,10 +161,11 @@ pub(crate) fn detachments<T: Send>(
         let rod = whisker.rod(pushed.pole, side);
         let distances = pushed.distances_mm.iter();
         SheetRequest {
-            // The history of a contact that sticks needs states before the end.
-            serves: match has_strain && rod.friction != 0.0 {
-                true => SheetUse::Guesses,
-                false => SheetUse::Ends,
+            serves: match detail {
+                EndDetail::State => SheetUse::FirstEnds,
+                // The history of a contact that sticks needs states before the end.
+                EndDetail::All if rod.friction != 0.0 => SheetUse::Guesses,
+                EndDetail::Snaps | EndDetail::All => SheetUse::Ends,
             },
             rod,
             side,
@@ -160,6 +174,7 @@ pub(crate) fn detachments<T: Send>(
     };
     let sheets = Sheet::several(method, pushed.iter().map(request).collect());
     let row_ends = RowEnd::of(method, &sheets);
+    let (has_strain, has_snaps) = (detail == EndDetail::All, detail >= EndDetail::Snaps);
     let peaks: Vec<Vec<Option<PeakStrain>>> = match has_strain {
         true => {
             let crossing = |end: &Result<RowEnd, _>| end.as_ref().ok().map(|end| end.crossing);
@@ -207,7 +222,7 @@ pub(crate) fn detachments<T: Send>(
                 peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
                 residual: Some(row_end.crossing.residual + off),
                 sliding: slidings[row].or_else(by_state),
-                snaps_deg: snaps_deg(sheet, row),
+                snaps_deg: has_snaps.then(|| snaps_deg(sheet, row)).flatten(),
                 ..none.with_state(Some(&row_end.reading(&reader, sheet, row)))
             };
             keep(index, end, Some(row_end.crossing))

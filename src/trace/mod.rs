@@ -15,8 +15,10 @@ mod state;
 
 pub use branch::{Branch, BranchPoint};
 pub use corner::{Corner, NoCorner, corner};
-pub use curve::{Detachment, DetachmentKind, curve, curve_at, curve_without_strain, reach_mm};
-pub(crate) use curve::{Pushed, RowEnd, crossings, detachments, snaps_deg};
+pub use curve::{
+    Detachment, DetachmentKind, EndDetail, Pushed, curve, curve_at, ends_at, reach_mm,
+};
+pub(crate) use curve::{RowEnd, crossings, detachments, snaps_deg};
 pub use peak::{PushLoad, PushPeak};
 pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;

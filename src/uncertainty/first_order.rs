@@ -3,8 +3,8 @@
 use super::varying::Varying;
 use crate::input::each_once;
 use crate::scene::Scene;
-use crate::sensitivity::{DetachmentDerivatives, Variable, of_ends};
-use crate::trace::Pushed;
+use crate::sensitivity::{DetachmentDerivatives, Variable, detachments_of};
+use crate::trace::{EndDetail, Pushed};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -32,7 +32,7 @@ pub(super) fn deviations_deg(
         side,
         distances_mm: &scene.grid.distance_mm,
     };
-    let ends = of_ends(resolution, &[pushed], false, &variables).concat();
+    let ends = detachments_of(resolution, &[pushed], EndDetail::State, &variables).concat();
     let deviation = |DetachmentDerivatives { end, by }: DetachmentDerivatives| {
         end.push_angle_deg?;
         let slope_of = |variable: &Variable| {

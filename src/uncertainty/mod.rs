@@ -12,7 +12,8 @@ pub use spread::{EndSpread, LargestSpread, PointSpread};
 use crate::random::RandomStream;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
 use crate::trace::{
-    Detachment, DetachmentKind, PushLoad, Pushed, StableBranch, detachments, sides_at_once,
+    Detachment, DetachmentKind, EndDetail, PushLoad, Pushed, StableBranch, detachments,
+    sides_at_once,
 };
 use rayon::prelude::*;
 use varying::{Varying, moved, varying};
@@ -134,7 +135,12 @@ impl Draws {
                 distances_mm: distances,
             });
             let keep = |_, end, _| PushEnd::new(&end);
-            detachments(resolution, &pushed.collect::<Vec<_>>(), false, keep)
+            detachments(
+                resolution,
+                &pushed.collect::<Vec<_>>(),
+                EndDetail::State,
+                keep,
+            )
         };
         let of_drawn = |drawn: &[(Whisker, Pole)]| {
             let ends = curves(drawn);

@@ -5,7 +5,7 @@ use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable, detachments, largest};
-use whiskmap::trace::{Detachment, DetachmentKind, curve_without_strain};
+use whiskmap::trace::{Detachment, DetachmentKind, ends_at};
 
 /// Result of the comparison of one push.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,7 +65,7 @@ fn differences(push: &Push, variable: Variable, here: &Detachment) -> Option<[f6
             distance_mm,
         } = push.moved(variable, h);
         let finer = Resolution::FINE.doubled();
-        let end = curve_without_strain(finer, &whisker, &pole, side, &[distance_mm]).pop()?;
+        let end = ends_at(finer, &whisker, &pole, side, &[distance_mm]).pop()?;
         quantities(&end).filter(|_| end.kind == here.kind)
     };
     let central = |h: f64| {

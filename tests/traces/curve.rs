@@ -6,7 +6,7 @@ use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::{Curvature, Parameter, SweptWhisker, Whisker};
-use whiskmap::sensitivity::{Variable, detachments_of};
+use whiskmap::sensitivity::{Variable, detachments_of_sides};
 use whiskmap::sheet::Sheet;
 use whiskmap::trace::{Branch, DetachmentKind, NoCorner, SweptSide, corner, curve};
 
@@ -172,7 +172,7 @@ fn ends_do_not_depend_on_the_other_whiskers() {
     let distances = [4.0, 9.0, 13.0];
     let variables = [Variable::DistanceMm, Parameter::BaseRadiusUm.into()];
     let ends =
-        |sides: &[SweptSide]| detachments_of(Resolution::FINE, sides, &distances, &variables);
+        |sides: &[SweptSide]| detachments_of_sides(Resolution::FINE, sides, &distances, &variables);
     for (side, together) in sides.iter().zip(ends(&sides)) {
         let alone = ends(std::slice::from_ref(side)).concat();
         assert_eq!(together, alone, "{side:?}");

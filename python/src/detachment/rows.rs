@@ -1,16 +1,16 @@
 //! Rows of whiskers, sides and distances.
 //!
-//! Rows with the same whisker and side are computed together: one sheet serves all their distances.
+//! One sheet serves all rows with the same whisker and side. Different whiskers share batches.
 
-use rayon::iter::Either;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap::Side;
+use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::{Parameter, Scene, SceneBuilder};
-use whiskmap::sensitivity::{Derivatives, DetachmentDerivatives, Variable, detachments};
-use whiskmap::trace::Detachment;
+use whiskmap::sensitivity::{Derivatives, DetachmentDerivatives, Variable, detachments_of};
+use whiskmap::trace::{Detachment, EndDetail, Pushed, sides_at_once};
 use whiskmap::yields::PushMark;
 
 /// Maximum number of distances of one sheet.
@@ -31,6 +31,7 @@ pub struct DetachmentRows<'a> {
 }
 
 /// End of one row, and its derivatives, `[variable]`; `None` where there is none.
+#[derive(Clone)]
 pub struct RowEnd {
     pub row: usize,
     pub end: Detachment,
@@ -39,10 +40,17 @@ pub struct RowEnd {
     pub mark: Option<PushMark>,
 }
 
-/// End of a push with its derivatives, and the mark of the push.
-type MarkedEnd = (Detachment, Vec<Option<Derivatives>>, Option<PushMark>);
+/// Rows of one whisker and side that the scene accepts.
+struct CheckedRows {
+    scene: Scene,
+    side: Side,
+    /// Distances of the rows in growing order, in mm, each once.
+    distances: Vec<f64>,
+    rows: Vec<usize>,
+}
 
 /// Error of a row whose numbers a scene refuses.
+#[derive(Clone)]
 pub struct RefusedRow {
     pub row: usize,
     pub why: Box<whiskmap::scene::SceneError>,
@@ -52,17 +60,20 @@ impl DetachmentRows<'_> {
     /// Returns the end of every row in any order, and the refused rows in order. After a cancellation, rows are missing.
     pub fn ends(&self, cancel: &Arc<AtomicBool>) -> (Vec<RowEnd>, Vec<RefusedRow>) {
         let groups = self.groups();
-        let ends = groups
-            .par_iter()
-            .filter(|_| !cancel.load(Ordering::Relaxed))
-            .flat_map_iter(|rows| self.ends_of(rows.clone()));
-        let (ends, mut refused): (Vec<RowEnd>, Vec<RefusedRow>) =
-            ends.partition_map(|end| match end {
-                Ok(end) => Either::Left(end),
-                Err(refused) => Either::Right(refused),
-            });
+        let distances = self.distance_mm.len().div_ceil(groups.len().max(1));
+        let of_chunk = |groups: &[Vec<usize>]| {
+            let checked = groups.iter().map(|rows| self.checked(rows.clone()));
+            let (checked, refused): (Vec<_>, Vec<_>) = checked.unzip();
+            let checked: Vec<CheckedRows> = checked.into_iter().flatten().collect();
+            (self.ends_of(&checked), refused.concat())
+        };
+        let chunks = groups
+            .par_chunks(sides_at_once(groups.len(), distances))
+            .filter(|_| !cancel.load(Ordering::Relaxed));
+        let (ends, refused): (Vec<_>, Vec<Vec<RefusedRow>>) = chunks.map(of_chunk).unzip();
+        let mut refused = refused.concat();
         refused.sort_by_key(|refused| refused.row);
-        (ends, refused)
+        (ends.concat(), refused)
     }
 
     /// Rows with the same whisker and side, by growing distance, `[sheet][row]`.
@@ -85,12 +96,17 @@ impl DetachmentRows<'_> {
         sheets.map(<[_]>::to_vec).collect()
     }
 
-    /// The ends of rows of one whisker and side. A refused distance leaves the others.
-    fn ends_of(&self, mut rows: Vec<usize>) -> Vec<Result<RowEnd, RefusedRow>> {
-        let mut ends = Vec::with_capacity(rows.len());
-        let (scene, distances) = loop {
+    /// Checks rows of one whisker and side. A refused distance leaves the others; `None` if all are refused.
+    fn checked(&self, mut rows: Vec<usize>) -> (Option<CheckedRows>, Vec<RefusedRow>) {
+        let mut refused = Vec::new();
+        loop {
             let Some(first) = rows.first() else {
-                return ends;
+                return (None, refused);
+            };
+            let side = if self.is_cb[*first] {
+                Side::Cb
+            } else {
+                Side::Cf
             };
             let mut distances: Vec<f64> = rows.iter().map(|row| self.distance_mm[*row]).collect();
             distances.dedup();
@@ -99,7 +115,15 @@ impl DetachmentRows<'_> {
                 builder = builder.set(*parameter, values[*first]);
             }
             let why = match builder.build() {
-                Ok(scene) => break (scene, distances),
+                Ok(scene) => {
+                    let checked = CheckedRows {
+                        scene,
+                        side,
+                        distances,
+                        rows,
+                    };
+                    return (Some(checked), refused);
+                }
                 Err(why) => why,
             };
             let place = why.key().and_then(|key| {
@@ -110,29 +134,15 @@ impl DetachmentRows<'_> {
             let is_refused = |row: &mut usize| {
                 distance.is_none_or(|distance| self.distance_mm[*row] == distance)
             };
-            ends.extend(rows.extract_if(.., is_refused).map(|row| {
+            refused.extend(rows.extract_if(.., is_refused).map(|row| {
                 let why = Box::new(why.clone());
-                Err(RefusedRow { row, why })
+                RefusedRow { row, why }
             }));
-        };
-        let first = rows[0];
-        let side = if self.is_cb[first] {
-            Side::Cb
-        } else {
-            Side::Cf
-        };
-        let found = self.differentiated(&scene, side, &distances);
-        ends.extend(rows.into_iter().map(|row| {
-            let place = distances.partition_point(|distance| *distance < self.distance_mm[row]);
-            let (end, by, mark) = found[place].clone();
-            Ok(RowEnd { row, end, by, mark })
-        }));
-        ends
+        }
     }
 
-    /// The ends of one whisker and side with their derivatives and marks, `[distance]`.
-    fn differentiated(&self, scene: &Scene, side: Side, distances: &[f64]) -> Vec<MarkedEnd> {
-        let (whisker, pole) = (&scene.whisker, &scene.pole);
+    /// The ends of the rows of some whiskers and sides with their derivatives and marks, in any order.
+    fn ends_of(&self, checked: &[CheckedRows]) -> Vec<RowEnd> {
         let base = Variable::from(Parameter::BaseRadiusUm);
         let base = self
             .variables
@@ -140,19 +150,41 @@ impl DetachmentRows<'_> {
             .position(|variable| self.have_taper && *variable == base);
         let mut variables = self.variables.clone();
         variables.extend(base.map(|_| Variable::from(Parameter::TipRadiusUm)));
-        let ends = detachments(whisker, pole, side, distances, &variables);
-        let end = |derivatives: DetachmentDerivatives| {
-            let mut by: Vec<Option<Derivatives>> =
-                derivatives.by.into_iter().map(Result::ok).collect();
-            if let Some(base) = base {
-                let tip = by.pop().flatten();
-                by[base] = by[base]
-                    .zip(tip)
-                    .map(|(base, tip)| base.plus(1.0 - whisker.taper(), &tip));
-            }
-            let mark = PushMark::of_end(whisker, pole, &derivatives.end);
-            (derivatives.end, by, mark)
-        };
-        ends.into_iter().map(end).collect()
+        let pushed = checked.iter().map(|checked| Pushed {
+            whisker: &checked.scene.whisker,
+            pole: &checked.scene.pole,
+            side: checked.side,
+            distances_mm: &checked.distances,
+        });
+        let pushed: Vec<Pushed> = pushed.collect();
+        let found = detachments_of(Resolution::FINE, &pushed, EndDetail::Snaps, &variables);
+        let ends = checked.iter().zip(found).flat_map(|(checked, found)| {
+            let CheckedRows {
+                scene,
+                distances,
+                rows,
+                ..
+            } = checked;
+            let (whisker, pole) = (&scene.whisker, &scene.pole);
+            let end = |derivatives: DetachmentDerivatives| {
+                let mut by: Vec<Option<Derivatives>> =
+                    derivatives.by.into_iter().map(Result::ok).collect();
+                if let Some(base) = base {
+                    let tip = by.pop().flatten();
+                    by[base] = by[base]
+                        .zip(tip)
+                        .map(|(base, tip)| base.plus(1.0 - whisker.taper(), &tip));
+                }
+                let mark = PushMark::of_end(whisker, pole, &derivatives.end);
+                (derivatives.end, by, mark)
+            };
+            let found: Vec<_> = found.into_iter().map(end).collect();
+            rows.iter().map(move |&row| {
+                let place = distances.partition_point(|distance| *distance < self.distance_mm[row]);
+                let (end, by, mark) = found[place].clone();
+                RowEnd { row, end, by, mark }
+            })
+        });
+        ends.collect()
     }
 }

@@ -47,6 +47,8 @@ pub struct ContinuedRow<'a> {
     pub touches: bool,
     /// Crossings of the row found on the sampled edges: starts of further pieces.
     pub crossings: &'a [Crossing],
+    /// True if only the piece from first touch is wanted.
+    pub wants_first_alone: bool,
 }
 
 /// Stable pieces of a row found by continuation. The piece from first touch comes first.
@@ -54,7 +56,7 @@ pub struct ContinuedRow<'a> {
 pub struct StablePieces {
     /// Stable pieces that were followed, `[piece]`; empty where the continuation from first touch failed.
     pub pieces: Vec<StablePiece>,
-    /// True if `pieces` are all stable pieces: no continuation has failed.
+    /// True if `pieces` are all wanted stable pieces: no continuation has failed.
     pub are_complete: bool,
 }
 
@@ -72,7 +74,7 @@ impl StablePieces {
     }
 }
 
-/// Returns the stable pieces of each of the `rows`, `[row]`. Their trajectories share batches. Results do not depend on the other rows.
+/// Returns the wanted stable pieces of each of the `rows`, `[row]`. Their trajectories share batches. Results do not depend on the other rows.
 pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     let mut found: Vec<StablePieces> = from_touch(rows);
     let most = rows.iter().map(|row| row.crossings.len()).max();
@@ -85,7 +87,8 @@ pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
                 // No cell has a push angle of several turns.
                 let is_near = |crossing: &Crossing| crossing.push.abs() <= MOST_PUSH;
                 let crossing = row.crossings.get(index).copied();
-                crossing.filter(|crossing| is_continued && is_near(crossing))
+                let crossing = crossing.filter(|_| is_continued && !row.wants_first_alone);
+                crossing.filter(is_near)
             })
             .collect();
         through_crossings(rows, &crossings, &mut found);
@@ -190,7 +193,9 @@ fn past_folds(rows: &[ContinuedRow], found: &mut [StablePieces]) {
         piece.map(|piece| piece.end)
     };
     let at_fold = |end: &Option<Crossing>| end.filter(|end| end.edge == Edge::Fold);
-    let mut ends: Vec<Option<Crossing>> = found.iter().map(from_touch).collect();
+    let pairs = rows.iter().zip(&*found);
+    let ends = pairs.map(|(row, found)| from_touch(found).filter(|_| !row.wants_first_alone));
+    let mut ends: Vec<Option<Crossing>> = ends.collect();
     while ends.iter().any(|end| at_fold(end).is_some()) {
         let folds = at_crossings(rows, &ends.iter().map(at_fold).collect::<Vec<_>>());
         let unstable = ends_of_pieces(rows, &folds, Stretch::Unstable, false);

@@ -26,7 +26,7 @@ use whiskmap::measured::ComparedPoint;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::render::{Plot, bands, yielding_ends};
 use whiskmap::scene::{Scene, SweepPlace, SweptWhisker};
-use whiskmap::sensitivity::{DetachmentDerivatives, Variable, detachments_of};
+use whiskmap::sensitivity::{DetachmentDerivatives, Variable, detachments_of_sides};
 use whiskmap::trace::{self, Corner, Detachment, DetachmentKind, SweptSide};
 use whiskmap::uncertainty::{Draws, EndSpread, LargestSpread, PointSpread};
 use whiskmap::yields::{PushMark, YieldMark};
@@ -227,7 +227,7 @@ fn detachments(
             Marked((end, columns), mark)
         };
         let ends = |sides: &[SweptSide]| {
-            let found = detachments_of(resolution, sides, distances, variables);
+            let found = detachments_of_sides(resolution, sides, distances, variables);
             bar.inc(sides.len() * distances.len());
             let of_side = |(side, found): (&SweptSide, Vec<DetachmentDerivatives>)| {
                 let marks = side.swept.map_or_else(
