@@ -76,6 +76,10 @@ const STEP_LEFT: f64 = 1e-5;
 /// Newton step in load, relative to the load, whose end is extrapolated. The remaining error is its square.
 const LAST_LOAD_STEP: f64 = 1e-6;
 
+/// Newton step in load, over the width of the bracket, from which the bracket has no root: coarse trajectories gave `det` another sign. A bracket that
+/// closes on a root has shorter steps, except next to an extremum of `det`.
+const ROOTLESS_STEP: f64 = 1e3;
+
 /// Value of `q` at which the march ends without a fold.
 const MARCH_END: f64 = 1e4;
 
@@ -272,6 +276,10 @@ impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
         let step = newton - at.y;
         if step.abs() <= LAST_LOAD_STEP * at.y.abs() {
             return NewtonStep::Extrapolate(DVec2::new(0.0, step));
+        }
+        let width = (self.loads.above - self.loads.below).abs();
+        if step.abs() > ROOTLESS_STEP * width {
+            return NewtonStep::Fail;
         }
         let next = self.loads.next(at.y, -det, newton);
         if next == at.y {
