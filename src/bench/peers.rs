@@ -1,6 +1,6 @@
 //! Costs and errors of other programs, as `benches/peers/run.sh` writes them.
 
-use crate::input::{TEXT_MIB, bounded, open};
+use crate::input::{TEXT_MIB, read};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -58,7 +58,7 @@ struct PeerRow {
 }
 
 impl Peers {
-    /// Reads the JSON file `path`.
+    /// Reads the JSON file `path`; `-` is standard input.
     ///
     /// # Errors
     /// If the file cannot be read, is longer than 1 MiB, is no such JSON, has a number that is out of range, or has no program.
@@ -67,9 +67,8 @@ impl Peers {
             path: path.to_owned(),
             what,
         };
-        let bytes = open(path)
-            .and_then(|file| bounded(file, TEXT_MIB))
-            .map_err(|cause| error(format!("cannot read the file: {cause}")))?;
+        let bytes = read(path, TEXT_MIB);
+        let bytes = bytes.map_err(|cause| error(format!("cannot read the file: {cause}")))?;
         Self::parse(&bytes).map_err(error)
     }
 

@@ -14,5 +14,5 @@ pub use table::{CsvError, CsvTable};
 
 pub(crate) use lines::CsvLine;
 pub(crate) use names::{is_meant_as, shortened};
-pub(crate) use source::{TEXT_MIB, bounded, open, open_regular};
+pub(crate) use source::{TEXT_MIB, bounded, open, open_regular, read};
 pub(crate) use table::{CsvLines, MOST_SECONDS, is_missing, read_bytes, text_of};

@@ -60,6 +60,17 @@ pub(crate) fn bounded(source: impl Read, most_mib: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Reads all bytes of the file at `path`, at most `most_mib` MiB; `-` is standard input.
+///
+/// # Errors
+/// If it cannot be read, or is longer.
+pub(crate) fn read(path: &Path, most_mib: u64) -> io::Result<Vec<u8>> {
+    match path == Path::new("-") {
+        true => bounded(io::stdin().lock(), most_mib),
+        false => bounded(open(path)?, most_mib),
+    }
+}
+
 /// Decodes the text of `bytes`, without a byte order mark: UTF-16 where the mark says so, UTF-8 otherwise.
 ///
 /// # Errors

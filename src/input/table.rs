@@ -2,7 +2,7 @@
 
 use super::lines::{CsvLine, lines, normalised, separator};
 use super::names::{did_you_mean, shortened};
-use super::source::{TABLE_MIB, bounded, decoded, open};
+use super::source::{TABLE_MIB, bounded, decoded, open, read};
 use crate::terminal::escaped;
 use std::fs::File;
 use std::io;
@@ -366,11 +366,7 @@ fn unreadable(origin: &str) -> impl FnOnce(io::Error) -> CsvError {
 /// # Errors
 /// If it cannot be read, or is longer.
 pub(crate) fn read_bytes(path: &Path, most_mib: u64) -> Result<Vec<u8>, CsvError> {
-    let bytes = match path == Path::new("-") {
-        true => bounded(io::stdin().lock(), most_mib),
-        false => open(path).and_then(|file| bounded(file, most_mib)),
-    };
-    bytes.map_err(unreadable(&path.to_string_lossy()))
+    read(path, most_mib).map_err(unreadable(&path.to_string_lossy()))
 }
 
 /// Returns the text of the file `origin` with these `bytes`, in UTF-8, or in UTF-16 with a byte order mark.

@@ -281,6 +281,9 @@ fn a_wrong_file_of_peers_is_refused_before_any_work() {
         "none.json",
     ]);
     run.assert_refused(&["--peers none.json: cannot read the file"]);
+    let mut piped = place.command(&["bench", "scene.toml", "--plot", "b.svg", "--peers", "-"]);
+    let run = Run::of(&piped.write_stdin("{").output().unwrap());
+    run.assert_refused(&["--peers -: must be as benches/peers/run.sh writes it"]);
 }
 
 #[test]

@@ -45,7 +45,7 @@ pub struct BenchArgs {
     json: Option<PathBuf>,
     #[command(flatten)]
     picture: PlotArgs,
-    /// Plot the programs of FILE as well, which benches/peers/run.sh writes
+    /// Plot the programs of FILE as well, which benches/peers/run.sh writes; - is standard input
     #[arg(long, value_name = "FILE", requires = "plot")]
     peers: Option<PathBuf>,
     /// Use a smaller sample and fewer runs
