@@ -1,7 +1,7 @@
 //! `whiskmap bench`: consistency of its tables and JSON, not the measured times.
 
 use super::traces::good;
-use super::{Place, SCENE};
+use super::{Place, Run, SCENE};
 use crate::shipped;
 use serde_json::Value;
 
