@@ -9,7 +9,7 @@ use crate::trace::{
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
-/// Maximum number of distances between two looks at the flag that cancels.
+/// Maximum number of distances of a side between two looks at the flag that cancels.
 const DISTANCES_AT_ONCE: usize = 4096;
 
 /// Computes where every whisker of `scene` detaches: at each distance, CF before CB.

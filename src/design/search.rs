@@ -8,7 +8,7 @@ use crate::trace::{DetachmentKind, sides_at_once};
 use rayon::prelude::*;
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, Ordering};
-use whiskmap_mechanics::numerics::Bracket;
+use whiskmap_mechanics::numerics::{Bracket, WIDTH};
 
 /// Width of the interval of a change of kind, in parts of the interval between two samples.
 const CHANGE_WIDTH: f64 = 1e-15;
@@ -47,6 +47,11 @@ impl DesignSearch<'_> {
         values.iter().zip(&scenes).map(end).collect()
     }
 
+    /// Returns how many ends take about as long as one: they share trajectories, but a load needs a branch of its own for each.
+    fn values_at_once(&self) -> usize {
+        self.target.goal.load().map_or(WIDTH, |_| 1)
+    }
+
     /// Value of an end less the target's value, in the unit of the goal; NaN for an end of another kind.
     fn miss(&self, end: &DesignEnd) -> f64 {
         let accepted = end.reached.filter(|_| self.target.accepts(end.kind));
@@ -79,7 +84,7 @@ impl DesignSearch<'_> {
     pub fn scan(&self, range: [f64; 2]) -> Vec<DesignEnd> {
         let values = samples(range, SAMPLES);
         let scanned: Vec<DesignEnd> = values
-            .par_chunks(sides_at_once(values.len(), 1))
+            .par_chunks(sides_at_once(values.len(), 1).min(WIDTH))
             .flat_map_iter(|values| self.ends(values))
             .collect();
         let mut ends = Vec::with_capacity(scanned.len());
@@ -101,7 +106,7 @@ impl DesignSearch<'_> {
             above: after.value,
         };
         let width = CHANGE_WIDTH * (after.value - before.value).abs();
-        let Ok(()) = bracket.divide(width, |values| {
+        let Ok(()) = bracket.multisect(width, self.values_at_once(), |values| {
             let ends = self.ends(values);
             let are_before = ends.iter().take_while(|end| end.kind == before.kind);
             let count = are_before.count();
@@ -144,7 +149,7 @@ impl DesignSearch<'_> {
             above: outside,
         };
         let width = EQUAL * (outside - inside).abs();
-        let Ok(()) = bracket.divide(width, |values| {
+        let Ok(()) = bracket.multisect(width, self.values_at_once(), |values| {
             let ends = self.ends(values);
             let reached = ends
                 .iter()

@@ -2,8 +2,10 @@
 
 use crate::input::Quantity;
 use crate::scene::Scene;
-use crate::sensitivity::{NoDerivative, Variable, detachments, largest};
-use crate::trace::{self, Detachment, DetachmentKind, EndDetail, PushLoad, Pushed, StableBranch};
+use crate::sensitivity::{NoDerivative, Variable, detachments_of, largest};
+use crate::trace::{
+    self, Detachment, DetachmentKind, EndDetail, PushLoad, PushedWhisker, StableBranch,
+};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 use whiskmap_mechanics::rod::Side;
@@ -130,8 +132,15 @@ impl DesignTarget {
         let variables: Vec<Variable> = all.map(|(variable, _)| *variable).collect();
         let by: Vec<Result<f64, NoDerivative>> = match self.goal.load() {
             None => {
-                let end = detachments(whisker, pole, side, &[distance_mm], &variables).pop()?;
-                let push = end.by.into_iter();
+                let pushed = PushedWhisker {
+                    whisker,
+                    pole,
+                    side,
+                    distances_mm: &[distance_mm],
+                };
+                let detail = EndDetail::State;
+                let ends = detachments_of(Resolution::FINE, &[pushed], detail, &variables);
+                let push = ends.into_iter().flatten().next()?.by.into_iter();
                 push.map(|by| by.map(|by| by.push_angle_deg)).collect()
             }
             Some(load) => {
@@ -174,13 +183,13 @@ pub(super) struct ComputedPush<'a> {
 impl<'a> ComputedPush<'a> {
     /// Computes the ends of pushes of `scenes` on one side, `[scene]`.
     pub fn of(scenes: &[&'a Scene], side: Side) -> Vec<Self> {
-        let pushed = scenes.iter().map(|scene| Pushed {
+        let pushed = scenes.iter().map(|scene| PushedWhisker {
             whisker: &scene.whisker,
             pole: &scene.pole,
             side,
             distances_mm: &scene.grid.distance_mm,
         });
-        let pushed: Vec<Pushed> = pushed.collect();
+        let pushed: Vec<PushedWhisker> = pushed.collect();
         let ends = trace::detachments(Resolution::FINE, &pushed, EndDetail::State, |_, end, _| end);
         let pushes = scenes.iter().zip(ends).map(|(scene, mut ends)| Self {
             scene,

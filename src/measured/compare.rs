@@ -3,9 +3,9 @@
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
 use crate::input::shortened;
 use crate::scene::{Pole, Whisker, digits};
-use crate::sensitivity::{Derivatives, Variable, detachments};
+use crate::sensitivity::{Derivatives, Variable, detachments_of};
 use crate::trace::row;
-use crate::trace::{Detachment, DetachmentKind, ends_at};
+use crate::trace::{Detachment, DetachmentKind, EndDetail, PushedWhisker, ends_at};
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
@@ -164,8 +164,14 @@ impl MeasuredPoints {
         variables: &[Variable],
     ) -> Option<Vec<Vec<f64>>> {
         let ends = Side::BOTH.map(|side| {
-            let distances = self.distances(side);
-            detachments(whisker, pole, side, &distances, variables)
+            let pushed = PushedWhisker {
+                whisker,
+                pole,
+                side,
+                distances_mm: &self.distances(side),
+            };
+            let detail = EndDetail::State;
+            detachments_of(Resolution::FINE, &[pushed], detail, variables).concat()
         });
         let angle = |by: &Derivatives| match self.angle {
             MeasuredAngle::Push => by.push_angle_deg,

@@ -32,7 +32,8 @@ pub use variable::Variable;
 use crate::scene::{Parameter, Pole, Whisker};
 use crate::sheet::{Crossing, Sheet};
 use crate::trace::{
-    self, Branch, BranchPoint, Detachment, EndDetail, FINER, NoState, Pushed, SweptSide, crossings,
+    self, Branch, BranchPoint, Detachment, EndDetail, FINER, NoState, PushedWhisker, SweptSide,
+    crossings,
 };
 use differentiated::Differentiated;
 use std::sync::atomic::AtomicBool;
@@ -97,7 +98,7 @@ pub fn detachments(
     distances_mm: &[f64],
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
-    let pushed = Pushed {
+    let pushed = PushedWhisker {
         whisker,
         pole,
         side,
@@ -106,8 +107,8 @@ pub fn detachments(
     detachments_of(Resolution::FINE, &[pushed], EndDetail::Snaps, variables).concat()
 }
 
-/// Computes all of the detachments of some sides of a sweep, `[side][distance]`, as [`detachments_of`] does. Rows of a table without a whisker
-/// have ends without values.
+/// Computes the detachments of some `sides` of a sweep with all details, `[side][distance]`, as [`detachments_of`] does. Rows of a table without
+/// a whisker have ends without values.
 #[must_use]
 pub fn detachments_of_sides(
     resolution: Resolution,
@@ -117,14 +118,14 @@ pub fn detachments_of_sides(
 ) -> Vec<Vec<DetachmentDerivatives>> {
     let pushed = sides.iter().filter_map(|SweptSide { swept, side }| {
         let swept = swept.ok()?;
-        Some(Pushed {
+        Some(PushedWhisker {
             whisker: &swept.whisker,
             pole: &swept.pole,
             side: *side,
             distances_mm,
         })
     });
-    let pushed: Vec<Pushed> = pushed.collect();
+    let pushed: Vec<PushedWhisker> = pushed.collect();
     let mut found = detachments_of(resolution, &pushed, EndDetail::All, variables).into_iter();
     let without = |end| DetachmentDerivatives {
         end,
@@ -145,12 +146,12 @@ pub fn detachments_of_sides(
 #[must_use]
 pub fn detachments_of(
     resolution: Resolution,
-    pushed: &[Pushed],
+    pushed: &[PushedWhisker],
     detail: EndDetail,
     variables: &[Variable],
 ) -> Vec<Vec<DetachmentDerivatives>> {
     let differentiated = pushed.iter().map(|pushed| {
-        let Pushed {
+        let PushedWhisker {
             whisker,
             pole,
             side,

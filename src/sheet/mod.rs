@@ -29,7 +29,7 @@ pub use row::{Crossing, Edge, Row};
 pub use span::Guess;
 pub(crate) use span::RowSpan;
 
-use continuation::pieces::{ContinuedRow, StablePieces, stable_pieces};
+use continuation::pieces::{ContinuedRow, stable_pieces};
 use edges::crossings::crossings;
 use net::{FOLD_ERRORS, GUESS_ERRORS, GuessRow, KNOWN_ROW_ERRORS, ValueNet};
 use rayon::prelude::*;
@@ -60,7 +60,7 @@ pub struct Sheet {
     /// Rows of the map, one for each distance: `[row]`.
     pub rows: Vec<Row>,
     /// Crossings of the sheet's edges, `[row][crossing]`. The end of a push from first touch comes first, if the row has one. The ends of
-    /// every other piece follow, in the direction of growing push angles. An unknown crossing ([`Crossing::unknown`]) comes last if the
+    /// every other piece follow, in the direction of growing push angles; none with [`SheetUse::FirstEnds`]. An unknown crossing ([`Crossing::unknown`]) comes last if the
     /// continuation of a piece failed.
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
@@ -72,8 +72,9 @@ pub struct Sheet {
     net: Option<ValueNet>,
 }
 
-/// What the rows of a sheet are for: it decides how accurate the net is.
+/// What the rows of a sheet are for: how accurate its net is, and which pieces of rows are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SheetUse {
     /// Guesses for all push angles.
     Guesses,
@@ -109,12 +110,12 @@ pub struct SheetRequest {
     pub serves: SheetUse,
 }
 
-/// Sheet whose samples do not decide about some of its rows.
+/// Sheet with rows that are still to be followed, as its samples are not certified there.
 struct SheetDraft {
     sheet: Sheet,
     serves: SheetUse,
-    /// Indices of these rows.
-    open: Vec<usize>,
+    /// Indices of the rows to follow.
+    open_rows: Vec<usize>,
     /// True if there are samples, certified or not.
     has_samples: bool,
 }
@@ -372,7 +373,7 @@ impl SheetDraft {
         let open = (0..rows.len()).filter(|&row| is_open((&rows[row], &crossings[row])));
         let tip = rod.tau_tip();
         Self {
-            open: open.collect(),
+            open_rows: open.collect(),
             serves,
             has_samples: samples.is_some(),
             sheet: Sheet {
@@ -392,37 +393,40 @@ impl SheetDraft {
 
 /// Follows the open rows of all `drafts` by continuation, and sets their crossings and spans.
 fn follow(drafts: &mut [SheetDraft]) {
-    let rows = drafts.iter().enumerate().flat_map(|(draft, open)| {
-        let rows = open.open.iter();
-        rows.map(move |row| (draft, *row))
+    let rows = drafts.iter().enumerate().flat_map(|(index, draft)| {
+        let rows = draft.open_rows.iter();
+        rows.map(move |row| (index, *row))
     });
     let rows: Vec<(usize, usize)> = rows.collect();
     let of_batch = |rows: &[(usize, usize)]| {
-        let rows = rows.iter().map(|(draft, row)| (&drafts[*draft], *row));
+        let rows = rows.iter().map(|(index, row)| (&drafts[*index], *row));
         let levels = rows.clone().map(|(draft, row)| draft.sheet.level(row));
         let levels: Vec<LevelCurve> = levels.collect();
-        let continued = rows.zip(&levels).map(|((draft, row), level)| {
+        let continued = rows.clone().zip(&levels).map(|((draft, row), level)| {
             let SheetDraft { sheet, serves, .. } = draft;
             ContinuedRow {
                 level,
                 touches: sheet.touches(row),
                 crossings: &sheet.crossings[row],
-                wants_first_alone: *serves == SheetUse::FirstEnds,
+                is_first_alone: *serves == SheetUse::FirstEnds,
             }
         });
-        stable_pieces(&continued.collect::<Vec<_>>())
+        let found = stable_pieces(&continued.collect::<Vec<_>>()).into_iter();
+        let ends = rows.zip(found).map(|((draft, row), found)| {
+            let is_incomplete = !found.are_complete && !found.pieces.is_empty();
+            let has_unknown = is_incomplete || !draft.has_samples && !draft.sheet.touches(row);
+            let crossings = found.ends().chain(has_unknown.then(Crossing::unknown));
+            let pieces = found.pieces.iter();
+            let spans = pieces.filter_map(|piece| piece.span(draft.sheet.side));
+            (crossings.collect(), spans.collect())
+        });
+        ends.collect::<Vec<(Vec<Crossing>, Vec<RowSpan>)>>()
     };
     let batches = rows.par_chunks(rows_per_batch(rows.len()));
-    let found: Vec<StablePieces> = batches.flat_map_iter(of_batch).collect();
-    for ((draft, row), found) in rows.into_iter().zip(found) {
-        let SheetDraft {
-            sheet, has_samples, ..
-        } = &mut drafts[draft];
-        let is_incomplete = !found.are_complete && !found.pieces.is_empty();
-        let has_unknown = is_incomplete || !*has_samples && !sheet.touches(row);
-        let unknown = has_unknown.then(Crossing::unknown);
-        sheet.crossings[row] = found.ends().chain(unknown).collect();
-        let pieces = found.pieces.iter();
-        sheet.continued[row] = pieces.filter_map(|piece| piece.span(sheet.side)).collect();
+    let found: Vec<_> = batches.flat_map_iter(of_batch).collect();
+    for ((index, row), (crossings, spans)) in rows.into_iter().zip(found) {
+        let sheet = &mut drafts[index].sheet;
+        sheet.crossings[row] = crossings;
+        sheet.continued[row] = spans;
     }
 }

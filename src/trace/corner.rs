@@ -5,7 +5,7 @@ use super::curve::{Detachment, DetachmentKind, ends_at};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
 use serde::Serialize;
-use whiskmap_mechanics::numerics::Bracket;
+use whiskmap_mechanics::numerics::{Bracket, WIDTH};
 use whiskmap_mechanics::rod::{Rest, Side};
 use whiskmap_mechanics::shooting::Resolution;
 use whiskmap_mechanics::shooting::batch::Method;
@@ -67,7 +67,7 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
     }
 }
 
-/// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by division.
+/// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by multisection.
 fn corner_distance(
     whisker: &Whisker,
     pole: &Pole,
@@ -96,7 +96,7 @@ const CORNER_TOLERANCE: f64 = 1e-10;
 /// Number of distances at which ends are computed to bracket a corner that is not at the fold with the contact at the tip.
 const CORNER_SAMPLES: u32 = 128;
 
-/// Distance at which slip-off turns into pull-off, in the unit of `length`, by division. With friction two branches can exchange their
+/// Distance at which slip-off turns into pull-off, in the unit of `length`, by multisection. With friction two branches can exchange their
 /// ends there. The search begins at `nearest`, in whisker lengths.
 fn switch(
     ends: &impl Fn(&[f64]) -> Vec<Detachment>,
@@ -115,7 +115,7 @@ fn switch(
         below: samples[before],
         above: samples[pulled],
     };
-    bracket.divide(CORNER_TOLERANCE * length, |distances| {
+    bracket.multisect(CORNER_TOLERANCE * length, WIDTH, |distances| {
         let ends = ends(distances);
         let slipped = ends
             .iter()

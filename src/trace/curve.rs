@@ -94,7 +94,7 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let pushed = Pushed {
+    let pushed = PushedWhisker {
         whisker,
         pole,
         side,
@@ -112,7 +112,7 @@ pub fn ends_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let pushed = Pushed {
+    let pushed = PushedWhisker {
         whisker,
         pole,
         side,
@@ -123,7 +123,7 @@ pub fn ends_at(
 
 /// Whisker that is pushed against a pole on one side, from first touch at some distances.
 #[derive(Clone, Copy, Debug)]
-pub struct Pushed<'a> {
+pub struct PushedWhisker<'a> {
     /// Whisker that is pushed.
     pub whisker: &'a Whisker,
     /// Pole in front of the whisker.
@@ -136,28 +136,29 @@ pub struct Pushed<'a> {
 
 /// How much of a detachment is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum EndDetail {
-    /// The end of the push and the state there.
+    /// Detachment without largest strain and snaps: the end of the push and the state there.
     State,
-    /// Also the push angle up to which the whisker may snap to other stable states, which follow the end on the level curve.
+    /// Detachment without largest strain. The push angle up to which the whisker may snap needs other states on the level curve.
     Snaps,
-    /// Also the largest strain, which takes a trajectory more, and with friction the sliding direction by the contact's history.
+    /// Whole detachment. The largest strain takes a trajectory more, and with friction, the sliding direction follows from the contact's history.
     All,
 }
 
-/// Computes what to `keep` of the detachments of each of `pushed`, `[pushed][distance]`, with this `detail`: it gets the index of the whisker,
-/// the detachment, and the crossing of the sheet's edge from which it is read; `None` without an end.
+/// Computes the detachments of each of `pushed` with this `detail`, and returns `keep(index, detachment, crossing)` of each: `[pushed][distance]`.
+/// The detachment is read from the crossing of the sheet's edge; `None` without an end.
 ///
 /// The ends of all whiskers share batches. Results do not depend on the other whiskers.
 pub(crate) fn detachments<T: Send>(
     resolution: Resolution,
-    pushed: &[Pushed],
+    pushed: &[PushedWhisker],
     detail: EndDetail,
     keep: impl Fn(usize, Detachment, Option<Crossing>) -> T + Sync,
 ) -> Vec<Vec<T>> {
     let method = Method::new(resolution);
-    let request = |pushed: &Pushed| {
-        let Pushed { whisker, side, .. } = *pushed;
+    let request = |pushed: &PushedWhisker| {
+        let PushedWhisker { whisker, side, .. } = *pushed;
         let rod = whisker.rod(pushed.pole, side);
         let distances = pushed.distances_mm.iter();
         SheetRequest {
@@ -184,8 +185,8 @@ pub(crate) fn detachments<T: Send>(
         }
         false => row_ends.iter().map(|ends| vec![None; ends.len()]).collect(),
     };
-    let of_sheet = |(index, (row_ends, peaks)): (usize, (Vec<Result<RowEnd, _>>, Vec<_>))| {
-        let Pushed {
+    let kept = |(index, (row_ends, peaks)): (usize, (Vec<Result<RowEnd, _>>, Vec<_>))| {
+        let PushedWhisker {
             whisker,
             side,
             distances_mm,
@@ -232,7 +233,7 @@ pub(crate) fn detachments<T: Send>(
             .collect()
     };
     let ends: Vec<_> = row_ends.into_iter().zip(peaks).collect();
-    ends.into_par_iter().enumerate().map(of_sheet).collect()
+    ends.into_par_iter().enumerate().map(kept).collect()
 }
 
 /// Integrates the trajectories from the `ends` of pushes in the rows of `sheets` in one batch, `[sheet][row]`; `None` without an end.

@@ -16,7 +16,7 @@ mod state;
 pub use branch::{Branch, BranchPoint};
 pub use corner::{Corner, NoCorner, corner};
 pub use curve::{
-    Detachment, DetachmentKind, EndDetail, Pushed, curve, curve_at, ends_at, reach_mm,
+    Detachment, DetachmentKind, EndDetail, PushedWhisker, curve, curve_at, ends_at, reach_mm,
 };
 pub(crate) use curve::{RowEnd, crossings, detachments, snaps_deg};
 pub use peak::{PushLoad, PushPeak};
@@ -55,11 +55,12 @@ pub enum BranchMark {
 /// Maximum number of ends of pushes in memory, of about 250 bytes each.
 const ENDS_AT_ONCE: usize = 1 << 19;
 
-/// Maximum number of whiskers whose curves are in memory together, enough for many threads.
+/// Maximum number of whiskers whose ends are in memory together, enough for many threads.
 const MOST_WHISKERS: usize = 1024;
 
-/// Number of ends of pushes whose trajectories share batches: enough for full lanes.
-const ENDS_OF_BATCH: usize = 256;
+/// Number of ends of pushes whose trajectories share batches. Most ends then have full lanes, whatever their numbers of steps. For one distance,
+/// these are as many sheets of about 100 KiB.
+const ENDS_OF_BATCH: usize = 128;
 
 /// Returns the number of whiskers to compute together if each has ends at `distances` distances on both sides.
 #[must_use]

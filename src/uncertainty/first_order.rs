@@ -4,7 +4,7 @@ use super::varying::Varying;
 use crate::input::each_once;
 use crate::scene::Scene;
 use crate::sensitivity::{DetachmentDerivatives, Variable, detachments_of};
-use crate::trace::{EndDetail, Pushed};
+use crate::trace::{EndDetail, PushedWhisker};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -26,7 +26,7 @@ pub(super) fn deviations_deg(
         .map(|(variable, _)| *variable)
         .collect();
     let variables = each_once(&all);
-    let pushed = Pushed {
+    let pushed = PushedWhisker {
         whisker: &scene.whisker,
         pole: &scene.pole,
         side,

@@ -12,7 +12,7 @@ pub use spread::{EndSpread, LargestSpread, PointSpread};
 use crate::random::RandomStream;
 use crate::scene::{Deviations, Pole, Scene, Whisker};
 use crate::trace::{
-    Detachment, DetachmentKind, EndDetail, PushLoad, Pushed, StableBranch, detachments,
+    Detachment, DetachmentKind, EndDetail, PushLoad, PushedWhisker, StableBranch, detachments,
     sides_at_once,
 };
 use rayon::prelude::*;
@@ -117,8 +117,8 @@ impl Draws {
         self.drawn.is_empty()
     }
 
-    /// Computes the spread of the ends of pushes on one side, `[distance]`, at every distance of the scene. `tick` is called after every
-    /// whisker.
+    /// Computes the spread of the ends of pushes on one side, `[distance]`, at every distance of the scene. `tick` is called once for
+    /// every whisker, after its batch.
     #[must_use]
     pub fn spread(
         &self,
@@ -128,7 +128,7 @@ impl Draws {
     ) -> Vec<EndSpread> {
         let distances = &self.scene.grid.distance_mm;
         let curves = |whiskers: &[(Whisker, Pole)]| {
-            let pushed = whiskers.iter().map(|(whisker, pole)| Pushed {
+            let pushed = whiskers.iter().map(|(whisker, pole)| PushedWhisker {
                 whisker,
                 pole,
                 side,

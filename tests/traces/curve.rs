@@ -6,9 +6,11 @@ use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::{Curvature, Parameter, SweptWhisker, Whisker};
-use whiskmap::sensitivity::{Variable, detachments_of_sides};
+use whiskmap::sensitivity::{Variable, detachments, detachments_of_sides};
 use whiskmap::sheet::Sheet;
-use whiskmap::trace::{Branch, DetachmentKind, NoCorner, SweptSide, corner, curve};
+use whiskmap::trace::{
+    Branch, Detachment, DetachmentKind, NoCorner, SweptSide, corner, curve, ends_at,
+};
 
 /// A push ends at the fold 1e-8 mm before the corner, and at the tip 1e-8 mm beyond it.
 #[test]
@@ -144,7 +146,7 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
 }
 
 /// The trajectories of several whiskers share batches, also those of rows that are followed: each whisker has the ends and the derivatives that it has
-/// alone, to the last bit.
+/// alone, to the last bit. The end of a push does not depend on the other pieces of its row.
 #[test]
 fn ends_do_not_depend_on_the_other_whiskers() {
     let bent = Whisker {
@@ -176,6 +178,21 @@ fn ends_do_not_depend_on_the_other_whiskers() {
     for (side, together) in sides.iter().zip(ends(&sides)) {
         let alone = ends(std::slice::from_ref(side)).concat();
         assert_eq!(together, alone, "{side:?}");
+    }
+    for SweptSide { swept, side } in &sides {
+        let SweptWhisker { whisker, pole, .. } = swept.unwrap();
+        let first = ends_at(Resolution::FINE, whisker, pole, *side, &distances);
+        let all = detachments(whisker, pole, *side, &distances, &[]);
+        for (first, all) in first.iter().zip(all) {
+            let snaps_deg = all.end.snaps_deg;
+            assert_eq!(
+                Detachment {
+                    snaps_deg,
+                    ..*first
+                },
+                all.end
+            );
+        }
     }
     let is_followed = |side: &&SweptSide| {
         let rod = side.swept.unwrap().rod(side.side);

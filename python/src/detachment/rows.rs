@@ -10,7 +10,7 @@ use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::{Parameter, Scene, SceneBuilder};
 use whiskmap::sensitivity::{Derivatives, DetachmentDerivatives, Variable, detachments_of};
-use whiskmap::trace::{Detachment, EndDetail, Pushed, sides_at_once};
+use whiskmap::trace::{Detachment, EndDetail, PushedWhisker, sides_at_once};
 use whiskmap::yields::PushMark;
 
 /// Maximum number of distances of one sheet.
@@ -31,7 +31,6 @@ pub struct DetachmentRows<'a> {
 }
 
 /// End of one row, and its derivatives, `[variable]`; `None` where there is none.
-#[derive(Clone)]
 pub struct RowEnd {
     pub row: usize,
     pub end: Detachment,
@@ -50,7 +49,6 @@ struct CheckedRows {
 }
 
 /// Error of a row whose numbers a scene refuses.
-#[derive(Clone)]
 pub struct RefusedRow {
     pub row: usize,
     pub why: Box<whiskmap::scene::SceneError>,
@@ -65,15 +63,16 @@ impl DetachmentRows<'_> {
             let checked = groups.iter().map(|rows| self.checked(rows.clone()));
             let (checked, refused): (Vec<_>, Vec<_>) = checked.unzip();
             let checked: Vec<CheckedRows> = checked.into_iter().flatten().collect();
-            (self.ends_of(&checked), refused.concat())
+            (self.ends_of(&checked), refused)
         };
         let chunks = groups
             .par_chunks(sides_at_once(groups.len(), distances))
             .filter(|_| !cancel.load(Ordering::Relaxed));
-        let (ends, refused): (Vec<_>, Vec<Vec<RefusedRow>>) = chunks.map(of_chunk).unzip();
-        let mut refused = refused.concat();
+        let (ends, refused): (Vec<_>, Vec<Vec<Vec<RefusedRow>>>) = chunks.map(of_chunk).unzip();
+        let refused = refused.into_iter().flatten().flatten();
+        let mut refused: Vec<RefusedRow> = refused.collect();
         refused.sort_by_key(|refused| refused.row);
-        (ends.concat(), refused)
+        (ends.into_iter().flatten().collect(), refused)
     }
 
     /// Rows with the same whisker and side, by growing distance, `[sheet][row]`.
@@ -150,13 +149,13 @@ impl DetachmentRows<'_> {
             .position(|variable| self.have_taper && *variable == base);
         let mut variables = self.variables.clone();
         variables.extend(base.map(|_| Variable::from(Parameter::TipRadiusUm)));
-        let pushed = checked.iter().map(|checked| Pushed {
+        let pushed = checked.iter().map(|checked| PushedWhisker {
             whisker: &checked.scene.whisker,
             pole: &checked.scene.pole,
             side: checked.side,
             distances_mm: &checked.distances,
         });
-        let pushed: Vec<Pushed> = pushed.collect();
+        let pushed: Vec<PushedWhisker> = pushed.collect();
         let found = detachments_of(Resolution::FINE, &pushed, EndDetail::Snaps, &variables);
         let ends = checked.iter().zip(found).flat_map(|(checked, found)| {
             let CheckedRows {

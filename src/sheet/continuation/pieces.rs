@@ -48,7 +48,7 @@ pub struct ContinuedRow<'a> {
     /// Crossings of the row found on the sampled edges: starts of further pieces.
     pub crossings: &'a [Crossing],
     /// True if only the piece from first touch is wanted.
-    pub wants_first_alone: bool,
+    pub is_first_alone: bool,
 }
 
 /// Stable pieces of a row found by continuation. The piece from first touch comes first.
@@ -87,7 +87,7 @@ pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
                 // No cell has a push angle of several turns.
                 let is_near = |crossing: &Crossing| crossing.push.abs() <= MOST_PUSH;
                 let crossing = row.crossings.get(index).copied();
-                let crossing = crossing.filter(|_| is_continued && !row.wants_first_alone);
+                let crossing = crossing.filter(|_| is_continued && !row.is_first_alone);
                 crossing.filter(is_near)
             })
             .collect();
@@ -194,7 +194,7 @@ fn past_folds(rows: &[ContinuedRow], found: &mut [StablePieces]) {
     };
     let at_fold = |end: &Option<Crossing>| end.filter(|end| end.edge == Edge::Fold);
     let pairs = rows.iter().zip(&*found);
-    let ends = pairs.map(|(row, found)| from_touch(found).filter(|_| !row.wants_first_alone));
+    let ends = pairs.map(|(row, found)| from_touch(found).filter(|_| !row.is_first_alone));
     let mut ends: Vec<Option<Crossing>> = ends.collect();
     while ends.iter().any(|end| at_fold(end).is_some()) {
         let folds = at_crossings(rows, &ends.iter().map(at_fold).collect::<Vec<_>>());

@@ -4,7 +4,7 @@ pub mod contact_nodes;
 pub mod coordinate;
 mod predicted;
 
-use crate::newton::{BatchNewton, LaneSharing, NewtonProblem, NewtonStep};
+use crate::newton::{BatchNewton, LaneSharing, NewtonOutcome, NewtonProblem, NewtonStep};
 use crate::sheet::case::SheetCase;
 use glam::DVec2;
 use whiskmap_mechanics::numerics::newton_form::{RootProblem, stencil, through_nodes};
@@ -76,8 +76,8 @@ const STEP_LEFT: f64 = 1e-5;
 /// Newton step in load, relative to the load, whose end is extrapolated. The remaining error is its square.
 const LAST_LOAD_STEP: f64 = 1e-6;
 
-/// Newton step in load, over the width of the bracket, from which the bracket has no root: coarse trajectories gave `det` another sign. A bracket that
-/// closes on a root has shorter steps, except next to an extremum of `det`.
+/// Newton step in load, over the width of the bracket, from which the bracket has no root: coarse trajectories gave `det` another sign. In a bracket that
+/// closes on a root, steps are at most about as long as it is, except next to an extremum of `det`.
 const ROOTLESS_STEP: f64 = 1e3;
 
 /// Value of `q` at which the march ends without a fold.
@@ -100,15 +100,32 @@ pub fn first_folds(case: SheetCase, taus: &[f64]) -> Vec<Option<FoldPoint>> {
     folds
 }
 
+/// Returns the samples of a march in `q`, from `begin` outward: at even steps, which grow with `q` beyond [`EVEN_UP_TO`].
+fn march_samples(begin: f64) -> impl Iterator<Item = f64> {
+    let next = |(first, step): &(f64, f64)| {
+        let last = step.mul_add((SAMPLES_PER_ROUND - 1) as f64, *first);
+        let step = match last < EVEN_UP_TO {
+            true => *step,
+            false => last / SAMPLES_PER_ROUND as f64,
+        };
+        Some((last + step, step))
+    };
+    let rounds = std::iter::successors(Some((begin, FIRST_SPACING)), next);
+    rounds.flat_map(|(first, step)| {
+        (0..SAMPLES_PER_ROUND).map(move |i| step.mul_add(i as f64, first))
+    })
+}
+
+/// Part of a fold's load, next to it, in which signs of coarse trajectories do not count. Brackets around predicted folds allow as much.
+const COARSE_OFF: f64 = 5e-4;
+
 /// Returns true if the states of each contact of `folds` at loads below its fold, sampled as by a march, are all stable.
 fn are_stable_below(case: SheetCase, folds: &[&FoldPoint]) -> bool {
     let begin = surely_stable(case.rod);
     let below = |fold: &&FoldPoint| {
         let (tau, scale) = (fold.tau, load_scale(case, fold.tau));
-        // Signs come from the coarse resolution.
-        let end = fold.load / scale - BRACKET_SLACK * FIRST_SPACING;
-        let samples = (0..).map(move |i| FIRST_SPACING.mul_add(f64::from(i), begin));
-        let samples = samples.take_while(move |q| *q < end);
+        let end = (1.0 - COARSE_OFF) * fold.load / scale;
+        let samples = march_samples(begin).take_while(move |q| *q < end);
         samples.map(move |q| (tau, q * scale))
     };
     let maps: Vec<ShootingMap> = case.coarsely().shoot(folds.iter().flat_map(below));
@@ -178,11 +195,10 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
             maps: vec![at_touch[index]],
         })
         .collect();
-    let (mut samples, mut step) = (Vec::new(), FIRST_SPACING);
+    let (mut samples, mut others) = (Vec::new(), march_samples(begin));
     while !open.is_empty() && samples.last().is_none_or(|q| *q < MARCH_END) {
         let from = samples.len();
-        let first = samples.last().map_or(begin, |q| q + step);
-        samples.extend((0..SAMPLES_PER_ROUND).map(|i| step.mul_add(i as f64, first)));
+        samples.extend(others.by_ref().take(SAMPLES_PER_ROUND));
         let points = |m: &ContactMarch| {
             let (tau, scale) = (taus[m.index], m.scale);
             samples[from..].iter().map(move |q| (tau, q * scale))
@@ -211,9 +227,6 @@ fn march(case: SheetCase, taus: &[f64], begin: f64) -> Vec<Option<FoldBracket>> 
             found[march.index] = Some(bracket(case, tau, &samples, &march.dets, before));
             false
         });
-        if samples[samples.len() - 1] >= EVEN_UP_TO {
-            step = samples[samples.len() - 1] / SAMPLES_PER_ROUND as f64;
-        }
     }
     found
 }
@@ -316,7 +329,8 @@ fn polish(case: SheetCase, brackets: Vec<Option<FoldBracket>>) -> Vec<Option<Fol
         let (before, map) = bracket.before;
         // A bracket that has not closed, or has closed on something other than a root, is no fold.
         let step = variation.map.det() / variation.det_gradient().y;
-        let is_fold = step.abs() <= STEP_LEFT * iterate.point.y.abs();
+        let has_root = iterate.outcome != NewtonOutcome::Failed;
+        let is_fold = has_root && step.abs() <= STEP_LEFT * iterate.point.y.abs();
         is_fold.then_some(FoldPoint {
             tau: iterate.point.x,
             load: iterate.point.y,
@@ -332,4 +346,47 @@ fn polish(case: SheetCase, brackets: Vec<Option<FoldBracket>>) -> Vec<Option<Fol
     };
     let folds = brackets.into_iter();
     folds.map(|bracket| bracket.and_then(&mut fold)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use whiskmap_mechanics::rod::Side;
+    use whiskmap_mechanics::shooting::batch::Method;
+
+    /// Newton's method ends early in brackets on either side of a fold, and finds it in a wide bracket around it.
+    #[test]
+    fn a_bracket_without_a_root_has_no_fold() {
+        let rod = Rod {
+            taper: 0.95,
+            bend: 0.4,
+            pole: 0.0125,
+            ..Rod::default()
+        };
+        let case = SheetCase {
+            method: Method::fine(),
+            rod: &rod,
+            side: Side::Cb,
+        };
+        let tau = rod.tau(0.7);
+        let Some(fold) = first_folds(case, &[tau]).pop().flatten() else {
+            panic!("no fold");
+        };
+        let outcome = |parts: [f64; 2]| {
+            let loads = parts.map(|part| part * fold.load);
+            let mut problems = [FoldProblem {
+                rod: &rod,
+                loads: Bracket {
+                    below: loads[0],
+                    above: loads[1],
+                },
+            }];
+            let newton = BatchNewton::new(case.method, POLISH_TRAJECTORIES);
+            let start = DVec2::new(tau, 0.5 * (loads[0] + loads[1]));
+            newton.solve(&mut problems, [start])[0].outcome
+        };
+        assert_eq!(outcome([0.4, 1.3]), NewtonOutcome::Converged);
+        assert_eq!(outcome([0.8, 0.9]), NewtonOutcome::Failed);
+        assert_eq!(outcome([1.1, 1.2]), NewtonOutcome::Failed);
+    }
 }

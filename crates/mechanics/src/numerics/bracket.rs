@@ -1,11 +1,9 @@
 //! Roots of functions of one variable. A bracket holds two arguments at which the function has opposite signs.
 //!
 //! [`Bracket::newton`] is the root finder: Newton's method, Halley's or any other that proposes a next place, safeguarded by
-//! bisection. [`Bracket::bisect`] needs values alone, [`Bracket::divide`] signs alone. [`illinois`] is regula falsi, for
+//! bisection. [`Bracket::bisect`] needs values alone, [`Bracket::multisect`] signs alone. [`illinois`] is regula falsi, for
 //! functions without slopes whose values are expensive. Searches whose values come in batches hold one bracket each and call
 //! [`Bracket::shrink`] or [`Bracket::next`].
-
-use super::WIDTH;
 
 /// Largest number of iterations: more than bisection needs between any two numbers of ordinary size.
 const MOST_ITERATIONS: usize = 200;
@@ -86,22 +84,23 @@ impl Bracket {
         self.newton(self.middle(), |_| 0.0, iterate).x
     }
 
-    /// Divides the bracket in place until its ends are at most `width` apart or neighbouring numbers. `count_below(points)` returns the number
-    /// of leading points, from [`Bracket::below`] on, at which the function is negative: the bracket moves to the last one of them and the next
-    /// point. Its first error ends the search and is returned. It serves where a function is known by its sign alone, and where a block of values
-    /// takes about as long as one.
+    /// Divides the bracket in place until its ends are at most `width` apart or neighbouring numbers. Each round divides it by up to `most` points.
+    /// `count_below(points)` returns the number of leading points, from [`Bracket::below`] on, at which the function is negative. Its first error
+    /// ends the search and is returned. It serves where a function is known by its sign alone. Many points pay where their values take about as long
+    /// as one value.
     ///
     /// # Errors
     ///
     /// The error of `count_below`.
-    pub fn divide<E>(
+    pub fn multisect<E>(
         &mut self,
         width: f64,
+        most: usize,
         mut count_below: impl FnMut(&[f64]) -> Result<usize, E>,
     ) -> Result<(), E> {
         while (self.above - self.below).abs() > width {
-            let step = (self.above - self.below) / (WIDTH + 1) as f64;
-            let points = (1..=WIDTH).map(|i| step.mul_add(i as f64, self.below));
+            let step = (self.above - self.below) / (most + 1) as f64;
+            let points = (1..=most).map(|i| step.mul_add(i as f64, self.below));
             let mut points: Vec<f64> = points.filter(|x| self.is_inside(*x)).collect();
             points.dedup();
             if points.is_empty() {

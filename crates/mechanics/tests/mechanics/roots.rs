@@ -259,14 +259,14 @@ fn uneven_nodes_give_the_polynomial_through_them() {
 }
 
 #[test]
-fn dividing_needs_signs_alone() {
+fn multisection_needs_signs_alone() {
     for [below, above] in [[0.0, 1.0], [1.0, 0.0]] {
         let mut bracket = Bracket { below, above };
         let is_below = |x: &&f64| (**x < 0.3) == (below < above);
         let count = |points: &[f64]| Ok::<_, ()>(points.iter().take_while(is_below).count());
-        assert_eq!(bracket.divide(1e-3, count), Ok(()));
+        assert_eq!(bracket.multisect(1e-3, 16, count), Ok(()));
         assert!((bracket.below - bracket.above).abs() <= 1e-3 && bracket.contains(0.3));
-        assert_eq!(bracket.divide(0.0, count), Ok(()));
+        assert_eq!(bracket.multisect(0.0, 1, count), Ok(()));
         assert!((bracket.below - bracket.above).abs() <= f64::EPSILON && bracket.contains(0.3));
     }
     let mut bracket = UNIT;
@@ -276,5 +276,5 @@ fn dividing_needs_signs_alone() {
             .find(|x| **x >= 0.9)
             .map_or(Ok(0), |x| Err(*x))
     };
-    assert_eq!(bracket.divide(0.0, last), Err(16.0 / 17.0));
+    assert_eq!(bracket.multisect(0.0, 16, last), Err(16.0 / 17.0));
 }
