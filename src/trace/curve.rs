@@ -134,7 +134,7 @@ pub struct PushedWhisker<'a> {
     pub distances_mm: &'a [f64],
 }
 
-/// How much of a detachment is computed.
+/// Detail with which the end of a push is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum EndDetail {
