@@ -14,5 +14,7 @@ pub use table::{CsvError, CsvTable};
 
 pub(crate) use lines::CsvLine;
 pub(crate) use names::{is_meant_as, shortened};
-pub(crate) use source::{TEXT_MIB, bounded, open, open_regular, read};
+#[cfg(feature = "gpu")]
+pub(crate) use source::read;
+pub(crate) use source::{TEXT_MIB, bounded, open, open_regular};
 pub(crate) use table::{CsvLines, MOST_SECONDS, is_missing, read_bytes, text_of};
