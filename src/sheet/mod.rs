@@ -6,10 +6,12 @@
 //! Newton start ([`Sheet::guesses`]), and the cells of an engine their values. Crossings and net are computed independently of each other.
 //!
 //! `fold/` finds the first folds of sampled contacts, `net/` represents the states and shows that there are no other folds, and `edges/`
-//! computes where a row leaves the sheet. `continuation/` follows a row from state to state where these are not certified.
+//! computes where a row leaves the sheet. `continuation/` follows a row from state to state where these are not certified; `draft.rs`
+//! puts them together.
 
 mod case;
 mod continuation;
+mod draft;
 mod edges;
 mod fold;
 pub mod net;
@@ -20,6 +22,7 @@ mod span;
 pub(crate) use case::SheetCase;
 pub use continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE, Stretch};
 pub use continuation::{NODE_MISS, Path, continuations};
+pub use draft::{SheetRequest, SheetUse};
 pub(crate) use edges::edge_newton::{EdgeProblem, edge_newton};
 pub use fold::FoldPoint;
 pub(crate) use fold::coordinate::{tau_of, u_of};
@@ -29,13 +32,12 @@ pub use row::{Crossing, Edge, Row};
 pub use span::Guess;
 pub(crate) use span::RowSpan;
 
-use continuation::pieces::{ContinuedRow, stable_pieces};
-use edges::crossings::crossings;
-use net::{FOLD_ERRORS, GUESS_ERRORS, GuessRow, KNOWN_ROW_ERRORS, ValueNet};
+use draft::{SheetDraft, follow};
+use net::{GuessRow, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
 use std::sync::Arc;
-use whiskmap_mechanics::rod::{Rest, Rod, Side};
+use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::ShootingMap;
 use whiskmap_mechanics::shooting::batch::Method;
 
@@ -60,8 +62,8 @@ pub struct Sheet {
     /// Rows of the map, one for each distance: `[row]`.
     pub rows: Vec<Row>,
     /// Crossings of the sheet's edges, `[row][crossing]`. The end of a push from first touch comes first, if the row has one. The ends of
-    /// every other piece follow, in the direction of growing push angles; none with [`SheetUse::FirstEnds`]. An unknown crossing ([`Crossing::unknown`]) comes last if the
-    /// continuation of a piece failed.
+    /// every other piece follow, in the direction of growing push angles; none with [`SheetUse::FirstEnds`]. An unknown crossing
+    /// ([`Crossing::unknown`]) comes last if the continuation of a piece failed.
     pub crossings: Vec<Vec<Crossing>>,
     method: Method,
     /// Samples of the whole sheet, if they are certified.
@@ -70,54 +72,6 @@ pub struct Sheet {
     continued: Vec<Vec<RowSpan>>,
     /// Panels with the values of states for the rows of an engine; `None` without one.
     net: Option<ValueNet>,
-}
-
-/// What the rows of a sheet are for: how accurate its net is, and which pieces of rows are followed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum SheetUse {
-    /// Guesses for all push angles.
-    Guesses,
-    /// [Known rows](Sheet::known_residuals): guesses are less accurate.
-    KnownRows,
-    /// Crossings alone: rows may have no guesses.
-    Ends,
-    /// Ends of pushes from first touch alone: rows may have no other crossings, and no guesses.
-    FirstEnds,
-}
-
-impl SheetUse {
-    /// Returns the errors to which panels are computed, the first one with which they show all folds.
-    const fn errors(self) -> &'static [f64] {
-        match self {
-            Self::Guesses => &GUESS_ERRORS,
-            Self::KnownRows => &KNOWN_ROW_ERRORS,
-            Self::Ends | Self::FirstEnds => &FOLD_ERRORS,
-        }
-    }
-}
-
-/// Whisker side of which a sheet is computed.
-#[derive(Clone, Debug)]
-pub struct SheetRequest {
-    /// Whisker and pole, in dimensionless form.
-    pub rod: Rod,
-    /// Whisker side.
-    pub side: Side,
-    /// Distances of the rows at first touch, in whisker lengths: `[row]`.
-    pub distances: Vec<f64>,
-    /// What the rows are for.
-    pub serves: SheetUse,
-}
-
-/// Sheet with rows that are still to be followed, as its samples are not certified there.
-struct SheetDraft {
-    sheet: Sheet,
-    serves: SheetUse,
-    /// Indices of the rows to follow.
-    open_rows: Vec<usize>,
-    /// True if there are samples, certified or not.
-    has_samples: bool,
 }
 
 impl Sheet {
@@ -326,107 +280,5 @@ impl Sheet {
         let samples = self.samples.as_ref();
         let is_loaded = samples.is_none_or(|samples| samples.is_below_fold(tau, load));
         is_loaded && map.is_stable()
-    }
-}
-
-impl SheetDraft {
-    /// Samples the sheet, and finds where its rows cross the edges.
-    fn new(method: Method, request: SheetRequest) -> Self {
-        let SheetRequest {
-            rod,
-            side,
-            distances,
-            serves,
-        } = request;
-        let rest = Rest::new(&rod);
-        let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
-        let nearest = rows
-            .iter()
-            .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
-        let case = SheetCase {
-            method,
-            rod: &rod,
-            side,
-        };
-        let sample = |nearest| SheetSamples::new(case, nearest, &rows, serves.errors());
-        let samples = nearest.and_then(sample);
-        let is_certified = samples
-            .as_ref()
-            .is_some_and(|samples| samples.panels.is_some());
-        let crossings = match &samples {
-            Some(samples) => crossings(case, &samples.edges, &rows),
-            None => vec![Vec::new(); rows.len()],
-        };
-        let fold_grows = samples
-            .as_ref()
-            .is_some_and(|samples| samples.edges.fold_grows);
-        let is_open = |(row, crossings): (&Row, &[Crossing])| {
-            let touches = row.is_reached();
-            let is_pair = usize::from(touches) + crossings.len() == 2;
-            let is_simple = crossings.is_empty() && !touches
-                || fold_grows && is_pair && crossings.iter().all(Crossing::is_sound);
-            // Where the tip moves away from the pole under a load, the level curve is this point alone, which no continuation can follow.
-            let is_point = row.is_at_reach() && matches!(crossings, [end] if end.is_at_touch());
-            let is_inside = row.pole_distance <= rod.pole.abs();
-            !(is_certified && is_simple || is_point) || is_inside
-        };
-        let open = (0..rows.len()).filter(|&row| is_open((&rows[row], &crossings[row])));
-        let tip = rod.tau_tip();
-        Self {
-            open_rows: open.collect(),
-            serves,
-            has_samples: samples.is_some(),
-            sheet: Sheet {
-                side,
-                tip: [tip, rod.radius(tip)],
-                continued: vec![Vec::new(); rows.len()],
-                rows,
-                crossings,
-                method,
-                samples: samples.filter(|_| is_certified).map(Arc::new),
-                net: None,
-                rod,
-            },
-        }
-    }
-}
-
-/// Follows the open rows of all `drafts` by continuation, and sets their crossings and spans.
-fn follow(drafts: &mut [SheetDraft]) {
-    let rows = drafts.iter().enumerate().flat_map(|(index, draft)| {
-        let rows = draft.open_rows.iter();
-        rows.map(move |row| (index, *row))
-    });
-    let rows: Vec<(usize, usize)> = rows.collect();
-    let of_batch = |rows: &[(usize, usize)]| {
-        let rows = rows.iter().map(|(index, row)| (&drafts[*index], *row));
-        let levels = rows.clone().map(|(draft, row)| draft.sheet.level(row));
-        let levels: Vec<LevelCurve> = levels.collect();
-        let continued = rows.clone().zip(&levels).map(|((draft, row), level)| {
-            let SheetDraft { sheet, serves, .. } = draft;
-            ContinuedRow {
-                level,
-                touches: sheet.touches(row),
-                crossings: &sheet.crossings[row],
-                is_first_alone: *serves == SheetUse::FirstEnds,
-            }
-        });
-        let found = stable_pieces(&continued.collect::<Vec<_>>()).into_iter();
-        let ends = rows.zip(found).map(|((draft, row), found)| {
-            let is_incomplete = !found.are_complete && !found.pieces.is_empty();
-            let has_unknown = is_incomplete || !draft.has_samples && !draft.sheet.touches(row);
-            let crossings = found.ends().chain(has_unknown.then(Crossing::unknown));
-            let pieces = found.pieces.iter();
-            let spans = pieces.filter_map(|piece| piece.span(draft.sheet.side));
-            (crossings.collect(), spans.collect())
-        });
-        ends.collect::<Vec<(Vec<Crossing>, Vec<RowSpan>)>>()
-    };
-    let batches = rows.par_chunks(rows_per_batch(rows.len()));
-    let found: Vec<_> = batches.flat_map_iter(of_batch).collect();
-    for ((index, row), (crossings, spans)) in rows.into_iter().zip(found) {
-        let sheet = &mut drafts[index].sheet;
-        sheet.crossings[row] = crossings;
-        sheet.continued[row] = spans;
     }
 }

@@ -94,13 +94,12 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    let pushed = PushedWhisker {
-        whisker,
-        pole,
-        side,
+    of_one(
+        resolution,
+        (whisker, pole, side),
         distances_mm,
-    };
-    detachments(resolution, &[pushed], EndDetail::All, |_, end, _| end).concat()
+        EndDetail::All,
+    )
 }
 
 /// Computes the ends of the detachment curve of [`curve_at`] alone, without largest strains and snaps.
@@ -112,13 +111,28 @@ pub fn ends_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
+    of_one(
+        resolution,
+        (whisker, pole, side),
+        distances_mm,
+        EndDetail::State,
+    )
+}
+
+/// Detachments of one whisker, `[distance]`.
+fn of_one(
+    resolution: Resolution,
+    (whisker, pole, side): (&Whisker, &Pole, Side),
+    distances_mm: &[f64],
+    detail: EndDetail,
+) -> Vec<Detachment> {
     let pushed = PushedWhisker {
         whisker,
         pole,
         side,
         distances_mm,
     };
-    detachments(resolution, &[pushed], EndDetail::State, |_, end, _| end).concat()
+    detachments(resolution, &[pushed], detail, |_, end, _| end).concat()
 }
 
 /// Whisker that is pushed against a pole on one side, from first touch at some distances.
@@ -132,6 +146,25 @@ pub struct PushedWhisker<'a> {
     pub side: Side,
     /// Distances of first touch in mm, which must increase.
     pub distances_mm: &'a [f64],
+}
+
+impl PushedWhisker<'_> {
+    /// Returns the request for the sheet of its ends with this `detail`.
+    fn request(&self, detail: EndDetail) -> SheetRequest {
+        let rod = self.whisker.rod(self.pole, self.side);
+        let distances = self.distances_mm.iter();
+        SheetRequest {
+            serves: match detail {
+                EndDetail::State => SheetUse::FirstEnds,
+                // The history of a contact that sticks needs states before the end.
+                EndDetail::All if rod.friction != 0.0 => SheetUse::Guesses,
+                EndDetail::Snaps | EndDetail::All => SheetUse::Ends,
+            },
+            rod,
+            side: self.side,
+            distances: distances.map(|d| d / self.whisker.length_mm).collect(),
+        }
+    }
 }
 
 /// Detail with which the end of a push is computed.
@@ -157,23 +190,8 @@ pub(crate) fn detachments<T: Send>(
     keep: impl Fn(usize, Detachment, Option<Crossing>) -> T + Sync,
 ) -> Vec<Vec<T>> {
     let method = Method::new(resolution);
-    let request = |pushed: &PushedWhisker| {
-        let PushedWhisker { whisker, side, .. } = *pushed;
-        let rod = whisker.rod(pushed.pole, side);
-        let distances = pushed.distances_mm.iter();
-        SheetRequest {
-            serves: match detail {
-                EndDetail::State => SheetUse::FirstEnds,
-                // The history of a contact that sticks needs states before the end.
-                EndDetail::All if rod.friction != 0.0 => SheetUse::Guesses,
-                EndDetail::Snaps | EndDetail::All => SheetUse::Ends,
-            },
-            rod,
-            side,
-            distances: distances.map(|d| d / whisker.length_mm).collect(),
-        }
-    };
-    let sheets = Sheet::several(method, pushed.iter().map(request).collect());
+    let requests = pushed.iter().map(|pushed| pushed.request(detail));
+    let sheets = Sheet::several(method, requests.collect());
     let row_ends = RowEnd::of(method, &sheets);
     let (has_strain, has_snaps) = (detail == EndDetail::All, detail >= EndDetail::Snaps);
     let peaks: Vec<Vec<Option<PeakStrain>>> = match has_strain {

@@ -204,6 +204,7 @@ impl ContactNodes {
 #[allow(clippy::unwrap_used, reason = "a failure fails the test")]
 mod tests {
     use super::*;
+    use crate::sheet::fold::tests::cone;
     use whiskmap_mechanics::rod::{Rest, Side};
     use whiskmap_mechanics::shooting::batch::Method;
 
@@ -285,12 +286,7 @@ mod tests {
     /// A later fold at a node is found where no net covers the node.
     #[test]
     fn later_folds_are_not_first() {
-        let rod = Rod {
-            taper: 0.95,
-            bend: 0.4,
-            pole: 0.0125,
-            ..Rod::default()
-        };
+        let rod = cone();
         let case = SheetCase {
             method: Method::fine(),
             rod: &rod,

@@ -354,15 +354,20 @@ mod tests {
     use whiskmap_mechanics::rod::Side;
     use whiskmap_mechanics::shooting::batch::Method;
 
-    /// Newton's method ends early in brackets on either side of a fold, and finds it in a wide bracket around it.
-    #[test]
-    fn a_bracket_without_a_root_has_no_fold() {
-        let rod = Rod {
+    /// The cone of the paper.
+    pub(super) fn cone() -> Rod {
+        Rod {
             taper: 0.95,
             bend: 0.4,
             pole: 0.0125,
             ..Rod::default()
-        };
+        }
+    }
+
+    /// Newton's method ends early in brackets on either side of a fold, and finds it in a wide bracket around it.
+    #[test]
+    fn a_bracket_without_a_root_has_no_fold() {
+        let rod = cone();
         let case = SheetCase {
             method: Method::fine(),
             rod: &rod,
