@@ -1,4 +1,4 @@
-//! How sheets are computed: samples, crossings of rows, and continuation of the rows for which the samples do not suffice.
+//! Drafts of sheets: samples, crossings of rows, and continuation of the rows for which the samples do not suffice.
 
 use super::case::SheetCase;
 use super::continuation::level_curve::LevelCurve;
