@@ -76,10 +76,6 @@ const STEP_LEFT: f64 = 1e-5;
 /// Newton step in load, relative to the load, whose end is extrapolated. The remaining error is its square.
 const LAST_LOAD_STEP: f64 = 1e-6;
 
-/// Newton step in load, over the width of the bracket, from which the bracket has no root: coarse trajectories gave `det` another sign. In a bracket that
-/// closes on a root, steps are at most about as long as it is, except next to an extremum of `det`.
-const ROOTLESS_STEP: f64 = 1e3;
-
 /// Value of `q` at which the march ends without a fold.
 const MARCH_END: f64 = 1e4;
 
@@ -272,8 +268,20 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
 /// Root-finding problem for the load at which `det` vanishes inside a bracket.
 struct FoldProblem<'a> {
     rod: &'a Rod,
-    /// Loads that bracket the root of `-det`.
+    /// Loads that bracket the root of `-det`, by the signs of coarse trajectories.
     loads: Bracket,
+    /// Ends of the bracket whose signs no trajectory of this problem has shown.
+    untested: [Option<f64>; 2],
+}
+
+impl<'a> FoldProblem<'a> {
+    const fn new(rod: &'a Rod, loads: Bracket) -> Self {
+        Self {
+            rod,
+            loads,
+            untested: [Some(loads.above), Some(loads.below)],
+        }
+    }
 }
 
 impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
@@ -290,11 +298,22 @@ impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
         if step.abs() <= LAST_LOAD_STEP * at.y.abs() {
             return NewtonStep::Extrapolate(DVec2::new(0.0, step));
         }
-        let width = (self.loads.above - self.loads.below).abs();
-        if step.abs() > ROOTLESS_STEP * width {
+        let Bracket { below, above } = self.loads;
+        if at.y == below && det <= 0.0 || at.y == above && det > 0.0 {
+            // Coarse trajectories gave `det` another sign here: there is no root.
             return NewtonStep::Fail;
         }
-        let next = self.loads.next(at.y, -det, newton);
+        self.loads.shrink(at.y, -det);
+        let loads = self.loads;
+        let is_end = |end: &mut f64| *end == loads.below || *end == loads.above;
+        // Before it is halved, both of its ends are tested.
+        let mut untested = self.untested.iter_mut();
+        let next = match loads.is_inside(newton) {
+            true => newton,
+            false => untested
+                .find_map(|end| end.take_if(is_end))
+                .unwrap_or_else(|| loads.middle()),
+        };
         if next == at.y {
             NewtonStep::Accept
         } else {
@@ -307,10 +326,7 @@ impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
 fn polish(case: SheetCase, brackets: Vec<Option<FoldBracket>>) -> Vec<Option<FoldPoint>> {
     let rod = case.rod;
     let found: Vec<FoldBracket> = brackets.iter().flatten().copied().collect();
-    let problem = |bracket: &FoldBracket| FoldProblem {
-        rod,
-        loads: bracket.loads,
-    };
+    let problem = |bracket: &FoldBracket| FoldProblem::new(rod, bracket.loads);
     let newton = BatchNewton {
         // Solved folds stay in the batch: with fewer steps, at the tip of a perfect cone, `det` may have its root elsewhere. Along a
         // profile, each trajectory takes its own number of steps.
@@ -379,13 +395,11 @@ mod tests {
         };
         let outcome = |parts: [f64; 2]| {
             let loads = parts.map(|part| part * fold.load);
-            let mut problems = [FoldProblem {
-                rod: &rod,
-                loads: Bracket {
-                    below: loads[0],
-                    above: loads[1],
-                },
-            }];
+            let bracket = Bracket {
+                below: loads[0],
+                above: loads[1],
+            };
+            let mut problems = [FoldProblem::new(&rod, bracket)];
             let newton = BatchNewton::new(case.method, POLISH_TRAJECTORIES);
             let start = DVec2::new(tau, 0.5 * (loads[0] + loads[1]));
             newton.solve(&mut problems, [start])[0].outcome
