@@ -52,7 +52,7 @@ pub fn search(
             problem.residuals(&inside(x)).unwrap_or_else(refused)
         };
         // The columns of parameters that are beyond a limit, or would go there, are 0.
-        let jacobian = |x: &[f64], residuals: &[f64]| {
+        let jacobian = |x: &[f64], residuals: &Vec<f64>| {
             let mut columns = problem.jacobian(&inside(x), residuals).ok_or(no_jacobian)?;
             clear_faint(&mut columns);
             for ((column, [least, most]), x) in columns.iter_mut().zip(&ranges).zip(x) {

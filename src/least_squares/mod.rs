@@ -56,20 +56,20 @@ pub fn differences(
 
 /// Minimises the sum of squares of residuals from the parameters `x` on. Returns the parameters and the sum.
 ///
-/// `residuals_at` returns the residuals at a place. `jacobian_at` returns the columns of the Jacobian at a place with these
-/// residuals, or the reason why there are none. The iteration ends where the relative change of the sum, or of the scaled
+/// `residuals_at` returns the residuals at a place, alone or with what else the Jacobian there needs. `jacobian_at` returns the columns of the
+/// Jacobian at a place with these residuals, or the reason why there are none. The iteration ends where the relative change of the sum, or of the scaled
 /// parameters, is at most `tolerance`.
 ///
 /// # Errors
 /// The reason why the iteration ends before it converges.
-pub fn minimise(
-    residuals_at: impl Fn(&[f64]) -> Vec<f64>,
-    jacobian_at: impl Fn(&[f64], &[f64]) -> Result<Vec<Vec<f64>>, &'static str>,
+pub fn minimise<R: AsRef<[f64]>>(
+    residuals_at: impl Fn(&[f64]) -> R,
+    jacobian_at: impl Fn(&[f64], &R) -> Result<Vec<Vec<f64>>, &'static str>,
     mut x: Vec<f64>,
     tolerance: f64,
 ) -> Result<(Vec<f64>, f64), &'static str> {
     let mut residuals = residuals_at(&x);
-    let mut length = norm(&residuals);
+    let mut length = norm(residuals.as_ref());
     let mut scales = vec![0.0; x.len()];
     let mut radius = f64::INFINITY;
     let mut steps = 0;
@@ -103,7 +103,7 @@ pub fn minimise(
         let parts: Vec<_> = svd
             .values()
             .filter(|(value, ..)| *value > tiny)
-            .map(|(value, direction, image)| (value, direction, dot(image, &residuals)))
+            .map(|(value, direction, image)| (value, direction, dot(image, residuals.as_ref())))
             .collect();
         if length == 0.0 || parts.is_empty() {
             return Ok((x, length * length));
@@ -129,7 +129,7 @@ pub fn minimise(
                 .map(|((x, step), scale)| if *scale > 0.0 { x + step / scale } else { *x })
                 .collect();
             let there = residuals_at(&moved);
-            let there_length = norm(&there);
+            let there_length = norm(there.as_ref());
             predicted /= length * length;
             let actual = 1.0 - (there_length / length) * (there_length / length);
             let ratio = if predicted > 0.0 {

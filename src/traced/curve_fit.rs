@@ -41,6 +41,20 @@ pub struct CurveFit {
     unknowns: Vec<f64>,
 }
 
+/// Curve during a fit, with the feet of the points that it is fitted to.
+struct FittedCurve<'a> {
+    table: CurveTable<'a>,
+    feet: Vec<Foot>,
+    /// Distances of the points from the curve, in units of its length.
+    distances: Vec<f64>,
+}
+
+impl AsRef<[f64]> for FittedCurve<'_> {
+    fn as_ref(&self) -> &[f64] {
+        &self.distances
+    }
+}
+
 /// Points to which curves are fitted.
 pub struct TracedPoints<'a> {
     points: &'a [DVec2],
@@ -92,32 +106,36 @@ impl<'a> TracedPoints<'a> {
         length: f64,
         some: &[usize],
     ) -> Result<Vec<f64>, &'static str> {
-        let residuals = |unknowns: &[f64]| {
+        let curve = |unknowns: &[f64]| {
             let table = self.table(unknowns);
             let feet = self.feet(&table, length, some);
-            feet.iter().map(|foot| foot.distance).collect()
+            let distances = feet.iter().map(|foot| foot.distance).collect();
+            FittedCurve {
+                table,
+                feet,
+                distances,
+            }
         };
-        let jacobian = |unknowns: &[f64], _: &[f64]| {
+        let jacobian = |unknowns: &[f64], curve: &FittedCurve| {
             if self.cancel.load(Ordering::Relaxed) {
                 return Err("cancelled");
             }
-            let table = self.table(unknowns);
             let (sin, cos) = libm::sincos(unknowns[0]);
             let (tangent, normal) = (DVec2::new(cos, sin), DVec2::new(-sin, cos));
             let base = -unknowns[1] * normal;
             let mut columns = vec![Vec::with_capacity(some.len()); unknowns.len()];
-            for foot in self.feet(&table, length, some) {
+            for foot in &curve.feet {
                 let turned = unknowns[1] * tangent + (foot.point - base).perp();
                 columns[0].push(-foot.normal.dot(turned));
                 columns[1].push(foot.normal.dot(normal));
-                let by = table.distance_by(&foot);
+                let by = curve.table.distance_by(foot);
                 for (column, by) in columns[2..].iter_mut().zip(by) {
                     column.push(by);
                 }
             }
             Ok(columns)
         };
-        minimise(residuals, jacobian, start, TOLERANCE).map(|(unknowns, _)| unknowns)
+        minimise(curve, jacobian, start, TOLERANCE).map(|(unknowns, _)| unknowns)
     }
 
     /// Fits curves with curvatures of each degree up to `most`: `[degree]`. Each starts from the one before, the first one from a line.
@@ -191,6 +209,9 @@ impl<'a> TracedPoints<'a> {
             let is_out = |index: &usize| index / step % FOLDS == fold;
             let used = (0..self.points.len()).step_by(step);
             let (out, others): (Vec<usize>, Vec<usize>) = used.partition(is_out);
+            if out.is_empty() {
+                continue;
+            }
             let start = curve.unknowns.clone();
             let unknowns = self.minimum(start, curve.length, &others)?;
             let table = self.table(&unknowns);
