@@ -12,9 +12,6 @@ pub trait Intrinsic<T: Real>: Copy {
     /// Rest shape along one step, computed at the start of the step.
     type Course;
 
-    /// Returns `rho kappa_i` and the derivative of the rest shape's state by `sigma`, at a cross-section.
-    fn rhs(self, section: &Section<T>, state: Self::State) -> (T, Self::State);
-
     /// Returns the rest shape along a step that starts at the section `from`.
     fn course(self, from: &Section<T>, state: Self::State) -> Self::Course;
 
@@ -33,11 +30,6 @@ pub struct Straight;
 impl<T: Real> Intrinsic<T> for Straight {
     type State = ();
     type Course = ();
-
-    #[inline(always)]
-    fn rhs(self, _: &Section<T>, (): ()) -> (T, ()) {
-        (T::of(0.0), ())
-    }
 
     #[inline(always)]
     fn course(self, _: &Section<T>, (): ()) {}
@@ -73,12 +65,6 @@ impl<T: Real> Intrinsic<T> for Spiral<T> {
     type State = ();
     /// Arclength per `along`, curvature at the start of the step, and half of its derivative.
     type Course = [T; 3];
-
-    #[inline(always)]
-    fn rhs(self, section: &Section<T>, (): ()) -> (T, ()) {
-        let curvature = self.slope.mul_add(section.arclength, self.at_base);
-        (section.rho * curvature, ())
-    }
 
     #[inline(always)]
     fn course(self, from: &Section<T>, (): ()) -> [T; 3] {
@@ -145,13 +131,6 @@ pub struct PolynomialSeries<T> {
 impl<T: Real> Intrinsic<T> for Polynomial<T> {
     type State = ();
     type Course = PolynomialSeries<T>;
-
-    #[inline(always)]
-    fn rhs(self, section: &Section<T>, (): ()) -> (T, ()) {
-        let x = section.arclength - T::of(0.5);
-        let [a, b, c, d, e, f, g] = self.centred;
-        (section.rho * horner!(x; g, f, e, d, c, b, a), ())
-    }
 
     #[inline(always)]
     fn course(self, from: &Section<T>, (): ()) -> PolynomialSeries<T> {

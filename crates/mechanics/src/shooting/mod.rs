@@ -18,15 +18,14 @@ mod mount;
 mod parabola;
 mod reading;
 mod resolution;
-mod rhs;
 pub mod sensitivity;
 pub mod shape;
 mod strain;
+mod system;
 
 pub use derivative::{TrajectoryVariable, VariationDerivative, differentiate};
 pub use integrator::{
-    BackwardCompliance, Integrator, Nystrom8, STAGES, Scales, StepObserver, StepStage, collocate,
-    integrate,
+    BackwardCompliance, Nystrom8, STAGES, Scales, StepObserver, StepStage, collocate, integrate,
 };
 pub use intrinsic::{Intrinsic, Polynomial, Spiral, Straight};
 pub use map::{
@@ -37,5 +36,7 @@ pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use parabola::{Bent, TANGENT as REST_TANGENT, TERMS as REST_TERMS};
 pub use reading::{Reader, Reading, StateNumbers};
 pub use resolution::{PieceSteps, Resolution, StepRule};
-pub use rhs::{Carried, NoSensitivity, Planar, RodSystem, Section, Sensitivity, TrajectoryState};
 pub use strain::{PeakStrain, StepNodes, bending_strain};
+pub use system::{
+    Carried, NoSensitivity, Planar, RodSystem, Section, Sensitivity, TrajectoryState,
+};

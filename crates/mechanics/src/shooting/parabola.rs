@@ -78,12 +78,6 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
     type Course = ParabolaSeries<T>;
 
     #[inline(always)]
-    fn rhs(self, section: &Section<T>, [cos, sin]: [T; 2]) -> (T, [T; 2]) {
-        let turn = section.rho * self.twice_bend * cos * cos * cos;
-        (turn, [turn * sin, -turn * cos])
-    }
-
-    #[inline(always)]
     fn course(self, from: &Section<T>, tangent: [T; 2]) -> ParabolaSeries<T> {
         let [cos, sin] = tangent;
         let square = sin * sin;

@@ -4,9 +4,9 @@ use crate::rod::{Rest, Rod, arclength};
 use crate::shooting::contact::Contact;
 use crate::shooting::sensitivity::{Arrival, BaseDerivatives, GeneralFirst, SensitivitySet};
 use crate::shooting::{
-    BackwardCompliance, Bent, Carried, Graded, Intrinsic, Measured, NoSensitivity, Nystrom8,
-    PieceSteps, Planar, Polynomial, Resolution, RodSystem, Scales, Section, Spiral,
-    TrajectoryState, collocate, integrate,
+    BackwardCompliance, Bent, Carried, Graded, Intrinsic, Measured, NoSensitivity, PieceSteps,
+    Planar, Polynomial, Resolution, RodSystem, Scales, Section, Spiral, TrajectoryState, collocate,
+    integrate,
 };
 use glam::DVec2;
 
@@ -179,16 +179,9 @@ impl<'a> ShapeTrajectory<'a> {
         let Some(profile) = &self.rod.profile else {
             let (steps, h) = share(self.steps, self.tau, from - to);
             let system = self.system(intrinsic, Graded { gradient });
-            let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
+            let scales = Scales::tapered(self.rod.taper, h);
             let section = self.section(from);
-            return integrate::<Nystrom8, f64, _, _, S>(
-                &system,
-                &scales,
-                section,
-                steps,
-                state,
-                &mut (),
-            );
+            return integrate::<f64, _, _, S>(&system, &scales, section, steps, state, &mut ());
         };
         let mut ahead = self.tau;
         let last = self.rod.piece(self.contact);
@@ -204,7 +197,7 @@ impl<'a> ShapeTrajectory<'a> {
                     gradient: Some(gradient),
                 };
                 let system = self.system(intrinsic, material);
-                let scales = Scales::tapered::<Nystrom8>(self.rod.taper, h);
+                let scales = Scales::tapered(self.rod.taper, h);
                 let mut section = self.section(from);
                 for _ in 0..steps {
                     let computed = BackwardCompliance {

@@ -1,12 +1,11 @@
-//! The integrators: order and exactness.
+//! The integrator: order and exactness.
 
 use glam::DVec2;
-use whiskmap_mechanics::numerics::{Real, Vector};
 use whiskmap_mechanics::rod::{Effects, Rod};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{
-    Integrator, Intrinsic, Material, NoSensitivity, Nystrom8, Resolution, RodSystem, STAGES,
-    Scales, Section, Sensitivity, ShootingMap, Straight, TrajectoryState, Uniform, integrate,
+    NoSensitivity, Resolution, RodSystem, Scales, Section, ShootingMap, Straight, Uniform,
+    integrate,
 };
 
 const EFFECTS: Effects = Effects {
@@ -17,37 +16,6 @@ const EFFECTS: Effects = Effects {
     gradient: true,
     profile: false,
 };
-
-/// The classical Runge-Kutta method of order 4, directly from the right-hand sides.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Rk4;
-
-impl Integrator for Rk4 {
-    // The two middle stages share a node.
-    const NODES: [f64; STAGES] = [0.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
-
-    #[inline(always)]
-    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
-        system: &RodSystem<T, I, C>,
-        scales: &Scales<T>,
-        from: Section<T>,
-        y: TrajectoryState<T, I, S>,
-    ) -> TrajectoryState<T, I, S> {
-        let h = scales.end().sigma;
-        let half = T::of(0.5) * h;
-        let (middle, end) = (from.at(scales.stage(1)), from.at(scales.end()));
-        let k1 = system.rhs::<S>(from, y);
-        let k2 = system.rhs::<S>(middle, y.plus(half, k1));
-        let k3 = system.rhs::<S>(middle, y.plus(half, k2));
-        let k4 = system.rhs::<S>(end, y.plus(h, k3));
-        let sixth = T::of(1.0 / 6.0) * h;
-        let third = T::of(1.0 / 3.0) * h;
-        y.plus(sixth, k1)
-            .plus(third, k2)
-            .plus(third, k3)
-            .plus(sixth, k4)
-    }
-}
 
 pub(super) fn steps(least: u32) -> Method {
     Method::new(Resolution {
@@ -84,11 +52,8 @@ pub(super) fn rods() -> Vec<InitialCondition<'static>> {
     conditions
 }
 
-/// Carried derivatives of a shape.
-pub(super) const NOTHING: ((), ((), ())) = ((), ((), ()));
-
 /// Position of the base of a straight cylinder without friction under `load`.
-fn end<M: Integrator>(load: f64, steps: u32) -> DVec2 {
+fn end(load: f64, steps: u32) -> DVec2 {
     let system = RodSystem {
         force: load,
         intrinsic: Straight,
@@ -100,32 +65,19 @@ fn end<M: Integrator>(load: f64, steps: u32) -> DVec2 {
         inverse_cube: 1.0,
         arclength: 0.9,
     };
-    let contact = ((), ([1.0, 0.0, 0.0, 0.0, 0.0], NOTHING));
-    let scales = Scales::cylinder::<M>(h);
-    let (_, ([_, _, x, y, _], _)) = integrate::<M, f64, _, _, NoSensitivity>(
-        &system,
-        &scales,
-        section,
-        steps,
-        contact,
-        &mut (),
-    );
+    let contact = ((), ([1.0, 0.0, 0.0, 0.0, 0.0], ((), ((), ()))));
+    let scales = Scales::cylinder(h);
+    let (_, ([_, _, x, y, _], _)) =
+        integrate::<f64, _, _, NoSensitivity>(&system, &scales, section, steps, contact, &mut ());
     DVec2::new(x, y)
 }
 
 /// Halving the step divides the error by `2^order`. The factor is measured between the errors of coarse steps and rounding.
 #[test]
-fn integrators_have_their_order() {
-    fn order<M: Integrator>(steps: u32) -> f64 {
-        let error = |steps| end::<M>(5.0, steps).distance(end::<M>(5.0, 2048));
-        (error(steps) / error(2 * steps)).log2()
-    }
-    let (rk4, nystrom8) = (order::<Rk4>(32), order::<Nystrom8>(3));
-    assert!((3.7..4.8).contains(&rk4), "RK4 has order {rk4}");
-    assert!(
-        (7.3..9.0).contains(&nystrom8),
-        "Nystrom8 has order {nystrom8}"
-    );
+fn the_integrator_has_its_order() {
+    let error = |steps| end(5.0, steps).distance(end(5.0, 2048));
+    let order = (error(3) / error(6)).log2();
+    assert!((7.3..9.0).contains(&order), "{order}");
 }
 
 /// The order of the largest error in a batch whose rods have all compatible effects. (With fewer steps the remainder of the rest

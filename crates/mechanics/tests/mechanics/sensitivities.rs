@@ -1,55 +1,13 @@
 //! Derivatives that a trajectory carries, against automatic differentiation and differences.
 
-use super::integrators::{NOTHING, Rk4, rods, steps};
+use super::integrators::{rods, steps};
 use glam::DVec2;
 use num_dual::{DualNum, HyperDual64, second_partial_derivative};
-use std::ops::{Add, Div, Mul, Neg, Sub};
-use whiskmap_mechanics::numerics::Real;
 use whiskmap_mechanics::rod::{Rod, RodDerivative};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{
-    Graded, NoSensitivity, Planar, Resolution, RodSystem, Scales, SecondVariation, Section,
-    ShootingMap, Straight, TrajectoryVariable, differentiate, integrate,
+    Resolution, SecondVariation, ShootingMap, TrajectoryVariable, differentiate,
 };
-
-/// A hyper-dual number as the scalar.
-#[derive(Clone, Copy, Debug)]
-struct Dual(HyperDual64);
-
-macro_rules! operator {
-    ($op:ident, $method:ident) => {
-        impl $op for Dual {
-            type Output = Self;
-            fn $method(self, other: Self) -> Self {
-                Self(self.0.$method(other.0))
-            }
-        }
-    };
-}
-
-operator!(Add, add);
-operator!(Sub, sub);
-operator!(Mul, mul);
-operator!(Div, div);
-
-impl Neg for Dual {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
-}
-
-impl Real for Dual {
-    fn of(x: f64) -> Self {
-        Self(HyperDual64::from(x))
-    }
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        self * a + b
-    }
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt())
-    }
-}
 
 /// `(ln D, phi)` of a straight, tapered, graded rod on a rough pole, differentiated by num-dual through the whole integration.
 fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
@@ -57,39 +15,40 @@ fn ln_pole(rod: &Rod, tau: HyperDual64, load: HyperDual64) -> [HyperDual64; 2] {
     ln_pole_of(rod, [taper, gradient], [tau, load])
 }
 
+/// Steps of the classical Runge-Kutta method of order 4.
+const STEPS: u32 = 256;
+
 /// `(ln D, phi)` as [`ln_pole`], for another taper and gradient.
 fn ln_pole_of(
     rod: &Rod,
     [taper, gradient]: [HyperDual64; 2],
     [tau, load]: [HyperDual64; 2],
 ) -> [HyperDual64; 2] {
-    let rho = (-tau * taper).exp();
-    let steps = 256;
-    let h = Dual(tau / f64::from(steps));
-    let system = RodSystem {
-        force: Dual(load * rho * rho),
-        intrinsic: Straight,
-        material: Graded {
-            gradient: Dual(gradient),
-        },
+    let force = load * (tau * taper * -2.0).exp();
+    let h = tau / f64::from(STEPS);
+    // The right-hand side of the rod's equations at the distance `sigma` from the contact.
+    let slope = |sigma: HyperDual64, [c, s, x, _]: [HyperDual64; 4]| {
+        let rho = ((sigma - tau) * taper).exp();
+        let modulus = (-rho + 1.0) / taper * gradient + 1.0;
+        let bend = force * x / (modulus * rho * rho * rho);
+        [-bend * s, bend * c, -rho * c, -rho * s]
     };
-    let from = Section {
-        rho: Dual(rho),
-        inverse_cube: Dual((rho * rho * rho).recip()),
-        arclength: Dual((rho * -1.0 + 1.0) / taper),
-    };
-    let scales = Scales::tapered::<Rk4>(Dual(taper), h);
     let DVec2 { x, y } = rod.contact_tangent();
-    let contact: Planar<Dual> = [x, y, 0.0, 0.0, 0.0].map(Dual::of);
-    let (_, (end, _)) = integrate::<Rk4, _, _, _, NoSensitivity>(
-        &system,
-        &scales,
-        from,
-        steps,
-        ((), (contact, NOTHING)),
-        &mut (),
-    );
-    let [c, s, x, y, _] = end.map(|dual| dual.0);
+    let mut state = [x, y, 0.0, 0.0].map(HyperDual64::from);
+    for step in 0..STEPS {
+        let from = h * f64::from(step);
+        let after = |part: f64, k: [HyperDual64; 4]| {
+            let moved = std::array::from_fn(|i| state[i] + h * part * k[i]);
+            slope(from + h * part, moved)
+        };
+        let k1 = slope(from, state);
+        let k2 = after(0.5, k1);
+        let k3 = after(0.5, k2);
+        let k4 = after(1.0, k3);
+        state =
+            std::array::from_fn(|i| state[i] + h * (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) / 6.0);
+    }
+    let [c, s, x, y] = state;
     let (wx, wy) = (-x + rod.to_pole().x, -y + rod.to_pole().y);
     let ln_distance = (wx * wx + wy * wy).ln() * 0.5;
     [ln_distance, wy.atan2(wx) - s.atan2(c)]

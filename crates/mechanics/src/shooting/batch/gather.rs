@@ -5,8 +5,8 @@ use crate::rod::{CURVATURE_TERMS, Rod};
 use crate::shooting::batch::{FEW_KERNELS, InitialCondition};
 use crate::shooting::contact::arc;
 use crate::shooting::{
-    Bent, Graded, Integrator, Intrinsic, Material, Polynomial, Resolution, RodSystem, Scales,
-    Section, Sensitivity, Spiral, StepObserver, Straight, TrajectoryState, Uniform, integrate,
+    Bent, Graded, Intrinsic, Material, Polynomial, Resolution, RodSystem, Scales, Section,
+    Sensitivity, Spiral, StepObserver, Straight, TrajectoryState, Uniform, integrate,
 };
 
 /// Initial conditions of the trajectories of a block, one for each lane: `[lane]`.
@@ -55,7 +55,7 @@ pub trait GatherMaterial<T: Lanes> {
 
     /// Returns the state of the trajectories at the base, from their `state` at the `contacts`. `ADVANCES` is true for rods that change
     /// along their length. `observer` gets the rods after each step.
-    fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
+    fn to_base<I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
         state: TrajectoryState<T, I, S>,
@@ -65,14 +65,7 @@ pub trait GatherMaterial<T: Lanes> {
 
 /// The state at the base after `state` at the `contacts`, in steps of equal length.
 #[inline(always)]
-fn evenly<
-    M: Integrator,
-    T: Lanes,
-    I: Intrinsic<T>,
-    C: Material<T>,
-    S: Sensitivity<T>,
-    const ADVANCES: bool,
->(
+fn evenly<T: Lanes, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>, const ADVANCES: bool>(
     contacts: &Contacts<T>,
     intrinsic: I,
     material: C,
@@ -82,9 +75,9 @@ fn evenly<
     let one = T::of(1.0);
     let h = contacts.tau / T::of(f64::from(contacts.steps));
     let (scales, rho) = if ADVANCES {
-        (Scales::tapered::<M>(contacts.taper, h), contacts.radius)
+        (Scales::tapered(contacts.taper, h), contacts.radius)
     } else {
-        (Scales::cylinder::<M>(h), one)
+        (Scales::cylinder(h), one)
     };
     let section = Section {
         rho,
@@ -96,7 +89,7 @@ fn evenly<
         intrinsic,
         material,
     };
-    integrate::<M, _, I, C, S>(&system, &scales, section, contacts.steps, state, observer)
+    integrate::<_, I, C, S>(&system, &scales, section, contacts.steps, state, observer)
 }
 
 impl<T: Lanes> GatherMaterial<T> for Uniform {
@@ -106,13 +99,13 @@ impl<T: Lanes> GatherMaterial<T> for Uniform {
     }
 
     #[inline(always)]
-    fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
+    fn to_base<I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
         state: TrajectoryState<T, I, S>,
         observer: &mut impl StepObserver<T>,
     ) -> TrajectoryState<T, I, S> {
-        evenly::<M, T, I, Self, S, ADVANCES>(contacts, intrinsic, Self, state, observer)
+        evenly::<T, I, Self, S, ADVANCES>(contacts, intrinsic, Self, state, observer)
     }
 }
 
@@ -124,20 +117,14 @@ impl<T: Lanes> GatherMaterial<T> for Graded<T> {
     }
 
     #[inline(always)]
-    fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
+    fn to_base<I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
         state: TrajectoryState<T, I, S>,
         observer: &mut impl StepObserver<T>,
     ) -> TrajectoryState<T, I, S> {
         let gradient = lanes(contacts.conditions, |condition| condition.rod.gradient);
-        evenly::<M, T, I, Self, S, ADVANCES>(
-            contacts,
-            intrinsic,
-            Self { gradient },
-            state,
-            observer,
-        )
+        evenly::<T, I, Self, S, ADVANCES>(contacts, intrinsic, Self { gradient }, state, observer)
     }
 }
 

@@ -10,9 +10,7 @@ use crate::rod::radius_and_arclength;
 use crate::shooting::contact::Contact;
 use crate::shooting::mount::in_mount;
 use crate::shooting::sensitivity::{Arrival, SensitivitySet};
-use crate::shooting::{
-    Bent, Graded, Integrator, Measured, Nystrom8, Polynomial, Spiral, Straight, Uniform,
-};
+use crate::shooting::{Bent, Graded, Measured, Polynomial, Spiral, Straight, Uniform};
 use std::marker::PhantomData;
 
 /// Task that integrates the trajectories of a block.
@@ -70,14 +68,12 @@ fn by_effects<O: OutputSet, T: Lanes>(
     /// Runs the kernel for a rest shape, a material and a set of derivatives, on a rod that changes along its length or not.
     macro_rules! kernel {
         ($rest:ty, $material:ty, $set:ident, $advances:literal) => {
-            T::outlined(
-                Kernel::<Nystrom8, O, O::$set<T>, $rest, $material, $advances> {
-                    method,
-                    key,
-                    conditions,
-                    of: PhantomData,
-                },
-            )
+            T::outlined(Kernel::<O, O::$set<T>, $rest, $material, $advances> {
+                method,
+                key,
+                conditions,
+                of: PhantomData,
+            })
         };
     }
     let Effects {
@@ -121,14 +117,12 @@ fn along_profile<O: OutputSet, T: Lanes>(
 ) -> [O; WIDTH] {
     macro_rules! kernel {
         ($rest:ty) => {
-            T::outlined(
-                Kernel::<Nystrom8, O, O::General<T>, $rest, Measured<T>, true> {
-                    method,
-                    key,
-                    conditions,
-                    of: PhantomData,
-                },
-            )
+            T::outlined(Kernel::<O, O::General<T>, $rest, Measured<T>, true> {
+                method,
+                key,
+                conditions,
+                of: PhantomData,
+            })
         };
     }
     if key.effects.polynomial || FEW_KERNELS && key.effects.spiral {
@@ -142,16 +136,15 @@ fn along_profile<O: OutputSet, T: Lanes>(
 }
 
 /// Task that integrates as many trajectories as there are lanes.
-struct Kernel<'a, M, O, S, I, C, const ADVANCES: bool> {
+struct Kernel<'a, O, S, I, C, const ADVANCES: bool> {
     method: Method,
     key: &'a BlockKey,
     conditions: &'a Conditions<'a>,
-    of: PhantomData<(M, O, S, I, C)>,
+    of: PhantomData<(O, S, I, C)>,
 }
 
-impl<M, O, S, T, I, C, const ADVANCES: bool> LanesTask<T> for Kernel<'_, M, O, S, I, C, ADVANCES>
+impl<O, S, T, I, C, const ADVANCES: bool> LanesTask<T> for Kernel<'_, O, S, I, C, ADVANCES>
 where
-    M: Integrator,
     O: OutputSet,
     S: SensitivitySet<T, AtBase = <O::General<T> as SensitivitySet<T>>::AtBase>,
     T: Lanes,
@@ -200,7 +193,7 @@ where
         let start = (at_rest, (rod, S::start(&contact)));
         let mut observer = O::Observer::<T>::default();
         let (_, (rod, carried)) =
-            C::to_base::<M, I, S, ADVANCES>(&contacts, intrinsic, start, &mut observer);
+            C::to_base::<I, S, ADVANCES>(&contacts, intrinsic, start, &mut observer);
         let mount = numbers(conditions, |condition| condition.rod.mount);
         let (rod, carried) = if mount == [0.0; WIDTH] {
             (rod, carried)

@@ -10,8 +10,8 @@ use crate::numerics::gauss::{Integrals, NODES};
 use crate::numerics::{Lanes, Vector, WIDTH};
 use crate::rod::RadiusProfile;
 use crate::shooting::{
-    BackwardCompliance, Integrator, Intrinsic, Measured, Nystrom8, PieceSteps, RodSystem, Scales,
-    Section, Sensitivity, StepObserver, StepStage, TrajectoryState, collocate,
+    BackwardCompliance, Intrinsic, Measured, PieceSteps, RodSystem, Scales, Section, Sensitivity,
+    StepObserver, StepStage, TrajectoryState, collocate,
 };
 
 /// Integration along one piece: its extent and its steps in each lane.
@@ -142,7 +142,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
     }
 
     #[inline(always)]
-    fn to_base<M: Integrator, I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
+    fn to_base<I: Intrinsic<T>, S: Sensitivity<T>, const ADVANCES: bool>(
         contacts: &Contacts<T>,
         intrinsic: I,
         start: TrajectoryState<T, I, S>,
@@ -186,7 +186,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
                 },
             };
             let h = T::pack(span.step_lengths(piece.tau));
-            let scales = Scales::tapered::<Nystrom8>(contacts.taper, h);
+            let scales = Scales::tapered(contacts.taper, h);
             for i in 0..span.most {
                 let lanes = span.takes(i);
                 let takes = T::pack(lanes);

@@ -14,8 +14,8 @@ use crate::shooting::contact::Contact;
 use crate::shooting::mount::in_mount;
 use crate::shooting::sensitivity::{Arrival, Energetic, GeneralFirst, SensitivitySet};
 use crate::shooting::{
-    BackwardCompliance, Bent, Graded, Intrinsic, Measured, Nystrom8, Polynomial, Resolution,
-    RodSystem, Scales, Section, Spiral, TrajectoryState, collocate, integrate,
+    BackwardCompliance, Bent, Graded, Intrinsic, Measured, Polynomial, Resolution, RodSystem,
+    Scales, Section, Spiral, TrajectoryState, collocate, integrate,
 };
 use std::marker::PhantomData;
 
@@ -83,8 +83,8 @@ impl<I> Kernel<'_, I> {
         let InitialCondition { rod, tau: at, load } = *self.varied.condition;
         let steps = self.resolution.steps(rod, at, load);
         let h = tau * Dual::of(1.0 / f64::from(steps));
-        let scales = Scales::tapered::<Nystrom8>(taper, h);
-        integrate::<Nystrom8, _, R, _, Carried>(system, &scales, contact, steps, state, &mut ())
+        let scales = Scales::tapered(taper, h);
+        integrate::<_, R, _, Carried>(system, &scales, contact, steps, state, &mut ())
     }
 
     /// The state at the base after `state` at the contact, along the pieces of a measured `profile`.
@@ -120,7 +120,7 @@ impl<I> Kernel<'_, I> {
                 },
             };
             let h = (tau - end) * Dual::of(1.0 / f64::from(steps));
-            let scales = Scales::tapered::<Nystrom8>(taper, h);
+            let scales = Scales::tapered(taper, h);
             let mut section = Section {
                 rho: (-taper).mul_add(from, Dual::of(1.0)),
                 arclength: from,

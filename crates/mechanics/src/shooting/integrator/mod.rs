@@ -11,24 +11,10 @@ use crate::shooting::{
     Intrinsic, Material, Planar, RodSystem, Section, Sensitivity, TrajectoryState,
 };
 
-/// An explicit one-step integration method with fixed steps.
-pub trait Integrator: Copy + Send + Sync + 'static {
-    /// Nodes of the method's stages in the unit step, `[stage]`. The last ones are at its end.
-    const NODES: [f64; STAGES];
-
-    /// Returns the state of the rod one integration step after `state` at the section `from`.
-    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
-        system: &RodSystem<T, I, C>,
-        scales: &Scales<T>,
-        from: Section<T>,
-        state: TrajectoryState<T, I, S>,
-    ) -> TrajectoryState<T, I, S>;
-}
-
 /// Quantities that turn angles: `X` and the levers of the derivatives.
 type Levers<T, S> = ([T; 1], <S as Sensitivity<T>>::Pairs);
 
-/// Number of stages of the integration method with the most stages.
+/// Number of stages of an integration step.
 pub const STAGES: usize = 8;
 
 /// Changes of the cross-section from the start of a step to one of its stages.
@@ -57,8 +43,8 @@ pub struct Scales<T> {
 impl<T: Real> Scales<T> {
     /// Computes the stages of steps of length `h` in `sigma` on a rod of this `taper`. `taper h` is at most 0.8.
     #[inline(always)]
-    pub fn tapered<M: Integrator>(taper: T, h: T) -> Self {
-        let mut scales = Self::cylinder::<M>(h);
+    pub fn tapered(taper: T, h: T) -> Self {
+        let mut scales = Self::cylinder(h);
         let one = T::of(1.0);
         for stage in &mut scales.stages {
             let half = T::of(0.5) * stage.sigma;
@@ -82,7 +68,7 @@ impl<T: Real> Scales<T> {
 
     /// Computes the stages of steps of length `h` in `sigma` on a cylinder.
     #[inline(always)]
-    pub fn cylinder<M: Integrator>(h: T) -> Self {
+    pub fn cylinder(h: T) -> Self {
         let one = T::of(1.0);
         let start = StepStage {
             sigma: h,
@@ -92,7 +78,7 @@ impl<T: Real> Scales<T> {
             shrunk: one,
         };
         let mut stages = [start; STAGES];
-        for (stage, node) in stages.iter_mut().zip(M::NODES) {
+        for (stage, node) in stages.iter_mut().zip(Nystrom8::NODES) {
             stage.sigma = h * T::of(node);
             stage.along = stage.sigma;
         }
@@ -142,7 +128,7 @@ impl<T> StepObserver<T> for () {
 /// Returns the state after `steps` integration steps of `system` from `state` at the section `from`. `observer` gets the rod after each
 /// step.
 #[inline(always)]
-pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
+pub fn integrate<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
     system: &RodSystem<T, I, C>,
     scales: &Scales<T>,
     from: Section<T>,
@@ -152,7 +138,7 @@ pub fn integrate<M: Integrator, T: Real, I: Intrinsic<T>, C: Material<T>, S: Sen
 ) -> TrajectoryState<T, I, S> {
     let mut section = from;
     for _ in 0..steps {
-        let (rest, (rod, carried)) = M::step::<T, I, C, S>(system, scales, section, state);
+        let (rest, (rod, carried)) = Nystrom8::step::<T, I, C, S>(system, scales, section, state);
         let rod = upright(rod);
         state = (rest, (rod, carried));
         section = section.at(scales.end());

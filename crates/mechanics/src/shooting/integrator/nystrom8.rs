@@ -11,7 +11,7 @@
 //! every map carries its residual, and tests measure the accuracy against finer runs.
 
 use crate::numerics::{Real, Vector, rotated_by_small};
-use crate::shooting::integrator::{Integrator, Levers, STAGES, Scales};
+use crate::shooting::integrator::{Levers, STAGES, Scales};
 use crate::shooting::{Intrinsic, Material, RodSystem, Section, Sensitivity, TrajectoryState};
 
 /// The Nystrom method of order 8 with 8 stages: the integrator of all kernels on rods without a measured profile.
@@ -21,6 +21,15 @@ pub struct Nystrom8;
 /// `a/b`.
 const fn ratio(a: i64, b: i64) -> f64 {
     a as f64 / b as f64
+}
+
+/// `y` plus the sum of `weights[j] k[j]` over the stages `j` that are named.
+macro_rules! weighted_sum {
+    ($y:expr, $weights:expr, $k:ident $($j:literal)*) => {{
+        let sum = $y;
+        $(let sum = sum.plus(T::of(const { $weights[$j] }), $k[$j]);)*
+        sum
+    }};
 }
 
 /// The tableau for `chi'' = g(sigma, chi)` with steps of length 1. The text of the GPU shader is made from it.
@@ -70,22 +79,10 @@ impl Nystrom8 {
         ratio(5875, 36288),
         ratio(223, 7938),
     ];
-}
 
-/// `y` plus the sum of `weights[j] k[j]` over the stages `j` that are named.
-macro_rules! weighted_sum {
-    ($y:expr, $weights:expr, $k:ident $($j:literal)*) => {{
-        let sum = $y;
-        $(let sum = sum.plus(T::of(const { $weights[$j] }), $k[$j]);)*
-        sum
-    }};
-}
-
-impl Integrator for Nystrom8 {
-    const NODES: [f64; STAGES] = Self::NODES;
-
+    /// Returns the state of the rod one integration step after the state at the section `from`.
     #[inline(always)]
-    fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
+    pub fn step<T: Real, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>>(
         system: &RodSystem<T, I, C>,
         scales: &Scales<T>,
         from: Section<T>,

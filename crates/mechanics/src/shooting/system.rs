@@ -1,10 +1,10 @@
-//! Right-hand sides of the rod's equations in `sigma = tau_contact - tau`, from the contact (0) backward to the base.
+//! Equations of the rod in `sigma = tau_contact - tau`, from the contact (0) backward to the base.
 //!
 //! With the radius `rho`, the stiffness `S` and `w = rho/S`, `d/dsigma = -rho d/da` turns `dtheta/da = kappa_i - f X/S` into
 //! `dtheta/dsigma = -(rho kappa_i - f X w)`. The unit tangent `(c, s)` replaces `theta`, so that no step needs trigonometry.
 
 use crate::numerics::{Real, Vector};
-use crate::shooting::{Intrinsic, Material};
+use crate::shooting::Intrinsic;
 
 /// A cross-section of the rod: radius and arclength.
 #[derive(Clone, Copy, Debug)]
@@ -72,28 +72,4 @@ pub struct RodSystem<T, I, C> {
     pub intrinsic: I,
     /// Material of the rod: its bending stiffness.
     pub material: C,
-}
-
-impl<T: Real, I: Intrinsic<T>, C: Material<T>> RodSystem<T, I, C> {
-    /// Returns the right-hand side `dstate/dsigma` of the rod's equations.
-    #[inline(always)]
-    pub fn rhs<S: Sensitivity<T>>(
-        &self,
-        section: Section<T>,
-        (rest, (rod, (angles, (levers, _)))): TrajectoryState<T, I, S>,
-    ) -> TrajectoryState<T, I, S> {
-        let [c, s, x, _, bent] = rod;
-        let rho = section.rho;
-        let w = self.material.compliance(&section);
-        let (turn_at_rest, rest_rhs) = self.intrinsic.rhs(&section, rest);
-        let bend = self.force * x * w;
-        let turn = turn_at_rest - bend;
-        let (pull, climb) = S::pull(c, s, bent, angles);
-        let rod_rhs = [turn * s, -turn * c, -rho * c, -rho * s, bend];
-        let turns = S::moments(self.force, x, levers).times(w);
-        (
-            rest_rhs,
-            (rod_rhs, (turns, (pull.times(rho), climb.times(rho)))),
-        )
-    }
 }
