@@ -53,18 +53,17 @@ impl CurvatureBaseline {
 
 impl CurvatureFrames {
     /// Returns the baseline of `whisker`: of the frames from `span_s[0]` to `span_s[1]`, in s, or without a span of all frames that the column
-    /// `contact` gives as free. `None` without a span, if no frame is free. A frame for which this column has no value does not count.
+    /// `contact` gives as free. `None` without a span, if fewer than 2 free frames have a curvature. A frame for which this column has no value does not count.
     ///
     /// # Errors
-    /// If a frame of the span is in contact, or fewer than 2 frames have a curvature.
+    /// If a frame of the span is in contact, or fewer than 2 frames of the span have a curvature.
     pub fn baseline(
         &self,
         whisker: &Whisker,
         span_s: Option<[f64; 2]>,
     ) -> Result<Option<CurvatureBaseline>, CsvError> {
         let is_free = |frame: &&CurvatureFrame| frame.contact.is_none();
-        let has_free_frames = self.have_contacts && self.frames.iter().any(|frame| is_free(&frame));
-        if span_s.is_none() && !has_free_frames {
+        if span_s.is_none() && !self.have_contacts {
             return Ok(None);
         }
         let is_inside = |frame: &CurvatureFrame| {
@@ -86,12 +85,15 @@ impl CurvatureFrames {
             return Err(CsvError::at(&self.origin, frame.line, what));
         }
         let free = in_span.filter(is_free);
-        let baseline = CurvatureBaseline::new(whisker, free).map_err(|count| {
-            let what = format!(
-                "has {count} frames without contact and with a curvature{place}: a baseline must have at least 2"
-            );
-            CsvError::whole(&self.origin, what)
-        });
-        baseline.map(Some)
+        match CurvatureBaseline::new(whisker, free) {
+            Ok(baseline) => Ok(Some(baseline)),
+            Err(_) if span_s.is_none() => Ok(None),
+            Err(count) => {
+                let what = format!(
+                    "has {count} frames without contact and with a curvature{place}: a baseline must have at least 2"
+                );
+                Err(CsvError::whole(&self.origin, what))
+            }
+        }
     }
 }

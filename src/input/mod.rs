@@ -13,7 +13,7 @@ pub use quantity::Quantity;
 pub use table::{CsvError, CsvTable};
 
 pub(crate) use lines::CsvLine;
-pub(crate) use names::{is_meant_as, shortened};
+pub(crate) use names::{misnamed, shortened};
 #[cfg(feature = "gpu")]
 pub(crate) use source::read;
 pub(crate) use source::{TEXT_MIB, bounded, open, open_regular};

@@ -18,7 +18,7 @@ pub(crate) fn similar<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
 
 /// Returns the end of a message about an unknown `name`: a suggestion among the `known` names, or nothing.
 ///
-/// A name in another unit is not suggested without the unit, because its values must be converted.
+/// A name in another unit, or of a diameter in place of a radius, is not suggested alone, because its values must be converted.
 ///
 /// ```
 /// use whiskmap::input::did_you_mean;
@@ -27,6 +27,8 @@ pub(crate) fn similar<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
 /// assert_eq!(did_you_mean("tip_radius", known), "; did you mean `tip_radius_um`?");
 /// let unit = "; values must be in um: convert them, and use the name `tip_radius_um`";
 /// assert_eq!(did_you_mean("tip_radius_mm", known), unit);
+/// let half = "; values must be radii in um, half the diameters: convert them, and use the name `tip_radius_um`";
+/// assert_eq!(did_you_mean("tip_diameter_um", known), half);
 /// assert_eq!(did_you_mean("colour", known), "");
 /// ```
 #[must_use]
@@ -35,25 +37,59 @@ pub fn did_you_mean<'a>(
     known: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
 ) -> String {
     let known = known.into_iter();
-    let mut converted = known
-        .clone()
-        .filter(|other| is_of_another_unit(name, other));
+    let radius = radius_for(name);
+    let mut converted = known.clone().filter(|other| match &radius {
+        Some(radius) => is_meant_as(radius, other),
+        None => is_of_another_unit(name, other),
+    });
     if let Some(expected) = converted.next() {
         let (stem, unit) = expected.rsplit_once('_').unwrap_or(("", expected));
         let per = if stem.ends_with("per") { "1/" } else { "" };
-        let unit = if unit == "gpa" { "GPa" } else { unit };
+        let unit = SPELLED
+            .iter()
+            .find(|(end, _)| *end == unit)
+            .map_or(unit, |(_, unit)| unit);
+        let [radii, half] = match radius {
+            Some(_) => ["radii ", ", half the diameters"],
+            None => [""; 2],
+        };
         return format!(
-            "; values must be in {per}{unit}: convert them, and use the name `{expected}`"
+            "; values must be {radii}in {per}{unit}{half}: convert them, and use the name `{expected}`"
         );
     }
     let found = similar(name, known);
     found.map_or_else(String::new, |known| format!("; did you mean `{known}`?"))
 }
 
-/// Returns true if `name` is most likely meant as the `known` name: they differ in one letter, in case, or in the unit alone.
+/// Returns true if `name` is most likely meant as the `known` name: they differ in one letter, in case, in the unit alone, or in a diameter for a
+/// radius.
 pub(crate) fn is_meant_as(name: &str, known: &str) -> bool {
-    let [name, known] = [name, known].map(str::to_lowercase);
+    let name = radius_for(name).unwrap_or_else(|| name.to_lowercase());
+    let known = known.to_lowercase();
     strsim::osa_distance(&name, &known) <= 1 || stem(&name) == stem(&known)
+}
+
+/// Returns what is wrong with a table that has `unknown` columns and lacks others: one is most likely meant as one that it lacks. `None` without such a
+/// column.
+pub(crate) fn misnamed<'a>(
+    unknown: impl IntoIterator<Item = &'a str>,
+    lacking: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
+) -> Option<String> {
+    let lacking = lacking.into_iter();
+    unknown.into_iter().find_map(|name| {
+        let meant = lacking.clone().find(|known| is_meant_as(name, known))?;
+        let hint = did_you_mean(name, [meant]);
+        Some(format!("has the column {}{hint}", shortened(name)))
+    })
+}
+
+/// Returns the lower-case name of a radius for the `name` of a diameter; `None` for other names.
+fn radius_for(name: &str) -> Option<String> {
+    let name = name.to_lowercase();
+    let mut words = ["diameter", "diam"].into_iter();
+    words
+        .find(|word| name.contains(word))
+        .map(|word| name.replace(word, "radius"))
 }
 
 /// Returns a lower-case name without the unit at its end.
@@ -83,12 +119,18 @@ pub fn each_once<T: Clone + PartialEq>(values: &[T]) -> Vec<T> {
 }
 
 /// Units at the ends of names, with all units of one quantity in one list.
-const UNITS: [&[&str]; 4] = [
+const UNITS: [&[&str]; 7] = [
     &["nm", "um", "mm", "cm", "m", "inch"],
     &["nm2", "um2", "mm2", "cm2", "m2"],
     &["deg", "rad", "mrad"],
     &["pa", "kpa", "mpa", "gpa", "tpa"],
+    &["s", "ms", "us", "min", "h"],
+    &["un", "nn", "mn", "n"],
+    &["nnm", "unm", "mnm", "nnmm", "unmm", "mnmm", "nmm"],
 ];
+
+/// Ends of names that do not spell their units, with these.
+const SPELLED: [(&str, &str); 3] = [("gpa", "GPa"), ("un", "uN"), ("nnm", "nNm")];
 
 /// Returns true if two names differ only in the units at their ends, and the units belong to one quantity.
 fn is_of_another_unit(name: &str, other: &str) -> bool {
@@ -130,6 +172,9 @@ mod tests {
             ("tip_radius_mm", "tip_radius_um", "um"),
             ("youngs_modulus_mpa", "youngs_modulus_gpa", "GPa"),
             ("curvature_per_cm", "curvature_per_mm", "1/mm"),
+            ("time_ms", "time_s", "s"),
+            ("base_force_y_mn", "base_force_y_un", "uN"),
+            ("base_moment_unmm", "base_moment_nnm", "nNm"),
         ] {
             let hint = did_you_mean(name, ["side", known]);
             let start = format!("; values must be in {unit}: convert them");
@@ -155,6 +200,8 @@ mod tests {
             ("curvature", "curvature_per_mm"),
             ("lenght_mm", "length_mm"),
             ("tapper", "taper"),
+            ("base_diameter_mm", "base_radius_um"),
+            ("Base_diam", "base_radius_um"),
         ] {
             assert!(is_meant_as(name, known), "{name}");
         }
@@ -163,7 +210,7 @@ mod tests {
             ("length_px", "length_mm"),
             ("layer", "taper"),
             ("notes", "name"),
-            ("base_diameter_um", "base_radius_um"),
+            ("base_diameter_um", "tip_radius_um"),
         ] {
             assert!(!is_meant_as(name, known), "{name}");
         }

@@ -1,7 +1,7 @@
 //! Reader of all CSV files: a header, and columns by their names.
 
 use super::lines::{CsvLine, lines, normalised, separator};
-use super::names::{did_you_mean, shortened};
+use super::names::{did_you_mean, misnamed, shortened};
 use super::source::{TABLE_MIB, bounded, decoded, open, read};
 use crate::terminal::escaped;
 use std::fs::File;
@@ -101,8 +101,8 @@ impl CsvTable {
         split.table(header, origin)
     }
 
-    /// Checks the header of a CSV file: it must have one name of each group of `needed`, once, and each `optional` name at most once.
-    /// Returns a note about other columns, if there are any.
+    /// Checks the header of a CSV file: it must have one name of each group of `needed`, once, and each `optional` name at most once, and no name that
+    /// is most likely meant as one of them. Returns a note about other columns, if there are any.
     ///
     /// # Errors
     /// What the header has, and what it needs.
@@ -140,6 +140,13 @@ impl CsvTable {
                 shortened(&found.join(", ")),
                 groups.join(", ")
             );
+            return Err(CsvError::at(&self.origin, line, what));
+        }
+        // Of a group of which the table has a name, it lacks none.
+        let has_one = |group: &&[&str]| group.iter().any(|name| self.has(name));
+        let groups = needed.iter().copied().filter(|group| !has_one(group));
+        let lacking = groups.flatten().chain(optional).copied().filter(is_absent);
+        if let Some(what) = misnamed(unused.iter().copied(), lacking) {
             return Err(CsvError::at(&self.origin, line, what));
         }
         let unused = (!unused.is_empty()).then(|| shortened(&unused.join(", ")));

@@ -47,4 +47,5 @@ pub use smooth::SmoothRadii;
 pub use surface::Surface;
 pub use table::{TableWhisker, WhiskerRow};
 pub use toml::SceneText;
+pub(crate) use warnings::LENGTH_MM;
 pub use whisker::{Curvature, EulerSpiral, Pole, Whisker};

@@ -114,14 +114,20 @@ fn check_places(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
     let mut before = f64::NEG_INFINITY;
     for (i, &[s, radius]) in rows.iter().enumerate() {
         let must = if !(s > before && s <= length_mm * (1.0 + END_SLACK)) {
-            format!("the arclength must grow from row to row, from 0 to length_mm ({length_mm})")
+            format!(
+                "the arclength must grow from row to row, from 0 to length_mm ({length_mm}); is {}",
+                digits(s)
+            )
         } else if s - before < NARROWEST * length_mm {
             format!(
                 "must be farther from the row before it, by at least length_mm / 1000000 ({})",
                 NARROWEST * length_mm
             )
         } else if !(ROW_UM[0]..=ROW_UM[1]).contains(&radius) {
-            "the radius must be between 0.001 and 100000 um".to_owned()
+            format!(
+                "the radius must be between 0.001 and 100000 um, is {}",
+                digits(radius)
+            )
         } else {
             before = s;
             continue;
@@ -158,8 +164,9 @@ fn check_radii(rows: &[[f64; 2]]) -> Result<(), SceneFault> {
         return Err(refused(i, must));
     }
     if tip_radius_um > base_radius_um {
-        let must =
-            format!("the radius at the tip must be at most that at the base ({base_radius_um})");
+        let must = format!(
+            "the radius at the tip must be at most that at the base ({base_radius_um}), is {tip_radius_um}"
+        );
         return Err(refused(rows.len() - 1, must));
     }
     if let Some((i, thinnest)) = deep_waist(rows) {

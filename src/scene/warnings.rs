@@ -20,7 +20,7 @@ pub(super) const MODULUS_UNITS: [(&str, f64); 4] =
     [("Pa", 1e-9), ("kPa", 1e-6), ("MPa", 1e-3), ("TPa", 1e3)];
 
 /// Expected range of a whisker's length in mm. Whiskers of rats have 5 to 60.
-pub(super) const LENGTH_MM: [f64; 2] = [1.0, 200.0];
+pub const LENGTH_MM: [f64; 2] = [1.0, 200.0];
 
 /// Other units of a whisker's length, in mm.
 pub(super) const LENGTH_UNITS: [(&str, f64); 3] = [("um", 1e-3), ("cm", 10.0), ("m", 1e3)];

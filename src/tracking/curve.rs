@@ -6,7 +6,7 @@ use super::rods::{self, NoRods};
 use super::sample::evenly;
 use super::{CurvedFrame, ImageFrame, MORE_POINTS, NoFrame, Remarks};
 use crate::quantile::median;
-use crate::scene::{digits, rounded};
+use crate::scene::{LENGTH_MM, digits, rounded};
 use crate::traced::{MOST_DEGREE, TracedShape, common_degree};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -79,6 +79,15 @@ impl<'a> Curves<'a> {
             }
         };
         let curves: Vec<Result<FrameCurve, NoFrame>> = curves;
+        let length_mm = median(curves.iter().flatten().map(|curve| curve.length_mm));
+        let [least, most] = LENGTH_MM;
+        if length_mm < least || length_mm > most {
+            let [length, least, most, scale] =
+                [rounded(length_mm, 3), least, most, scale].map(digits);
+            remarks.warnings.push(format!(
+                "curves are {length} mm long (median): expected {least} to {most} mm; mm_per_pixel = {scale} is the size of a pixel, not the number of pixels in 1 mm"
+            ));
+        }
         let turn = median(curves.iter().flatten().map(FrameCurve::turn));
         let is_mirrored = options.mirror.unwrap_or(!is_unlike && turn < -STRAIGHT);
         if is_mirrored && options.mirror.is_none() {

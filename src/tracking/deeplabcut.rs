@@ -1,7 +1,7 @@
 //! CSV files of DeepLabCut: the rows `scorer`, `bodyparts` and `coords`, then a row for each frame.
 
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused, unknown};
-use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
+use super::{FRAME_NUMBERS, ImageFrame, ImageFrames, PointOrder, Remarks, frame_number};
 use crate::input::{CsvError, CsvLine, CsvLines, CsvTable, each_once, shortened};
 
 /// Names of the rows of the header.
@@ -135,14 +135,16 @@ fn frames(
     pole: Option<&PartPositions>,
     fixed: Option<[f64; 2]>,
 ) -> Result<Vec<ImageFrame>, CsvError> {
+    let cells = table.values("frame", "", |cell| Some(cell.parse::<f64>().is_ok()))?;
     // Labelled images have the names of files instead of numbers.
-    let numbers = table
-        .values("frame", "", |cell| Some(cell.parse::<u64>().ok()))?
-        .unwrap_or_default();
-    let are_numbered = numbers.iter().all(Option::is_some);
+    let are_images = cells.is_some_and(|are_numbers| !are_numbers.contains(&true));
+    let numbers = match are_images {
+        true => None,
+        false => table.values("frame", FRAME_NUMBERS, frame_number)?,
+    };
+    let numbers = numbers.unwrap_or_else(|| (0..table.lines().count() as u64).collect());
     let mut frames: Vec<ImageFrame> = Vec::with_capacity(numbers.len());
     for ((i, line), number) in table.lines().enumerate().zip(numbers) {
-        let number = number.filter(|_| are_numbered).unwrap_or(i as u64);
         if let Some(before) = frames.last().filter(|frame| frame.number >= number) {
             let what = format!(
                 "frame {number}: must be more than {} of the line before",

@@ -5,7 +5,9 @@
 //! curvature in 1/px. Tables of `ndx-whisk` call the first two `frame_id` and `whisker_id`.
 
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
-use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
+use super::{
+    FRAME_NUMBERS, ImageFrame, ImageFrames, PointOrder, Remarks, frame_number, whole_number,
+};
 use crate::input::{CsvError, CsvTable};
 use crate::scene::digits;
 use std::collections::BTreeMap;
@@ -46,14 +48,9 @@ pub(super) fn read(
     refuse_points(options)?;
     let table = CsvTable::parse(text, origin)?;
     let note = table.require(&NEEDED, &[&IDENTITY[..], &OTHERS].concat())?;
-    let whole = "a whole number of at least 0";
-    let numbers = NEEDED[0].iter().find_map(|name| {
-        table
-            .values(name, whole, |cell| {
-                whole_number(cell).and_then(|number| u64::try_from(number).ok())
-            })
-            .transpose()
-    });
+    let numbers = NEEDED[0]
+        .iter()
+        .find_map(|name| table.values(name, FRAME_NUMBERS, frame_number).transpose());
     let numbers = numbers.transpose()?.unwrap_or_default();
     let (column, identities) = identities(&table)?;
     let whisker = match options.whisker {
@@ -149,12 +146,6 @@ fn refuse_points(options: &TrackingOptions) -> Result<(), TrackingError> {
         }
         _ => Ok(()),
     }
-}
-
-fn whole_number(cell: &str) -> Option<i64> {
-    let number: f64 = cell.parse().ok()?;
-    let is_whole = number.fract() == 0.0 && number.abs() < 1e15;
-    is_whole.then_some(number as i64)
 }
 
 /// Returns the identity of the whisker of each row, with the name of its column. Without such a column, all rows are of one whisker.

@@ -42,6 +42,21 @@ const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Points more than the degree that a curve needs.
 const MORE_POINTS: usize = 4;
 
+/// Allowed cells of a column of frames.
+const FRAME_NUMBERS: &str = "a whole number of at least 0";
+
+/// Returns the number of a frame in a cell; `None` for another text.
+fn frame_number(cell: &str) -> Option<u64> {
+    u64::try_from(whole_number(cell)?).ok()
+}
+
+/// Returns the whole number in a cell, which may have a decimal point: programs write `0.0` in a column with a gap.
+fn whole_number(cell: &str) -> Option<i64> {
+    let number: f64 = cell.parse().ok()?;
+    let is_whole = number.fract() == 0.0 && number.abs() < 1e15;
+    is_whole.then_some(number as i64)
+}
+
 /// Frame of a film as a tracker gives it, in pixels with the y axis downward.
 #[derive(Clone, Debug, PartialEq)]
 struct ImageFrame {

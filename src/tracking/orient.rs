@@ -30,7 +30,7 @@ pub(super) fn order(
         PointOrder::FromBase => return Ok(()),
         PointOrder::Named(names) => {
             let beside = chain(&mut image.frames, names);
-            image.remarks.notes.extend(beside.into_iter().map(|name| {
+            image.remarks.warnings.extend(beside.into_iter().map(|name| {
                 format!(
                     "body part {name} is beside the whisker in most frames: give the parts along the whisker by --points, and the pole by --pole"
                 )

@@ -108,6 +108,59 @@ fn names_of_columns_that_do_not_fit_are_refused() {
     }
 }
 
+/// A column that is most likely meant as one of the table is not left out.
+#[test]
+fn columns_with_nearly_right_names_are_refused() {
+    let place = Place::with(SCENE);
+    for (header, row, said) in [
+        (
+            "SD_deg",
+            "1",
+            "has the column SD_deg; did you mean `sd_deg`?",
+        ),
+        (
+            "sd_rad",
+            "1",
+            "has the column sd_rad; values must be in deg: convert them, and use the name `sd_deg`",
+        ),
+        (
+            "Kind",
+            "slip-off",
+            "has the column Kind; did you mean `kind`?",
+        ),
+    ] {
+        place.write(
+            "table.csv",
+            &format!("side,distance_mm,push_angle_deg,{header}\ncb,15.66,15.6,{row}\n"),
+        );
+        let run = place.run(&["curve", "scene.toml", "--data", "table.csv"]);
+        run.assert_refused(&[&format!("table.csv:1: {said}")]);
+    }
+    place.write(
+        "table.csv",
+        "base_moment_nnm,base_force_y_un,base_force_x_mn\n60,5,1\n",
+    );
+    let said = "has the column base_force_x_mn; values must be in uN: convert them, and use the name `base_force_x_un`";
+    place
+        .run(&["locate", "scene.toml", "--readings", "table.csv"])
+        .assert_refused(&[said]);
+    let scene = SCENE.replace("[grid]", "[whiskers]\ntable = \"table.csv\"\n[grid]");
+    let place = Place::with(&scene);
+    for (header, said) in [
+        (
+            "base_diameter_um",
+            "has the column base_diameter_um; values must be radii in um, half the diameters: convert them, and use the name `base_radius_um`",
+        ),
+        (
+            "rb",
+            "has no column of whiskers beside name: must have one of ",
+        ),
+    ] {
+        place.write("table.csv", &format!("name,{header}\nA,80\n"));
+        place.run(&["curve", "scene.toml"]).assert_refused(&[said]);
+    }
+}
+
 /// Without a table there are no columns, whatever else the command has.
 #[test]
 fn names_of_columns_need_a_table() {

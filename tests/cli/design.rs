@@ -147,6 +147,24 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
     let far = place.run(&far);
     assert_eq!(far.code, Some(1), "{far:?}");
     assert!(far.err.contains("it does not reach the pole"), "{far:?}");
+    let soft = SCENE.replace(
+        "[grid]",
+        "[whisker.follicle]\nstiffness_nnm_per_rad = 10\n[grid]",
+    );
+    place.write("soft.toml", &soft);
+    let soft = place.run(&[
+        "design",
+        "soft.toml",
+        "--distance",
+        "5",
+        "--for",
+        "base_radius_um",
+        "--slip-off",
+        "40",
+    ]);
+    let said =
+        "the ends of other pushes are unresolved, such as those beyond nine turns of the base";
+    assert!(soft.code == Some(1) && soft.err.contains(said), "{soft:?}");
     let stiff = [
         "design",
         "scene.toml",

@@ -246,6 +246,19 @@ fn a_baseline_leaves_out_lost_frames() {
         .assert_refused(&["f.csv:3: time_s = 0.05: is in contact"]);
 }
 
+/// One frame without contact is no baseline. Where it is asked for, it is refused.
+#[test]
+fn one_free_frame_is_no_baseline() {
+    let place = Place::with(SCENE);
+    let rows = ["0,0.011,2,,,,0", "0.2,0.03,2,15,4,30,1"];
+    place.write("f.csv", &format!("{HEADER},contact\n{}\n", rows.join("\n")));
+    let run = force(&place, &[]);
+    let note = "no baseline: fewer than 2 frames without contact have a curvature\n";
+    assert_eq!((run.code, &*run.err), (Some(0), note), "{run:?}");
+    let said = "has 1 frames without contact and with a curvature from 0 to 0.1 s";
+    force(&place, &["--baseline", "0..0.1"]).assert_refused(&[said]);
+}
+
 /// A contact on the other side of the base has a warning.
 #[test]
 fn impossible_contacts_are_noticed() {

@@ -79,3 +79,20 @@ fn manual_pages_have_options_and_columns() {
         .run(&["man", "curv"])
         .assert_refused(&["curv: must be one of map", "did you mean `curve`?"]);
 }
+
+/// The description of options that several commands share does not replace those of the commands.
+#[test]
+fn every_command_has_its_description() {
+    let run = place().run(&["completions", "fish"]);
+    let of_command =
+        |line: &&str| line.contains("__fish_whiskmap_needs_command") && line.contains(" -a \"");
+    let lines = run.out.lines().filter(of_command);
+    let described = lines
+        .filter_map(|line| line.split_once(" -d '"))
+        .map(|(_, text)| text);
+    let mut described: Vec<&str> = described.collect();
+    let count = described.len();
+    described.sort_unstable();
+    described.dedup();
+    assert!(count > 20 && described.len() == count, "{described:?}");
+}

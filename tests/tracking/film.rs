@@ -141,10 +141,14 @@ fn the_shipped_film_has_a_slip_off() {
     let gaps = found.frames.iter().filter(|row| row.reason.is_some());
     assert_eq!(gaps.map(|row| row.frame).collect::<Vec<_>>(), [4, 30, 31]);
     let is_beside = |note: &String| note.contains("beside the whisker");
-    assert!(!found.notes.iter().any(is_beside), "{:?}", found.notes);
+    assert!(
+        !found.warnings.iter().any(is_beside),
+        "{:?}",
+        found.warnings
+    );
 
     let without_pole = parse(text, &with(&|_| ())).unwrap();
-    let notes = without_pole.notes.iter().filter(|note| is_beside(note));
+    let notes = without_pole.warnings.iter().filter(|note| is_beside(note));
     let named = "body part pole is beside the whisker in most frames: give the parts along the whisker by --points, and the pole by --pole";
     assert_eq!(notes.collect::<Vec<_>>(), [named]);
     let are_few = |note: &String| note.contains("points along the whisker are few");

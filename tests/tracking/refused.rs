@@ -37,6 +37,14 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
         ),
         (good.replacen("\n0,", "\n0,far", 1), "film.csv:4: c x = far"),
         (
+            good.replace("\n5,", "\n,"),
+            "film.csv:9: frame is empty: must be a whole number of at least 0",
+        ),
+        (
+            good.replace("\n5,", "\nimg0005.png,"),
+            "film.csv:9: frame = img0005.png: must be a whole number of at least 0",
+        ),
+        (
             good.replace("\n5,", "\n5,1,1,2,"),
             "film.csv:9: has 31 cells: must have 28, one a column",
         ),

@@ -7,7 +7,7 @@ use whiskmap::input::{ColumnName, CsvTable};
 use whiskmap::measured::{Comparison, MeasuredPoints};
 use whiskmap::scene::{digits, rounded};
 
-/// Option of all commands that read a table. In each of these commands, the options that name a table are the group `table`.
+// Option of all commands that read a table. In each of these commands, the options that name a table are the group `table`.
 #[derive(Debug, Args)]
 pub struct ColumnArgs {
     /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg

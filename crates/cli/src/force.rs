@@ -78,8 +78,12 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
     let read = CurvatureFrames::of(&table, whisker.length_mm, method)?;
     notes(&read.note);
     let baseline = read.baseline(&whisker, args.baseline)?;
-    if let Some(baseline) = &baseline {
-        message(&baseline.note());
+    match &baseline {
+        Some(baseline) => message(&baseline.note()),
+        None if read.have_contacts => {
+            message("no baseline: fewer than 2 frames without contact have a curvature");
+        }
+        None => {}
     }
     let mut outputs = args.outputs.open(files)?;
     let options = ForceOptions {

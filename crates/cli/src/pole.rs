@@ -6,7 +6,7 @@ use super::files::Files;
 use super::selection::SelectionArgs;
 use clap::Args;
 use std::path::PathBuf;
-use whiskmap::scene::{Scene, Whisker, digits};
+use whiskmap::scene::{Scene, Whisker, digits, rounded};
 use whiskmap::trace::NoState;
 
 #[derive(Debug, Args)]
@@ -120,9 +120,15 @@ pub fn check_distances(scene: &Scene, distances: &[f64]) -> Result<(), Failure> 
     Ok(())
 }
 
+/// Significant digits of a distance in a title.
+const TITLE_DIGITS: usize = 6;
+
 /// Returns the title of a chart of the scene, with poles at these distances.
 pub fn title(scene: &Scene, distances_mm: &[f64]) -> String {
-    let distances: Vec<String> = distances_mm.iter().map(f64::to_string).collect();
+    let distances: Vec<String> = distances_mm
+        .iter()
+        .map(|mm| digits(rounded(*mm, TITLE_DIGITS)))
+        .collect();
     format!("{}, touched at {} mm", scene.title, distances.join(", "))
 }
 

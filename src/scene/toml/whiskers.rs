@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer};
 use toml_edit::{Array, InlineTable, Value};
 
 use super::pairs::{PairKind, Pairs, PairsCsv, named_file, pair_array, points, rows};
-use crate::input::{CsvError, CsvTable, did_you_mean, is_meant_as, shortened};
+use crate::input::{CsvError, CsvTable, did_you_mean, misnamed, shortened};
 use crate::scene::error::SceneFault;
 use crate::scene::grid::SweepVariable;
 use crate::scene::limits::digits;
@@ -180,28 +180,25 @@ impl WhiskerRow {
     /// ```
     #[must_use]
     pub fn misnamed(names: &[&str]) -> Option<String> {
+        let is_unknown = |name: &&str| Self::columns().all(|known| known != *name);
+        let unknown = names.iter().copied().filter(is_unknown);
+        let expected = Self::expected(names).into_iter();
+        misnamed(unknown, expected.filter(|name| !names.contains(name)))
+    }
+
+    /// Returns the names of the columns that a table with columns of these `names` has or lacks. It does not lack a number that others of its columns
+    /// give.
+    fn expected(names: &[&str]) -> Vec<&'static str> {
         let has = |name: &str| names.contains(&name);
         let is_given = |parameter: &Parameter| {
             let substitutes = parameter.substitutes().iter();
             let mut others = substitutes.map(|part| part.column());
             column_names(*parameter).any(has) || others.any(has)
         };
-        let parameters = Parameter::ALL
-            .into_iter()
-            .filter(|parameter| !is_given(parameter));
-        let others = [YIELD_STRAIN, PROFILE, REST_POINTS]
-            .into_iter()
-            .filter(|name| !has(name));
-        let lacking: Vec<&str> = parameters.flat_map(column_names).chain(others).collect();
-        let unknown = names
-            .iter()
-            .filter(|name| Self::columns().all(|known| known != **name));
-        let mut meant = unknown.filter_map(|name| {
-            let known = lacking.iter().find(|known| is_meant_as(name, known))?;
-            let hint = did_you_mean(name, [*known]);
-            Some(format!("has the column {}{hint}", shortened(name)))
-        });
-        meant.next()
+        let given = Parameter::ALL.into_iter().filter(is_given);
+        let replaced: Vec<&str> = given.flat_map(column_names).collect();
+        let is_expected = |name: &&str| has(name) || !replaced.contains(name);
+        Self::columns().filter(is_expected).collect()
     }
 }
 
@@ -220,9 +217,15 @@ fn read_csv(
     path: PathBuf,
     files: &mut Vec<PairsCsv>,
 ) -> Result<Vec<WhiskerRow>, SceneFault> {
-    let optional: Vec<&str> = WhiskerRow::columns().filter(|name| *name != NAME).collect();
+    let names: Vec<&str> = table.names().collect();
+    let expected = WhiskerRow::expected(&names).into_iter();
+    let optional: Vec<&str> = expected.filter(|name| *name != NAME).collect();
     let note = table.require(&[&[NAME]], &optional).map_err(refused)?;
-    if let Some(what) = WhiskerRow::misnamed(&table.names().collect::<Vec<_>>()) {
+    if note.is_some() && !optional.iter().any(|name| table.has(name)) {
+        let what = format!(
+            "has no column of whiskers beside {NAME}: must have one of {}",
+            optional.join(", ")
+        );
         return Err(refused(CsvError::at(
             &table.origin,
             table.header_line(),

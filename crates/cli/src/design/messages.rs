@@ -5,7 +5,7 @@ use super::solutions::SOLUTION_DIGITS;
 use crate::failure::{Failure, message};
 use std::path::Path;
 use whiskmap::Side;
-use whiskmap::design::{Design, DesignError, DesignVariable, DesignVaried, Designs};
+use whiskmap::design::{Design, DesignEnd, DesignError, DesignVariable, DesignVaried, Designs};
 use whiskmap::scene::{Scene, digits, rounded};
 use whiskmap::sensitivity::Variable;
 use whiskmap::trace::DetachmentKind;
@@ -83,7 +83,12 @@ pub fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> St
         };
         Some(format!("it {verb} {between}"))
     });
-    let ranges: Vec<_> = ranges.collect();
+    let is_unresolved = |end: &DesignEnd| end.kind == DetachmentKind::Unresolved;
+    let unresolved = design.ends.iter().any(is_unresolved).then(|| {
+        "the ends of other pushes are unresolved, such as those beyond nine turns of the base"
+            .to_owned()
+    });
+    let ranges: Vec<_> = ranges.chain(unresolved).collect();
     let reached = match ranges.join(", and ") {
         nothing if nothing.is_empty() => "it does not reach the pole".to_owned(),
         ranges => ranges,
