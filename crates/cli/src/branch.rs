@@ -52,7 +52,8 @@ pub struct BranchArgs {
         long,
         value_name = "COLUMN",
         value_enum,
-        default_value = "arc_length_mm"
+        default_value = "arc_length_mm",
+        requires = "plot"
     )]
     y: BranchColumn,
     /// Show unstable states whole; otherwise the vertical axis of a force or a moment ends with the stable states

@@ -80,7 +80,7 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
     let baseline = read.baseline(&whisker, args.baseline)?;
     match &baseline {
         Some(baseline) => message(&baseline.note()),
-        None if read.have_contacts => {
+        None if read.have_contacts && read.frames.iter().any(|frame| frame.contact.is_none()) => {
             message("no baseline: fewer than 2 frames without contact have a curvature");
         }
         None => {}

@@ -43,6 +43,10 @@ const SHORTEST_ARC_STEP: f64 = 1e-9;
 /// thousands of nodes.
 pub const MOST_PUSH: f64 = 9.0 * TAU;
 
+/// Largest push angle, in radians, toward the other side at which unstable states are followed: one turn. They lead to further pieces of a row, of which
+/// pushes toward its own side matter. In a soft follicle, a coil would unwind for many turns, in as many nodes as it has wound up.
+const MOST_BACK: f64 = TAU;
+
 /// Maximum number of nodes; no known branch has more than 300.
 const MOST_NODES: usize = 10_000;
 
@@ -62,6 +66,8 @@ pub struct Stepper<'a> {
     steps: Vec<f64>,
     /// Largest miss in `ln D` at a node.
     miss: f64,
+    /// Push angles between which nodes are followed, positive toward the row's side, in radians.
+    pushes: [f64; 2],
     /// Unit direction at the last node, in parts of the scale.
     along: DVec2,
     /// Predicted `(tau, load)` of the next node, at which the corrector starts, dimensionless.
@@ -90,6 +96,10 @@ impl<'a> Stepper<'a> {
             step: FIRST_ARC_STEP,
             steps: Vec::new(),
             miss,
+            pushes: match stretch {
+                Stretch::Unstable => [-MOST_BACK, MOST_PUSH],
+                Stretch::Stable | Stretch::PastFold => [-MOST_PUSH, MOST_PUSH],
+            },
             along: DVec2::ZERO,
             predicted: start.point,
             corrector: Corrector::new(level, miss),
@@ -112,11 +122,14 @@ impl<'a> Stepper<'a> {
         self.advance()
     }
 
-    /// Returns true if the last node lies beyond the largest push angle.
+    /// Returns true if the last node lies beyond the push angles that are followed.
     pub fn is_beyond_turns(&self) -> bool {
-        self.nodes
+        let [least, most] = self.pushes;
+        let push = self
+            .nodes
             .last()
-            .is_some_and(|last| last.push.abs() > MOST_PUSH)
+            .map(|last| self.level.side.sign() * last.push);
+        push.is_some_and(|push| push < least || push > most)
     }
 
     /// Returns the path up to the last node, which lies at the edge `end`, and leaves the stepper without nodes.

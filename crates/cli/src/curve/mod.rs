@@ -102,6 +102,7 @@ pub struct CurveArgs {
         value_name = "COLUMN",
         value_enum,
         default_value = "push_angle_deg",
+        requires = "plot",
         conflicts_with = "data"
     )]
     x: CurveColumn,

@@ -2,7 +2,7 @@
 
 use super::options::{ASKED_DIGITS, AskedTarget};
 use super::solutions::SOLUTION_DIGITS;
-use crate::failure::{Failure, message};
+use crate::failure::{Failure, message, warnings};
 use std::path::Path;
 use whiskmap::Side;
 use whiskmap::design::{Design, DesignEnd, DesignError, DesignVariable, DesignVaried, Designs};
@@ -24,13 +24,20 @@ pub fn refused(path: &Path, why: DesignError) -> Failure {
     }
 }
 
-/// Prints the largest bending strain of the push of each solution beside the yield strain of the scene, if it has one.
-pub fn name_strains(
+/// Prints what a whisker of the solutions is warned about and the `scene` is not, and the largest bending strain of the push of each solution beside
+/// the yield strain of the scene, if it has one.
+pub fn check(
     scene: &Scene,
     varied: &DesignVaried,
     (side, distance_mm): (Side, f64),
     solutions: &[Vec<f64>],
 ) {
+    let known = scene.warnings();
+    for values in solutions {
+        let solution = varied.scene_at(scene, distance_mm, values);
+        let found = solution.map_or_else(|_| Vec::new(), |solution| solution.warnings());
+        warnings(found.into_iter().filter(|warning| !known.contains(warning)));
+    }
     let Some(most) = scene.whisker.yield_strain else {
         return;
     };
