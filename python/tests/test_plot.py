@@ -87,20 +87,29 @@ def test_the_distance_grows_upward(small, cone):
 
 
 @pytest.mark.parametrize("size", [(3.3, 3.0), (6.4, 4.8), (12.0, 4.0)])
-def test_the_legend_does_not_hide_the_cells_of_narrow_axes(small, size):
+def test_the_legend_hides_no_cells(small, size):
     figure, axes = plt.subplots(figsize=size)
     ds = wm.map(small)
     wm.plot.regimes(ds, ax=axes)
     figure.canvas.draw()
     [legend] = [child for child in axes.get_children() if isinstance(child, matplotlib.legend.Legend)]
     box, inside = legend.get_window_extent(), axes.get_window_extent()
-    assert box.overlaps(inside) == (size[0] > 6)
+    assert not box.overlaps(inside) and box.width <= inside.width
     # It lies in the figure, clear of the title of the axis.
     assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.x1
     title = axes.xaxis.label.get_window_extent()
-    assert box.y1 <= title.y0 or size[0] > 6
+    assert box.y1 <= title.y0
     present = {name for code, name, *_ in _whiskmap.regimes() if code in ds.regime.values}
     assert {text.get_text() for text in legend.get_texts()} == present
+
+
+def test_legends_of_parts_of_a_figure_lie_in_it(small):
+    figure = plt.figure(figsize=(8, 4))
+    for part in figure.subfigures(1, 2):
+        wm.plot.regimes(wm.map(small), ax=part.subplots())
+    figure.canvas.draw()
+    boxes = [part.axes[0].get_legend().get_window_extent() for part in figure.subfigs]
+    assert len(boxes) == 2 and all(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.x1 for box in boxes)
 
 
 def test_regimes_without_a_cell_have_no_entry(small):

@@ -27,7 +27,7 @@ require("matplotlib", "plot")
 PUSH_ANGLE = axis_title("push_angle_deg", False)
 DISTANCE = axis_title("distance_mm", False)
 
-# Axes narrower than this, in inches, have no room for a legend.
+# Axes narrower than this, in inches, have a legend in small print.
 _NARROW = 4.0
 
 
@@ -41,7 +41,8 @@ def regimes(ds: xr.Dataset, *, ax: Axes | None = None, legend: bool = True) -> Q
     ax : matplotlib.axes.Axes, optional
         The current axes if left out.
     legend : bool
-        False draws no legend. It names the regimes of the cells; below narrow axes, otherwise inside.
+        False draws no legend. It names the regimes of the cells, and lies below the axes. A figure without a layout engine gets the
+        layout "constrained", which makes room for it.
 
     Returns
     -------
@@ -296,14 +297,17 @@ def _axes(ax: Axes | None) -> Axes:
 
 
 def _legend(axes: Axes, handles: list[Patch]) -> None:
-    from matplotlib.figure import Figure
-
-    figure = axes.figure
-    if axes.get_window_extent().width / figure.dpi >= _NARROW:
-        axes.legend(handles=handles, loc="best", fontsize="small")
-        return
+    figure = axes.figure.canvas.figure
     # A layout that makes room below the axes, unless the figure has one.
-    if isinstance(figure, Figure) and figure.get_layout_engine() is None:
+    if figure.get_layout_engine() is None:
         figure.set_layout_engine("constrained")
-    # The pad is that of ticks, numbers and title of the axis, in sizes of the font.
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=5.0, fontsize="x-small")
+    width = axes.get_window_extent().width
+    size = "small" if width / figure.dpi >= _NARROW else "x-small"
+    # As many columns as the axes have room for.
+    for columns in range(len(handles), 0, -1):
+        # The pad is that of ticks, numbers and title of the axis, in sizes of the font.
+        legend = axes.legend(
+            handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=5.0, fontsize=size, ncols=columns
+        )
+        if legend.get_window_extent().width <= width:
+            break
