@@ -112,6 +112,39 @@ def test_legends_of_parts_of_a_figure_lie_in_it(small):
     assert len(boxes) == 2 and all(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.x1 for box in boxes)
 
 
+def test_regimes_can_be_those_of_the_variable(small):
+    _, axes = plt.subplots()
+    ds = wm.map(small)
+    mesh = wm.plot.regimes(ds.regime.expand_dims("taper"), ax=axes)
+    np.testing.assert_array_equal(mesh.get_array(), ds.regime)
+
+
+@pytest.mark.parametrize(
+    ("message", "draw"),
+    [
+        (r"has 2 values of side, .*by ds.sel\(side='cf'\)", lambda s: wm.plot.sensitivity(wm.sensitivity(s, distance_mm=10))),
+        ("has .*2 values of side.*, must have one", lambda s: wm.plot.sensitivity(wm.sensitivity(s))),
+        (r"has 2 values of taper, must have one: select one, as by ds.sel\(taper=0.5\)", lambda s: wm.plot.curve(wm.curve(s.replace(taper=[0.5, 1])))),
+        (r"has 2 values of taper, must have one", lambda s: wm.plot.regimes(wm.map(s.replace(taper=[0.5, 1])))),
+        (r"has 2 values of taper, must have one", lambda s: wm.plot.regimes(wm.map(s.replace(taper=[0.5, 1])).regime)),
+        ("must have the axes distance_mm and push_angle_deg, has push_angle_deg", lambda s: wm.plot.regimes(wm.map(s).isel(distance_mm=0))),
+        ("must be a dataset of map or open, has no variable regime", lambda s: wm.plot.regimes(wm.map(s).force_un)),
+        ("must be a dataset of curve, has no variable kind", lambda s: wm.plot.curve(wm.map(s))),
+        ("must be a dataset of sensitivity, has no variable d_push_angle_deg", lambda s: wm.plot.sensitivity(wm.curve(s))),
+    ],
+)
+def test_data_that_no_plot_fits_are_refused(small, message, draw):
+    with pytest.raises(ValueError, match=f"^ds: {message}"):
+        draw(small)
+
+
+def test_sweeps_of_one_value_are_drawn(small):
+    _, axes = plt.subplots()
+    one = small.replace(taper=[0.95])
+    assert len(wm.plot.regimes(wm.map(one), ax=axes).get_array()) == 16
+    assert wm.plot.curve(wm.curve(one), ax=axes)
+
+
 def test_regimes_without_a_cell_have_no_entry(small):
     figure, axes = plt.subplots()
     wm.plot.regimes(wm.map(small).isel(distance_mm=slice(0, 2), push_angle_deg=slice(10, 14)), ax=axes)

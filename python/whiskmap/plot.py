@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+import xarray as xr
 
 from whiskmap._warnings import require
 from whiskmap._whiskmap import axis_title, inks
 from whiskmap._whiskmap import regimes as _regimes
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
@@ -27,17 +28,19 @@ require("matplotlib", "plot")
 PUSH_ANGLE = axis_title("push_angle_deg", False)
 DISTANCE = axis_title("distance_mm", False)
 
+_Data = TypeVar("_Data", xr.Dataset, xr.DataArray)
+
 # Axes narrower than this, in inches, have a legend in small print.
 _NARROW = 4.0
 
 
-def regimes(ds: xr.Dataset, *, ax: Axes | None = None, legend: bool = True) -> QuadMesh:
+def regimes(ds: xr.Dataset | xr.DataArray, *, ax: Axes | None = None, legend: bool = True) -> QuadMesh:
     """Draw the regimes of one whisker over push angle and distance.
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        A dataset of `map` or `open`. Of a sweep, one whisker is selected before: ``ds.sel(taper=0.5)``.
+    ds : xarray.Dataset or xarray.DataArray
+        A dataset of `map` or `open`, or its variable `regime`. Of a sweep, one whisker is selected before: ``ds.sel(taper=0.5)``.
     ax : matplotlib.axes.Axes, optional
         The current axes if left out.
     legend : bool
@@ -47,17 +50,26 @@ def regimes(ds: xr.Dataset, *, ax: Axes | None = None, legend: bool = True) -> Q
     Returns
     -------
     matplotlib.collections.QuadMesh
+
+    Raises
+    ------
+    ValueError
+        If there are no regimes, or those of several whiskers.
     """
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
 
+    found = ds if isinstance(ds, xr.DataArray) and ds.name == "regime" else _of(ds, "map or open", "regime")["regime"]
+    regime = _single(found, ("distance_mm", "push_angle_deg"))
+    if regime.ndim != 2:
+        raise ValueError(f"ds: must have the axes distance_mm and push_angle_deg, has {' and '.join(map(str, regime.dims)) or 'none'}")
+    regime = regime.transpose("distance_mm", "push_angle_deg")
     axes = _axes(ax)
-    regime = ds["regime"].transpose("distance_mm", "push_angle_deg")
     known = _regimes()
     codes = [code for code, *_ in known]
     colours = [colour for _, _, colour, _ in known]
     norm = BoundaryNorm([-0.5, *(code + 0.5 for code in codes)], len(codes))
-    mesh = axes.pcolormesh(ds["push_angle_deg"], ds["distance_mm"], regime, cmap=ListedColormap(colours), norm=norm)
+    mesh = axes.pcolormesh(regime["push_angle_deg"], regime["distance_mm"], regime, cmap=ListedColormap(colours), norm=norm)
     axes.set(xlabel=PUSH_ANGLE, ylabel=DISTANCE)
     if legend:
         present = np.unique(regime)
@@ -81,7 +93,13 @@ def curve(ds: xr.Dataset, *, x: str = "push_angle_deg", ax: Axes | None = None, 
     Returns
     -------
     list of matplotlib.lines.Line2D
+
+    Raises
+    ------
+    ValueError
+        If the dataset is not one of `curve`, or has several whiskers.
     """
+    ds = _single(_of(ds, "curve", "kind"), ("side", "distance_mm"))
     axes = _axes(ax)
     colours, lines, named = inks(), [], set()
     for side in np.atleast_1d(ds["side"].values):
@@ -181,9 +199,15 @@ def sensitivity(ds: xr.Dataset, *, ax: Axes | None = None, **bars: Any) -> BarCo
     -------
     matplotlib.container.BarContainer
         A bar for each variable with a value that is not 0.
+
+    Raises
+    ------
+    ValueError
+        If the dataset is not one of `sensitivity`, or has several distances or sides.
     """
+    own = _single(_of(ds, "sensitivity", "d_push_angle_deg"), ("variable",))
     axes = _axes(ax)
-    change = (ds["d_push_angle_deg"] * ds["value"] / 100).squeeze()
+    change = own["d_push_angle_deg"] * own["value"] / 100
     change = change[(change.notnull() & (change != 0)).values][::-1]
     drawn = axes.barh(list(change["variable"].values), change.values, **{"color": inks()["pull-off"]} | bars)
     axes.set(xlabel=axis_title("push_of_1_percent_deg", False))
@@ -286,6 +310,23 @@ def fit(found: Fit, *, ax: Axes | None = None, **line: Any) -> list[Artist]:
         )
         artists += [drawn.lines[0]]
     return artists
+
+
+def _of(ds: Any, source: str, variable: str) -> xr.Dataset:
+    """Return the dataset; other data, or a dataset without this variable of the results of `source`, are refused."""
+    if not isinstance(ds, xr.Dataset) or variable not in ds:
+        raise ValueError(f"ds: must be a dataset of {source}, has no variable {variable}")
+    return ds
+
+
+def _single(data: _Data, kept: Sequence[str]) -> _Data:
+    """Return the data without axes of one value; several values on an axis that is not in `kept` are refused."""
+    several = [name for name in data.dims if name not in kept and data.sizes[name] != 1]
+    if several:
+        counts = " and ".join(f"{data.sizes[name]} values of {name}" for name in several)
+        chosen = ", ".join(f"{name}={data[name].values[:1].tolist()[0]!r}" for name in several if data.sizes[name])
+        raise ValueError(f"ds: has {counts}, must have one: select one, as by ds.sel({chosen})")
+    return data.squeeze([name for name in data.dims if name not in kept])
 
 
 def _axes(ax: Axes | None) -> Axes:
