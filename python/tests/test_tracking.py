@@ -29,6 +29,16 @@ def test_frames_are_those_of_the_program_and_of_force(cone, tmp_path):
     assert "slip-off" in whisk.events.event.values
 
 
+@pytest.mark.filterwarnings("ignore::whiskmap.SceneWarning")
+def test_the_example_of_the_page_runs(cone, monkeypatch):
+    page = (ROOT / "docs/python.md").read_text()
+    [example] = (block.split("```")[0] for block in page.split("```python\n")[1:] if "read_tracking" in block.split("```")[0])
+    monkeypatch.chdir(ROOT)
+    names = {"wm": wm, "scene": cone}
+    exec(example, names)
+    assert abs(names["traced"].whisker.length_mm - 20) < 0.1
+
+
 def test_a_given_taper_is_that_of_the_rod():
     found, given = (wm.read_tracking(FILM, **SCALE, **POLE, taper=taper) for taper in (None, 0.95))
     assert any("the taper is 0.9" in note for note in found.notes)
