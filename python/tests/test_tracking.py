@@ -64,6 +64,9 @@ def test_a_shape_is_the_rest_points_of_a_whisker():
     assert abs(scene.whisker.length_mm - 20) < 0.1
     with pytest.raises(ValueError, match="shape = 4: must be a frame with a whisker"):
         found.shape(4)
+    for frame in (-1, 56, 10**30):
+        with pytest.raises(ValueError, match=f"^frame = {frame}: must be between 0 and 55, the numbers of the frames"):
+            found.shape(frame)
     with pytest.raises(wm.SceneError, match="must be in mm: the curve through them is 399.849 mm long"):
         scene.replace(rest_points=points / 0.05, length_mm=None)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -58,7 +59,11 @@ class Tracking:
         ValueError
             If the frame is a gap or there is none of this number, or the format has no points.
         """
-        return np.array(self._film.shape(frame), dtype=np.float64)
+        number = operator.index(frame)
+        first, last = (int(self.frames["frame"][end]) for end in (0, -1))
+        if not first <= number <= last:
+            raise ValueError(f"frame = {number}: must be between {first} and {last}, the numbers of the frames")
+        return np.array(self._film.shape(number), dtype=np.float64)
 
 
 def read_tracking(
