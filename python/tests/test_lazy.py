@@ -139,7 +139,7 @@ def test_bad_arguments_are_refused(sweep):
     for options, why in (
         ({"progress": True}, "progress = True: must be left out with lazy=True"),
         ({"engine": "fast"}, "engine = 'fast': must be 'auto', 'cpu', 'spectral' or 'gpu'"),
-        ({"channels": ["force"]}, "channels = 'force': must be names"),
+        ({"channels": ["force"]}, "channels = 'force': must be a list of names"),
         ({"tolerance_deg": -1.0}, "tolerance_deg = -1"),
         ({"threads": 0}, "threads = 0: must be between 1 and 1024"),
     ):

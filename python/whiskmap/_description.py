@@ -92,9 +92,9 @@ def order_of(changes: Mapping[str, Any]) -> list[str]:
     return names
 
 
-def resembling(name: str) -> str:
-    """Return a hint at the parameter whose name resembles this one, or an empty text."""
+def resembling(name: str, known: Mapping[str, str] = PARAMETERS) -> str:
+    """Return a hint at the known name that resembles this one, by default at a parameter, or an empty text."""
     from difflib import get_close_matches
 
-    known = get_close_matches(name, PARAMETERS, n=1)
-    return f"; did you mean {PARAMETERS[known[0]]!r}?" if known else ""
+    found = get_close_matches(name, known, n=1)
+    return f"; did you mean {known[found[0]]!r}?" if found else ""

@@ -12,6 +12,7 @@ import xarray as xr
 
 from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, scene_coords
+from whiskmap._description import PARAMETERS, resembling
 from whiskmap._lazy import ComputedMap, SolverBackend
 from whiskmap._scene import Scene
 from whiskmap._warnings import require, warn
@@ -72,15 +73,13 @@ def map(
     KeyboardInterrupt
         On Ctrl-C.
     """
-    if channels is not None and isinstance(channels, str):
-        raise TypeError(f"channels = {channels!r}: must be a list of names")
+    names = None if channels is None else _known(channels)
     if lazy:
         if progress is not False:
             raise ValueError(f"progress = {progress!r}: must be left out with lazy=True")
-        return _lazy(scene, chunks, engine, tolerance_deg, None if channels is None else tuple(channels), threads)
+        return _lazy(scene, chunks, engine, tolerance_deg, None if names is None else tuple(names), threads)
     if chunks is not None:
         raise ValueError(f"chunks = {chunks!r}: must be left out without lazy=True")
-    names = None if channels is None else list(channels)
     with _progress(progress) as report:
         arrays, used, _, warnings = _whiskmap.map(_checked(scene), engine, tolerance_deg, names, threads, report)
     warn(warnings)
@@ -92,6 +91,23 @@ def map(
         variables[name] = xr.Variable(tuple(coords), values.reshape(shape), about)
     about = attributes(scene, used)
     return xr.Dataset(variables, coords, about if tolerance_deg is None else about | {"tolerance_deg": tolerance_deg})
+
+
+def _known(channels: Sequence[str]) -> list[str]:
+    """Return the names of channels as a list; one that no channel has is refused."""
+    names = [channels] if isinstance(channels, str) else list(channels)
+    if isinstance(channels, str) or not all(isinstance(name, str) for name in names):
+        raise TypeError(f"channels = {channels!r}: must be a list of names")
+    if not names:
+        raise ValueError("channels = []: must have at least one name")
+    for name in names:
+        if _whiskmap.channel_attributes(name) is None:
+            plain = [*_whiskmap.channels(), "peak_strain"]
+            hint = resembling(name, {own: own for own in (*plain, *(f"d_push_d_{own}" for own in PARAMETERS.values()))})
+            raise ValueError(
+                f"channels = {name!r}: must be a list of names out of {', '.join(plain)}, and derivatives such as d_push_d_taper{hint}"
+            )
+    return names
 
 
 def _lazy(scene: Scene, chunks: Any, *options: Any) -> xr.Dataset:
