@@ -45,6 +45,8 @@ CASES = {
     "channels with a comma": (ValueError, "^channels = 'regime,force_un': must be a list", lambda s: wm.map(s, channels=["regime,force_un"])),
     "no channels": (ValueError, r"^channels = \[\]: must have at least one name", lambda s: wm.map(s, channels=[])),
     "number as a channel": (TypeError, r"^channels = \[3\]: must be a list of names", lambda s: wm.map(s, channels=[3])),
+    "negative count": (ValueError, "^count = -3: must be at least 1", lambda s: wm.Range(1, 2, -3)),
+    "count with a fraction": (TypeError, "^count = 2.5: must be a whole number", lambda s: wm.Range(1, 2, 2.5)),
     "tolerance": (ValueError, "tolerance_deg = -1", lambda s: wm.map(s, tolerance_deg=-1.0)),
     "threads": (ValueError, "threads = 0", lambda s: wm.map(s, threads=0)),
     "negative threads": (ValueError, "threads = -1: must be between 1", lambda s: wm.map(s, threads=-1)),

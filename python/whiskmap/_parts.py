@@ -39,15 +39,29 @@ class Range:
     first, last : float
         Ends of the range, in the unit of the axis.
     count : int
-        Number of values, at most 65,536.
+        Number of values, 1 to 65,536.
     scale : {"linear", "log"}
         Equal differences or equal ratios of neighbouring values.
+
+    Raises
+    ------
+    TypeError
+        If the count is not a whole number.
+    ValueError
+        If the count is less than 1.
     """
 
     first: float
     last: float
     count: int
     scale: Literal["linear", "log"] = "linear"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.count, bool) or not hasattr(self.count, "__index__"):
+            raise TypeError(f"count = {self.count!r}: must be a whole number")
+        set_field(self, "count", int(self.count.__index__()))
+        if self.count < 1:
+            raise ValueError(f"count = {self.count}: must be at least 1")
 
     def __repr__(self) -> str:
         scale = "" if self.scale == "linear" else f", {self.scale!r}"
@@ -291,7 +305,5 @@ def degree_of(value: Any) -> int | None:
 def axis_of(name: str, values: Any) -> Range | list[float]:
     if not isinstance(values, Range):
         return numbers(name, values)
-    if isinstance(values.count, bool) or not hasattr(values.count, "__index__"):
-        raise TypeError(f"{name}.count = {values.count!r}: must be a whole number")
     ends = (number(f"{name}.first", values.first), number(f"{name}.last", values.last))
-    return Range(*ends, max(values.count.__index__(), 0), values.scale)
+    return Range(*ends, values.count, values.scale)
