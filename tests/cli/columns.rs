@@ -146,19 +146,9 @@ fn columns_with_nearly_right_names_are_refused() {
         .assert_refused(&[said]);
     let scene = SCENE.replace("[grid]", "[whiskers]\ntable = \"table.csv\"\n[grid]");
     let place = Place::with(&scene);
-    for (header, said) in [
-        (
-            "base_diameter_um",
-            "has the column base_diameter_um; values must be radii in um, half the diameters: convert them, and use the name `base_radius_um`",
-        ),
-        (
-            "rb",
-            "has no column of whiskers beside name: must have one of ",
-        ),
-    ] {
-        place.write("table.csv", &format!("name,{header}\nA,80\n"));
-        place.run(&["curve", "scene.toml"]).assert_refused(&[said]);
-    }
+    place.write("table.csv", "name,base_diameter_um\nA,80\n");
+    let said = "has the column base_diameter_um; values must be radii in um, half the diameters: convert them, and use the name `base_radius_um`";
+    place.run(&["curve", "scene.toml"]).assert_refused(&[said]);
 }
 
 /// Without a table there are no columns, whatever else the command has.

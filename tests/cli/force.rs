@@ -183,7 +183,7 @@ fn a_baseline_is_reported_and_used() {
     for (text, options, said) in [
         (
             "0,0.01,2,,,,0",
-            &[][..],
+            &["--baseline", "0..1"][..],
             "f.csv: has 1 frames without contact",
         ),
         (

@@ -1,6 +1,6 @@
 //! Films of a whisker that is pushed until it slips off: made up without errors, and shipped.
 
-use super::{SCALE, assert_near, parse, with};
+use super::{ANGLES, SCALE, assert_near, deeplabcut, exact, options, parse, with};
 use whiskmap::Side;
 use whiskmap::force::{CurvatureFrames, ForceMethod, forces};
 use whiskmap::input::CsvTable;
@@ -172,4 +172,29 @@ fn the_shipped_film_has_a_slip_off() {
         panic!("{:?}", enough.detachments)
     };
     assert_near(Some(end.push_angle_deg), 15.61, 1.2);
+}
+
+/// Numbers of frames may have a decimal point, and images the names of files.
+#[test]
+fn frames_have_numbers_or_names_of_images() {
+    let film = deeplabcut(exact);
+    let lines = film.lines().filter(|line| !line.starts_with("3,"));
+    let film: String = lines.map(|line| format!("{line}\n")).collect();
+    let found = |text: &str| {
+        let frames = parse(text, &options()).unwrap().frames.into_iter();
+        frames
+            .map(|frame| (frame.frame, frame.reason))
+            .collect::<Vec<_>>()
+    };
+    let whole = found(&film);
+    assert_eq!(whole.len(), ANGLES.len());
+    assert!(whole[3].1.is_some() && whole[4].1.is_none(), "{whole:?}");
+    let change = |text: &str, name: &dyn Fn(usize) -> String| {
+        (0..ANGLES.len()).fold(text.to_owned(), |text, i| {
+            text.replace(&format!("\n{i},"), &format!("\n{},", name(i)))
+        })
+    };
+    assert_eq!(found(&change(&film, &|i| format!("{i}.0"))), whole);
+    let images = found(&change(&film, &|i| format!("img{i}.png")));
+    assert_eq!(images.len(), ANGLES.len() - 1);
 }

@@ -1,7 +1,7 @@
 //! Films that do not fit their pole or their options: a warning names what is wrong, and a contact that is not known is no contact of 0.
 
 use super::rods::{CONE, Truth, at_pole, film};
-use super::{deeplabcut, options, parse, with};
+use super::{SCALE, deeplabcut, exact, options, parse, with};
 use whiskmap::Side;
 use whiskmap::tracking::{ImagePole, NoFrame, Tracking};
 
@@ -158,4 +158,25 @@ fn good_films_have_no_warning_and_no_gap() {
             assert_eq!(gap, None, "{side:?} {count} {error_px}");
         }
     }
+}
+
+/// The number of pixels per mm in place of the size of a pixel makes a whisker of 8 m.
+#[test]
+fn a_whisker_of_an_unlikely_length_is_named() {
+    let is_long = |warning: &String| {
+        warning.contains("mm long (median): expected 1 to 200 mm; mm_per_pixel = 20 is")
+    };
+    let film = deeplabcut(exact);
+    let inverse = with(&|options| options.mm_per_pixel = 1.0 / SCALE);
+    let warnings = parse(&film, &inverse).unwrap().warnings;
+    assert_eq!(
+        warnings.iter().filter(|warning| is_long(warning)).count(),
+        1,
+        "{warnings:?}"
+    );
+    let warnings = parse(&film, &options()).unwrap().warnings;
+    assert!(
+        !warnings.iter().any(|warning| warning.contains("mm long")),
+        "{warnings:?}"
+    );
 }

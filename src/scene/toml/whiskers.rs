@@ -221,17 +221,6 @@ fn read_csv(
     let expected = WhiskerRow::expected(&names).into_iter();
     let optional: Vec<&str> = expected.filter(|name| *name != NAME).collect();
     let note = table.require(&[&[NAME]], &optional).map_err(refused)?;
-    if note.is_some() && !optional.iter().any(|name| table.has(name)) {
-        let what = format!(
-            "has no column of whiskers beside {NAME}: must have one of {}",
-            optional.join(", ")
-        );
-        return Err(refused(CsvError::at(
-            &table.origin,
-            table.header_line(),
-            what,
-        )));
-    }
     let text = |column: &str| {
         let cells = table.values(column, "", |cell| Some(cell.to_owned()));
         cells.map(Option::unwrap_or_default).map_err(refused)
