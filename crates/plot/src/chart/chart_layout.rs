@@ -2,9 +2,9 @@
 
 use super::Chart;
 use super::plot_layout::PlotLayout;
-use crate::frame::heading::{ALONE, Heading, NAME, SIDES, TITLE};
+use crate::frame::heading::{ALONE, Heading, NAME, SIDES, TICK, TITLE};
 use crate::frame::spacing::Spacing;
-use crate::picture::size::{PictureSize, SizeError};
+use crate::picture::size::{LEAST_BODY, PictureSize, SizeError};
 use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Picture};
 
@@ -16,6 +16,8 @@ const SIDES_AMONG: [f64; 2] = [116.0, 40.0];
 const ABOVE: f64 = 24.0;
 /// Distance between lines of the caption, in pixels.
 const CAPTION_LINE: f64 = 28.0;
+/// Distance between the names of a vertical axis in print, in pixels.
+const NAMED_LINE: f64 = 1.4 * TICK;
 /// Layouts until bodies and the labels around them agree: the labels depend on the bodies.
 const PASSES: usize = 3;
 
@@ -49,16 +51,19 @@ impl<'a> ChartLayout<'a> {
         let columns = chart.columns();
         let counts = [columns, chart.plots.len().div_ceil(columns).max(1)].map(|n| n as f64);
         let ratio = natural[1] * counts[1] / (natural[0] * counts[0]);
+        let names = chart.plots.iter().map(|plot| plot.y_names.len());
+        let names = names.max().unwrap_or_default() as f64;
+        let least = LEAST_BODY.max(counts[1] * names * NAMED_LINE);
         let mut body = natural;
         let mut layout = Self::around(chart, body, [0.0; 2], size);
         for _ in 0..PASSES {
             let bodies = [0, 1].map(|axis| body[axis] * counts[axis]);
-            let bodies = print.bodies(layout.units, bodies, ratio);
+            let bodies = print.bodies(layout.units, bodies, ratio, least);
             body = [0, 1].map(|axis| bodies[axis] / counts[axis]);
             layout = Self::around(chart, body, [0.0; 2], size);
         }
         let bodies = [0, 1].map(|axis| body[axis] * counts[axis]);
-        layout.units = print.fitted(layout.units, bodies)?;
+        layout.units = print.fitted(layout.units, bodies, least)?;
         Ok(layout)
     }
 

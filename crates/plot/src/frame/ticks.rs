@@ -65,17 +65,23 @@ pub fn of_logarithms(range: [f64; 2], wanted: f64) -> Vec<Tick> {
 
 /// Chooses as many ticks of the range `[low, high]` as fit on a horizontal axis of this length in pixels.
 pub fn across(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
+    let free = |pair: &[Tick]| {
+        let middles = length * (pair[1].at - pair[0].at);
+        middles >= 0.5 * (pair[0].width + pair[1].width) + APART
+    };
+    let fit = |ticks: &Vec<Tick>| ticks.windows(2).all(free);
     let mut wanted = (length / 90.0).clamp(1.0, 10.0);
-    loop {
-        let ticks = choose(range, wanted);
-        let free = |pair: &[Tick]| {
-            let middles = length * (pair[1].at - pair[0].at);
-            middles >= 0.5 * (pair[0].width + pair[1].width) + APART
-        };
-        if wanted <= 1.0 || ticks.windows(2).all(free) {
-            return ticks;
-        }
+    let mut ticks = choose(range, wanted);
+    while wanted > 1.0 && !fit(&ticks) {
         wanted = (wanted - 1.0).max(1.0);
+        ticks = choose(range, wanted);
+    }
+    // One tick is no scale.
+    let more = (1..FEWEST).map(|more| choose(range, wanted + more as f64));
+    let mut more = more.filter(|more| more.len() > 1 && fit(more));
+    match ticks.len() {
+        0 | 1 => more.next().unwrap_or(ticks),
+        _ => ticks,
     }
 }
 
@@ -225,5 +231,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A short axis has a scale where two labels fit, and one tick elsewhere.
+    #[test]
+    fn a_short_axis_has_two_ticks() {
+        let shown = |length: f64| {
+            let ticks = across([-60.0, 60.0], length, of_numbers).into_iter();
+            ticks.map(|tick| tick.label).collect::<Vec<_>>()
+        };
+        assert_eq!(shown(200.0), ["\u{2212}50", "0", "50"]);
+        assert_eq!(shown(80.0), ["0"]);
     }
 }

@@ -9,7 +9,7 @@ pub const POINTS: f64 = SMALLEST_PT / SMALLEST;
 /// Millimetres per unit of a picture in print.
 pub const MM: f64 = POINTS * 25.4 / 72.0;
 /// Least width and height of the bodies of a picture in print, together, in units.
-const LEAST_BODY: f64 = 110.0;
+pub const LEAST_BODY: f64 = 110.0;
 
 /// The size of a picture: natural, in pixels, or on paper.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,22 +56,32 @@ impl PrintSize {
     }
 
     /// Returns the size that the bodies have together if the picture has this size, given that a picture of size `whole` has `bodies`, all
-    /// in units, `[width, height]`: at least [`LEAST_BODY`]. If the height is free, it is `ratio` times the width.
-    pub(crate) fn bodies(self, whole: [f64; 2], bodies: [f64; 2], ratio: f64) -> [f64; 2] {
+    /// in units, `[width, height]`: at least [`LEAST_BODY`], and in height `least`. If the height is free, it is `ratio` times the width.
+    pub(crate) fn bodies(
+        self,
+        whole: [f64; 2],
+        bodies: [f64; 2],
+        ratio: f64,
+        least: f64,
+    ) -> [f64; 2] {
         let units = self.units();
-        let inside = |axis: usize| {
-            let left = units[axis].map(|all| all - (whole[axis] - bodies[axis]));
-            left.map(|left| left.max(LEAST_BODY))
-        };
-        let width = inside(0).unwrap_or(LEAST_BODY);
-        [width, inside(1).unwrap_or(ratio * width)]
+        let inside = |axis: usize| units[axis].map(|all| all - (whole[axis] - bodies[axis]));
+        let width = inside(0).unwrap_or(LEAST_BODY).max(LEAST_BODY);
+        [width, inside(1).unwrap_or(ratio * width).max(least)]
     }
 
-    /// Returns the size of a picture of size `whole` with these `bodies`, all in units: this size, and a free height as it is.
-    pub(crate) fn fitted(self, whole: [f64; 2], bodies: [f64; 2]) -> Result<[f64; 2], SizeError> {
+    /// Returns the size of a picture of size `whole` with these `bodies` of at least the height `least`, all in units: this size, and a free height as it
+    /// is.
+    pub(crate) fn fitted(
+        self,
+        whole: [f64; 2],
+        bodies: [f64; 2],
+        least: f64,
+    ) -> Result<[f64; 2], SizeError> {
         let units = self.units();
+        let least = [LEAST_BODY, least];
         for (axis, side) in ["width", "height"].into_iter().enumerate() {
-            if bodies[axis] <= LEAST_BODY && units[axis].is_some_and(|all| whole[axis] > all) {
+            if bodies[axis] <= least[axis] && units[axis].is_some_and(|all| whole[axis] > all) {
                 let least_mm = (whole[axis] * MM).ceil();
                 return Err(SizeError { side, least_mm });
             }
