@@ -47,7 +47,10 @@ pub(super) fn read(
 ) -> Result<ImageFrames, TrackingError> {
     refuse_points(options)?;
     let table = CsvTable::parse(text, origin)?;
-    let note = table.require(&NEEDED, &[&IDENTITY[..], &OTHERS].concat())?;
+    // No column is meant as one that is not used.
+    let others = OTHERS.into_iter().filter(|name| table.has(name));
+    let optional: Vec<&str> = IDENTITY.into_iter().chain(others).collect();
+    let note = table.require(&NEEDED, &optional)?;
     let numbers = NEEDED[0]
         .iter()
         .find_map(|name| table.values(name, FRAME_NUMBERS, frame_number).transpose());
