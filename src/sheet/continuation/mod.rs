@@ -151,8 +151,34 @@ fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Path
 mod tests {
     use super::*;
     use crate::sheet::row::Row;
+    use std::f64::consts::TAU;
     use whiskmap_mechanics::rod::{Rest, Rod, Side};
     use whiskmap_mechanics::shooting::batch::Method;
+
+    /// In a soft follicle, a coil of several turns unwinds toward the other side: unstable states are left after one turn there.
+    #[test]
+    fn unstable_states_are_followed_back_for_one_turn() {
+        let rod = Rod {
+            taper: 0.5,
+            pole: 0.0188,
+            mount: 1.74,
+            ..Rod::default()
+        };
+        let row = Row::new(&Rest::new(&rod), 0.193);
+        let level = LevelCurve::new(Method::fine(), &rod, Side::Cb, &row);
+        let branch = level
+            .continuation(level.touch(), Stretch::PastFold)
+            .unwrap();
+        let fold = branch.nodes[branch.fold.unwrap()];
+        let last = |nodes: &[CurveNode]| nodes[nodes.len() - 1].push / TAU;
+        assert!(
+            fold.push > 2.0 * TAU && last(&branch.nodes) < -1.5,
+            "{}",
+            last(&branch.nodes)
+        );
+        let unstable = level.continuation(fold, Stretch::Unstable).unwrap();
+        assert!((-1.1..-1.0).contains(&last(&unstable.nodes)) && unstable.end.is_none());
+    }
 
     /// Stable and unstable states of branches, up to their folds, where the push angle is flat.
     #[test]
