@@ -149,15 +149,18 @@ type DesignsResult = (
     Vec<String>,
 );
 
-/// Returns a warning for each solution of a design whose whisker yields.
-fn yielding(
+/// Returns the warnings of the whiskers of the solutions of a design, and one for each that yields.
+fn solution_warnings(
     scene: &Scene,
     varied: &DesignVaried,
     push: (Side, f64),
     solutions: &[Vec<f64>],
 ) -> Vec<String> {
+    let (_, distance_mm) = push;
+    let of_scene = |values: &Vec<f64>| varied.warnings(scene, distance_mm, values);
+    let mut warnings: Vec<String> = solutions.iter().flat_map(of_scene).collect();
     let Some(most) = scene.whisker.yield_strain else {
-        return Vec::new();
+        return warnings;
     };
     let warning = |values: &Vec<f64>| {
         let mark = PushMark::of_solution(scene, varied, push, values)?;
@@ -172,7 +175,8 @@ fn yielding(
             digits(most)
         ))
     };
-    solutions.iter().filter_map(warning).collect()
+    warnings.extend(solutions.iter().filter_map(warning));
+    warnings
 }
 
 /// Returns what a design of `scene` varies, and its distance in mm before that. `distance` is in mm, or in whisker lengths if `is_part` is true.
@@ -243,7 +247,7 @@ pub fn design(
     let job = |cancel: &Arc<AtomicBool>| {
         let found = design_until(&scene.0, varied.clone(), &target, cancel)?;
         let solutions: Vec<Vec<f64>> = found.values.iter().map(|value| vec![*value]).collect();
-        let mut warnings = yielding(&scene.0, &varied, push, &solutions);
+        let mut warnings = solution_warnings(&scene.0, &varied, push, &solutions);
         warnings.extend(found.spans.iter().map(|span| {
             let [from, to] = span.map(|end| digits(rounded(end, 6)));
             let name = varied.variables[0].variable;
@@ -294,7 +298,7 @@ pub fn designs(
     let job = |cancel: &Arc<AtomicBool>| {
         let found = designs_until(&scene.0, &varied, &targets, cancel)?;
         let push = (targets[0].side, distance_mm);
-        let warnings = yielding(&scene.0, &varied, push, &found.solutions);
+        let warnings = solution_warnings(&scene.0, &varied, push, &found.solutions);
         Ok((found, warnings))
     };
     let found = threads::run(py, None, |_| Ok(()), job)?;

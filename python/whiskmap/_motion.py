@@ -195,7 +195,7 @@ def force(
         True computes the stable state of the full model that has this curvature, instead of the moment over the lever.
     baseline_s : tuple of float, optional
         First and last time, in s, of frames without contact. The curvature changes from their mean. Without it, the frames whose `contact`
-        is 0 are the baseline, if there is such a column.
+        is 0 are the baseline, if at least two of them have a curvature.
     columns : mapping of str, optional
         Own names of columns by the expected ones, such as ``{"time_s": "t"}``. An expected name may be shortened at an underscore.
     axis : str
@@ -213,8 +213,8 @@ def force(
     Raises
     ------
     ValueError
-        If a column is missing, a value is out of its range, times do not grow, the scene has friction, or the baseline has a frame in
-        contact or fewer than two frames.
+        If a column is missing, a value is out of its range, times do not grow, the scene has friction, or `baseline_s` has a frame in
+        contact, or fewer than two frames with a curvature.
     OSError
         If the file cannot be read.
     """

@@ -57,6 +57,16 @@ impl FromIterator<DesignVariable> for DesignVaried {
 }
 
 impl DesignVaried {
+    /// Returns the warnings of the scene with these `values`, as [`Self::scene_at`] returns it, that the `scene` itself does not have.
+    #[must_use]
+    pub fn warnings(&self, scene: &Scene, distance_mm: f64, values: &[f64]) -> Vec<String> {
+        let known = scene.warnings();
+        let solution = self.scene_at(scene, distance_mm, values);
+        let found = solution.map_or_else(|_| Vec::new(), |solution| solution.warnings());
+        let is_new = |warning: &String| !known.contains(warning);
+        found.into_iter().filter(is_new).collect()
+    }
+
     /// Returns the numbers of `scene` that differ with these `values` of the varied ones, `[variable]`: those, and the ones that follow. A distance is no number
     /// of a scene.
     #[must_use]

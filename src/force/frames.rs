@@ -63,7 +63,12 @@ impl CurvatureFrames {
                 [&NEEDED[..], &[angle]].concat(),
                 [&AT[..], &[CONTACT]].concat(),
             ),
-            ForceMethod::Model => (NEEDED.to_vec(), [&AT[..], &[CONTACT], angle].concat()),
+            ForceMethod::Model => {
+                // The model has no use for the angle: another column is not meant as it.
+                let unused = angle.iter().filter(|name| table.has(name));
+                let used = AT.iter().chain([&CONTACT]);
+                (NEEDED.to_vec(), used.chain(unused).copied().collect())
+            }
         };
         let note = table.require(&needed, &optional)?;
         if table.has(AT[0]) != table.has(AT[1]) {

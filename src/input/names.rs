@@ -38,39 +38,56 @@ pub fn did_you_mean<'a>(
 ) -> String {
     let known = known.into_iter();
     let radius = radius_for(name);
-    let mut converted = known.clone().filter(|other| match &radius {
-        Some(radius) => is_meant_as(radius, other),
-        None => is_of_another_unit(name, other),
-    });
-    if let Some(expected) = converted.next() {
-        let (stem, unit) = expected.rsplit_once('_').unwrap_or(("", expected));
+    let is_radius = |known: &&str| known.contains("radius");
+    let converted = match &radius {
+        Some(radius) => similar(radius, known.clone().filter(is_radius)),
+        None => known.clone().find(|known| is_of_another_unit(name, known)),
+    };
+    if let Some(expected) = converted {
+        let (whole, per_rad) = without_per_rad(expected);
+        let (stem, unit) = whole.rsplit_once('_').unwrap_or(("", whole));
         let per = if stem.ends_with("per") { "1/" } else { "" };
         let unit = SPELLED
             .iter()
             .find(|(end, _)| *end == unit)
             .map_or(unit, |(_, unit)| unit);
+        let per_rad = if per_rad { "/rad" } else { "" };
         let [radii, half] = match radius {
             Some(_) => ["radii ", ", half the diameters"],
             None => [""; 2],
         };
         return format!(
-            "; values must be {radii}in {per}{unit}{half}: convert them, and use the name `{expected}`"
+            "; values must be {radii}in {per}{unit}{per_rad}{half}: convert them, and use the name `{expected}`"
         );
     }
     let found = similar(name, known);
     found.map_or_else(String::new, |known| format!("; did you mean `{known}`?"))
 }
 
+/// Shortest known name of which another name may be a misspelling: `id` is none of `wid`.
+const SHORTEST: usize = 4;
+
 /// Returns true if `name` is most likely meant as the `known` name: they differ in one letter, in case, in the unit alone, or in a diameter for a
-/// radius.
+/// radius, or `name` lacks the unit. Names of two axes, such as `force_x` and `force_y`, are two names.
 pub(crate) fn is_meant_as(name: &str, known: &str) -> bool {
     let name = radius_for(name).unwrap_or_else(|| name.to_lowercase());
     let known = known.to_lowercase();
-    strsim::osa_distance(&name, &known) <= 1 || stem(&name) == stem(&known)
+    let is_misspelt = known.len() >= SHORTEST && strsim::osa_distance(&name, &known) == 1;
+    name == known
+        || is_misspelt && !are_axes(&name, &known)
+        || name == stem(&known)
+        || is_of_another_unit(&name, &known)
 }
 
-/// Returns what is wrong with a table that has `unknown` columns and lacks others: one is most likely meant as one that it lacks. `None` without such a
-/// column.
+/// Returns true if two names differ in the letter of an axis alone.
+fn are_axes(name: &str, other: &str) -> bool {
+    let is_axis = |word: &str| ["x", "y", "z"].contains(&word);
+    let mut pairs = name.split('_').zip(other.split('_'));
+    name.len() == other.len() && pairs.all(|(a, b)| a == b || is_axis(a) && is_axis(b))
+}
+
+/// Returns what is wrong with a table that has columns with `unknown` names: one of them is most likely meant as a column that the table lacks. `None`
+/// without such a name.
 pub(crate) fn misnamed<'a>(
     unknown: impl IntoIterator<Item = &'a str>,
     lacking: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
@@ -129,17 +146,28 @@ const UNITS: [&[&str]; 7] = [
     &["nnm", "unm", "mnm", "nnmm", "unmm", "mnmm", "nmm"],
 ];
 
-/// Ends of names that do not spell their units, with these.
+/// Units of known names, as they end the names and as messages spell them.
 const SPELLED: [(&str, &str); 3] = [("gpa", "GPa"), ("un", "uN"), ("nnm", "nNm")];
+
+/// Returns a name without `_per_rad` at its end, and whether it has this end.
+fn without_per_rad(name: &str) -> (&str, bool) {
+    name.strip_suffix("_per_rad")
+        .map_or((name, false), |name| (name, true))
+}
 
 /// Returns true if two names differ only in the units at their ends, and the units belong to one quantity.
 fn is_of_another_unit(name: &str, other: &str) -> bool {
     let [name, other] = [name, other].map(str::to_lowercase);
+    let ([name, other], [per, other_per]) = {
+        let (name, per) = without_per_rad(&name);
+        let (other, other_per) = without_per_rad(&other);
+        ([name, other], [per, other_per])
+    };
     let ends = name.rsplit_once('_').zip(other.rsplit_once('_'));
     ends.is_some_and(|((stem, unit), (own_stem, own_unit))| {
         let mut quantities = UNITS.iter();
         let has_both = |units: &&[&str]| [unit, own_unit].iter().all(|unit| units.contains(unit));
-        stem == own_stem && unit != own_unit && quantities.any(has_both)
+        per == other_per && stem == own_stem && unit != own_unit && quantities.any(has_both)
     })
 }
 
@@ -175,6 +203,11 @@ mod tests {
             ("time_ms", "time_s", "s"),
             ("base_force_y_mn", "base_force_y_un", "uN"),
             ("base_moment_unmm", "base_moment_nnm", "nNm"),
+            (
+                "follicle_stiffness_mnm_per_rad",
+                "follicle_stiffness_nnm_per_rad",
+                "nNm/rad",
+            ),
         ] {
             let hint = did_you_mean(name, ["side", known]);
             let start = format!("; values must be in {unit}: convert them");
@@ -211,6 +244,10 @@ mod tests {
             ("layer", "taper"),
             ("notes", "name"),
             ("base_diameter_um", "tip_radius_um"),
+            ("sd_mm", "sd_deg"),
+            ("contact_mm", "contact"),
+            ("base_force_z_un", "base_force_x_un"),
+            ("id", "wid"),
         ] {
             assert!(!is_meant_as(name, known), "{name}");
         }

@@ -101,8 +101,8 @@ impl CsvTable {
         split.table(header, origin)
     }
 
-    /// Checks the header of a CSV file: it must have one name of each group of `needed`, once, and each `optional` name at most once, and no name that
-    /// is most likely meant as one of them. Returns a note about other columns, if there are any.
+    /// Checks the header of a CSV file: it must have one name of each group of `needed`, once, each `optional` name at most once, and no name that is
+    /// most likely meant as an `optional` one that it lacks. Returns a note about other columns, if there are any.
     ///
     /// # Errors
     /// What the header has, and what it needs.
@@ -142,11 +142,8 @@ impl CsvTable {
             );
             return Err(CsvError::at(&self.origin, line, what));
         }
-        // Of a group of which the table has a name, it lacks none.
-        let has_one = |group: &&[&str]| group.iter().any(|name| self.has(name));
-        let groups = needed.iter().copied().filter(|group| !has_one(group));
-        let lacking = groups.flatten().chain(optional).copied().filter(is_absent);
-        if let Some(what) = misnamed(unused.iter().copied(), lacking) {
+        let lacking = optional.iter().copied().filter(is_absent);
+        if let Some(what) = misnamed(unused.iter().copied().take(MOST_HINTS), lacking) {
             return Err(CsvError::at(&self.origin, line, what));
         }
         let unused = (!unused.is_empty()).then(|| shortened(&unused.join(", ")));

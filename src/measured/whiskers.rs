@@ -49,7 +49,7 @@ impl MeasuredPoints {
 
     pub(super) fn without_table(&self) -> CsvError {
         let must = "has a column whisker: the scene must have a table of whiskers, and no other sweep axis; for points of one whisker, \
-             give the column another name";
+             give the column another name, such as animal";
         CsvError::whole(&self.origin, must)
     }
 }

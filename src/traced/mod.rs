@@ -278,7 +278,7 @@ fn check(points_mm: &[[f64; 2]]) -> Result<f64, TracedError> {
         if !(is_near(x) && is_near(y)) {
             return Err(TracedError::at(
                 i,
-                format!("x_mm and y_mm must be numbers between -1e6 and 1e6, are {x} and {y}"),
+                format!("x_mm and y_mm must be numbers between -1e6 and 1e6, are {x:e} and {y:e}"),
             ));
         }
         if i > 0 && points_mm[i - 1] == [x, y] {

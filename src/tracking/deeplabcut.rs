@@ -135,7 +135,8 @@ fn frames(
     pole: Option<&PartPositions>,
     fixed: Option<[f64; 2]>,
 ) -> Result<Vec<ImageFrame>, CsvError> {
-    let cells = table.values("frame", "", |cell| Some(cell.parse::<f64>().is_ok()))?;
+    let is_number = |cell: &str| cell.replace(',', ".").parse::<f64>().is_ok();
+    let cells = table.values("frame", "", |cell| Some(is_number(cell)))?;
     // Labelled images have the names of files instead of numbers.
     let are_images = cells.is_some_and(|are_numbers| !are_numbers.contains(&true));
     let numbers = match are_images {

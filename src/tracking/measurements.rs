@@ -47,9 +47,9 @@ pub(super) fn read(
 ) -> Result<ImageFrames, TrackingError> {
     refuse_points(options)?;
     let table = CsvTable::parse(text, origin)?;
-    // No column is meant as one that is not used.
-    let others = OTHERS.into_iter().filter(|name| table.has(name));
-    let optional: Vec<&str> = IDENTITY.into_iter().chain(others).collect();
+    // Absent columns are not passed, so that no other column is refused for them.
+    let optional = IDENTITY.into_iter().chain(OTHERS);
+    let optional: Vec<&str> = optional.filter(|name| table.has(name)).collect();
     let note = table.require(&NEEDED, &optional)?;
     let numbers = NEEDED[0]
         .iter()

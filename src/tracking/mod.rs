@@ -50,9 +50,9 @@ fn frame_number(cell: &str) -> Option<u64> {
     u64::try_from(whole_number(cell)?).ok()
 }
 
-/// Returns the whole number in a cell, which may have a decimal point: programs write `0.0` in a column with a gap.
+/// Returns the whole number in a cell, which may have a decimal point or comma: programs write `0.0` in a column with a gap.
 fn whole_number(cell: &str) -> Option<i64> {
-    let number: f64 = cell.parse().ok()?;
+    let number: f64 = cell.replace(',', ".").parse().ok()?;
     let is_whole = number.fract() == 0.0 && number.abs() < 1e15;
     is_whole.then_some(number as i64)
 }

@@ -163,7 +163,7 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
         "40",
     ]);
     let said =
-        "the ends of other pushes are unresolved, such as those beyond nine turns of the base";
+        "the ends of some pushes are unresolved, such as those beyond nine turns of the base";
     assert!(soft.code == Some(1) && soft.err.contains(said), "{soft:?}");
     let stiff = [
         "design",

@@ -271,3 +271,44 @@ fn standard_input_is_one_input() {
         place.run(&command).assert_refused(&[&why]);
     }
 }
+
+/// An option for a picture needs one.
+#[test]
+fn a_column_of_a_plot_needs_a_plot() {
+    let place = Place::with(SCENE);
+    for words in [
+        &["curve", "scene.toml", "--x", "force_un"][..],
+        &[
+            "branch",
+            "scene.toml",
+            "--distance",
+            "10",
+            "--y",
+            "force_un",
+        ],
+    ] {
+        place.run(words).assert_refused(&["--plot <FILE>"]);
+    }
+}
+
+/// A picture without room for the name of each variable is refused.
+#[test]
+fn a_picture_has_room_for_all_names() {
+    let place = Place::with(SCENE);
+    let words = ["sensitivity", "scene.toml", "--plot", "s.svg", "--size"];
+    let run = place.run(&[&words[..], &["60x40mm"]].concat());
+    run.assert_refused(&["too small for text of 7 pt; the height must be at least"]);
+    let run = place.run(&[&words[..], &["60mm"]].concat());
+    let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+    let names = [
+        "length_mm",
+        "parabola_per_mm",
+        "base_radius_um",
+        "tip_radius_um",
+        "pole_radius_mm",
+    ];
+    assert!(
+        run.code == Some(0) && names.iter().all(|name| picture.contains(name)),
+        "{picture}"
+    );
+}

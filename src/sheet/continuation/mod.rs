@@ -67,16 +67,16 @@ fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Optio
 }
 
 /// Follows all curves. Curves that reach no edge are followed once more with nodes to rounding: where curves meet, nodes with an error of `miss`
-/// can lead to another curve. Unstable states that are left at the largest push angle are not.
+/// can lead to another curve. Unstable states alone may be left at the largest push angle.
 fn follow_with_retry(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Path>> {
     let mut ended = follow(starts, stretch, miss);
     if miss > ON_CURVE {
         let pairs = starts.iter().zip(&ended);
-        let is_left = stretch == Stretch::Unstable;
+        let may_be_open = stretch == Stretch::Unstable;
         let has_end = |found: &Option<Path>| {
             found
                 .as_ref()
-                .is_some_and(|path| path.end.is_some() || is_left)
+                .is_some_and(|path| path.end.is_some() || may_be_open)
         };
         let failed = pairs.map(|(start, found)| start.filter(|_| !has_end(found)));
         let again = follow(&failed.collect::<Vec<_>>(), stretch, ON_CURVE);

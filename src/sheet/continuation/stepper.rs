@@ -44,7 +44,7 @@ const SHORTEST_ARC_STEP: f64 = 1e-9;
 pub const MOST_PUSH: f64 = 9.0 * TAU;
 
 /// Largest push angle, in radians, toward the other side at which unstable states are followed: one turn. They lead to further pieces of a row, of which
-/// pushes toward its own side matter. In a soft follicle, a coil would unwind for many turns, in as many nodes as it has wound up.
+/// pushes toward its own side matter; a whole branch is followed for nine turns. In a soft follicle, a coil would unwind for many turns, in as many nodes as it has wound up.
 const MOST_BACK: f64 = TAU;
 
 /// Maximum number of nodes; no known branch has more than 300.

@@ -300,13 +300,13 @@ impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
         }
         let Bracket { below, above } = self.loads;
         if at.y == below && det <= 0.0 || at.y == above && det > 0.0 {
-            // Coarse trajectories gave `det` another sign here: there is no root.
+            // Coarse trajectories gave `det` another sign here: it does not change its sign in the bracket.
             return NewtonStep::Fail;
         }
         self.loads.shrink(at.y, -det);
         let loads = self.loads;
         let is_end = |end: &mut f64| *end == loads.below || *end == loads.above;
-        // Before it is halved, both of its ends are tested.
+        // Before the bracket is halved, its ends are tested that are no iterates.
         let mut untested = self.untested.iter_mut();
         let next = match loads.is_inside(newton) {
             true => newton,
@@ -403,7 +403,7 @@ mod tests {
             let newton = BatchNewton::new(case.method, POLISH_TRAJECTORIES);
             let start = DVec2::new(tau, 0.5 * (loads[0] + loads[1]));
             let iterate = newton.solve(&mut problems, [start])[0];
-            // At most three trajectories show that there is no root.
+            // Newton's method leaves these brackets at once, and their ends show that they have no root.
             (iterate.outcome, iterate.steps < 3)
         };
         assert_eq!(solved([0.4, 1.3]).0, NewtonOutcome::Converged);

@@ -24,19 +24,16 @@ pub fn refused(path: &Path, why: DesignError) -> Failure {
     }
 }
 
-/// Prints what a whisker of the solutions is warned about and the `scene` is not, and the largest bending strain of the push of each solution beside
-/// the yield strain of the scene, if it has one.
-pub fn check(
+/// Prints the warnings of the whiskers of the solutions that the `scene` does not have, and the largest bending strain of the push of each solution
+/// beside the yield strain of the scene, if it has one.
+pub fn print_warnings(
     scene: &Scene,
     varied: &DesignVaried,
     (side, distance_mm): (Side, f64),
     solutions: &[Vec<f64>],
 ) {
-    let known = scene.warnings();
     for values in solutions {
-        let solution = varied.scene_at(scene, distance_mm, values);
-        let found = solution.map_or_else(|_| Vec::new(), |solution| solution.warnings());
-        warnings(found.into_iter().filter(|warning| !known.contains(warning)));
+        warnings(varied.warnings(scene, distance_mm, values));
     }
     let Some(most) = scene.whisker.yield_strain else {
         return;
@@ -92,7 +89,7 @@ pub fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> St
     });
     let is_unresolved = |end: &DesignEnd| end.kind == DetachmentKind::Unresolved;
     let unresolved = design.ends.iter().any(is_unresolved).then(|| {
-        "the ends of other pushes are unresolved, such as those beyond nine turns of the base"
+        "the ends of some pushes are unresolved, such as those beyond nine turns of the base"
             .to_owned()
     });
     let ranges: Vec<_> = ranges.chain(unresolved).collect();

@@ -10,7 +10,7 @@ use super::files::Files;
 use super::outputs::{PictureFile, PlotArgs, write};
 use super::pole::{self, WhiskerArgs, title};
 use clap::Args;
-use messages::{check, refused, undetermined, unreached, unreached_together};
+use messages::{print_warnings, refused, undetermined, unreached, unreached_together};
 use options::{Distance, GoalArgs, distance, variable};
 use solutions::{SOLUTION_DIGITS, Solutions};
 use std::path::{Path, PathBuf};
@@ -109,7 +109,7 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
         }
     };
     let side = asked[0].target.side;
-    check(&scene, &varied, (side, distance_mm), &solutions.values);
+    print_warnings(&scene, &varied, (side, distance_mm), &solutions.values);
     if let Some(output) = better {
         let is_stdout = output.is_stdout();
         write(output, solutions.nearest_scene()?.as_bytes())?;

@@ -3,7 +3,7 @@
 //! [`Bracket::newton`] is the root finder: Newton's method, Halley's or any other that proposes a next place, safeguarded by
 //! bisection. [`Bracket::bisect`] needs values alone, [`Bracket::multisect`] signs alone. [`illinois`] is regula falsi, for
 //! functions without slopes whose values are expensive. Searches whose values come in batches hold one bracket each and call
-//! [`Bracket::shrink`] or [`Bracket::next`].
+//! [`Bracket::shrink`].
 
 /// Largest number of iterations: more than bisection needs between any two numbers of ordinary size.
 const MOST_ITERATIONS: usize = 200;
@@ -69,7 +69,7 @@ impl Bracket {
 
     /// Moves one end of the bracket to `x` as [`Bracket::shrink`] does. Returns the next argument to evaluate: `proposed` if the bracket
     /// contains it, otherwise the middle.
-    pub fn next(&mut self, x: f64, value: f64, proposed: f64) -> f64 {
+    fn next(&mut self, x: f64, value: f64, proposed: f64) -> f64 {
         self.shrink(x, value);
         if self.is_inside(proposed) {
             proposed

@@ -4,7 +4,7 @@ use super::Chart;
 use super::plot_layout::PlotLayout;
 use crate::frame::heading::{ALONE, Heading, NAME, SIDES, TICK, TITLE};
 use crate::frame::spacing::Spacing;
-use crate::picture::size::{LEAST_BODY, PictureSize, SizeError};
+use crate::picture::size::{PictureSize, SizeError};
 use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Picture};
 
@@ -53,17 +53,17 @@ impl<'a> ChartLayout<'a> {
         let ratio = natural[1] * counts[1] / (natural[0] * counts[0]);
         let names = chart.plots.iter().map(|plot| plot.y_names.len());
         let names = names.max().unwrap_or_default() as f64;
-        let least = LEAST_BODY.max(counts[1] * names * NAMED_LINE);
+        let least_height = counts[1] * names * NAMED_LINE;
         let mut body = natural;
         let mut layout = Self::around(chart, body, [0.0; 2], size);
         for _ in 0..PASSES {
             let bodies = [0, 1].map(|axis| body[axis] * counts[axis]);
-            let bodies = print.bodies(layout.units, bodies, ratio, least);
+            let bodies = print.bodies(layout.units, bodies, ratio, least_height);
             body = [0, 1].map(|axis| bodies[axis] / counts[axis]);
             layout = Self::around(chart, body, [0.0; 2], size);
         }
         let bodies = [0, 1].map(|axis| body[axis] * counts[axis]);
-        layout.units = print.fitted(layout.units, bodies, least)?;
+        layout.units = print.fitted(layout.units, bodies, least_height)?;
         Ok(layout)
     }
 

@@ -233,14 +233,16 @@ mod tests {
         }
     }
 
-    /// A short axis has a scale where two labels fit, and one tick elsewhere.
+    /// A short axis has a scale where labels fit, and one tick elsewhere.
     #[test]
-    fn a_short_axis_has_two_ticks() {
-        let shown = |length: f64| {
-            let ticks = across([-60.0, 60.0], length, of_numbers).into_iter();
+    fn a_short_axis_has_the_ticks_that_fit() {
+        let shown = |range: [f64; 2], length: f64| {
+            let ticks = across(range, length, of_numbers).into_iter();
             ticks.map(|tick| tick.label).collect::<Vec<_>>()
         };
-        assert_eq!(shown(200.0), ["\u{2212}50", "0", "50"]);
-        assert_eq!(shown(80.0), ["0"]);
+        let both_sides = [-60.0, 60.0];
+        assert_eq!(shown(both_sides, 200.0), ["\u{2212}50", "0", "50"]);
+        assert_eq!(shown(both_sides, 80.0), ["0"]);
+        assert_eq!(shown([3.0, 11.0], 110.0), ["5", "10"]);
     }
 }

@@ -7,7 +7,7 @@ use crate::frame::heading::{ALONE, Heading, LINE, LegendEntry, SIDES, TICK, TITL
 use crate::frame::regions::RegionNames;
 use crate::frame::spacing::Spacing;
 use crate::frame::ticks::Tick;
-use crate::picture::size::{LEAST_BODY, PictureSize, SizeError};
+use crate::picture::size::{PictureSize, SizeError};
 use crate::picture::text::TextBlock;
 use crate::picture::{Anchor, Area, Picture, font};
 
@@ -65,11 +65,11 @@ impl<'a> HeatMapLayout<'a> {
                 false => natural[1] / natural[0],
                 true => grid.height(bodies[0]) / bodies[0],
             };
-            let bodies = print.bodies(layout.units, bodies, ratio, LEAST_BODY);
+            let bodies = print.bodies(layout.units, bodies, ratio, 0.0);
             layout = Self::around(map, bodies, [0.0; 2], size);
         }
         let bodies = [layout.body.width, layout.body.height];
-        layout.units = print.fitted(layout.units, bodies, LEAST_BODY)?;
+        layout.units = print.fitted(layout.units, bodies, 0.0)?;
         Ok(layout)
     }
 

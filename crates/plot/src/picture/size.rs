@@ -9,7 +9,7 @@ pub const POINTS: f64 = SMALLEST_PT / SMALLEST;
 /// Millimetres per unit of a picture in print.
 pub const MM: f64 = POINTS * 25.4 / 72.0;
 /// Least width and height of the bodies of a picture in print, together, in units.
-pub const LEAST_BODY: f64 = 110.0;
+const LEAST_BODY: f64 = 110.0;
 
 /// The size of a picture: natural, in pixels, or on paper.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,30 +56,31 @@ impl PrintSize {
     }
 
     /// Returns the size that the bodies have together if the picture has this size, given that a picture of size `whole` has `bodies`, all
-    /// in units, `[width, height]`: at least [`LEAST_BODY`], and in height `least`. If the height is free, it is `ratio` times the width.
+    /// in units, `[width, height]`: at least [`LEAST_BODY`], and at least `least_height` high. If the height is free, it is `ratio` times the width.
     pub(crate) fn bodies(
         self,
         whole: [f64; 2],
         bodies: [f64; 2],
         ratio: f64,
-        least: f64,
+        least_height: f64,
     ) -> [f64; 2] {
         let units = self.units();
         let inside = |axis: usize| units[axis].map(|all| all - (whole[axis] - bodies[axis]));
         let width = inside(0).unwrap_or(LEAST_BODY).max(LEAST_BODY);
-        [width, inside(1).unwrap_or(ratio * width).max(least)]
+        let height = inside(1).map(|height| height.max(LEAST_BODY));
+        [width, height.unwrap_or(ratio * width).max(least_height)]
     }
 
-    /// Returns the size of a picture of size `whole` with these `bodies` of at least the height `least`, all in units: this size, and a free height as it
+    /// Returns the size of a picture of size `whole` with these `bodies`, at least `least_height` high, all in units: this size, and a free height as it
     /// is.
     pub(crate) fn fitted(
         self,
         whole: [f64; 2],
         bodies: [f64; 2],
-        least: f64,
+        least_height: f64,
     ) -> Result<[f64; 2], SizeError> {
         let units = self.units();
-        let least = [LEAST_BODY, least];
+        let least = [LEAST_BODY, least_height.max(LEAST_BODY)];
         for (axis, side) in ["width", "height"].into_iter().enumerate() {
             if bodies[axis] <= least[axis] && units[axis].is_some_and(|all| whole[axis] > all) {
                 let least_mm = (whole[axis] * MM).ceil();
