@@ -11,9 +11,7 @@ mod random_rods;
 use cells::{RandomRows, solve};
 use measure::Group;
 use random_rods::{USUAL, conditions};
-use std::convert::Infallible;
 use std::hint::black_box;
-use std::ops::ControlFlow;
 use std::path::Path;
 use whiskmap::Side;
 use whiskmap::engine::gpu::{Gpu, Precision};
@@ -130,16 +128,7 @@ fn files() {
     let scene = scene();
     let plan = Plan::new(&scene).expect("the scene is small");
     let mut kept: Option<Panel> = None;
-    let Ok(_) = map::run(
-        &scene,
-        &plan,
-        None,
-        &mut |_| ControlFlow::Continue(()),
-        &mut |panels| {
-            kept = panels.pop();
-            Ok::<(), Infallible>(())
-        },
-    );
+    map::run_to_end(&scene, &plan, None, |panels| kept = panels.pop());
     let panel = kept.expect("the scene has a panel");
     let folder = tempfile::tempdir().expect("the system has a folder for temporary files");
     let about = MapDescription {

@@ -14,9 +14,7 @@ mod random_rods;
 use random_rods::Random;
 use rayon::ThreadPool;
 use serde_json::{Value, json};
-use std::convert::Infallible;
 use std::fmt::Write;
-use std::ops::ControlFlow;
 use std::time::Instant;
 use whiskmap::accuracy;
 use whiskmap::map::{self, Stage};
@@ -235,14 +233,7 @@ fn cell(pool: &ThreadPool) -> Value {
     plan.method.resolution = steps.resolution;
     let mut summary = None;
     let seconds = seconds(pool, || {
-        let Ok(done) = map::run(
-            &scene,
-            &plan,
-            None,
-            &mut |_| ControlFlow::Continue(()),
-            &mut |_| Ok::<(), Infallible>(()),
-        );
-        summary = Some(done);
+        summary = Some(map::run_to_end(&scene, &plan, None, |_| ()));
     });
     let summary = summary.unwrap();
     json!({

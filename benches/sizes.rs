@@ -6,9 +6,7 @@
 #![allow(clippy::print_stdout, reason = "the program prints a table")]
 #![allow(clippy::expect_used, reason = "a benchmark that cannot start panics")]
 
-use std::convert::Infallible;
-use std::ops::ControlFlow;
-use whiskmap::map::{self, Panel, Stage};
+use whiskmap::map::{self, Stage};
 use whiskmap::plan::Plan;
 use whiskmap::scene::Scene;
 
@@ -80,14 +78,7 @@ impl Map {
         let repeats = CELLS.div_ceil(self.plan.cells);
         let mut seconds = [0.0; Stage::ALL.len()];
         for _ in 0..repeats {
-            let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
-            let Ok(summary) = map::run(
-                &self.scene,
-                &self.plan,
-                None,
-                &mut |_| ControlFlow::Continue(()),
-                discard,
-            );
+            let summary = map::run_to_end(&self.scene, &self.plan, None, |_| ());
             for (sum, (stage, _)) in seconds.iter_mut().zip(Stage::ALL) {
                 *sum += summary.stage_seconds(stage);
             }

@@ -5,8 +5,6 @@ use crate::compute;
 use crate::shipped;
 
 use compute::{compute, is_contact};
-use std::convert::Infallible;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use whiskmap::Side;
 use whiskmap::classify::Regime;
@@ -94,29 +92,23 @@ fn bands_are_the_rows_of_a_panel() {
         plan.band_rows = 10;
         let mut joined = Panel::unresolved(0, Channels::STANDARD);
         let mut bands = Vec::new();
-        let Ok(_) = map::run(
-            &scene,
-            &plan,
-            is_spectral.then_some(&mut spectral as _),
-            &mut |_| ControlFlow::Continue(()),
-            &mut |panels| {
-                for panel in panels {
-                    append(&mut joined, panel);
-                    bands.push(panel.regime.len() / scene.grid.push_angle_deg.len());
-                    // The next band in this memory must overwrite all of it.
-                    let codes = [
-                        &mut panel.regime,
-                        &mut panel.status,
-                        &mut panel.newton_steps,
-                    ];
-                    codes.into_iter().for_each(|codes| codes.fill(9));
-                    let numbers = [&mut panel.residual, &mut panel.margin_deg];
-                    let numbers = numbers.into_iter().chain(&mut panel.state);
-                    numbers.for_each(|numbers| numbers.fill(9.0));
-                }
-                Ok::<(), Infallible>(())
-            },
-        );
+        let engine = is_spectral.then_some(&mut spectral as _);
+        map::run_to_end(&scene, &plan, engine, |panels| {
+            for panel in panels {
+                append(&mut joined, panel);
+                bands.push(panel.regime.len() / scene.grid.push_angle_deg.len());
+                // The next band in this memory must overwrite all of it.
+                let codes = [
+                    &mut panel.regime,
+                    &mut panel.status,
+                    &mut panel.newton_steps,
+                ];
+                codes.into_iter().for_each(|codes| codes.fill(9));
+                let numbers = [&mut panel.residual, &mut panel.margin_deg];
+                let numbers = numbers.into_iter().chain(&mut panel.state);
+                numbers.for_each(|numbers| numbers.fill(9.0));
+            }
+        });
         assert_eq!(bands, [10, 10, 10, 10, 10, 10, 4], "{name}");
         compute::assert_identical(&[whole.remove(0)], &[joined]);
     }

@@ -2,8 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::collections::VecDeque;
-use std::convert::Infallible;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use whiskmap::classify::Outcome;
 use whiskmap::engine::{Cells, Engine, EngineDescription, EngineError, RowBatch};
@@ -61,14 +59,7 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let scene = Scene::parse(&text, "scene").unwrap();
     let plan = Plan::in_bands(&scene).unwrap();
     let mut engine = Counting::default();
-    let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
-    let Ok(summary) = map::run(
-        &scene,
-        &plan,
-        Some(&mut engine),
-        &mut |_| ControlFlow::Continue(()),
-        discard,
-    );
+    let summary = map::run_to_end(&scene, &plan, Some(&mut engine), |_| ());
     // Few cells have no net.
     let is_asked = scene.grid.push_angle_deg.len() > 100;
     assert_eq!(engine.calls, if is_asked { plan.engine_calls } else { 0 });

@@ -7,14 +7,12 @@ use super::timing::Timing;
 use super::{Report, StageTimes, named, pool};
 use crate::engine::gpu::Gpu;
 use crate::engine::{Engine, EngineError, Spectral, on_gpu};
-use crate::map::{self, Panel, Stage};
+use crate::map::{self, Stage};
 use crate::plan::Plan;
 use crate::quantile::median;
 use crate::scene::Scene;
 use crate::store::MapWriter;
 use serde::Serialize;
-use std::convert::Infallible;
-use std::ops::ControlFlow;
 use whiskmap_mechanics::numerics::Unit;
 
 /// Measurement of a whole map by one engine, packed but not written.
@@ -95,10 +93,10 @@ pub fn measure(
         let mut working = Vec::new();
         for (name, mut engine, mut samples) in engines {
             on_step(&format!("map {round} of {runs} by {name}"));
-            let sample = pool.install(|| run(scene, &plan, borrowed(&mut engine)));
+            let sample = pool.install(|| run(scene, &plan, &mut engine));
             let sample = sample.and_then(|sample| {
                 let on_one_thread =
-                    one.install(|| one_thread_seconds(scene, &plan, borrowed(&mut engine)))?;
+                    one.install(|| one_thread_seconds(scene, &plan, &mut engine))?;
                 Ok(MapRun {
                     on_one_thread,
                     ..sample
@@ -133,46 +131,31 @@ pub fn measure(
     Ok(())
 }
 
-/// Borrows the engine of a run.
-fn borrowed(engine: &mut Option<Box<dyn Engine>>) -> Option<&mut dyn Engine> {
-    engine
-        .as_mut()
-        .map(|engine| engine.as_mut() as &mut dyn Engine)
-}
-
 /// CPU seconds of this thread, the only one of its pool, for one map that is not packed.
 fn one_thread_seconds(
     scene: &Scene,
     plan: &Plan,
-    engine: Option<&mut dyn Engine>,
+    engine: &mut Option<Box<dyn Engine>>,
 ) -> Result<f64, EngineError> {
+    let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let begun = map::thread_seconds();
-    let Ok(summary) = map::run(
-        scene,
-        plan,
-        engine,
-        &mut |_| ControlFlow::Continue(()),
-        &mut |_| Ok::<(), Infallible>(()),
-    );
+    let summary = map::run_to_end(scene, plan, engine, |_| ());
     let ended = map::thread_seconds();
     let seconds = ended.zip(begun).map_or(0.0, |(ended, begun)| ended - begun);
     summary.engine_failure.map_or(Ok(seconds), Err)
 }
 
 /// Computes one map.
-fn run(scene: &Scene, plan: &Plan, engine: Option<&mut dyn Engine>) -> Result<MapRun, EngineError> {
+fn run(
+    scene: &Scene,
+    plan: &Plan,
+    engine: &mut Option<Box<dyn Engine>>,
+) -> Result<MapRun, EngineError> {
+    let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let mut packed_bytes = 0;
-    let mut keep = |panels: &mut Vec<Panel>| {
+    let summary = map::run_to_end(scene, plan, engine, |panels| {
         packed_bytes += MapWriter::sample(&scene.grid, plan, panels);
-        Ok::<(), Infallible>(())
-    };
-    let Ok(summary) = map::run(
-        scene,
-        plan,
-        engine,
-        &mut |_| ControlFlow::Continue(()),
-        &mut keep,
-    );
+    });
     if let Some(failure) = summary.engine_failure {
         return Err(failure);
     }

@@ -19,6 +19,7 @@ use crate::scene::Scene;
 use crate::stopwatch::Stopwatch;
 pub use panel::Panel;
 use pipeline::Pipeline;
+use std::convert::Infallible;
 use std::ops::ControlFlow;
 pub use summary::{Audit, EngineCells, Summary};
 pub use times::{Stage, thread_seconds};
@@ -76,4 +77,19 @@ pub fn run<E: Send>(
     let cpu = process_seconds().zip(cpu_start);
     summary.cpu_seconds = cpu.map(|(end, start)| end - start);
     Ok(summary)
+}
+
+/// Computes a map as [`run`] does, to its end: without progress, and without errors of `keep`.
+pub fn run_to_end(
+    scene: &Scene,
+    plan: &Plan,
+    engine: Option<&mut dyn Engine>,
+    mut keep: impl FnMut(&mut Vec<Panel>) + Send,
+) -> Summary {
+    let on_progress = &mut |_| ControlFlow::Continue(());
+    let Ok(summary) = run(scene, plan, engine, on_progress, &mut |panels| {
+        keep(panels);
+        Ok::<(), Infallible>(())
+    });
+    summary
 }

@@ -179,17 +179,9 @@ fn the_spectral_engine_is_a_stage() {
 fn stages_follow_each_other(engine: Option<&mut dyn Engine>) {
     let (scene, plan) = in_batches();
     let has_engine = engine.is_some();
-    let mut keep = |panels: &mut Vec<Panel>| {
+    let summary = map::run_to_end(&scene, &plan, engine, |panels| {
         assert!(MapWriter::sample(&scene.grid, &plan, panels) > 0);
-        Ok::<(), Infallible>(())
-    };
-    let Ok(summary) = map::run(
-        &scene,
-        &plan,
-        engine,
-        &mut |_| ControlFlow::Continue(()),
-        &mut keep,
-    );
+    });
     for (stage, name) in Stage::ALL {
         let has_worked = match stage {
             Stage::Rows => has_engine,

@@ -3,8 +3,6 @@
 
 use crate::shipped;
 use std::collections::VecDeque;
-use std::convert::Infallible;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use whiskmap::classify::Regime;
 use whiskmap::engine::gpu::{Gpu, Precision};
@@ -30,16 +28,7 @@ pub fn compute_as(
     engine: Option<&mut dyn Engine>,
 ) -> (Summary, Vec<Panel>) {
     let mut all = Vec::new();
-    let Ok(summary) = map::run(
-        scene,
-        plan,
-        engine,
-        &mut |_| ControlFlow::Continue(()),
-        &mut |panels| {
-            all.append(panels);
-            Ok::<(), Infallible>(())
-        },
-    );
+    let summary = map::run_to_end(scene, plan, engine, |panels| all.append(panels));
     (summary, all)
 }
 

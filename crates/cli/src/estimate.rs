@@ -2,8 +2,6 @@
 
 use super::failure::Failure;
 use super::map_format::MapFormat;
-use std::convert::Infallible;
-use std::ops::ControlFlow;
 use std::time::Instant;
 use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel, Stage, Summary};
@@ -42,17 +40,9 @@ pub fn file_costs(
     let lines = (PACKED_CELLS / whiskers).isqrt().max(1);
     let (small, small_plan) = thinned(scene, plan, [lines, lines])?;
     let mut groups: Vec<Vec<Panel>> = Vec::new();
-    let mut keep = |panels: &mut Vec<Panel>| {
+    map::run_to_end(&small, &small_plan, None, |panels| {
         groups.push(std::mem::take(panels));
-        Ok::<(), Infallible>(())
-    };
-    let Ok(_) = map::run(
-        &small,
-        &small_plan,
-        None,
-        &mut |_| ControlFlow::Continue(()),
-        &mut keep,
-    );
+    });
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
     let packed = formats.iter().map(|format| {
         let start = Instant::now();
@@ -177,14 +167,7 @@ impl MapSample {
     ) -> Result<Self, Failure> {
         let (scene, plan) = thinned(scene, plan, lines)?;
         let engine = engine.as_mut().map(|engine| &mut **engine as _);
-        let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
-        let Ok(summary) = map::run(
-            &scene,
-            &plan,
-            engine,
-            &mut |_| ControlFlow::Continue(()),
-            discard,
-        );
+        let summary = map::run_to_end(&scene, &plan, engine, |_| ());
         match summary.engine_failure {
             Some(failure) => Err(failure.into()),
             None => Ok(Self {
