@@ -1,7 +1,7 @@
 //! `whiskmap bench`: consistency of its tables and JSON, not the measured times.
 
 use super::traces::good;
-use super::{Place, Run, SCENE};
+use super::{Place, Run, SCENE, words};
 use crate::shipped;
 use serde_json::Value;
 
@@ -261,25 +261,11 @@ fn a_wrong_file_of_peers_is_refused_before_any_work() {
         (&" ".repeat((1 << 20) + 1), "longer than 1 MiB"),
     ] {
         std::fs::write(place.path("peers.json"), text).unwrap();
-        let run = place.run(&[
-            "bench",
-            "scene.toml",
-            "--plot",
-            "b.svg",
-            "--peers",
-            "peers.json",
-        ]);
+        let run = place.run(&words("bench scene.toml --plot b.svg --peers peers.json"));
         run.assert_refused(&["--peers peers.json: ", why]);
         assert!(!place.path("b.svg").exists());
     }
-    let run = place.run(&[
-        "bench",
-        "scene.toml",
-        "--plot",
-        "b.svg",
-        "--peers",
-        "none.json",
-    ]);
+    let run = place.run(&words("bench scene.toml --plot b.svg --peers none.json"));
     run.assert_refused(&["--peers none.json: cannot read the file"]);
     let mut piped = place.command(&["bench", "scene.toml", "--plot", "b.svg", "--peers", "-"]);
     let run = Run::of(&piped.write_stdin("{").output().unwrap());

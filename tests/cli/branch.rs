@@ -1,7 +1,7 @@
 //! `whiskmap branch`.
 
 use super::traces::{BRANCH, CB, SHAPE, cells, good};
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 #[test]
 fn a_branch_has_the_requested_number_of_points() {
@@ -55,39 +55,19 @@ fn the_fold_can_be_asked_for() {
         }
     }
     // Unstable states reach across first touch.
-    let at = [
-        "shape",
-        "scene.toml",
-        "--distance=15.66",
-        "--push-angle",
-        "-20",
-        "--branch=unstable",
-    ];
+    let at = words("shape scene.toml --distance=15.66 --push-angle -20 --branch=unstable");
     let run = good(&place, &[&at[..], &["--side", "cb"]].concat());
     assert!(run.out.starts_with(SHAPE));
     good(
         &place,
-        &[
-            "shape",
-            "scene.toml",
-            "--distance=9",
-            "--push-angle",
-            "-1e-5",
-        ],
+        &words("shape scene.toml --distance=9 --push-angle -1e-5"),
     );
 }
 
 #[test]
 fn several_poles_share_a_table_and_a_plot() {
     let place = Place::with(SCENE);
-    let several = [
-        "branch",
-        "scene.toml",
-        "--distance",
-        "10,13",
-        "--distance=15.66",
-        "--points=9",
-    ];
+    let several = words("branch scene.toml --distance 10,13 --distance=15.66 --points=9");
     let run = good(&place, &several);
     let rows = cells(&run.out, BRANCH);
     let blocks: Vec<_> = rows

@@ -1,6 +1,6 @@
 //! `whiskmap compare`.
 
-use super::{Place, Run, SCENE};
+use super::{Place, Run, SCENE, words};
 use serde_json::{Value, json};
 use whiskmap::engine::EngineDescription;
 use whiskmap::map::{Audit, Channels, EngineCells, Panel};
@@ -67,13 +67,9 @@ fn channel<'a>(document: &'a Value, name: &str) -> &'a Value {
 fn formats_do_not_differ() {
     let place = Place::with(&sweep());
     place.map(&["scene.toml", "--no-png"]);
-    place.map(&[
-        "scene.toml",
-        "--format",
-        "zarr",
-        "--channels",
-        "regime,status,force_un",
-    ]);
+    place.map(&words(
+        "scene.toml --format zarr --channels regime,status,force_un",
+    ));
     let maps = ["outputs/scene.exr", "outputs/scene.zarr"];
     let run = compare(&place, &[&maps[..], &["--within", "0"]].concat());
     assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");

@@ -2,7 +2,7 @@
 
 use super::refused::READ_TWICE;
 use super::store::assert_same;
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, words};
 
 /// Sweep of straight and curved whiskers in front of three poles, with friction.
 fn sweep() -> String {
@@ -97,11 +97,7 @@ fn a_picture_of_a_scene_is_that_of_its_map() {
             "scene.curvature_per_mm=0.02.force_un.png",
         ),
         (
-            &[
-                "--channel=energy_nj",
-                "--at=distance_mm=9",
-                "--at=pole_radius_mm=0.1",
-            ],
+            &words("--channel=energy_nj --at=distance_mm=9 --at=pole_radius_mm=0.1"),
             "scene.distance_mm=9.043.pole_radius_mm=0.1.energy_nj.png",
         ),
     ] {
@@ -118,11 +114,7 @@ fn a_picture_of_a_scene_is_that_of_its_map() {
 #[test]
 fn only_the_whiskers_of_a_part_are_computed() {
     let place = Place::with(&huge());
-    let at = [
-        "--at=taper=0.9",
-        "--at=friction=0.3",
-        "--at=pole_radius_mm=0.5",
-    ];
+    let at = words("--at=taper=0.9 --at=friction=0.3 --at=pole_radius_mm=0.5");
     let run = good(&place, &[&["render", "scene.toml"], &at[..]].concat());
     assert!(run.err.contains("\ntaper = 0.9\nfriction = 0.3"), "{run:?}");
     let part = ["--at=distance_mm=9", "--channel=force_un", "-o", "row.csv"];
@@ -138,13 +130,7 @@ fn only_the_whiskers_of_a_part_are_computed() {
 fn a_scene_comes_from_standard_input() {
     let place = Place::with(&sweep());
     place.map(&["scene.toml", "--no-png"]);
-    let part = [
-        "extract",
-        "-",
-        "--engine=cpu",
-        "--at=pole_radius_mm=0.2",
-        "-o",
-    ];
+    let part = words("extract - --engine=cpu --at=pole_radius_mm=0.2 -o");
     let run = piped(&place, &[&part[..], &["piped.exr"]].concat(), &sweep());
     assert_eq!(run.code, Some(0), "{run:?}");
     good(
@@ -158,13 +144,7 @@ fn a_scene_comes_from_standard_input() {
         (run.code, &*run.out.replace('\\', "/")),
         (Some(0), "outputs/scene.png\n")
     );
-    let compared = [
-        "compare",
-        "outputs/scene.exr",
-        "-",
-        "--within=0",
-        "--engine=cpu",
-    ];
+    let compared = words("compare outputs/scene.exr - --within=0 --engine=cpu");
     assert_eq!(piped(&place, &compared, &sweep()).code, Some(0));
     piped(&place, &["compare", "-", "-"], &sweep()).assert_refused(&[READ_TWICE]);
     piped(&place, &["extract", "-", "-o", "part.csv"], "title = 1")
@@ -179,13 +159,7 @@ fn a_scene_is_compared_with_its_map() {
     place.map(&["scene.toml", "--no-png", "--digits=3"]);
     let run = good(
         &place,
-        &[
-            "compare",
-            "outputs/scene.zarr",
-            "scene.toml",
-            "--within=0",
-            "--engine=cpu",
-        ],
+        &words("compare outputs/scene.zarr scene.toml --within=0 --engine=cpu"),
     );
     // The scene has the channels of the store.
     assert!(!run.out.contains("only in"), "{run:?}");
@@ -342,12 +316,7 @@ fn options_of_the_solver_are_for_scenes() {
     }
     let run = good(
         &place,
-        &[
-            "render",
-            "scene.toml",
-            "--tolerance=1e-3deg",
-            "--engine=cpu",
-        ],
+        &words("render scene.toml --tolerance=1e-3deg --engine=cpu"),
     );
     assert!(run.err.starts_with("accuracy: "), "{run:?}");
 }
@@ -360,13 +329,7 @@ fn files_of_a_scene_are_no_outputs() {
     let radii = "arc_length_mm,radius_um\n0,30\n20,2\n";
     place.write("radii.csv", radii);
     for command in [
-        &[
-            "extract",
-            "scene.toml",
-            "--at=distance_mm=9",
-            "-o",
-            "radii.csv",
-        ][..],
+        &words("extract scene.toml --at=distance_mm=9 -o radii.csv")[..],
         &["compare", "scene.toml", "scene.toml", "--json", "radii.csv"],
     ] {
         place.run(command).assert_said(2, "radii.csv: is the input");

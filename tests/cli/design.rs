@@ -1,7 +1,7 @@
 //! `whiskmap design`.
 
 use super::traces::good;
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 const TAPER: [&str; 6] = [
     "design",
@@ -134,16 +134,7 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
         &["--slip-off", "0.1rad"],
         &["slip off at 0.1 rad: it slips off between 0.", " rad and "],
     );
-    let far = [
-        "design",
-        "scene.toml",
-        "--distance",
-        "150",
-        "--for",
-        "taper",
-        "--slip-off",
-        "9",
-    ];
+    let far = words("design scene.toml --distance 150 --for taper --slip-off 9");
     let far = place.run(&far);
     assert_eq!(far.code, Some(1), "{far:?}");
     assert!(far.err.contains("it does not reach the pole"), "{far:?}");
@@ -152,29 +143,13 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
         "[whisker.follicle]\nstiffness_nnm_per_rad = 10\n[grid]",
     );
     place.write("soft.toml", &soft);
-    let soft = place.run(&[
-        "design",
-        "soft.toml",
-        "--distance",
-        "5",
-        "--for",
-        "base_radius_um",
-        "--slip-off",
-        "40",
-    ]);
+    let soft = place.run(&words(
+        "design soft.toml --distance 5 --for base_radius_um --slip-off 40",
+    ));
     let said =
         "the ends of some pushes are unresolved, such as those beyond nine turns of the base";
     assert!(soft.code == Some(1) && soft.err.contains(said), "{soft:?}");
-    let stiff = [
-        "design",
-        "scene.toml",
-        "--distance",
-        "15.66",
-        "--for",
-        "youngs_modulus_gpa",
-        "--slip-off",
-        "9",
-    ];
+    let stiff = words("design scene.toml --distance 15.66 --for youngs_modulus_gpa --slip-off 9");
     let stiff = place.run(&stiff);
     assert_eq!(stiff.code, Some(1), "{stiff:?}");
     assert!(
@@ -296,16 +271,7 @@ fn what_cannot_be_designed_is_refused() {
             "grid.curvature_per_mm: the scene sweeps 2 whiskers, but design needs one; select it by --at",
         ],
     );
-    let far = [
-        "design",
-        "scene.toml",
-        "--distance",
-        "1e9",
-        "--slip-off",
-        "9",
-        "--for",
-        "taper",
-    ];
+    let far = words("design scene.toml --distance 1e9 --slip-off 9 --for taper");
     place
         .run(&far)
         .assert_refused(&["--distance 1000000000 mm: must be between"]);
@@ -315,17 +281,8 @@ fn what_cannot_be_designed_is_refused() {
 #[test]
 fn several_targets_have_a_line_of_values() {
     let place = Place::with(SCENE);
-    let asked = [
-        "design",
-        "scene.toml",
-        "--distance",
-        "60%",
-        "--slip-off",
-        "30deg",
-        "--max-moment",
-        "0.05uNm",
-        "--for",
-    ];
+    let asked =
+        words("design scene.toml --distance 60% --slip-off 30deg --max-moment 0.05uNm --for");
     let more = ["base_radius_um=10um..0.1mm,taper", "-o", "better.toml"];
     let found = place.run(&[&asked[..], &more].concat());
     assert_eq!((found.code, &*found.err), (Some(0), ""), "{found:?}");
@@ -338,16 +295,7 @@ fn several_targets_have_a_line_of_values() {
         .map(|value| value.parse().unwrap());
     let values: Vec<f64> = values.collect();
     assert_eq!((values.len(), lines.next()), (2, None), "{found:?}");
-    let again = [
-        "design",
-        "better.toml",
-        "--distance",
-        "12",
-        "--slip-off",
-        "30deg",
-        "--for",
-        "taper",
-    ];
+    let again = words("design better.toml --distance 12 --slip-off 30deg --for taper");
     let taper: f64 = place.run(&again).out.trim().parse().unwrap();
     assert!((taper - values[1]).abs() < 1e-5, "{taper} {values:?}");
     let none = place.run(&[&asked[..], &["base_radius_um=10..20,taper"]].concat());
@@ -364,14 +312,9 @@ fn several_targets_have_a_line_of_values() {
 #[test]
 fn a_distance_and_a_kept_taper_are_designed() {
     let place = Place::with(SCENE);
-    let found = place.run(&[
-        "design",
-        "scene.toml",
-        "--slip-off",
-        "20deg",
-        "--for",
-        "distance_mm",
-    ]);
+    let found = place.run(&words(
+        "design scene.toml --slip-off 20deg --for distance_mm",
+    ));
     assert_eq!(found.code, Some(0), "{found:?}");
     let distance = found.out.lines().next().unwrap();
     let back = [
@@ -394,16 +337,7 @@ fn a_distance_and_a_kept_taper_are_designed() {
         .unwrap();
     assert!((taper - 0.95).abs() < 1e-6, "{taper}");
     let kept = [
-        &[
-            "design",
-            "scene.toml",
-            "--distance",
-            "12",
-            "--side",
-            "cb",
-            "--max-moment",
-            "100",
-        ][..],
+        &words("design scene.toml --distance 12 --side cb --max-moment 100")[..],
         &["--for", "base_radius_um", "--keep", "taper", "-o", "-"],
     ];
     let kept = place.run(&kept.concat());

@@ -1,7 +1,7 @@
 //! `--digits`: rounded maps and stores.
 
-use super::Place;
 use super::store::{SWEEP, assert_complete, assert_same, good};
+use super::{Place, words};
 use std::fs;
 use whiskmap::plan::{Digits, rounded};
 use whiskmap::store::{ChannelValues, MapSource};
@@ -84,16 +84,9 @@ fn a_rounded_store_is_one_for_all_shards() {
     run("whole", "--no-png");
     run("parts", "--shard=1/2");
     place
-        .run(&[
-            "map",
-            "scene.toml",
-            "--engine=cpu",
-            "--format=zarr",
-            "-o",
-            "parts",
-            "--resume",
-            "--digits=5",
-        ])
+        .run(&words(
+            "map scene.toml --engine=cpu --format=zarr -o parts --resume --digits=5",
+        ))
         .assert_refused(&["differs in `digits`", "force_un=4", "force_un=5"]);
     run("parts", "--resume");
     assert_same(&place, "whole", "parts");

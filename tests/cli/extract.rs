@@ -1,7 +1,7 @@
 //! `whiskmap extract`: slices of stores and maps.
 
 use super::store::{SWEEP, good};
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 use std::fs;
 use whiskmap::classify::Regime;
 use whiskmap::scene::Parameter;
@@ -16,11 +16,7 @@ fn a_slice_is_what_the_store_has_there() {
     let run = |arguments: &[&str]| place.run(&[&["extract", "scene.zarr"], arguments].concat());
 
     // The nearest radius is 0.2, the second of the third axis.
-    let at = [
-        "--at=taper=0.6",
-        "--at=pole_radius_mm=0.21",
-        "--at=push_angle_deg=-70",
-    ];
+    let at = words("--at=taper=0.6 --at=pole_radius_mm=0.21 --at=push_angle_deg=-70");
     let said = run(&[
         &at[..],
         &["--channel=regime", "--channel=force_un", "-o", "s.csv"],
@@ -65,13 +61,7 @@ fn a_slice_is_what_the_store_has_there() {
         "{said:?}"
     );
 
-    let npy = [
-        "--at=taper=0.5",
-        "--channel=force_un",
-        "--exact",
-        "-o",
-        "s.npy",
-    ];
+    let npy = words("--at=taper=0.5 --channel=force_un --exact -o s.npy");
     assert_eq!(run(&npy).code, Some(0));
     let bytes = place.bytes("s.npy");
     let start = bytes.len() - 2 * 4 * 4096 * 4;
@@ -150,13 +140,7 @@ fn a_slice_is_what_the_store_has_there() {
 fn a_map_of_a_slice_can_be_drawn() {
     let place = Place::with(SWEEP);
     good(&place, ".", &[]);
-    let extract = [
-        "extract",
-        "scene.zarr",
-        "--at=friction=0.3",
-        "-o",
-        "slice.exr",
-    ];
+    let extract = words("extract scene.zarr --at=friction=0.3 -o slice.exr");
     assert_eq!(place.run(&extract).code, Some(0));
     let slice = StoredMap::open(&place.path("slice.exr")).unwrap();
     assert_eq!(slice.title, "A sweep in blocks, friction = 0.3");
@@ -198,12 +182,7 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
         let run = place.run(&[&["extract", from], arguments].concat());
         assert_eq!(run.code, Some(0), "{run:?}");
     };
-    let at = [
-        "--at=friction=0.2",
-        "--at=distance_mm=5.1",
-        "-o",
-        "slice.zarr",
-    ];
+    let at = words("--at=friction=0.2 --at=distance_mm=5.1 -o slice.zarr");
     extract("scene.zarr", &at);
     let status = place.run(&["status", "slice.zarr", "--verify"]);
     assert_eq!((status.code, &*status.err), (Some(0), ""), "{status:?}");
@@ -253,26 +232,13 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
         let of_map = [&["--at=push_angle_deg=-70", "-o", "map.zarr"], channel].concat();
         extract("map.exr", &of_map);
         extract("map.exr", &of_map);
-        let other = [
-            "extract",
-            "map.exr",
-            "--at=push_angle_deg=70",
-            "-o",
-            "map.zarr",
-        ];
+        let other = words("extract map.exr --at=push_angle_deg=70 -o map.zarr");
         let run = place.run(&[&other, channel].concat());
         run.assert_said(2, "map.zarr differs in `scene`");
         run.assert_said(2, "push_angle_deg = -70\" there");
         fs::remove_dir_all(place.path("map.zarr")).unwrap();
     }
-    let draw = [
-        "render",
-        "again.zarr",
-        "--at=friction=0.3",
-        "--at=taper=1",
-        "-o",
-        "a.png",
-    ];
+    let draw = words("render again.zarr --at=friction=0.3 --at=taper=1 -o a.png");
     assert_eq!(place.run(&draw).code, Some(0));
 }
 

@@ -1,7 +1,7 @@
 //! `whiskmap fit`.
 
 use super::data::{DATA, curve, place};
-use super::{Place, Run, SCENE, names, no_folder};
+use super::{Place, Run, SCENE, names, no_folder, words};
 use serde_json::Value;
 use whiskmap::scene::Scene;
 
@@ -33,22 +33,10 @@ fn table_scene_and_document_agree() {
     let found = json(&place, "fit.json");
     let mut keys: Vec<&String> = found.as_object().unwrap().keys().collect();
     keys.sort_unstable();
-    let wanted = [
-        "bias_deg",
-        "chi_square",
-        "correlation",
-        "degrees_of_freedom",
-        "left_out",
-        "loss",
-        "not_a_fit",
-        "points",
-        "pulls",
-        "rms_deg",
-        "smooth_radii",
-        "standard_errors",
-        "traced",
-        "values",
-    ];
+    let wanted = words(
+        "bias_deg chi_square correlation degrees_of_freedom left_out loss not_a_fit points pulls \
+         rms_deg smooth_radii standard_errors traced values",
+    );
     assert_eq!(keys, wanted);
     let fitted = Scene::read(place.path("fitted.toml")).unwrap();
     let whisker = &fitted.whisker;
@@ -115,14 +103,7 @@ fn table_scene_and_document_agree() {
     let bytes = place.bytes("fit.json");
     fit(&place, &[&free[..], &files].concat());
     assert!(bytes == place.bytes("fit.json"), "not deterministic");
-    let start = [
-        "fit",
-        "fitted.toml",
-        "--data",
-        "points.csv",
-        "--json",
-        "again.json",
-    ];
+    let start = words("fit fitted.toml --data points.csv --json again.json");
     assert_eq!(place.run(&[&start[..], &free].concat()).code, Some(0));
     let again = json(&place, "again.json");
     let [one, other] = [&found, &again].map(|fit| fit["values"]["tip_radius_um"].as_f64().unwrap());
@@ -149,12 +130,9 @@ fn standard_output_takes_one_of_them() {
 #[test]
 fn what_is_not_determined_is_null() {
     let place = place();
-    let more = [
-        "--free",
-        "youngs_modulus_gpa,base_radius_um,pole_radius_mm,tip_radius_um",
-        "--json",
-        "fit.json",
-    ];
+    let more = words(
+        "--free youngs_modulus_gpa,base_radius_um,pole_radius_mm,tip_radius_um --json fit.json",
+    );
     let run = fit(&place, &more);
     let found = json(&place, "fit.json");
     for name in ["youngs_modulus_gpa", "base_radius_um", "tip_radius_um"] {
@@ -270,14 +248,7 @@ fn wrong_input_is_refused_before_any_file_is_made() {
     let few = "2 free parameters need as many points: points.csv has 1 that detach";
     refused(&["--free", "taper,pole_radius_mm"], &[few]);
     place
-        .run(&[
-            "fit",
-            "scene.toml",
-            "--free",
-            "taper",
-            "--data",
-            "nowhere.csv",
-        ])
+        .run(&words("fit scene.toml --free taper --data nowhere.csv"))
         .assert_refused(&["nowhere.csv: cannot be read"]);
     place.write(
         "sweep.toml",

@@ -1,6 +1,6 @@
 //! `whiskmap import`.
 
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 use crate::shipped::root;
 use std::fs;
 
@@ -31,12 +31,8 @@ fn film() -> Place {
 #[test]
 fn frames_are_those_that_force_and_whisk_read() {
     let place = film();
-    let words = [
-        &FILM[..],
-        &["--fps", "500", "-o", "frames.csv", "--curvature-at", "2mm"],
-    ]
-    .concat();
-    let run = place.run(&words);
+    let more = words("--fps 500 -o frames.csv --curvature-at 2mm");
+    let run = place.run(&[&FILM[..], &more].concat());
     assert_eq!((run.code, &*run.out), (Some(0), "frames.csv\n"), "{run:?}");
     for note in [
         "note: base at ",
@@ -67,14 +63,7 @@ fn frames_are_those_that_force_and_whisk_read() {
         "[whisker.rest]\npoints = \"traced.csv\"\n",
     );
     place.write("traced.toml", &scene);
-    let run = place.run(&[
-        "shape",
-        "traced.toml",
-        "--distance",
-        "15",
-        "--push-angle",
-        "0",
-    ]);
+    let run = place.run(&words("shape traced.toml --distance 15 --push-angle 0"));
     assert_eq!(run.code, Some(0), "{run:?}");
     assert!(
         run.err.contains("note: whisker.rest: curvature of degree "),
@@ -86,20 +75,10 @@ fn frames_are_those_that_force_and_whisk_read() {
     // The baseline is that of the frames without contact.
     assert!(run.err.contains("baseline"), "{run:?}");
     assert_eq!(run.out.matches(",missing").count(), 3, "{run:?}");
-    let run = place.run(&[
-        "whisk",
-        "scene.toml",
-        "--distance",
-        "15.66",
-        "--angles",
-        "frames.csv",
-        "--bridge",
-        "10ms",
-        "--events",
-        "-",
-        "--csv",
-        "samples.csv",
-    ]);
+    let run = place.run(&words(
+        "whisk scene.toml --distance 15.66 --angles frames.csv --bridge 10ms --events - \
+         --csv samples.csv",
+    ));
     assert_eq!(run.code, Some(0), "{run:?}");
     assert!(run.out.contains(",slip-off,cb,"), "{run:?}");
 }
@@ -178,31 +157,16 @@ fn contacts_without_first_touch_or_end_are_counted() {
 #[test]
 fn measurements_of_whisk_and_points_are_read() {
     let place = film();
-    let run = place.run(&[
-        "import",
-        "rows.csv",
-        "--mm-per-pixel",
-        "50um",
-        "--fps",
-        "500",
-    ]);
+    let run = place.run(&words("import rows.csv --mm-per-pixel 50um --fps 500"));
     assert_eq!(run.code, Some(0), "{run:?}");
     assert!(run.err.contains("note: angles are measured from the y axis of the image, as the ends of the segments show"), "{run:?}");
     assert_eq!(run.out.lines().count(), 57);
     assert!(run.out.contains("\n25,0.05,,,"), "{run:?}");
     place.write("a.csv", "0,0\n10,1\n20,3\n30,6\n40,10\n");
     place.write("b.csv", "0,0\n10,2\n20,5\n30,9\n40,14\n");
-    let run = place.run(&[
-        "import",
-        "a.csv",
-        "b.csv",
-        "--mm-per-pixel",
-        "0.1",
-        "--fps",
-        "100",
-        "--degree",
-        "0",
-    ]);
+    let run = place.run(&words(
+        "import a.csv b.csv --mm-per-pixel 0.1 --fps 100 --degree 0",
+    ));
     assert_eq!((run.code, run.out.lines().count()), (Some(0), 3), "{run:?}");
 }
 

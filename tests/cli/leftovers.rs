@@ -1,7 +1,7 @@
 //! Temporary files and folders of interrupted runs, and runs at once in one folder.
 
 use super::traces::good;
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, words};
 use std::fs;
 use std::process::{Command, Stdio};
 use whiskmap::store::{TemporaryFiles, TemporaryFolder};
@@ -48,13 +48,7 @@ fn only_leftovers_are_removed() {
     kept.retain(|name| ![exact("1"), exact("3")].contains(name));
     good(
         &place,
-        &[
-            "shape",
-            "scene.toml",
-            "--distance=9",
-            "--push-angle=1",
-            "--csv=t.csv",
-        ],
+        &words("shape scene.toml --distance=9 --push-angle=1 --csv=t.csv"),
     );
     fs::remove_file(place.path("t.csv")).unwrap();
     assert_eq!(names(&place.path("")), kept);
@@ -65,13 +59,7 @@ fn only_leftovers_are_removed() {
 #[test]
 fn runs_at_once_write_the_same_files() {
     let place = Place::with(SCENE);
-    let branch = [
-        "branch",
-        "scene.toml",
-        "--distance=9",
-        "--csv=t.csv",
-        "--plot=p.svg",
-    ];
+    let branch = words("branch scene.toml --distance=9 --csv=t.csv --plot=p.svg");
     good(&place, &branch);
     let expected = (place.bytes("t.csv"), place.bytes("p.svg"));
     let run = || {

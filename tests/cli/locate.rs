@@ -1,23 +1,14 @@
 //! `whiskmap locate`.
 
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 /// The numbers that `shape` gives a state lead back to it.
 #[test]
 fn a_state_of_shape_comes_back() {
     let place = Place::with(SCENE);
-    let shape = place.run(&[
-        "shape",
-        "scene.toml",
-        "--distance",
-        "15.66",
-        "--push-angle",
-        "10",
-        "--state",
-        "state.csv",
-        "--csv",
-        "shape.csv",
-    ]);
+    let shape = place.run(&words(
+        "shape scene.toml --distance 15.66 --push-angle 10 --state state.csv --csv shape.csv",
+    ));
     assert_eq!(shape.code, Some(0), "{shape:?}");
     let table = |text: &str, name: &str| -> f64 {
         let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
@@ -57,20 +48,10 @@ fn readings_of_a_file_have_rows_and_a_picture() {
         "r.csv",
         "base_moment_nnm,base_force_y_un,day\n60,6,1\n,6,1\n0,0,1\n-60,6,1\nNA,nan,1\n",
     );
-    let run = place.run(&[
-        "locate",
-        "scene.toml",
-        "--readings",
-        "r.csv",
-        "--moment-sd",
-        "1nNm",
-        "--force-sd",
-        "0.1uN",
-        "--csv",
-        "out.csv",
-        "--plot",
-        "out.svg",
-    ]);
+    let run = place.run(&words(
+        "locate scene.toml --readings r.csv --moment-sd 1nNm --force-sd 0.1uN --csv out.csv \
+         --plot out.svg",
+    ));
     assert_eq!(
         (run.code, &*run.out),
         (Some(0), "out.csv\nout.svg\n"),
@@ -100,15 +81,9 @@ fn a_map_counts_the_states_that_share_numbers() {
     let (axes, _) = straight.split_once("[grid]").unwrap();
     let grid = "[grid]\npush_angle_deg = { from = -60, to = 60, count = 200 }\ndistance_mm = { from = 1, to = 22, count = 60 }\n";
     let place = Place::with(&format!("{axes}{grid}"));
-    let run = place.run(&[
-        "locate",
-        "scene.toml",
-        "--map",
-        "--csv",
-        "map.csv",
-        "--plot",
-        "map.svg",
-    ]);
+    let run = place.run(&words(
+        "locate scene.toml --map --csv map.csv --plot map.svg",
+    ));
     assert_eq!(
         (run.code, &*run.out),
         (Some(0), "map.csv\nmap.svg\n"),
@@ -170,51 +145,19 @@ fn bad_readings_are_refused() {
             "must be between -1e18 uN and 1e18 uN",
         ),
         (
-            &[
-                "--base-moment",
-                "1",
-                "--base-force-x",
-                "1",
-                "--angle",
-                "361",
-            ],
+            &words("--base-moment 1 --base-force-x 1 --angle 361"),
             "must be between -360",
         ),
         (
-            &[
-                "--base-moment",
-                "1",
-                "--base-force-x",
-                "1",
-                "--moment-sd",
-                "1",
-            ],
+            &words("--base-moment 1 --base-force-x 1 --moment-sd 1"),
             "--force-sd",
         ),
         (
-            &[
-                "--base-moment",
-                "1",
-                "--base-force-x",
-                "1",
-                "--moment-sd",
-                "0",
-                "--force-sd",
-                "1",
-            ],
+            &words("--base-moment 1 --base-force-x 1 --moment-sd 0 --force-sd 1"),
             "must be more than 0",
         ),
         (
-            &[
-                "--base-moment",
-                "1",
-                "--base-force-x",
-                "1",
-                "--moment-sd",
-                "1",
-                "--force-sd",
-                "-1",
-            ],
+            &words("--base-moment 1 --base-force-x 1 --moment-sd 1 --force-sd -1"),
             "must be more than 0",
         ),
         (&["--base-moment", "1", "--readings", "r.csv"], "--readings"),
@@ -247,13 +190,6 @@ fn bad_readings_are_refused() {
         locate(&["--readings", "r.csv"]).assert_refused(&[said]);
     }
     let rough = Place::with(&SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
-    let rough = rough.run(&[
-        "locate",
-        "scene.toml",
-        "--base-moment",
-        "1",
-        "--base-force-x",
-        "1",
-    ]);
+    let rough = rough.run(&words("locate scene.toml --base-moment 1 --base-force-x 1"));
     rough.assert_refused(&["contact.friction = 0.3: must be 0"]);
 }

@@ -67,4 +67,4 @@ mod whisk;
 mod windows;
 mod yields;
 
-use program::{Place, Run, SCENE, names, no_file, no_folder};
+use program::{Place, Run, SCENE, names, no_file, no_folder, words};

@@ -1,7 +1,7 @@
 //! `whiskmap reproduce` and `whiskmap verify`.
 
 use super::traces::good;
-use super::{Place, SCENE, names};
+use super::{Place, SCENE, names, words};
 use std::path::Path;
 
 #[test]
@@ -16,12 +16,9 @@ fn figures_come_with_their_tables() {
         .collect();
     files.sort_unstable();
     assert_eq!(files, names(&place.path("new/folder")));
-    let pictures = [
-        "fig1", "fig2", "fig3", "fig4b", "fig4d", "fig5b", "fig5c", "fig6", "fig7b",
-    ];
-    let pictures =
-        pictures.map(|figure| ["pdf", "png", "svg"].map(|ending| format!("{figure}.{ending}")));
-    let mut expected = pictures.concat();
+    let pictures = words("fig1 fig2 fig3 fig4b fig4d fig5b fig5c fig6 fig7b");
+    let files_of = |figure| ["pdf", "png", "svg"].map(|ending| format!("{figure}.{ending}"));
+    let mut expected: Vec<String> = pictures.into_iter().flat_map(files_of).collect();
     let branch = |shown: &str| format!("distance_mm,side,stable,push_angle_deg,{shown},mark");
     let shape = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,strain,part";
     let frame = "time_s,angle_deg,regime,x_mm,y_mm";
@@ -46,31 +43,16 @@ fn figures_come_with_their_tables() {
         (&["3e", "3j", "4d", "5c_left", "5c_right"], ends),
         (&["4b", "4c", "5b"], frame),
         (
-            &[
-                "6b_free",
-                "6b_330um",
-                "6b_1500um",
-                "6b_4500um",
-                "6e_free",
-                "6e_2000um",
-            ],
+            &words("6b_free 6b_330um 6b_1500um 6b_4500um 6e_free 6e_2000um"),
             swept,
         ),
         (&["6e_330um", "6e_3300um"], swept),
         (
-            &[
-                "6c_histogram_free",
-                "6c_histogram_330um",
-                "6c_histogram_1500um",
-            ],
+            &words("6c_histogram_free 6c_histogram_330um 6c_histogram_1500um"),
             tip,
         ),
         (
-            &[
-                "6c_histogram_4500um",
-                "6f_histogram_free",
-                "6f_histogram_330um",
-            ],
+            &words("6c_histogram_4500um 6f_histogram_free 6f_histogram_330um"),
             tip,
         ),
         (&["6f_histogram_2000um", "6f_histogram_3300um"], tip),
@@ -104,12 +86,7 @@ fn figures_show_measured_points() {
     };
     good(&place, &["reproduce", "theory"]);
     place.write("points.csv", "side,d,angle\ncb,9,21\ncf,9,-33\n");
-    let points = [
-        "--fig4d",
-        "points.csv",
-        "--columns",
-        "distance=d,push=angle",
-    ];
+    let points = words("--fig4d points.csv --columns distance=d,push=angle");
     good(&place, &[&["reproduce", "both"], &points[..]].concat());
     // Two points, and one in the legend.
     assert_eq!(circles("both"), circles("theory") + 3);

@@ -1,6 +1,6 @@
 //! Pictures of curves, branches and rows: their axes, regions and ranges, and their size on paper.
 
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 /// Draws a picture as SVG.
 fn drawn(place: &Place, arguments: &[&str]) -> String {
@@ -93,14 +93,7 @@ fn the_force_axis_of_a_branch_ends_with_the_stable_states() {
 fn a_row_of_a_map_is_a_line_chart() {
     let place = Place::with(SCENE);
     place.map(&["scene.toml", "--no-png"]);
-    let row = [
-        "render",
-        "outputs/scene.exr",
-        "--at",
-        "distance_mm=12",
-        "-o",
-        "p.svg",
-    ];
+    let row = words("render outputs/scene.exr --at distance_mm=12 -o p.svg");
     let run = place.run(&[&row[..], &["--channel", "force_un"]].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     let svg = String::from_utf8(place.bytes("p.svg")).unwrap();

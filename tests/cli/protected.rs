@@ -2,7 +2,7 @@
 
 use super::data::DATA;
 use super::traces::good;
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, words};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 
@@ -232,13 +232,7 @@ fn a_file_in_the_place_of_a_folder_is_named() {
 #[test]
 fn a_replaced_file_keeps_its_mode_and_a_read_only_one_is_refused() {
     let place = Place::with(SCENE);
-    let table = [
-        "shape",
-        "scene.toml",
-        "--distance=9",
-        "--push-angle=1",
-        "--csv=t.csv",
-    ];
+    let table = words("shape scene.toml --distance=9 --push-angle=1 --csv=t.csv");
     good(&place, &table);
     let expected = place.bytes("t.csv");
     // Without the set-user-ID and set-group-ID bits.

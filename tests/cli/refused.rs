@@ -1,6 +1,6 @@
 //! Invalid input: one message, exit code 2, no file created.
 
-use super::{Place, Run, SCENE, names, no_file};
+use super::{Place, Run, SCENE, names, no_file, words};
 use std::fs;
 use std::io::{BufRead, BufReader};
 #[cfg(unix)]
@@ -101,15 +101,7 @@ fn a_folder_that_takes_no_files() {
     let place = Place::with(SCENE);
     let run = place.run(&["map", "scene.toml", "--engine", "cpu", "-o", "/proc"]);
     run.assert_refused(&["--output /proc: ", "give a folder that can be written"]);
-    let map = [
-        "map",
-        "scene.toml",
-        "--engine",
-        "cpu",
-        "--no-png",
-        "-o",
-        "maps",
-    ];
+    let map = words("map scene.toml --engine cpu --no-png -o maps");
     assert_eq!(place.run(&map).code, Some(0));
     let store = "/proc/slice.zarr";
     let run = place.run(&["extract", "maps/scene.exr", "-o", store]);
@@ -196,14 +188,7 @@ fn arguments_out_of_range() {
     let whole = "must be a whole number between 1 and 1024";
     map(&["--threads", "0"]).assert_refused(&["'0'", "--threads", whole]);
     map(&["--threads", "many"]).assert_refused(&["'many'", "--threads", whole]);
-    let shape = [
-        "shape",
-        "scene.toml",
-        "--distance",
-        "9",
-        "--push-angle",
-        "1",
-    ];
+    let shape = words("shape scene.toml --distance 9 --push-angle 1");
     for (at, word, option, must) in [
         (3, "far", "--distance", "must be a length, such as"),
         (
@@ -220,7 +205,7 @@ fn arguments_out_of_range() {
             "unit mm: must be deg (the default), ° or rad",
         ),
     ] {
-        let mut words = shape;
+        let mut words = shape.clone();
         words[at] = word;
         let quoted = format!("'{word}'");
         place.run(&words).assert_refused(&[&quoted, option, must]);

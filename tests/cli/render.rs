@@ -1,6 +1,6 @@
 //! `whiskmap render`.
 
-use super::{Place, Run, SCENE, names, no_file, no_folder};
+use super::{Place, Run, SCENE, names, no_file, no_folder, words};
 
 #[test]
 fn render_draws_the_picture_again() {
@@ -74,50 +74,23 @@ fn stores_and_parts_are_drawn_like_maps() {
         );
     }
     // One whisker of several in a map, and one distance.
-    run(&[
-        "extract",
-        "scene.zarr",
-        "--at=friction=0",
-        "-o",
-        "whole.exr",
-    ]);
+    run(&words("extract scene.zarr --at=friction=0 -o whole.exr"));
     for at in ["--at=taper=1", "--at=distance_mm=5"] {
         run(&["extract", "whole.exr", at, "-o", "part.exr"]);
         run(&["render", "part.exr", "-o", "part.png"]);
         run(&["render", "whole.exr", at, "-o", "drawn.png"]);
         assert!(place.bytes("drawn.png") == place.bytes("part.png"), "{at}");
     }
-    let beside = run(&[
-        "render",
-        "scene.zarr",
-        "--at=friction=0.3",
-        "--channel=force_un",
-    ]);
+    let beside = run(&words(
+        "render scene.zarr --at=friction=0.3 --channel=force_un",
+    ));
     assert_eq!(beside.out, "scene.friction=0.3.force_un.png\n");
 
     // An extracted axis of one value takes no room, and its value stands once in the title.
-    run(&[
-        "extract",
-        "scene.zarr",
-        "--at=friction=0.3",
-        "-o",
-        "part.zarr",
-    ]);
+    run(&words("extract scene.zarr --at=friction=0.3 -o part.zarr"));
     run(&["render", "part.zarr", "-o", "own.svg"]);
-    run(&[
-        "render",
-        "part.zarr",
-        "--at=friction=0.3",
-        "-o",
-        "chosen.svg",
-    ]);
-    run(&[
-        "render",
-        "scene.zarr",
-        "--at=friction=0.3",
-        "-o",
-        "drawn.svg",
-    ]);
+    run(&words("render part.zarr --at=friction=0.3 -o chosen.svg"));
+    run(&words("render scene.zarr --at=friction=0.3 -o drawn.svg"));
     let drawn = place.bytes("drawn.svg");
     assert!(drawn == place.bytes("own.svg") && drawn == place.bytes("chosen.svg"));
 
@@ -292,14 +265,7 @@ fn scale_and_width_are_chosen() {
     assert!(height(&untitled) < height(&plain));
     // Moments of both signs have the logarithmic scale of their size, unless a linear one is chosen.
     let moment = |more: &[&str]| {
-        let moment = [
-            "render",
-            "outputs/scene.exr",
-            "--channel",
-            "base_moment_nnm",
-            "-o",
-            "moment.svg",
-        ];
+        let moment = words("render outputs/scene.exr --channel base_moment_nnm -o moment.svg");
         let run = place.run(&[&moment[..], more].concat());
         assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
         String::from_utf8(place.bytes("moment.svg")).unwrap()

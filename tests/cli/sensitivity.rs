@@ -1,7 +1,7 @@
 //! `whiskmap sensitivity` and the columns of `--derivatives`.
 
 use super::traces::good;
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 fn lines(out: &str) -> Vec<Vec<String>> {
     let line = |line: &str| line.split(',').map(str::to_owned).collect();
@@ -20,16 +20,7 @@ fn the_table_has_every_variable_of_the_scene() {
     let place = Place::with(SCENE);
     let run = good(
         &place,
-        &[
-            "sensitivity",
-            "scene.toml",
-            "--distance",
-            "15.66",
-            "--csv",
-            "-",
-            "--plot",
-            "bars.svg",
-        ],
+        &words("sensitivity scene.toml --distance 15.66 --csv - --plot bars.svg"),
     );
     let table = lines(&run.out);
     let (header, rows) = table.split_first().unwrap();
@@ -83,13 +74,7 @@ fn curves_and_branches_have_columns_of_derivatives() {
     let all = lines(&all.out);
     let curve = good(
         &place,
-        &[
-            "curve",
-            "scene.toml",
-            "--distance",
-            "15.66",
-            "--derivatives=taper",
-        ],
+        &words("curve scene.toml --distance 15.66 --derivatives=taper"),
     );
     let curve = lines(&curve.out);
     for (side, line) in [("cf", &curve[1]), ("cb", &curve[2])] {
@@ -104,17 +89,7 @@ fn curves_and_branches_have_columns_of_derivatives() {
     }
     let branch = good(
         &place,
-        &[
-            "branch",
-            "scene.toml",
-            "--distance",
-            "15.66",
-            "--side",
-            "cb",
-            "--points",
-            "9",
-            "--derivatives",
-        ],
+        &words("branch scene.toml --distance 15.66 --side cb --points 9 --derivatives"),
     );
     let branch = lines(&branch.out);
     let (header, rows) = branch.split_first().unwrap();

@@ -1,7 +1,7 @@
 //! `whiskmap shape`.
 
 use super::traces::{BRANCH, CURVE, SHAPE, cells, good};
-use super::{Place, SCENE, names};
+use super::{Place, SCENE, names, words};
 use whiskmap::Side;
 use whiskmap::scene::Scene;
 use whiskmap::trace::Branch;
@@ -9,13 +9,7 @@ use whiskmap::trace::Branch;
 #[test]
 fn a_shape_is_the_requested_state() {
     let place = Place::with(SCENE);
-    let at = [
-        "shape",
-        "scene.toml",
-        "--distance=15.66",
-        "--push-angle=10",
-        "--points=11",
-    ];
+    let at = words("shape scene.toml --distance=15.66 --push-angle=10 --points=11");
     let stable = good(&place, &at);
     let unstable = good(&place, &[&at[..], &["--branch", "unstable"]].concat());
     let scene = Scene::parse(SCENE, "scene").unwrap();
@@ -35,14 +29,7 @@ fn a_shape_is_the_requested_state() {
 #[test]
 fn the_state_has_the_loads_of_the_shape() {
     let place = Place::with(SCENE);
-    let at = [
-        "shape",
-        "scene.toml",
-        "--distance=15.66",
-        "--push-angle=10",
-        "--state",
-        "state.csv",
-    ];
+    let at = words("shape scene.toml --distance=15.66 --push-angle=10 --state state.csv");
     let table = good(&place, &[&at[..], &["--csv", "-"]].concat()).out;
     let state = String::from_utf8(place.bytes("state.csv")).unwrap();
     let state = cells(&state, BRANCH);

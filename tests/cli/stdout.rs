@@ -1,7 +1,7 @@
 //! Standard output that is full.
 
 use super::data::DATA;
-use super::{Place, Run, SCENE};
+use super::{Place, Run, SCENE, words};
 use std::fs::File;
 
 #[test]
@@ -15,13 +15,7 @@ fn a_full_standard_output_is_a_failure() {
         Run::of(&output.unwrap())
     };
     let shape = ["shape", "scene.toml", "--distance=9", "--push-angle=1"];
-    let design = [
-        "design",
-        "scene.toml",
-        "--distance=9",
-        "--slip-off=40deg",
-        "--for=taper",
-    ];
+    let design = words("design scene.toml --distance=9 --slip-off=40deg --for=taper");
     for arguments in [
         &["--version"][..],
         &["--help"],
@@ -35,12 +29,7 @@ fn a_full_standard_output_is_a_failure() {
         &[&shape[..], &["--csv=/dev/null", "--plot=p.png"]].concat(),
         &["branch", "scene.toml", "--distance=9"],
         &design,
-        &[
-            "fit",
-            "scene.toml",
-            "--data=pts.csv",
-            "--free=tip_radius_um",
-        ],
+        &words("fit scene.toml --data=pts.csv --free=tip_radius_um"),
         &["submit", "scene.toml", "--shards=1"],
         &["render", "scene.exr", "-o=-"],
         &["render", "scene.exr", "-o=r.png"],

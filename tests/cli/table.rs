@@ -1,6 +1,6 @@
 //! Tables of whiskers in commands and files.
 
-use super::{Place, names};
+use super::{Place, names, words};
 use whiskmap::scene::Scene;
 use whiskmap::store::StoredMap;
 
@@ -77,24 +77,13 @@ fn maps_name_their_whiskers() {
             "{none:?}"
         );
     }
-    let run = place.run(&[
-        "extract",
-        "scene.exr",
-        "--at",
-        "whisker=C3",
-        "-o",
-        "c3.zarr",
-    ]);
+    let run = place.run(&words("extract scene.exr --at whisker=C3 -o c3.zarr"));
     assert_eq!(run.code, Some(0), "{run:?}");
     let coordinate = String::from_utf8(place.bytes("c3.zarr/whisker/c.0")).unwrap();
     assert_eq!(coordinate, "\u{1}\0\0\0\u{2}\0\0\0C3");
-    let run = place.run(&[
-        "compare",
-        "scene.exr",
-        "scene.zarr",
-        "--within",
-        "regime=0,force_un=0",
-    ]);
+    let run = place.run(&words(
+        "compare scene.exr scene.zarr --within regime=0,force_un=0",
+    ));
     assert_eq!(run.code, Some(0), "{run:?}");
     for source in ["scene.toml", "scene.zarr"] {
         let run = place.run(&["render", source, "-o", "pad.svg"]);

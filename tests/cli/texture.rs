@@ -1,7 +1,7 @@
 //! `whiskmap texture`.
 
 use super::traces::cells;
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 const SURFACE: &str = "\
 [surface]
@@ -18,18 +18,7 @@ fn place(surface: &str) -> Place {
 #[test]
 fn a_sweep_gives_its_tables_and_its_picture() {
     let place = place(SURFACE);
-    let files = [
-        "--csv",
-        "s.csv",
-        "--events",
-        "e.csv",
-        "--dwells",
-        "d.csv",
-        "--histogram",
-        "h.csv",
-        "--plot",
-        "t.svg",
-    ];
+    let files = words("--csv s.csv --events e.csv --dwells d.csv --histogram h.csv --plot t.svg");
     let texture = |more: &[&str]| {
         let run = place.run(&[&["texture", "scene.toml"], more].concat());
         assert_eq!(run.code, Some(0), "{run:?}");
@@ -131,14 +120,7 @@ fn wrong_sweeps_are_refused() {
 #[test]
 fn samples_have_the_curvature_at_an_arclength() {
     let place = place(SURFACE);
-    let sweep = [
-        "texture",
-        "scene.toml",
-        "--sine",
-        "15,0.2,5",
-        "--rate",
-        "20",
-    ];
+    let sweep = words("texture scene.toml --sine 15,0.2,5 --rate 20");
     let run = place.run(&[&sweep[..], &["--curvature-at", "2"]].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     let header = run.out.lines().next().unwrap().to_owned();

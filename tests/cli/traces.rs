@@ -1,6 +1,6 @@
 //! Common behaviour of `whiskmap curve`, `branch` and `shape`: tables, plots, refused input.
 
-use super::{Place, Run, SCENE, names, no_folder};
+use super::{Place, Run, SCENE, names, no_folder, words};
 
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
                      arc_length_mm,force_un,contact_force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
@@ -36,12 +36,7 @@ pub fn cells<'a>(text: &'a str, header: &str) -> Vec<Vec<&'a str>> {
 #[test]
 fn tables_and_plots_are_written_to_the_given_files() {
     let place = Place::with(SCENE);
-    let shape = [
-        "shape",
-        "scene.toml",
-        "--distance=15.66",
-        "--push-angle=-10",
-    ];
+    let shape = words("shape scene.toml --distance=15.66 --push-angle=-10");
     for (arguments, header) in [
         (&["curve", "scene.toml"][..], CURVE),
         (&CB[..], BRANCH),
@@ -143,14 +138,7 @@ fn wrong_arguments_are_refused_before_any_work() {
         &["--csv", "t.svg", "--plot", "t.svg"],
         &["must be two files"],
     );
-    let push = [
-        "shape",
-        "scene.toml",
-        "--distance",
-        "9",
-        "--push-angle",
-        "1e9",
-    ];
+    let push = words("shape scene.toml --distance 9 --push-angle 1e9");
     place
         .run(&push)
         .assert_refused(&["--push-angle 1000000000 deg: must be between -360 deg and 360 deg"]);

@@ -1,7 +1,7 @@
 //! `whiskmap curve --samples`, and `[uncertainty]` elsewhere.
 
 use super::traces::{CURVE, SPREAD, cells, good};
-use super::{Place, SCENE, names};
+use super::{Place, SCENE, names, words};
 
 const UNCERTAIN: &str = "[uncertainty]\nbase_radius_um = 1.0\ntip_radius_um = 0.3\n";
 
@@ -49,15 +49,8 @@ fn samples_and_measured_points_share_a_plot() {
     let place = uncertain();
     let data = "side,distance_mm,push_angle_deg,kind,sd_deg\ncb,10,40,slip-off,1.5\ncf,15,-29,slip-off,0.5\n";
     place.write("points.csv", data);
-    let words = [
-        "curve",
-        "scene.toml",
-        "--samples",
-        "20",
-        "--data",
-        "points.csv",
-    ];
-    let run = place.run(&[&words[..], &["--csv", "t.csv", "--plot", "p.svg"]].concat());
+    let curve = words("curve scene.toml --samples 20 --data points.csv");
+    let run = place.run(&[&curve[..], &["--csv", "t.csv", "--plot", "p.svg"]].concat());
     assert_eq!(run.code, Some(0), "{run:?}");
     let table = String::from_utf8(place.bytes("t.csv")).unwrap();
     let columns = format!(
@@ -67,7 +60,7 @@ fn samples_and_measured_points_share_a_plot() {
     let rows = cells(&table, &columns);
     assert_eq!([rows[0][4], rows[1][4]], ["1.5", "0.5"]);
     // The same samples as without points.
-    let alone = [&words[..4], &["--distance", "10,15"]].concat();
+    let alone = [&curve[..4], &["--distance", "10,15"]].concat();
     let alone = good(&place, &alone).out;
     let spread = cells(&alone, SPREAD);
     assert_eq!(
@@ -86,26 +79,17 @@ fn samples_and_measured_points_share_a_plot() {
     // Both points and the sample in the legend.
     assert_eq!(svg.matches("<circle").count(), 3, "{svg}");
     assert!(svg.contains(" \u{b1} standard deviation<"), "{svg}");
-    assert_eq!(place.run(&words).out, table);
+    assert_eq!(place.run(&curve).out, table);
     place.write(
         "points.csv",
         &data.replace("push_angle_deg", "push_chord_deg"),
     );
-    let chords = place.run(&[&words[..], &["--plot", "q.svg"]].concat());
+    let chords = place.run(&[&curve[..], &["--plot", "q.svg"]].concat());
     chords.assert_refused(&[
         "--samples: bands are of push angles, and points.csv has push_chord_deg",
     ]);
 
-    let forces = [
-        "curve",
-        "scene.toml",
-        "--samples",
-        "20",
-        "--x",
-        "force_un",
-        "--plot",
-        "f.svg",
-    ];
+    let forces = words("curve scene.toml --samples 20 --x force_un --plot f.svg");
     good(&place, &forces);
     let svg = String::from_utf8(place.bytes("f.svg")).unwrap();
     assert!(svg.contains("force at detachment"), "{svg}");
@@ -130,13 +114,9 @@ fn other_commands_leave_the_table_alone() {
     both(&["curve", "SCENE"]);
     both(&["branch", "SCENE", "--distance=9"]);
     both(&["shape", "SCENE", "--distance=9", "--push-angle=9"]);
-    both(&[
-        "design",
-        "SCENE",
-        "--distance=15.66",
-        "--slip-off=20",
-        "--for=taper",
-    ]);
+    both(&words(
+        "design SCENE --distance=15.66 --slip-off=20 --for=taper",
+    ));
     place.map(&["scene.toml"]).assert_settled();
     good(&place, &["render", "outputs/scene.exr", "-o", "again.png"]);
 }

@@ -1,6 +1,6 @@
 //! Units of options, and warnings about values that look like another unit.
 
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 #[test]
 fn distances_and_angles_take_units() {
@@ -78,32 +78,9 @@ fn numbers_in_other_units_are_warned_of() {
         &["plan", "scene.toml"],
         &["curve", "scene.toml"],
         &["branch", "scene.toml", "--distance", "15"],
-        &[
-            "shape",
-            "scene.toml",
-            "--distance",
-            "15",
-            "--push-angle",
-            "5",
-        ],
-        &[
-            "design",
-            "scene.toml",
-            "--distance",
-            "15",
-            "--slip-off",
-            "20",
-            "--for",
-            "taper",
-        ],
-        &[
-            "fit",
-            "scene.toml",
-            "--data",
-            "points.csv",
-            "--free",
-            "tip_radius_um",
-        ],
+        &words("shape scene.toml --distance 15 --push-angle 5"),
+        &words("design scene.toml --distance 15 --slip-off 20 --for taper"),
+        &words("fit scene.toml --data points.csv --free tip_radius_um"),
         &["submit", "scene.toml", "--shards", "1"],
     ] {
         let run = place.run(words);

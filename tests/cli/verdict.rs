@@ -2,7 +2,7 @@
 
 use super::data::{DATA, place};
 use super::fit::{FIT, fit, json};
-use super::{Run, names};
+use super::{Run, names, words};
 use serde_json::Value;
 
 /// Data in radians are not a fit: exit code 1, and no file except the JSON.
@@ -11,14 +11,7 @@ fn values_that_are_not_a_fit_are_reported() {
     let place = place();
     let text = "side,distance_mm,push_angle_deg,sd_deg\ncf,10,-0.859,0.01\ncf,15,-0.508,0.01\ncb,10,0.7,0.01\ncb,15,0.33,0.01\n";
     place.write("points.csv", text);
-    let more = [
-        "--free",
-        "tip_radius_um",
-        "-o",
-        "fitted.toml",
-        "--json",
-        "fit.json",
-    ];
+    let more = words("--free tip_radius_um -o fitted.toml --json fit.json");
     let run = place.run(&[&FIT[..], &more].concat());
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(run.out.contains("\nnot a fit\n"), "{run:?}");

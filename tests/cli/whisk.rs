@@ -1,7 +1,7 @@
 //! `whiskmap whisk`.
 
 use super::traces::{cells, good};
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 const AT: [&str; 4] = ["whisk", "scene.toml", "--distance", "15.66"];
 
@@ -121,14 +121,7 @@ fn wrong_courses_are_refused() {
     }
     whisk(&place, &[]).assert_refused(&["--angles <FILE>|--sine"]);
     place
-        .run(&[
-            "whisk",
-            "scene.toml",
-            "--distance",
-            "19.9",
-            "--sine",
-            "1,1,1",
-        ])
+        .run(&words("whisk scene.toml --distance 19.9 --sine 1,1,1"))
         .assert_refused(&["--distance 19.9", "out of reach"]);
 }
 

@@ -3,7 +3,7 @@
 use super::data::DATA;
 use super::store::SWEEP;
 use super::traces::{CURVE, good};
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, words};
 use std::fs::{self, File};
 use std::io::Read;
 use std::os::windows::fs::OpenOptionsExt;
@@ -172,14 +172,7 @@ fn interrupt(child: &Child) {
 fn an_interrupted_run_cleans_up() {
     const STATUS_CONTROL_C_EXIT: i32 = 0xC000_013A_u32.cast_signed();
     let place = Place::with(SWEEP);
-    let map = [
-        "map",
-        "scene.toml",
-        "--engine=cpu",
-        "--format=zarr",
-        "--threads=1",
-        "-oout",
-    ];
+    let map = words("map scene.toml --engine=cpu --format=zarr --threads=1 -oout");
     let blocks = || {
         let names = names(&place.path("out/scene.zarr/regime"));
         names.iter().any(|name| name.starts_with("c."))

@@ -1,6 +1,6 @@
 //! `whisker.yield_strain`: marks in tables, maps, pictures and designs.
 
-use super::{Place, Run, SCENE};
+use super::{Place, Run, SCENE, words};
 use whiskmap::store::MapSource;
 
 /// Scene with a yield strain, which some of its states exceed.
@@ -168,13 +168,7 @@ fn rows_of_a_table_have_their_own_yield_strains() {
         }
     }
     // Without strains, a note says so of a whisker with a yield strain.
-    let few = [
-        "map",
-        "scene.toml",
-        "-o",
-        "few",
-        "--channels=regime,margin_deg",
-    ];
+    let few = words("map scene.toml -o few --channels=regime,margin_deg");
     good(&place, &few);
     for (whisker, has_note) in [("unknown", false), ("soft", true)] {
         let at = format!("--at=whisker={whisker}");
@@ -259,25 +253,13 @@ fn maps_have_strains_and_hatched_cells() {
     // On demand, and left out.
     good(
         &place,
-        &[
-            "map",
-            "elastic.toml",
-            "-o",
-            "asked",
-            "--channels=regime,peak_strain",
-        ],
+        &words("map elastic.toml -o asked --channels=regime,peak_strain"),
     );
     let asked = MapSource::open(&place.path("asked/elastic.exr")).unwrap();
     assert_eq!(asked.channels(), ["regime", "peak_strain"]);
     good(
         &place,
-        &[
-            "map",
-            "scene.toml",
-            "-o",
-            "few",
-            "--channels=regime,margin_deg",
-        ],
+        &words("map scene.toml -o few --channels=regime,margin_deg"),
     );
     let (picture, err) = svg(&["render", "few/scene.exr"]);
     let note =
@@ -308,31 +290,20 @@ fn both_marks_are_in_one_line_of_the_legend() {
 fn a_store_has_the_strains_of_the_map() {
     let place = Place::with(&yielding(0.002));
     place.map(&["scene.toml"]);
-    let zarr = [
-        "map",
-        "scene.toml",
-        "--engine=cpu",
-        "--format=zarr",
-        "-o",
-        "out",
-    ];
+    let zarr = words("map scene.toml --engine=cpu --format=zarr -o out");
     good(&place, &zarr);
     // Parts of maps and stores have them, too.
     good(&place, &["extract", "outputs/scene.exr", "-o", "part.zarr"]);
     good(&place, &["extract", "out/scene.zarr", "-o", "part.exr"]);
-    let maps = [
-        "outputs/scene.exr",
-        "out/scene.zarr",
-        "part.zarr",
-        "part.exr",
-    ];
-    let tables = maps.map(|map| {
+    let maps = words("outputs/scene.exr out/scene.zarr part.zarr part.exr");
+    let tables = maps.into_iter().map(|map| {
         good(
             &place,
             &["extract", map, "--channel=peak_strain", "-o", "t.csv"],
         );
         String::from_utf8(place.bytes("t.csv")).unwrap()
     });
+    let tables: Vec<String> = tables.collect();
     assert!(tables.iter().all(|table| *table == tables[0]));
     let strains = column(&tables[0], "peak_strain").unwrap();
     assert!(strains.iter().filter(|strain| !strain.is_empty()).count() > 100);
@@ -374,11 +345,7 @@ fn a_design_names_the_strain_of_a_solution() {
     // Of several parameters, the strain is the target.
     let several = design(
         0.003,
-        &[
-            "--slip-off=20deg",
-            "--max-strain=0.004",
-            "--for=base_radius_um,taper",
-        ],
+        &words("--slip-off=20deg --max-strain=0.004 --for=base_radius_um,taper"),
     );
     assert!(
         several.err.contains("base_radius_um = 56.")

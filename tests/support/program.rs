@@ -104,6 +104,11 @@ fn isolate(command: &mut std::process::Command) {
     unsafe { command.pre_exec(set) };
 }
 
+/// Splits `line` into words at whitespace.
+pub fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
 /// Returns the system's message for a file that is missing in a folder.
 pub fn no_file() -> String {
     fs::metadata("nowhere").unwrap_err().to_string()

@@ -4,7 +4,7 @@ mod effects;
 mod shards;
 mod size;
 
-use super::{Place, Run, SCENE, names};
+use super::{Place, Run, SCENE, names, words};
 
 const STRAIGHT: &str = r#"title = "A straight cylinder"
 [whisker]
@@ -69,16 +69,7 @@ fn the_options_of_a_map_change_its_estimate() {
     assert!(!run.out.contains("Zarr store"), "{run:?}");
     let run = plan_with(
         &place,
-        &[
-            "--engine",
-            "spectral",
-            "--tolerance",
-            "1e-2deg",
-            "--no-png",
-            "-o",
-            "elsewhere",
-            "--force",
-        ],
+        &words("--engine spectral --tolerance 1e-2deg --no-png -o elsewhere --force"),
     );
     assert_eq!(fact(&run, "engine"), "spectral f64: selected by --engine");
     let plan = |options: &[&str]| place.run(&[&["plan", "scene.toml"], options].concat());
