@@ -1,6 +1,5 @@
 //! `whiskmap bench`: consistency of its tables and JSON, not the measured times.
 
-use super::traces::good;
 use super::{Place, Run, SCENE, words};
 use crate::shipped;
 use serde_json::Value;
@@ -18,7 +17,7 @@ fn errors_fall_from_rung_to_rung() {
             .replace("to = 70, count = 24", "to = 70, count = 512")
             .replace("count = 24", "count = 64"),
     );
-    let run = good(&place, &["bench", "scene.toml", "--quick", "--json", "-"]);
+    let run = place.quiet(&["bench", "scene.toml", "--quick", "--json", "-"]);
     let report: Value = serde_json::from_str(&run.out).unwrap();
     assert!(report["states"].as_u64().unwrap() > 200);
     assert!(report["runs"].as_u64().unwrap() >= 5);
@@ -189,10 +188,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     let peers = shipped::root().join("outputs/peers.json");
     let peers = peers.to_str().unwrap();
     let options = ["--json", "b.json", "--plot", "b.svg", "--peers", peers];
-    let run = good(
-        &place,
-        &[&["bench", "scene.toml", "--quick"][..], &options].concat(),
-    );
+    let run = place.quiet(&[&["bench", "scene.toml", "--quick"][..], &options].concat());
     let adapters = |line: &&str| line.starts_with("                    ") && !line.contains("deg");
     let rows = run.out.lines().filter(|line| !adapters(line));
     let widest = rows.map(|line| line.chars().count()).max();
@@ -207,7 +203,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     assert_eq!(place.path("b.json").is_symlink(), cfg!(unix));
     let json: Value = serde_json::from_slice(&place.bytes("b.json")).unwrap();
     assert_eq!(json["scene"], "A small map");
-    let picture = String::from_utf8(place.bytes("b.svg")).unwrap();
+    let picture = place.text("b.svg");
     assert!(picture.contains("What accuracy costs"));
     // Axis labels are numbers, not logarithms.
     assert!(picture.contains(">1e\u{2212}"), "{picture}");

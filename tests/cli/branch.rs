@@ -1,12 +1,12 @@
 //! `whiskmap branch`.
 
-use super::traces::{BRANCH, CB, SHAPE, cells, good};
+use super::traces::{BRANCH, CB, SHAPE, cells};
 use super::{Place, SCENE, words};
 
 #[test]
 fn a_branch_has_the_requested_number_of_points() {
     let place = Place::with(SCENE);
-    let run = good(&place, &[&CB[..], &["--points", "17"]].concat());
+    let run = place.quiet(&[&CB[..], &["--points", "17"]].concat());
     let rows = cells(&run.out, BRANCH);
     assert_eq!(rows.len(), 17);
     let marks: Vec<&str> = rows
@@ -15,7 +15,7 @@ fn a_branch_has_the_requested_number_of_points() {
         .filter(|mark| !mark.is_empty())
         .collect();
     assert_eq!(marks, ["first-touch", "slip-off", "second-fold"]);
-    let both = good(&place, &["branch", "scene.toml", "--distance", "15.66"]);
+    let both = place.quiet(&["branch", "scene.toml", "--distance", "15.66"]);
     assert_eq!(cells(&both.out, BRANCH).len(), 400);
 }
 
@@ -25,17 +25,14 @@ fn the_fold_can_be_asked_for() {
     let place = Place::with(SCENE);
     for distance in ["5.5", "8", "11.3", "14.1", "15.66", "17.9"] {
         for side in ["cb", "cf"] {
-            let run = good(
-                &place,
-                &[
-                    "branch",
-                    "scene.toml",
-                    "--distance",
-                    distance,
-                    "--side",
-                    side,
-                ],
-            );
+            let run = place.quiet(&[
+                "branch",
+                "scene.toml",
+                "--distance",
+                distance,
+                "--side",
+                side,
+            ]);
             let rows = cells(&run.out, BRANCH);
             let fold = rows.iter().find(|row| row[16] == "slip-off").unwrap();
             for branch in ["stable", "unstable"] {
@@ -47,28 +44,22 @@ fn the_fold_can_be_asked_for() {
                     "--push-angle",
                     fold[3],
                 ];
-                good(
-                    &place,
-                    &[&at[..], &["--branch", branch, "--points=2"]].concat(),
-                );
+                place.quiet(&[&at[..], &["--branch", branch, "--points=2"]].concat());
             }
         }
     }
     // Unstable states reach across first touch.
     let at = words("shape scene.toml --distance=15.66 --push-angle -20 --branch=unstable");
-    let run = good(&place, &[&at[..], &["--side", "cb"]].concat());
+    let run = place.quiet(&[&at[..], &["--side", "cb"]].concat());
     assert!(run.out.starts_with(SHAPE));
-    good(
-        &place,
-        &words("shape scene.toml --distance=9 --push-angle -1e-5"),
-    );
+    place.quiet(&words("shape scene.toml --distance=9 --push-angle -1e-5"));
 }
 
 #[test]
 fn several_poles_share_a_table_and_a_plot() {
     let place = Place::with(SCENE);
     let several = words("branch scene.toml --distance 10,13 --distance=15.66 --points=9");
-    let run = good(&place, &several);
+    let run = place.quiet(&several);
     let rows = cells(&run.out, BRANCH);
     let blocks: Vec<_> = rows
         .chunk_by(|a, b| a[..2] == b[..2])
@@ -77,10 +68,7 @@ fn several_poles_share_a_table_and_a_plot() {
     let expected =
         ["10.0", "13.0", "15.66"].map(|distance| [(distance, "cf", 9), (distance, "cb", 9)]);
     assert_eq!(blocks, expected.concat());
-    let alone = good(
-        &place,
-        &["branch", "scene.toml", "--distance=13", "--points=9"],
-    );
+    let alone = place.quiet(&["branch", "scene.toml", "--distance=13", "--points=9"]);
     assert_eq!(cells(&alone.out, BRANCH), rows[18..36]);
 
     for (column, label) in [
@@ -89,11 +77,8 @@ fn several_poles_share_a_table_and_a_plot() {
         ("base_moment_nnm", "bending moment at the base (nN m)"),
         ("contact_angle_deg", "contact angle (deg)"),
     ] {
-        good(
-            &place,
-            &[&several[..], &["--y", column, "--whole", "--plot=p.svg"]].concat(),
-        );
-        let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+        place.quiet(&[&several[..], &["--y", column, "--whole", "--plot=p.svg"]].concat());
+        let svg = place.text("p.svg");
         for text in [
             label,
             "first touch",

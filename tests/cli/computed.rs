@@ -18,12 +18,6 @@ fn huge() -> String {
     format!("{scene}{}", axes.concat())
 }
 
-fn good(place: &Place, arguments: &[&str]) -> Run {
-    let run = place.run(arguments);
-    assert_eq!(run.code, Some(0), "{run:?}");
-    run
-}
-
 /// Runs the program with `text` as its standard input.
 fn piped(place: &Place, arguments: &[&str], text: &str) -> Run {
     let mut command = place.command(arguments);
@@ -39,7 +33,7 @@ fn a_part_of_a_scene_is_that_of_its_map() {
     let solver = format!("--engine={engine}");
     for format in ["exr", "zarr"] {
         let map = ["map", "scene.toml", "--no-png", "--format", format];
-        good(&place, &[&map[..], &["-o", engine, &solver]].concat());
+        place.good(&[&map[..], &["-o", engine, &solver]].concat());
     }
     for (part, output, formats) in [
         (&["--at=pole_radius_mm=0.21"][..], "part.csv", &["zarr"][..]),
@@ -58,15 +52,12 @@ fn a_part_of_a_scene_is_that_of_its_map() {
         let computed = format!("computed/{output}");
         std::fs::create_dir_all(place.path("computed")).unwrap();
         let extract = [&["extract", "scene.toml", &solver, "-o", &computed], part].concat();
-        let run = good(&place, &extract);
+        let run = place.good(&extract);
         let begin = format!("engine: {engine} f64 on ");
         assert!(run.err.starts_with(&begin), "{run:?}");
         for format in formats {
             let stored = format!("{engine}/scene.{format}");
-            let of_stored = good(
-                &place,
-                &[&["extract", &stored, "-o", output], part].concat(),
-            );
+            let of_stored = place.good(&[&["extract", &stored, "-o", output], part].concat());
             assert!(run.err.ends_with(&of_stored.err), "{run:?} {of_stored:?}");
             match output {
                 "part.zarr" => {
@@ -102,9 +93,9 @@ fn a_picture_of_a_scene_is_that_of_its_map() {
         ),
     ] {
         let stored = ["render", "outputs/scene.exr", "-o", "stored.png"];
-        good(&place, &[&stored, options].concat());
+        place.good(&[&stored, options].concat());
         let computed = ["render", "scene.toml", "--engine", "cpu"];
-        let run = good(&place, &[&computed, options].concat());
+        let run = place.good(&[&computed, options].concat());
         assert_eq!(run.out.replace('\\', "/"), format!("outputs/{name}\n"));
         let drawn = place.bytes(&format!("outputs/{name}"));
         assert!(drawn == place.bytes("stored.png"), "{name}");
@@ -115,14 +106,11 @@ fn a_picture_of_a_scene_is_that_of_its_map() {
 fn only_the_whiskers_of_a_part_are_computed() {
     let place = Place::with(&huge());
     let at = words("--at=taper=0.9 --at=friction=0.3 --at=pole_radius_mm=0.5");
-    let run = good(&place, &[&["render", "scene.toml"], &at[..]].concat());
+    let run = place.good(&[&["render", "scene.toml"], &at[..]].concat());
     assert!(run.err.contains("\ntaper = 0.9\nfriction = 0.3"), "{run:?}");
     let part = ["--at=distance_mm=9", "--channel=force_un", "-o", "row.csv"];
-    good(
-        &place,
-        &[&["extract", "scene.toml"], &at[..], &part].concat(),
-    );
-    let row = std::fs::read_to_string(place.path("row.csv")).unwrap();
+    place.good(&[&["extract", "scene.toml"], &at[..], &part].concat());
+    let row = place.text("row.csv");
     assert_eq!(row.lines().count(), 1 + 24);
 }
 
@@ -133,10 +121,7 @@ fn a_scene_comes_from_standard_input() {
     let part = words("extract - --engine=cpu --at=pole_radius_mm=0.2 -o");
     let run = piped(&place, &[&part[..], &["piped.exr"]].concat(), &sweep());
     assert_eq!(run.code, Some(0), "{run:?}");
-    good(
-        &place,
-        &[&["extract", "scene.toml"], &part[2..], &["part.exr"]].concat(),
-    );
+    place.good(&[&["extract", "scene.toml"], &part[2..], &["part.exr"]].concat());
     assert!(place.bytes("piped.exr") == place.bytes("part.exr"));
 
     let run = piped(&place, &["render", "-"], &sweep());
@@ -157,10 +142,9 @@ fn a_scene_is_compared_with_its_map() {
     let some = "--channels=regime,force_un,d_push_d_base_radius_um";
     place.map(&["scene.toml", "--format=zarr", some]);
     place.map(&["scene.toml", "--no-png", "--digits=3"]);
-    let run = good(
-        &place,
-        &words("compare outputs/scene.zarr scene.toml --within=0 --engine=cpu"),
-    );
+    let run = place.good(&words(
+        "compare outputs/scene.zarr scene.toml --within=0 --engine=cpu",
+    ));
     // The scene has the channels of the store.
     assert!(!run.out.contains("only in"), "{run:?}");
     assert_eq!(run.count("  cells"), 6 * 24 * 24);
@@ -169,14 +153,8 @@ fn a_scene_is_compared_with_its_map() {
         "{run:?}"
     );
     assert!(run.out.contains("d_push_d_base_radius_um"), "{run:?}");
-    good(
-        &place,
-        &["compare", "scene.toml", "outputs/scene.exr", "--within=0"],
-    );
-    good(
-        &place,
-        &["compare", "scene.toml", "scene.toml", "--within=0"],
-    );
+    place.good(&["compare", "scene.toml", "outputs/scene.exr", "--within=0"]);
+    place.good(&["compare", "scene.toml", "scene.toml", "--within=0"]);
 
     place.write(
         "other.toml",
@@ -207,10 +185,10 @@ fn derivatives_are_computed_if_they_are_named() {
         ("scene.toml", "computed.npy"),
         ("outputs/scene.exr", "stored.npy"),
     ] {
-        good(&place, &["extract", from, "--channel", channel, "-o", to]);
+        place.good(&["extract", from, "--channel", channel, "-o", to]);
     }
     assert!(place.bytes("computed.npy") == place.bytes("stored.npy"));
-    good(&place, &["render", "scene.toml", "--channel", channel]);
+    place.good(&["render", "scene.toml", "--channel", channel]);
 }
 
 #[test]
@@ -314,10 +292,7 @@ fn options_of_the_solver_are_for_scenes() {
             place.run(command).assert_refused(&[&said]);
         }
     }
-    let run = good(
-        &place,
-        &words("render scene.toml --tolerance=1e-3deg --engine=cpu"),
-    );
+    let run = place.good(&words("render scene.toml --tolerance=1e-3deg --engine=cpu"));
     assert!(run.err.starts_with("accuracy: "), "{run:?}");
 }
 

@@ -1,6 +1,6 @@
 //! `whiskmap curve`.
 
-use super::traces::{CURVE, cells, good};
+use super::traces::{CURVE, cells};
 use super::{Place, SCENE};
 use whiskmap::Side;
 use whiskmap::scene::Scene;
@@ -10,7 +10,7 @@ use whiskmap::trace::curve;
 #[test]
 fn a_curve_is_a_table_of_exact_numbers() {
     let place = Place::with(SCENE);
-    let run = good(&place, &["curve", "scene.toml"]);
+    let run = place.quiet(&["curve", "scene.toml"]);
     let rows = cells(&run.out, CURVE);
     let scene = Scene::parse(SCENE, "scene").unwrap();
     let whisker = scene.first_whisker().whisker;
@@ -43,7 +43,7 @@ fn a_sweep_leads_with_the_whisker() {
     let whiskers = SCENE.replace("tip_radius_um = 1.5\n", "");
     let sweep = format!("{whiskers}taper = [0, 0.3, 1]\ncurvature_per_mm = [0.0, 0.03]\n");
     let place = Place::with(&sweep);
-    let run = good(&place, &["curve", "scene.toml"]);
+    let run = place.quiet(&["curve", "scene.toml"]);
     let rows = cells(&run.out, &format!("taper,curvature_per_mm,{CURVE}"));
     assert_eq!(rows.len(), 6 * 2 * 24);
     let whiskers: Vec<&[&str]> = rows.chunks(48).map(|rows| &rows[0][..2]).collect();
@@ -57,7 +57,7 @@ fn a_sweep_leads_with_the_whisker() {
     ];
     assert_eq!(whiskers, expected);
 
-    let run = good(&place, &["curve", "scene.toml", "--corner"]);
+    let run = place.quiet(&["curve", "scene.toml", "--corner"]);
     let rows = cells(
         &run.out,
         "taper,curvature_per_mm,side,distance_mm,push_angle_deg,reason",
@@ -87,7 +87,7 @@ fn a_curve_without_any_end_is_written_and_fails() {
         run.err.contains("error: all 4 ends are unresolved"),
         "{run:?}"
     );
-    let table = String::from_utf8(place.bytes("curve.csv")).unwrap();
+    let table = place.text("curve.csv");
     assert_eq!(table.matches(",unresolved,").count(), 4, "{table}");
 
     place.write(
@@ -132,7 +132,7 @@ fn a_part_of_a_sweep_is_selected() {
     let plot = ["scene.toml", "--plot", "plot.svg"];
     let advice = ["--at", "taper=0.5", "--at", "friction=0.2"];
     assert_eq!(curve(&[&plot[..], &advice].concat()).code, Some(0));
-    let picture = String::from_utf8(place.bytes("plot.svg")).unwrap();
+    let picture = place.text("plot.svg");
     assert!(picture.contains("A small map, taper = 0.5, friction = 0.2"));
     for (at, said) in [
         (
@@ -169,8 +169,8 @@ fn a_plot_shows_all_whiskers() {
         (many, &["0", "0.2667", "0.5333", "0.7333", "1"], 16),
     ] {
         let place = Place::with(&format!("{tapers}taper = {axis}\nfriction = [0, 0.2]\n"));
-        good(&place, &["curve", "scene.toml", "--plot", "plot.svg"]);
-        let picture = String::from_utf8(place.bytes("plot.svg")).unwrap();
+        place.quiet(&["curve", "scene.toml", "--plot", "plot.svg"]);
+        let picture = place.text("plot.svg");
         let named = picture.matches(">taper = ").count();
         assert_eq!(named, names.len());
         for name in names {

@@ -45,7 +45,7 @@ fn points_beside_the_curve() {
     for part in said {
         assert!(run.err.contains(part), "{run:?}");
     }
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    let svg = place.text("p.svg");
     for name in ["measured slip-off", "measured pull-off", "measured"] {
         assert!(svg.contains(&format!(">{name}<")), "{name}");
     }
@@ -57,9 +57,9 @@ fn points_beside_the_curve() {
     );
     let run = curve(&place, &["--csv", "t.csv", "--plot", "p.svg"]);
     assert_eq!(run.out, "t.csv\np.svg\n");
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    let svg = place.text("p.svg");
     assert!(svg.contains("chord angle at detachment (deg)"));
-    let table = String::from_utf8(place.bytes("t.csv")).unwrap();
+    let table = place.text("t.csv");
     let residual: f64 = cells(&table, POINTS)[0][8].parse().unwrap();
     assert!(residual.abs() < 0.01, "{residual}");
 }
@@ -72,7 +72,7 @@ fn the_curve_reaches_points_beyond_the_grid() {
     assert_ne!(short, SCENE);
     place.write("scene.toml", &short);
     assert_eq!(curve(&place, &["--plot", "p.svg"]).code, Some(0));
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    let svg = place.text("p.svg");
     let lines = svg
         .lines()
         .filter(|line| line.starts_with("<polyline") && line.contains("stroke-width=\"3\""));

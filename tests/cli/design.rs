@@ -1,6 +1,5 @@
 //! `whiskmap design`.
 
-use super::traces::good;
 use super::{Place, SCENE, words};
 
 const TAPER: [&str; 6] = [
@@ -31,7 +30,7 @@ fn a_value_is_a_line() {
     let designed = SCENE.replace("tip_radius_um = 1.5", &tip);
     let designed = designed.replace("{ from = 2, to = 20, count = 24 }", "[15.66]");
     place.write("designed.toml", &designed);
-    let curve = good(&place, &["curve", "designed.toml"]).out;
+    let curve = place.quiet(&["curve", "designed.toml"]).out;
     let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
     assert_eq!((end[0], end[3]), ("cb", "slip-off"));
     assert!(
@@ -43,7 +42,7 @@ fn a_value_is_a_line() {
     place.write("scene.toml", &format!("# mine\n{SCENE}"));
     let better = run(&place, &["--slip-off", "20deg", "-o", "better.toml"]);
     assert_eq!((better.code, &better.out), (Some(0), &found.out));
-    let better = String::from_utf8(place.bytes("better.toml")).unwrap();
+    let better = place.text("better.toml");
     let radius = better.split("tip_radius_um = ").nth(1).unwrap();
     let radius = radius.split_whitespace().next().unwrap();
     let tip_radius: f64 = radius.parse().unwrap();
@@ -56,7 +55,7 @@ fn a_value_is_a_line() {
     // The plot does not change the result, and has one dot at the solution.
     let plotted = run(&place, &["--slip-off", "20deg", "--plot", "p.svg"]);
     assert_eq!((plotted.code, plotted.out), (Some(0), found.out.clone()));
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    let svg = place.text("p.svg");
     assert!(
         svg.contains(">taper (1 \u{2212} tip/base radius)<") && svg.contains(">20 deg<"),
         "{svg}"
@@ -162,7 +161,7 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
 #[test]
 fn a_target_that_every_value_reaches_has_a_range() {
     let place = Place::with(include_str!("../../scenes/cylinder.toml"));
-    let curve = good(&place, &["curve", "scene.toml", "--distance", "5"]).out;
+    let curve = place.quiet(&["curve", "scene.toml", "--distance", "5"]).out;
     let row = curve.lines().find(|line| line.starts_with("cf,")).unwrap();
     let exact = row.split(',').nth(4).unwrap();
     let design = |goal: &str, varied: &[&str]| {
@@ -284,8 +283,7 @@ fn several_targets_have_a_line_of_values() {
     let asked =
         words("design scene.toml --distance 60% --slip-off 30deg --max-moment 0.05uNm --for");
     let more = ["base_radius_um=10um..0.1mm,taper", "-o", "better.toml"];
-    let found = place.run(&[&asked[..], &more].concat());
-    assert_eq!((found.code, &*found.err), (Some(0), ""), "{found:?}");
+    let found = place.quiet(&[&asked[..], &more].concat());
     let mut lines = found.out.lines();
     assert_eq!(lines.next(), Some("base_radius_um,taper"));
     let values = lines
@@ -312,10 +310,9 @@ fn several_targets_have_a_line_of_values() {
 #[test]
 fn a_distance_and_a_kept_taper_are_designed() {
     let place = Place::with(SCENE);
-    let found = place.run(&words(
+    let found = place.good(&words(
         "design scene.toml --slip-off 20deg --for distance_mm",
     ));
-    assert_eq!(found.code, Some(0), "{found:?}");
     let distance = found.out.lines().next().unwrap();
     let back = [
         "design",
@@ -340,8 +337,7 @@ fn a_distance_and_a_kept_taper_are_designed() {
         &words("design scene.toml --distance 12 --side cb --max-moment 100")[..],
         &["--for", "base_radius_um", "--keep", "taper", "-o", "-"],
     ];
-    let kept = place.run(&kept.concat());
-    assert_eq!(kept.code, Some(0), "{kept:?}");
+    let kept = place.good(&kept.concat());
     let radius = |name: &str| -> f64 {
         let text = kept.out.split(&format!("{name} = ")).nth(1).unwrap();
         text.split_whitespace().next().unwrap().parse().unwrap()

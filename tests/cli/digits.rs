@@ -61,7 +61,7 @@ fn both_formats_have_the_rounded_values() {
 
     // A part of a rounded map is rounded, too.
     for name in ["part.exr", "part.zarr"] {
-        let run = place.run(&[
+        place.good(&[
             "extract",
             "rounded/scene.zarr",
             "--at",
@@ -69,7 +69,6 @@ fn both_formats_have_the_rounded_values() {
             "-o",
             name,
         ]);
-        assert_eq!(run.code, Some(0), "{run:?}");
         let part = MapSource::open(&place.path(name)).unwrap();
         let digits = part.digits().unwrap();
         assert_eq!(digits.mantissa_bits("force_un"), Some(10));
@@ -146,8 +145,7 @@ fn impossible_digits_are_refused() {
 fn fewer_digits_are_planned_as_fewer_bytes() {
     let place = Place::with(SWEEP);
     let bytes = |options: &[&str]| -> f64 {
-        let run = place.run(&[&["plan", "scene.toml"], options].concat());
-        assert_eq!(run.code, Some(0), "{run:?}");
+        let run = place.good(&[&["plan", "scene.toml"], options].concat());
         let line = run.out.lines().find(|line| line.starts_with("Zarr store"));
         let (_, after) = line.unwrap().split_once("about ").unwrap();
         let mut words = after.split([' ', ',']);

@@ -51,8 +51,7 @@ fn a_tolerance_chooses_the_bound_of_expansions() {
             "--tolerance",
             tolerance,
         ];
-        let run = place.run(&arguments);
-        assert_eq!(run.code, Some(0), "{run:?}");
+        let run = place.good(&arguments);
         let line = run
             .err
             .lines()
@@ -138,8 +137,7 @@ fn measured_radii_warn_that_every_cell_falls_back() {
     place.write("measured.csv", &text("measured.csv"));
     let small = text("measured.toml").replace("count = 512", "count = 40");
     place.write("measured.toml", &small);
-    let run = place.run(&["map", "measured.toml", "--engine", "spectral", "--no-png"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&["map", "measured.toml", "--engine", "spectral", "--no-png"]);
     let warning = "warning: --engine spectral: a whisker with measured radii has no expansions; the CPU engine solves every cell";
     assert!(run.err.starts_with(warning), "{run:?}");
     assert_eq!(run.count("solved by the engine spectral f64"), 0);

@@ -1,6 +1,5 @@
 //! `whiskmap explore`.
 
-use super::traces::good;
 use super::{Place, SCENE, names};
 use serde_json::Value;
 use std::path::Path;
@@ -24,7 +23,7 @@ fn a_page_has_scene_and_points() {
     let points = "side,distance_mm,push_angle_deg,kind\ncb,15,16.5,slip-off\ncf,10,-40.25,\n";
     place.write("points.csv", points);
     let words = ["explore", "scene.toml", "--data", "points.csv", "--no-open"];
-    let run = good(&place, &[&words[..], &["-o", "page.html"]].concat());
+    let run = place.quiet(&[&words[..], &["-o", "page.html"]].concat());
     assert_eq!(run.out, "page.html\n");
     let start = start(&place.bytes("page.html"));
     assert_eq!(start["scene"]["text"], scene);
@@ -38,7 +37,7 @@ fn a_map_and_a_store_have_their_scene() {
     for format in ["exr", "zarr"] {
         place.map(&["scene.toml", "--no-png", "-o", ".", "--format", format]);
         let map = format!("scene.{format}");
-        let page = good(&place, &["explore", &map, "-o", "-"]);
+        let page = place.quiet(&["explore", &map, "-o", "-"]);
         let start = start(page.out.as_bytes());
         assert_eq!(start["scene"]["text"], SCENE);
         // A name that is not that of a scene file: commands on the page contain the scene.
@@ -49,7 +48,7 @@ fn a_map_and_a_store_have_their_scene() {
 #[test]
 fn a_page_without_a_name_is_in_a_folder_that_is_created() {
     let place = Place::with(SCENE);
-    let run = good(&place, &["explore", "scene.toml"]);
+    let run = place.quiet(&["explore", "scene.toml"]);
     let page = Path::new("outputs").join("scene.html");
     assert_eq!(run.out, format!("{}\n", page.display()));
     assert_eq!(names(&place.path("outputs")), ["scene.html"]);

@@ -27,7 +27,7 @@ fn a_slice_is_what_the_store_has_there() {
         said.err.starts_with("taper = 0.5\npole_radius_mm = 0.2"),
         "{said:?}"
     );
-    let table = fs::read_to_string(place.path("s.csv")).unwrap();
+    let table = place.text("s.csv");
     let mut lines = table.lines();
     let header =
         "taper,friction,pole_radius_mm,distance_mm,push_angle_deg,regime,regime_name,force_un";
@@ -141,7 +141,7 @@ fn a_map_of_a_slice_can_be_drawn() {
     let place = Place::with(SWEEP);
     good(&place, ".", &[]);
     let extract = words("extract scene.zarr --at=friction=0.3 -o slice.exr");
-    assert_eq!(place.run(&extract).code, Some(0));
+    place.good(&extract);
     let slice = StoredMap::open(&place.path("slice.exr")).unwrap();
     assert_eq!(slice.title, "A sweep in blocks, friction = 0.3");
     assert_eq!((slice.layout.columns, slice.layout.rows), (3, 4));
@@ -158,12 +158,9 @@ fn a_map_of_a_slice_can_be_drawn() {
             );
         }
     }
-    assert_eq!(
-        place.run(&["render", "slice.exr", "-o", "slice.png"]).code,
-        Some(0)
-    );
+    place.good(&["render", "slice.exr", "-o", "slice.png"]);
     let again = ["extract", "slice.exr", "--at=taper=1", "-o", "again.exr"];
-    assert_eq!(place.run(&again).code, Some(0));
+    place.good(&again);
     assert_eq!(
         StoredMap::open(&place.path("again.exr"))
             .unwrap()
@@ -179,13 +176,11 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
     let place = Place::with(SWEEP);
     good(&place, ".", &[]);
     let extract = |from: &str, arguments: &[&str]| {
-        let run = place.run(&[&["extract", from], arguments].concat());
-        assert_eq!(run.code, Some(0), "{run:?}");
+        place.good(&[&["extract", from], arguments].concat());
     };
     let at = words("--at=friction=0.2 --at=distance_mm=5.1 -o slice.zarr");
     extract("scene.zarr", &at);
-    let status = place.run(&["status", "slice.zarr", "--verify"]);
-    assert_eq!((status.code, &*status.err), (Some(0), ""), "{status:?}");
+    place.quiet(&["status", "slice.zarr", "--verify"]);
     let [whole, slice] =
         ["scene.zarr", "slice.zarr"].map(|name| ZarrStore::open(&place.path(name)).unwrap());
     let row = whole
@@ -239,7 +234,7 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
         fs::remove_dir_all(place.path("map.zarr")).unwrap();
     }
     let draw = words("render again.zarr --at=friction=0.3 --at=taper=1 -o a.png");
-    assert_eq!(place.run(&draw).code, Some(0));
+    place.good(&draw);
 }
 
 /// The selected value would make the title longer than allowed.
@@ -249,8 +244,7 @@ fn the_longest_title_is_extracted() {
     let place = Place::with(&SCENE.replace("A small map", &title));
     place.map(&["scene.toml", "--no-png"]);
     let at = ["--at=push_angle_deg=-70", "-o", "part.exr"];
-    let run = place.run(&[&["extract", "outputs/scene.exr"], &at[..]].concat());
-    assert_eq!(run.code, Some(0), "{run:?}");
+    place.good(&[&["extract", "outputs/scene.exr"], &at[..]].concat());
     assert_eq!(
         StoredMap::open(&place.path("part.exr")).unwrap().title,
         title

@@ -1,6 +1,6 @@
 //! Output files: devices, pipes, links, full disks, unusual names.
 
-use super::traces::{CURVE, good};
+use super::traces::CURVE;
 use super::{Place, Run, SCENE, names};
 use std::fs::{self, File};
 use std::os::unix::fs::{FileTypeExt, symlink};
@@ -33,7 +33,7 @@ const SHAPE: [&str; 4] = ["shape", "scene.toml", "--distance=9", "--push-angle=1
 fn a_pipe_gets_what_a_file_gets() {
     let place = Place::with(SCENE);
     for (option, name) in [("--csv", "t.csv"), ("--plot", "p.svg"), ("--plot", "p.png")] {
-        good(&place, &[&SHAPE[..], &[option, name]].concat());
+        place.quiet(&[&SHAPE[..], &[option, name]].concat());
         let expected = place.bytes(name);
         let pipe = format!("pipe-{name}");
         place.pipe(&pipe);
@@ -71,8 +71,8 @@ fn standard_output_has_a_name() {
     let place = Place::with(SCENE);
     symlink("/dev/stdout", place.path("out.csv")).unwrap();
     let to = [&SHAPE[..], &["--csv", "out.csv"]].concat();
-    let streamed = good(&place, &SHAPE).out;
-    assert_eq!(good(&place, &to).out, streamed);
+    let streamed = place.quiet(&SHAPE).out;
+    assert_eq!(place.quiet(&to).out, streamed);
 
     // Standard output is redirected to a file that is not empty.
     place.write("log", "before\n");
@@ -93,14 +93,11 @@ fn a_device_is_written_to_and_not_named() {
         symlink("/dev/null", place.path(name)).unwrap();
     }
     for plot in ["p.svg", "p.png"] {
-        let run = good(
-            &place,
-            &[&SHAPE[..], &["--csv=t.csv", "--plot", plot]].concat(),
-        );
+        let run = place.quiet(&[&SHAPE[..], &["--csv=t.csv", "--plot", plot]].concat());
         assert_eq!(run.out, "");
     }
     place.map(&["scene.toml", "--no-png"]);
-    good(&place, &["render", "outputs/scene.exr", "-o", "p.png"]);
+    place.quiet(&["render", "outputs/scene.exr", "-o", "p.png"]);
     for name in ["t.csv", "p.svg", "p.png"] {
         let kind = place.path(name).metadata().unwrap().file_type();
         assert!(kind.is_char_device(), "{name}");
@@ -124,17 +121,11 @@ fn links_stay_and_their_files_are_made_or_replaced() {
     ] {
         symlink(target, place.path(link)).unwrap();
     }
-    let run = good(
-        &place,
-        &[&SHAPE[..], &["--csv=t.csv", "--plot=p.svg"]].concat(),
-    );
+    let run = place.quiet(&[&SHAPE[..], &["--csv=t.csv", "--plot=p.svg"]].concat());
     assert_eq!(run.out, "t.csv\np.svg\n");
     let table = place.bytes("elsewhere/old.csv");
     place.write("elsewhere/old.csv", "old");
-    good(
-        &place,
-        &[&SHAPE[..], &["--csv=chain.csv", "--plot=p.png"]].concat(),
-    );
+    place.quiet(&[&SHAPE[..], &["--csv=chain.csv", "--plot=p.png"]].concat());
     assert!(table == place.bytes("elsewhere/old.csv") && table.len() > 1000);
     for link in ["t.csv", "chain.csv", "p.svg", "p.png"] {
         assert!(place.path(link).is_symlink(), "{link}");
@@ -203,7 +194,8 @@ fn scenes_have_any_name() {
         let name = format!("{stem}.toml");
         place.write(&name, SCENE);
         assert!(
-            good(&place, &["curve", &format!("./{name}")])
+            place
+                .quiet(&["curve", &format!("./{name}")])
                 .out
                 .starts_with(CURVE)
         );
@@ -236,7 +228,7 @@ fn a_pipe_holds_no_radii() {
     // The scene of the store names the pipe: no command opens it.
     place.write("scene.toml", super::store::SWEEP);
     super::store::good(&place, ".", &["--shard", "1/8"]);
-    let root = String::from_utf8(place.bytes("scene.zarr/zarr.json")).unwrap();
+    let root = place.text("scene.zarr/zarr.json");
     let named = root.replace(
         "[whisker]",
         &measured.replace('\n', "\\n").replace('"', "'"),
@@ -263,7 +255,7 @@ fn what_a_user_names_is_read_to_its_end_or_refused() {
     fs::write(place.path("piped.toml"), SCENE).unwrap();
     let run = Run::of(&child.unwrap().wait_with_output().unwrap());
     assert_eq!(run.code, Some(0), "{run:?}");
-    assert_eq!(run.out, good(&place, &["curve", "scene.toml"]).out);
+    assert_eq!(run.out, place.quiet(&["curve", "scene.toml"]).out);
     let is_folder = "cannot be read: Is a directory";
     let [scene, table] = [1, 32].map(|most| format!("cannot be read: longer than {most} MiB"));
     for (path, scene, table) in [(".", is_folder, is_folder), ("/dev/zero", &scene, &table)] {

@@ -8,9 +8,7 @@ use whiskmap::scene::Scene;
 pub const FIT: [&str; 4] = ["fit", "scene.toml", "--data", "points.csv"];
 
 pub fn fit(place: &Place, more: &[&str]) -> Run {
-    let run = place.run(&[&FIT, more].concat());
-    assert_eq!(run.code, Some(0), "{run:?}");
-    run
+    place.good(&[&FIT, more].concat())
 }
 
 pub fn json(place: &Place, name: &str) -> Value {
@@ -104,7 +102,7 @@ fn table_scene_and_document_agree() {
     fit(&place, &[&free[..], &files].concat());
     assert!(bytes == place.bytes("fit.json"), "not deterministic");
     let start = words("fit fitted.toml --data points.csv --json again.json");
-    assert_eq!(place.run(&[&start[..], &free].concat()).code, Some(0));
+    place.good(&[&start[..], &free].concat());
     let again = json(&place, "again.json");
     let [one, other] = [&found, &again].map(|fit| fit["values"]["tip_radius_um"].as_f64().unwrap());
     assert!((one / other - 1.0).abs() < 1e-5, "{one} {other}");
@@ -269,7 +267,7 @@ fn wrong_input_is_refused_before_any_file_is_made() {
 #[test]
 fn points_with_a_missing_number_are_left_out() {
     let place = place();
-    let points = String::from_utf8(place.bytes("points.csv")).unwrap();
+    let points = place.text("points.csv");
     let options = ["--free", "tip_radius_um", "--json", "fit.json"];
     fit(&place, &options);
     let whole = json(&place, "fit.json");

@@ -1,6 +1,6 @@
 //! `whiskmap force`.
 
-use super::traces::{cells, good};
+use super::traces::cells;
 use super::{Place, SCENE};
 
 const HEADER: &str =
@@ -42,7 +42,7 @@ fn both_methods_agree_on_the_example() {
         (Some(0), "f.svg\n"),
         "{plotted:?}"
     );
-    let svg = String::from_utf8(place.bytes("f.svg")).unwrap();
+    let svg = place.text("f.svg");
     assert!(
         svg.contains(">contact force (\u{b5}N)<")
             && svg.contains(">bending moment at the base (nN m)<")
@@ -53,11 +53,8 @@ fn both_methods_agree_on_the_example() {
         "sd.toml",
         &format!("{SCENE}\n[uncertainty]\ncurvature_sd_per_mm = 1e-3\n"),
     );
-    good(
-        &place,
-        &["force", "sd.toml", "--frames", "f.csv", "--plot", "sd.svg"],
-    );
-    let svg = String::from_utf8(place.bytes("sd.svg")).unwrap();
+    place.quiet(&["force", "sd.toml", "--frames", "f.csv", "--plot", "sd.svg"]);
+    let svg = place.text("sd.svg");
     assert_eq!(svg.matches(">\u{b1} standard deviation<").count(), 1);
 }
 

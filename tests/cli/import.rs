@@ -44,7 +44,7 @@ fn frames_are_those_that_force_and_whisk_read() {
     ] {
         assert!(run.err.contains(note), "{note}: {run:?}");
     }
-    let table = String::from_utf8(place.bytes("frames.csv")).unwrap();
+    let table = place.text("frames.csv");
     assert!(table.starts_with(
         "frame,time_s,angle_deg,curvature_per_mm,at_arc_length_mm,at_x_mm,at_y_mm,contact,"
     ));
@@ -63,23 +63,20 @@ fn frames_are_those_that_force_and_whisk_read() {
         "[whisker.rest]\npoints = \"traced.csv\"\n",
     );
     place.write("traced.toml", &scene);
-    let run = place.run(&words("shape traced.toml --distance 15 --push-angle 0"));
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&words("shape traced.toml --distance 15 --push-angle 0"));
     assert!(
         run.err.contains("note: whisker.rest: curvature of degree "),
         "{run:?}"
     );
 
-    let run = place.run(&["force", "scene.toml", "--frames", "frames.csv", "--model"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&["force", "scene.toml", "--frames", "frames.csv", "--model"]);
     // The baseline is that of the frames without contact.
     assert!(run.err.contains("baseline"), "{run:?}");
     assert_eq!(run.out.matches(",missing").count(), 3, "{run:?}");
-    let run = place.run(&words(
+    let run = place.good(&words(
         "whisk scene.toml --distance 15.66 --angles frames.csv --bridge 10ms --events - \
          --csv samples.csv",
     ));
-    assert_eq!(run.code, Some(0), "{run:?}");
     assert!(run.out.contains(",slip-off,cb,"), "{run:?}");
 }
 
@@ -93,20 +90,18 @@ fn detachments_are_those_that_fit_reads() {
     .concat();
     let run = place.run(&words);
     assert_eq!((run.code, &*run.out), (Some(0), "points.csv\n"), "{run:?}");
-    let table = String::from_utf8(place.bytes("points.csv")).unwrap();
+    let table = place.text("points.csv");
     assert!(
         table.starts_with("side,distance_mm,push_angle_deg,time_s\ncb,15."),
         "{table}"
     );
-    let run = place.run(&["curve", "scene.toml", "--data", "points.csv"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&["curve", "scene.toml", "--data", "points.csv"]);
     assert!(run.out.contains("slip-off"), "{run:?}");
     // A pole that is not reached leaves none. Curves of a given degree take a tenth of the time.
     let parts = "base,w1,w2,w3,w4,w5,w6,w7,tip";
     let mut far = [&words[..], &["--points", parts, "--degree", "1"]].concat();
     far[5] = "500,500";
-    let run = place.run(&far);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&far);
     assert!(
         run.err.contains(
             "warning: no contact with a first touch and an end in the film has the pole on the other side"
@@ -143,8 +138,7 @@ fn contacts_without_first_touch_or_end_are_counted() {
         };
         let kept: Vec<&str> = whole.lines().filter(is_kept).collect();
         place.write("film.csv", &kept.join("\n"));
-        let run = place.run(&words);
-        assert_eq!(run.code, Some(0), "{run:?}");
+        let run = place.good(&words);
         for said in [
             "note: contacts that give no detachment, as first touch or end is next to a gap or outside the film: 1\n",
             "warning: no contact with a first touch and an end in the film has the pole on the other side",
@@ -157,8 +151,7 @@ fn contacts_without_first_touch_or_end_are_counted() {
 #[test]
 fn measurements_of_whisk_and_points_are_read() {
     let place = film();
-    let run = place.run(&words("import rows.csv --mm-per-pixel 50um --fps 500"));
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&words("import rows.csv --mm-per-pixel 50um --fps 500"));
     assert!(run.err.contains("note: angles are measured from the y axis of the image, as the ends of the segments show"), "{run:?}");
     assert_eq!(run.out.lines().count(), 57);
     assert!(run.out.contains("\n25,0.05,,,"), "{run:?}");

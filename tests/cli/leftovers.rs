@@ -1,6 +1,5 @@
 //! Temporary files and folders of interrupted runs, and runs at once in one folder.
 
-use super::traces::good;
 use super::{Place, Run, SCENE, names, words};
 use std::fs;
 use std::process::{Command, Stdio};
@@ -46,10 +45,9 @@ fn only_leftovers_are_removed() {
     place.write(&exact("1"), "");
     let mut kept = names(&place.path(""));
     kept.retain(|name| ![exact("1"), exact("3")].contains(name));
-    good(
-        &place,
-        &words("shape scene.toml --distance=9 --push-angle=1 --csv=t.csv"),
-    );
+    place.quiet(&words(
+        "shape scene.toml --distance=9 --push-angle=1 --csv=t.csv",
+    ));
     fs::remove_file(place.path("t.csv")).unwrap();
     assert_eq!(names(&place.path("")), kept);
     assert!(running.path().exists());
@@ -60,7 +58,7 @@ fn only_leftovers_are_removed() {
 fn runs_at_once_write_the_same_files() {
     let place = Place::with(SCENE);
     let branch = words("branch scene.toml --distance=9 --csv=t.csv --plot=p.svg");
-    good(&place, &branch);
+    place.quiet(&branch);
     let expected = (place.bytes("t.csv"), place.bytes("p.svg"));
     let run = || {
         let mut command = place.plain_command(&branch);

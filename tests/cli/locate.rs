@@ -6,10 +6,9 @@ use super::{Place, SCENE, words};
 #[test]
 fn a_state_of_shape_comes_back() {
     let place = Place::with(SCENE);
-    let shape = place.run(&words(
+    place.good(&words(
         "shape scene.toml --distance 15.66 --push-angle 10 --state state.csv --csv shape.csv",
     ));
-    assert_eq!(shape.code, Some(0), "{shape:?}");
     let table = |text: &str, name: &str| -> f64 {
         let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
         let at = lines
@@ -20,10 +19,10 @@ fn a_state_of_shape_comes_back() {
             .unwrap();
         lines.next().unwrap()[at].parse().unwrap()
     };
-    let state = String::from_utf8(place.bytes("state.csv")).unwrap();
+    let state = place.text("state.csv");
     let moment = format!("{:?}", table(&state, "base_moment_nnm"));
     let force = format!("{:?}", table(&state, "base_force_y_un"));
-    let located = place.run(&[
+    let located = place.good(&[
         "locate",
         "scene.toml",
         "--base-moment",
@@ -33,7 +32,6 @@ fn a_state_of_shape_comes_back() {
         "--angle",
         "0.5rad",
     ]);
-    assert_eq!(located.code, Some(0), "{located:?}");
     for (name, wanted) in [("distance_mm", 15.66), ("push_angle_deg", 10.0)] {
         let value = table(&located.out, name);
         assert!((value - wanted).abs() < 1e-8, "{name} {value}");
@@ -62,11 +60,11 @@ fn readings_of_a_file_have_rows_and_a_picture() {
         "{run:?}"
     );
     assert!(run.err.contains("4 of 5 readings have no state"), "{run:?}");
-    let table = String::from_utf8(place.bytes("out.csv")).unwrap();
+    let table = place.text("out.csv");
     for end in [",incomplete", ",no-load", ",no-state"] {
         assert!(table.lines().any(|line| line.ends_with(end)), "{table}");
     }
-    let svg = String::from_utf8(place.bytes("out.svg")).unwrap();
+    let svg = place.text("out.svg");
     assert!(
         svg.contains(">at rest<") && svg.contains(">one state<"),
         "{svg}"
@@ -89,7 +87,7 @@ fn a_map_counts_the_states_that_share_numbers() {
         (Some(0), "map.csv\nmap.svg\n"),
         "{run:?}"
     );
-    let table = String::from_utf8(place.bytes("map.csv")).unwrap();
+    let table = place.text("map.csv");
     let header = table.lines().next().unwrap();
     assert!(header.starts_with("distance_mm,side,push_angle_deg,arc_length_mm,moment_x_states"));
     let rows = table
@@ -105,7 +103,7 @@ fn a_map_counts_the_states_that_share_numbers() {
             "{moment_x} {moment_y} {force}"
         );
     }
-    let svg = String::from_utf8(place.bytes("map.svg")).unwrap();
+    let svg = place.text("map.svg");
     for text in [
         ">moment and axial force<",
         ">condition of the contact<",

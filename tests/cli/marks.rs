@@ -1,6 +1,6 @@
 //! With friction, pictures hatch states that do not slide toward the tip.
 
-use super::{Place, Run, SCENE};
+use super::{Place, SCENE};
 use whiskmap::map::Channels;
 use whiskmap::store::{MapDescription, MapWriter, Output, TemporaryFiles};
 
@@ -10,11 +10,6 @@ fn place(friction: f64) -> Place {
         "[grid]",
         &format!("[contact]\nfriction = {friction}\n[grid]"),
     ))
-}
-
-fn good(run: Run) -> Run {
-    assert_eq!(run.code, Some(0), "{run:?}");
-    run
 }
 
 /// Writes a map without `status`.
@@ -48,8 +43,8 @@ fn a_picture_of_loads_is_hatched() {
         for (channel, has_loads) in [("force_un", true), ("margin_deg", false)] {
             let channel = format!("--channel={channel}");
             let arguments = ["render", "outputs/scene.exr", &channel, "-o", "s.svg"];
-            assert_eq!(good(place.run(&arguments)).err, "");
-            let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+            place.quiet(&arguments);
+            let picture = place.text("s.svg");
             assert_eq!(picture.contains(LEGEND), is_hatched && has_loads);
         }
     }
@@ -60,8 +55,8 @@ fn a_picture_of_loads_is_hatched() {
     let [with, without] = ["outputs/scene.exr", "old.exr"].map(|map| {
         let range = "--range=0,100";
         let arguments = ["render", map, "--channel=force_un", range, "-o", "s.svg"];
-        good(place.run(&arguments));
-        let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+        place.good(&arguments);
+        let picture = place.text("s.svg");
         let mut rasters = picture.split("<image");
         let body = rasters.find(|raster| raster.contains("width=\"1280\" height=\"880\""));
         body.unwrap().split_once("/>").unwrap().0.to_owned()

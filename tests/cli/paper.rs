@@ -1,13 +1,12 @@
 //! `whiskmap reproduce` and `whiskmap verify`.
 
-use super::traces::good;
 use super::{Place, SCENE, names, words};
 use std::path::Path;
 
 #[test]
 fn figures_come_with_their_tables() {
     let place = Place::with(SCENE);
-    let run = good(&place, &["reproduce", "new/folder"]);
+    let run = place.quiet(&["reproduce", "new/folder"]);
     let mut files: Vec<&str> = run
         .out
         .lines()
@@ -62,7 +61,7 @@ fn figures_come_with_their_tables() {
     ] {
         for table in tables {
             let name = format!("fig{table}.csv");
-            let rows = String::from_utf8(place.bytes(&format!("new/folder/{name}"))).unwrap();
+            let rows = place.text(&format!("new/folder/{name}"));
             assert_eq!(rows.lines().next(), Some(header), "{name}");
             assert!(rows.lines().count() > 2 && !rows.contains("NaN"), "{name}");
             expected.push(name);
@@ -84,10 +83,10 @@ fn figures_show_measured_points() {
         let picture = String::from_utf8(picture).unwrap();
         picture.matches("<circle").count()
     };
-    good(&place, &["reproduce", "theory"]);
+    place.quiet(&["reproduce", "theory"]);
     place.write("points.csv", "side,d,angle\ncb,9,21\ncf,9,-33\n");
     let points = words("--fig4d points.csv --columns distance=d,push=angle");
-    good(&place, &[&["reproduce", "both"], &points[..]].concat());
+    place.quiet(&[&["reproduce", "both"], &points[..]].concat());
     // Two points, and one in the legend.
     assert_eq!(circles("both"), circles("theory") + 3);
     place.write("chord.csv", "side,distance_mm,push_chord_deg\ncb,9,21\n");
@@ -115,7 +114,7 @@ fn figures_refuse_points_beyond_reach() {
 
 #[test]
 fn verify_passes_every_number_but_one_of_the_papers() {
-    let run = good(&Place::with(SCENE), &["verify"]);
+    let run = Place::with(SCENE).quiet(&["verify"]);
     let said = |verdict| {
         run.out
             .lines()

@@ -4,9 +4,8 @@ use super::{Place, SCENE, words};
 
 /// Draws a picture as SVG.
 fn drawn(place: &Place, arguments: &[&str]) -> String {
-    let run = place.run(&[arguments, &["--plot", "p.svg"]].concat());
-    assert_eq!(run.code, Some(0), "{run:?}");
-    String::from_utf8(place.bytes("p.svg")).unwrap()
+    place.good(&[arguments, &["--plot", "p.svg"]].concat());
+    place.text("p.svg")
 }
 
 /// The lines of a plot with this colour, without those of its legend: `[line][point]`.
@@ -94,9 +93,8 @@ fn a_row_of_a_map_is_a_line_chart() {
     let place = Place::with(SCENE);
     place.map(&["scene.toml", "--no-png"]);
     let row = words("render outputs/scene.exr --at distance_mm=12 -o p.svg");
-    let run = place.run(&[&row[..], &["--channel", "force_un"]].concat());
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    place.good(&[&row[..], &["--channel", "force_un"]].concat());
+    let svg = place.text("p.svg");
     assert!(svg.contains(">contact force (\u{b5}N)<") && !svg.contains("<image"));
     assert_eq!(
         lines(&svg, "#222b33").len(),
@@ -105,7 +103,7 @@ fn a_row_of_a_map_is_a_line_chart() {
     );
     assert!(!svg.contains("slides to base"));
     place.run(&row).assert_said(0, "");
-    let regimes = String::from_utf8(place.bytes("p.svg")).unwrap();
+    let regimes = place.text("p.svg");
     assert!(regimes.contains("<image"), "regimes have no values");
     // On CF the contact first slides toward the base, then sticks.
     place.write(
@@ -113,9 +111,8 @@ fn a_row_of_a_map_is_a_line_chart() {
         &SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"),
     );
     place.map(&["scene.toml", "--no-png"]);
-    let run = place.run(&[&row[..], &["--channel", "force_un"]].concat());
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    place.good(&[&row[..], &["--channel", "force_un"]].concat());
+    let svg = place.text("p.svg");
     assert!(svg.contains(">slides to base<"));
     // On CB, and on CF where the contact slides toward the base and toward the tip.
     assert_eq!(lines(&svg, "#222b33").len(), 3);

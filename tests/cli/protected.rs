@@ -1,7 +1,6 @@
 //! Protection of files that are not outputs of the run.
 
 use super::data::DATA;
-use super::traces::good;
 use super::{Place, Run, SCENE, names, words};
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
@@ -233,13 +232,13 @@ fn a_file_in_the_place_of_a_folder_is_named() {
 fn a_replaced_file_keeps_its_mode_and_a_read_only_one_is_refused() {
     let place = Place::with(SCENE);
     let table = words("shape scene.toml --distance=9 --push-angle=1 --csv=t.csv");
-    good(&place, &table);
+    place.quiet(&table);
     let expected = place.bytes("t.csv");
     // Without the set-user-ID and set-group-ID bits.
     for mode in [0o600, 0o640, 0o755, 0o666, 0o6755] {
         place.write("t.csv", "old");
         fs::set_permissions(place.path("t.csv"), Permissions::from_mode(mode)).unwrap();
-        good(&place, &table);
+        place.quiet(&table);
         assert!(place.bytes("t.csv") == expected);
         assert_eq!(place.mode("t.csv"), mode & 0o777);
     }

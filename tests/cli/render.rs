@@ -9,13 +9,11 @@ fn render_draws_the_picture_again() {
     let drawn = place.bytes("outputs/scene.png");
     std::fs::remove_file(place.path("outputs/scene.png")).unwrap();
 
-    let run = place.run(&["render", "outputs/scene.exr"]);
-    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    let run = place.quiet(&["render", "outputs/scene.exr"]);
     assert!(run.out.trim_end().ends_with("scene.png"), "{run:?}");
     assert!(place.bytes("outputs/scene.png") == drawn);
 
-    let run = place.run(&["render", "outputs/scene.exr", "--channel", "force_un"]);
-    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    place.quiet(&["render", "outputs/scene.exr", "--channel", "force_un"]);
     let force = place.bytes("outputs/scene.force_un.png");
     assert!(force.starts_with(b"\x89PNG") && force != drawn);
 
@@ -34,8 +32,7 @@ fn every_channel_can_be_drawn() {
     place.map(&["scene.toml", "--no-png"]);
     let map = whiskmap::store::StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
     for channel in map.channels() {
-        let run = place.run(&["render", "outputs/scene.exr", "--channel", channel]);
-        assert_eq!((run.code, &*run.err), (Some(0), ""), "{channel}: {run:?}");
+        place.quiet(&["render", "outputs/scene.exr", "--channel", channel]);
     }
     assert_eq!(
         names(&place.path("outputs")).len(),
@@ -48,11 +45,7 @@ fn every_channel_can_be_drawn() {
 fn stores_and_parts_are_drawn_like_maps() {
     let place = Place::with(super::store::SWEEP);
     super::store::good(&place, ".", &[]);
-    let run = |arguments: &[&str]| {
-        let run = place.run(arguments);
-        assert_eq!(run.code, Some(0), "{run:?}");
-        run
-    };
+    let run = |arguments: &[&str]| place.good(arguments);
     let at = ["--at=friction=0.2", "--at=taper=0.5"];
     run(&[&["extract", "scene.zarr", "-o", "part.exr"], &at[..]].concat());
     for channel in [
@@ -114,7 +107,7 @@ fn stores_and_parts_are_drawn_like_maps() {
         ("force_un", "no contact, or not computed"),
     ] {
         let picture = |axes: &str| {
-            let run = place.run(&[
+            place.good(&[
                 "render",
                 "scene.zarr",
                 axes,
@@ -123,8 +116,7 @@ fn stores_and_parts_are_drawn_like_maps() {
                 "-o",
                 "part.svg",
             ]);
-            assert_eq!(run.code, Some(0), "{run:?}");
-            String::from_utf8(place.bytes("part.svg")).unwrap()
+            place.text("part.svg")
         };
         assert!(picture("--at=friction=0").contains(said), "{channel}");
         assert!(
@@ -226,9 +218,8 @@ fn scale_and_width_are_chosen() {
     let place = mapped(SCENE);
     let force = ["render", "outputs/scene.exr", "--channel", "force_un"];
     let draw = |more: &[&str]| {
-        let run = place.run(&[&force[..], &["-o", "force.svg"], more].concat());
-        assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
-        String::from_utf8(place.bytes("force.svg")).unwrap()
+        place.quiet(&[&force[..], &["-o", "force.svg"], more].concat());
+        place.text("force.svg")
     };
     let plain = draw(&[]);
     // Forces span more than two decades.
@@ -266,9 +257,8 @@ fn scale_and_width_are_chosen() {
     // Moments of both signs have the logarithmic scale of their size, unless a linear one is chosen.
     let moment = |more: &[&str]| {
         let moment = words("render outputs/scene.exr --channel base_moment_nnm -o moment.svg");
-        let run = place.run(&[&moment[..], more].concat());
-        assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
-        String::from_utf8(place.bytes("moment.svg")).unwrap()
+        place.quiet(&[&moment[..], more].concat());
+        place.text("moment.svg")
     };
     let size = ">size of the bending moment at the base (";
     assert!(moment(&[]).contains(size) && moment(&["--log"]).contains(size));
@@ -285,8 +275,7 @@ fn scale_and_width_are_chosen() {
             "--range",
             range,
         ];
-        let run = place.run(&[&["render", "outputs/scene.exr"], &arc[..]].concat());
-        assert_eq!(run.code, Some(0), "{run:?}");
+        place.good(&[&["render", "outputs/scene.exr"], &arc[..]].concat());
         place.bytes("arc.svg")
     };
     assert!(arc("5mm,2cm") == arc("5,20"));
@@ -340,8 +329,7 @@ fn boxes_are_drawn_with_a_warning() {
     assert_eq!(run.err.lines().count(), 1, "{run:?}");
     let run = place.run(&["curve", "scene.toml", "--plot", "curve.png"]);
     assert!(run.code == Some(0) && warned(&run), "{run:?}");
-    let run = place.run(&["render", "outputs/scene.exr", "-o", "map.svg"]);
-    assert_eq!((run.code, &*run.err), (Some(0), ""));
-    let document = String::from_utf8(place.bytes("map.svg")).unwrap();
+    place.quiet(&["render", "outputs/scene.exr", "-o", "map.svg"]);
+    let document = place.text("map.svg");
     assert!(document.contains("A small \u{5730}\u{56f3}<"));
 }

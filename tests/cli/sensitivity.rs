@@ -1,6 +1,5 @@
 //! `whiskmap sensitivity` and the columns of `--derivatives`.
 
-use super::traces::good;
 use super::{Place, SCENE, words};
 
 fn lines(out: &str) -> Vec<Vec<String>> {
@@ -18,10 +17,9 @@ fn cell<'a>(header: &[String], cells: &'a [String], name: &str) -> &'a str {
 #[test]
 fn the_table_has_every_variable_of_the_scene() {
     let place = Place::with(SCENE);
-    let run = good(
-        &place,
-        &words("sensitivity scene.toml --distance 15.66 --csv - --plot bars.svg"),
-    );
+    let run = place.quiet(&words(
+        "sensitivity scene.toml --distance 15.66 --csv - --plot bars.svg",
+    ));
     let table = lines(&run.out);
     let (header, rows) = table.split_first().unwrap();
     let sum = |side: &str| -> f64 {
@@ -59,7 +57,7 @@ fn the_table_has_every_variable_of_the_scene() {
         }
         assert!((1e-4..0.1).contains(&number("max_strain")), "{row:?}");
     }
-    let svg = String::from_utf8(place.bytes("bars.svg")).unwrap();
+    let svg = place.text("bars.svg");
     assert!(svg.contains("distance_mm") && svg.contains("+1 %"));
 }
 
@@ -67,15 +65,11 @@ fn the_table_has_every_variable_of_the_scene() {
 #[test]
 fn curves_and_branches_have_columns_of_derivatives() {
     let place = Place::with(SCENE);
-    let all = good(
-        &place,
-        &["sensitivity", "scene.toml", "--distance", "15.66"],
-    );
+    let all = place.quiet(&["sensitivity", "scene.toml", "--distance", "15.66"]);
     let all = lines(&all.out);
-    let curve = good(
-        &place,
-        &words("curve scene.toml --distance 15.66 --derivatives=taper"),
-    );
+    let curve = place.quiet(&words(
+        "curve scene.toml --distance 15.66 --derivatives=taper",
+    ));
     let curve = lines(&curve.out);
     for (side, line) in [("cf", &curve[1]), ("cb", &curve[2])] {
         let push_row = all
@@ -87,10 +81,9 @@ fn curves_and_branches_have_columns_of_derivatives() {
             cell(&all[0], push_row, "d_push_deg")
         );
     }
-    let branch = good(
-        &place,
-        &words("branch scene.toml --distance 15.66 --side cb --points 9 --derivatives"),
-    );
+    let branch = place.quiet(&words(
+        "branch scene.toml --distance 15.66 --side cb --points 9 --derivatives",
+    ));
     let branch = lines(&branch.out);
     let (header, rows) = branch.split_first().unwrap();
     for row in rows {
@@ -123,8 +116,8 @@ fn maps_store_derivatives_on_demand() {
     }
     let tables = ["exr", "zarr"].map(|ending| {
         let source = format!("outputs/scene.{ending}");
-        good(&place, &["extract", &source, "-o", "table.csv"]);
-        lines(&String::from_utf8(place.bytes("table.csv")).unwrap())
+        place.quiet(&["extract", &source, "-o", "table.csv"]);
+        lines(&place.text("table.csv"))
     });
     // Channels of an EXR file are sorted by name.
     let [exr, zarr] = tables.each_ref().map(|table| {
@@ -141,10 +134,7 @@ fn maps_store_derivatives_on_demand() {
         !by.is_empty()
     });
     assert!(known.count() > 20);
-    good(
-        &place,
-        &["render", "outputs/scene.exr", "--channel", "d_push_d_taper"],
-    );
+    place.quiet(&["render", "outputs/scene.exr", "--channel", "d_push_d_taper"]);
     let refused = place.run(&["map", "scene.toml", "--channels=regime,d_push_d_friction"]);
     assert_eq!(refused.code, Some(2));
     assert!(

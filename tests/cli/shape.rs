@@ -1,6 +1,6 @@
 //! `whiskmap shape`.
 
-use super::traces::{BRANCH, CURVE, SHAPE, cells, good};
+use super::traces::{BRANCH, CURVE, SHAPE, cells};
 use super::{Place, SCENE, names, words};
 use whiskmap::Side;
 use whiskmap::scene::Scene;
@@ -10,8 +10,8 @@ use whiskmap::trace::Branch;
 fn a_shape_is_the_requested_state() {
     let place = Place::with(SCENE);
     let at = words("shape scene.toml --distance=15.66 --push-angle=10 --points=11");
-    let stable = good(&place, &at);
-    let unstable = good(&place, &[&at[..], &["--branch", "unstable"]].concat());
+    let stable = place.quiet(&at);
+    let unstable = place.quiet(&[&at[..], &["--branch", "unstable"]].concat());
     let scene = Scene::parse(SCENE, "scene").unwrap();
     let branch = Branch::new(&scene.whisker, &scene.pole, Side::Cb, 15.66).unwrap();
     for (run, part) in [(stable, true), (unstable, false)] {
@@ -30,8 +30,8 @@ fn a_shape_is_the_requested_state() {
 fn the_state_has_the_loads_of_the_shape() {
     let place = Place::with(SCENE);
     let at = words("shape scene.toml --distance=15.66 --push-angle=10 --state state.csv");
-    let table = good(&place, &[&at[..], &["--csv", "-"]].concat()).out;
-    let state = String::from_utf8(place.bytes("state.csv")).unwrap();
+    let table = place.quiet(&[&at[..], &["--csv", "-"]].concat()).out;
+    let state = place.text("state.csv");
     let state = cells(&state, BRANCH);
     let [row] = &state[..] else {
         panic!("{state:?}")
@@ -49,8 +49,8 @@ fn the_state_has_the_loads_of_the_shape() {
     assert!((0.999..=1.0).contains(&(most / peak)), "{most} {peak}");
     // In other units; the names of columns end in them.
     let words = [&at[..], &["--csv", "shape.csv", "--units", "mN, Nmm,cm"]].concat();
-    assert_eq!(good(&place, &words).out, "shape.csv\nstate.csv\n");
-    let other = String::from_utf8(place.bytes("state.csv")).unwrap();
+    assert_eq!(place.quiet(&words).out, "shape.csv\nstate.csv\n");
+    let other = place.text("state.csv");
     let header = BRANCH
         .replace("_un", "_mn")
         .replace("_nnm", "_nmm")
@@ -136,7 +136,7 @@ fn sliding_toward_the_base_is_reported() {
         let shape = ["shape", "scene.toml", "--state=state.csv", "--distance"];
         let run = place.run(&[&shape[..], &[distance, "--push-angle", push]].concat());
         assert_eq!(run.err, "");
-        let state = String::from_utf8(place.bytes("state.csv")).unwrap();
+        let state = place.text("state.csv");
         let lines: Vec<Vec<&str>> = state
             .lines()
             .map(|line| line.split(',').collect())
@@ -150,13 +150,10 @@ fn sliding_toward_the_base_is_reported() {
         found.map(|(distance, push)| shape(distance, push)),
         ["base", "sticks", "tip", "tip"]
     );
-    let branch = good(
-        &place,
-        &["branch", "scene.toml", "--distance=9", "--side=cf"],
-    );
+    let branch = place.quiet(&["branch", "scene.toml", "--distance=9", "--side=cf"]);
     let rows = cells(&branch.out, BRANCH);
     assert_eq!([rows[1][17], rows[199][17]], ["base", "tip"]);
-    let curve = good(&place, &["curve", "scene.toml"]);
+    let curve = place.quiet(&["curve", "scene.toml"]);
     for row in cells(&curve.out, CURVE) {
         let sliding = if row[3] == "out-of-reach" { "" } else { "tip" };
         assert_eq!(row[18], sliding, "{row:?}");

@@ -46,8 +46,7 @@ fn the_tasks_of_the_script_fill_the_store_and_a_last_job_verifies_it() {
         "--channels",
         "regime, force_un",
     ];
-    let run = place.run(&submit);
-    assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
+    let run = place.quiet(&submit);
     for line in [
         "#SBATCH --job-name=scene",
         "#SBATCH --array=0-2",
@@ -84,7 +83,7 @@ fn the_tasks_of_the_script_fill_the_store_and_a_last_job_verifies_it() {
     .unwrap();
     assert_same(&place, "whole", "found");
 
-    let log = fs::read_to_string(place.path("sbatch.log")).unwrap();
+    let log = place.text("sbatch.log");
     let calls: Vec<&str> = log.lines().collect();
     let (first, again) = calls.split_at(calls.len() / 2);
     assert_eq!(first, again);
@@ -164,8 +163,7 @@ fn submit_refuses_what_no_task_could_do() {
 #[test]
 fn time_and_memory_are_proposed() {
     let place = Place::with(SWEEP);
-    let run = place.run(&["submit", "scene.toml", "--shards=8"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&["submit", "scene.toml", "--shards=8"]);
     let value = |option: &str| {
         let line = format!("#SBATCH --{option}=");
         let value = run

@@ -56,11 +56,10 @@ fn maps_name_their_whiskers() {
             "-o",
             "c3.csv",
         ];
-        let run = place.run(&part);
-        assert_eq!(run.code, Some(0), "{run:?}");
+        let run = place.good(&part);
         assert!(run.err.contains("whisker = C3"), "{run:?}");
         assert!(!run.err.contains("are unresolved"), "{run:?}");
-        let table = String::from_utf8(place.bytes("c3.csv")).unwrap();
+        let table = place.text("c3.csv");
         let mut lines = table.lines();
         assert!(
             lines
@@ -77,28 +76,24 @@ fn maps_name_their_whiskers() {
             "{none:?}"
         );
     }
-    let run = place.run(&words("extract scene.exr --at whisker=C3 -o c3.zarr"));
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let coordinate = String::from_utf8(place.bytes("c3.zarr/whisker/c.0")).unwrap();
+    place.good(&words("extract scene.exr --at whisker=C3 -o c3.zarr"));
+    let coordinate = place.text("c3.zarr/whisker/c.0");
     assert_eq!(coordinate, "\u{1}\0\0\0\u{2}\0\0\0C3");
-    let run = place.run(&words(
+    place.good(&words(
         "compare scene.exr scene.zarr --within regime=0,force_un=0",
     ));
-    assert_eq!(run.code, Some(0), "{run:?}");
     for source in ["scene.toml", "scene.zarr"] {
-        let run = place.run(&["render", source, "-o", "pad.svg"]);
-        assert_eq!(run.code, Some(0), "{run:?}");
+        let run = place.good(&["render", source, "-o", "pad.svg"]);
         assert!(!run.err.contains("are unresolved"), "{run:?}");
     }
-    let picture = String::from_utf8(place.bytes("pad.svg")).unwrap();
+    let picture = place.text("pad.svg");
     assert!(picture.contains(">C2<") && picture.contains("whisker"));
 }
 
 #[test]
 fn curves_have_the_reason_of_a_row_without_a_whisker() {
     let place = place();
-    let run = place.run(&["curve", "scene.toml"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&["curve", "scene.toml"]);
     let lines: Vec<&str> = run.out.lines().collect();
     assert!(lines[0].starts_with("whisker,no_whisker,side,distance_mm,pole_distance_mm,kind,"));
     assert_eq!(lines.len(), 1 + 3 * 2 * 2);
@@ -126,8 +121,7 @@ fn curves_have_the_reason_of_a_row_without_a_whisker() {
             .contains("C2,tip_radius_um is missing,cf,,,no-whisker"),
         "{corner:?}"
     );
-    let derivatives = place.run(&["curve", "scene.toml", "--derivatives=taper"]);
-    assert_eq!(derivatives.code, Some(0), "{derivatives:?}");
+    let derivatives = place.good(&["curve", "scene.toml", "--derivatives=taper"]);
     assert!(
         derivatives
             .out
@@ -141,9 +135,8 @@ fn curves_have_the_reason_of_a_row_without_a_whisker() {
 #[test]
 fn a_picture_has_no_regime_for_a_row_without_a_whisker() {
     let place = place();
-    let run = place.run(&["render", "scene.toml", "-o", "map.svg"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let picture = String::from_utf8(place.bytes("map.svg")).unwrap();
+    place.good(&["render", "scene.toml", "-o", "map.svg"]);
+    let picture = place.text("map.svg");
     let shown = |name: &str| picture.contains(&format!(">{name}<"));
     let found = ["C2", "contact", "no whisker", "unresolved"].map(shown);
     assert_eq!(found, [true, true, true, false]);
@@ -152,9 +145,8 @@ fn a_picture_has_no_regime_for_a_row_without_a_whisker() {
 #[test]
 fn a_plot_names_the_whiskers() {
     let place = place();
-    let run = place.run(&["curve", "scene.toml", "--plot", "curve.svg"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let picture = String::from_utf8(place.bytes("curve.svg")).unwrap();
+    place.good(&["curve", "scene.toml", "--plot", "curve.svg"]);
+    let picture = place.text("curve.svg");
     let shown = ["C1", "C2", "C3"].map(|name| picture.contains(&format!(">{name}<")));
     assert_eq!(shown, [true, false, true]);
     assert!(picture.contains(">A pad (1 of 3 rows have no whisker)<"));
@@ -164,7 +156,7 @@ fn a_plot_names_the_whiskers() {
     let header = "name,length_mm,base_radius_um,tip_radius_um\n";
     place.write("pad.csv", &format!("{header}{rows}"));
     place.run(&["curve", "scene.toml", "--plot", "curve.svg"]);
-    let picture = String::from_utf8(place.bytes("curve.svg")).unwrap();
+    let picture = place.text("curve.svg");
     let shown = (0..18).filter(|i| picture.contains(&format!(">W{i}<")));
     assert_eq!(shown.collect::<Vec<_>>(), [10, 12, 14, 15, 17]);
 }

@@ -19,31 +19,26 @@ fn place(surface: &str) -> Place {
 fn a_sweep_gives_its_tables_and_its_picture() {
     let place = place(SURFACE);
     let files = words("--csv s.csv --events e.csv --dwells d.csv --histogram h.csv --plot t.svg");
-    let texture = |more: &[&str]| {
-        let run = place.run(&[&["texture", "scene.toml"], more].concat());
-        assert_eq!(run.code, Some(0), "{run:?}");
-        run
-    };
+    let texture = |more: &[&str]| place.good(&[&["texture", "scene.toml"], more].concat());
     let run = texture(&[&["--rate", "50"], &files[..]].concat());
     assert_eq!(run.out, "s.csv\nt.svg\ne.csv\nd.csv\nh.csv\n");
-    let text = |name: &str| String::from_utf8(place.bytes(name)).unwrap();
-    let samples = text("s.csv");
+    let samples = place.text("s.csv");
     let header = samples.lines().next().unwrap().to_owned();
     // Three periods of 0.2 Hz by default.
     let samples = cells(&samples, &header);
     assert_eq!(samples.len(), 751);
     assert_eq!((samples[0][1], samples[0][2]), ("0.0", "free"));
-    let events = text("e.csv");
+    let events = place.text("e.csv");
     let header = "time_s,event,asperity,side,angle_deg,push_angle_deg,tip_x_mm,force_un,base_moment_nnm,energy_nj,lost_nj";
     let events = cells(&events, header);
     let touches = events.iter().filter(|event| event[1] == "touch").count();
-    let dwells = text("d.csv");
+    let dwells = place.text("d.csv");
     let dwells = cells(&dwells, "asperity,side,begin_s,end_s,dwell_s,end");
     assert_eq!(dwells.len(), touches);
     assert!(run.err.contains(&format!("touches {touches}, ")), "{run:?}");
-    let bins = text("h.csv");
+    let bins = place.text("h.csv");
     assert_eq!(cells(&bins, "tip_from_mm,tip_to_mm,tip_time_s").len(), 80);
-    let svg = text("t.svg");
+    let svg = place.text("t.svg");
     for label in [
         "tip along the surface (mm)",
         "dwell time on an asperity (s)",
@@ -58,7 +53,7 @@ fn a_sweep_gives_its_tables_and_its_picture() {
         &format!("time_s,angle_deg\n{}", angles.collect::<String>()),
     );
     let again = texture(&["--angles", "a.csv"]);
-    assert_eq!(again.out, text("s.csv"));
+    assert_eq!(again.out, place.text("s.csv"));
     let other = texture(&["--angles", "a.csv", "--units", "um,mN"]).out;
     let header = other.lines().next().unwrap();
     assert!(
@@ -95,7 +90,7 @@ fn wrong_sweeps_are_refused() {
     // The first touch is an angle at which a course may begin; between the touches of an asperity it may not.
     let run = texture(&["--rate", "20", "--csv", "s.csv", "--events", "e.csv"]);
     assert_eq!(run.code, Some(0), "{run:?}");
-    let events = String::from_utf8(place.bytes("e.csv")).unwrap();
+    let events = place.text("e.csv");
     let touch: f64 = events
         .lines()
         .nth(1)
@@ -121,8 +116,7 @@ fn wrong_sweeps_are_refused() {
 fn samples_have_the_curvature_at_an_arclength() {
     let place = place(SURFACE);
     let sweep = words("texture scene.toml --sine 15,0.2,5 --rate 20");
-    let run = place.run(&[&sweep[..], &["--curvature-at", "2"]].concat());
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&[&sweep[..], &["--curvature-at", "2"]].concat());
     let header = run.out.lines().next().unwrap().to_owned();
     let column = |name: &str| header.split(',').position(|column| column == name).unwrap();
     let (phase, curvature) = (column("phase"), column("curvature_per_mm"));

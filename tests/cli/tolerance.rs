@@ -23,8 +23,7 @@ fn the_selected_steps_are_printed_and_stored_with_the_map() {
 fn a_curve_meets_its_tolerance() {
     let place = Place::with(SCENE);
     let angles = |arguments: &[&str]| -> Vec<f64> {
-        let run = place.run(&[&["curve", "scene.toml"][..], arguments].concat());
-        assert_eq!(run.code, Some(0), "{run:?}");
+        let run = place.good(&[&["curve", "scene.toml"][..], arguments].concat());
         let rows = run.out.lines().skip(1);
         rows.filter_map(|row| row.split(',').nth(4).unwrap().parse().ok())
             .collect()

@@ -1,6 +1,6 @@
 //! Common behaviour of `whiskmap curve`, `branch` and `shape`: tables, plots, refused input.
 
-use super::{Place, Run, SCENE, names, no_folder, words};
+use super::{Place, SCENE, names, no_folder, words};
 
 pub const CURVE: &str = "side,distance_mm,pole_distance_mm,kind,push_angle_deg,push_chord_deg,contact_distance_mm,\
                      arc_length_mm,force_un,contact_force_un,base_force_x_un,base_force_y_un,base_moment_nnm,energy_nj,peak_strain,\
@@ -14,17 +14,6 @@ pub const SPREAD: &str = "side,distance_mm,kind,push_angle_deg,slip_off,pull_off
                       force_un,force_p5_un,force_p25_un,force_p50_un,force_p75_un,force_p95_un,force_mean_un,force_sd_un,\
                       base_moment_nnm,base_moment_p5_nnm,base_moment_p25_nnm,base_moment_p50_nnm,base_moment_p75_nnm,base_moment_p95_nnm,base_moment_mean_nnm,base_moment_sd_nnm";
 pub const CB: [&str; 5] = ["branch", "scene.toml", "--distance", "15.66", "--side=cb"];
-
-/// Runs the program, which must succeed without messages.
-pub fn good(place: &Place, arguments: &[&str]) -> Run {
-    let run = place.run(arguments);
-    assert_eq!(
-        (run.code, &*run.err),
-        (Some(0), ""),
-        "{arguments:?}: {run:?}"
-    );
-    run
-}
 
 /// Returns the cells of a table, whose header must be `header`.
 pub fn cells<'a>(text: &'a str, header: &str) -> Vec<Vec<&'a str>> {
@@ -42,25 +31,25 @@ fn tables_and_plots_are_written_to_the_given_files() {
         (&CB[..], BRANCH),
         (&shape[..], SHAPE),
     ] {
-        let streamed = good(&place, arguments).out;
+        let streamed = place.quiet(arguments).out;
         assert!(streamed.starts_with(header));
         assert_eq!(
-            good(&place, &[arguments, &["--csv", "-"]].concat()).out,
+            place.quiet(&[arguments, &["--csv", "-"]].concat()).out,
             streamed
         );
         let files = ["--csv", "t.csv", "--plot", "p.PNG"];
-        let run = good(&place, &[arguments, &files].concat());
+        let run = place.quiet(&[arguments, &files].concat());
         assert_eq!(run.out, "t.csv\np.PNG\n");
         assert_eq!(place.bytes("t.csv"), streamed.as_bytes());
         assert!(place.bytes("p.PNG").starts_with(b"\x89PNG"));
         // With only a plot, standard output has its name.
         assert_eq!(
-            good(&place, &[arguments, &["--plot", "p.svg"]].concat()).out,
+            place.quiet(&[arguments, &["--plot", "p.svg"]].concat()).out,
             "p.svg\n"
         );
         let svg = place.bytes("p.svg");
         assert!(svg.starts_with(b"<svg") || svg.starts_with(b"<?xml"));
-        good(&place, &[arguments, &["--plot", "p.svg"]].concat());
+        place.quiet(&[arguments, &["--plot", "p.svg"]].concat());
         assert!(svg == place.bytes("p.svg"), "not deterministic");
     }
     let left = ["p.PNG", "p.svg", "scene.toml", "t.csv"];
@@ -77,7 +66,7 @@ fn help_defines_the_columns() {
         ("branch", &[BRANCH]),
         ("shape", &[SHAPE]),
     ] {
-        let help = good(&place, &[command, "--help"]).out;
+        let help = place.quiet(&[command, "--help"]).out;
         let defined: Vec<String> = help
             .split("\nColumns")
             .skip(1)
@@ -96,7 +85,7 @@ fn help_defines_the_columns() {
             .collect();
         assert_eq!(defined, tables, "{help}");
     }
-    let short = good(&place, &["curve", "-h"]).out;
+    let short = place.quiet(&["curve", "-h"]).out;
     assert!(!short.contains("Columns"), "{short}");
 }
 

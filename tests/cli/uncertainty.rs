@@ -1,6 +1,6 @@
 //! `whiskmap curve --samples`, and `[uncertainty]` elsewhere.
 
-use super::traces::{CURVE, SPREAD, cells, good};
+use super::traces::{CURVE, SPREAD, cells};
 use super::{Place, SCENE, names, words};
 
 const UNCERTAIN: &str = "[uncertainty]\nbase_radius_um = 1.0\ntip_radius_um = 0.3\n";
@@ -13,10 +13,10 @@ fn uncertain() -> Place {
 fn a_spread_is_a_table_and_bands() {
     let place = uncertain();
     let sample = ["curve", "scene.toml", "--samples", "20"];
-    let run = good(&place, &sample);
+    let run = place.quiet(&sample);
     let rows = cells(&run.out, SPREAD);
     assert_eq!(rows.len(), 48);
-    let curve = good(&place, &["curve", "scene.toml"]).out;
+    let curve = place.quiet(&["curve", "scene.toml"]).out;
     for (row, curve) in rows.iter().zip(cells(&curve, CURVE)) {
         assert_eq!(
             (row[0], row[1], row[2], row[3]),
@@ -31,14 +31,14 @@ fn a_spread_is_a_table_and_bands() {
         );
     }
     // The default seed is 1.
-    let seeded = |seed| good(&place, &[&sample[..], &["--seed", seed]].concat()).out;
+    let seeded = |seed| place.quiet(&[&sample[..], &["--seed", seed]].concat()).out;
     assert_eq!(seeded("1"), run.out);
     assert_ne!(seeded("2"), run.out);
 
     let files = ["--csv", "t.csv", "--plot", "p.svg"];
-    good(&place, &[&sample[..], &files].concat());
+    place.quiet(&[&sample[..], &files].concat());
     assert_eq!(place.bytes("t.csv"), run.out.as_bytes());
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    let svg = place.text("p.svg");
     assert_eq!(svg.matches("<polygon").count(), 4, "two sides, two bands");
     assert!(svg.contains(">5 to 95 % of samples<") && svg.contains(">25 to 75 % of samples<"));
 }
@@ -50,9 +50,8 @@ fn samples_and_measured_points_share_a_plot() {
     let data = "side,distance_mm,push_angle_deg,kind,sd_deg\ncb,10,40,slip-off,1.5\ncf,15,-29,slip-off,0.5\n";
     place.write("points.csv", data);
     let curve = words("curve scene.toml --samples 20 --data points.csv");
-    let run = place.run(&[&curve[..], &["--csv", "t.csv", "--plot", "p.svg"]].concat());
-    assert_eq!(run.code, Some(0), "{run:?}");
-    let table = String::from_utf8(place.bytes("t.csv")).unwrap();
+    place.good(&[&curve[..], &["--csv", "t.csv", "--plot", "p.svg"]].concat());
+    let table = place.text("t.csv");
     let columns = format!(
         "{},p5_deg,p25_deg,p50_deg,p75_deg,p95_deg",
         super::data::POINTS
@@ -61,7 +60,7 @@ fn samples_and_measured_points_share_a_plot() {
     assert_eq!([rows[0][4], rows[1][4]], ["1.5", "0.5"]);
     // The same samples as without points.
     let alone = [&curve[..4], &["--distance", "10,15"]].concat();
-    let alone = good(&place, &alone).out;
+    let alone = place.quiet(&alone).out;
     let spread = cells(&alone, SPREAD);
     assert_eq!(
         (spread[0][0], spread[1][0], spread[2][0]),
@@ -74,7 +73,7 @@ fn samples_and_measured_points_share_a_plot() {
             assert!((cell / other - 1.0).abs() < 1e-9, "{row:?} {alone:?}");
         }
     }
-    let svg = String::from_utf8(place.bytes("p.svg")).unwrap();
+    let svg = place.text("p.svg");
     assert_eq!(svg.matches("<polygon").count(), 4, "two sides, two bands");
     // Both points and the sample in the legend.
     assert_eq!(svg.matches("<circle").count(), 3, "{svg}");
@@ -90,8 +89,8 @@ fn samples_and_measured_points_share_a_plot() {
     ]);
 
     let forces = words("curve scene.toml --samples 20 --x force_un --plot f.svg");
-    good(&place, &forces);
-    let svg = String::from_utf8(place.bytes("f.svg")).unwrap();
+    place.quiet(&forces);
+    let svg = place.text("f.svg");
     assert!(svg.contains("force at detachment"), "{svg}");
     assert_eq!(svg.matches("<polygon").count(), 4, "two sides, two bands");
 }
@@ -107,7 +106,7 @@ fn other_commands_leave_the_table_alone() {
                 .iter()
                 .map(|word| if *word == "SCENE" { scene } else { word })
                 .collect();
-            good(&place, &words).out
+            place.quiet(&words).out
         });
         assert_eq!(outs[0], outs[1], "{arguments:?}");
     };
@@ -118,14 +117,13 @@ fn other_commands_leave_the_table_alone() {
         "design SCENE --distance=15.66 --slip-off=20 --for=taper",
     ));
     place.map(&["scene.toml"]).assert_settled();
-    good(&place, &["render", "outputs/scene.exr", "-o", "again.png"]);
+    place.quiet(&["render", "outputs/scene.exr", "-o", "again.png"]);
 }
 
 #[test]
 fn draws_outside_of_the_limits_are_counted() {
     let place = Place::with(&format!("{SCENE}[uncertainty]\ntip_radius_um = 1.5\n"));
-    let run = place.run(&["curve", "scene.toml", "--samples", "50"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&["curve", "scene.toml", "--samples", "50"]);
     let warning = "draws were outside the scene's limits and were repeated\n";
     assert!(
         run.err.starts_with("note: ") && run.err.ends_with(warning),
@@ -173,8 +171,8 @@ fn samples_without_sense_are_refused() {
 fn largest_loads_are_more_columns() {
     let place = uncertain();
     let words = ["curve", "scene.toml", "--distance", "10", "--samples", "5"];
-    let ends = good(&place, &words).out;
-    let largest = good(&place, &[&words[..], &["--largest"]].concat()).out;
+    let ends = place.quiet(&words).out;
+    let largest = place.quiet(&[&words[..], &["--largest"]].concat()).out;
     let (ends, largest): (Vec<&str>, Vec<&str>) =
         (ends.lines().collect(), largest.lines().collect());
     assert_eq!(ends.len(), largest.len());

@@ -14,9 +14,7 @@ fn distances_and_angles_take_units() {
             "--push-angle",
             angle,
         ];
-        let run = place.run(&words);
-        assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
-        run.out
+        place.quiet(&words).out
     };
     let plain = shape("15", "5");
     for (distance, angle) in [
@@ -27,16 +25,16 @@ fn distances_and_angles_take_units() {
         assert!(shape(distance, angle) == plain, "{distance} {angle}");
     }
     let branch = |distances: &str| {
-        let run = place.run(&[
-            "branch",
-            "scene.toml",
-            "--points",
-            "9",
-            "--distance",
-            distances,
-        ]);
-        assert_eq!(run.code, Some(0), "{run:?}");
-        run.out
+        place
+            .good(&[
+                "branch",
+                "scene.toml",
+                "--points",
+                "9",
+                "--distance",
+                distances,
+            ])
+            .out
     };
     assert_eq!(branch("10,1.5cm"), branch("10,15"));
 }
@@ -83,8 +81,7 @@ fn numbers_in_other_units_are_warned_of() {
         &words("fit scene.toml --data points.csv --free tip_radius_um"),
         &["submit", "scene.toml", "--shards", "1"],
     ] {
-        let run = place.run(words);
-        assert_eq!(run.code, Some(0), "{run:?}");
+        let run = place.good(words);
         assert_eq!(run.err.matches(warning).count(), 1, "{run:?}");
         assert_eq!(run.err.matches("warning: ").count(), 1, "{run:?}");
     }

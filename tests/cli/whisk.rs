@@ -1,6 +1,6 @@
 //! `whiskmap whisk`.
 
-use super::traces::{cells, good};
+use super::traces::cells;
 use super::{Place, SCENE, words};
 
 const AT: [&str; 4] = ["whisk", "scene.toml", "--distance", "15.66"];
@@ -32,9 +32,8 @@ fn a_sine_and_its_angles_give_one_course() {
             .contains("slip-offs 2, pull-offs 0; detachments lose 9.68466 nJ"),
         "{run:?}"
     );
-    let text = |name: &str| String::from_utf8(place.bytes(name)).unwrap();
     let header = "time_s,event,side,angle_deg,push_angle_deg,force_un,contact_force_un,base_moment_nnm,energy_nj,snaps_deg";
-    let events = text("e.csv");
+    let events = place.text("e.csv");
     let events = cells(&events, header);
     let kinds: Vec<_> = events.iter().map(|event| [event[1], event[2]]).collect();
     assert_eq!(
@@ -46,14 +45,16 @@ fn a_sine_and_its_angles_give_one_course() {
             ["slip-off", "cf"]
         ]
     );
-    let curve = good(&place, &["curve", "scene.toml", "--distance", "15.66"]).out;
+    let curve = place
+        .quiet(&["curve", "scene.toml", "--distance", "15.66"])
+        .out;
     let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
     let [push, wanted]: [f64; 2] = [events[1][3], end[4]].map(|cell| cell.parse().unwrap());
     assert!((push - wanted).abs() < 1e-9, "{push} {wanted}");
     // A table on standard output stays alone there.
     let piped = whisk(&place, &[&sine[..], &["--events", "e.csv"]].concat());
-    assert_eq!(piped.out, text("s.csv"), "{piped:?}");
-    let svg = text("w.svg");
+    assert_eq!(piped.out, place.text("s.csv"), "{piped:?}");
+    let svg = place.text("w.svg");
     for label in [
         "angle of the base (deg)",
         "contact force (\u{b5}N)",
@@ -69,12 +70,12 @@ fn a_sine_and_its_angles_give_one_course() {
         &[&sine[..], &["--plot", "paper.svg", "--size", "85mm"]].concat(),
     );
     assert_eq!(paper.code, Some(0), "{paper:?}");
-    let times = text("paper.svg");
+    let times = place.text("paper.svg");
     assert!(
         times.matches(">time (s)<").count() + times.matches(">time (ms)<").count() == 1,
         "{times}"
     );
-    let table = text("s.csv");
+    let table = place.text("s.csv");
     let angles = table
         .lines()
         .map(|line| line.splitn(3, ',').take(2).collect::<Vec<_>>().join(","));

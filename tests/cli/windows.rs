@@ -2,7 +2,7 @@
 
 use super::data::DATA;
 use super::store::SWEEP;
-use super::traces::{CURVE, good};
+use super::traces::CURVE;
 use super::{Place, Run, SCENE, names, words};
 use std::fs::{self, File};
 use std::io::Read;
@@ -36,8 +36,7 @@ fn names_in_another_case_are_one_file() {
             .assert_refused(&["must be two files"]);
     }
     // The new table takes one of the names of the file; the input keeps the other.
-    let run = place.run(&["curve", "scene.toml", "--data=pts.csv", "--csv=hard.csv"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    place.good(&["curve", "scene.toml", "--data=pts.csv", "--csv=hard.csv"]);
     assert_eq!(place.bytes("pts.csv"), DATA.as_bytes());
 }
 
@@ -48,7 +47,7 @@ fn paths_have_backslashes_spaces_and_any_letters() {
     for stem in ["my scene", "Schnurrhaar µ 鬍鬚", ".hidden"] {
         let name = format!("my data\\{stem}.toml");
         fs::write(place.path(&name), SCENE.replace('\n', "\r\n")).unwrap();
-        assert!(good(&place, &["curve", &name]).out.starts_with(CURVE));
+        assert!(place.quiet(&["curve", &name]).out.starts_with(CURVE));
         let folder = format!("maps\\{stem}");
         place.map(&[&name, "-o", &folder]);
         let files = [format!("{stem}.exr"), format!("{stem}.png")];
@@ -56,10 +55,10 @@ fn paths_have_backslashes_spaces_and_any_letters() {
     }
     // An absolute path, and one that the system calls verbatim.
     let scene = place.path("scene.toml");
-    let table = good(&place, &["curve", scene.to_str().unwrap()]).out;
+    let table = place.quiet(&["curve", scene.to_str().unwrap()]).out;
     let verbatim = scene.canonicalize().unwrap();
     assert_eq!(
-        good(&place, &["curve", verbatim.to_str().unwrap()]).out,
+        place.quiet(&["curve", verbatim.to_str().unwrap()]).out,
         table
     );
     assert!(!table.contains('\r'));
@@ -70,7 +69,7 @@ fn a_file_that_is_being_read_is_replaced() {
     let place = Place::with(SCENE);
     place.write("t.csv", "old");
     let mut reader = File::open(place.path("t.csv")).unwrap();
-    good(&place, &SHAPE);
+    place.quiet(&SHAPE);
     let mut old = String::new();
     reader.read_to_string(&mut old).unwrap();
     assert_eq!(old, "old");
@@ -81,7 +80,7 @@ fn a_file_that_is_being_read_is_replaced() {
 #[test]
 fn readers_see_whole_files_only() {
     let place = Place::with(SCENE);
-    good(&place, &SHAPE);
+    place.quiet(&SHAPE);
     let whole = place.bytes("t.csv");
     let is_done = AtomicBool::new(false);
     let reads = thread::scope(|scope| {
@@ -94,7 +93,7 @@ fn readers_see_whole_files_only() {
             reads
         });
         for _ in 0..30 {
-            good(&place, &SHAPE);
+            place.quiet(&SHAPE);
         }
         is_done.store(true, Ordering::Relaxed);
         reader.join().unwrap()
@@ -133,10 +132,7 @@ fn folders_in_the_place_of_files_are_named() {
 fn the_null_device_is_written_to_and_not_named() {
     let place = Place::with(SCENE);
     let shape = ["shape", "scene.toml", "--distance=9", "--push-angle=1"];
-    let run = good(
-        &place,
-        &[&shape[..], &["--csv=nul", "--plot=p.svg"]].concat(),
-    );
+    let run = place.quiet(&[&shape[..], &["--csv=nul", "--plot=p.svg"]].concat());
     assert_eq!(run.out, "p.svg\n");
     assert_eq!(names(&place.path("")), ["p.svg", "scene.toml"]);
 }

@@ -1,6 +1,6 @@
 //! `whisker.yield_strain`: marks in tables, maps, pictures and designs.
 
-use super::{Place, Run, SCENE, words};
+use super::{Place, SCENE, words};
 use whiskmap::store::MapSource;
 
 /// Scene with a yield strain, which some of its states exceed.
@@ -9,12 +9,6 @@ fn yielding(strain: f64) -> String {
         "[whisker]\n",
         &format!("[whisker]\nyield_strain = {strain}\n"),
     )
-}
-
-fn good(place: &Place, words: &[&str]) -> Run {
-    let run = place.run(words);
-    assert_eq!(run.code, Some(0), "{words:?}: {run:?}");
-    run
 }
 
 /// Returns the cells of a column of a table, `[row]`; `None` without the column. Names of files below the table are left out.
@@ -91,7 +85,7 @@ fn tables_have_a_mark() {
     ] {
         let of = |scene: &str| {
             let words = [&words[..1], &[scene], &words[1..]].concat();
-            good(&place, &words).out
+            place.good(&words).out
         };
         let (marked, elastic) = (of("scene.toml"), of("elastic.toml"));
         let [header, other] =
@@ -134,12 +128,12 @@ fn rows_of_a_table_have_their_own_yield_strains() {
         "w.csv",
         "name,yield_strain\nunknown,\nsoft,0.002\nstrong,0.9\nbad,2\n",
     );
-    let curve = good(&place, &["curve", "scene.toml", "--distance=10"]);
+    let curve = place.good(&["curve", "scene.toml", "--distance=10"]);
     let marks = ["", "", "true", "true", "false", "false", "", ""];
     assert_eq!(column(&curve.out, "yields").unwrap(), marks);
     let reason = "whisker.yield_strain = 2: must be more than 0 and at most 1";
     assert!(curve.err.contains(&format!("bad ({reason})")), "{curve:?}");
-    let corner = good(&place, &["curve", "scene.toml", "--corner"]);
+    let corner = place.good(&["curve", "scene.toml", "--corner"]);
     assert!(
         corner
             .out
@@ -148,12 +142,8 @@ fn rows_of_a_table_have_their_own_yield_strains() {
             .unwrap()
             .ends_with("max_strain,yields")
     );
-    let of = |words: &[&str]| {
-        good(
-            &place,
-            &[words, &["--distance=10", "--at=whisker=soft"]].concat(),
-        )
-    };
+    let of =
+        |words: &[&str]| place.good(&[words, &["--distance=10", "--at=whisker=soft"]].concat());
     assert!(of(&["branch", "scene.toml"]).out.contains(",true\n"));
     let map = place.map(&["scene.toml"]);
     // The count is that of the one whisker with marks.
@@ -162,17 +152,17 @@ fn rows_of_a_table_have_their_own_yield_strains() {
     for file in ["scene.toml", "outputs/scene.exr"] {
         for (whisker, has_marks) in [("unknown", false), ("soft", true), ("strong", false)] {
             let at = format!("--at=whisker={whisker}");
-            good(&place, &["render", file, &at, "-o", "s.svg"]);
-            let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+            place.good(&["render", file, &at, "-o", "s.svg"]);
+            let picture = place.text("s.svg");
             assert_eq!(picture.contains(LEGEND), has_marks, "{file} {whisker}");
         }
     }
     // Without strains, a note says so of a whisker with a yield strain.
     let few = words("map scene.toml -o few --channels=regime,margin_deg");
-    good(&place, &few);
+    place.good(&few);
     for (whisker, has_note) in [("unknown", false), ("soft", true)] {
         let at = format!("--at=whisker={whisker}");
-        let run = good(&place, &["render", "few/scene.exr", &at, "-o", "s.svg"]);
+        let run = place.good(&["render", "few/scene.exr", &at, "-o", "s.svg"]);
         assert_eq!(run.err.contains("no cell is hatched"), has_note, "{run:?}");
     }
     // The text of the map has the rows of the file.
@@ -195,8 +185,8 @@ fn maps_have_strains_and_hatched_cells() {
     place.write("elastic.toml", &SCENE.replace("A small map", "elastic"));
     place.write("strong.toml", &yielding(0.9));
     let svg = |words: &[&str]| {
-        let run = good(&place, &[words, &["-o", "s.svg"]].concat());
-        (String::from_utf8(place.bytes("s.svg")).unwrap(), run.err)
+        let run = place.good(&[words, &["-o", "s.svg"]].concat());
+        (place.text("s.svg"), run.err)
     };
     let map = place.map(&["scene.toml"]);
     assert!(map.count(LEGEND) > 10, "{map:?}");
@@ -229,10 +219,10 @@ fn maps_have_strains_and_hatched_cells() {
     }
     // A curve has another stroke over the ends that the table marks.
     for (scene, has_marks) in [("scene.toml", true), ("strong.toml", false)] {
-        let run = good(&place, &["curve", scene, "--csv", "-", "--plot", "s.svg"]);
+        let run = place.good(&["curve", scene, "--csv", "-", "--plot", "s.svg"]);
         let marks = column(&run.out, "yields").unwrap();
         let count = marks.iter().filter(|mark| *mark == "true").count();
-        let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+        let picture = place.text("s.svg");
         assert_eq!(picture.contains(LEGEND), has_marks, "{scene}");
         // A point has one comma. The line of the legend has two points.
         let dashed = picture
@@ -251,16 +241,12 @@ fn maps_have_strains_and_hatched_cells() {
         ["scene.toml", "elastic.toml", "strong.toml"].map(|scene| body(&svg(&["render", scene]).0));
     assert!(marked != plain && strong == plain);
     // On demand, and left out.
-    good(
-        &place,
-        &words("map elastic.toml -o asked --channels=regime,peak_strain"),
-    );
+    place.good(&words(
+        "map elastic.toml -o asked --channels=regime,peak_strain",
+    ));
     let asked = MapSource::open(&place.path("asked/elastic.exr")).unwrap();
     assert_eq!(asked.channels(), ["regime", "peak_strain"]);
-    good(
-        &place,
-        &words("map scene.toml -o few --channels=regime,margin_deg"),
-    );
+    place.good(&words("map scene.toml -o few --channels=regime,margin_deg"));
     let (picture, err) = svg(&["render", "few/scene.exr"]);
     let note =
         "note: no cell is hatched beyond the yield strain: the map has no channel peak_strain";
@@ -274,11 +260,8 @@ fn maps_have_strains_and_hatched_cells() {
 fn both_marks_are_in_one_line_of_the_legend() {
     let rough = yielding(0.002).replace("[grid]", "[contact]\nfriction = 0.3\n[grid]");
     let place = Place::with(&rough);
-    good(
-        &place,
-        &["render", "scene.toml", "--channel=force_un", "-o", "s.svg"],
-    );
-    let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
+    place.good(&["render", "scene.toml", "--channel=force_un", "-o", "s.svg"]);
+    let picture = place.text("s.svg");
     assert!(
         picture.contains("slides to base, or sticks, or beyond the yield strain"),
         "{picture}"
@@ -291,17 +274,14 @@ fn a_store_has_the_strains_of_the_map() {
     let place = Place::with(&yielding(0.002));
     place.map(&["scene.toml"]);
     let zarr = words("map scene.toml --engine=cpu --format=zarr -o out");
-    good(&place, &zarr);
+    place.good(&zarr);
     // Parts of maps and stores have them, too.
-    good(&place, &["extract", "outputs/scene.exr", "-o", "part.zarr"]);
-    good(&place, &["extract", "out/scene.zarr", "-o", "part.exr"]);
+    place.good(&["extract", "outputs/scene.exr", "-o", "part.zarr"]);
+    place.good(&["extract", "out/scene.zarr", "-o", "part.exr"]);
     let maps = words("outputs/scene.exr out/scene.zarr part.zarr part.exr");
     let tables = maps.into_iter().map(|map| {
-        good(
-            &place,
-            &["extract", map, "--channel=peak_strain", "-o", "t.csv"],
-        );
-        String::from_utf8(place.bytes("t.csv")).unwrap()
+        place.good(&["extract", map, "--channel=peak_strain", "-o", "t.csv"]);
+        place.text("t.csv")
     });
     let tables: Vec<String> = tables.collect();
     assert!(tables.iter().all(|table| *table == tables[0]));
@@ -318,14 +298,11 @@ fn a_design_names_the_strain_of_a_solution() {
     let design = |strain: f64, more: &[&str]| {
         let place = Place::with(&yielding(strain));
         let words = ["design", "scene.toml", "--distance=15.66"];
-        good(&place, &[&words[..], more].concat())
+        place.good(&[&words[..], more].concat())
     };
     let one = ["--slip-off=20deg", "--for=taper"];
-    let plain = good(
-        &Place::with(SCENE),
-        &[&["design", "scene.toml", "--distance=15.66"], &one[..]].concat(),
-    );
-    assert_eq!(plain.err, "");
+    let plain = Place::with(SCENE)
+        .quiet(&[&["design", "scene.toml", "--distance=15.66"], &one[..]].concat());
     let (within, beyond) = (design(0.0025, &one), design(0.002, &one));
     assert_eq!([&within.out, &beyond.out], [&plain.out; 2]);
     let taper = plain.out.trim();

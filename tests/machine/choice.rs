@@ -21,8 +21,7 @@ fn large() -> String {
 
 /// The name of the first adapter that `devices` lists.
 fn adapter(place: &Place) -> String {
-    let run = place.run(&["devices"]);
-    assert_eq!(run.code, Some(0), "{run:?}");
+    let run = place.good(&["devices"]);
     let line = run.out.lines().find(|line| line.get(2..4) == Some("0 "));
     line.unwrap()[4..].rsplit_once(" (").unwrap().0.to_owned()
 }
@@ -150,8 +149,7 @@ fn a_missing_driver_is_named() {}
 fn a_file_states_the_tolerances_of_its_engine() {
     let place = Place::with(&SCENE.replace("count = 24", "count = 64"));
     let tolerances = |arguments: &[&str]| {
-        let run = place.run(&[&["map", "scene.toml", "--no-png"], arguments].concat());
-        assert_eq!(run.code, Some(0), "{run:?}");
+        place.good(&[&["map", "scene.toml", "--no-png"], arguments].concat());
         let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
         let tolerances = map.attribute("tolerances").unwrap();
         let accepted = tolerances["residual_accepted_whisker_lengths"]

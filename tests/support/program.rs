@@ -65,15 +65,34 @@ impl Place {
         Run::of(&self.command(arguments).output().unwrap())
     }
 
-    /// Runs `map`, which must succeed.
-    pub fn map(&self, arguments: &[&str]) -> Run {
-        let run = self.run(&[&["map", "--engine", "cpu"], arguments].concat());
-        assert_eq!(run.code, Some(0), "{run:?}");
+    /// Runs the program, which must succeed.
+    #[track_caller]
+    pub fn good(&self, arguments: &[&str]) -> Run {
+        let run = self.run(arguments);
+        assert_eq!(run.code, Some(0), "{arguments:?}: {run:?}");
         run
+    }
+
+    /// Runs the program, which must succeed without messages.
+    #[track_caller]
+    pub fn quiet(&self, arguments: &[&str]) -> Run {
+        let run = self.good(arguments);
+        assert_eq!(run.err, "", "{arguments:?}: {run:?}");
+        run
+    }
+
+    /// Runs `map`, which must succeed.
+    #[track_caller]
+    pub fn map(&self, arguments: &[&str]) -> Run {
+        self.good(&[&["map", "--engine", "cpu"], arguments].concat())
     }
 
     pub fn bytes(&self, name: &str) -> Vec<u8> {
         fs::read(self.path(name)).unwrap()
+    }
+
+    pub fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
     }
 }
 
