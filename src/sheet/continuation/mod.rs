@@ -20,7 +20,8 @@ use glam::DVec2;
 pub const NODE_MISS: f64 = 1e-8;
 
 impl LevelCurve {
-    /// Follows a `stretch` of the level curve from `start`, for at most nine turns of the base. Returns `None` if the continuation fails.
+    /// Follows a `stretch` of the level curve from `start`, for at most nine turns of the base, and unstable states
+    /// alone for one turn toward the other side. Returns `None` if the continuation fails.
     #[must_use]
     pub fn continuation(&self, start: CurveNode, stretch: Stretch) -> Option<Path> {
         within_turns(&[Some((self, start))], stretch, ON_CURVE).pop()?
@@ -42,7 +43,7 @@ pub fn continuations(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<
     ended.collect()
 }
 
-/// Follows level curves as [`continuations`] does, also curves that reach no edge within nine turns.
+/// Follows level curves as [`continuations`] does, also curves that reach no edge within these turns.
 fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Path>> {
     let mut ended = follow_with_retry(starts, stretch, miss);
     let pairs = starts.iter().zip(&ended);

@@ -17,7 +17,7 @@ pub struct Path {
     pub nodes: Vec<CurveNode>,
     /// Index of the path's node at the fold; `None` if the tip comes first.
     pub fold: Option<usize>,
-    /// Edge of the sheet at the last node. `None` means that the push angle exceeds nine turns before the curve meets an edge.
+    /// Edge of the sheet at the last node. `None` means that the push angle exceeds the turns that are followed before the curve meets an edge.
     pub end: Option<Edge>,
 }
 
