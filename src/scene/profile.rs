@@ -120,8 +120,9 @@ fn check_places(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
             )
         } else if s - before < NARROWEST * length_mm {
             format!(
-                "must be farther from the row before it, by at least length_mm / 1000000 ({})",
-                NARROWEST * length_mm
+                "must be farther from the row before it, by at least length_mm / 1000000 ({}), is {}",
+                digits(NARROWEST * length_mm),
+                digits(s - before)
             )
         } else if !(ROW_UM[0]..=ROW_UM[1]).contains(&radius) {
             format!(
@@ -157,9 +158,10 @@ fn check_radii(rows: &[[f64; 2]]) -> Result<(), SceneFault> {
     let limits = base_radius_um / SHARPEST_TIP..=DEEPEST_WAIST * base_radius_um;
     if let Some(i) = rows.iter().position(|[_, radius]| !limits.contains(radius)) {
         let must = format!(
-            "the radius must be between a thousandth of that at the base ({}) and four times it ({})",
-            limits.start(),
-            limits.end()
+            "the radius must be between a thousandth of that at the base ({}) and four times it ({}), is {}",
+            digits(*limits.start()),
+            digits(*limits.end()),
+            digits(rows[i][1])
         );
         return Err(refused(i, must));
     }
@@ -171,8 +173,9 @@ fn check_radii(rows: &[[f64; 2]]) -> Result<(), SceneFault> {
     }
     if let Some((i, thinnest)) = deep_waist(rows) {
         let must = format!(
-            "the radius must be at least {} um: a waist is at most four times as thin as the whisker on both sides of it",
-            digits(thinnest)
+            "the radius must be at least {} um, is {}: a waist is at most four times as thin as the whisker on both sides of it",
+            digits(thinnest),
+            digits(rows[i][1])
         );
         return Err(refused(i, must));
     }

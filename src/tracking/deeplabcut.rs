@@ -139,11 +139,12 @@ fn frames(
     let cells = table.values("frame", "", |cell| Some(is_number(cell)))?;
     // Labelled images have the names of files instead of numbers.
     let are_images = cells.is_some_and(|are_numbers| !are_numbers.contains(&true));
-    let numbers = match are_images {
-        true => None,
-        false => table.values("frame", FRAME_NUMBERS, frame_number)?,
+    let numbers: Vec<u64> = match are_images {
+        true => (0..table.lines().count() as u64).collect(),
+        false => table
+            .values("frame", FRAME_NUMBERS, frame_number)?
+            .unwrap_or_default(),
     };
-    let numbers = numbers.unwrap_or_else(|| (0..table.lines().count() as u64).collect());
     let mut frames: Vec<ImageFrame> = Vec::with_capacity(numbers.len());
     for ((i, line), number) in table.lines().enumerate().zip(numbers) {
         if let Some(before) = frames.last().filter(|frame| frame.number >= number) {

@@ -81,18 +81,21 @@ fn radii_that_are_refused() {
             "must begin at the base, at 0, and end at length_mm",
         ),
         ("[[0, 30], [19, 1]]", "end at length_mm (20)"),
-        ("[[0, 30], [20, 31]]", "the radius at the tip must be"),
+        (
+            "[[0, 30], [20, 31]]",
+            "the radius at the tip must be at most that at the base (30), is 31",
+        ),
         (
             "[[0, 30], [20, 0.02]]",
             "rows[1]: the radius must be between a thousandth",
         ),
         (
             "[[0, 30], [2, 29], [3, 2], [4, 28], [20, 1]]",
-            "rows[2]: the radius must be at least 7 um: a waist is at most four times as thin",
+            "rows[2]: the radius must be at least 7 um, is 2: a waist is at most four times as thin",
         ),
         (
             "[[0, 2], [5, 9], [20, 1]]",
-            "rows[1]: the radius must be between a thousandth of that at the base (0.002) and four times it (8)",
+            "rows[1]: the radius must be between a thousandth of that at the base (0.002) and four times it (8), is 9",
         ),
         (
             "[[0, 30], [5, 12], [6, 2.9], [7, 11], [8, 12], [20, 1]]",
