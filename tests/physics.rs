@@ -20,8 +20,8 @@ fn detachment(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> (
     let crossing = sheet.crossings[0][0];
     let boundary = RowBoundary::new(sheet.touches(0), &sheet.crossings[0]);
     let span: &PushSpan = boundary.detachment().unwrap();
-    assert_eq!((span.from, span.to), (0.0, crossing.push));
-    (side.sign() * span.to.to_degrees(), crossing)
+    assert_eq!((span.from(), span.end), (0.0, crossing));
+    (side.sign() * span.to().to_degrees(), crossing)
 }
 
 fn whisker(

@@ -10,7 +10,7 @@ use crate::compute;
 use compute::compute_as;
 use whiskmap::Side;
 use whiskmap::accuracy::cheapest;
-use whiskmap::classify::{Outcome, Regime, RowBoundary, Status, TIE};
+use whiskmap::classify::{Outcome, PushSpan, Regime, RowBoundary, Status, TIE};
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Scene, SweptWhisker, Whisker};
@@ -203,7 +203,7 @@ fn contradictions_are_unresolved() {
 fn cells_beyond_the_known_spans_of_an_incomplete_row_are_unresolved() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5), Crossing::unknown()]);
     assert_eq!(row.classify(0.3, Outcome::Solved).0, Regime::Contact);
-    assert_eq!(row.detachment().map(|span| span.to), Some(0.5));
+    assert_eq!(row.detachment().map(PushSpan::to), Some(0.5));
     for outcome in [Outcome::OffSheet, Outcome::BeyondFold, Outcome::Solved] {
         assert_eq!(
             row.classify(0.6, outcome),
@@ -293,7 +293,7 @@ fn one_verdict_holds_from_end_to_end() {
                 }
             }
             // A push angle away from all ends is a range with one verdict.
-            let ends = row.spans().iter().flat_map(|span| [span.from, span.to]);
+            let ends = row.spans().iter().flat_map(|span| [span.from(), span.to()]);
             let is_apart = ends
                 .into_iter()
                 .all(|end| (end - pushes[from]).abs() > 1.5 * TIE);

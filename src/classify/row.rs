@@ -1,7 +1,7 @@
 //! Boundary of one row, and classification of its cells.
 
 use super::{Outcome, Regime, Status};
-use crate::sheet::{Crossing, Edge};
+use crate::sheet::{Crossing, Edge, pieces};
 
 /// Tie: largest distance of a push angle from a boundary, in radians, at which the angle counts as on it. Both verdicts are correct
 /// there.
@@ -10,25 +10,35 @@ pub const TIE: f64 = 1e-10;
 /// Push span: interval of push angles (magnitudes, in radians) on the stable sheet, at one distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushSpan {
-    /// Smallest push angle of the span, in radians.
-    pub from: f64,
-    /// Largest push angle of the span, in radians, at which the whisker detaches.
-    pub to: f64,
-    /// Edge of the sheet at which the push span ends.
-    pub edge: Edge,
+    /// Crossing at the smallest push angle of the span; `None` for first touch.
+    pub begin: Option<Crossing>,
+    /// Crossing at the largest push angle of the span, at which the whisker detaches.
+    pub end: Crossing,
 }
 
 impl PushSpan {
+    /// Returns the smallest push angle of the span, in radians.
+    #[must_use]
+    pub fn from(&self) -> f64 {
+        self.begin.map_or(0.0, |begin| begin.push)
+    }
+
+    /// Returns the largest push angle of the span, in radians.
+    #[must_use]
+    pub const fn to(&self) -> f64 {
+        self.end.push
+    }
+
     /// Returns true if `push`, a magnitude in radians, lies in the span or within [`TIE`] of one of its ends.
     #[must_use]
     pub fn contains(&self, push: f64) -> bool {
-        self.from - TIE <= push && push <= self.to + TIE
+        self.from() - TIE <= push && push <= self.to() + TIE
     }
 
     /// Returns the distance from `push`, a magnitude in radians, to the detachment, in degrees; 0 beyond it.
     #[must_use]
     pub fn margin_deg(&self, push: f64) -> f32 {
-        (self.to - push).max(0.0).to_degrees() as f32
+        (self.to() - push).max(0.0).to_degrees() as f32
     }
 }
 
@@ -54,20 +64,13 @@ impl RowBoundary {
         };
         let sound = crossings.iter().all(Crossing::is_sound);
         let even = (crossings.len() + usize::from(touches)).is_multiple_of(2);
-        let mut ends = crossings.iter();
-        let mut spans = Vec::new();
-        let mut from = touches.then_some(0.0);
-        while let Some(begin) = from.take().or_else(|| ends.next().map(|c| c.push)) {
-            let Some(end) = ends.next() else { break };
-            spans.push(PushSpan {
-                from: begin,
-                to: end.push,
-                edge: end.edge,
-            });
-        }
+        let spans = pieces(touches, crossings).map(|(begin, end)| PushSpan {
+            begin: begin.copied(),
+            end: *end,
+        });
         Self {
             touches,
-            spans: (sound && even).then_some(spans),
+            spans: (sound && even).then(|| spans.collect()),
             is_complete,
         }
     }
@@ -90,13 +93,13 @@ impl RowBoundary {
     pub fn is_one_verdict(&self, from: f64, to: f64) -> bool {
         let is_apart = |end: f64| end + TIE < from || to < end - TIE;
         let mut spans = self.spans().iter();
-        spans.all(|span| is_apart(span.from) && is_apart(span.to))
+        spans.all(|span| is_apart(span.from()) && is_apart(span.to()))
     }
 
     /// Returns true if `push` is on an end of `span` beyond which no state exists. First touch is not such an end.
-    fn is_on_edge(&self, span: &PushSpan, push: f64) -> bool {
-        let from_touch = self.detachment() == Some(span);
-        (push < span.from + TIE && !from_touch) || push > span.to - TIE
+    fn is_on_edge(span: &PushSpan, push: f64) -> bool {
+        let is_at_begin = span.begin.is_some_and(|begin| push < begin.push + TIE);
+        is_at_begin || push > span.to() - TIE
     }
 
     /// Returns the span of a push from first touch to detachment; `None` if the boundary is unknown or the whisker does not touch the
@@ -114,7 +117,7 @@ impl RowBoundary {
             return None;
         };
         let continues = |span: &&PushSpan| {
-            self.touches && span.contains(detachment.to) && span.to > detachment.to + TIE
+            self.touches && span.contains(detachment.to()) && span.to() > detachment.to() + TIE
         };
         others.iter().find(continues)
     }
@@ -143,25 +146,24 @@ impl RowBoundary {
         match (status, span) {
             // Without a push the shape at rest decides: the whisker does not reach the pole.
             (Status::Solved | Status::NotConverged, Some(span))
-                if !self.touches && push <= TIE && self.is_on_edge(span, push) =>
+                if !self.touches && push <= TIE && Self::is_on_edge(span, push) =>
             {
                 (Regime::OutOfReach, Status::Outside)
             }
             (Status::Solved, Some(span)) => {
-                let regime = if self.detachment() == Some(span) {
-                    Regime::Contact
-                } else {
-                    Regime::Unreachable
+                let regime = match span.begin {
+                    None => Regime::Contact,
+                    Some(_) => Regime::Unreachable,
                 };
                 (regime, status)
             }
             (Status::Outside | Status::BeyondFold | Status::BeyondTip, span)
-                if span.is_none_or(|span| self.is_on_edge(span, push)) =>
+                if span.is_none_or(|span| Self::is_on_edge(span, push)) =>
             {
                 if !self.is_complete && span.is_none() {
                     return (Regime::Unresolved, Status::NoBoundary);
                 }
-                let regime = match self.detachment().map(|span| span.edge) {
+                let regime = match self.detachment().map(|span| span.end.edge) {
                     None => Regime::OutOfReach,
                     Some(Edge::Fold) => Regime::SlipOff,
                     Some(Edge::Tip) => Regime::PullOff,

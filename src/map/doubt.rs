@@ -8,10 +8,6 @@ use crate::engine::{RowCells, WhiskerSide};
 use crate::refine::{ContactState, TOLERANCE};
 use crate::sheet::{CurveNode, Edge, LevelCurve, NODE_MISS, ON_CURVE, Stretch, continuations};
 
-/// Maximum distance, relative to contact and load, between the ends of a continuation and of the boundary. The two are computed apart,
-/// and the boundary in blocks that may take more steps: they differ by the error of the resolution.
-const SAME_END: f64 = 1e-5;
-
 /// Solves the cells in some `columns` of `row` once more by continuation. Cells that no continuation reaches stay as they are.
 pub fn solve(
     side: &WhiskerSide,
@@ -23,23 +19,18 @@ pub fn solve(
     let sheet = &side.sheet;
     let level = sheet.level(row);
     let sign = sheet.side.sign();
-    let crossing = |push: f64| sheet.crossings[row].iter().find(|c| c.push == push);
-    let starts = boundary.spans().iter().enumerate().map(|(index, span)| {
-        let start = if sheet.touches(row) && index == 0 {
-            level.touch()
-        } else {
-            level.at_crossing(crossing(span.from)?)?
+    let starts = boundary.spans().iter().map(|span| {
+        let start = match &span.begin {
+            None => level.touch(),
+            Some(begin) => level.at_crossing(begin)?,
         };
         Some((&level, start))
     });
     // Nodes only bracket the states of cells.
     let followed = continuations(&starts.collect::<Vec<_>>(), Stretch::Stable, NODE_MISS);
     let pieces = boundary.spans().iter().zip(followed).map(|(span, piece)| {
-        let piece = piece?;
-        let end = piece.nodes.last()?.point;
-        let exit = crossing(span.to)?;
-        let apart = (end.x / exit.tau - 1.0).abs() + (end.y / exit.load - 1.0).abs();
-        (apart < SAME_END && piece.end == Some(span.edge)).then_some(piece.nodes)
+        let piece = piece.filter(|path| path.crossing().is_some_and(|end| end.is_same(&span.end)));
+        Some(piece?.nodes)
     });
     let pieces: Vec<Option<Vec<CurveNode>>> = pieces.collect();
     for &column in columns {
@@ -54,7 +45,7 @@ pub fn solve(
             Some((span, Some(nodes))) => {
                 let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].push);
                 if push > last {
-                    cells.outcome[column] = beyond(span.edge);
+                    cells.outcome[column] = beyond(span.end.edge);
                 } else {
                     let node = level.state_at_push(nodes, sign * push.max(first));
                     let state = node.map(|node| state(&level, &node, signed_push));
@@ -66,7 +57,7 @@ pub fn solve(
             // Every piece of the level curve has been followed from end to end, and none has this push angle.
             None if pieces.iter().all(Option::is_some) => {
                 let end = boundary.detachment();
-                cells.outcome[column] = end.map_or(Outcome::OffSheet, |span| beyond(span.edge));
+                cells.outcome[column] = end.map_or(Outcome::OffSheet, |span| beyond(span.end.edge));
             }
             _ => {}
         }

@@ -3,7 +3,7 @@
 use super::friction::{self, FrictionRow};
 use super::panel::RowMut;
 use super::{Panel, doubt};
-use crate::classify::{Regime, RowBoundary, TIE};
+use crate::classify::{PushSpan, Regime, RowBoundary, TIE};
 use crate::engine::{BatchRow, Cells, RowBatch, RowCells, SideColumns, WhiskerSide};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -117,7 +117,7 @@ impl RowWriter<'_, '_> {
             }
         }
         // Without a push from first touch there is no history.
-        let end_push = self.boundary.detachment().map(|span| span.to);
+        let end_push = self.boundary.detachment().map(PushSpan::to);
         let end_push = end_push.filter(|end| side.has_friction() && *end > TIE)?;
         Some(FrictionRow {
             row,

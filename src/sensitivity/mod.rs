@@ -179,8 +179,8 @@ pub(crate) fn of_rows(
 ) -> Vec<Vec<(Parameter, f32)>> {
     let variables: Vec<Variable> = parameters.iter().copied().map(Variable::from).collect();
     let differentiated = Differentiated::new(resolution, whisker, pole, sheet.side, &variables);
-    let of_row = |(crossing, distance): (Result<&Crossing, _>, &f64)| {
-        let by = differentiated.at_crossing(crossing.ok(), *distance);
+    let of_row = |(crossing, distance): (Result<Crossing, _>, &f64)| {
+        let by = differentiated.at_crossing(crossing.ok().as_ref(), *distance);
         let push = |by: Result<Derivatives, _>| by.map_or(f32::NAN, |by| by.push_angle_deg as f32);
         let parameters = parameters.iter().copied();
         parameters.zip(by.into_iter().map(push)).collect()

@@ -28,7 +28,7 @@ pub use fold::FoldPoint;
 pub(crate) use fold::coordinate::{tau_of, u_of};
 pub(crate) use fold::{directions, first_folds};
 pub use net::{NetRow, PUSH_MARGIN};
-pub use row::{Crossing, Edge, Row};
+pub use row::{Crossing, Edge, Row, pieces};
 pub use span::Guess;
 pub(crate) use span::RowSpan;
 
@@ -233,16 +233,6 @@ impl Sheet {
         known
     }
 
-    /// Returns the ends of the stable pieces of `row`, `[piece]`; without the first one, a piece begins at first touch.
-    fn pieces(&self, row: usize) -> impl Iterator<Item = [Option<&Crossing>; 2]> {
-        let touch = self.touches(row).then_some(None);
-        let ends = touch
-            .into_iter()
-            .chain(self.crossings[row].iter().map(Some));
-        let ends: Vec<Option<&Crossing>> = ends.collect();
-        (0..ends.len() / 2).map(move |i| [ends[2 * i], ends[2 * i + 1]])
-    }
-
     /// Returns a Newton start for each cell of `row`, `[push_angle]`, one for each of the growing `pushes` (magnitudes, in radians). An entry is
     /// `None` outside the sheet.
     #[must_use]
@@ -259,12 +249,12 @@ impl Sheet {
             .as_ref()
             .and_then(|samples| samples.panels.as_ref()?.of(row))
         {
-            for ends in self.pieces(row) {
-                let [from, to] = ends.map(|end| end.map_or(0.0, |end| end.push));
+            for (begin, end) in pieces(self.touches(row), &self.crossings[row]) {
+                let [from, to] = [begin.map_or(0.0, |begin| begin.push), end.push];
                 let is_near = |push: &f64| from - PUSH_MARGIN <= *push && *push <= to + PUSH_MARGIN;
                 let needed = pushes.iter().any(is_near);
                 let (case, place) = (self.case(), &self.rows[row]);
-                let piece = || GuessRow::new(panel, case, place, ends);
+                let piece = || GuessRow::new(panel, case, place, [begin, Some(end)]);
                 if let Some(piece) = needed.then(piece).flatten() {
                     piece.write_guesses(&self.rod, pushes, &mut guesses);
                 }

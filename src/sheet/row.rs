@@ -105,6 +105,9 @@ pub struct Crossing {
 /// angle by more than 1e-8 degrees.
 pub const STEEP: f64 = 20.0;
 
+/// Largest relative difference in contact and load, added, of two crossings that are the same.
+const SAME_CROSSING: f64 = 1e-5;
+
 /// Largest residual of a crossing that counts as found.
 const SOUND: f64 = 1e-10;
 
@@ -134,6 +137,13 @@ impl Crossing {
         }
     }
 
+    /// Returns true if both are the same crossing, as two computations find it: they differ by the error of the resolution.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        let apart = [self.tau / other.tau, self.load / other.load].map(|ratio| (ratio - 1.0).abs());
+        self.edge == other.edge && apart.iter().sum::<f64>() < SAME_CROSSING
+    }
+
     /// Returns true if the row meets the tip edge at first touch ([`Crossing::at_touch`]).
     #[must_use]
     pub fn is_at_touch(&self) -> bool {
@@ -159,4 +169,20 @@ impl Crossing {
     pub fn is_unknown(&self) -> bool {
         self.tau.is_nan()
     }
+}
+
+/// Returns the ends of the stable pieces of a row with these `crossings`, `[piece]`: a row that `touches` the pole begins with the end of the piece
+/// from first touch, which has no crossing at its beginning. A last crossing without its partner is left out.
+pub fn pieces(
+    touches: bool,
+    crossings: &[Crossing],
+) -> impl Iterator<Item = (Option<&Crossing>, &Crossing)> {
+    let (from_touch, others) = match crossings {
+        [end, others @ ..] if touches => (Some((None, end)), others),
+        all => (None, all),
+    };
+    let others = others
+        .chunks_exact(2)
+        .map(|ends| (Some(&ends[0]), &ends[1]));
+    from_touch.into_iter().chain(others)
 }

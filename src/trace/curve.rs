@@ -290,13 +290,13 @@ pub(crate) struct RowEnd {
 impl RowEnd {
     /// Computes the ends of pushes in the rows of `sheets` with the integration `method`, `[sheet][row]`, or the reasons why there are none.
     pub fn of(method: Method, sheets: &[Sheet]) -> Vec<Vec<Result<Self, DetachmentKind>>> {
-        let crossings: Vec<Vec<Result<&Crossing, _>>> = sheets.iter().map(crossings).collect();
-        let known = |end: &Result<&Crossing, _>| end.ok().copied();
+        let crossings: Vec<Vec<Result<Crossing, _>>> = sheets.iter().map(crossings).collect();
+        let known = |end: &Result<Crossing, _>| end.ok();
         let of_sheet = |ends: &Vec<_>| ends.iter().map(known).collect();
         let ends: Vec<Vec<Option<Crossing>>> = crossings.iter().map(of_sheet).collect();
         let states = shoot_ends(method, sheets, &ends);
-        let end = |(crossing, state): (Result<&Crossing, _>, Option<FirstVariation>)| {
-            let crossing = *crossing?;
+        let end = |(crossing, state): (Result<Crossing, _>, Option<FirstVariation>)| {
+            let crossing = crossing?;
             let state = state.ok_or(DetachmentKind::Unresolved)?;
             Ok(Self { crossing, state })
         };
@@ -323,14 +323,14 @@ impl RowEnd {
 }
 
 /// Returns the crossing of each row of `sheet` at which a push from first touch ends, `[row]`, or the reason why there is none.
-pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>> {
+pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<Crossing, DetachmentKind>> {
     let of_row = |row: usize| {
         if !sheet.touches(row) {
             return Err(DetachmentKind::OutOfReach);
         }
         let boundary = RowBoundary::new(true, &sheet.crossings[row]);
-        let end = boundary.detachment().and(sheet.crossings[row].first());
-        end.ok_or(DetachmentKind::Unresolved)
+        let detachment = boundary.detachment().ok_or(DetachmentKind::Unresolved);
+        detachment.map(|span| span.end)
     };
     (0..sheet.rows.len()).map(of_row).collect()
 }
@@ -340,7 +340,7 @@ pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<&Crossing, DetachmentKind>>
 pub(crate) fn snaps_deg(sheet: &Sheet, row: usize) -> Option<f64> {
     let boundary = RowBoundary::new(sheet.touches(row), &sheet.crossings[row]);
     let span = boundary.snap()?;
-    Some((sheet.side.sign() * span.to).to_degrees())
+    Some((sheet.side.sign() * span.to()).to_degrees())
 }
 
 /// Returns the sliding direction of the contact at the detachment of each row of `sheet` by its history, `[row]`; `None` without friction or

@@ -1,7 +1,7 @@
 //! Path: the part of a level curve that a continuation has followed.
 
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, ON_CURVE};
-use crate::sheet::row::{Edge, STEEP};
+use crate::sheet::row::{Crossing, Edge, STEEP};
 use glam::DVec2;
 use whiskmap_mechanics::numerics::newton_form::{Polynomial, stencil, through_nodes};
 
@@ -32,6 +32,21 @@ impl Path {
     #[must_use]
     pub fn unstable(&self) -> Option<&[CurveNode]> {
         self.fold.map(|fold| &self.nodes[fold..])
+    }
+
+    /// Returns the crossing of the edge at the last node; `None` if the path does not end at an edge.
+    #[must_use]
+    pub fn crossing(&self) -> Option<Crossing> {
+        let (edge, end, level) = (self.end?, self.nodes.last()?, &self.level);
+        let distance = end.full.map.pole.length();
+        Some(Crossing {
+            edge,
+            tau: end.point.x,
+            load: end.point.y,
+            push: level.side.sign() * end.push,
+            residual: libm::log(level.row.pole_distance / distance).abs(),
+            slope: edge.slope(&end.full.map),
+        })
     }
 
     /// Returns the length of the path from its start to each node, in the measure of [`LevelCurve::length`]: `[node]`.

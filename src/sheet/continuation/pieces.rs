@@ -4,14 +4,11 @@
 use crate::sheet::case::SheetCase;
 use crate::sheet::continuation::level_curve::{CurveNode, LevelCurve, Stretch};
 use crate::sheet::continuation::stepper::MOST_PUSH;
-use crate::sheet::continuation::{NODE_MISS, Path, continuations};
+use crate::sheet::continuation::{NODE_MISS, continuations};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::{Crossing, Edge};
 use crate::sheet::span::{RowSpan, SpanNode};
 use whiskmap_mechanics::rod::Side;
-
-/// Largest relative difference in contact and load of two crossings that are the same.
-const SAME_CROSSING: f64 = 1e-5;
 
 /// Stable piece of a row: a part of its level curve on the stable sheet, in the direction of growing push angles.
 #[derive(Clone, Debug)]
@@ -70,7 +67,7 @@ impl StablePieces {
 
     /// Returns true if one of the pieces begins or ends at `crossing`.
     fn have_end(&self, crossing: &Crossing) -> bool {
-        self.ends().any(|end| same(crossing, &end))
+        self.ends().any(|end| end.is_same(crossing))
     }
 }
 
@@ -153,7 +150,8 @@ fn through_crossings(
     let ahead = ends_of_pieces(rows, &starts, Stretch::Stable, false);
     // An entry may be the beginning or the end of a piece. From the end, a continuation leads away only backward; forward it comes back to
     // the same crossing.
-    let leads = |entry: &Crossing, end: Option<PieceEnd>| end.filter(|(end, _)| !same(entry, end));
+    let leads =
+        |entry: &Crossing, end: Option<PieceEnd>| end.filter(|(end, _)| !end.is_same(entry));
     let ahead: Vec<Option<PieceEnd>> = entries
         .iter()
         .zip(ahead)
@@ -169,7 +167,7 @@ fn through_crossings(
         let Some(entry) = entries[i] else { continue };
         let (begin, end, nodes) = match (&ahead[i], &behind[i]) {
             (Some((end, nodes)), _) => (entry, *end, nodes),
-            (None, Some((begin, nodes))) if !same(&entry, begin) && !found.have_end(begin) => {
+            (None, Some((begin, nodes))) if !begin.is_same(&entry) && !found.have_end(begin) => {
                 (*begin, entry, nodes)
             }
             (None, behind) => {
@@ -260,26 +258,6 @@ fn ends_of_pieces(
     let continued = continuations(&starts.collect::<Vec<_>>(), stretch, NODE_MISS);
     continued
         .into_iter()
-        .map(|path| end_of_piece(path?))
+        .map(|path| Some((path.as_ref()?.crossing()?, path?.nodes)))
         .collect()
-}
-
-/// Returns the crossing at which a piece ends, and its nodes.
-fn end_of_piece(path: Path) -> Option<PieceEnd> {
-    let (edge, end, level) = (path.end?, path.nodes.last()?, &path.level);
-    let distance = end.full.map.pole.length();
-    let crossing = Crossing {
-        edge,
-        tau: end.point.x,
-        load: end.point.y,
-        push: level.side.sign() * end.push,
-        residual: libm::log(level.row.pole_distance / distance).abs(),
-        slope: edge.slope(&end.full.map),
-    };
-    Some((crossing, path.nodes))
-}
-
-fn same(one: &Crossing, other: &Crossing) -> bool {
-    let load = (one.load - other.load).abs() / one.load.abs();
-    one.edge == other.edge && load + (one.tau / other.tau - 1.0).abs() < SAME_CROSSING
 }

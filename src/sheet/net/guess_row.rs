@@ -260,7 +260,7 @@ fn level_place(from: f64, to: f64, misses: impl Fn(&[f64]) -> Vec<f64>) -> Optio
 mod tests {
     use super::*;
     use crate::sheet::net::cone;
-    use crate::sheet::{Edge, Sheet};
+    use crate::sheet::{Edge, Sheet, pieces};
     use whiskmap_mechanics::rod::Side;
     use whiskmap_mechanics::shooting::ShootingMap;
     use whiskmap_mechanics::shooting::batch::Method;
@@ -279,8 +279,8 @@ mod tests {
                 let distances: Vec<f64> = (0..184).map(|i| 0.1 + 0.005 * f64::from(i)).collect();
                 let sheet = Sheet::new(Method::fine(), &rod, side, &distances);
                 for (row, place) in sheet.rows.iter().enumerate() {
-                    for [first, last] in sheet.pieces(row) {
-                        let end = last.filter(|end| !end.is_at_touch()).unwrap();
+                    for (first, end) in pieces(sheet.touches(row), &sheet.crossings[row]) {
+                        assert!(!end.is_at_touch());
                         let from = first.map_or(0.0, |first| first.push);
                         ends[usize::from(end.edge == Edge::Tip)] += 1;
                         detached += usize::from(first.is_some());
@@ -295,7 +295,7 @@ mod tests {
                         let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
                         let panel = sheet.samples.as_ref().unwrap().panels.as_ref();
                         let states = panel.unwrap().of(row).unwrap();
-                        let states = GuessRow::new(states, sheet.case(), place, [first, last]);
+                        let states = GuessRow::new(states, sheet.case(), place, [first, Some(end)]);
                         let most = states.unwrap().residual;
                         for (map, push) in maps.iter().zip(&pushes) {
                             let off = map.pole.distance(place.pole(side.sign() * push));
