@@ -8,7 +8,7 @@ use crate::sheet::{Crossing, Edge, Sheet, SheetRequest, SheetUse};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use whiskmap_mechanics::rod::{Rest, Side};
-use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method, OutputSet};
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
 
 /// Kind of the end of a push from first touch.
@@ -192,34 +192,21 @@ pub(crate) fn detachments<T: Send>(
     let method = Method::new(resolution);
     let requests = pushed.iter().map(|pushed| pushed.request(detail));
     let sheets = Sheet::several(method, requests.collect());
-    let row_ends = RowEnd::of(method, &sheets);
-    let (has_strain, has_snaps) = (detail == EndDetail::All, detail >= EndDetail::Snaps);
-    let peaks: Vec<Vec<Option<PeakStrain>>> = match has_strain {
-        true => {
-            let crossing = |end: &Result<RowEnd, _>| end.as_ref().ok().map(|end| end.crossing);
-            let of_sheet = |ends: &Vec<_>| ends.iter().map(crossing).collect();
-            let crossings: Vec<Vec<_>> = row_ends.iter().map(of_sheet).collect();
-            shoot_ends(method.doubled(), &sheets, &crossings)
-        }
-        false => row_ends.iter().map(|ends| vec![None; ends.len()]).collect(),
-    };
-    let kept = |(index, (row_ends, peaks)): (usize, (Vec<Result<RowEnd, _>>, Vec<_>))| {
+    let row_ends = RowEnd::of(method, &sheets, detail);
+    let of_sheet = |(index, (sheet, row_ends)): (usize, (&Sheet, Vec<Result<RowEnd, _>>))| {
         let PushedWhisker {
             whisker,
             side,
             distances_mm,
             ..
         } = pushed[index];
-        let sheet = &sheets[index];
         let units = whisker.units();
         let reader = Reader::new(units, &sheet.rod);
-        let slidings = match has_strain {
-            true => slidings(sheet, &row_ends),
-            false => vec![None; row_ends.len()],
+        let slidings = match detail {
+            EndDetail::All => slidings(sheet, &row_ends),
+            EndDetail::State | EndDetail::Snaps => vec![None; row_ends.len()],
         };
-        let detachment = |row: usize,
-                          row_end: Result<RowEnd, DetachmentKind>,
-                          peak: Option<PeakStrain>| {
+        let detachment = |(row, row_end): (usize, Result<RowEnd, DetachmentKind>)| {
             let place = &sheet.rows[row];
             let none = Detachment {
                 side,
@@ -231,6 +218,7 @@ pub(crate) fn detachments<T: Send>(
                 Ok(row_end) => row_end,
                 Err(kind) => return keep(index, Detachment { kind, ..none }, None),
             };
+            let (peak, snaps) = (row_end.peak, detail >= EndDetail::Snaps);
             // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
             let off = libm::log(place.pole_distance / row_end.state.full.map.pole.length()).abs();
             let by_state = || Sliding::of(&row_end.state, &sheet.rod, row_end.crossing.tau);
@@ -241,41 +229,16 @@ pub(crate) fn detachments<T: Send>(
                 peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
                 residual: Some(row_end.crossing.residual + off),
                 sliding: slidings[row].or_else(by_state),
-                snaps_deg: has_snaps.then(|| snaps_deg(sheet, row)).flatten(),
+                snaps_deg: snaps.then(|| snaps_deg(sheet, row)).flatten(),
                 ..none.with_state(Some(&row_end.reading(&reader, sheet, row)))
             };
             keep(index, end, Some(row_end.crossing))
         };
-        let ends = row_ends.into_iter().zip(peaks).enumerate();
-        ends.map(|(row, (end, peak))| detachment(row, end, peak))
-            .collect()
+        let ends = row_ends.iter().copied().enumerate();
+        ends.map(detachment).collect()
     };
-    let ends: Vec<_> = row_ends.into_iter().zip(peaks).collect();
-    ends.into_par_iter().enumerate().map(kept).collect()
-}
-
-/// Integrates the trajectories from the `ends` of pushes in the rows of `sheets` in one batch, `[sheet][row]`; `None` without an end.
-fn shoot_ends<O: OutputSet>(
-    method: Method,
-    sheets: &[Sheet],
-    ends: &[Vec<Option<Crossing>>],
-) -> Vec<Vec<Option<O>>> {
-    let pairs = sheets.iter().zip(ends).flat_map(|(sheet, ends)| {
-        let ends = ends.iter().flatten();
-        ends.map(move |end| (&sheet.rod, end))
-    });
-    let conditions = pairs.map(|(rod, end)| InitialCondition {
-        rod,
-        tau: end.tau,
-        load: end.load,
-    });
-    let conditions: Vec<InitialCondition> = conditions.collect();
-    let mut outputs = Batch::new(method).shoot(&conditions).into_iter();
-    let of_sheet = |ends: &Vec<Option<Crossing>>| {
-        let output = |end: &Option<Crossing>| end.and_then(|_| outputs.next());
-        ends.iter().map(output).collect()
-    };
-    ends.iter().map(of_sheet).collect()
+    let ends = sheets.par_iter().zip(row_ends).enumerate();
+    ends.map(of_sheet).collect()
 }
 
 /// End of a push from first touch, with its state.
@@ -285,25 +248,43 @@ pub(crate) struct RowEnd {
     pub crossing: Crossing,
     /// State at the crossing, with its derivatives.
     pub state: FirstVariation,
+    /// Largest strain of the state; only with [`EndDetail::All`].
+    pub peak: Option<PeakStrain>,
 }
 
 impl RowEnd {
-    /// Computes the ends of pushes in the rows of `sheets` with the integration `method`, `[sheet][row]`, or the reasons why there are none.
-    pub fn of(method: Method, sheets: &[Sheet]) -> Vec<Vec<Result<Self, DetachmentKind>>> {
-        let crossings: Vec<Vec<Result<Crossing, _>>> = sheets.iter().map(crossings).collect();
-        let known = |end: &Result<Crossing, _>| end.ok();
-        let of_sheet = |ends: &Vec<_>| ends.iter().map(known).collect();
-        let ends: Vec<Vec<Option<Crossing>>> = crossings.iter().map(of_sheet).collect();
-        let states = shoot_ends(method, sheets, &ends);
-        let end = |(crossing, state): (Result<Crossing, _>, Option<FirstVariation>)| {
-            let crossing = crossing?;
-            let state = state.ok_or(DetachmentKind::Unresolved)?;
-            Ok(Self { crossing, state })
+    /// Computes the ends of pushes in the rows of `sheets` in one batch by the integration `method`, `[sheet][row]`, or the reasons why there are none.
+    pub fn of(
+        method: Method,
+        sheets: &[Sheet],
+        detail: EndDetail,
+    ) -> Vec<Vec<Result<Self, DetachmentKind>>> {
+        let ends: Vec<Vec<Result<Crossing, _>>> = sheets.iter().map(crossings).collect();
+        let pairs = sheets.iter().zip(&ends).flat_map(|(sheet, ends)| {
+            let ends = ends.iter().flatten();
+            ends.map(move |end| (&sheet.rod, end))
+        });
+        let conditions = pairs.map(|(rod, end)| InitialCondition {
+            rod,
+            tau: end.tau,
+            load: end.load,
+        });
+        let conditions: Vec<InitialCondition> = conditions.collect();
+        let mut states = Batch::new(method).shoot(&conditions).into_iter();
+        let peaks: Vec<PeakStrain> = match detail {
+            EndDetail::All => Batch::new(method.doubled()).shoot(&conditions),
+            EndDetail::State | EndDetail::Snaps => Vec::new(),
         };
-        let pairs = crossings.into_iter().zip(states);
-        pairs
-            .map(|(crossings, states)| crossings.into_iter().zip(states).map(end).collect())
-            .collect()
+        let mut peaks = peaks.into_iter();
+        let mut row_end = |end: Result<Crossing, DetachmentKind>| {
+            Ok(Self {
+                crossing: end?,
+                state: states.next().ok_or(DetachmentKind::Unresolved)?,
+                peak: peaks.next(),
+            })
+        };
+        let of_sheet = |ends: Vec<_>| ends.into_iter().map(&mut row_end).collect();
+        ends.into_iter().map(of_sheet).collect()
     }
 
     /// Returns the kind of the end.
@@ -351,7 +332,9 @@ fn slidings(sheet: &Sheet, ends: &[Result<RowEnd, DetachmentKind>]) -> Vec<Optio
         return slidings;
     }
     let rows = ends.iter().enumerate().filter_map(|(row, end)| {
-        let RowEnd { crossing, state } = *end.as_ref().ok()?;
+        let RowEnd {
+            crossing, state, ..
+        } = *end.as_ref().ok()?;
         (crossing.push > TIE).then_some((row, crossing, state))
     });
     let rows: Vec<(usize, Crossing, FirstVariation)> = rows.collect();

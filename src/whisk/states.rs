@@ -6,7 +6,7 @@ use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, S
 use crate::refine::{CellTarget, refine};
 use crate::scene::{Pole, Whisker};
 use crate::sheet::Sheet;
-use crate::trace::{DetachmentKind, RowEnd, StableBranch, snaps_deg};
+use crate::trace::{DetachmentKind, EndDetail, RowEnd, StableBranch, snaps_deg};
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
@@ -80,7 +80,7 @@ impl SideStates {
         let method = Method::new(Resolution::FINE);
         let distances: Vec<f64> = distances_mm.iter().map(|d| d / whisker.length_mm).collect();
         let sheet = Sheet::new(method, &rod, side, &distances);
-        let solved = RowEnd::of(method, std::slice::from_ref(&sheet));
+        let solved = RowEnd::of(method, std::slice::from_ref(&sheet), EndDetail::State);
         let solved = solved.into_iter().flatten().enumerate();
         let found = solved.map(|(row, end)| end.map_err(|_| row));
         let ends: Vec<RowEnd> = found.collect::<Result<_, _>>()?;
