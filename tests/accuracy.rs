@@ -45,15 +45,12 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
         states(method, &sheet, &scene.grid.push_angle_deg)
             .into_iter()
             .map(|(shot, state)| {
-                let (tau, load) = (state.tau, state.load);
-                (
-                    InitialCondition {
-                        rod: &rod,
-                        tau,
-                        load,
-                    },
-                    shot.pole,
-                )
+                let condition = InitialCondition {
+                    rod: &rod,
+                    tau: state.point.x,
+                    load: state.point.y,
+                };
+                (condition, shot.pole)
             })
             .unzip();
     let exact = Method::new(EXACT).with_effects(effects);

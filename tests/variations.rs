@@ -187,8 +187,8 @@ fn residuals_are_bounds() {
                     .iter()
                     .map(|(_, state)| InitialCondition {
                         rod: &rod,
-                        tau: state.tau,
-                        load: state.load,
+                        tau: state.point.x,
+                        load: state.point.y,
                     })
                     .collect();
                 let shot = Batch::new(method).shoot::<ShootingMap>(&conditions);

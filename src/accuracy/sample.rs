@@ -49,8 +49,8 @@ impl SceneSample {
                 let sheet = Sheet::new(method.coarsely(), &rod, side, &distances);
                 let solved = states(method.coarsely(), &sheet, &pushes).into_iter();
                 let solved = solved.map(|(_, state)| Point {
-                    tau: state.tau,
-                    load: state.load,
+                    tau: state.point.x,
+                    load: state.point.y,
                     edge: None,
                 });
                 // A push that ends at first touch does so at every resolution.

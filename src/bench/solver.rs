@@ -51,8 +51,8 @@ impl Solver {
         let method = Method::new(self.resolution).with_effects(effects);
         let batch = Batch::new(method).on(self.unit);
         let start = |target: &CellTarget| Hit {
-            tau: target.guess.tau,
-            load: target.guess.load,
+            tau: target.guess.x,
+            load: target.guess.y,
             residual: f64::INFINITY,
             steps: 0,
         };

@@ -4,7 +4,7 @@ use super::solver::{Hit, Solver};
 use crate::plan::Plan;
 use crate::refine::{CellTarget, states};
 use crate::scene::{Scene, SweptWhisker};
-use crate::sheet::{Guess, Sheet};
+use crate::sheet::Sheet;
 use glam::DVec2;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -104,10 +104,7 @@ impl Task {
                     solved.into_iter().map(move |(target, state)| {
                         let rod = index as u32;
                         let target = CellTarget { rod, ..target };
-                        let guess = Guess {
-                            tau: state.tau,
-                            load: state.load,
-                        };
+                        let guess = state.point;
                         (target, CellTarget { guess, ..target })
                     })
                 })

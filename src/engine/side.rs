@@ -175,11 +175,11 @@ impl WhiskerSide {
             false => Outcome::Solved,
         };
         let unsolved = Cell::new(outcome, steps);
-        let values = has_values.then(|| self.values(row, state.tau, &state.full, signed_push));
+        let values = has_values.then(|| self.values(row, state.point.x, &state.full, signed_push));
         Cell {
             residual: state.residual as f32,
             values: values.map_or(unsolved.values, |all| all.map(|value| value as f32)),
-            point: DVec2::new(state.tau, state.load),
+            point: state.point,
             ..unsolved
         }
     }

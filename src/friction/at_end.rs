@@ -63,8 +63,7 @@ fn points(sheet: &Sheet, row: usize, end: &Crossing) -> Option<Vec<DVec2>> {
         return None;
     }
     let pushes = (1..=BETWEEN).map(|i| end.push * f64::from(i) / f64::from(BETWEEN + 1));
-    let guesses = sheet.guesses(row, &pushes.collect::<Vec<_>>()).into_iter();
-    let between = guesses.map(|guess| guess.map(|guess| DVec2::new(guess.tau, guess.load)));
+    let between = sheet.guesses(row, &pushes.collect::<Vec<_>>());
     let touch = Some(sheet.rows[row].first_touch(&sheet.rod));
     [touch].into_iter().chain(between).collect()
 }

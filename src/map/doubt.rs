@@ -96,8 +96,7 @@ const fn beyond(edge: Edge) -> Outcome {
 
 fn state(level: &LevelCurve, node: &CurveNode, signed_push: f64) -> ContactState {
     ContactState {
-        tau: node.point.x,
-        load: node.point.y,
+        point: node.point,
         full: node.full,
         residual: node.full.map.pole.distance(level.row.pole(signed_push)),
     }

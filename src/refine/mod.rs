@@ -7,7 +7,7 @@ mod near_fold;
 mod newton;
 
 use crate::classify::Outcome;
-use crate::sheet::{Guess, Sheet};
+use crate::sheet::Sheet;
 use glam::DVec2;
 use newton::newton;
 use rayon::prelude::*;
@@ -31,8 +31,8 @@ const STEPS_NEAR_FOLD: u32 = 30;
 pub struct CellTarget {
     /// Index of the target's rod and sheet among those of the call.
     pub rod: u32,
-    /// Start of Newton's method for the cell.
-    pub guess: Guess,
+    /// Start of Newton's method for the cell: contact and signed load `(tau, load)`, dimensionless.
+    pub guess: DVec2,
     /// Target centre of the pole for the cell in the frame of the base, in whisker lengths.
     pub pole: DVec2,
 }
@@ -53,8 +53,7 @@ impl Default for Refined {
     fn default() -> Self {
         Self {
             state: ContactState {
-                tau: f64::NAN,
-                load: f64::NAN,
+                point: DVec2::NAN,
                 full: FullState::default(),
                 residual: f64::INFINITY,
             },
@@ -67,10 +66,8 @@ impl Default for Refined {
 /// State of the whisker at a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState {
-    /// Contact coordinate `tau` of the state, dimensionless.
-    pub tau: f64,
-    /// Signed load `f/rho^2` of the state, dimensionless.
-    pub load: f64,
+    /// Contact coordinate and signed load of the state, `(tau, load)`, dimensionless.
+    pub point: DVec2,
     /// Pole of the state with first derivatives, pose of the base, force and energy.
     pub full: FullState,
     /// Residual of the state: distance of the pole from its target, in whisker lengths; an upper bound if the last step is extrapolated.
@@ -81,7 +78,7 @@ impl ContactState {
     /// Returns true if the contact is at the tip of the rod of `sheet`, to the accuracy of residual and resolution.
     #[must_use]
     pub fn is_at_tip(&self, sheet: &Sheet) -> bool {
-        sheet.is_at_tip(self.tau, self.residual)
+        sheet.is_at_tip(self.point.x, self.residual)
     }
 }
 
@@ -109,9 +106,7 @@ pub fn refine_into(
 }
 
 fn refine_chunk(method: Method, sheets: &[&Sheet], targets: &[CellTarget], cells: &mut [Refined]) {
-    let starts = targets
-        .iter()
-        .map(|at| DVec2::new(at.guess.tau, at.guess.load));
+    let starts = targets.iter().map(|target| target.guess);
     let all: Vec<(usize, DVec2)> = starts.enumerate().collect();
     newton(method, sheets, targets, &all, STEPS, cells);
     let failed = (0..cells.len()).filter(|&i| cells[i].outcome == Outcome::NotConverged);

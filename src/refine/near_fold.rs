@@ -26,7 +26,7 @@ pub fn starts(
             rod: &sheets[target.rod as usize].rod,
             edge: Edge::Fold,
             pole_distance: target.pole.length(),
-            start: DVec2::new(target.guess.tau, target.guess.load),
+            start: target.guess,
             second: None,
         })
         .collect();

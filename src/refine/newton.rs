@@ -3,7 +3,7 @@
 use super::{CellTarget, ContactState, GOAL, Refined, TOLERANCE};
 use crate::classify::Outcome;
 use crate::newton::{BatchNewton, NewtonOutcome, NewtonProblem, NewtonStep};
-use crate::sheet::{Guess, Sheet};
+use crate::sheet::Sheet;
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rod, arclength};
 use whiskmap_mechanics::shooting::batch::Method;
@@ -98,8 +98,7 @@ pub fn newton(
     let iterates = BatchNewton::new(method, most + 1).solve(&mut problems, starts);
     for ((problem, iterate), (i, _)) in problems.iter().zip(iterates).zip(open) {
         let state = ContactState {
-            tau: iterate.point.x,
-            load: iterate.point.y,
+            point: iterate.point,
             full: iterate.state,
             residual: problem.residual,
         };
@@ -149,22 +148,23 @@ impl ConeDeviation {
 /// and load. It is a tenth of the distance between nodes of a continuation.
 const NEAR_GUESS: f64 = 0.005;
 
-fn is_near(guess: Guess, state: &ContactState, s: f64) -> bool {
-    let per_load = guess.load.abs() + 1.0 / (s * s);
-    (state.tau - guess.tau).abs() <= NEAR_GUESS * s
-        && (state.load - guess.load).abs() <= NEAR_GUESS * per_load
+fn is_near(guess: DVec2, state: &ContactState, s: f64) -> bool {
+    let scale = DVec2::new(s, guess.y.abs() + 1.0 / (s * s));
+    let apart = (state.point - guess).abs();
+    apart.cmple(NEAR_GUESS * scale).all()
 }
 
 /// Returns the outcome of a converged state of a cell. The state counts only on the sheet, and only near its guess where the sheet is
 /// followed by continuation.
-pub fn verdict(sheet: &Sheet, guess: Guess, state: &ContactState) -> Outcome {
-    let s = arclength(&sheet.rod, state.tau);
+pub fn verdict(sheet: &Sheet, guess: DVec2, state: &ContactState) -> Outcome {
+    let DVec2 { x: tau, y: load } = state.point;
+    let s = arclength(&sheet.rod, tau);
     let is_elsewhere = sheet.is_continued() && !is_near(guess, state, s);
-    if is_elsewhere || !sheet.is_stable(state.tau, state.load, &state.full.map) {
+    if is_elsewhere || !sheet.is_stable(tau, load, &state.full.map) {
         Outcome::NotConverged
     } else if state.is_at_tip(sheet) {
         Outcome::AtTip
-    } else if state.tau > sheet.tip[0] {
+    } else if tau > sheet.tip[0] {
         Outcome::BeyondTip
     } else {
         Outcome::Solved

@@ -29,10 +29,10 @@ pub(crate) use fold::coordinate::{tau_of, u_of};
 pub(crate) use fold::{directions, first_folds};
 pub use net::{NetRow, PUSH_MARGIN};
 pub use row::{Crossing, Edge, Row, pieces};
-pub use span::Guess;
 pub(crate) use span::RowSpan;
 
 use draft::{SheetDraft, follow};
+use glam::DVec2;
 use net::{GuessRow, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
@@ -233,10 +233,10 @@ impl Sheet {
         known
     }
 
-    /// Returns a Newton start for each cell of `row`, `[push_angle]`, one for each of the growing `pushes` (magnitudes, in radians). An entry is
+    /// Returns a Newton start `(tau, load)` for each cell of `row`, `[push_angle]`, one for each of the growing `pushes` (magnitudes, in radians). An entry is
     /// `None` outside the sheet.
     #[must_use]
-    pub fn guesses(&self, row: usize, pushes: &[f64]) -> Vec<Option<Guess>> {
+    pub fn guesses(&self, row: usize, pushes: &[f64]) -> Vec<Option<DVec2>> {
         let mut guesses = vec![None; pushes.len()];
         if pushes.is_empty() {
             return guesses;

@@ -4,17 +4,9 @@
 //! is flat. So polynomials through the nodes of the continuation represent the piece. To find a cell, solve `push(w)` for `w`; its
 //! contact is `tau(w)`, and its load `w/tau^2`.
 
+use glam::DVec2;
 use whiskmap_mechanics::numerics::Bracket;
 use whiskmap_mechanics::numerics::newton_form::{Polynomial, RootProblem, stencil, through_nodes};
-
-/// Guess for one cell: the start of Newton's method.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Guess {
-    /// Contact coordinate `tau` of the guess, dimensionless.
-    pub tau: f64,
-    /// Signed load `f/rho^2` of the guess, dimensionless.
-    pub load: f64,
-}
 
 /// Node of a row span: a state through which its polynomials pass.
 #[derive(Clone, Copy, Debug)]
@@ -55,9 +47,9 @@ impl RowSpan {
         (is_monotone && nodes.len() > 1).then_some(Self { sign, nodes })
     }
 
-    /// Writes guesses for those of the growing `pushes` (magnitudes, in radians) that are inside the span, where there are none, into
+    /// Writes guesses `(tau, load)` for those of the growing `pushes` (magnitudes, in radians) that are inside the span, where there are none, into
     /// `guesses`: `[push_angle]`.
-    pub fn write_guesses(&self, pushes: &[f64], guesses: &mut [Option<Guess>]) {
+    pub fn write_guesses(&self, pushes: &[f64], guesses: &mut [Option<DVec2>]) {
         let [first, last] = [self.nodes[0].push, self.nodes[self.nodes.len() - 1].push];
         let largest = self.nodes.iter().map(|node| node.w).fold(0.0, f64::max);
         let from = pushes.partition_point(|push| *push < first);
@@ -75,10 +67,7 @@ impl RowSpan {
             };
             let w = push_at.solve(&self.problem(i, *push), LAST_STEP * largest);
             let (tau, _) = tau_at.at(w);
-            guess.get_or_insert(Guess {
-                tau,
-                load: self.sign * w / (tau * tau),
-            });
+            guess.get_or_insert(DVec2::new(tau, self.sign * w / (tau * tau)));
         }
     }
 
@@ -130,7 +119,7 @@ mod tests {
             let mut guesses = vec![None; pushes.len()];
             span.write_guesses(&pushes, &mut guesses);
             for (push, guess) in pushes.iter().zip(guesses) {
-                let Some(Guess { tau, load }) = guess else {
+                let Some(DVec2 { x: tau, y: load }) = guess else {
                     assert!(*push > last, "{push}");
                     continue;
                 };

@@ -226,8 +226,10 @@ impl SideStates {
             if cell.outcome.is_solved() {
                 let (state, (row, push)) = (cell.state, of(i));
                 let touch = self.sheet.rows[row].touch;
-                let reading = self.reader.read(state.tau, &state.full, touch, sign * push);
-                states[i] = Some(CourseState::smooth(reading, state.tau, state.load));
+                let reading = self
+                    .reader
+                    .read(state.point.x, &state.full, touch, sign * push);
+                states[i] = Some(CourseState::smooth(reading, state.point.x, state.point.y));
             }
         }
         self.fill(contacts, &mut states);

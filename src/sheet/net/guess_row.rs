@@ -4,7 +4,8 @@ use super::bound::{MARGIN, larger, largest};
 use super::guesses::GuessPanel;
 use super::panel::TOP;
 use crate::sheet::case::SheetCase;
-use crate::sheet::{Crossing, Guess, Row};
+use crate::sheet::{Crossing, Row};
+use glam::DVec2;
 use whiskmap_mechanics::numerics::expansion::{Chebyshev, chebyshev_points};
 use whiskmap_mechanics::numerics::inverse::Inverse;
 use whiskmap_mechanics::numerics::{
@@ -179,8 +180,8 @@ impl GuessRow {
         })
     }
 
-    /// Writes missing `guesses`, `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near the row of `rod` between its ends.
-    pub fn write_guesses(&self, rod: &Rod, pushes: &[f64], guesses: &mut [Option<Guess>]) {
+    /// Writes missing `guesses`, `(tau, load)` `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near the row of `rod` between its ends.
+    pub fn write_guesses(&self, rod: &Rod, pushes: &[f64], guesses: &mut [Option<DVec2>]) {
         let from = pushes.partition_point(|push| *push < self.ends[0] - PUSH_MARGIN);
         let to = pushes.partition_point(|push| *push <= self.ends[1] + PUSH_MARGIN);
         let targets = pushes[from..to].iter().map(|push| push.max(self.first));
@@ -196,7 +197,7 @@ impl GuessRow {
                     } else {
                         contact
                     };
-                    guess.get_or_insert(Guess { tau, load });
+                    guess.get_or_insert(DVec2::new(tau, load));
                 }
             });
     }
@@ -288,9 +289,7 @@ mod tests {
                         let pushes = (0..=40).map(|i| from + part(i) * (end.push - from));
                         let pushes: Vec<f64> = pushes.collect();
                         let guesses = sheet.guesses(row, &pushes);
-                        let points = guesses
-                            .iter()
-                            .map(|guess| guess.map(|guess| (guess.tau, guess.load)));
+                        let points = guesses.iter().map(|guess| guess.map(<(f64, f64)>::from));
                         let points: Option<Vec<(f64, f64)>> = points.collect();
                         let maps: Vec<ShootingMap> = sheet.case().shoot(points.unwrap());
                         let panel = sheet.samples.as_ref().unwrap().panels.as_ref();
